@@ -84,13 +84,18 @@ std::string add_case_results(const std::filesystem::path& file, const Json& stud
       const CaseResult result = case_of(Json(row.begin() + 1, row.end()));
       if (results[number] && !(*results[number] == result))
         refuse("case " + std::to_string(number) +
-               " has another result than in another file of the same study");
+               ": its result differs from the result in another file of the same study; run the "
+               "study again with --force");
       results[number] = result;
     }
   } catch (const Json::exception&) {
-    refuse("this is not a file of certify results, or a part of it is missing");
+    refuse(
+        "this is not a file of certify results, or a part of the file is missing; choose another "
+        "name");
   } catch (const std::out_of_range&) {
-    refuse("this file has an unknown outcome");
+    refuse(
+        "this file has an outcome that this version of Ayumi does not know; choose another name, "
+        "or replace the file with --force");
   }
   return shard;
 }

@@ -64,7 +64,7 @@ std::string entry_of(const ConsistencyReport& report, const FindingGroup& group)
                     " at " + text::fixed(f.at, 3) + " s: " + amount_text(f) + ")");
   }
   if (!parts.empty())
-    out += std::string(10, ' ') + "what follows from it: " + text::join(parts, ", ") + "\n";
+    out += std::string(10, ' ') + "consequences: " + text::join(parts, ", ") + "\n";
   return out;
 }
 

@@ -91,7 +91,7 @@ const char* stage_words(LawStage stage) {
     case LawStage::push:
       return "VIIP pushes off, by (26)";
     case LawStage::flight:
-      return "VIIP is in flight: no ground force is asked for";
+      return "VIIP is in flight, and the commanded ground force is 0";
     case LawStage::landing:
       return "VIIP lands, by (27)";
     case LawStage::settle:
@@ -108,7 +108,7 @@ Writer begin(const RunInstant& i) {
   Writer w(i);
   if (baseline(i))
     w.line("the controller " + name_of(*i.log.controller) +
-           " chooses the ZMP in the place of (18)(19); all else is done as by DTAD");
+           " chooses the ZMP in place of (18)(19); everything else is as in DTAD");
   w.line(stage_words(i.now().law.stage));
   w.scalar("law.stage", "1", static_cast<double>(i.now().law.stage));
   return w;
@@ -188,7 +188,7 @@ EquationNumbers vertical_numbers(const RunInstant& i) {
   const double wanted = w.scalar("ref.fz", "N", s.reference_fz),
                measured = w.scalar("measured.fz", "N", s.measured_fz);
   w.line("z: ref f_z / m - g = " + fixed(wanted, 1) + " N / " + fixed(i.mass, 2) +
-         " kg - g = " + acceleration(wanted / i.mass - kGravity) + "; measured f_z " +
+         " kg - g = " + acceleration(wanted / i.mass - kGravity) + "; the measured f_z " +
          fixed(measured, 1) + " N gives " + acceleration(measured / i.mass - kGravity));
   if (on_ground(s.law.stage)) acceleration_lines(w, i, 2);
   return w.take();
@@ -227,7 +227,7 @@ EquationNumbers zmp_numbers(const RunInstant& i) {
                              " ms times its speed"
          : dtad(i) ? "K = " + text::brief(K) + ", D = " + fixed(1e3 * D, 0) + " ms"
                    : "the wanted ZMP moves by K = " + fixed(K, 3) +
-                         " times what the COG moves, and by D = " + fixed(1e3 * D, 0) +
+                         " times the displacement of the COG, and by D = " + fixed(1e3 * D, 0) +
                          " ms times its speed");
   const Vector3d e = s.command_cog - s.measured_cog, de = s.command_dcog - s.measured_dcog;
   for (int a = 0; a < 2; ++a) {
@@ -264,7 +264,7 @@ EquationNumbers force_numbers(const RunInstant& i) {
   Writer w = begin(i);
   const S& s = w.now();
   if (!dtad(i)) {
-    w.line(s.law.stage == LawStage::replay ? "ref f_z is the commanded one"
+    w.line(s.law.stage == LawStage::replay ? "ref f_z is the commanded f_z"
                                            : "the height follows (24) to (27), not (20)");
     w.scalar("ref.fz", "N", s.reference_fz);
     return w.take();
@@ -350,7 +350,7 @@ EquationNumbers resolution_numbers(const RunInstant& i) {
   Writer w = begin(i);
   const S& s = w.now();
   if (s.law.stage == LawStage::replay || s.law.stage == LawStage::follow_flight) {
-    w.line("nothing is resolved: the joints follow their command");
+    w.line("no equation is solved here: the joints follow their command");
     return w.take();
   }
   const Eigen::VectorXd& rates = s.reference_dtheta;
@@ -371,7 +371,7 @@ EquationNumbers resolution_numbers(const RunInstant& i) {
          std::to_string(rates.size()) + " joints together; the fastest joints [rad/s]:");
   w.line("  " + joints);
   const TaskResiduals& left = s.residuals;
-  w.line("what J_U ref dtheta leaves of u: COG " +
+  w.line("part of u that J_U ref dtheta does not produce: COG " +
          text::brief(1e3 * w.scalar("residual.cog", "m/s", left.cog)) + " mm/s, foot " +
          text::brief(1e3 * w.scalar("residual.foot", "m/s", left.foot)) + " mm/s and " +
          text::brief(w.scalar("residual.foot_turn", "rad/s", left.foot_turn)) + " rad/s, trunk " +

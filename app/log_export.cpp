@@ -48,12 +48,11 @@ SimulationLog log_of(const LogExport& options) {
     if (!is_log_file(options.input))
       fail(ErrorCode::bad_file, options.input + ": --format " + options.format +
                                     " needs a RUN, the folder that `ayumi run` or `ayumi simulate` "
-                                    "wrote, or a log file from this folder; the input is neither");
+                                    "wrote, or a log file from this folder; give one of these");
     if (!options.log.empty())
-      fail(ErrorCode::usage,
-           "--log " + options.log + ": " + options.input +
-               " is a single log; --log chooses one of the logs of a RUN folder, so "
-               "leave it out");
+      fail(ErrorCode::usage, "--log " + options.log + ": " + options.input +
+                                 " is a single log, and --log chooses one of the logs of a RUN "
+                                 "folder; leave --log out");
   }
   return read_run_log(options.input, options.log);
 }

@@ -48,7 +48,7 @@ std::string wrong_motion(const RobotModel& model, const Pattern& pattern) {
   if (judged.good() || !judged.motion_need.sufficient.empty()) return "";
   for (const Finding& finding : judged.report.findings)
     if (finding.severity == Severity::error) return text_of(finding);
-  return judged.report.findings.empty() ? "the check does not accept it"
+  return judged.report.findings.empty() ? "the motion does not pass the check"
                                         : text_of(judged.report.findings.front());
 }
 

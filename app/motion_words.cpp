@@ -60,7 +60,7 @@ std::string motion_words(const RobotModel& model, const MotionChange& change,
            largest("f_z", change.fz, text::fixed(change.fz.size, 1) + " N") + "\n";
   return out + "  ZMP " + margin_words(before.summary[FindingKind::support_margin]) + " before, " +
          margin_words(after.summary[FindingKind::support_margin]) +
-         " after; COG off its command by " +
+         " after; distance of the COG from its command " +
          millimetres(before.summary[FindingKind::cog_residual]) + " before, " +
          millimetres(after.summary[FindingKind::cog_residual]) + " after\n";
 }

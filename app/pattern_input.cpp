@@ -20,7 +20,7 @@ void add_pattern_options(CLI::App& command, PatternOptions& options) {
       ->allow_extra_args(false);
   command
       .add_option("--profile", options.profile,
-                  "Actuator profile of the robot (default: the pattern's).")
+                  "Actuator profile of the robot (default: the profile of the pattern).")
       ->type_name("NAME");
 }
 

@@ -135,8 +135,7 @@ KnownCases read_results(const std::filesystem::path& file, const Json& study, si
     for (const Json& entry : json.at("cases")) {
       if (entry.at("limits").size() != study.at("controllers").size())
         refuse(
-            "the number of results of a push is not the number of controllers of the study; choose "
-            "another name, or replace the file with --force");
+            "the number of results of a push differs from the number of controllers of the study");
       known.at(entry.at("index")) = case_from(entry);
     }
   } catch (const Json::exception&) {

@@ -12,10 +12,10 @@ RobotModel robot_of_run(const Context& context, const std::string& chosen,
   const bool elsewhere = chosen.empty() && recorded.find('/') != std::string::npos &&
                          !std::filesystem::exists(recorded);
   if (elsewhere)
-    fail(ErrorCode::bad_file,
-         recorded +
-             ": no such file; the run names its robot by a path relative to the folder from which "
-             "the run was made; start the command in that folder, or name the robot with --robot");
+    fail(ErrorCode::bad_file, recorded +
+                                  ": no such file. The run names its robot by a path that is "
+                                  "relative to the folder in which the run was started. Start the "
+                                  "command in that folder, or name the robot with --robot");
   return load_robot(chosen.empty() ? recorded : chosen, robot_search(context), options);
 }
 
@@ -29,10 +29,9 @@ RobotModel robot_of_log(const Context& context, const std::string& chosen, const
                                   "); name the robot of the run with --robot");
   const std::string& made_with = log.provenance.robot_sha256;
   if (chosen.empty() && !made_with.empty() && made_with != model.description().sha256)
-    fail(ErrorCode::bad_file,
-         source + ": the robot '" + model.name() +
-             "' is not as it was when the run was made; make the run again, or name the robot "
-             "with --robot to use it as it is now");
+    fail(ErrorCode::bad_file, source + ": the robot '" + model.name() +
+                                  "' has changed since the run was made; make the run again, or "
+                                  "give --robot to use the present robot");
   return model;
 }
 

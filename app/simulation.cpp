@@ -17,15 +17,15 @@ namespace ayumi::app {
 
 void add_simulation_options(CLI::App& command, SimulationChoice& choice) {
   command
-      .add_option(
-          "--controller", choice.controller,
-          "none (open loop), dtad, viip, to compare with: preview, foot-guided, dcm-step, or "
-          "for demonstration dtad-literal, viip-landings, viip-nofeedback (default: the "
-          "pattern's).")
+      .add_option("--controller", choice.controller,
+                  "Controller: none (open loop), dtad or viip; for comparison: preview, "
+                  "foot-guided or dcm-step; for demonstration: dtad-literal, viip-landings or "
+                  "viip-nofeedback (default: the controller of the pattern).")
       ->type_name("NAME");
   command
       .add_option("--scenario", choice.scenario,
-                  "none, or a pattern file whose scenario replaces the pattern's.")
+                  "Disturbances: none, or a pattern file with the scenario to use (default: the "
+                  "scenario of the pattern).")
       ->type_name("F");
   command.add_option("--gain", choice.gains, "Set a gain of the controller.")
       ->type_name("GAIN=VALUE")
@@ -44,7 +44,7 @@ void add_simulation_options(CLI::App& command, SimulationChoice& choice) {
 
 void add_unstable_flag(CLI::App& command, bool& allowed) {
   command.add_flag("--allow-unstable", allowed,
-                   "Simulate also with gains that make the loop unstable (a demonstration).");
+                   "Simulate even if the gains make the loop unstable, as a demonstration.");
 }
 
 void refuse_unstable_gains(const Task& input, const ControllerSpec& spec, bool allowed) {
@@ -54,7 +54,7 @@ void refuse_unstable_gains(const Task& input, const ControllerSpec& spec, bool a
                                          first.cog.z() - first.zmp.z(), input.series.dt);
   if (!reason.empty())
     fail(ErrorCode::bad_pattern,
-         reason + "; --allow-unstable simulates with these gains nevertheless");
+         reason + ". --allow-unstable simulates with these gains nevertheless");
 }
 
 void note_missing_noise(const RobotModel& robot, bool noise) {
@@ -65,8 +65,8 @@ void note_missing_noise(const RobotModel& robot, bool noise) {
     return;
   std::fprintf(stderr,
                "ayumi: --noise changes nothing: the files of %s state no noise, bias or latency of "
-               "sensors; state them under \"sensors\" of its sidecar (`ayumi init` writes a first "
-               "guess)\n",
+               "sensors; state these under \"sensors\" in the sidecar of the robot (`ayumi init` "
+               "writes a first guess)\n",
                text::printable(robot.name()).c_str());
 }
 
@@ -95,7 +95,7 @@ constexpr const char* kPlantHelp = "Simulator: ayumi or mujoco (default: ayumi).
   "then configure and build again (cmake -S . -B build/release && cmake --build build/release)"
 constexpr const char* kHowToGetMujoco = AYUMI_HOW_TO_GET_MUJOCO;
 constexpr const char* kPlantHelp =
-    "Simulator: ayumi or mujoco (default: ayumi); " AYUMI_HOW_TO_GET_MUJOCO;
+    "Simulator: ayumi or mujoco (default: ayumi). At present, " AYUMI_HOW_TO_GET_MUJOCO;
 #undef AYUMI_HOW_TO_GET_MUJOCO
 #endif
 
@@ -112,7 +112,7 @@ PlantKind plant_of(const std::string& name) {
 #else
   if (name == "mujoco") fail(ErrorCode::usage, std::string("--plant mujoco: ") + kHowToGetMujoco);
 #endif
-  fail(ErrorCode::usage, "--plant: unknown plant '" + name + "'" +
+  fail(ErrorCode::usage, "--plant: unknown simulator '" + name + "'" +
                              text::suggestion(name, {"ayumi", "mujoco"}) +
                              " (known: ayumi, mujoco)");
 }

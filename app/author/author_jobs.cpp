@@ -61,7 +61,7 @@ AuthorResult check_job(const AuthorMotion& motion) {
   const std::string& need = judgement.need().text;
   if (!need.empty()) lines.push_back("The actuators: " + need);
   for (const std::string& reason : export_refusals(motion.task, judgement))
-    if (reason != judgement.reason()) lines.push_back("A table is refused: " + reason);
+    if (reason != judgement.reason()) lines.push_back("ayumi export refuses the table: " + reason);
   lines.push_back(counted_findings(judgement) + ", actuators " + motion.task.profile);
   for (const auto& line : lines_of(origin_words(motion.task.series.origin))) lines.push_back(line);
   return {result_json("check", judgement.good() ? "The pattern is consistent." : judgement.reason(),
@@ -76,17 +76,18 @@ AuthorResult repair_job(const AuthorMotion& motion, const std::string& text,
   options.check = check_options(task);
   const RepairResult result = repair(task.robot, task.pattern, task.series, options, progress);
   if (result.status == RepairStatus::already_consistent)
-    return {result_json("repair", "The pattern is consistent; nothing has to change.", true,
+    return {result_json("repair", "The pattern is consistent, so nothing has to change.", true,
                         OrderedJson::array()),
             {}};
   const bool repaired = result.status == RepairStatus::repaired;
   OrderedJson lines = lines_of(motion_words(task.robot, result.moved, result.before, result.check));
   for (const std::string& reason : result.reasons) lines.push_back("Because " + reason);
-  AuthorResult out = {result_json("repair",
-                                  repaired ? "The pattern can be repaired; the ghost shows how."
-                                           : "No repair was found.",
-                                  repaired, lines),
-                      {}};
+  AuthorResult out = {
+      result_json("repair",
+                  repaired ? "The pattern can be repaired. The ghost shows the repaired motion."
+                           : "No repair was found.",
+                  repaired, lines),
+      {}};
   if (!repaired) return out;
   out.shown["text"] = with_correction(text, result.correction);
   const int stride = std::max(1, static_cast<int>(std::lround(1 / kPageRate / result.series.dt)));
@@ -180,11 +181,11 @@ AuthorResult push_job(const Context& context, const AuthorMotion& motion,
                                   " N s in every direction"}});
   }
   const std::string verdict =
-      weakest
-          ? "The robot survives " + text::fixed(least, 2) +
-                " N s everywhere; the weakest is the push at " + text::fixed(weakest->phase.at, 2) +
-                " s towards " + text::fixed(weakest->direction * 180 / M_PI, 0) + " degrees."
-          : "There was no push to try.";
+      weakest ? "The robot survives " + text::fixed(least, 2) +
+                    " N s at every time and in every direction. It resists least to the push at " +
+                    text::fixed(weakest->phase.at, 2) + " s towards " +
+                    text::fixed(weakest->direction * 180 / M_PI, 0) + " degrees."
+              : "There was no push to try.";
   AuthorResult out = {result_json("push", verdict, weakest && least > 0, lines), {}};
   out.shown["marks"] = marks;
   return out;
@@ -202,7 +203,7 @@ Said run_command(const std::vector<std::string>& arguments, const fs::path& fold
   std::array<int, 2> out{}, err{};
   if (::pipe(out.data()) != 0 || ::pipe(err.data()) != 0)
     fail(ErrorCode::bad_file,
-         "the export cannot be started, because the system allows no more pipes; close other "
+         "the export cannot be started, because the system allows no more pipes: close other "
          "programs, then try again");
   std::vector<char*> words;
   for (const std::string& word : arguments) words.push_back(const_cast<char*>(word.c_str()));
@@ -211,7 +212,7 @@ Said run_command(const std::vector<std::string>& arguments, const fs::path& fold
   const pid_t child = ::fork();
   if (child < 0)
     fail(ErrorCode::bad_file,
-         "the export cannot be started, because the system allows no more processes; close other "
+         "the export cannot be started, because the system allows no more processes: close other "
          "programs, then try again");
   if (child == 0) {
     ::dup2(out[1], STDOUT_FILENO);
@@ -291,11 +292,12 @@ AuthorResult export_job(const Context& context, const AuthorMotion& motion,
   OrderedJson lines = OrderedJson::array();
   if (json.contains("refused"))
     for (const auto& reason : json["refused"]) lines.push_back(reason);
-  AuthorResult out = {result_json("export",
-                                  said.exit_code == 0 ? "The table is written."
-                                                      : "The table is refused; nothing is written.",
-                                  said.exit_code == 0, lines),
-                      {}};
+  AuthorResult out = {
+      result_json("export",
+                  said.exit_code == 0 ? "The table is written."
+                                      : "The table is refused, so nothing is written.",
+                  said.exit_code == 0, lines),
+      {}};
   if (said.exit_code == 0) out.shown["files"] = {file.filename().string()};
   return out;
 }

@@ -278,7 +278,7 @@ OrderedJson strip_json(const AuthorMotion& motion, const StabilitySeries& s) {
   return {
       lane_json({"ZMP margin", "mm", "low", 0, kNearEdge * middle, 1}, s.zmp_margin, 1e3, model),
       lane_json({"DCM margin", "mm", "low", 0, kNearEdge * middle, 1}, s.dcm_margin, 1e3, model),
-      lane_json({"Reserve of f_z", "N", "low", 0, kNearLiftOff * weight, 1}, s.normal_force, 1,
+      lane_json({"Ground force f_z", "N", "low", 0, kNearLiftOff * weight, 1}, s.normal_force, 1,
                 model),
       lane_json(share("Friction used", FindingKind::friction), s.friction, 100, model),
       lane_json(share("Joint speed", FindingKind::joint_speed), s.speed, 100, model, s.speed_dof),

@@ -482,7 +482,7 @@ class Drag {
     const double off = missed(tried).norm();
     if (message_.empty() && off > kWorthSaying)
       message_ = "The " + handle_.label + " comes within " + text::fixed(1000 * off, 0) +
-                 " mm of this place" + reason();
+                 " mm of the wanted place" + reason();
     out.message = message_;
     return out;
   }
@@ -502,8 +502,10 @@ class Drag {
   std::string reason() const {
     if (handle_.kind == AuthorHandle::Kind::limb)
       return ": its joints are at their limits, or the place is too far away.";
-    if (handle_.kind == AuthorHandle::Kind::foot) return ": other keys move it too.";
-    return ": the soles and the balance allow no more at this time, or other keys move it too.";
+    if (handle_.kind == AuthorHandle::Kind::foot)
+      return ": other keys of the pattern move this foot too.";
+    return ": the soles and the balance allow no more at this time, or other keys of the pattern "
+           "move this point too.";
   }
 
   // The arm alone moves; the balance then moves the base a little, so the arm follows it.
@@ -575,8 +577,8 @@ class Drag {
     }
     if (!has_zmp_keys(pattern)) {
       message_ =
-          "The COG follows the ZMP, which goes from foot to foot by itself. Give ZMP keys to move "
-          "the COG aside; its height is written.";
+          "The COG follows the ZMP, and Ayumi moves the ZMP from foot to foot. Only the height of "
+          "the COG is written as a key. Give ZMP keys to move the COG to the side.";
       return keys.edits();
     }
     return led_cog(keys, level);

@@ -207,7 +207,8 @@ void serve_author(AuthorSession& session, const ServerOptions& options,
     return httplib::Server::HandlerResponse::Handled;
   });
   server->set_exception_handler([](const Request&, Response& response, std::exception_ptr) {
-    set_json(response, {500, {{"message", "the server could not do this"}}});
+    set_json(response,
+             {500, {{"message", "the server could not answer this request; reload the page"}}});
   });
   server->Get(".*", [&router](const auto& q, auto& a) { router.get(q, a); });
   server->Post(".*", [&router](const auto& q, auto& a) { router.post(q, a); });

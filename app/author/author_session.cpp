@@ -470,7 +470,8 @@ void AuthorSession::work(std::uint64_t id, std::string kind, OrderedJson options
 
 AuthorAnswer AuthorSession::cancel_job(const std::string& id) {
   const std::lock_guard lock(jobs_);
-  if (!job_runs_ || id != std::to_string(job_)) return {404, {{"message", "no such job runs"}}};
+  if (!job_runs_ || id != std::to_string(job_))
+    return {404, {{"message", "this job does not run any more"}}};
   job_stops_ = true;
   return {};
 }

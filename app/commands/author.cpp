@@ -34,9 +34,9 @@ void open_in_browser(const std::string& address) {
 void author(Context& context, const AuthorCommand& options) {
   if (kAuthorPage.empty())
     fail(ErrorCode::usage,
-         "author: this program was built without npm and has no page. To get it: sudo apt-get "
-         "install nodejs npm, then configure and build again (cmake -S . -B build/release && cmake "
-         "--build build/release)");
+         "author: this program was built without npm, so it has no page. To get the page: sudo "
+         "apt-get install nodejs npm, then configure and build again (cmake -S . -B build/release "
+         "&& cmake --build build/release)");
   if (options.pattern == "-")
     fail(ErrorCode::usage, "author: standard input cannot be edited; name a file");
   // What a link leads to is edited, and the link stays.
@@ -74,9 +74,9 @@ void add_author(CLI::App& app, Context& context) {
       ->allow_extra_args(false);
   command
       ->add_option("--profile", options->profile,
-                   "Actuator profile of the robot (default: the pattern's).")
+                   "Actuator profile of the robot (default: the profile of the pattern).")
       ->type_name("NAME");
-  command->add_option("--port", options->port, "Port of the server (default: any that is free).")
+  command->add_option("--port", options->port, "Port of the server (default: a free port).")
       ->check(whole_number_within(1, 65535).description(""))
       ->type_name("N");
   command->add_flag("--open", options->open, "Open the page in the browser.");

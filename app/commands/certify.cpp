@@ -70,7 +70,7 @@ std::string counts_text(const Certificate& c) {
       text::counted(c.outcome.runs, "run") + ", " + std::to_string(c.outcome.failures) + " failed";
   if (c.outcome.failures > 0)
     text += " (" + text::counted(c.falls, "fall") + ", " + std::to_string(c.unsettled) +
-            " not settled)";
+            " did not settle)";
   return text;
 }
 
@@ -122,8 +122,8 @@ void print_influences(const Context& context, std::vector<ValueInfluence> influe
                      return std::abs(a.correlation) > std::abs(b.correlation);
                    });
   context.print(
-      "  which values matter: rank correlation with the severity, failures in the lower and the "
-      "upper half of the values\n");
+      "  influence of each uncertain value: rank correlation with the severity, failures in the "
+      "lower half and in the upper half of its range\n");
   for (size_t i = 0; i < std::min(influences.size(), kShownInfluences); ++i) {
     const ValueInfluence& each = influences[i];
     context.print("    " + text::fixed(each.correlation, 2) + "  " + each.name + ": " +
@@ -200,9 +200,10 @@ Json compare_with(Context& context, const CertifyCommand& options, const Task& i
   const std::string name = options.against.empty() ? options.against_controller : file;
   const long ours = c.both + c.only_first, theirs = c.both + c.only_second;
   context.print("  compared with " + name + " in the same " + text::counted(c.pairs, "case") +
-                ": " + std::to_string(ours) + " failures against " + std::to_string(theirs) + ", " +
-                std::to_string(c.only_first) + " of " + input.pattern.name + " alone and " +
-                std::to_string(c.only_second) + " of the other alone\n");
+                ": " + std::to_string(ours) + " failed, and with " + name + " " +
+                std::to_string(theirs) + "; " + std::to_string(c.only_first) +
+                " failed only without " + name + ", and " + std::to_string(c.only_second) +
+                " only with " + name + "\n");
   context.print("  difference of the failure probabilities: " + in_percent(c.difference.low) +
                 " to " + in_percent(c.difference.high) + " with " + in_percent(pairs.confidence) +
                 " confidence; McNemar's exact test: p = " + text::brief(c.p_value, 3) + "\n");
@@ -250,9 +251,11 @@ void refuse_targets(const Context& context, const CertifyCommand& options) {
   if (!options.table.empty()) refuse_overwriting(context, options.table);
   if (!options.out.empty()) require_file_target(options.out);
   if (options.certify.shards > 1 && options.out.empty())
-    fail(ErrorCode::usage, "--shard needs -o, a file from which the shards are merged");
+    fail(ErrorCode::usage,
+         "--shard needs -o, the file that receives the results of this shard; --merge puts such "
+         "files together");
   if (options.certify.shards > 1 && !options.merge.empty())
-    fail(ErrorCode::usage, "--shard and --merge exclude each other");
+    fail(ErrorCode::usage, "--shard and --merge cannot be given together; leave one of them out");
 }
 
 void certify_pattern(Context& context, CertifyCommand& options) {
@@ -341,7 +344,8 @@ void add_certify(CLI::App& app, Context& context) {
   command->add_option("PATTERN", options->pattern, "Pattern file.")->required();
   command
       ->add_option("--study", options->study,
-                   "Study file with the uncertainty (default: the pattern's, or the robot's).")
+                   "Study file with the uncertainty (default: the uncertainty of the pattern, or "
+                   "of the robot if the pattern has none).")
       ->type_name("F");
   command
       ->add_option("--failure", certify.failure, "Largest failure probability that is certified.")
@@ -353,21 +357,26 @@ void add_certify(CLI::App& app, Context& context) {
       ->type_name("P")
       ->capture_default_str();
   command
-      ->add_option(
-          "--runs", certify.most,
-          "Largest number of runs (default: ten times the number that is enough if no run fails).")
+      ->add_option("--runs", certify.most,
+                   "Largest number of runs (default: 10 times the number of runs that certify if "
+                   "the robot fails in none of them).")
       ->check(whole_number_within(1, 100000000).description(""))
       ->type_name("N");
-  command->add_flag(
-      "--all", certify.all,
-      "Do not stop at the verdict: make as many runs as --runs says, to see which values matter.");
+  command->add_flag("--all", certify.all,
+                    "Do not stop when the verdict is known. All runs of --runs show better which "
+                    "uncertain values matter.");
   command
-      ->add_option("-o,--out", options->out,
-                   "Results as JSON; run again with the same file to go on.")
+      ->add_option(
+          "-o,--out", options->out,
+          "File for the results, as JSON. Run the command again with the same file to go on.")
       ->type_name("F");
-  command->add_option("--table", options->table, "Cases with all values that were drawn, as CSV.")
+  command
+      ->add_option("--table", options->table,
+                   "Write all cases with the values that were drawn, as CSV.")
       ->type_name("F");
-  command->add_option("--map", options->map, "Draw which values matter, .svg or .png.")
+  command
+      ->add_option("--map", options->map,
+                   "Draw the influence of each uncertain value (.svg or .png).")
       ->type_name("F");
   command
       ->add_option("--against", options->against, "Compare with another pattern in the same cases.")
@@ -380,15 +389,17 @@ void add_certify(CLI::App& app, Context& context) {
                     "Also estimate the failure probability by subset simulation.");
   command
       ->add_option("--rare-runs", options->subset.runs,
-                   "Runs of each level of --rare, a multiple of 10.")
+                   "Number of runs in each level of --rare. It must be a multiple of 10.")
       ->check(whole_number_within(10, 1000000).description(""))
       ->type_name("N")
       ->capture_default_str();
-  command->add_option("--shard", options->shard, "Run only one part of the cases, for example 1/4.")
+  command
+      ->add_option("--shard", options->shard, "Run only one shard of the cases, for example 1/4.")
       ->type_name("I/N");
   command
-      ->add_option("--merge", options->merge,
-                   "Take the cases from the files of all shards; nothing is simulated.")
+      ->add_option(
+          "--merge", options->merge,
+          "Take the results from the files of all shards, without a simulation. May be repeated.")
       ->type_name("F")
       ->allow_extra_args(false);
   add_pattern_options(*command, options->input);

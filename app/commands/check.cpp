@@ -325,7 +325,9 @@ void watch(Context& context, const CheckCommand& options) {
   if (options.patterns.size() != 1) fail(ErrorCode::usage, "check --watch: name one PATTERN");
   const std::string& file = options.patterns.front();
   if (file == "-")
-    fail(ErrorCode::usage, "check --watch: standard input does not change; name a file");
+    fail(
+        ErrorCode::usage,
+        "check --watch: standard input does not change, so there is nothing to watch; name a file");
   Stamps seen;
   std::optional<int> errors;
   while (true) {
@@ -381,18 +383,18 @@ void add_check(CLI::App& app, Context& context) {
   command->add_option("PATTERN", options.patterns, "Pattern files.");
   command
       ->add_option("--tolerance", options.tolerances,
-                   "Tolerance of one kind of finding (default: the pattern's).")
+                   "Tolerance of one kind of finding (default: the tolerance in the pattern).")
       ->type_name("KIND=VALUE")
       ->allow_extra_args(false);
   command->add_flag("--tolerances", options.list_tolerances,
                     "List all kinds of findings with their tolerances.");
-  command->add_flag("--all", options.all, "Print every finding, not one entry for each cause.");
+  command->add_flag("--all", options.all,
+                    "Print every finding. Without this option, each cause has one entry.");
   command
-      ->add_option("--plot", options.plot,
-                   "Picture of the joints against their limits, .svg or .png.")
+      ->add_option("--plot", options.plot, "Draw the joints against their limits (.svg or .png).")
       ->type_name("F");
   command->add_flag("--watch", options.watch,
-                    "Check again at every change of the files, until Ctrl-C.");
+                    "Check again whenever a file of the pattern changes. Ctrl-C ends this.");
   add_pattern_options(*command, options.input);
   command->callback([&context] { check(context, options); });
 }

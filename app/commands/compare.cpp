@@ -64,13 +64,14 @@ Recordings read_recordings(const CompareCommand& options, const RobotModel& mode
   for (const std::string& file : options.measured) add(file, false);
   if (!options.loads.empty()) add(options.loads, true);
   if (all.names.empty())
-    fail(ErrorCode::usage, "compare: name a recording, of joint angles or of sensors");
+    fail(ErrorCode::usage,
+         "compare: no recording is given; name a recording of joint angles or of sensors");
   return all;
 }
 
 std::string curve_words(const ComparedCurve& curve, double unit, const std::string& name) {
   std::string words = "  " + curve.name + ": " + text::brief(curve.mean / unit, 3) + name +
-                      " in the mean, largest " + text::brief(curve.largest / unit, 3) + name +
+                      " on average, at most " + text::brief(curve.largest / unit, 3) + name +
                       " at " + text::fixed(curve.largest_at, 3) + " s";
   if (curve.lag != 0) words += ", " + text::fixed(1000 * curve.lag, 1) + " ms behind";
   if (curve.unit != "rad" && curve.correlation != 0)
@@ -103,13 +104,13 @@ double largest_landing(const Comparison& found) {
 
 std::string comparison_words(const Comparison& found, const Recordings& recordings) {
   std::string words = recordings.names + " begins " + text::fixed(found.shift, 4) +
-                      " s after the run; compared from " + text::fixed(found.begin, 3) + " to " +
-                      text::fixed(found.end, 3) + " s\n";
+                      " s after the run begins. Both are compared from " +
+                      text::fixed(found.begin, 3) + " to " + text::fixed(found.end, 3) + " s\n";
   for (const std::string& note : found.notes) words += "  " + note + "\n";
   if (!found.joints.empty())
     words += "joints: " + text::fixed(found.mean_joint() / kComparedDegree, 4) +
-             " deg in the mean, largest " +
-             text::fixed(found.largest_joint() / kComparedDegree, 3) + " deg\n";
+             " deg on average, at most " + text::fixed(found.largest_joint() / kComparedDegree, 3) +
+             " deg\n";
   for (const ComparedCurve& joint : found.joints)
     words += joint.unit == "rad" ? curve_words(joint, kComparedDegree, " deg")
                                  : curve_words(joint, 1, " m");
@@ -117,9 +118,10 @@ std::string comparison_words(const Comparison& found, const Recordings& recordin
   for (const ComparedCurve& load : found.loads)
     words += curve_words(load, 1, load.unit.empty() ? "" : " " + load.unit);
   if (!found.loads.empty()) {
-    words += "landings: " + std::to_string(found.landings.size()) + " of both, at most " +
+    words += "landings: " + std::to_string(found.landings.size()) +
+             " in both the run and the recording, at most " +
              text::fixed(1000 * largest_landing(found), 0) + " ms apart; " +
-             std::to_string(found.unmatched_landings) + " of one only\n";
+             std::to_string(found.unmatched_landings) + " in only one of the two\n";
     for (const ComparedLanding& landing : found.landings)
       words += std::string("  ") + name_of(landing.foot) + " at " +
                text::fixed(landing.simulated, 3) + " s, measured " +
@@ -208,14 +210,14 @@ void add_compare(CLI::App& app, Context& context) {
   static std::string unit = "rad";
   command->add_option("RUN", options.run, "Folder of run or simulate, or a log file.")->required();
   command
-      ->add_option(
-          "MEASURED", options.measured,
-          "Recordings: joint angles (HOAP counts, or columns by name), load cells and IMU.")
+      ->add_option("MEASURED", options.measured,
+                   "Recordings of joint angles (HOAP counts, or columns with names), of load cells "
+                   "and of the IMU.")
       ->type_name("F");
   command
-      ->add_option(
-          "--loads", options.loads,
-          "Recording of load cells and IMU; needed where the file does not show that it is one.")
+      ->add_option("--loads", options.loads,
+                   "Recording of the load cells and the IMU. Use this option if Ayumi does not "
+                   "recognize the file as such a recording.")
       ->type_name("F");
   command
       ->add_option("--log", options.log,
@@ -226,23 +228,27 @@ void add_compare(CLI::App& app, Context& context) {
                       "Robot to use in place of the one that the run names.");
   command
       ->add_option("--shift", options.shift,
-                   "Time of the run at which the recording begins [s] (default: found).")
+                   "Time of the run at which the recording begins [s] (default: found from the "
+                   "joint angles).")
       ->type_name("S");
   command->add_option("--window", options.window, "Compare only from T1 to T2 of the run [s].")
       ->delimiter(',')
       ->type_name("T1,T2");
-  command->add_option("--plot", options.plot, "Draw run and recordings over time, .svg or .png.")
+  command
+      ->add_option("--plot", options.plot,
+                   "Draw the run and the recordings over time (.svg or .png).")
       ->type_name("F");
   command
       ->add_option("--report", options.report,
-                   "Report of the run with this comparison and the recording as a ghost, .html.")
+                   "Write a report of the run that shows this comparison, with the recording as a "
+                   "ghost (.html).")
       ->type_name("F");
-  command->add_option("--unit", unit, "Unit of columns whose names are bare joint names.")
+  command->add_option("--unit", unit, "Unit of the columns that are named by the joint alone.")
       ->check(one_of({"rad", "deg"}))
       ->capture_default_str();
   command
       ->add_option("--rate", options.reading.rate,
-                   "Rate of rows without time [1/s] (default: 1000).")
+                   "Rows per second of a recording without a time column [1/s] (default: 1000).")
       ->check(number_within(1.0, 1e5))
       ->type_name("HZ");
   command->callback([&context] {

@@ -123,18 +123,18 @@ void add_diff(CLI::App& app, Context& context) {
   static DiffCommand options;
   command->add_option("A", options.a, "Pattern file.")->required();
   command->add_option("B", options.b, "Pattern file that is compared with A.")->required();
-  command->add_option("--plot", options.plot, "Draw both patterns over time, .svg or .png.")
+  command->add_option("--plot", options.plot, "Draw both patterns over time (.svg or .png).")
       ->type_name("F");
   command
       ->add_option("--weight", options.weights,
-                   "Factor on the cost of moving this joint, as for repair (default: that of the "
-                   "pattern, otherwise 1).")
+                   "Factor on the cost of moving this joint, as for repair (default: the factor in "
+                   "the pattern; 1 if the pattern has none).")
       ->type_name("JOINT=FACTOR")
       ->allow_extra_args(false);
   command
       ->add_option("--safety", options.safety,
                    "Weight of safety compared with staying close to the original, as for repair "
-                   "(default: that of the pattern, otherwise 1).")
+                   "(default: the weight in the pattern; 1 if the pattern has none).")
       ->check(number_within(0.0, 1e6))
       ->type_name("FACTOR");
   add_pattern_options(*command, options.input);

@@ -148,13 +148,14 @@ FastestPace limits_of(const Context& context, const EditCommand& options, const 
   retime.dt = input.series.dt;
   FastestPace pace = fastest_pace(input.robot, input.pattern, retime, context.progress());
   if (pace.by_posture)
-    fail(ErrorCode::solver, options.pattern + ": no pace passes the check: " + pace.limited_by +
-                                "; the posture of the table itself is wrong, and no pace changes "
-                                "it; try repair");
+    fail(ErrorCode::solver, options.pattern +
+                                ": the check fails at every pace: " + pace.limited_by +
+                                ". A pace does not change the postures of the table, and one of "
+                                "them is wrong. Try repair");
   if (!pace.found)
     fail(ErrorCode::solver, options.pattern + ": no time scale up to " +
                                 text::brief(retime.slowest) + " passes the check: " +
-                                pace.limited_by + "; more time alone is not enough; try repair");
+                                pace.limited_by + ". More time alone is not enough. Try repair");
   return pace;
 }
 
@@ -178,11 +179,12 @@ void retime_locally(Context& context, const EditCommand& options, const Task& in
   LocalPace pace = fastest_local_pace(
       input.robot, input.pattern, table_beside(options.out).string(), local, context.progress());
   if (!pace.found)
-    fail(ErrorCode::solver,
-         options.pattern + ": no course of time passes the check: " + pace.limited_by +
-             (pace.by_posture ? "; the posture itself is wrong, and no course of time changes it"
-                              : "; more time alone is not enough") +
-             "; try repair");
+    fail(
+        ErrorCode::solver,
+        options.pattern + ": the check fails for every timing along this path: " + pace.limited_by +
+            (pace.by_posture ? ". The timing does not change the postures, and one of them is wrong"
+                             : ". More time alone is not enough") +
+            ". Try repair");
   Result result;
   result.caution = input.caution;
   result.series = std::move(pace.series);
@@ -196,7 +198,8 @@ void retime_locally(Context& context, const EditCommand& options, const Task& in
   write_edited(
       context, options, pace.pattern, result,
       "  the motion takes " + text::brief(pace.scale) + " times its original time\n" +
-          "  limited by, for this share of the time: " + in_words(pace.binding) + "\n",
+          "  limits, each with the share of the time in which it binds: " + in_words(pace.binding) +
+          "\n",
       Json{{"scale", pace.scale},
            {"path_scale", pace.path_scale},
            {"rounds", pace.rounds},
@@ -209,9 +212,13 @@ void retime(Context& context, const EditCommand& options) {
   if (options.to_limits == (options.scale != 0))
     fail(ErrorCode::usage, "edit retime: give either --scale S or --to-limits");
   if (options.local && !options.to_limits)
-    fail(ErrorCode::usage, "edit retime: --local has a meaning with --to-limits only");
+    fail(ErrorCode::usage,
+         "edit retime: --local works only together with --to-limits; add --to-limits, or leave "
+         "--local out");
   if (options.margin >= 0 && !options.local)
-    fail(ErrorCode::usage, "edit retime: --margin has a meaning with --to-limits --local only");
+    fail(ErrorCode::usage,
+         "edit retime: --margin works only together with --to-limits --local; add both, or leave "
+         "--margin out");
   const Task input = load(context, options);
   if (options.local) return retime_locally(context, options, input);
   const ConsistencyReport before =
@@ -253,7 +260,7 @@ Pattern joined_pattern(const Context& context, const EditCommand& options, const
       series = std::move(of_keys);
       return keyed;
     }
-    reason = "the joined samples pass the check, but the joined keys do not";
+    reason = "with keys the joined motion would fail the check, and as samples it passes";
     return tabled;
   } catch (const Error& error) {
     if (error.code() != ErrorCode::bad_pattern) throw;
@@ -282,8 +289,9 @@ void join(Context& context, const EditCommand& options) {
     const Task next = load_pattern(context, options.patterns[i], options.input);
     if (next.robot.description().sha256 != input.robot.description().sha256)
       fail(ErrorCode::bad_pattern, options.patterns[i] + ": /robot: the robot is '" +
-                                       next.pattern.robot + "', but it is '" + input.pattern.robot +
-                                       "' in " + options.patterns.front());
+                                       next.pattern.robot + "', but that of " +
+                                       options.patterns.front() + " is '" + input.pattern.robot +
+                                       "'; give patterns of the same robot");
     joins.push_back(input.series.duration());
     add_caution(input.caution, next.caution);
     CommandSeries series;
@@ -308,8 +316,9 @@ void loop(Context& context, const EditCommand& options) {
   if (!before.closed) {
     if (options.over <= 0)
       fail(ErrorCode::bad_pattern,
-           options.pattern + ": the end does not meet the beginning: " + gap_words(before) +
-               "; give --over S, the time of a transition from the end to the beginning");
+           options.pattern +
+               ": the end of the motion differs from its beginning: " + gap_words(before) +
+               "; --over S adds a transition of S seconds from the end to the beginning");
     // The beginning again, held for a moment: the first samples at rest.
     Pattern still = once;
     still.phases = {Phase{kRest, Support::both, {}, {}, {}}};
@@ -332,8 +341,8 @@ void loop(Context& context, const EditCommand& options) {
     if (samples.samples.front().state.dtheta.cwiseAbs().maxCoeff() > 1e-9)
       fail(ErrorCode::bad_pattern,
            options.pattern +
-               ": the motion begins while joints move, so no transition leads to it; "
-               "begin it at rest (edit ramp)");
+               ": joints move when the motion begins, so no transition can lead to its beginning; "
+               "let the motion begin at rest (edit ramp --in)");
     CommandSeries series;
     input.pattern =
         joined_pattern(context, options, input, {still, held}, options.over, series, reason);
@@ -341,9 +350,11 @@ void loop(Context& context, const EditCommand& options) {
   }
   const LoopGap closed = loop_gap(input.robot, {input.pattern, input.series});
   if (!closed.closed)
-    fail(ErrorCode::bad_pattern, options.pattern + ": the loop stays open: " + gap_words(closed) +
-                                     "; edit bake and edit ramp can bring both ends to rest in one "
-                                     "posture");
+    fail(ErrorCode::bad_pattern,
+         options.pattern +
+             ": the end of the motion still differs from its beginning: " + gap_words(closed) +
+             "; edit bake and edit ramp can bring both ends to rest in one "
+             "posture");
   const Pattern round = input.pattern;
   const CommandSeries round_series = input.series;
   for (int k = 1; k < options.times; ++k) {
@@ -355,7 +366,7 @@ void loop(Context& context, const EditCommand& options) {
   }
   write_edited(context, options, input.pattern,
                check_edited(context, options, input, input.pattern),
-               std::string("  the end meets the beginning") +
+               std::string("  the end of the motion is the same as its beginning") +
                    (before.closed ? "" : " after a transition") + ": " + gap_words(closed) + "\n" +
                    (options.times > 1 || !before.closed ? kept_words(input.pattern, reason) : ""),
                Json{{"times", options.times},
@@ -380,8 +391,8 @@ void edit_key(Context& context, const EditCommand& options) {
   if (options.key_by != 0) key.to = key.at + options.key_by;
   if (!key.to && !key.mirror)
     fail(ErrorCode::usage,
-         "edit key: say what to do with the keyframe: --to T or --by S moves it; with --copy, the "
-         "keyframe stays and a copy is moved; --mirror exchanges left and right");
+         "edit key: nothing is to be done with the keyframe. Move it with --to T or --by S, move a "
+         "copy with --copy, or exchange left and right with --mirror");
   if (key.copy && !key.to)
     fail(ErrorCode::usage, "edit key: --copy needs the time of the copy: give --to T or --by S");
   const Task input = load(context, options);
@@ -459,7 +470,7 @@ void add_edit(CLI::App& app, Context& context) {
   });
   const auto add_table_flag = [](CLI::App& of) {
     of.add_flag("--table", options.as_table,
-                "Write a table of samples even if the keys could be kept.");
+                "Write the result as a table of samples, also where its keys could be kept.");
   };
   CLI::App& concat_command =
       add_join_of(*command, "concat", "play one pattern after the other, without a pause", options);
@@ -499,26 +510,28 @@ void add_edit(CLI::App& app, Context& context) {
       ->check(number_within(0.01, 100.0))
       ->type_name("S");
   retime_command.add_flag("--to-limits", options.to_limits,
-                          "Find the fastest scale that passes the check.");
-  retime_command.add_flag("--local", options.local,
-                          "With --to-limits: slow the motion only where a limit binds.");
+                          "Find the smallest scale (the fastest motion) that passes the check.");
+  retime_command.add_flag(
+      "--local", options.local,
+      "With --to-limits: slow the motion down only at the times when a limit binds.");
   retime_command
       .add_option("--margin", options.margin,
-                  "With --local: the largest distance that the ZMP keeps from the edge of the "
-                  "support [m] (default: 80 % of its distance at the fastest uniform pace, or an "
-                  "eighth of the sole's width).")
+                  "With --local: largest margin of the ZMP that has to be kept [m]. A smaller "
+                  "value allows a faster motion (default: 80 % of the margin at the fastest "
+                  "uniform pace, or an eighth of the width of the sole).")
       ->check(number_within(0.0, 1.0))
       ->type_name("M");
   retime_command.callback([&context] { retime(context, options); });
   CLI::App& loop_command =
-      add_edit_of(*command, "loop", "repeat a motion whose end meets its beginning", options);
-  loop_command.add_option("--times", options.times, "How often the motion is played.")
+      add_edit_of(*command, "loop", "repeat a motion that ends as it begins", options);
+  loop_command.add_option("--times", options.times, "How many times the motion is played.")
       ->check(whole_number_within(1, 1000))
       ->type_name("N")
       ->capture_default_str();
   loop_command
       .add_option("--over", options.over,
-                  "Duration of a transition from the end to the beginning, where they differ [s].")
+                  "Duration of a transition from the end to the beginning [s]. It is added only if "
+                  "the two differ.")
       ->check(number_within(0.02, 60.0))
       ->type_name("S");
   add_table_flag(loop_command);
@@ -526,13 +539,13 @@ void add_edit(CLI::App& app, Context& context) {
   CLI::App& alternate_command =
       add_edit_of(*command, "alternate",
                   "play a step and its mirror image in turn, so that it becomes a walk", options);
-  alternate_command.add_option("--times", options.times, "How many steps there are in all.")
+  alternate_command.add_option("--times", options.times, "Number of steps in all.")
       ->required()
       ->check(whole_number_within(2, 1000))
       ->type_name("N");
-  alternate_command.add_flag("--open", options.open_end,
-                             "The last step is as long as the others and does not bring the feet "
-                             "beside each other.");
+  alternate_command.add_flag(
+      "--open", options.open_end,
+      "Let the last step be as long as the others, so that the feet do not end side by side.");
   alternate_command.callback([&context] { alternate(context, options); });
   CLI::App& key_command =
       add_edit_of(*command, "key", "copy, move or mirror a single keyframe", options);
@@ -540,14 +553,16 @@ void add_edit(CLI::App& app, Context& context) {
       ->required()
       ->check(number_within(0.0, 1e6))
       ->type_name("T");
-  key_command.add_option("--to", options.key_to, "Its new time [s].")
+  key_command.add_option("--to", options.key_to, "New time of the keyframe [s].")
       ->check(number_within(0.0, 1e6))
       ->type_name("T");
   key_command
-      .add_option("--by", options.key_by, "By how much it is moved [s]; below 0 is earlier.")
+      .add_option("--by", options.key_by,
+                  "Time by which the keyframe is moved [s]. A negative value moves it earlier.")
       ->check(number_within(-1e6, 1e6))
       ->type_name("S");
-  key_command.add_flag("--copy", options.key.copy, "Also keep the keyframe at its old time.");
+  key_command.add_flag("--copy", options.key.copy,
+                       "Keep the keyframe at its old time, and move a copy of it.");
   key_command.add_flag("--mirror", options.key.mirror,
                        "Exchange left and right in the keyframe at its new time.");
   key_command.callback([&context] { edit_key(context, options); });

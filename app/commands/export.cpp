@@ -268,8 +268,8 @@ Source source_of(const ExportOptions& options, const Context& context) {
   verify_run_of(options.input);
   if (!options.servo.empty())
     fail(ErrorCode::usage, options.input +
-                               ": --servo: the targets of this table are already made for a servo; "
-                               "to choose another servo, export the pattern or the run");
+                               ": --servo: this table was already made for a servo; to choose "
+                               "another content, export the pattern or the run");
   return source_of_table(options, context, read_reference(options.input),
                          read_table_caution(options.input));
 }
@@ -361,7 +361,8 @@ std::vector<std::string> refusals(const ExportOptions& options, const Source& so
   if (!options.force_unsafe) reasons = source.unfit;
   if (!disturbances.empty() && !options.pushed)
     reasons.push_back(refusal_of_disturbances(disturbances));
-  if (!safe.report.safe && !options.force_unsafe) reasons.emplace_back("the table is unsafe");
+  if (!safe.report.safe && !options.force_unsafe)
+    reasons.emplace_back("the table is unsafe for a robot");
   return reasons;
 }
 
@@ -386,7 +387,8 @@ std::string in_words(const ExportOptions& options, const Source& source, const S
   if (refused.empty())
     for (const std::string& reason : source.unfit)
       text +=
-          (plays(options) ? "  written although " : "  not for a robot, because ") + reason + "\n";
+          (plays(options) ? "  written although " : "  the table is not for a robot, because ") +
+          reason + "\n";
   if (const MotionFormat* format = motion_format(options)) {
     const std::string lost = cannot_hold(*format, motion_file_of(source, safe.table));
     if (!lost.empty()) text += "  the format cannot hold " + lost + "\n";
@@ -397,8 +399,8 @@ std::string in_words(const ExportOptions& options, const Source& source, const S
   text += "  ramp " + text::brief(report.ramp) + " s, hold " + text::brief(report.hold) +
           " s; the pattern begins at " + text::brief(report.ramp) + " s of the table";
   if (!report.worst_joint.empty())
-    text += "; largest step " + text::fixed(100 * report.max_step_ratio, 1) + " % of the limit (" +
-            report.worst_joint + " at " +
+    text += "; the largest step is " + text::fixed(100 * report.max_step_ratio, 1) +
+            " % of the limit (" + report.worst_joint + " at " +
             on_both_clocks(report.worst_at, report.ramp, report.ramp + report.motion) + ")";
   if (!report.margin_joint.empty())
     text += "; " + text::brief(std::abs(report.min_limit_margin) * 180 / EIGEN_PI, 3) + " deg " +
@@ -417,18 +419,19 @@ std::string words_on_sequence(const Source& source, const SafeTable& safe) {
   if (!source.plan || !source.plan->pattern.table || !source.plan->pattern.table->sequence)
     return "";
   if (!source.kept)
-    return "  the rows are computed anew; they are no longer the rows of the imported sequence\n";
+    return "  the motion has changed, so its rows are computed again and differ from the imported "
+           "sequence\n";
   const HoapFile& file = source.kept->file;
-  std::string text = "  the rows of the motion are those of the imported sequence, unchanged";
+  std::string text = "  the rows of the motion are the unchanged rows of the imported sequence";
   if (safe.report.ramp == 0 && safe.report.hold == 0)
     text += "; --ramp S and --hold S add rows around them";
   text += "\n";
   if (file.general_commands > 0)
     text += "  " + std::to_string(file.general_commands) +
-            " of them are commands to single devices, which the robot will carry out\n";
+            " of these rows are commands to single devices. The robot will carry them out\n";
   const std::vector<SequenceLayout> layouts = sequence_layouts(source.model);
   if (file.layout.name != layouts.front().name)
-    text += "  their columns follow the layout " + file.layout.name + "; --layout " +
+    text += "  the columns of these rows follow the layout " + file.layout.name + "; --layout " +
             layouts.front().name + " writes the columns of this robot\n";
   return text;
 }
@@ -575,8 +578,9 @@ void export_sign_test(const ExportOptions& options, Context& context) {
     for (const auto& [path, bytes] : files) refuse_overwriting(context, path);
   fs::create_directories(folder);
   for (const auto& [path, bytes] : files) write_file(path, bytes);
-  context.print(options.output + ": one slow motion for each of " + std::to_string(tests.size()) +
-                " joints (" + options.format + "), and sheet.html with their pictures\n" +
+  context.print(options.output + ": it holds one slow motion for each of " +
+                std::to_string(tests.size()) + " joints (" + options.format +
+                "), and sheet.html with their pictures\n" +
                 "  Hang the robot up before you play the motions.\n");
   context.print_json(nlohmann::ordered_json{
       {"format", options.format},
@@ -607,14 +611,14 @@ void export_table(ExportOptions options, Context& context) {
   context.print(in_words(options, source, safe, refused) +
                 (motion_format(options) ? "" : words_on_sequence(source, safe)));
   if (!safe.report.safe)
-    context.print("  judged by profile " + options.safety.profile + "; " +
+    context.print("  judged by the profile " + options.safety.profile + "; " +
                   (others.empty()
                        ? "no other profile has motors that are strong enough"
                        : "the motors of " + text::join(others, ", ") + " are strong enough") +
                   "\n");
   if (options.format == "hoap" && !knows_torque(source))
     context.print(
-        "  torque not checked, because a table has no torques; export the RUN to check them\n");
+        "  the torques are not checked, because a table has none; export the RUN to check them\n");
   context.print_json(as_json(options, source, safe, others, refused));
   context.exit_code = refused.empty() ? 0 : 1;
 }
@@ -645,26 +649,27 @@ void add_export(CLI::App& app, Context& context) {
       ->required()
       ->type_name("FILE");
   command->add_flag("--sign-test", options->sign_test,
-                    "Write a slow, small motion of each joint, and a sheet with a picture of each, "
-                    "which shows the direction in which the joint has to move.");
+                    "Write one slow, small motion for each joint, and a sheet with a picture of "
+                    "each motion. The picture shows the direction in which the joint has to move.");
   command
       ->add_option("--ramp", options->ramp,
-                   "Shortest approach ramp before the motion (default: 2; 0 for an imported "
-                   "sequence whose motion is unchanged) [s].")
+                   "Shortest duration of the approach ramp before the motion [s] (default: 2; 0 "
+                   "for an imported sequence whose motion is unchanged).")
       ->check(number_within(0.0, 60.0));
   command
       ->add_option("--hold", options->hold,
-                   "How long the last posture is held (default: 0.5; 0 for an imported sequence "
-                   "whose motion is unchanged) [s].")
+                   "Time for which the last posture is held [s] (default: 0.5; 0 for an imported "
+                   "sequence whose motion is unchanged).")
       ->check(number_within(0.0, 60.0));
   CLI::Option* interval =
       command
-          ->add_option("--interval", options->interval,
-                       "Time from row to row (default: that of the imported sequence, else the "
-                       "servo period of the robot). HOAP robots take 1, 2 or 10 [ms].")
+          ->add_option(
+              "--interval", options->interval,
+              "Time from row to row [ms] (default: the interval of the imported sequence, or the "
+              "servo period of the robot for other motions). HOAP robots accept 1, 2 or 10 ms.")
           ->check(number_within(0.1, 1000.0))
           ->type_name("MS");
-  command->add_option("--rate", options->rate, "Rows per second, in place of --interval [1/s].")
+  command->add_option("--rate", options->rate, "Rows per second [1/s], in place of --interval.")
       ->check(number_within(1.0, 10000.0))
       ->type_name("HZ")
       ->excludes(interval);
@@ -678,8 +683,8 @@ void add_export(CLI::App& app, Context& context) {
       ->type_name("NAME")
       ->capture_default_str();
   command->add_option("--profile", options->safety.profile,
-                      "Actuator profile that the table is judged by (default: for hoap the robot's "
-                      "first, else that of the pattern or run).");
+                      "Actuator profile by which the table is judged (default: for hoap the first "
+                      "profile of the robot, otherwise the profile of the pattern or run).");
   command->add_option("--log", options->log, "Log of the run, for example open_loop.");
   command->add_option("--robot", options->robot,
                       "Robot to use in place of the one that the run names.");
@@ -687,15 +692,16 @@ void add_export(CLI::App& app, Context& context) {
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
   command->add_flag("--pushed", options->pushed,
-                    "Export the table of the run with its disturbances. The table says so.");
+                    "Export the table of the disturbed run. The head of the table says that it "
+                    "contains the reactions to disturbances.");
   command->add_flag("--force-unsafe", options->force_unsafe,
-                    "Write the table although it is unsafe or unfit. Its head and its name, for "
-                    "example walk.UNSAFE.csv, say so.");
+                    "Write the table even if it is unsafe or not meant for a robot. The head and "
+                    "the name of the table then say so, for example walk.UNSAFE.csv.");
   command
-      ->add_option(
-          "--servo", options->servo,
-          "What the targets are: ideal (the joint angles), lead (ahead of them by the lag of the "
-          "profile's servos; default) or lead+sag (which also compensates for the sag under load).")
+      ->add_option("--servo", options->servo,
+                   "Content of the targets: ideal (the joint angles), lead (default: the joint "
+                   "angles ahead by the lag of the servos of the profile) or lead+sag (like lead, "
+                   "and it also compensates for the sag under load).")
       ->check(one_of({"ideal", "lead", "lead+sag"}));
   command->footer(
       "Examples:\n"

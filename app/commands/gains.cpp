@@ -76,20 +76,20 @@ std::string report(const RobotModel& model, const GainStudy& d) {
       " ms: the reference ZMP moves by K times the error of the COG plus D times the rate of this "
       "error\n";
   out += "short term  " + text::fixed(100 * p.zmp_gain / (1 + p.zmp_gain), 0) +
-         " % of a ZMP error is answered immediately, filtered over " +
+         " % of a ZMP error is answered immediately; the time constant of the ZMP filter is " +
          text::fixed(1e3 * p.zmp_filter / w, 1) + " ms\n";
-  out += "return  the reference returns to the command within " +
+  out += "return      the reference returns to the command within " +
          text::fixed(1e3 / (w * p.pull_rate), 0) + " ms";
-  out += p.offset_time > 0 ? ", a constant ZMP offset is accepted as normal after " +
+  out += p.offset_time > 0 ? "; a constant ZMP offset is accepted as normal after " +
                                  text::fixed(1e3 * p.offset_time / w, 0) + " ms\n"
-                           : ", a constant ZMP offset is never accepted as normal\n";
+                           : "; a constant ZMP offset is never accepted as normal\n";
   const LoopModel& weakest = d.loops[d.weakest.index];
-  out += "the whole loop, with sensors and servos " + text::brief(1e3 * weakest.delay) +
-         " ms late, is stable while the robot stands on both feet, and on one foot for the time of "
-         "a step; it stays stable " +
-         (d.largest_ka >= GainStudy::kMostKa ? "beyond ka = " + text::brief(GainStudy::kMostKa)
-                                             : "up to ka = " + text::fixed(d.largest_ka, 2)) +
-         "; slowest modes (" + weakest.name + "):\n";
+  out += "the loop with sensors and servos that are " + text::brief(1e3 * weakest.delay) +
+         " ms late is stable while the robot stands on both feet, and while it stands on one foot "
+         "for the time of a step. The loop stays stable " +
+         (d.largest_ka >= GainStudy::kMostKa ? "for ka beyond " + text::brief(GainStudy::kMostKa)
+                                             : "for ka up to " + text::fixed(d.largest_ka, 2)) +
+         ". Slowest modes (" + weakest.name + "):\n";
   int shown = 0;
   for (const Complex& pole : d.weakest.analysis.poles)
     if (pole.imag() >= 0 && -pole.real() > kShown * w && shown++ < 4) out += mode_text(pole);
@@ -139,11 +139,12 @@ void add_gains(CLI::App& app, Context& context) {
   CLI::App* command =
       app.add_subcommand("gains", "compute gains of DTAD and say whether the whole loop is stable");
   command->footer(
-      "Examples:\n  ayumi gains hoap1\n"
+      "Examples:\n"
+      "  ayumi gains hoap1\n"
       "  ayumi gains hoap1 --time-constants 0.16,0.64 --absorb 0.6 --return-time 0.1\n"
       "  ayumi gains hoap1 --frequency 1 --damping 1 --latency 0.005\n"
-      "Unstable gains are refused with the reason. Gains that are not given are the "
-      "robot's.");
+      "Unstable gains are refused, with the reason. A gain that is not given has the value of the "
+      "robot.");
   auto options = std::make_shared<GainsCommand>();
   command->add_option("ROBOT", options->robot, "Name of a bundled robot, folder, sidecar or URDF.")
       ->required();
@@ -155,7 +156,7 @@ void add_gains(CLI::App& app, Context& context) {
       ->type_name("P1,P2");
   command
       ->add_option("--time-constants", options->time_constants,
-                   "Two time constants of the COG in place of poles [s].")
+                   "Two time constants of the COG [s], in place of poles.")
       ->delimiter(',')
       ->expected(2)
       ->type_name("T1,T2");
@@ -163,7 +164,10 @@ void add_gains(CLI::App& app, Context& context) {
       ->add_option("--frequency", options->frequency,
                    "Frequency of a pair of poles [Hz], together with --damping.")
       ->type_name("F");
-  command->add_option("--damping", options->damping, "Damping ratio of that pair.")->type_name("Z");
+  command
+      ->add_option("--damping", options->damping,
+                   "Damping ratio of the pair of poles of --frequency.")
+      ->type_name("Z");
   command
       ->add_option(
           "--absorb", options->wishes.absorb,
@@ -186,7 +190,7 @@ void add_gains(CLI::App& app, Context& context) {
       ->allow_extra_args(false);
   command
       ->add_option("--latency", options->latency,
-                   "Latency of the sensors [s] (default: the robot's).")
+                   "Latency of the sensors [s] (default: the latency in the robot's sidecar).")
       ->check(number_within(0.0, 0.2).description(""))
       ->type_name("T");
   command->callback([options, &context] { print_gains(context, *options); });

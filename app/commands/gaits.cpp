@@ -206,7 +206,7 @@ std::string missing_words(const std::vector<Json>& entries, const char* noun,
     if (count > 0) kinds.push_back(std::to_string(count) + " (" + stage.words + ")");
   }
   std::string text = "  " + text::counted(entries.size(), noun) + ", of which ";
-  text += std::to_string(entries.size() - all) + " are there and " + std::to_string(all) +
+  text += std::to_string(entries.size() - all) + " are made and " + std::to_string(all) +
           " are missing" + (all > 0 ? ": " + text::join(kinds, ", ") : "") + "\n";
   size_t shown = 0;
   for (const Json& entry : entries) {
@@ -214,7 +214,7 @@ std::string missing_words(const std::vector<Json>& entries, const char* noun,
     if (++shown > kShownMissing) break;
     text += "    " + name(entry) + ": " + entry.at("reason").get<std::string>() + "\n";
   }
-  if (shown > kShownMissing) text += "    index.json has the reasons of all\n";
+  if (shown > kShownMissing) text += "    index.json has the reasons for all cells\n";
   return text;
 }
 
@@ -339,15 +339,17 @@ void add_gaits(CLI::App& app, Context& context) {
   const auto add_axis = [&](const char* name, std::string& words, const char* what) {
     command->add_option(name, words, what)->type_name("LIST");
   };
-  add_axis("--forward", options->forward, "Speeds forward [m/s] (default: around the usual walk).");
+  add_axis("--forward", options->forward,
+           "Speeds forward [m/s] (default: speeds around that of `new walk`).");
   add_axis("--sideways", options->sideways,
-           "Speeds to the left [m/s] (default: around the usual walk).");
+           "Speeds to the left [m/s] (default: 0, and one speed on each side of 0).");
   add_axis("--turn", options->turn, "Turning rates to the left [deg/s] (default: -8, 0 and 8).");
-  add_axis("--period", options->period, "Times of one step [s] (default: that of new walk).");
+  add_axis("--period", options->period,
+           "Times of one step [s] (default: the time of a step in `new walk`).");
   command
-      ->add_option(
-          "--cog-height", gaits.cog_height,
-          "COG height above the soles [m] (default: the one with which most walks pass the check).")
+      ->add_option("--cog-height", gaits.cog_height,
+                   "COG height above the soles [m] (default: the height at which most walks pass "
+                   "the check).")
       ->check(number_within(0.01, 5.0).description(""))
       ->type_name("M");
   command->add_option("--rate", gaits.rate, "Rows per second of tables and archives.")
@@ -370,20 +372,19 @@ void add_gaits(CLI::App& app, Context& context) {
       ->type_name("P")
       ->capture_default_str();
   command
-      ->add_option(
-          "--runs", gaits.study.most,
-          "Largest number of runs of a cell (default: four times the number that is enough if no "
-          "run fails).")
+      ->add_option("--runs", gaits.study.most,
+                   "Largest number of runs of a cell (default: 4 times the number of runs that "
+                   "certify if the robot fails in none of them).")
       ->check(whole_number_within(1, 100000000).description(""))
       ->type_name("N");
   command
       ->add_option("--study", gaits.study_file,
-                   "Study file with the uncertainty (default: the robot's).")
+                   "Study file with the uncertainty (default: the uncertainty of the robot).")
       ->type_name("F");
   command->add_flag("--uncertified", options->uncertified,
                     "Simulate each walk once, without uncertainty.");
   command->add_flag("--no-transitions", options->without_transitions,
-                    "Leave out the walks that change from a cell to its neighbour.");
+                    "Do not make the walks that change from one cell to a neighbouring cell.");
   command->callback([options, &context] { make_gaits(context, *options); });
 }
 

@@ -43,8 +43,8 @@ std::string estimate_words(const ServoEstimate& e, double unit, int digits,
 std::string joint_words(const IdentifiedJoint& j) {
   std::string words = "  " + j.joint + ": ";
   if (!j.moved)
-    return words + "stands still; " + text::fixed(j.offset.value / kIdentifiedDegree, 3) +
-           " deg from its command\n";
+    return words + "does not move; its angle is " +
+           text::fixed(j.offset.value / kIdentifiedDegree, 3) + " deg from its command\n";
   words += "delay " + estimate_words(j.delay, 1e-3, 2, "ms");
   if (j.kp.known)
     words += ", kp " + estimate_words(j.kp, 1, 0, "N m/rad");
@@ -54,11 +54,12 @@ std::string joint_words(const IdentifiedJoint& j) {
   if (j.coulomb.known) words += ", Coulomb " + estimate_words(j.coulomb, 1, 3, "N m");
   if (j.backlash.value > 0)
     words += ", backlash " + estimate_words(j.backlash, kIdentifiedDegree, 3, "deg");
-  words += ", from its command " + estimate_words(j.offset, kIdentifiedDegree, 3, "deg");
+  words += ", offset from the command " + estimate_words(j.offset, kIdentifiedDegree, 3, "deg");
   if (j.has_sag)
     words += ", sag " + text::fixed(j.sag / kIdentifiedDegree, 3) + " deg from swing to stance";
-  words += "; left over " + text::fixed(j.mean_error / kIdentifiedDegree, 3) +
-           " deg in the mean, " + text::fixed(j.largest_error / kIdentifiedDegree, 3) + " at " +
+  words += "; the model misses the recording by " +
+           text::fixed(j.mean_error / kIdentifiedDegree, 3) + " deg on average and by at most " +
+           text::fixed(j.largest_error / kIdentifiedDegree, 3) + " deg at " +
            text::fixed(j.largest_at, 3) + " s\n";
   for (const std::string& line : j.confounded) words += "    " + line + "\n";
   return words;
@@ -165,7 +166,7 @@ std::string sidecar_text(const RobotModel& model, const IdentifyCommand& options
                {"servos", groups},
                {"assumptions",
                 {"servos: identified from " + fs::path(options.measured).filename().string() +
-                 " as the answer to " + fs::path(options.command).filename().string()}}};
+                 " with the command " + fs::path(options.command).filename().string()}}};
   // Servos of a profile hide those of the robot, so what was found stands there too.
   if (profile_has_servos(model))
     json["profiles"] = {{{"name", model.limits().name}, {"servos", groups}}};
@@ -218,8 +219,8 @@ void identify_servos(const Context& context, const IdentifyCommand& options) {
     if (std::any_of(found.joints.begin(), found.joints.end(),
                     [](const IdentifiedJoint& joint) { return joint.delay_is_lag; }))
       words +=
-          "  where delay and damping cannot be distinguished, the whole delay is written as "
-          "damping: kd = kp times delay\n";
+          "  for joints whose delay and damping cannot be distinguished, the whole delay is "
+          "written as damping: kd = kp times delay\n";
   }
   context.print(words);
   context.print_json(Json{
@@ -245,20 +246,24 @@ void add_identify(CLI::App& app, Context& context) {
       ->required();
   command
       ->add_option("--command", options.command,
-                   "What the robot was sent: HOAP sequence, counts, or a table with joint columns.")
+                   "Command that the robot received: a HOAP sequence, counts, or a table with "
+                   "joint columns.")
       ->required()
       ->type_name("F");
   command
-      ->add_option("--measured", options.measured,
-                   "What its encoders measured: rows of counts, or a table with joint columns.")
+      ->add_option(
+          "--measured", options.measured,
+          "Angles that the encoders measured: rows of counts, or a table with joint columns.")
       ->required()
       ->type_name("F");
   command
       ->add_option("--loads", options.loads,
-                   "Recorded load cells of the feet: readings (calibration in the sidecar), or a "
-                   "table with fz.left[N] and fz.right[N].")
+                   "Recording of the load cells of the feet: raw readings (the sidecar has their "
+                   "calibration), or a table with fz.left[N] and fz.right[N].")
       ->type_name("F");
-  command->add_option("-o,--out", options.out, "Sidecar to write, with ROBOT as its base.")
+  command
+      ->add_option("-o,--out", options.out,
+                   "Sidecar to write. It has ROBOT as its base, and adds the servo constants.")
       ->type_name("F");
   command
       ->add_option("--per", options.per,
@@ -267,23 +272,23 @@ void add_identify(CLI::App& app, Context& context) {
       ->capture_default_str();
   command
       ->add_option("--stand", options.stand,
-                   "What carries the robot: its feet on level ground, or a fixture that holds its "
-                   "root upright (default: feet if it has soles).")
+                   "Support of the robot during the recording: feet (on level ground), or fixed (a "
+                   "fixture holds the root upright) (default: feet if the robot has soles).")
       ->check(one_of({"auto", "feet", "fixed"}));
-  command->add_option("--unit", unit, "Unit of columns whose names are bare joint names.")
+  command->add_option("--unit", unit, "Unit of the columns that are named by the joint alone.")
       ->check(one_of({"rad", "deg"}))
       ->capture_default_str();
   command
       ->add_option("--rate", options.reading.rate,
-                   "Rate of rows without a time column [1/s] (default: 1000 for the command; for "
-                   "the measured angles, the rate of the command).")
+                   "Rows per second of files without a time column [1/s] (default: 1000 for the "
+                   "command, and the rate of the command for the measured angles).")
       ->check(number_within(1.0, 1e5))
       ->type_name("HZ");
   command
       ->add_option("--longest-lag", options.longest_lag_ms,
-                   "Time by which a servo may be behind its command; a recording that is later is "
-                   "refused as shifted (default: 30, or twice the lag of the slowest servo of "
-                   "ROBOT) [ms].")
+                   "Largest time by which a servo may follow its command [ms]. A recording in "
+                   "which the angles are later is refused, because it is shifted (default: 30, or "
+                   "twice the lag of the slowest servo of ROBOT).")
       ->check(number_within(1.0, 500.0))
       ->type_name("MS");
   command->callback([&context] {

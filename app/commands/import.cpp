@@ -81,12 +81,12 @@ void add_ramps(const ImportCommand& options, const RobotModel& model, ImportedMo
   }
   if (!imported.motion.zmp.empty() || !imported.motion.fz.empty())
     imported.filled.push_back(
-        "ZMP and vertical force of the file are left out, because a ramp "
-        "changes them");
+        "the ZMP and the vertical force of the file are left out, because a ramp changes them");
   imported.motion = with_ramps(model, std::move(imported.motion), options.ramp);
   imported.sequence.clear();  // its rows are no longer those of the motion
-  imported.filled.push_back("the motion " + ends + " slowly: in " + text::brief(options.ramp) +
-                            " s from rest to its own speed, along its own path (--ramp)");
+  imported.filled.push_back("the motion " + ends + " slowly (--ramp): it takes " +
+                            text::brief(options.ramp) +
+                            " s between rest and the recorded speed, along the recorded path");
 }
 
 /// A file of key poses: the pattern has keys, and no table.
@@ -193,44 +193,46 @@ void add_import(CLI::App& app, Context& context) {
   command->add_option("--unit", unit, "Unit of angles where the file does not state it.")
       ->check(one_of({"rad", "deg"}))
       ->capture_default_str();
-  command->add_option("--rate", options.import.rate, "Rate of rows without times [1/s].")
+  command
+      ->add_option("--rate", options.import.rate, "Rows per second of a file without times [1/s].")
       ->check(number_within(1.0, 1e5))
       ->type_name("HZ");
   command
       ->add_option("--signs", signs,
-                   "For rows of radians in the order of the motor numbers: whether their signs are "
-                   "those of the robot's encoders or those of the joints.")
+                   "Signs of rows of radians in the order of the motor numbers: encoder (as the "
+                   "encoders of the robot count) or joint (as the joints are defined).")
       ->check(one_of({"encoder", "joint"}))
       ->capture_default_str();
   command->add_flag("--order", options.import.by_order,
-                    "The columns are the robot's joints in its own order.");
+                    "The columns are the joints of the robot, in the order of the robot's file.");
   command
       ->add_option("--joints", options.import.joints,
                    "Names of the joint columns, in the order of the file.")
       ->delimiter(',')
       ->type_name("A,B,...");
   command
-      ->add_option("--motion", options.import.motion,
-                   "Name or number of the motion, of a file with several (default: the first).")
+      ->add_option(
+          "--motion", options.import.motion,
+          "Name or number of the motion, if the file has several motions (default: the first).")
       ->type_name("NAME");
   command->add_flag(
       "--ground", options.ground,
       "Move the robot up and down so that the soles that carry it are on the ground.");
   command
       ->add_option("--ramp", options.ramp,
-                   "Time from rest to the speed of the recording, where it was cut while the robot "
-                   "moved [s].")
+                   "Time from rest to the speed of the recording [s]. It is used at an end of the "
+                   "recording where the robot moves.")
       ->check(number_within(0.02, 10.0))
       ->type_name("S");
   command
       ->add_option(
           "--contact-height", options.contact.height,
-          "Height above the lowest sole [m]; a sole that is higher does not carry the robot.")
+          "A sole that is higher than this above the lowest sole does not carry the robot [m].")
       ->check(number_within(0.0, 0.2))
       ->capture_default_str();
   command
       ->add_option("--contact-speed", options.contact.speed,
-                   "Speed of a sole [m/s]; a sole that is faster does not carry the robot.")
+                   "A sole that moves faster than this does not carry the robot [m/s].")
       ->check(number_within(0.0, 5.0))
       ->capture_default_str();
   command
@@ -244,10 +246,9 @@ void add_import(CLI::App& app, Context& context) {
       "The angles are servo targets (as written by export): subtract the velocity lead. "
       "Reference tables are always treated so.");
   command
-      ->add_option(
-          "--smooth", options.import.smooth,
-          "Largest change allowed for smoothing [deg] (default: 0.1 for HOAP counts, 0 for angle "
-          "tables).")
+      ->add_option("--smooth", options.import.smooth,
+                   "Largest change of an angle by smoothing [deg] (default: 0.1 for HOAP counts, 0 "
+                   "for angle tables).")
       ->check(number_within(0.0, 5.0))
       ->type_name("DEG");
   command->callback([&context] {

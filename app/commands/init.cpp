@@ -83,12 +83,12 @@ void init(const Context& context, const InitOptions& options) {
   files.complete();
   const std::string at = folder.string();
   context.print(at + "/robot.json: sidecar of " + sidecar.robot.name + ", " +
-                std::to_string(joints) + " joints, every guess with its reason\n" + at +
-                "/robot.png: home posture with soles and joint axes\n" + at +
-                "/TODO.md: what to check:\n");
+                std::to_string(joints) + " joints, with the reason for each guess\n" + at +
+                "/robot.png: picture of the home posture with soles and joint axes\n" + at +
+                "/TODO.md: list of what you have to check:\n");
   for (const std::string& item : sidecar.to_do) context.print("  - " + item + "\n");
   for (const std::string& note : picture.notes)
-    context.print("  - drawn otherwise: " + note + "\n");
+    context.print("  - note on the picture: " + note + "\n");
   if (!sidecar.robot.soles.empty())
     context.print("Next: ayumi new walk --robot " + at +
                   " -o walk.json, then ayumi run walk.json -o walk_run\n");

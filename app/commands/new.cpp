@@ -97,12 +97,15 @@ std::vector<double> values_that_pass(
   const SearchResult result = search_motion(model, dials, make, context.progress());
   if (result.limit.empty()) return defaults;
   if (result.found)
-    context.print("the default values are too much for " + model.name() + ": " + result.limit +
-                  "\n  found instead, after " + std::to_string(result.tried) +
-                  " trials: " + changed_values(dials, result) + "\n");
+    context.print("the default values ask too much of " + model.name() + ": " + result.limit +
+                  "\n"
+                  "  after " +
+                  std::to_string(result.tried) +
+                  " trials, these values were found: " + changed_values(dials, result) + "\n");
   else if (result.tried > 1 && !result.refused)  // else the error says it
     context.print("none of " + std::to_string(result.tried) +
-                  " combinations of height, length and time passes; the defaults fail by: " +
+                  " combinations of height, length and time passes the check. The default values "
+                  "fail because of: " +
                   result.limit + "\n");
   return result.values;
 }
@@ -424,10 +427,11 @@ void new_viip(const Context& context, const NewOptions& options) {
   const bool steps = options.viip_steps > 0;
   if (steps + !options.cog.empty() + !options.cog_velocity.empty() != 1)
     fail(ErrorCode::usage,
-         "viip: give one of --cog DX,DY,DZ, --cog-velocity VX,VY,VZ and --steps N; --velocity and "
-         "--turn may be added to --steps, and --duration to --cog-velocity");
+         "viip: give exactly one of --cog DX,DY,DZ, --cog-velocity VX,VY,VZ and --steps N. "
+         "--velocity and --turn can be added to --steps, and --duration to --cog-velocity");
   if (!steps && (!options.velocity.empty() || options.turn_deg != 0))
-    fail(ErrorCode::usage, "viip: --velocity and --turn need --steps N");
+    fail(ErrorCode::usage,
+         "viip: --velocity and --turn work only together with --steps N; add --steps");
   const auto moves = [](double v) { return v != 0; };
   if (options.viip_steps == 1 &&
       (options.turn_deg != 0 ||
@@ -519,15 +523,16 @@ void add_scaled(CLI::App& command, const char* name, std::optional<double>& valu
   command
       .add_option(
           name, value,
-          text + " (default: scaled from HOAP-1, hoap1: " + ayumi::text::brief(hoap1) + ").")
+          text + " (default: the value for HOAP-1, scaled to the size of the robot; for hoap1 " +
+              ayumi::text::brief(hoap1) + ").")
       ->type_name(type);
 }
 
 void add_height(CLI::App& command, double& height) {
   command
       .add_option("--cog-height", height,
-                  "COG height [m]; 0 = the height in the home posture, or a lower one if its legs "
-                  "are straight.")
+                  "COG height [m]; 0 = the height in the home posture, or a lower one if the legs "
+                  "are straight in the home posture.")
       ->capture_default_str()
       ->type_name("M");
 }
@@ -535,7 +540,7 @@ void add_height(CLI::App& command, double& height) {
 void add_gait(CLI::App& command, NewOptions& options) {
   command
       .add_option("--steps", options.walk.steps,
-                  "Number of steps; one more step brings the feet together.")
+                  "Number of steps. After them, one more step brings the feet together.")
       ->capture_default_str()
       ->type_name("N");
   add_scaled(command, "--period", options.period, "Time of one step [s]", WalkParameters().period,
@@ -544,7 +549,7 @@ void add_gait(CLI::App& command, NewOptions& options) {
              WalkParameters().lift, "M");
   command
       .add_option("--double-support", options.walk.double_support,
-                  "Share of the period in double support.")
+                  "Share of the period in which both feet are on the ground.")
       ->capture_default_str()
       ->type_name("SHARE");
   add_height(command, options.walk.cog_height);
@@ -568,7 +573,8 @@ void add_walk(CLI::App& command, NewOptions& options) {
   add_scaled(command, "--stride", options.stride,
              "Distance between successive footholds [m], backwards if negative",
              WalkParameters().stride, "M");
-  command.add_option("--turn", options.turn_deg, "Turn per step to the left [deg].")
+  command
+      .add_option("--turn", options.turn_deg, "Angle by which each step turns to the left [deg].")
       ->capture_default_str()
       ->type_name("DEG");
   command
@@ -638,12 +644,12 @@ void add_viip(CLI::App& command, NewOptions& options) {
       ->type_name("S");
   command
       .add_option("--steps", options.viip_steps,
-                  "Number of steps; the last one brings the feet together. Without --velocity, the "
-                  "robot steps in place.")
+                  "Number of steps. The last step brings the feet together. Without --velocity, "
+                  "the robot steps in place.")
       ->check(whole_number_within(1, 10000).description(""))
       ->type_name("N");
   command
-      .add_option("--velocity", options.velocity, "Velocity of the COG [m/s]: forward, and left.")
+      .add_option("--velocity", options.velocity, "Velocity of the COG [m/s]: forward and left.")
       ->delimiter(',')
       ->expected(1, 2)
       ->type_name("VX,VY");
@@ -833,8 +839,8 @@ void add_new(CLI::App& app, Context& context) {
       "excite", "slow sweeps, chirps and steps of every joint, for identify");
   excite->footer("Examples:\n  ayumi new excite hoap1 -o excite.json");
   add_common(*excite, options);
-  excite->add_option("ROBOT", options.robot, "Robot, the same as --robot.");
-  excite->add_option("--scale", options.scale, "Factor on all amplitudes.")
+  excite->add_option("ROBOT", options.robot, "Robot to excite. --robot does the same.");
+  excite->add_option("--scale", options.scale, "Factor on the amplitudes of all movements.")
       ->check(number_within(0.05, 2.0))
       ->capture_default_str();
   excite->callback([shared, &context] { new_excite(context, *shared); });

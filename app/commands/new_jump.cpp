@@ -114,7 +114,7 @@ void new_jump(Context& context, JumpOptions options) {
     p = highest_jump(model, p, options.profile, context.progress());
     if (p.height <= 0) {
       context.print("profile " + options.profile +
-                    ": the check accepts no jump of 1 mm or more, so nothing is written\n");
+                    ": no jump of 1 mm or more passes the check, so nothing is written\n");
       context.print_json("{\"pattern\": null}");
       context.exit_code = 1;
       return;
@@ -158,7 +158,8 @@ void add_new_jump(CLI::App& parent, Context& context) {
       ->type_name("F")
       ->required();
   const auto scaled = [](double hoap1) {
-    return " (default: scaled from HOAP-1, hoap1: " + text::brief(hoap1) + ").";
+    return " (default: the value for HOAP-1, scaled to the size of the robot; for hoap1 " +
+           text::brief(hoap1) + ").";
   };
   command
       ->add_option("--height", options.height,
@@ -181,7 +182,8 @@ void add_new_jump(CLI::App& parent, Context& context) {
       ->type_name("N");
   command
       ->add_option("--profile", options.profile,
-                   "Actuator profile to write (default: the first one that is strong enough).")
+                   "Actuator profile that the pattern names (default: the first profile that is "
+                   "strong enough).")
       ->type_name("NAME");
   command->add_flag(
       "--highest", options.highest,

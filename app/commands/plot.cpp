@@ -91,7 +91,9 @@ void plot(const PlotOptions& asked, Context& context) {
   const std::vector<LabelledLog> logs = logs_of(options);
   std::vector<LociRun> runs;
   for (const LabelledLog& entry : logs) runs.push_back({entry.label, &entry.log});
-  if (runs.empty()) fail(ErrorCode::usage, "plot: the run has no simulation log to draw");
+  if (runs.empty())
+    fail(ErrorCode::usage,
+         "plot: the run has no simulation log, so there is nothing to draw; simulate it again");
   std::vector<std::string> series;
   if (options.top) {
     write_support_plot(robot_of_log(context, options.robot, logs.back().log, logs.back().label),
@@ -132,7 +134,7 @@ void add_plot(CLI::App& app, Context& context) {
   command->add_flag("--top", options->top, "Draw the ground from above with the footholds.");
   command->add_option("--from", options->loci.begin, "First time [s].")->capture_default_str();
   command->add_option("--to", options->loci.end, "Last time [s] (default: the end).");
-  command->add_option("--title", options->loci.title, "Heading of the picture.");
+  command->add_option("--title", options->loci.title, "Title of the picture.");
   command->add_option("--width", options->loci.width, "Width in pixels.")->capture_default_str();
   command
       ->add_option("--frame", options->frame,

@@ -93,7 +93,7 @@ const Angles& posture_of(const Source& source, const PostureCommand& options) {
   for (const auto& [name, angles] : source.postures) names.push_back(name);
   fail(ErrorCode::usage, options.source + ": there is no posture '" + options.name + "'" +
                              text::suggestion(options.name, names) +
-                             " (there are: " + text::join(names, ", ") + ")");
+                             " (known: " + text::join(names, ", ") + ")");
 }
 
 int dof_of(const RobotModel& model, const std::string& joint, const std::string& place) {
@@ -167,9 +167,9 @@ std::string library_text(const Context& context, const PostureCommand& options,
   }
   const PostureLibrary library = read_posture_library(options.out);
   if (library.postures.contains(options.as) && !context.force)
-    fail(ErrorCode::bad_file, options.out + ": the library has a posture '" + options.as +
-                                  "' already; choose another name with --as, or replace it with "
-                                  "--force");
+    fail(ErrorCode::bad_file,
+         options.out + ": the library already has a posture '" + options.as +
+             "'; choose another name with --as, or replace the posture with --force");
   return edited_text(read_file(options.out),
                      {{PatternEdit::Kind::set, pointer_of(options.as),
                        angles_json(model, angles, library.degrees).dump()}});
@@ -187,10 +187,11 @@ void save(const Context& context, const PostureCommand& options, const RobotMode
     if (dof.limited && (angle < dof.lower - 1e-9 || angle > dof.upper + 1e-9))
       beyond.push_back(joint);
   }
-  context.print(
-      options.out + ": posture '" + options.as + "': " + angles_text(&model, angles) + "\n" +
-      (beyond.empty() ? ""
-                      : "  beyond the range of the joint: " + text::join(beyond, ", ") + "\n"));
+  context.print(options.out + ": posture '" + options.as + "': " + angles_text(&model, angles) +
+                "\n" +
+                (beyond.empty() ? ""
+                                : "  the angles of these joints are beyond their limits: " +
+                                      text::join(beyond, ", ") + "\n"));
   context.print_json(Json{
       {"output", options.out},
       {"posture", options.as},
@@ -281,7 +282,8 @@ Instant instant_of(const Context& context, const PostureCommand& options) {
     return {log.provenance.robot, log.joints, log.samples[row].state.theta};
   }
   if (!options.log.empty())
-    fail(ErrorCode::usage, "--log: " + options.source + " is no run, so it has no logs");
+    fail(ErrorCode::usage,
+         "--log: " + options.source + " is not a run, so it has no logs; leave --log out");
   std::error_code ignored;
   const bool is_table = fs::path(options.source).extension() == ".csv" ||
                         (fs::is_regular_file(options.source, ignored) &&
@@ -316,7 +318,7 @@ using Options = std::shared_ptr<PostureCommand>;
 CLI::App& add_kind(CLI::App& parent, const std::string& name, const std::string& what,
                    const Options& options, const char* source = "ROBOT|PATTERN|LIBRARY") {
   CLI::App* command = parent.add_subcommand(name, what);
-  command->add_option("SOURCE", options->source, "Where the posture is.")
+  command->add_option("SOURCE", options->source, "Robot or file from which the posture is taken.")
       ->required()
       ->type_name(source);
   command
@@ -361,7 +363,9 @@ void add_posture(CLI::App& app, Context& context) {
       .callback([options, &context] { list(context, *options); });
   CLI::App& drawn = add_kind(*command, "draw", "draw the robot in a posture", options);
   add_name(drawn, options);
-  drawn.add_option("-o,--out", options->out, "Picture to write, .png.")->required()->type_name("F");
+  drawn.add_option("-o,--out", options->out, "Picture to write (.png).")
+      ->required()
+      ->type_name("F");
   drawn.add_option("--view", options->view, "View: " + text::join(view_names(), ", ") + ".")
       ->capture_default_str();
   drawn.callback([options, &context] { draw(context, *options); });

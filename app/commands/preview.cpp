@@ -248,11 +248,14 @@ void add_picture_options(CLI::App& command, PreviewOptions& options) {
           "320x480).")
       ->type_name("WxH");
   command.add_option("--fps", clip.fps, "Frames per second.")->capture_default_str();
-  command.add_option("--speed", clip.speed, "Playing speed; 0.25 is four times slower.")
+  command
+      .add_option("--speed", clip.speed,
+                  "Playing speed: 1 is the real speed, 0.25 is four times slower.")
       ->capture_default_str();
   command.add_option("--from", clip.begin, "First time [s].")->capture_default_str();
   command.add_option("--to", clip.end, "Last time [s] (default: the end).");
-  command.add_option("--at", clip.at, "Time of a single picture [s].")->capture_default_str();
+  command.add_option("--at", clip.at, "Time of the picture, if the file is a single picture [s].")
+      ->capture_default_str();
   command.add_option("--strip", options.strip, "Number of snapshots side by side in a .png.")
       ->check(whole_number_within(1, 400));
   command
@@ -272,7 +275,8 @@ void add_picture_options(CLI::App& command, PreviewOptions& options) {
                   "Frame of the picture: world, or foot (the supporting foot stands still).")
       ->check(one_of(frame_names()).description(""))
       ->capture_default_str();
-  command.add_option("--zoom", clip.camera.zoom, "Magnification; 2 is twice as large.")
+  command
+      .add_option("--zoom", clip.camera.zoom, "Magnification: 2 draws the robot twice as large.")
       ->capture_default_str();
   command
       .add_option("--ghost", options.ghost,
@@ -281,10 +285,10 @@ void add_picture_options(CLI::App& command, PreviewOptions& options) {
       ->type_name("RUN");
   for (const auto& [name, list, what] :
        {std::tuple{"--hide", &options.hide,
-                   "Leave marks out: cog, zmp, ref-zmp, support, "
-                   "forces, push, trails, heat, scale, caption or all."},
+                   "Marks to leave out: cog, zmp, ref-zmp, support, forces, push, trails, heat, "
+                   "scale, caption or all."},
         {"--show", &options.show,
-         "Draw marks; heat shows joints near a limit in amber, at it in red."}})
+         "Marks to draw. The mark heat colours a joint amber near a limit and red at the limit."}})
     command.add_option(name, *list, what)->delimiter(',')->allow_extra_args(false);
   command.add_option("--title", clip.title, "Text at the beginning of the caption.");
   command.add_flag("--draft", options.draft, "Draw faster, without antialiasing.");

@@ -151,10 +151,10 @@ std::string table(const std::vector<PushCase>& cases, const PushOptions& push,
   }
   for (const std::string& line : push_summary_lines(cases, push, series)) out += line + "\n";
   return out +
-         "B = largest push that a point mass could absorb; + = the largest push that was tried, "
-         "survived\n"
-         "J/m = speed that the push gives to the COG, in m/s; J/mv = the same in units of "
-         "v = sqrt(g z), z: height of the COG above the ZMP\n";
+         "B = largest push that a point mass could absorb; + = the robot survives also the largest "
+         "push that was tried\n"
+         "J/m = speed that the push gives to the COG, in m/s; J/mv = this speed divided by v = "
+         "sqrt(g z), where z is the height of the COG above the ZMP\n";
 }
 
 Json result_json(const std::vector<PushCase>& cases, const PushOptions& push, double wall) {
@@ -230,25 +230,27 @@ void add_push(CLI::App& app, Context& context) {
   CLI::App* command = app.add_subcommand(
       "push", "find the largest push that the robot survives, by gait phase and direction");
   command->footer(
-      "Examples:\n  ayumi push patterns/hoap1_walk.json -o out/push.json --map out/push.svg\n  "
-      "ayumi push walk.json --profile hoap1-strong --controller dtad --controller dtad-literal\n  "
-      "ayumi push walk.json --times 3.1 --times 3.4 --directions 4 --json\nRun again with the same "
-      "-o to resume a study. The pattern's own scenario is ignored, also its lasting disturbances "
-      "(payload, friction, latency, ...).");
+      "Examples:\n"
+      "  ayumi push patterns/hoap1_walk.json -o out/push.json --map out/push.svg\n"
+      "  ayumi push walk.json --profile hoap1-strong --controller dtad --controller dtad-literal\n"
+      "  ayumi push walk.json --times 3.1 --times 3.4 --directions 4 --json\n"
+      "Run again with the same -o to go on with a study. The scenario of the pattern is ignored, "
+      "and so are its lasting disturbances (payload, friction, latency, ...).");
   auto options = std::make_shared<PushCommand>();
   PushOptions& push = options->push;
   command->add_option("PATTERN", options->pattern, "Pattern file.")->required();
   command
-      ->add_option("-o,--out", options->out,
-                   "Results as JSON; run again with the same file to resume.")
+      ->add_option(
+          "-o,--out", options->out,
+          "File for the results, as JSON. Run the command again with the same file to go on.")
       ->type_name("F");
-  command->add_option("--map", options->map, "Draw the limits from above, .svg or .png.")
+  command->add_option("--map", options->map, "Draw the largest pushes from above (.svg or .png).")
       ->type_name("F");
   add_pattern_options(*command, options->input);
   command
-      ->add_option(
-          "--controller", options->controllers,
-          "Controller to compare with open loop; may be repeated (default: the pattern's).")
+      ->add_option("--controller", options->controllers,
+                   "Controller to compare with open loop; may be repeated (default: the controller "
+                   "of the pattern).")
       ->type_name("NAME")
       ->allow_extra_args(false);
   command->add_option("--gain", options->gains, "Set a gain of the controller.")
@@ -277,7 +279,7 @@ void add_push(CLI::App& app, Context& context) {
       ->capture_default_str();
   command
       ->add_option("--replicas", push.replicas,
-                   "Number of small variations of every push; the robot must survive all of them.")
+                   "Number of small variations of every push. The robot must survive all of them.")
       ->check(whole_number_within(0, 100).description(""))
       ->type_name("N")
       ->capture_default_str();

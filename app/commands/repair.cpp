@@ -95,9 +95,9 @@ std::string steering_words(const RepairCommand& options, const Pattern& pattern)
   std::string out;
   std::vector<std::string> kept = file_locks(pattern.repair);
   kept.insert(kept.end(), options.locked.begin(), options.locked.end());
-  if (!kept.empty()) out += "  kept: " + text::join(kept, ", ") + "\n";
+  if (!kept.empty()) out += "  locked or kept: " + text::join(kept, ", ") + "\n";
   if (options.repair.trust != Trust::posture)
-    out += std::string("  trusted: ") + name_of(options.repair.trust) + "\n";
+    out += std::string("  trusted quantity: ") + name_of(options.repair.trust) + "\n";
   return out;
 }
 
@@ -110,13 +110,16 @@ std::string in_words(const RepairCommand& options, const Task& input, const Repa
                      const std::vector<Mistake>& mistakes, double wall) {
   const RobotModel& model = input.robot;
   std::string out = options.pattern + ": " +
-                    (result.partial ? "stopped, partial" : words_of(result.status)) + "\n";
+                    (result.partial ? "stopped; the result is partial" : words_of(result.status)) +
+                    "\n";
   if (result.status == RepairStatus::already_consistent)
-    return out + "  nothing had to change; " + options.out + " is a copy of the pattern\n";
+    return out + "  nothing had to change, so " + options.out + " is a copy of the pattern\n";
   out += steering_words(options, input.pattern);
   const bool moves = result.moved.joint.size > 1e-4;
   if (result.status != RepairStatus::repaired && !options.repair.keep_partial && moves)
-    out += "  the motion with the smallest violation is not written; it would have\n";
+    out +=
+        "  the motion with the smallest violation is not written (--keep-partial writes it). In "
+        "this motion:\n";
   out += motion_words(model, result.moved, result.before, result.check);
   out += cost_words(result.change) + "; " + std::to_string(result.variables) + " variables, " +
          std::to_string(result.constraints) + " constraints, " + std::to_string(result.iterations) +
@@ -134,7 +137,8 @@ std::string in_words(const std::vector<PassingValues>& all) {
     for (const PassingValue& v : values)
       words.push_back(v.parameter + " = " + text::exact(v.passing) + " instead of " +
                       text::exact(v.given));
-    out += "  the pattern passes without a repair with " + text::join(words, " and ") + "\n";
+    out +=
+        "  the pattern passes the check without a repair if " + text::join(words, " and ") + "\n";
   }
   return out;
 }
@@ -145,17 +149,18 @@ std::string in_words(const PassingPace& pace) {
     std::vector<std::string> windows;
     for (const auto& [begin, end] : pace.windows)
       windows.push_back(text::fixed(begin, 3) + "-" + text::fixed(end, 3) + " s");
-    out += "  the pattern passes without a repair when " + text::join(windows, ", ") + " last " +
-           text::exact(pace.factor) + " times as long\n";
+    out += "  the pattern passes the check without a repair if " + text::join(windows, ", ") +
+           " last " + text::exact(pace.factor) + " times as long\n";
   }
   if (pace.tried > 0 && pace.factor == 0 && pace.whole == 0)
     out +=
-        "  more time alone is not enough: the pattern does not pass even if its keys are played "
+        "  more time alone is not enough: the pattern fails the check even if its keys are played "
         "up to " +
         text::brief(pace.tried) + " times more slowly\n";
   if (pace.whole > 0)
-    out += "  the pattern passes without a repair when it lasts " + text::exact(pace.whole) +
-           " times as long from end to end (edit retime --scale " + text::exact(pace.whole) + ")\n";
+    out += "  the pattern passes the check without a repair if it lasts " +
+           text::exact(pace.whole) + " times as long in all (edit retime --scale " +
+           text::exact(pace.whole) + ")\n";
   return out;
 }
 
@@ -286,7 +291,9 @@ class StruggleTeller {
     };
   }
 
-  void say_what_is_left() const { say("the repair was stopped; errors that are left: " + words()); }
+  void say_what_is_left() const {
+    say("the repair was stopped. These errors are left: " + words());
+  }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -297,13 +304,13 @@ class StruggleTeller {
       return;
     told_stage_ = stage;
     told_ = now;
-    say(stage + " takes a while, because it still has to remove: " + words() +
-        "; Ctrl-C stops the repair");
+    say(stage + " takes a while. It still has to remove: " + words() + ". Ctrl-C stops the repair");
   }
 
   std::string words() const {
     if (left_.empty())
-      return "nothing; the motion passes the check already, and the search is for a smaller change";
+      return "nothing, because the motion already passes the check. The search now looks for a "
+             "smaller change";
     const size_t named = std::min(left_.size(), kMostNamed);
     std::string out = text::join({left_.begin(), left_.begin() + static_cast<long>(named)}, "; ");
     if (left_.size() > named)
@@ -345,14 +352,15 @@ RepairResult repair_telling(const Task& input, const RepairOptions& wishes, bool
 void repair_pattern(Context& context, RepairCommand options) {
   if (options.pattern == "-")
     fail(ErrorCode::usage,
-         "repair adds a correction to the author's text and needs a file: name the pattern's file "
-         "in place of -");
+         "repair adds a correction to the text of the pattern, so it needs a file: name the file "
+         "of the pattern in place of -");
   refuse_overwriting(context, options.out);
   if (!options.plot.empty()) refuse_overwriting(context, options.plot);
   refuse_wrong_wishes(context, options);
   if (options.from_scratch && !options.locked.empty())
     fail(ErrorCode::usage,
-         "--from-scratch makes a new motion, so that there is nothing to --lock; leave one out");
+         "--from-scratch makes a new motion, so there is nothing to lock; leave --from-scratch or "
+         "--lock out");
   const Task input = options.from_scratch ? load_plan(context, options) : load(context, options);
   options.repair = repair_options(options, input);
   const auto begin = std::chrono::steady_clock::now();
@@ -426,39 +434,40 @@ void add_repair(CLI::App& app, Context& context) {
       ->allow_extra_args(false);
   command
       ->add_option("--weight", options.weights,
-                   "Factor on the cost of moving this joint; 10 avoids moving it (default: that of "
-                   "the pattern, otherwise 1).")
+                   "Factor on the cost of moving this joint. With 10, the repair avoids moving the "
+                   "joint (default: the factor in the pattern; 1 if the pattern has none).")
       ->type_name("JOINT=FACTOR")
       ->allow_extra_args(false);
   command
       ->add_option(
           "--trust", options.trust,
-          "Quantity that is kept where posture, COG and ZMP disagree; the other two are adapted to "
-          "it (default: that of the pattern, otherwise posture).")
+          "Quantity that is kept where posture, COG and ZMP disagree. The other two are adapted to "
+          "this quantity (default: the choice in the pattern; posture if the pattern has none).")
       ->check(one_of({"posture", "cog", "zmp"}))
       ->type_name("QUANTITY");
-  command->add_flag("--baked", options.baked, "Write a dense table in place of a correction.");
+  command->add_flag("--baked", options.baked,
+                    "Write the result as a dense table. Without this option, a correction is added "
+                    "to the pattern.");
   command->add_flag("--from-scratch", options.from_scratch,
-                    "Make the motion of the phases, footholds, COG and ZMP of the pattern alone, "
-                    "from the default posture; it is written as a dense table.");
+                    "Make a new motion from the phases, footholds, COG and ZMP of the pattern "
+                    "alone. It begins from the default posture, and is written as a dense table.");
   command->add_flag("--keep-partial", options.repair.keep_partial,
                     "After Ctrl-C or a failure, write the motion with the smallest violation.");
   command
       ->add_option("--plot", options.plot,
-                   "Draw joints, COG and ZMP before and after, .svg or .png.")
+                   "Draw joints, COG and ZMP before and after the repair (.svg or .png).")
       ->type_name("F");
   command
       ->add_option("--margin", options.margin,
-                   "Wanted distance from the ZMP to the edge of the support [m]. It applies where "
-                   "the motion "
-                   "has less (default: 0.9 x inner radius of the sole).")
+                   "Wanted distance from the ZMP to the edge of the support [m]. It is used where "
+                   "the original motion has less (default: 0.9 x inner radius of the sole).")
       ->check(number_within(0.0, 0.1))
       ->type_name("M");
   command
-      ->add_option(
-          "--safety", options.safety,
-          "Weight of safety against staying close to the original (default 1; 0 = smallest change "
-          "that passes check).")
+      ->add_option("--safety", options.safety,
+                   "Weight of safety compared with staying close to the original. 0 gives the "
+                   "smallest change that passes the check (default: the weight in the pattern; 1 "
+                   "if the pattern has none).")
       ->check(number_within(0.0, 1e6))
       ->type_name("FACTOR");
   command

@@ -225,8 +225,8 @@ void replay(Context& context, const ReplayCommand& options) {
     how.seed = context.seed;
     logs.push_back(simulate(task, how, context.progress(), context.command_line));
     const Tracking tracking = tracking_of(logs.back(), static_cast<size_t>(board.targets.cols()));
-    words += "  " + plant + ": " + outcome_text(logs.back()) + "; joints are " +
-             in_degrees(tracking.mean) + " from their targets on average, " +
+    words += "  " + plant + ": " + outcome_text(logs.back()) + "; the joints are " +
+             in_degrees(tracking.mean) + " from their targets on average and " +
              in_degrees(tracking.most, 2) + " at most (" + tracking.joint + " at " +
              text::fixed(tracking.at, 3) + " s)\n";
     simulated[plant] = json_of(logs.back(), tracking);
@@ -270,8 +270,9 @@ void add_replay(CLI::App& app, Context& context) {
                    "Robot that plays the table (default: the one that the table names).")
       ->type_name("ROBOT");
   command
-      ->add_option("--profile", options->profile,
-                   "Actuator profile, which also sets the servos (default: the robot's first).")
+      ->add_option(
+          "--profile", options->profile,
+          "Actuator profile, which also sets the servos (default: the first profile of the robot).")
       ->type_name("NAME");
   command
       ->add_option("--plant", options->plant,
@@ -279,12 +280,14 @@ void add_replay(CLI::App& app, Context& context) {
                    "without MuJoCo).")
       ->type_name("NAME")
       ->capture_default_str();
-  command->add_option("--rate", options->rate, "Rate of a table without a time column [1/s].")
+  command
+      ->add_option("--rate", options->rate,
+                   "Rows per second of a table without a time column [1/s].")
       ->check(number_within(1.0, 1e4))
       ->type_name("HZ");
   command
       ->add_option("--settle", options->settle,
-                   "How long the last row is held after the table [s].")
+                   "Time for which the last row is held after the table [s].")
       ->check(number_within(0.0, 60.0))
       ->capture_default_str();
   command->add_option("-o,--out", options->out, "Folder for the run.")->type_name("DIR");

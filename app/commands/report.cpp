@@ -65,12 +65,12 @@ void add_report(CLI::App& app, Context& context) {
   command->add_option("run", options->input, "Folder that run or simulate wrote.")
       ->required()
       ->type_name("RUN");
-  command->add_option("-o,--out", options->output, "Page to write, .html.")
+  command->add_option("-o,--out", options->output, "Page to write (.html).")
       ->required()
       ->type_name("FILE");
   command
       ->add_option("--push", options->push,
-                   "Results of ayumi push (default: push.json in the RUN, if there is one).")
+                   "Results file of ayumi push (default: push.json in the RUN, if it is there).")
       ->type_name("FILE");
   command->add_option("--robot", options->robot,
                       "Robot to use in place of the one that the run names.");
@@ -84,7 +84,7 @@ void add_report(CLI::App& app, Context& context) {
                    "Frame of curves and replay: world, or foot (the supporting foot stands still).")
       ->check(one_of(frame_names()).description(""))
       ->capture_default_str();
-  command->add_flag("--no-replay", options->no_replay, "Leave the replay out.");
+  command->add_flag("--no-replay", options->no_replay, "Write the page without the replay.");
   command->footer(
       "Examples:\n"
       "  ayumi report out/ -o out/report.html\n"

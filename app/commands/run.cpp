@@ -144,18 +144,19 @@ std::vector<std::string> worse_than_open_loop(const SimulationResult& open,
   if (closed.outcome != Outcome::stands && open.outcome == Outcome::stands)
     worse.push_back(std::string("the robot ") +
                     (closed.outcome == Outcome::fell ? "falls" : "does not come to rest") +
-                    ", in open loop it stands");
+                    ", while it stands in open loop");
   if (open.outcome == Outcome::fell) return worse;
   const auto degrees = [](double angle) {
     return text::fixed(angle * 180 / std::numbers::pi, 1) + " deg";
   };
   const auto percent = [](double share) { return text::fixed(100 * share, 0) + " %"; };
   if (closed.max_tilt > open.max_tilt + kMoreTilt)
-    worse.push_back("largest trunk tilt " + degrees(closed.max_tilt) + " against " +
-                    degrees(open.max_tilt));
+    worse.push_back("the largest trunk tilt is " + degrees(closed.max_tilt) + " with control and " +
+                    degrees(open.max_tilt) + " in open loop");
   if (closed.max_torque_ratio > open.max_torque_ratio + kMoreTorque)
-    worse.push_back("largest torque " + percent(closed.max_torque_ratio) +
-                    " of the limit against " + percent(open.max_torque_ratio));
+    worse.push_back("the largest torque is " + percent(closed.max_torque_ratio) +
+                    " of the limit with control and " + percent(open.max_torque_ratio) +
+                    " in open loop");
   return worse;
 }
 
@@ -173,7 +174,7 @@ void MainJob::check(Task& input) {
   if (options_.repair)
     repair_pattern(input, judged.goal_need.text.empty());
   else
-    say("repair", "not done; --repair looks for the nearest consistent pattern");
+    say("repair", "not done (--repair looks for the nearest consistent pattern)");
 }
 
 void MainJob::repair_pattern(Task& input, bool goals_reachable) {
@@ -208,8 +209,8 @@ void MainJob::simulate(const Task& input) {
   const std::vector<std::string> worse =
       worse_than_open_loop(folder_.logs["open_loop"].result, closed.result);
   if (!worse.empty())
-    say("", painted(Paint::caution, "with control worse than in open loop") + ": " +
-                text::join(worse, "; "));
+    say("", painted(Paint::caution, "some figures are worse with control than in open loop") +
+                ": " + text::join(worse, "; "));
   summary_["worse_than_open_loop"] = worse;
   folder_.provenance = closed.provenance;
   Json both;
@@ -259,8 +260,9 @@ void MainJob::write_hoap(const Task& input, const SimulationLog& log) {
   if (!caution.unfit.empty()) {
     text = "no table for a robot: " + caution.unfit + "\n            not for a robot: " + text;
   } else if (!caution.disturbances.empty()) {
-    text = "no table for a robot: the table of the pattern is from a run with disturbances: " +
-           caution.disturbances + "\n            not for a robot: " + text;
+    text =
+        "no table for a robot, because the table of the pattern is from a run with disturbances: " +
+        caution.disturbances + "\n            not for a robot: " + text;
   } else if (encoders && safe.report.safe && !options_.light) {
     write_file(output_->file("hoap.csv"), hoap_csv(input.robot, safe.table, safety));
     note_file("hoap.csv");
@@ -395,15 +397,16 @@ void add_run(CLI::App& app, Context& context) {
       ->required();
   command->add_flag("--repair", options->repair, "Repair an inconsistent pattern first.");
   command->add_flag_callback(
-      "--no-pictures", [options] { options->pictures = false; }, "Write tables and verdicts only.");
+      "--no-pictures", [options] { options->pictures = false; },
+      "Write only the logs, tables and verdicts, without pictures, clips and report.");
   command->add_flag_callback(
       "--light",
       [options] {
         options->light = true;
         options->pictures = false;
       },
-      "Write the logs and verdicts only. Tables, plots, clips and the report can be made from them "
-      "later.");
+      "Write only the logs and verdicts. Tables, plots, clips and the report can be made from the "
+      "logs later.");
   add_pattern_options(*command, options->input);
   add_simulation_options(*command, options->choice);
   command->callback([options, &context] { run_patterns(context, *options); });

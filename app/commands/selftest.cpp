@@ -106,11 +106,11 @@ void compare(Context& context) {
   table += different == 0
                ? "This machine gives the published bits.\n"
                : text::counted(different, "result") + (different == 1 ? " differs" : " differ") +
-                     " in bits. Verdicts are still right where the tests pass, but this machine "
-                     "writes tables that differ in some bytes from the published ones. Possible "
-                     "causes: the robot or the patterns belong to another version, or the compiler "
-                     "or a library rounds differently. Please report this difference together with "
-                     "the output of `ayumi --version`.\n";
+                     " in bits. If the tests pass on this machine, its verdicts are still right, "
+                     "but the tables that it writes differ in some bytes from the published ones. "
+                     "Possible causes: the robot or the patterns belong to another version, or the "
+                     "compiler or a library rounds differently. Please report this difference "
+                     "together with the output of `ayumi --version`.\n";
   context.print(table);
   context.print_json(Json{{"same", different == 0}, {"results", results}}.dump(2));
   context.exit_code = different == 0 ? 0 : 1;

@@ -66,7 +66,8 @@ RunFolder run_of(const Task& input, const SimulationLog& log) {
 
 void simulate_pattern(Context& context, const SimulateCommand& options) {
   if (!options.study.empty() && options.number < 0)
-    fail(ErrorCode::usage, "--study has an effect only with --case");
+    fail(ErrorCode::usage,
+         "--study works only together with --case; add --case N, or leave --study out");
   plant_of(options.choice.plant);  // a missing plant is refused before anything is computed
   if (!options.out.empty())
     require_run_target(
@@ -118,7 +119,8 @@ void add_simulate(CLI::App& app, Context& context) {
       ->type_name("N");
   command
       ->add_option("--study", options->study,
-                   "Study file of that case (default: the pattern's uncertainty, or the robot's).")
+                   "Study file of the case of --case (default: the uncertainty of the pattern, or "
+                   "of the robot if the pattern has none).")
       ->type_name("F");
   command->callback([options, &context] { simulate_pattern(context, *options); });
 }

@@ -199,9 +199,10 @@ void refuse_missing(const std::vector<std::unique_ptr<ResultsDatabase>>& files, 
   const auto first = std::find(have.begin(), have.end(), false);
   if (first == have.end()) return;
   const long number = first - have.begin();
-  fail(ErrorCode::bad_file, "merge: case " + std::to_string(number) + " is in none of the files" +
-                                missing_shard(shards, number) +
-                                "; nothing was merged. --partial merges what there is");
+  fail(ErrorCode::bad_file,
+       "merge: case " + std::to_string(number) + " is in none of the files" +
+           missing_shard(shards, number) +
+           "; nothing was merged. --partial merges the cases that the files have");
 }
 
 void merge_results(Context& context, const MergeCommand& options) {
@@ -246,7 +247,7 @@ std::string slurm_words(const SlurmStatus& slurm) {
                       std::to_string(slurm.waiting) + " waiting" +
                       (slurm.waiting > 0 && slurm.running == 0 ? " (" + slurm.reason + ")" : "");
   if (slurm.arrived > 0)
-    words += ", " + std::to_string(slurm.arrived) + " ended whose rows are not collected";
+    words += ", " + std::to_string(slurm.arrived) + " ended, with rows that are not collected yet";
   return words + "\n";
 }
 
@@ -290,7 +291,8 @@ void add_sweep(CLI::App& app, Context& context) {
   auto options = std::make_shared<SweepCommand>();
   command->add_option("STUDY", options->study, "Study file with a \"sweep\".");
   command->add_option("-o,--out", options->out, "Results, an SQLite file.")->type_name("F.db");
-  command->add_option("--shard", options->shard, "Run only one part of the cases, for example 1/4.")
+  command
+      ->add_option("--shard", options->shard, "Run only one shard of the cases, for example 1/4.")
       ->type_name("I/N");
   command->add_option("--cases", options->cases, "Run only these cases, for example 0-99,120.")
       ->type_name("LIST");
@@ -301,7 +303,9 @@ void add_sweep(CLI::App& app, Context& context) {
           "that could not be run.")
       ->check(number_within(0.01, 1e6).description(""))
       ->type_name("S");
-  command->add_option("--engine", options->engine, "What runs the cases: local or slurm.")
+  command
+      ->add_option("--engine", options->engine,
+                   "Where the cases run: local (this machine) or slurm (a cluster).")
       ->check(one_of({"local", "slurm"}).description(""))
       ->type_name("NAME")
       ->capture_default_str();
@@ -310,12 +314,16 @@ void add_sweep(CLI::App& app, Context& context) {
     slurm_options.push_back(option->type_name(type)->group("With --engine slurm"));
   };
   SlurmOptions& slurm = options->slurm;
-  for_slurm(command->add_option("--partition", slurm.partition, "Passed on to sbatch."), "NAME");
+  for_slurm(command->add_option("--partition", slurm.partition,
+                                "Partition of Slurm, passed on to sbatch."),
+            "NAME");
   for_slurm(command->add_option("--time", slurm.time,
                                 "Time limit of a task, passed on to sbatch. Tasks are planned to "
                                 "take at most half of this time."),
             "TIME");
-  for_slurm(command->add_option("--memory", slurm.memory, "Passed on to sbatch as --mem."), "SIZE");
+  for_slurm(command->add_option("--memory", slurm.memory,
+                                "Memory of a task, passed on to sbatch as --mem."),
+            "SIZE");
   for_slurm(command
                 ->add_option("--sbatch", slurm.further,
                              "One more option for sbatch, for example --sbatch=--account=lab; may "
@@ -324,12 +332,12 @@ void add_sweep(CLI::App& app, Context& context) {
             "OPTION");
   for_slurm(command
                 ->add_option("--chunk", slurm.chunk,
-                             "Number of cases in a task (default: as many as take "
-                             "--task-seconds, by the times of the pilot run).")
+                             "Number of cases in a task (default: so many that a task takes "
+                             "--task-seconds; the pilot run shows how long a case takes).")
                 ->check(whole_number_within(1, 1000000).description("")),
             "N");
   for_slurm(
-      command->add_option("--task-seconds", slurm.task_seconds, "How long a task should take.")
+      command->add_option("--task-seconds", slurm.task_seconds, "Wanted duration of a task [s].")
           ->check(number_within(0.1, 1e6).description(""))
           ->capture_default_str(),
       "S");
@@ -339,11 +347,12 @@ void add_sweep(CLI::App& app, Context& context) {
             "N");
   for_slurm(command
                 ->add_option("--attempts", slurm.attempts,
-                             "How many times in all a case is submitted if its tasks are lost.")
+                             "Largest number of times that a case is submitted. A case whose task "
+                             "is lost is submitted again.")
                 ->check(whole_number_within(1, 100).description(""))
                 ->capture_default_str(),
             "N");
-  command->add_flag("--retry", options->retry, "Run the cases again that could not be run before.");
+  command->add_flag("--retry", options->retry, "Run again the cases that could not be run before.");
   SweepOutputs& outputs = options->outputs;
   command
       ->add_option(
@@ -351,22 +360,25 @@ void add_sweep(CLI::App& app, Context& context) {
           "Condition that the results must meet, for example 'falls == 0'; may be repeated.")
       ->type_name("TEXT")
       ->allow_extra_args(false);
-  command->add_option("--csv", outputs.csv, "All cases as CSV.")->type_name("F");
-  command->add_option("--junit", outputs.junit, "The expectations as JUnit XML.")->type_name("F");
-  command->add_option("--page", outputs.page, "Page with rates, maps and replays, .html.")
+  command->add_option("--csv", outputs.csv, "Write all cases as CSV.")->type_name("F");
+  command->add_option("--junit", outputs.junit, "Write the expectations as JUnit XML.")
+      ->type_name("F");
+  command
+      ->add_option("--page", outputs.page,
+                   "Write a page with failure rates, maps and replays (.html).")
       ->type_name("F");
   command->add_option("--replays", outputs.replays, "Number of worst cases that the page replays.")
       ->check(whole_number_within(0, 20).description(""))
       ->type_name("N")
       ->capture_default_str();
 
-  CLI::App* merge = command->add_subcommand("merge", "put the results of shards together");
+  CLI::App* merge = command->add_subcommand("merge", "merge the results of shards into one file");
   auto merging = std::make_shared<MergeCommand>();
-  merge->add_option("FILES", merging->files, "Results of the same study.")->required();
+  merge->add_option("FILES", merging->files, "Results files of one study.")->required();
   merge
-      ->add_option(
-          "-o,--out", merging->out,
-          "New file for the merged results (default: the others are merged into the first file).")
+      ->add_option("-o,--out", merging->out,
+                   "New file for the merged results (default: the first file, which receives the "
+                   "results of the others).")
       ->type_name("F.db");
   merge->add_flag("--partial", merging->partial, "Merge even if cases are missing.");
   merge->callback([merging, &context] { merge_results(context, *merging); });
@@ -380,7 +392,9 @@ void add_sweep(CLI::App& app, Context& context) {
     if (!command->get_subcommands().empty()) return;
     for (const CLI::Option* option : slurm_options)
       if (option->count() > 0 && options->engine != "slurm")
-        fail(ErrorCode::usage, option->get_name() + " is for --engine slurm");
+        fail(ErrorCode::usage, option->get_name() +
+                                   " works only together with --engine slurm; add --engine slurm, "
+                                   "or leave this option out");
     run_sweep(context, *options);
   });
 }

@@ -92,10 +92,10 @@ void tune(Context& context, TuneCommand& options) {
     out += std::string(first ? " \"" : ", \"") + name + "\": " + text::brief(value);
     first = false;
   }
-  out +=
-      " }\n  " + text::counted(result.choices, "choice") + " of gains tried, " +
-      std::to_string(result.refused) +
-      " not tried because their loop is unstable; test the result with other pushes: ayumi push\n";
+  out += " }\n  " + text::counted(result.choices, "choice") + " of gains tried; " +
+         std::to_string(result.refused) +
+         " more were not tried, because their loop is unstable. Test the result with other pushes "
+         "(ayumi push)\n";
   if (!options.out.empty()) {
     write_file(options.out, text_with_gains(options, result));
     out += "  " + options.out + ": the pattern with these gains\n";
@@ -136,7 +136,7 @@ void add_tune(CLI::App& app, Context& context) {
   add_pattern_options(*command, options->input);
   command
       ->add_option("--gain", options->start,
-                   "Gain at the start of the search (default: the pattern's).")
+                   "Gain at the start of the search (default: the gain of the pattern).")
       ->type_name("GAIN=VALUE")
       ->allow_extra_args(false);
   command->add_option("--tune", t.gains, "Gains to change (default: ka,q,ks,kd,tau_z,ankle).")

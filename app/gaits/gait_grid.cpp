@@ -54,8 +54,8 @@ std::vector<double> axis_values(const std::string& words, const std::string& opt
       fail(ErrorCode::usage, option + ": the count must be a whole number from 1 to " +
                                  std::to_string(kMostValues) + ", but it is " + range[2]);
     if (count == 1 && from != to)
-      fail(ErrorCode::usage, option + ": one value cannot reach from " + range[0] + " to " +
-                                 range[1] + "; give a count of 2 or more");
+      fail(ErrorCode::usage, option + ": one value cannot span the range from " + range[0] +
+                                 " to " + range[1] + "; give a count of 2 or more");
     for (double i = 0; i < count; ++i) {
       const double value = count == 1 ? from : from + (to - from) * i / (count - 1);
       // As a person would write it: 0.1 in place of 0.1 + 1e-17.

@@ -45,16 +45,18 @@ std::vector<std::string> files_of_library(const fs::path& folder) {
     files.clear();
   }
   if (files.empty())
-    fail(ErrorCode::bad_file, index.string() +
-                                  ": this is not the index of a library of walks, so no library "
-                                  "replaces it; move it away or choose another folder");
+    fail(ErrorCode::bad_file,
+         index.string() +
+             ": this file is not the index of a library of walks, so ayumi gaits does not replace "
+             "it; move the file away or choose another folder");
   return files;
 }
 
 void require_target(const fs::path& folder, bool replace) {
   if (!is_there(folder)) return;
   if (!fs::is_directory(folder))
-    fail(ErrorCode::bad_file, folder.string() + ": this is not a folder; -o needs a folder");
+    fail(ErrorCode::bad_file,
+         folder.string() + ": this is a file, but -o needs a folder; choose another name");
   if (is_there(folder / kStaging / kDelivering)) return;
   if (is_there(folder / kIndex)) {
     files_of_library(folder);
@@ -64,8 +66,8 @@ void require_target(const fs::path& folder, bool replace) {
   for (const char* name : kTop)
     if (is_there(folder / name))
       fail(ErrorCode::bad_file, (folder / name).string() +
-                                    ": this already exists and is not a part of a library of "
-                                    "walks; move it away or choose another folder");
+                                    ": this file already exists and is not a part of a library of "
+                                    "walks; move the file away or choose another folder");
 }
 
 }  // namespace
@@ -77,10 +79,10 @@ LibraryFolder::LibraryFolder(const fs::path& folder, const Json& asked, bool rep
   std::error_code error;
   if (is_there(staging_ / kAsked) && !replace) {
     if (read_file(staging_ / kAsked) == text) return;
-    fail(ErrorCode::bad_file, target_.string() +
-                                  ": this folder holds an unfinished library of which other things "
-                                  "were asked; give the same options to go on, or --force to begin "
-                                  "anew, or choose another folder");
+    fail(ErrorCode::bad_file,
+         target_.string() +
+             ": this folder holds an unfinished library that was begun with other options; give "
+             "the same options to go on, or --force to begin again, or choose another folder");
   }
   // The same question goes on also with --force, unless it was finished and delivered before.
   if (is_there(staging_ / kAsked) && read_file(staging_ / kAsked) == text) return;
@@ -119,8 +121,8 @@ void LibraryFolder::deliver(const Json& index, const std::vector<std::string>& p
       if (is_there(target_ / path) &&
           std::find(previous.begin(), previous.end(), path) == previous.end())
         fail(ErrorCode::bad_file, (target_ / path).string() +
-                                      ": this already exists and is not a part of the library that "
-                                      "is replaced; move it away or choose another folder");
+                                      ": this file already exists and is not a part of the old "
+                                      "library; move the file away or choose another folder");
   write_file(staging_ / kIndex, index.dump(1) + "\n");
   write_file(staging_ / kDelivering, "true\n");
   try {

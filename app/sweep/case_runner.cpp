@@ -145,7 +145,7 @@ struct CaseRunner::Watch {
   }
   std::string reason() const {
     return exceeded + ": not finished within " + text::brief(limit) +
-           " s of processor time (--case-limit)";
+           " s of processor time; a larger --case-limit allows more";
   }
 };
 
@@ -344,7 +344,7 @@ std::shared_ptr<CaseRunner::Prepared> CaseRunner::prepared(const Settings& setti
       if (word.empty())
         fail(ErrorCode::bad_pattern, study_->file().string() +
                                          ": /sweep: this case has no setting 'pattern'; name a "
-                                         "pattern for it or in /sweep/settings");
+                                         "pattern in the case or in /sweep/settings");
       Pattern pattern =
           set.empty() ? patterns_.at(word) : read_given_pattern(pattern_file(word), set);
       const std::string robot = word_of(settings, "robot");
@@ -606,7 +606,7 @@ CaseRow CaseRunner::run(long number, const Progress& progress) const {
     if (watch.exceeded.empty()) throw;
     row.error = watch.reason();
   } catch (const std::bad_alloc&) {
-    row.error = "there was not enough memory";
+    row.error = "there was not enough memory; use fewer threads or a machine with more memory";
   }
   row.figures.resize(columns_.size());
   return row;

@@ -151,9 +151,9 @@ void ResultsDatabase::complain(const std::string& doing) const {
         "the disk is full or the file may not grow; what was written before is kept. Make room "
         "and run the same command again to go on";
   else if (code == SQLITE_NOTADB || code == SQLITE_CORRUPT)
-    why = "this is not a file of sweep results, or it is damaged";
+    why = "this is not a file of sweep results, or the file is damaged; choose another name";
   else if (code == SQLITE_BUSY)
-    why = "another program is writing to this file";
+    why = "another program is writing to this file; wait until that program has ended";
   fail(ErrorCode::bad_file, file_.string() + ": " + doing + ": " + why);
 }
 
@@ -286,7 +286,8 @@ void ResultsDatabase::read_head() {
   if (format != kFormat)
     fail(ErrorCode::bad_file, file_.string() + ": the results have version " +
                                   std::to_string(format) + " of the format, but this program has " +
-                                  std::to_string(kFormat) + "; use the program that wrote them");
+                                  std::to_string(kFormat) +
+                                  "; use the version of Ayumi that wrote the results");
   const auto rows = [&](const std::string& sql, const auto& take) {
     Statement statement(database_, sql);
     if (!statement.good()) complain("the file cannot be read");
@@ -317,9 +318,10 @@ void ResultsDatabase::read_head() {
 void ResultsDatabase::require_study(const SweepHead& asked) const {
   std::string differs;
   if (head_.version != asked.version)
-    differs = "version " + head_.version + " of Ayumi wrote them, and this is " + asked.version;
+    differs = "the results are from version " + head_.version + " of Ayumi, and this is version " +
+              asked.version;
   else if (head_.seed != asked.seed)
-    differs = "their --seed is " + head_.seed;
+    differs = "the results were made with --seed " + head_.seed;
   else
     for (const SweepInput& input : asked.inputs) {
       const bool same =
@@ -329,13 +331,14 @@ void ResultsDatabase::require_study(const SweepHead& asked) const {
           });
       if (!same && differs.empty())
         differs = "the " + input.kind + (input.kind == "study" ? "" : " '" + input.name + "'") +
-                  " was another one";
+                  " has changed since";
     }
   if (differs.empty() && head_.fingerprint() != asked.fingerprint())
-    differs = "their inputs are others";
+    differs = "the inputs have changed";
   if (!differs.empty())
     fail(ErrorCode::bad_file, file_.string() + ": this file holds the results of another study (" +
-                                  differs + "); choose another name");
+                                  differs +
+                                  "); choose another name, or give --force to begin again");
 }
 
 std::vector<std::string> ResultsDatabase::shards() const {

@@ -370,8 +370,8 @@ class Engine {
     } catch (const Interrupted&) {
       if (!out_.empty())
         context_.print("  " + text::counted(static_cast<long>(out_.size()), "task") +
-                       " of Slurm go on; run the same command again to collect their results, or "
-                       "end them with: scancel --name=" +
+                       " of Slurm still run; run the same command again to collect their results, "
+                       "or end these tasks with: scancel --name=" +
                        state_.name + "\n");
       throw;
     }
@@ -384,8 +384,8 @@ class Engine {
                " (the first is " + std::to_string(first - lost.begin()) + ") were lost " +
                text::counted(static_cast<long>(options_.attempts), "time") +
                (why_lost_.empty() ? "" : " (" + why_lost_ + ")") +
-               "; all others are kept. What the tasks said is in " + folder_.string() +
-               "; run the same command again to go on");
+               "; all other results are kept. The output of the tasks is in " + folder_.string() +
+               ". Run the same command again to go on");
     // Copies of tasks that counted as lost have nothing more to do.
     run_command({"scancel", "--name=" + state_.name});
     fs::remove_all(folder_);
@@ -463,7 +463,7 @@ class Engine {
       // answer.
       if (out_.empty() && (!submitted_ || seconds_since(*refused_since_) > kLongestSilence))
         fail(ErrorCode::bad_file, "--engine slurm: sbatch refused the job: " + why +
-                                      "; rows that are done are kept in " +
+                                      "; the rows that are done are kept in " +
                                       results_.file().string());
       return;
     }
@@ -600,8 +600,8 @@ class Engine {
         ++at;
         continue;
       }
-      why_lost_ = (known == queue.end() ? "a task is in the queue no more"
-                                        : "a task ended as " + known->second.state) +
+      why_lost_ = (known == queue.end() ? "a task has disappeared from the queue"
+                                        : "a task ended in the state " + known->second.state) +
                   words_of(at->first);
       at = give_back(at);
     }
@@ -647,9 +647,9 @@ class Engine {
         take_lost();
         submit();
       } else if (seconds_since(answered_) > kLongestSilence) {
-        fail(ErrorCode::bad_file, "--engine slurm: Slurm does not answer any more (" + trouble +
-                                      "); rows that arrived are kept. Run the same command again "
-                                      "to go on");
+        fail(ErrorCode::bad_file,
+             "--engine slurm: Slurm does not answer (" + trouble +
+                 "). The rows that arrived are kept. Run the same command again to go on");
       }
       if (out_.empty() && pending_.empty()) break;
       const std::vector<bool> missing = left();

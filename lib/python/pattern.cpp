@@ -43,8 +43,8 @@ void bind_generators(py::module_& m) {
       py::arg("cog_height") = py::none(), py::arg("turn") = py::none(),
       py::arg("side") = py::none(), py::arg("rise") = py::none(),
       "A walk from rest to rest. stride, lift, cog_height, side and rise (of a stair) in m, period "
-      "in s, double_support as a share of the period, turn in rad per step, left positive. What is "
-      "not given follows from the size of the robot.");
+      "in s, double_support as a share of the period, turn in rad per step, left positive. "
+      "Arguments that are not given follow from the size of the robot.");
   m.def(
       "stand_pattern",
       [](const RobotModel& robot, double duration) {
@@ -113,7 +113,8 @@ void bind_pattern(py::module_& m) {
       .def_readwrite("robot", &Pattern::robot, "Name or path of the robot.")
       .def_readwrite("profile", &Pattern::profile,
                      "Actuator profile; '' is the default of the robot.")
-      .def_readonly("file", &Pattern::file, "File that it was read from; '' for none.")
+      .def_readonly("file", &Pattern::file,
+                    "File from which the pattern was read; '' if there is none.")
       .def_readonly("parameters", &Pattern::parameters, "Declared parameters with their values.")
       .def_property_readonly("duration", &Pattern::duration, "End of the last phase or key [s].")
       .def_property_readonly(

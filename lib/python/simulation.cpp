@@ -167,7 +167,8 @@ void bind_step(py::module_& m) {
       .def_readonly("position", &SoleForce::position, "World [m], shape (3,).")
       .def_readonly("force", &SoleForce::force, "On the robot, world [N], shape (3,).")
       .def_readonly("gap", &SoleForce::gap, "Distance to the ground, negative inside [m].");
-  py::class_<StepReport>(m, "StepReport", "Forces of a step, means over its duration.")
+  py::class_<StepReport>(m, "StepReport",
+                         "Forces of a step, as means over the duration of the step.")
       .def(py::init([](const Eigen::VectorXd& torque, std::vector<SoleForce> left,
                        std::vector<SoleForce> right, bool body_contact) {
              StepReport report;
@@ -177,7 +178,7 @@ void bind_step(py::module_& m) {
              return report;
            }),
            py::arg("torque"), py::arg("left"), py::arg("right"), py::arg("body_contact") = false)
-      .def_readonly("torque", &StepReport::torque, "Of the servos [N m, N], shape (dof,).")
+      .def_readonly("torque", &StepReport::torque, "Torques of the servos [N m, N], shape (dof,).")
       .def_property_readonly(
           "left", [](const StepReport& r) { return r.soles[0]; }, "Forces on the left sole.")
       .def_property_readonly(
@@ -197,7 +198,8 @@ void bind_step(py::module_& m) {
            "Puts the robot in this state and forgets the contacts.")
       .def("step", &Plant::step, py::arg("targets"), py::arg("input"), py::arg("dt"),
            py::return_value_policy::copy,
-           "Advances by `dt` [s] with the servo targets [rad, m], shape (dof,), held.")
+           "Advances by `dt` [s]. The servo targets [rad, m], shape (dof,), are held during this "
+           "time.")
       .def("__deepcopy__", [](const py::object& self, const py::dict&) {
         // The robot of the original is kept alive by the original, which the copy keeps.
         py::object copy = py::cast(Plant(self.cast<const Plant&>()));
@@ -233,7 +235,7 @@ void bind_log(py::module_& m) {
   py::class_<SimulationEvent>(m, "Event", "Something that happened in a run.")
       .def_readonly("t", &SimulationEvent::t, "Time [s].")
       .def_readonly("kind", &SimulationEvent::kind, "'push', 'touchdown', 'fell', ...")
-      .def_readonly("text", &SimulationEvent::text, "In words.")
+      .def_readonly("text", &SimulationEvent::text, "Description in words.")
       .def("__repr__", [](const SimulationEvent& e) {
         return "<" + e.kind + " at " + std::to_string(e.t) + " s: " + e.text + ">";
       });
@@ -254,15 +256,17 @@ void bind_log(py::module_& m) {
       .def_property_readonly("max_tilt", result(&SimulationResult::max_tilt),
                              "Largest tilt of the trunk [rad].")
       .def_property_readonly("final_cog_error", result(&SimulationResult::final_cog_error),
-                             "Of the COG relative to the feet, horizontal [m].")
-      .def_property_readonly("zmp_tracking_rms", result(&SimulationResult::zmp_tracking_rms),
-                             "Measured ZMP against reference ZMP [m].")
+                             "Horizontal error of the COG relative to the feet at the end [m].")
+      .def_property_readonly(
+          "zmp_tracking_rms", result(&SimulationResult::zmp_tracking_rms),
+          "Root mean square of the distance from the measured ZMP to the reference ZMP [m].")
       .def_property_readonly("max_torque_ratio", result(&SimulationResult::max_torque_ratio),
                              "Largest torque as a share of its limit.")
       .def_property_readonly("max_speed_ratio", result(&SimulationResult::max_speed_ratio),
                              "Largest joint speed as a share of its limit.")
       .def_property_readonly(
-          "events", [](const Log& l) { return l.data().events; }, "What happened, by time.")
+          "events", [](const Log& l) { return l.data().events; },
+          "Events of the run, in the order of time.")
       .def_property_readonly(
           "controller",
           [](const Log& l) -> std::optional<std::string> {

@@ -50,7 +50,7 @@ void bind_push(py::module_& m) {
           "standing", [](const PushCase& c) { return c.phase.standing; },
           "Whether the robot stands in the first posture.")
       .def_readonly("direction", &PushCase::direction,
-                    "Of the push, from forward anticlockwise [rad].")
+                    "Direction of the push, counted anticlockwise from forward [rad].")
       .def_readonly("bound", &PushCase::bound,
                     "Capture bound: the largest push that a point mass could absorb [N s].")
       .def_property_readonly(
@@ -73,7 +73,9 @@ void bind_push(py::module_& m) {
           },
           "Whether the largest push that was tried is survived, by controller.");
   py::class_<PyPushStudy, std::shared_ptr<PyPushStudy>>(m, "PushStudy", "The result of push().")
-      .def_readonly("cases", &PyPushStudy::cases, "Phase by phase, in each direction by direction.")
+      .def_readonly(
+          "cases", &PyPushStudy::cases,
+          "Cases in the order of the phases, and in each phase in the order of the directions.")
       .def_property_readonly(
           "controllers",
           [](const PyPushStudy& s) {
@@ -153,7 +155,7 @@ void bind_push(py::module_& m) {
 
 void bind_gains(py::module_& m) {
   py::class_<GainStudy>(m, "GainStudy", "Gains of DTAD and what follows from them.")
-      .def_readonly("omega", &GainStudy::omega, "Of the pendulum [1/s].")
+      .def_readonly("omega", &GainStudy::omega, "Natural frequency of the pendulum [1/s].")
       .def_property_readonly(
           "gains",
           [](const GainStudy& s) {
@@ -169,7 +171,7 @@ void bind_gains(py::module_& m) {
           "Its poles [1/s], the slowest decay first.")
       .def_property_readonly(
           "decay", [](const GainStudy& s) { return s.weakest.analysis.decay; },
-          "Of the slowest mode [1/s]; negative when it grows.")
+          "Decay rate of the slowest mode [1/s]; negative when the mode grows.")
       .def_readonly("largest_ka", &GainStudy::largest_ka,
                     "Largest short-term gain with which the loop is stable.")
       .def_property_readonly(
@@ -200,8 +202,10 @@ void bind_gains(py::module_& m) {
 
   py::class_<TuneFigures>(m, "TuneFigures", "The objective of tune() and its parts.")
       .def_readonly("objective", &TuneFigures::objective, "Dimensionless, smaller is better.")
-      .def_readonly("recovery", &TuneFigures::recovery, "Part of the pushes that are survived.")
-      .def_readonly("unpushed", &TuneFigures::unpushed, "Part of the run without a push.")
+      .def_readonly("recovery", &TuneFigures::recovery,
+                    "Part of the objective from the pushes that the robot survives.")
+      .def_readonly("unpushed", &TuneFigures::unpushed,
+                    "Part of the objective from the run without a push.")
       .def_readonly("falls", &TuneFigures::falls, "Number of falls.")
       .def_readonly("pushes", &TuneFigures::pushes, "Number of pushes.");
   py::class_<TuneResult>(m, "Tuning", "The result of tune().")

@@ -75,7 +75,7 @@ void bind_table(py::module_& m) {
           "The disturbances of the run that the table is from; '' where there were none.");
 
   py::class_<PySafeTable>(m, "SafeTable", "A table with ramp and hold, judged for a robot.")
-      .def_readonly("table", &PySafeTable::table, "Ramp, motion and hold.")
+      .def_readonly("table", &PySafeTable::table, "The table with ramp, motion and hold.")
       .def_property_readonly(
           "safe", [](const PySafeTable& s) { return s.report.safe; },
           "Whether the robot may receive the table.")
@@ -86,7 +86,7 @@ void bind_table(py::module_& m) {
             for (const SafetyViolation& v : s.report.violations) texts.push_back(text_of(v));
             return texts;
           },
-          "Why it may not, in words.")
+          "Why the robot may not receive the table, in words.")
       .def(
           "to_dict", [](const PySafeTable& s) { return from_json(safety_json(s.report)); },
           "All figures of the judgement.");

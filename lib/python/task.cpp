@@ -39,7 +39,7 @@ void bind_check(py::module_& m) {
       .def_readonly("begin", &Finding::begin, "Begin of the window [s].")
       .def_readonly("end", &Finding::end, "End of the window [s].")
       .def_readonly("at", &Finding::at, "Time of the worst sample [s].")
-      .def_readonly("worst", &Finding::worst, "Value there, in `unit`.")
+      .def_readonly("worst", &Finding::worst, "Value at this time, in `unit`.")
       .def_readonly("limit", &Finding::limit, "The limit, in `unit`.")
       .def_readonly("unit", &Finding::unit, "Unit of both.")
       .def_readonly("where", &Finding::where, "Joint, foot, axis, support or bodies.")
@@ -125,7 +125,8 @@ void bind_repair(py::module_& m) {
       .def_property_readonly(
           "where", [](const PyRepair& r) { return r.result.where; }, "The joint that moved most.")
       .def_property_readonly(
-          "at", [](const PyRepair& r) { return r.result.at; }, "The time at which it did [s].")
+          "at", [](const PyRepair& r) { return r.result.at; },
+          "The time at which this joint moved most [s].")
       .def_property_readonly(
           "iterations", [](const PyRepair& r) { return r.result.iterations; },
           "Iterations of the solver.")
@@ -178,8 +179,8 @@ void bind_repair(py::module_& m) {
       py::arg("max_iterations") = py::none(), py::arg("progress") = py::none(),
       "The nearest consistent motion. Locked joints, feet ('left', 'right') and windows (begin, "
       "end) [s] do not move; `weights` are factors on the cost of a joint; `trust` is 'posture', "
-      "'cog' or 'zmp'; `zmp_margin` [m] is the wanted distance of the ZMP from the edge. What is "
-      "not given is the pattern's own preference.");
+      "'cog' or 'zmp'; `zmp_margin` [m] is the wanted distance of the ZMP from the edge. An "
+      "argument that is not given has the value in the pattern.");
 }
 
 }  // namespace

@@ -47,13 +47,16 @@ TEST(ReadFile, OpensRegularFilesOnlyAndNeverWaits) {
   };
   const fs::path pipe = folder.path() / "pipe";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  EXPECT_EQ(error(pipe), pipe.string() + ": is a device or a named pipe, a regular file is needed");
-  EXPECT_EQ(error("/dev/zero"), "/dev/zero: is a device or a named pipe, a regular file is needed");
+  EXPECT_EQ(error(pipe),
+            pipe.string() + ": is a device or a named pipe, but a regular file is needed");
+  EXPECT_EQ(error("/dev/zero"),
+            "/dev/zero: is a device or a named pipe, but a regular file is needed");
   EXPECT_EQ(error(folder.path()),
             folder.path().string() + ": this is a folder, but a file is needed");
   const fs::path file = folder.write("a.txt", "12345");
   EXPECT_EQ(read_file(file, 5), "12345");
-  EXPECT_EQ(error(file, 4), file.string() + ": 5 bytes, more than the 4 that are read");
+  EXPECT_EQ(error(file, 4),
+            file.string() + ": 5 bytes are too many; Ayumi reads at most 4 bytes of this file");
   EXPECT_EQ(read_file(folder.write("empty.txt", "")), "");
   EXPECT_FALSE(read_file("/proc/self/status").empty()) << "a file that states no size";
   EXPECT_EQ(error("/proc/self/maps", 64).find("/proc/self/maps: "), 0u);
@@ -63,10 +66,9 @@ TEST(FolderLock, IsHeldByOneAtATime) {
   const test::TemporaryFolder folder;
   {
     const FolderLock lock(folder.path());
-    EXPECT_EQ(
-        lock_error(folder.path()),
-        folder.path().string() +
-            ": another run is being written there; wait for its end or choose another folder");
+    EXPECT_EQ(lock_error(folder.path()), folder.path().string() +
+                                             ": another run is being written to this folder; wait "
+                                             "until it has ended, or choose another folder");
   }
   EXPECT_EQ(lock_error(folder.path()), "no error");
   EXPECT_EQ(file_count(folder.path()), 0u) << "the file of the lock goes with it";
@@ -121,7 +123,7 @@ TEST(FolderLock, HoldsBetweenProcessesAndEndsWithItsProcess) {
   const test::TemporaryFolder folder;
   Holder holder(folder.path());
   ASSERT_TRUE(holder.locked);
-  EXPECT_NE(lock_error(folder.path()).find("another run is being written there"),
+  EXPECT_NE(lock_error(folder.path()).find("another run is being written to this folder"),
             std::string::npos);
   EXPECT_TRUE(fs::exists(folder.path() / ".ayumi_lock")) << "a refused lock removes nothing";
   holder.kill();

@@ -83,7 +83,8 @@ TEST(ImpossibleValues, CogHeightInMillimetresAndFarTooHigh) {
                 "/defaults/cog_height: the COG height is 225 m", "225 mm are 0.225 m");
   const auto high =
       mistakes_after([](Pattern& pattern) { pattern.keyframes[0].cog_height = 2.05; });
-  expect_called(high, "/keyframes/0: the COG height is 2.05 m", "0.245 m above its soles at home");
+  expect_called(high, "/keyframes/0: the COG height is 2.05 m",
+                "0.245 m above the soles in the home posture");
   EXPECT_EQ(high.front().find("mm are"), std::string::npos) << high.front();
 }
 

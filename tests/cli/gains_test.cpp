@@ -60,7 +60,7 @@ TEST(GainsCommand, RefusesWithTheReason) {
   refused({"gains", "hoap1", "--gain", "k=2", "--gain", "d=0"}, "need K > 1 and D > 0");
   refused({"gains", "hoap1", "--absorb", "0.95"}, "the loop is unstable with");
   refused({"gains", "hoap1", "--latency", "0.05"}, "sensors and servos that are 50 ms late");
-  refused({"gains", "hoap1", "--absorb", "1"}, "an absorbed share of 1 is not possible");
+  refused({"gains", "hoap1", "--absorb", "1"}, "an absorbed share (--absorb) of 1 is not possible");
   refused({"gains", "hoap1", "--poles", "-1,-2", "--time-constants", "1,2"},
           "the poles are given more than once");
 }
@@ -245,9 +245,9 @@ TEST(ExplainCommand, NamesTheBaselineThatChoseTheZmp) {
                   .exit_code,
               0);
     const std::string said = run_program({"explain", "18", "run@0.2"}, folder.path()).out;
-    EXPECT_NE(said.find("the controller " + std::string(name) +
-                        " chooses the ZMP in the place of (18)(19)"),
-              std::string::npos)
+    EXPECT_NE(
+        said.find("the controller " + std::string(name) + " chooses the ZMP in place of (18)(19)"),
+        std::string::npos)
         << said;
     EXPECT_NE(said.find(words), std::string::npos) << said;
     EXPECT_EQ(said.find("K = "), std::string::npos) << said;

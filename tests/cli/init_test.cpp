@@ -79,9 +79,9 @@ TEST(Init, ValuesThatPassAreFound) {
   write(folder / "robot.urdf", kind.text());
   const Output made = ayumi(folder, {"new", "walk", "--robot", "robot.urdf", "-o", "w.json"});
   ASSERT_EQ(made.exit_code, 0) << made.err;
-  EXPECT_NE(made.out.find("the default values are too much for robot: "), std::string::npos)
+  EXPECT_NE(made.out.find("the default values ask too much of robot: "), std::string::npos)
       << made.out;
-  EXPECT_NE(made.out.find("found instead, after "), std::string::npos);
+  EXPECT_NE(made.out.find("trials, these values were found: "), std::string::npos);
   EXPECT_EQ(ayumi(folder, {"check", "w.json"}).exit_code, 0);
   // What is asked for stays.
   const Output asked = ayumi(

@@ -179,7 +179,7 @@ TEST_F(LogExport, BadInputGetsOneLine) {
   expect_refused({"p.json", "--format", "npz", "-o", "x.npz"}, 3, "needs a RUN");
   expect_refused({"nowhere", "--format", "npz", "-o", "x.npz"}, 3, "no such folder");
   expect_refused({"run", "--format", "npz", "--log", "open", "-o", "x.npz"}, 3,
-                 "no log 'open' in this run");
+                 "the run has no log 'open'");
   expect_refused({"run", "--format", "npz", "--robot", "humanoid30", "-o", "x.npz"}, 3,
                  "are not those of the robot 'humanoid30'");
   expect_refused({"run/log_open_loop.bin", "--format", "hoap", "-o", "x.csv"}, 3,

@@ -307,7 +307,7 @@ TEST_F(Run, OneFolderIsWrittenByOneRunAtATime) {
   ASSERT_EQ(::flock(held, LOCK_EX), 0);
   const Output refused = run("calm.json");
   EXPECT_EQ(refused.exit_code, 3);
-  EXPECT_NE(refused.err.find("out: another run is being written there"), std::string::npos)
+  EXPECT_NE(refused.err.find("out: another run is being written to this folder"), std::string::npos)
       << refused.err;
   ::close(held);  // as when that process ends, however it ends: the file alone locks nothing
   ASSERT_TRUE(fs::exists(lock));

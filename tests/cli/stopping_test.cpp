@@ -74,8 +74,8 @@ TEST(Stopping, AMissingFfmpegIsFoundBeforeTheWork) {
   const Output run = run_program({"run", kWalk, "-o", "out"}, folder.path());
   EXPECT_EQ(run.exit_code, 3);
   EXPECT_EQ(run.err,
-            "ayumi: the program 'ffmpeg', which makes the clip, is in no folder of PATH; install "
-            "ffmpeg, or leave the pictures out\n");
+            "ayumi: the program 'ffmpeg', which makes the clip, is not in any folder of PATH; "
+            "install ffmpeg, or do not ask for pictures\n");
   EXPECT_EQ(run.out, "");
   EXPECT_FALSE(fs::exists(folder / "out"));
 }
@@ -105,7 +105,7 @@ TEST(Stopping, ALogIsDrawnOnlyWithItsOwnRobot) {
   for (const std::vector<std::string>& command : commands) {
     const Output changed = run_program(command, folder.path());
     EXPECT_EQ(changed.exit_code, 3) << command[0];
-    EXPECT_NE(changed.err.find("is not as it was when the run was made"), std::string::npos)
+    EXPECT_NE(changed.err.find("has changed since the run was made"), std::string::npos)
         << command[0] << changed.err;
   }
   for (const std::string& file : folder.files()) EXPECT_FALSE(file.starts_with("a.")) << file;

@@ -216,7 +216,8 @@ TEST(SweepCommand, OneClearLineForBadInput) {
     EXPECT_NE(out.err.find(part), std::string::npos) << out.err;
     EXPECT_EQ(out.err.find("ayumi: "), 0u) << out.err;
   };
-  expect(s.sweep({"-o", "good.db", "--seed", "9"}), 3, "another study (their --seed is 1)");
+  expect(s.sweep({"-o", "good.db", "--seed", "9"}), 3,
+         "another study (the results were made with --seed 1)");
   expect(s.run({"sweep", "study.json"}), 2, "the option --out is missing");
   expect(s.run({"sweep", "nothing.json", "-o", "x.db"}), 3, "nothing.json");
   write(s.folder / "text.db", "no database");
@@ -242,7 +243,7 @@ TEST(SweepCommand, OneClearLineForBadInput) {
   expect(s.sweep({"-o", "x.db"}), 3, "the distribution has no source of its numbers");
   with_uncertainty(R"({"quantities": [{"what": "mass", "on": "tail", "uniform": [0.9, 1.1],
                        "source": "assumed: a test"}]})");
-  expect(s.sweep({"-o", "x.db"}), 3, "nothing uses this quantity");
+  expect(s.sweep({"-o", "x.db"}), 3, "this quantity has no effect");
   with_uncertainty(R"({"factors": [{"name": "battery", "source": "assumed: a test"}],
     "quantities": [{"what": "mass", "uniform": [0.9, 1.1], "source": "assumed: a test"}]})");
   expect(s.sweep({"-o", "x.db"}), 3, "no quantity uses the factor 'battery'");
@@ -250,7 +251,7 @@ TEST(SweepCommand, OneClearLineForBadInput) {
   expect(s.sweep({"-o", "x.db"}), 3, "no robot of the study has the profile 'hoap9'");
   EXPECT_FALSE(fs::exists(s.folder / "x.db"));
   s.write_study(R"({"value.impulse": 0.1})");
-  expect(s.sweep({"-o", "good.db"}), 3, "another study (the study was another one)");
+  expect(s.sweep({"-o", "good.db"}), 3, "another study (the study has changed since)");
   ASSERT_EQ(s.sweep({"-o", "other.db"}).exit_code, 0);
   expect(s.run({"sweep", "merge", "good.db", "other.db"}), 3, "other.db: this file holds");
   // A wrong expectation makes no file and takes the place of none, and readers leave none.
@@ -350,7 +351,7 @@ TEST(SweepCommand, ALimitOfTimeOfOneCase) {
   EXPECT_EQ(limited.exit_code, 1) << limited.err;
   EXPECT_NE(limited.out.find("1 stand"), std::string::npos) << limited.out;
   EXPECT_NE(limited.out.find("case 1 could not be run: simulate: not finished within 0.4 s of "
-                             "processor time (--case-limit)"),
+                             "processor time; a larger --case-limit allows more"),
             std::string::npos)
       << limited.out;
 }
@@ -431,11 +432,12 @@ TEST(SweepOnSlurm, AbsentOrRefusing) {
   EXPECT_FALSE(fs::exists(slurm.s.folder / "n.db"));
   write(slurm.s.folder / "refuse", "");
   expect(slurm.slurm("-o r.db --pilot 3"), 3,
-         "sbatch refused the job: sbatch: error: invalid partition specified: nowhere; rows that "
-         "are done are kept in r.db");
+         "sbatch refused the job: sbatch: error: invalid partition specified: nowhere; the rows "
+         "that are done are kept in r.db");
   const Output status = slurm.s.run({"sweep", "status", "r.db", "--json"});
   EXPECT_EQ(Json::parse(status.out).at("done"), 3);
-  expect(slurm.s.sweep({"-o", "r.db", "--partition", "p"}), 2, "--partition is for --engine slurm");
+  expect(slurm.s.sweep({"-o", "r.db", "--partition", "p"}), 2,
+         "--partition works only together with --engine slurm");
   expect(slurm.s.sweep({"-o", "r.db", "--engine", "pbs"}), 2, "pbs");
   expect(slurm.s.sweep({"-o", "r.db", "--cases", "5-2"}), 2, "'5-2' is no list of cases");
   expect(slurm.s.sweep({"-o", "r.db", "--cases", "24"}), 2, "numbers from 0 to 23");

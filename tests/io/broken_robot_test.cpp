@@ -81,24 +81,25 @@ TEST(BrokenRobot, WhatIsNoFile) {
   EXPECT_EQ(message_of(folder, "missing.urdf"), "missing.urdf: no such file");
   std::filesystem::create_directory(folder.path() / "folder.urdf");
   EXPECT_EQ(message_of(folder, "folder.urdf"),
-            "folder.urdf: this is a folder, but a file is needed");
+            "folder.urdf: this folder holds neither a robot.json nor exactly one robot in another "
+            "format; name the file of the robot");
   EXPECT_EQ(message_of(folder, "empty_folder"),
             "robot 'empty_folder': no such file, folder or bundled robot");
   std::filesystem::create_directory(folder.path() / "bare");
   EXPECT_EQ(message_of(folder, "bare"),
-            "bare: holds neither a robot.json nor exactly one robot in another format; name the "
-            "robot's file");
+            "bare: this folder holds neither a robot.json nor exactly one robot in another format; "
+            "name the file of the robot");
   std::filesystem::create_symlink("loop.urdf", folder.path() / "loop.urdf");
   EXPECT_EQ(message_of(folder, "loop.urdf"),
             "loop.urdf: cannot be read (Too many levels of symbolic links)");
 }
 
 TEST(BrokenRobot, WhatIsNoUrdf) {
-  EXPECT_EQ(urdf_error(" \n"), "r.urdf: the file is empty, a URDF is needed");
+  EXPECT_EQ(urdf_error(" \n"), "r.urdf: the file is empty, but a URDF is needed");
   EXPECT_TRUE(urdf_error("hello").starts_with("r.urdf: not XML"));
   EXPECT_TRUE(urdf_error("<robot name=\"r\">\n<link name=\"a\">\n</robot>").starts_with("r.urdf"));
   EXPECT_EQ(urdf_error("<sdf/>"),
-            "r.urdf:1: the outermost element is <sdf>, a URDF starts with <robot name=\"...\">");
+            "r.urdf:1: the outermost element is <sdf>, but a URDF starts with <robot name=\"...\">");
   EXPECT_EQ(
       urdf_error(urdf("  <xacro:macro/>\n")),
       "r.urdf:3: this is a xacro file; expand it with `xacro FILE > robot.urdf` of ROS, and use "
@@ -247,8 +248,8 @@ TEST(BrokenRobot, WrongSidecars) {
   const TemporaryFolder folder;
   folder.write("robot.json", sidecar(""));
   EXPECT_EQ(message_of(folder, "robot.json"),
-            "robot.json: /urdf: there is no file robot.urdf, and the folders of --robot-path "
-            "have robot.urdf neither directly nor in urdf/");
+            "robot.json: /urdf: there is no file robot.urdf, and robot.urdf is neither in a folder "
+            "of --robot-path nor in its subfolder urdf/");
   folder.write("robot.json", "");
   EXPECT_EQ(message_of(folder, "robot.json"), "robot.json: the file is empty; it must hold JSON");
   folder.write("robot.json", "{ \"format\": \"ayumi.pattern/1\" }");

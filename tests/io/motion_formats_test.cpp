@@ -129,7 +129,7 @@ TEST(MotionFormats, MistakesNameFileLineAndFormat) {
   EXPECT_EQ(told(refusal_of(head + "00:00:000,a,0,nan\n")),
             "m.dat:2: column r_knee: 'nan' is not a finite number" + webots);
   EXPECT_EQ(told(refusal_of("#WEBOTS_MOTION,V3.0,l_knee\n")),
-            "m.dat:1: version 'V3.0'; V1.0 and V1.1 are read" + webots);
+            "m.dat:1: version 'V3.0' is unknown; Ayumi reads V1.0 and V1.1" + webots);
   EXPECT_EQ(told(refusal_of("time,0,1\nl_knee,0,1\nr_knee,0\n")),
             "m.dat:3: 1 value of 'r_knee', but the first row has 2 times (read as CSV with a row "
             "for each joint, because its first row is times, so each further row is a joint");
@@ -137,8 +137,9 @@ TEST(MotionFormats, MistakesNameFileLineAndFormat) {
             "m.dat:1: 2 values in the brackets, but n is 3 (read as mi-lib .zvs, because its rows "
             "have the form `dt n ( values )`");
   const ImportOptions stated{.format = "webots"};
-  EXPECT_EQ(refusal_of("#WEBOTS_MOTION,V3.0,l_knee\n", "m.dat", stated),
-            "m.dat:1: version 'V3.0'; V1.0 and V1.1 are read (read as Webots .motion)");
+  EXPECT_EQ(
+      refusal_of("#WEBOTS_MOTION,V3.0,l_knee\n", "m.dat", stated),
+      "m.dat:1: version 'V3.0' is unknown; Ayumi reads V1.0 and V1.1 (read as Webots .motion)");
   EXPECT_NE(refusal_of("0 0.1 0,2\n0.1 0.1 0.2\n0.2 0 0\n", "m.pos").find("not "),
             std::string::npos);
   EXPECT_NE(refusal_of("type: CompositeSeq\ncontent: BodyMotion\ncomponents:\n  - [ 1, 2\n")
@@ -149,7 +150,7 @@ TEST(MotionFormats, MistakesNameFileLineAndFormat) {
             std::string::npos);
   EXPECT_NE(
       refusal_of("type: CompositeSeq\ncontent: BodyMotion\nformat_version: 7\ncomponents: []\n")
-          .find("versions 1 to 4 are read"),
+          .find("Ayumi reads versions 1 to 4"),
       std::string::npos);
 }
 

@@ -87,7 +87,7 @@ TEST(PatternInFewWords, DurationsAddUp) {
                 .find("/phases/0: \"until\" and \"duration\" are both missing"),
             std::string::npos);
   EXPECT_NE(said(R"("phases": [{"until": 1, "duration": 1, "support": "both"}])")
-                .find("\"until\" and \"duration\" are both there; keep one"),
+                .find("\"until\" and \"duration\" are both given; keep one of them"),
             std::string::npos);
   EXPECT_NE(said(R"("phases": [{"duration": 0, "support": "both"}])")
                 .find("/phases/0/duration: this phase begins at 0 s and ends at 0 s"),
@@ -184,9 +184,10 @@ TEST(PatternInFewWords, StepsAreSeenFromTheOtherFoot) {
   EXPECT_NEAR(matrix_to_rpy(plan.pose(Side::left, 2.1).linear()).z(), turn, 1e-12);
   const Vector3d last = plan.pose(Side::right, 2.5).translation();
   EXPECT_NEAR((last - right - Vector3d(0, 0, 0.01)).norm(), 0, 1e-12);
-  EXPECT_NE(said(R"("phases": [{"until": 1, "support": "left", "swing": {"foot": "right"}}])")
-                .find("\"to\" is missing, the foothold, or \"step\""),
-            std::string::npos);
+  EXPECT_NE(
+      said(R"("phases": [{"until": 1, "support": "left", "swing": {"foot": "right"}}])")
+          .find("give the foothold as \"to\", or a step relative to the other foot as \"step\""),
+      std::string::npos);
   EXPECT_NE(said(R"("phases": [{"until": 1, "support": "left", "swing": {"foot": "right",
                     "to": [0, 0], "step": {}}}])")
                 .find("both say where the foot lands"),

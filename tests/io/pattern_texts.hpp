@@ -137,7 +137,7 @@ inline const std::vector<Broken>& mistakes() {
        "/phases/1/until: this phase begins at 2 s and ends at 1 s; give a later time"},
       {"keyframes", R"([{"t": 2, "zmp": "center"}, {"t": 2300, "zmp": "center"},
                         {"t": 2.6, "zmp": "center"}])",
-       "where /keyframes/1 is meant at 2.3 s in place of 2300 s, correct it there"},
+       "if /keyframes/1 should be at 2.3 s and not at 2300 s, correct that time"},
       {"phases", R"([{"until": 1, "support": "left",
                       "swing": {"foot": "right", "to": [0, 0], "lift": 15}}])",
        "/phases/0/swing/lift: 15 is too large; the largest allowed value is 10 m. Lengths are in "

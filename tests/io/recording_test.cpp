@@ -52,15 +52,16 @@ TEST(Recording, WhatIsNoRecordingGetsOneLine) {
   const std::string a = counts_row(2090), b = counts_row(2091);
   EXPECT_EQ(recording_error(""), "m.csv: the file is empty");
   EXPECT_EQ(recording_error(a + "\n" + b + "\r\n" + a + "\n"),
-            "m.csv:2: this line ends with CR LF, those before with LF; the file may "
-            "consist of two parts from different files: use one kind of line end");
+            "m.csv:2: this line ends with CR LF, but the lines before it end with LF; the file may "
+            "consist of parts of two files. Use one kind of line end");
   EXPECT_EQ(recording_error(a + "\n" + b.substr(0, 20) + "\n"),
             "m.csv:2: 9 columns, but the rows before have 22");
   EXPECT_EQ(recording_error(a + "\nnan" + b.substr(1) + "\n"),
             "m.csv:2: column 1: 'nan' is not a finite number");
   EXPECT_EQ(recording_error(a + "\n" + counts_row(2090 - 65536) + "\n"),
-            "m.csv:2: r_knee jumps by 314 deg from the row before, which no motor does (limit "
-            "1.36 deg): samples are missing, or the counter wrapped");
+            "m.csv:2: r_knee jumps by 314 deg from the row before, but a motor moves at most 1.36 "
+            "deg in this time. Samples are missing, or the 16-bit counter has overflowed: record "
+            "again, or add or subtract 65536 counts from this row on");
   EXPECT_EQ(recording_error("0,0,0,0,0,0\n0,0,0,0,0,0\n"),
             "m.csv:1: 6 columns, but the robot 'hoap1' needs 20; is this a recording of another "
             "robot?");
@@ -70,17 +71,18 @@ TEST(Recording, WhatIsNoRecordingGetsOneLine) {
   std::string zeros;
   for (int c = 0; c < 23; ++c) zeros += c ? ",0" : "0";
   EXPECT_EQ(recording_error(zeros + "\n" + zeros + "\n"),
-            "m.csv: every angle is 0; the robot or its recorder was not running");
+            "m.csv: every angle is 0, so the robot or its recorder was not running; record again");
 }
 
 TEST(Recording, ATableWithGapsOrOtherUnitsGetsOneLine) {
   EXPECT_EQ(recording_error("t,r_knee\n0,0.1\n0.001,0.1\n0.002,0.1\n0.010,0.1\n0.011,0.1\n"),
-            "m.csv: after t = 0.002 s (data row 3) 7 samples are missing: 8 ms to the next row, "
-            "usually 1 ms");
+            "m.csv: after t = 0.002 s (data row 3) 7 samples are missing: 8 ms pass before the "
+            "next row, but usually 1 ms");
   EXPECT_EQ(recording_error("t,r_knee\n0,0.1\n0,0.2\n0.002,0.1\n0.003,0.1\n0.004,0.1\n"),
             "m.csv: after t = 0 s (data row 1) time does not increase");
   EXPECT_EQ(recording_error("t,r_knee\n0,45\n0.001,45\n0.002,45\n"),
-            "m.csv: r_knee reaches 45 rad, more than a turn: is the unit degrees? (--unit deg)");
+            "m.csv: r_knee reaches 45 rad, which is more than a turn; if the angles are in "
+            "degrees, give --unit deg");
   EXPECT_EQ(recording_error("t,r_knee[mm]\n0,45\n0.001,45\n"),
             "m.csv: column 'r_knee[mm]': the unit 'mm' is not rad, deg or counts");
   EXPECT_TRUE(recording_error("t,knee\n0,0.1\n0.001,0.1\n")
@@ -104,7 +106,7 @@ TEST(Recording, LoadCellsNeedACalibrationOrNames) {
   EXPECT_EQ(table.foot_load(1, 0), 31);
   EXPECT_EQ(table.foot_load(1, 1), 33);
   EXPECT_EQ(message("t,left,right\n0,0,0\n0.001,0,0\n"),
-            "s.csv: every load of the feet is 0; the sensors were not running");
+            "s.csv: every load of the feet is 0, so the sensors were not running; record again");
 }
 
 }  // namespace

@@ -73,6 +73,31 @@ TEST(Hoap1, IsTheSameByNameFolderAndFile) {
                                  read_file(kRobots + "/hoap1/robot.json")));
 }
 
+// A folder is a folder, whatever its name ends with, and also without the slash behind it.
+TEST(RobotFile, TheNameOfAFolderMayEndLikeThatOfAFile) {
+  const std::string sha256 = load_robot_description("hoap1", {{kRobots}}).sha256;
+  const TemporaryFolder folder;
+  for (const std::string name : {"my.urdf", "robot.json", "my.mjcf", "my.xml"}) {
+    for (const std::string file : {"/robot.urdf", "/robot.json"})
+      folder.write(name + file, read_file(kRobots + "/hoap1" + file));
+    const std::string path = (folder.path() / name).string();
+    EXPECT_EQ(load_robot_description(path).sha256, sha256) << name;
+    EXPECT_EQ(load_robot_description(path + "/").sha256, sha256) << name;
+  }
+  // Such a folder is no robot file of the folder that holds it.
+  folder.write("nested/robot.urdf", read_file(kRobots + "/hoap1/robot.urdf"));
+  folder.write("nested/meshes.xml/notes.txt", "no robot here");
+  EXPECT_EQ(load_robot_description((folder.path() / "nested").string()).sha256,
+            load_robot_description(kRobots + "/hoap1/robot.urdf").sha256);
+  folder.write("empty.urdf/notes.txt", "no robot here");
+  try {
+    load_robot_description((folder.path() / "empty.urdf").string());
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("holds neither"), std::string::npos) << error.what();
+  }
+}
+
 // The bare URDF: what is inferred is close to what the sidecar says, and said.
 TEST(Hoap1, BareUrdfIsInferred) {
   const RobotModel model = load_robot(kRobots + "/hoap1/robot.urdf");

@@ -234,7 +234,7 @@ TEST(SimulationLogFile, HashIsOfTheMotionNotOfTheCommandLine) {
 TEST(SimulationLogFile, BrokenFilesGetOneClearMessage) {
   const std::string good = log_bytes(random_log(5));
   EXPECT_EQ(parse_message(good), "no error");
-  EXPECT_EQ(parse_message(""), "x.bin: the file is empty, a simulation log is needed");
+  EXPECT_EQ(parse_message(""), "x.bin: the file is empty, but a simulation log is needed");
   EXPECT_NE(parse_message("{}").find("is not a simulation log"), std::string::npos);
   EXPECT_NE(parse_message(std::string(100, '\xff')).find("is not a simulation log"),
             std::string::npos);
@@ -333,7 +333,7 @@ TEST(RunFolderFile, SaysWhatIsWrong) {
   write_run(folder, example());
   EXPECT_NE(file_error([&] {
               read_run_log(folder, "closedloop");
-            }).find("no log 'closedloop' in this run; did you mean 'closed_loop'?"),
+            }).find("the run has no log 'closedloop'; did you mean 'closed_loop'?"),
             std::string::npos);
   std::ofstream(folder / "log_open_loop.bin", std::ios::app) << "x";
   EXPECT_NE(
@@ -354,7 +354,9 @@ TEST(RunFolderFile, SaysWhatIsWrong) {
   run.files = {"absent.svg"};
   EXPECT_NE(file_error([&] { write_run(folder, run); }).find("absent.svg: no such file"),
             std::string::npos);
-  EXPECT_NE(file_error([&] { write_run(folder / "reference.csv", run); }).find("is not a folder"),
+  EXPECT_NE(file_error([&] {
+              write_run(folder / "reference.csv", run);
+            }).find("this is a file, but a folder is needed"),
             std::string::npos);
 }
 

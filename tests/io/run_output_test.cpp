@@ -78,7 +78,8 @@ TEST_F(RunOutputTest, ShowsNothingBeforeItDelivers) {
 
 TEST_F(RunOutputTest, IsRefusedWhileAnotherRunIsWrittenThere) {
   const RunOutput first(target, false);
-  EXPECT_NE(refusal({}).find("out: another run is being written there"), std::string::npos);
+  EXPECT_NE(refusal({}).find("out: another run is being written to this folder"),
+            std::string::npos);
   EXPECT_TRUE(fs::is_directory(first.folder())) << "the refused one removes nothing";
 }
 
@@ -125,8 +126,9 @@ TEST_F(RunOutputTest, LeavesAFileOfTheUserAndTheRunBefore) {
   deliver({"a.csv"});
   const std::string before = read_file(target / "run.json");
   folder.write("out/b.csv", "mine");
-  EXPECT_NE(refusal({"b.csv"}, true).find("b.csv: this already exists and is not a file of a run"),
-            std::string::npos);
+  EXPECT_NE(
+      refusal({"b.csv"}, true).find("b.csv: this file already exists and was not written by a run"),
+      std::string::npos);
   EXPECT_EQ(read_file(target / "b.csv"), "mine");
   EXPECT_EQ(read_file(target / "run.json"), before);
   EXPECT_EQ(names(), (Names{"a.csv", "b.csv", "run.json"}));

@@ -108,7 +108,7 @@ TEST(SweepFile, SaysWhatIsWrongAndWhere) {
   expect(pattern + R"("cases": {"seed": 1}, "cses": 1)", "did you mean 'cases'?");
   expect(pattern + R"("cases": {"seed": {"from": 0, "to": 99999, "count": 100000},
                                  "draw": {"from": 0, "to": 99999, "count": 100000}})",
-         "the most are 100000000");
+         "the largest number allowed is 100000000");
   expect(pattern + R"("cases": {"latin_hypercube": {"samples": 3, "ranges": {"set.a": [1, 1]}}})",
          "low below high");
   EXPECT_NE(error_message([] { SweepStudy(R"({"format": "ayumi.study/1"})", "s.json"); },

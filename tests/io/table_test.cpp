@@ -155,9 +155,9 @@ TEST(Table, BrokenTablesGetOneClearMessage) {
   const std::string head = "t[s],theta.a[rad]\n";
   for (const Case& each : std::vector<Case>{
            {"", "the file is empty"},
-           {"# only a comment\n", "no head row"},
+           {"# only a comment\n", "the head row is missing"},
            {head, "no data row below the head row"},
-           {"0,1\n1,2\n", ":1: the head row is missing: found the number '0'"},
+           {"0,1\n1,2\n", ":1: the head row is missing: the first line has the number '0'"},
            {"t[s],theta.a[rad],\n0,1,2\n", ":1: column 3 has no name"},
            {"t[s],theta.a[rad],t[s]\n0,1,2\n", ":1: the column 't[s]' appears twice"},
            {head + "0,1\n0.001\n", ":3: 1 value in the row, but the head row names 2 columns"},
@@ -178,7 +178,7 @@ TEST(Table, BrokenTablesGetOneClearMessage) {
            {"t[s],base.x[m],base.y[m],base.z[m],base.qw,base.qx,base.qy,base.qz\n0,0,0,0,1,1,0,0\n",
             "row 1: base.qw...qz has length 1.414"},
            {std::string("\x89PNG\r\n\x1a\n\0\0\0", 11), "is a binary file"},
-           {head + "0,1\n1e9,1\n", "more than the 3600 s that are read"},
+           {head + "0,1\n1e9,1\n", "but Ayumi reads at most 3600 s"},
            {"{\"columns\": [\"t[s]\"]}", "the key 'data' is missing"},
            {"{\"columns\": [\"t[s]\"], \"data\": []}", "/data: no data row"},
            {"{\"columns\": [\"t[s]\"], \"data\": [[0], [1, 2]]}", "/data/1: 2 values in the row"},
@@ -191,7 +191,7 @@ TEST(Table, BrokenTablesGetOneClearMessage) {
 
 TEST(Table, ReferencesNeedTheirFormatAndAllColumns) {
   std::string text = reference_csv(random_reference());
-  EXPECT_NE(reference_message("t[s],theta.a[rad]\n0,1\n").find("no format line"),
+  EXPECT_NE(reference_message("t[s],theta.a[rad]\n0,1\n").find("the format line is missing"),
             std::string::npos);
   EXPECT_NE(reference_message("# format: ayumi.reference/1\nt[s],theta.a[rad]\n0,1\n")
                 .find("some are missing"),

@@ -233,10 +233,10 @@ TEST(UnreadableMotion, OtherVersionsAreRefused) {
             std::string::npos);
   EXPECT_NE(refused("json", "ayumi.reference/1", "ayumi.reference/9").find("ayumi.reference/9"),
             std::string::npos);
-  EXPECT_NE(refused("webots", ",V1.0,", ",V2.0,").find("V1.0 and V1.1 are read"),
+  EXPECT_NE(refused("webots", ",V1.0,", ",V2.0,").find("Ayumi reads V1.0 and V1.1"),
             std::string::npos);
   EXPECT_NE(refused("choreonoid", "format_version: 4", "format_version: 9")
-                .find("versions 1 to 4 are read"),
+                .find("Ayumi reads versions 1 to 4"),
             std::string::npos);
 }
 

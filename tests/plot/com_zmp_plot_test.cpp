@@ -93,20 +93,20 @@ TEST(Loci, OnlyWhatDiffersIsDrawnWithJointsAndLimits) {
   EXPECT_TRUE(has(drawing, "COG x [mm]"));
   EXPECT_FALSE(has(drawing, "COG y [mm]"));
   EXPECT_FALSE(has(drawing, "command"));
-  EXPECT_TRUE(has(drawing, "The same in all: COG y, COG z, ZMP x, ZMP y, f_z.")) << [&] {
-    std::string all;
-    for (const std::string& t : texts(drawing)) all += t + " | ";
-    return all;
-  }();
+  EXPECT_TRUE(has(drawing, "These values are equal in all runs: COG y, COG z, ZMP x, ZMP y, f_z."))
+      << [&] {
+           std::string all;
+           for (const std::string& t : texts(drawing)) all += t + " | ";
+           return all;
+         }();
 }
 
 TEST(Loci, AFallenRunIsCutOffAndItIsSaid) {
   const TwoRuns runs;
   const Drawing drawing = draw_loci(runs.both(), {});
-  EXPECT_TRUE(has(
-      drawing,
-      "The axes fit the command and the runs that stand; the curves of a fall end at the edge of "
-      "the axes. A cross marks the fall."));
+  EXPECT_TRUE(has(drawing,
+                  "The axes fit the command and the runs that stand. The curves of a run that "
+                  "falls end at the edge of the axes. A cross marks the fall."));
   for (const auto& item : drawing.items)
     if (const auto* path = std::get_if<DrawnPath>(&item)) {
       for (const Eigen::Vector2d& p : path->points)
@@ -139,10 +139,9 @@ TEST(Loci, TheMarginOfAFallenRunIsThatBeforeItsFall) {
   }
   EXPECT_GE(numbers, 2) << *(margin - 1);
   EXPECT_LT(most, 200);
-  EXPECT_TRUE(
-      has(drawing,
-          "The axes fit the command and the time before the fall; the curves of a fall end at the "
-          "edge of the axes. A cross marks the fall."));
+  EXPECT_TRUE(has(drawing,
+                  "The axes fit the command and the time before the fall. The curves of a run that "
+                  "falls end at the edge of the axes. A cross marks the fall."));
 }
 
 TEST(Loci, TheLineGoesThroughTheSamples) {

@@ -53,9 +53,10 @@ TEST(PushMap, ForwardIsUpAndLengthsAreImpulses) {
 
 TEST(PushMap, SaysWhatItShows) {
   const Drawing drawing = draw_push_map(four_directions());
-  for (const char* text :
-       {"walk", "standing", "capture bound B", "open loop", "dtad", "forward", "left",
-        "walking: dtad worst 1.02 B", "N s, through the COG; hollow: the largest tried"})
+  for (const char* text : {"walk", "standing", "capture bound B", "open loop", "dtad", "forward",
+                           "left", "walking: dtad worst 1.02 B",
+                           "N s, through the COG; hollow point: the robot survives also the "
+                           "largest push that was tried"})
     EXPECT_TRUE(has_text(drawing, text)) << text;
   for (const auto& item : drawing.items)
     if (const auto* path = std::get_if<DrawnPath>(&item)) {

@@ -23,7 +23,7 @@ std::string read_file(const fs::path& path, size_t max_bytes) {
   // a named pipe would wait for its writer.
   const int opened = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
   if (opened < 0 && errno == ENOENT) refuse("no such file");
-  if (opened < 0 && errno == ENXIO) refuse("is a socket or a device, a regular file is needed");
+  if (opened < 0 && errno == ENXIO) refuse("is a socket or a device, but a regular file is needed");
   if (opened < 0) refuse(std::string("cannot be read (") + std::strerror(errno) + ")");
   struct Closer {
     int descriptor;
@@ -33,10 +33,10 @@ std::string read_file(const fs::path& path, size_t max_bytes) {
   if (::fstat(opened, &about) != 0)
     refuse(std::string("cannot be read (") + std::strerror(errno) + ")");
   if (S_ISDIR(about.st_mode)) refuse("this is a folder, but a file is needed");
-  if (!S_ISREG(about.st_mode)) refuse("is a device or a named pipe, a regular file is needed");
+  if (!S_ISREG(about.st_mode)) refuse("is a device or a named pipe, but a regular file is needed");
   const auto too_large = [&](size_t size) {
-    refuse(std::to_string(size) + " bytes, more than the " + std::to_string(max_bytes) +
-           " that are read");
+    refuse(std::to_string(size) + " bytes are too many; Ayumi reads at most " +
+           std::to_string(max_bytes) + " bytes of this file");
   };
   const auto size = static_cast<size_t>(about.st_size);
   if (size > max_bytes) too_large(size);
@@ -85,13 +85,13 @@ void require_file_target(const fs::path& path) {
       break;
     case fs::file_type::character:
     case fs::file_type::block:
-      refuse("is a device, a regular file is needed");
+      refuse("is a device, but a regular file is needed");
       break;
     case fs::file_type::fifo:
-      refuse("is a named pipe, a regular file is needed");
+      refuse("is a named pipe, but a regular file is needed");
       break;
     case fs::file_type::socket:
-      refuse("is a socket, a regular file is needed");
+      refuse("is a socket, but a regular file is needed");
       break;
     default:
       refuse("cannot be written (" + (error ? error.message() : "unknown type of file") + ")");
@@ -168,15 +168,17 @@ FolderLock::FolderLock(const fs::path& folder) : folder_(folder), file_(folder /
       const int reason = errno;
       ::close(descriptor_);
       if (reason == EWOULDBLOCK)
-        stop("another run is being written there; wait for its end or choose another folder");
+        stop(
+            "another run is being written to this folder; wait until it has ended, or choose "
+            "another folder");
       stop(std::string("cannot be locked (") + std::strerror(reason) + ")");
     }
     if (is_file_of(descriptor_, file_)) return;
     ::close(descriptor_);
   }
   stop(
-      "cannot be locked, because other processes lock it again and again; wait for their end or "
-      "choose another folder");
+      "cannot be locked, because other processes lock this folder again and again; wait until they "
+      "have ended, or choose another folder");
 }
 
 FolderLock::~FolderLock() {

@@ -61,7 +61,7 @@ struct Effect {
 enum class Order {
   by_time,               ///< causes as they come
   by_severity,           ///< the worst cause first
-  worst_of_each_motion,  ///< the same, and only one cause between two rests
+  worst_of_each_motion,  ///< the worst cause first; between two rests, only one cause has effects
   by_effect              ///< for each effect its first cause
 };
 
@@ -82,7 +82,7 @@ bool is_foot(FindingKind k) {
          k == FindingKind::foot_float;
 }
 
-// All that comes from accelerations. A support margin of the command is none.
+// Everything that is computed from accelerations. A support margin of the command is not.
 bool is_force(const Violation& v) {
   return is_class(v, LimitClass::force) &&
          (v.kind != FindingKind::support_margin || v.item == kMotionZmp);
@@ -128,9 +128,9 @@ const FindingSet kRates = {"rates",
                            [](const Violation& v) { return is_class(v, LimitClass::rate); }};
 const FindingSet kCollision = {"`self_collision`", is_kind<FindingKind::self_collision>};
 const FindingSet kForces = {"forces", is_force};
-const FindingSet kForcesOnGround = {"forces except those of flight", [](const Violation& v) {
-                                      return is_force(v) && !is_flight(v);
-                                    }};
+const FindingSet kForcesOnGround = {
+    "forces except `ballistic`, `angular_momentum`",
+    [](const Violation& v) { return is_force(v) && !is_flight(v); }};
 const FindingSet kForcesButTorque = {"forces except `joint_torque`", [](const Violation& v) {
                                        return is_force(v) && v.kind != FindingKind::joint_torque;
                                      }};
@@ -139,7 +139,7 @@ const FindingSet kForcesAndMargins = {
     [](const Violation& v) { return is_force(v) || v.kind == FindingKind::support_margin; }};
 const FindingSet kFlight = {"`ballistic`, `angular_momentum`", is_flight};
 const FindingSet kFall = {"`ballistic`", is_kind<FindingKind::ballistic>};
-const FindingSet kLeaps = {"`ballistic` where the COG leaps", [](const Violation& v) {
+const FindingSet kLeaps = {"`ballistic` with a leap of the COG", [](const Violation& v) {
                              return v.kind == FindingKind::ballistic && v.item == kMotionLeaps;
                            }};
 const FindingSet kCommandFall = {
@@ -168,8 +168,9 @@ const FindingSet kTorsion = {"`yaw_moment`", is_kind<FindingKind::yaw_moment>};
 
 // ---- intervals
 
-// Samples beside a lift-off or landing in which a jump of the path shows. Derived: the reach of
-// differences (3), and the two samples on either side that are of neither.
+// Number of samples beside a lift-off or landing in which a jump of the path shows. Derived: the
+// reach of differences (3), and two samples on either side, which belong neither to the flight nor
+// to the support.
 constexpr int kEdgeReach = 5;
 
 Interval influence_of(const Scene& scene, int i) {
@@ -188,66 +189,69 @@ Interval edges_of(const Scene& scene, int i) {
 const Where kAnywhere = {"anywhere", [](const Scene& scene, int) {
                            return std::vector<Interval>{{0, scene.motion.count()}};
                          }};
-const Where kWindow = {"in its window", [](const Scene& scene, int i) {
+const Where kWindow = {"in the window of the cause", [](const Scene& scene, int i) {
                          return std::vector<Interval>{around(scene.window(i))};
                        }};
 const Where kNearWindow = {
-    "within 3 samples of its window", [](const Scene& scene, int i) {
+    "within 3 samples of the window of the cause", [](const Scene& scene, int i) {
       return std::vector<Interval>{around(scene.window(i), kDifferenceReach)};
     }};
-const Where kBesideWindow = {"within 5 samples of its window", [](const Scene& scene, int i) {
+const Where kBesideWindow = {"within 5 samples of the window of the cause",
+                             [](const Scene& scene, int i) {
                                return std::vector<Interval>{around(scene.window(i), kEdgeReach)};
                              }};
 const Where kPaddedWindow = {
-    "within 50 ms of its window", [](const Scene& scene, int i) {
+    "within 50 ms of the window of the cause", [](const Scene& scene, int i) {
       return std::vector<Interval>{around(scene.window(i), pad_samples(scene.motion))};
     }};
-const Where kInfluence = {"in its influence interval", [](const Scene& scene, int i) {
+const Where kInfluence = {"in the influence interval of the cause", [](const Scene& scene, int i) {
                             return std::vector<Interval>{influence_of(scene, i)};
                           }};
 const Where kAngleInfluence = {
-    "in its excursion or influence interval", [](const Scene& scene, int i) {
+    "in the excursion or the influence interval of the cause", [](const Scene& scene, int i) {
       return std::vector<Interval>{
           around(wrong_angle_around(scene.motion, scene.window(i)), pad_samples(scene.motion))};
     }};
 const Where kDeviation = {
-    "while the COG is off its command", [](const Scene& scene, int i) {
+    "while the COG differs from its command", [](const Scene& scene, int i) {
       return std::vector<Interval>{deviation_around(scene.motion, scene.window(i))};
     }};
-const Where kEdges = {"within 3 samples of its beginning or end", [](const Scene& scene, int i) {
-                        return std::vector<Interval>{edges_of(scene, i)};
-                      }};
+const Where kEdges = {
+    "within 3 samples of the beginning or the end of the cause",
+    [](const Scene& scene, int i) { return std::vector<Interval>{edges_of(scene, i)}; }};
 const Where kSameFlight = {
-    "in that flight", [](const Scene& scene, int i) {
+    "in the flight of the cause", [](const Scene& scene, int i) {
       return std::vector<Interval>{flight_around(scene.motion, scene.window(i))};
     }};
 const Where kFlightEdges = {
-    "within 5 samples of lift-off and landing", [](const Scene& scene, int i) {
+    "within 5 samples of the lift-off or the landing", [](const Scene& scene, int i) {
       const Interval f = flight_around(scene.motion, scene.window(i));
       return std::vector<Interval>{{f.first - kEdgeReach, f.first + kEdgeReach},
                                    {f.last - kEdgeReach, f.last + kEdgeReach}};
     }};
-const Where kNearFlight = {"within 5 samples of that flight", [](const Scene& scene, int i) {
+const Where kNearFlight = {"within 5 samples of the flight of the cause",
+                           [](const Scene& scene, int i) {
                              return std::vector<Interval>{
                                  around(flight_around(scene.motion, scene.window(i)), kEdgeReach)};
                            }};
-const Where kPhases = {"in its phase or in an adjacent swing or flight of that foot",
-                       [](const Scene& scene, int i) {
-                         return std::vector<Interval>{
-                             around(moved_phases(scene.motion, scene.of(i)), kDifferenceReach)};
-                       }};
+const Where kPhases = {
+    "in the phase of the cause, or in an adjacent swing or flight of the same foot",
+    [](const Scene& scene, int i) {
+      return std::vector<Interval>{
+          around(moved_phases(scene.motion, scene.of(i)), kDifferenceReach)};
+    }};
 const Where kBetweenRests = {
-    "between two rests", [](const Scene& scene, int i) {
+    "between the same two rests as the cause", [](const Scene& scene, int i) {
       return std::vector<Interval>{motion_around(scene.motion, scene.of(i).sample)};
     }};
 
 // ---- conditions
 
-// The torsional friction arm underestimates what holds a turn by at most this factor. Source:
-// docs/attribution.md.
+// The torsional friction arm underestimates the resistance to turning by at most this factor.
+// Source: docs/attribution.md.
 constexpr double kArmFactor = 2;
-// Share of a displacement within which a sole is as good as back in its place. Chosen: a tenth. No
-// measured case changes from half to twice (constants.md).
+// A sole whose displacement is below this share of the largest one counts as back in its place.
+// Chosen: a tenth. No measured case changes from half to twice (constants.md).
 constexpr double kBackShare = 0.1;
 
 bool is_leg_joint(const RobotModel& model, int dof) {
@@ -262,8 +266,8 @@ bool is_jump(const Scene& scene, int j, int sample) {
          around(w, kDifferenceReach).contains(sample);
 }
 
-// A sole that is out of its place all at once, and back in it all at once or at the end of its
-// contact: the leg jumps with it, each joint as its geometry asks.
+// Whether a sole leaves its place suddenly, and comes back suddenly or at the end of its contact.
+// Then the joints of the leg jump with the sole, each by the amount that the geometry requires.
 bool stands_before_and_after(const Scene& scene, const FindingWindow& w) {
   const JudgedMotion& motion = scene.motion;
   const int foot = w.worst.item;
@@ -298,26 +302,27 @@ const Condition kNotAskedFor = {
     }};
 
 const Condition kLargerOfOneFoot = {
-    "both are displacements of the same foot, and the cause is larger",
+    "cause and effect concern the same foot, and the displacement of the cause is larger",
     [](Scene& scene, int i, int j, const Interval&) {
       const double cause = std::abs(scene.of(i).value), effect = std::abs(scene.of(j).value);
       return same_item(scene, i, j) && (cause != effect ? cause > effect : i < j);
     }};
 
-const Condition kJointOfLeg = {"the joint is one of a leg",
+const Condition kJointOfLeg = {"the joint belongs to a leg",
                                [](Scene& scene, int i, int, const Interval&) {
                                  return is_leg_joint(scene.motion.model, scene.of(i).item);
                                }};
 
 const Condition kTouchesByAngle = {
-    "the angle makes the bodies overlap", [](Scene& scene, int i, int j, const Interval&) {
+    "the wrong angle makes the bodies overlap", [](Scene& scene, int i, int j, const Interval&) {
       return touches_by_limits(scene.motion, scene.of(j)) ||
              (hangs_on(scene.motion, scene.of(j), scene.of(i).item) &&
               wrong_angle_around(scene.motion, scene.window(i)).contains(scene.window(j)));
     }};
 
 const Condition kRateOfAngle = {
-    "both are of the same joint; if the effect is a jump, another jump undoes it",
+    "cause and effect concern the same joint. If the effect is a jump, another jump undoes this "
+    "jump",
     [](Scene& scene, int i, int j, const Interval&) {
       const Violation& v = scene.of(j);
       if (!same_item(scene, i, j)) return false;
@@ -328,16 +333,17 @@ const Condition kRateOfAngle = {
     }};
 
 const Condition kSameJoint = {
-    "the joint is the same",
+    "cause and effect concern the same joint",
     [](Scene& scene, int i, int j, const Interval&) { return same_item(scene, i, j); }};
 
-const Condition kInsideInterval = {"the effect begins and ends there",
+const Condition kInsideInterval = {"the effect begins and ends within this interval",
                                    [](Scene& scene, int, int j, const Interval& interval) {
                                      return interval.contains(scene.window(j));
                                    }};
 
 const Condition kJumpThereAndBack = {
-    "the joint jumps with the foot", [](Scene& scene, int i, int j, const Interval& interval) {
+    "the joint of the effect jumps with the foot",
+    [](Scene& scene, int i, int j, const Interval& interval) {
       const FindingWindow& w = scene.window(i);
       const Violation& v = scene.of(j);
       if (!is_jump(scene, j, w.first) && !is_jump(scene, j, w.last + 1)) return false;
@@ -347,7 +353,7 @@ const Condition kJumpThereAndBack = {
     }};
 
 const Condition kHeldJoint = {
-    "the joint jumps into the overlap or out of it",
+    "the joint jumps into the overlap or out of the overlap",
     [](Scene& scene, int i, int j, const Interval&) {
       const int dof = scene.of(j).item;
       if (!sets_distance(scene.motion, scene.of(i), dof)) return false;
@@ -356,25 +362,26 @@ const Condition kHeldJoint = {
              (is_jump(scene, j, held.first) || is_jump(scene, j, held.last));
     }};
 
-// A foot that is off its place on the ground makes no flight unfree, but differences over a jump
-// into it reach a few samples back.
+// A displaced foot on the ground does not disturb a free flight. But differences across a jump into
+// the displacement reach a few samples back.
 const Condition kNearDisplacement = {
-    "within 3 samples of the displacement", [](Scene& scene, int i, int j, const Interval&) {
+    "the effect is within 3 samples of the displacement of the foot",
+    [](Scene& scene, int i, int j, const Interval&) {
       const Interval off = displacement_around(scene.motion, scene.window(i));
       const int sample = scene.of(j).sample;
       return off.first <= sample + kDifferenceReach && sample - kDifferenceReach <= off.last;
     }};
 
 const Condition kMovesCog = {
-    "the COG error is at most the displacement of the sole; or it vanishes if the whole robot "
-    "is moved so that the sole is in its place",
+    "the COG error is at most the displacement of the sole, or the COG error vanishes when the "
+    "whole robot is moved so that the sole is in its place",
     [](Scene& scene, int i, int j, const Interval&) {
       return moves_cog(scene.motion, scene.of(i), scene.of(j));
     }};
 
 const Condition kTouchesByFoot = {
-    "a body of that leg overlaps by at most the displacement of the foot, and only during this "
-    "displacement",
+    "a body of the leg of the cause overlaps by at most the displacement of the foot, and only "
+    "during this displacement",
     [](Scene& scene, int i, int j, const Interval&) {
       const Violation& foot = scene.of(i);
       const int hip = scene.motion.model.leg(static_cast<Side>(foot.item)).front();
@@ -396,7 +403,7 @@ const Condition kHoldsInFreeFlight = {
     }};
 
 const Condition kOfFlight = {
-    "the effect begins and ends there, or is within 3 samples of the cause",
+    "the effect begins and ends within this interval, or is within 3 samples of the cause",
     [](Scene& scene, int i, int j, const Interval& near) {
       return near.contains(scene.window(j)) ||
              around(scene.window(i), kDifferenceReach).touches(scene.window(j));
@@ -407,12 +414,12 @@ const Condition kUncountedFoot = {"a foot stands on the ground without a planned
                                     return uncounted_foot_stands(scene.motion, scene.of(j).sample);
                                   }};
 
-const Condition kSlowerPace = {"the speed explains both",
+const Condition kSlowerPace = {"the speed explains cause and effect",
                                [](Scene& scene, int i, int j, const Interval&) {
                                  return slower_pace_removes(scene.motion, scene.of(i), scene.of(j));
                                }};
 
-const Condition kTorqueOfLeg = {"the joint is one of a leg",
+const Condition kTorqueOfLeg = {"the joint belongs to a leg",
                                 [](Scene& scene, int, int j, const Interval&) {
                                   return is_leg_joint(scene.motion.model, scene.of(j).item);
                                 }};
@@ -541,7 +548,7 @@ void mark_by_effect(Scene& scene, const Rule& rule) {
   }
 }
 
-// The worst joint of every motion between two rests speaks for it.
+// Only the worst joint of each motion between two rests is used as a cause.
 void mark_by_motion(Scene& scene, const Rule& rule) {
   std::vector<Interval> marked;
   for (const int i : causes_of(scene, rule)) {

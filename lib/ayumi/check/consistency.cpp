@@ -29,8 +29,8 @@ void judge_samples(JudgedMotion& motion) {
   }
 }
 
-// The samples, beside them what depends on the commands alone, then what takes the whole motion to
-// see.
+// Judges the samples. Beside them runs what depends on the commands alone; then follows what needs
+// the whole motion.
 void judge(JudgedMotion& motion, int threads) {
   std::vector<const Limit*> ahead;
   for (const Limit* limit : limits())
@@ -46,9 +46,9 @@ void judge(JudgedMotion& motion, int threads) {
     if (limit->judge_motion) limit->judge_motion(motion);
 }
 
-// Where acceleration bends, as beside a flight, the ZMP of single samples is thrown: for less than
-// kSpikeTime a moment of up to kSpikeSize times the limit turns nothing. It becomes a warning.
-// Source of both: docs/attribution.md.
+// Where the acceleration has a kink, as beside a flight, single samples of the ZMP are outliers. A
+// moment of up to kSpikeSize times the limit that lasts less than kSpikeTime turns nothing, so it
+// becomes a warning. Source of both constants: docs/attribution.md.
 constexpr double kSpikeTime = 0.005;  // [s]
 constexpr double kSpikeSize = 3;      // times the limit
 

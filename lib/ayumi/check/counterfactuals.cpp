@@ -10,9 +10,9 @@ namespace ayumi {
 
 namespace {
 
-// Overlap up to which bodies that meet at a wrong angle merely touch by it [m]; deeper overlaps are
-// findings of their own. Chosen: 3 % of the height of a small humanoid (0.5 m). No measured case
-// changes from half to twice (constants.md).
+// Largest overlap that bodies at a wrong angle may have and still only touch because of that angle
+// [m]; deeper overlaps are separate findings. Chosen: 3 % of the height of a small humanoid (0.5
+// m). No measured case changes from half to twice (constants.md).
 constexpr double kTouch = 0.015;
 
 }  // namespace

@@ -1,31 +1,31 @@
 #pragma once
-// What would be left of a finding without its cause: the same motion looked at again with one thing
-// put right.
+// Tests of causes: would a finding remain if its cause were removed? The same motion is evaluated
+// again with one thing corrected.
 
 #include "ayumi/limits/judged_motion.hpp"
 
 namespace ayumi {
 
-/// Bodies that meet by no more than 15 mm and would not with every joint within its limits.
+/// The bodies overlap by at most 15 mm, and not at all if every joint is within its limits.
 bool touches_by_limits(const JudgedMotion& motion, const Violation& collision);
 
 bool in_leg(const RobotModel& model, Side side, int dof);
 
-/// Bodies whose distance this joint sets.
+/// The distance of the bodies depends on this joint.
 bool sets_distance(const JudgedMotion& motion, const Violation& collision, int dof);
 
-/// The same, but not an arm and the trunk: that is a fact of its own.
+/// The distance depends on this joint, and the bodies are not an arm and the trunk.
 bool hangs_on(const JudgedMotion& motion, const Violation& collision, int dof);
 
 /// The torque of a flight is within its limit when nothing pushes or turns the robot.
 bool holds_in_free_flight(JudgedMotion& motion, const Violation& torque);
 
-/// A sole out of its place accounts for a COG off its command: the COG is no farther off than the
-/// sole, or as good as commanded when the robot is put back with the sole into its place. Swinging
-/// soles account for any.
+/// True if the COG error is explained by the foot error: the COG is no farther off than the sole,
+/// or its error vanishes when the robot is moved back rigidly with the sole into its place.
+/// Swinging soles always explain it.
 bool moves_cog(const JudgedMotion& motion, const Violation& foot, const Violation& cog);
 
-/// A ZMP outside the support because the command wants it there: no posture is to blame.
+/// The ZMP is outside the support because the command puts it there, so no posture is the cause.
 bool is_asked_for(JudgedMotion& motion, const Violation& v);
 
 /// A foot that is not counted at this sample stands where it stood before or will stand after.

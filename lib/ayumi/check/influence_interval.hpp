@@ -13,9 +13,9 @@ struct Interval {
   bool contains(int sample) const { return first <= sample && sample <= last; }
 };
 
-/// Samples that one jump of a joint spoils to either side by differences. Derived: rates and
-/// accelerations are fitted over two samples to either side (motion/differentiate.hpp), and a jump
-/// has two samples.
+/// Number of samples on either side that a jump of a joint spoils through differences. Derived:
+/// rates and accelerations are fitted over two samples to either side (motion/differentiate.hpp),
+/// and a jump has two samples.
 inline constexpr int kDifferenceReach = 3;
 
 /// The window with `pad` samples on either side.
@@ -34,8 +34,8 @@ Interval displacement_around(const JudgedMotion& motion, const FindingWindow& wi
 /// The largest distance of a supporting sole from its place [m].
 double displacement(const JudgedMotion& motion, int foot, int sample);
 
-/// The excursion with which a joint goes beyond its limit in this window: from where it last turned
-/// back before it to where it turns back after it. One key that is wrong moves no more than that.
+/// The excursion of a joint beyond its limit in this window: from its last turning point before the
+/// window to its first turning point after it. One wrong key moves the joint only within this time.
 Interval excursion_around(const JudgedMotion& motion, const FindingWindow& window);
 
 /// While an angle is wrong: its excursion, and as long as it moves the COG off the command.
@@ -47,14 +47,14 @@ Interval flight_around(const JudgedMotion& motion, const FindingWindow& window);
 /// From rest to rest (20 ms and more), around this sample.
 Interval motion_around(const JudgedMotion& motion, int sample);
 
-/// The phase in which a foot is said to stand too early or let go too early, and its time off the
-/// ground at that end of its contact.
+/// The phase in which a foot is planned to stand too early or to leave the ground too early, and
+/// the time in which the foot is off the ground at that end of its contact.
 Interval moved_phases(const JudgedMotion& motion, const Violation& foot);
 
-/// The joint's largest step in this interval is undone by another one in it.
+/// Whether another step in this interval undoes the joint's largest step.
 bool comes_back(const JudgedMotion& motion, int dof, const Interval& interval);
 
-/// 50 ms: forces answer before and after a displacement does.
+/// Samples in 50 ms: forces respond before and after a displacement.
 int pad_samples(const JudgedMotion& motion);
 
 }  // namespace ayumi

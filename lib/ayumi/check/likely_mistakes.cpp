@@ -100,10 +100,9 @@ class Suspicions {
       const int dof = model_.find_dof(joint);
       if (dof < 0 || model_.dofs()[dof].prismatic || !model_.dofs()[dof].limited) return;
       if (std::abs(angle) > 2 * std::numbers::pi)
-        found.push_back(
-            {place, joint + " is at " + text::brief(angle) +
-                        " rad, which is more than a turn; where this is meant in degrees, write "
-                        "\"units\": {\"angle\": \"deg\"}"});
+        found.push_back({place, joint + " is at " + text::brief(angle) +
+                                    " rad, which is more than a turn; if the angle is in degrees, "
+                                    "write \"units\": {\"angle\": \"deg\"}"});
     };
     for (size_t i = 0; i < pattern_.keyframes.size(); ++i)
       for (const auto& [joint, angle] : pattern_.keyframes[i].joints)
@@ -128,8 +127,8 @@ class Suspicions {
       }
     if (count >= kManyAngles && 2 * whole < count)
       said_.push_back({"/units",
-                       "all angles of joints are less than 2 pi deg; where they are meant in "
-                       "radians, write \"units\": {\"angle\": \"rad\"}"});
+                       "all joint angles are less than 2 pi deg; if the angles are in radians, "
+                       "write \"units\": {\"angle\": \"rad\"}"});
   }
 
   void times() {
@@ -141,14 +140,12 @@ class Suspicions {
         found.push_back(
             {phase_place(i),
              std::string("the swing lasts ") + text::brief(lasts) +
-                 " s; times are in seconds, so where they are meant in ms, divide them by "
-                 "1000"});
+                 " s. Times are in seconds; if these times are in ms, divide them by 1000"});
     }
     if (found.empty() && feet_->duration() > kLongestStand)
       found.push_back(
           {"", "the motion lasts " + text::brief(feet_->duration()) +
-                   " s; times are in seconds, so where they are meant in ms, divide them by "
-                   "1000"});
+                   " s. Times are in seconds; if these times are in ms, divide them by 1000"});
     say(found);
   }
 
@@ -167,9 +164,9 @@ class Suspicions {
     std::vector<Mistake> found;
     const auto look = [&](const std::string& place, double height) {
       if (height <= most && height >= kLowestCog * home) return;
-      std::string words = "the COG height is " + metres(height) + ", but the COG of " +
-                          model_.name() + " is " + metres(home) +
-                          " above its soles at home, and at most " + metres(most);
+      std::string words =
+          "the COG height is " + metres(height) + ", but the COG of " + model_.name() + " is " +
+          metres(home) + " above the soles in the home posture, and can be at most " + metres(most);
       for (const auto& [unit, factor] : {std::pair("mm", 1e-3), std::pair("cm", 1e-2)})
         if (height * factor <= most && height * factor >= kLowestCog * home)
           words += "; heights are in metres, and " + text::brief(height) + " " + unit + " are " +
@@ -201,11 +198,11 @@ class Suspicions {
       bool& named = far[static_cast<size_t>(index(swing.foot))];
       named = distance > leg && !far[static_cast<size_t>(index(other(swing.foot)))];
       if (!named) continue;
-      found.push_back({phase_place(i), std::string("the ") + name_of(swing.foot) + " foot lands " +
-                                           metres(distance) + " from the " +
-                                           name_of(other(swing.foot)) + " foot, but the legs are " +
-                                           metres(leg) + " long" +
-                                           (distance > 10 * leg ? "; lengths are in metres" : "")});
+      found.push_back({phase_place(i),
+                       std::string("the ") + name_of(swing.foot) + " foot lands " +
+                           metres(distance) + " from the " + name_of(other(swing.foot)) +
+                           " foot, but the legs are " + metres(leg) + " long" +
+                           (distance > 10 * leg ? ". Check the unit: lengths are in metres" : "")});
     }
     say(found);
   }
@@ -376,7 +373,7 @@ std::string with_mistakes(const std::string& message, const Pattern& pattern,
   const std::string file = pattern.file.empty() ? "" : pattern.file + ": ";
   const bool in_file = !file.empty() && message.rfind(file, 0) == 0;
   return (in_file ? file : "") + "likely cause: " + text::join(texts, "; or ") +
-         "; the first thing that fails: " + (in_file ? message.substr(file.size()) : message);
+         "; the first error is: " + (in_file ? message.substr(file.size()) : message);
 }
 
 }  // namespace ayumi

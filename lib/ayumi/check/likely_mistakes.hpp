@@ -26,7 +26,7 @@ struct Mistake {
 /// where something is wrong. Takes no time.
 std::vector<Mistake> impossible_values(const RobotModel& model, const Pattern& pattern);
 
-/// What a consistent pattern was hardly meant to be: a single support without a swing among others
+/// Mistakes that a consistent pattern may contain: a single support without a swing among others
 /// with one, and angles of a few degrees that look like radians.
 std::vector<Mistake> doubtful_values(const RobotModel& model, const Pattern& pattern);
 

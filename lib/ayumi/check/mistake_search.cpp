@@ -37,7 +37,7 @@ constexpr double kLongestStep = 0.01;
 constexpr size_t kTriedValues = 24;
 constexpr size_t kTriedSigns = 12;
 constexpr size_t kSuspects = 3;
-// Steps of the bisection for the range of a value. Chosen: 3 % of the way.
+// Number of bisection steps for the range of a value. Chosen: 3 % of the distance.
 constexpr int kBisections = 5;
 // A value of which more than this share is possible is no slip of a factor of ten. Chosen: such a
 // slip is at 0.1, and motions seldom bear five times what their author meant.
@@ -460,7 +460,7 @@ class Hypotheses {
              {phase_place(i),
               std::string("the footholds of this phase and of ") + phase_place(k) +
                   " may be exchanged",
-              "with each in the other's place"},
+              "with the two exchanged"},
              [i, k](Pattern& p) { std::swap(p.phases[i].swing->to, p.phases[k].swing->to); }});
     }
   }
@@ -499,10 +499,10 @@ class Hypotheses {
 
   void starts(std::vector<Hypothesis>& made) const {
     if (!pattern_.start_feet[0] || !pattern_.start_feet[1]) return;
-    made.push_back({Rank::exchange,
-                    {"/start", "the left and the right foot may be exchanged",
-                     "with each in the other's place"},
-                    [](Pattern& p) { std::swap(p.start_feet[0], p.start_feet[1]); }});
+    made.push_back(
+        {Rank::exchange,
+         {"/start", "the left and the right foot may be exchanged", "with the two exchanged"},
+         [](Pattern& p) { std::swap(p.start_feet[0], p.start_feet[1]); }});
   }
 
   Support support_at(double t) const {
@@ -544,7 +544,7 @@ class Hypotheses {
            {key_place(i),
             "the key moves " + key.joints.begin()->first +
                 (key.joints.size() > 1 ? " and others" : "") + "; left and right may be exchanged",
-            "with the joints of the other side"},
+            "with keys for the joints of the other side"},
            [this, i, map](Pattern& p) {
              std::map<std::string, double> joints;
              for (const auto& [joint, angle] : p.keyframes[i].joints) {
@@ -651,8 +651,8 @@ class Hypotheses {
             {Rank::missing,
              {key_place(i),
               entry.first +
-                  " is a joint of a leg; with such a key, every leg joint follows its keys "
-                  "alone, and no leg is solved from the feet and the COG",
+                  " is a joint of a leg. As soon as one leg joint has a key, all leg joints follow "
+                  "only their keys, and the legs are not solved from the feet and the COG",
               "without keys of leg joints (give the COG, the feet or the torso instead)"},
              [this](Pattern& p) {
                for (Keyframe& key : p.keyframes)
@@ -707,9 +707,10 @@ class Hypotheses {
           {Rank::missing,
            {key_place(highest),
             std::string("the ") + name_of(lifted) + " foot is " + text::fixed(1000 * lift, 0) +
-                " mm up, and the COG rises by half of it, because without keys its height is above "
-                "the mean of both soles",
-            "with keys of \"cog\": {\"height\": " + text::brief(height) + "}, which keep it down,"},
+                " mm up, and the COG rises by half of this height, because the COG height without "
+                "keys is measured from the mean height of both soles",
+            "with keys of \"cog\": {\"height\": " + text::brief(height) +
+                "}, which keep the COG down,"},
            [height](Pattern& p) {
              for (Keyframe& key : p.keyframes) key.cog_height = height;
            }});
@@ -842,7 +843,7 @@ class Search {
                        number.value == 0 ? 1 : std::abs(1 - limit / number.value)},
                       without});
     std::vector<Hypothesis> slips;
-    // Hardly any value of this sign is possible, and this one is of a usual size.
+    // Almost no value of this sign is possible, and the size of this value is usual.
     const bool other_sign =
         limit / number.value < kNoShare && std::abs(number.value) < value.unit(model_);
     if (value.has_sign())
@@ -934,7 +935,7 @@ std::vector<Explanation> find_explanations(const RobotModel& model, const Patter
   Pattern current = pattern;
   Outcome found = trials.of(current);
   for (int round = 0; round < kRounds && !found.good(); ++round) {
-    Search search(trials, model, current, found);  // which the mendings refer to
+    Search search(trials, model, current, found);  // the corrections refer to this pattern
     std::vector<Candidate> best = search.best();
     if (best.empty()) break;
     for (Candidate& c : best) {

@@ -10,7 +10,7 @@
 
 namespace ayumi {
 
-/// One way in which a joint does not receive what the table says: its worst instant.
+/// One way in which a joint receives something other than the table says, at its worst sample.
 struct Clamp {
   std::string kind;  ///< "range" (16 bits), "position" or "speed"
   std::string joint;

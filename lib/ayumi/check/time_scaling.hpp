@@ -6,12 +6,12 @@
 
 namespace ayumi {
 
-/// Whether the demand near this sample is broken by differences over a jump, so that no pace mends
-/// it.
+/// Whether differences across a jump spoil the demand near this sample, so that time scaling cannot
+/// help.
 bool broken_by_jump(const JudgedMotion& motion, int sample);
 
-/// Whether there is one pace at which both violations are gone. Where the demand is broken by a
-/// jump, no pace removes it: then the violation is attributed to speed, unless it is that jump.
+/// Whether one pace removes both violations. Where a jump spoils the demand, no pace removes it:
+/// then the violation is attributed to the speed, unless it is that jump itself.
 bool slower_pace_removes(JudgedMotion& motion, const Violation& cause, const Violation& effect);
 
 }  // namespace ayumi

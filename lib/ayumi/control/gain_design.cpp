@@ -109,7 +109,8 @@ DtadParams design_gains(double omega, const GainWishes& wishes, DtadParams param
   }
   if (wishes.absorb) {
     if (!(*wishes.absorb >= 0 && *wishes.absorb < 1))
-      refuse("an absorbed share of", *wishes.absorb, "it must be at least 0 and below 1");
+      refuse("an absorbed share (--absorb) of", *wishes.absorb,
+             "it must be at least 0 and below 1");
     params.zmp_gain = *wishes.absorb / (1 - *wishes.absorb);
   }
   if (wishes.return_time) {
@@ -119,7 +120,7 @@ DtadParams design_gains(double omega, const GainWishes& wishes, DtadParams param
   }
   if (wishes.zmp_filter) {
     if (!(*wishes.zmp_filter > 0))
-      refuse("a ZMP filter of", *wishes.zmp_filter, "its time must be above 0 s");
+      refuse("a ZMP filter time of", *wishes.zmp_filter, "it must be above 0 s");
     params.zmp_filter = omega * *wishes.zmp_filter;
   }
   if (wishes.forget) {
@@ -169,9 +170,11 @@ std::string growth(const std::vector<LoopModel>& loops, const DtadParams& params
          text::brief(1e3 * loop.delay) + " ms late (a robot that stands on " + loop.name +
          " oscillates at " + text::fixed(weakest.analysis.frequency, 1) +
          " Hz, and an error grows at " + text::fixed(-weakest.analysis.decay, 1) + " /s); " +
-         (low > 1e-6 ? "ka below " + text::fixed(low, 2) + " would be stable"
-                     : std::string("no ka is stable: the servos are too soft for this robot, or "
-                                   "ks and kd too small"));
+         (low > 1e-6
+              ? "choose ka below " + text::fixed(low, 2) + ", for which the loop is stable"
+              : std::string(
+                    "the loop is unstable for every ka, because the servos are too soft for this "
+                    "robot, or ks and kd are too small: use stiffer servos, or larger ks and kd"));
 }
 
 }  // namespace

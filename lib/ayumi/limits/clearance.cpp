@@ -47,8 +47,8 @@ void judge_clearances(JudgedMotion& motion) {
 const RowKind kClearanceRows = {
     .name = "clearance", .unit = &RowPrices::length, .beyond_check = true, .order = {6, 0}};
 
-// Bodies come no nearer than they are kept apart, or than the motion brings them by itself without
-// a touch. `own`: what the given motion keeps between the bodies [m].
+// The distance that the repair keeps: the wanted one, or the distance in the given motion if it is
+// smaller and the bodies do not touch. `own`: the distance in the given motion [m].
 void add_clearance(RowSite& site, int point, const ShapePair& shapes, double own) {
   const RowSettings& settings = site.settings;
   const double kept = settings.clearance.kept;

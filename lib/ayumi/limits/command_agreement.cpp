@@ -37,9 +37,10 @@ constexpr double kPointMassTolerance = 0.02;
 constexpr double kLightShare = 0.25;
 constexpr double kLeastForceShare = 1e-3;  // of the weight, so that no force divides by zero
 
-// A ZMP error of less than 5 ms and of up to three times its limit is a warning. Source: docs/
-// attribution.md: where acceleration bends, as beside flights, the ZMP of single samples is thrown,
-// and a moment of that size turns nothing in that time. The judge applies it to whole windows.
+// A ZMP error that lasts less than 5 ms and is at most three times its limit is a warning. Source:
+// docs/attribution.md: where the acceleration has a kink, as beside flights, single samples of the
+// ZMP are outliers, and a moment of that size turns nothing in that time. The judge applies this to
+// whole windows.
 
 void judge_vertical_force(JudgedMotion& motion, const JudgedSample& s) {
   const double residual = (s.flight ? 0 : s.demand.wrench[2]) - s.command.fz;
@@ -84,7 +85,7 @@ namespace {
 const RowKind kCogRows = {.name = "cog", .unit = &RowPrices::length, .order = {7, 0}};
 const RowKind kZmpRows = {.name = "zmp", .unit = &RowPrices::length, .order = {7, 1}};
 
-// Where the COG or the ZMP is trusted, the motion comes to the commanded one.
+// If the COG or the ZMP is trusted, the repair moves the motion to the commanded value.
 void place_command_rows(RowSite& site) {
   const RowSettings& settings = site.settings;
   const double cog = settings.trusted_share * site.tolerance(FindingKind::cog_residual);
@@ -152,63 +153,64 @@ std::string zmp_infeasibility(const Finding& f, double) {
 
 const Limit& command_agreement_limit() {
   static const Limit limit = {
-      .findings = {{.kind = FindingKind::cog_residual,
-                    .limit_class = LimitClass::command,
-                    .unit = "m",
-                    .tolerance = kCogTolerance,
-                    .meaning = "distance between the COG of the posture and the commanded COG",
-                    .figure = {.key = "max_cog_residual_m",
-                               .label = "largest COG residual",
-                               .unit = "mm",
-                               .scale = 1e3,
-                               .line = 2},
-                    .repair = {.is_of_plan = true},
-                    .place = axis_place,
-                    .advice = cog_advice,
-                    .infeasibility = cog_infeasibility},
-                   {.kind = FindingKind::zmp_residual,
-                    .limit_class = LimitClass::command,
-                    .unit = "m",
-                    .tolerance = kZmpTolerance,
-                    .meaning = "distance between the ZMP of the full model and the commanded ZMP",
-                    .figure = {.key = "max_zmp_residual_m",
-                               .label = "largest ZMP residual",
-                               .unit = "mm",
-                               .scale = 1e3,
-                               .line = 3},
-                    .repair = {.is_of_plan = true},
-                    .place = axis_place,
-                    .advice = zmp_advice,
-                    .infeasibility = zmp_infeasibility,
-                    .holds_at = zmp_holds},
-                   {.kind = FindingKind::fz_residual,
-                    .limit_class = LimitClass::command,
-                    .unit = "m g",
-                    .tolerance = kForceTolerance,
-                    .meaning =
-                        "difference between the vertical force that the motion needs and the "
-                        "commanded one; the tolerance is a share of the weight",
-                    .figure = {.key = "max_fz_residual_N",
-                               .label = "largest vertical force residual",
-                               .unit = "N",
-                               .line = 4},
-                    .finding_unit = force_unit,
-                    .place = vertical_place,
-                    .advice = vertical_force_advice,
-                    .holds_at = vertical_force_holds},
-                   {.kind = FindingKind::point_mass_gap,
-                    .limit_class = LimitClass::command,
-                    .unit = "m",
-                    .tolerance = kPointMassTolerance,
-                    .meaning = "distance between the ZMP of the mass-concentrated model (14)(15) "
-                               "and the commanded ZMP: how good that model is here; never an error",
-                    .figure = {.key = "max_point_mass_gap_m",
-                               .label = "largest gap of the point mass",
-                               .unit = "mm",
-                               .scale = 1e3,
-                               .line = 5},
-                    .place = axis_place,
-                    .advice = point_mass_advice}},
+      .findings =
+          {{.kind = FindingKind::cog_residual,
+            .limit_class = LimitClass::command,
+            .unit = "m",
+            .tolerance = kCogTolerance,
+            .meaning = "distance between the COG of the posture and the commanded COG",
+            .figure = {.key = "max_cog_residual_m",
+                       .label = "largest COG residual",
+                       .unit = "mm",
+                       .scale = 1e3,
+                       .line = 2},
+            .repair = {.is_of_plan = true},
+            .place = axis_place,
+            .advice = cog_advice,
+            .infeasibility = cog_infeasibility},
+           {.kind = FindingKind::zmp_residual,
+            .limit_class = LimitClass::command,
+            .unit = "m",
+            .tolerance = kZmpTolerance,
+            .meaning = "distance between the ZMP of the full model and the commanded ZMP",
+            .figure = {.key = "max_zmp_residual_m",
+                       .label = "largest ZMP residual",
+                       .unit = "mm",
+                       .scale = 1e3,
+                       .line = 3},
+            .repair = {.is_of_plan = true},
+            .place = axis_place,
+            .advice = zmp_advice,
+            .infeasibility = zmp_infeasibility,
+            .holds_at = zmp_holds},
+           {.kind = FindingKind::fz_residual,
+            .limit_class = LimitClass::command,
+            .unit = "m g",
+            .tolerance = kForceTolerance,
+            .meaning = "difference between the vertical force that the motion needs and the "
+                       "commanded vertical force; the tolerance is a share of the weight",
+            .figure = {.key = "max_fz_residual_N",
+                       .label = "largest vertical force residual",
+                       .unit = "N",
+                       .line = 4},
+            .finding_unit = force_unit,
+            .place = vertical_place,
+            .advice = vertical_force_advice,
+            .holds_at = vertical_force_holds},
+           {.kind = FindingKind::point_mass_gap,
+            .limit_class = LimitClass::command,
+            .unit = "m",
+            .tolerance = kPointMassTolerance,
+            .meaning =
+                "distance between the ZMP of the point-mass model (14)(15) and the commanded ZMP. "
+                "It shows how well this model describes the motion, and it is never an error",
+            .figure = {.key = "max_point_mass_gap_m",
+                       .label = "largest ZMP error of the point-mass model",
+                       .unit = "mm",
+                       .scale = 1e3,
+                       .line = 5},
+            .place = axis_place,
+            .advice = point_mass_advice}},
       .judge_sample = judge_command,
       .place_rows = place_command_rows};
   return limit;

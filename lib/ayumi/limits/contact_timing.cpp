@@ -34,7 +34,7 @@ void judge_contact_ends(JudgedMotion& motion) {
 Advice contact_end_advice(const JudgedMotion&, const FindingWindow& window) {
   return "the " + std::string(name_of(foot_of(window.worst))) + " sole stands still for " +
          text::fixed(window.worst.value, 3) +
-         " s after its contact ends: end the contact that much later";
+         " s after its contact ends: end the contact later by this time";
 }
 
 std::string contact_end_infeasibility(const Finding& f, double) {
@@ -46,15 +46,14 @@ std::string contact_end_infeasibility(const Finding& f, double) {
 
 const Limit& contact_timing_limit() {
   static const Limit limit = {
-      .findings =
-          {{.kind = FindingKind::contact_ends_early,
-            .unit = "s",
-            .tolerance = kLateTolerance,
-            .meaning =
-                "time for which a foot still stands in its place after its contact has ended",
-            .place = foot_place,
-            .advice = contact_end_advice,
-            .infeasibility = contact_end_infeasibility}},
+      .findings = {{.kind = FindingKind::contact_ends_early,
+                    .unit = "s",
+                    .tolerance = kLateTolerance,
+                    .meaning =
+                        "time for which a foot stands still after the end of its planned contact",
+                    .place = foot_place,
+                    .advice = contact_end_advice,
+                    .infeasibility = contact_end_infeasibility}},
       .judge_motion = judge_contact_ends};
   return limit;
 }

@@ -158,7 +158,7 @@ Advice table_position_advice(const JudgedMotion& motion, const FindingWindow& wi
                              : dof.prismatic       ? text::brief(1e3 * beyond, 3) + " mm"
                                              : text::brief(beyond * 180 / EIGEN_PI, 3) + " deg";
   return {refused_text(motion, v) + " is " + amount + " beyond its range: move " + dof.name +
-              " back by as much, or let it reverse its direction more gently",
+              " back by this amount, or let the joint reverse its direction more gently",
           kOrRepair};
 }
 
@@ -167,7 +167,7 @@ Advice rest_advice(const JudgedMotion& motion, const FindingWindow& window) {
   return {refused_text(motion, v) + (window.first == 0 ? " begins" : " ends") +
           " while it moves: " + motion.model.dofs()[v.item].name + " has to " +
           (window.first == 0 ? "start" : "stop") +
-          " at rest and gently, for example by a segment with minimum_jerk"};
+          " gently and at rest, for example with a segment of minimum_jerk"};
 }
 
 std::string step_infeasibility(const Finding& f, double violation) {
@@ -197,7 +197,7 @@ const Limit& exported_table_limit() {
                                "the step that `export` accepts; a larger tolerance has no effect",
                     .figure = {.key = "max_table_step_ratio",
                                .label = "largest step of the exported table",
-                               .unit = "% of what the robot takes",
+                               .unit = "% of the step that `export` accepts",
                                .scale = 100,
                                .line = 22},
                     .repair = {.is_of_one_joint = true},

@@ -103,8 +103,8 @@ Advice free_fall_advice(const JudgedMotion& motion, const FindingWindow& window)
   const double dt = motion.series.dt;
   if (window.worst.item == kMotionLeaps)
     return "the COG leaps by " + in_mm(window.worst.value * dt * dt) +
-           " where the flight begins or ends: no force can do this; make the COG keys continuous "
-           "there";
+           " where the flight begins or ends, and no force can do this: make the COG keys "
+           "continuous there";
   return "the COG must fall freely for the " + text::fixed((window.last - window.first) * dt, 3) +
          " s of flight: remove the COG keys inside the flight";
 }

@@ -84,27 +84,26 @@ std::string heat_infeasibility(const Finding& f, double violation) {
 
 const Limit& heat_limit() {
   static const Limit limit = {
-      .findings =
-          {{.kind = FindingKind::continuous_torque,
-            .limit_class = LimitClass::force,
-            .unit = "1",
-            .tolerance = kWholeContinuousTorque,
-            .meaning =
-                "RMS motor torque in the motor's thermal window, as a share of its continuous "
-                "limit; a warning when the motion is shorter than the window",
-            .figure = {.key = "max_continuous_torque_ratio",
-                       .label = "largest continuous torque",
-                       .unit = "% of the limit",
-                       .scale = 100,
-                       .share_name = "continuous torque",
-                       .line = 10},
-            .actuator = {.line = 2, .after = " lasting"},
-            .repair = {.is_mean = true},
-            .finding_unit = heat_unit,
-            .place = joint_place,
-            .advice = heat_advice,
-            .infeasibility = heat_infeasibility,
-            .holds_at = heat_holds}},
+      .findings = {{.kind = FindingKind::continuous_torque,
+                    .limit_class = LimitClass::force,
+                    .unit = "1",
+                    .tolerance = kWholeContinuousTorque,
+                    .meaning = "root mean square of the motor torque in the thermal window of the "
+                               "motor, as a share of its continuous limit; it gives only a warning "
+                               "if the motion is shorter than the window",
+                    .figure = {.key = "max_continuous_torque_ratio",
+                               .label = "largest continuous torque",
+                               .unit = "% of the limit",
+                               .scale = 100,
+                               .share_name = "continuous torque",
+                               .line = 10},
+                    .actuator = {.line = 2, .after = " lasting"},
+                    .repair = {.is_mean = true},
+                    .finding_unit = heat_unit,
+                    .place = joint_place,
+                    .advice = heat_advice,
+                    .infeasibility = heat_infeasibility,
+                    .holds_at = heat_holds}},
       .judge_sample = note_square_sum,
       .judge_motion = judge_heat};
   return limit;

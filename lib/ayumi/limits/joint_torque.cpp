@@ -65,9 +65,10 @@ const char* torque_unit(const JudgedMotion& motion, const Violation& v) {
 
 Advice torque_advice(const JudgedMotion& motion, const FindingWindow& window) {
   const Violation& v = window.worst;
-  return "lower the load on " + motion.model.dofs()[v.item].name + ": if inertia is the cause, " +
+  return "lower the load on " + motion.model.dofs()[v.item].name +
+         ": if the inertia is the cause, " +
          slow_down_text(std::sqrt(std::abs(v.value / v.limit))) +
-         "; if weight is the cause, straighten the leg";
+         "; if the weight is the cause, straighten the leg";
 }
 
 std::string torque_infeasibility(const Finding& f, double violation) {

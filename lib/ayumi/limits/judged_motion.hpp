@@ -116,9 +116,9 @@ void judge_difference(JudgedMotion& motion, FindingKind kind, int sample,
                       const Eigen::Vector3d& difference, Severity severity = Severity::error,
                       int item = 0, double allowance = 1);
 
-/// Whether all of a flight is free within `limit` [m/s^2] when it is played at this pace. A flight
-/// has one pace at which it is free, so several samples are looked at: the acceleration of a single
-/// one can be scaled to that of gravity whatever made it.
+/// Whether the whole flight is free within `limit` [m/s^2] when it is played at this pace. A flight
+/// is free at one pace only. So several samples are tested: the acceleration of a single sample can
+/// always be scaled to gravity.
 bool flight_is_free(JudgedMotion& motion, int sample, double pace, double limit);
 
 // Places and words that several limits share.

@@ -69,25 +69,26 @@ std::string step_infeasibility(const Finding& f, double violation) {
 
 const Limit& servo_step_limit() {
   static const Limit limit = {
-      .findings = {{.kind = FindingKind::servo_step,
-                    .limit_class = LimitClass::rate,
-                    .unit = "1",
-                    .tolerance = kWholeStep,
-                    .meaning = "change of the joint angle per servo period, divided by the change "
-                               "that the speed limit allows; reported where the joint speed does "
-                               "not show it",
-                    .figure = {.key = "max_servo_step_ratio",
-                               .label = "largest step in a servo period",
-                               .unit = "% of what the speed limit allows",
-                               .scale = 100,
-                               .line = 17},
-                    .actuator = {.line = 4},
-                    .repair = {.is_of_one_joint = true},
-                    .finding_unit = step_unit,
-                    .place = joint_place,
-                    .advice = step_advice,
-                    .infeasibility = step_infeasibility,
-                    .holds_at = servo_step_holds}},
+      .findings =
+          {{.kind = FindingKind::servo_step,
+            .limit_class = LimitClass::rate,
+            .unit = "1",
+            .tolerance = kWholeStep,
+            .meaning =
+                "change of the joint angle in one servo period, divided by the change that the "
+                "speed limit allows; it is reported only where the joint speed does not show this",
+            .figure = {.key = "max_servo_step_ratio",
+                       .label = "largest step in a servo period",
+                       .unit = "% of what the speed limit allows",
+                       .scale = 100,
+                       .line = 17},
+            .actuator = {.line = 4},
+            .repair = {.is_of_one_joint = true},
+            .finding_unit = step_unit,
+            .place = joint_place,
+            .advice = step_advice,
+            .infeasibility = step_infeasibility,
+            .holds_at = servo_step_holds}},
       .judge_motion = judge_servo_steps};
   return limit;
 }

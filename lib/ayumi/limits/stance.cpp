@@ -61,9 +61,9 @@ bool in_place(const JudgedMotion& motion, int foot, int k) {
          e.slip <= motion.tolerance(FindingKind::foot_slip);
 }
 
-// A foot whose contact has begun but which still comes down to its place, or rises from it before
-// its contact ends: the swing is longer than the phases say. A slow swing hangs less than a sole
-// may float by, so that its motion shows it, not its height.
+// A foot whose contact has begun but which still comes down to its place, or which rises before its
+// contact ends: the swing lasts longer than the phases say. In a slow swing, the height of the sole
+// is below the tolerance of foot_float, so the motion of the sole is tested and not its height.
 void judge_contact_edge(JudgedMotion& motion, Side side, const ContactInterval& contact,
                         bool lands) {
   const int k = lands ? contact.first : contact.last;
@@ -76,7 +76,7 @@ void judge_contact_edge(JudgedMotion& motion, Side side, const ContactInterval& 
                      lands ? k : k - run.samples, lands ? k + run.samples : k);
 }
 
-// Samples before the first and after the last one in place belong to a swing that runs on.
+// The samples before the first one in place and after the last one in place belong to the swing.
 void judge_supporting_foot(JudgedMotion& motion, Side side, const ContactInterval& contact) {
   const int foot = static_cast<int>(side);
   const double high = motion.tolerance(FindingKind::foot_float),
@@ -144,8 +144,8 @@ double time_to_edge(const RowSite& site, int sample, const ContactInterval& cont
   return std::min(landed, left);
 }
 
-// A foot that lands or lifts off softly is not quite in its place for a moment. The check allows
-// that; what the motion does so by itself stays, up to a share of what is allowed.
+// A foot that lands or lifts off softly is not exactly in its place for a moment. The check allows
+// this. The repair keeps the deviation of the motion, up to a share of what is allowed.
 void soften_landing(const RowSite& site, int point, Side side, Vector6d& lower, Vector6d& upper) {
   const auto& settings = site.settings.stance;
   const CollocationPoint& at = site.points[point];
@@ -158,7 +158,7 @@ void soften_landing(const RowSite& site, int point, Side side, Vector6d& lower, 
                                 error.slip / site.tolerance(FindingKind::foot_slip)});
   Vector6d own = std::min(1.0, settings.soft_share / std::max(used, 1e-9)) *
                  sole_deviation(sole, contact.sole);
-  // A sole above its place has not landed yet, which is to be mended.
+  // A sole above its place has not landed yet, and this has to be corrected.
   const Eigen::Vector3d normal = contact.sole.linear().col(2);
   own.head<3>() -= std::max(0.0, normal.dot(own.head<3>())) * normal;
   upper[2] *= settings.soft_upwards;
@@ -241,7 +241,7 @@ const Limit& stance_limit() {
       .findings = {{.kind = FindingKind::foot_slip,
                     .unit = "m",
                     .tolerance = kSlipTolerance,
-                    .meaning = "horizontal distance of a supporting sole from its place",
+                    .meaning = "horizontal distance of a supporting sole from its planned place",
                     .figure = {.key = "max_foot_slip_m",
                                .label = "largest slip of a supporting sole",
                                .unit = "mm",

@@ -35,7 +35,7 @@ void judge_support(JudgedMotion& motion, const JudgedSample& s) {
   judge_margin(motion, s, kMotionZmp, use.margin);
   const Eigen::Vector3d command = plane.frame.inverse() * s.command.zmp;
   const double command_margin = plane.polygon.margin(command.head<2>());
-  // The commanded ZMP is a fact of its own only where the motion's ZMP is another one.
+  // The commanded ZMP is judged only where it differs from the ZMP of the motion.
   if ((use.zmp_world - s.command.zmp).norm() > motion.tolerance(FindingKind::zmp_residual) &&
       command_margin < -kRounding)
     judge_margin(motion, s, kCommandZmp, command_margin);
@@ -62,10 +62,10 @@ std::vector<double> own_margins(const RowSite& site) {
   return own;
 }
 
-// The margin wanted at every point. Where the motion's ZMP is outside or too near an edge, and for
-// a while around, that is the mended margin, which is the safe one in a repair; elsewhere it is a
-// share of the motion's own margin, at most the safe one. A step that begins badly is not safe when
-// only its end is.
+// The margin that is wanted at every point. Where the ZMP of the motion is outside or too near an
+// edge, and for a while around this time, a repair wants the safe margin. Elsewhere it wants a
+// share of the own margin of the motion, but at most the safe margin. A step that begins with a
+// small margin does not become safe by a large margin at its end.
 std::vector<double> wanted_margins(const RowSite& site) {
   const auto& settings = site.settings.support;
   const double safe = std::max(settings.safe, settings.least);
@@ -113,12 +113,11 @@ Advice support_advice(const JudgedMotion&, const FindingWindow& window) {
   const Violation& v = window.worst;
   const std::string whose = v.item == kMotionZmp ? "the ZMP of the motion" : "the commanded ZMP";
   if (v.value < 0)
-    return {
-        whose + " is " + in_mm(v.value) +
-            " outside the support: reduce the displacement of the COG by this distance, or give "
-            "the step more time",
-        kOrRepair};
-  return whose + " is only " + in_mm(v.value) + " inside the support; the wanted margin is " +
+    return {whose + " is " + in_mm(v.value) +
+                " outside the support: reduce the displacement of the COG by this distance, or "
+                "give the step more time",
+            kOrRepair};
+  return whose + " is only " + in_mm(v.value) + " inside the support, but the wanted margin is " +
          in_mm(v.limit);
 }
 

@@ -265,8 +265,9 @@ void place_swing_rows(RowSite& site) {
 }
 
 Advice landing_advice(const JudgedMotion&, const FindingWindow& window) {
-  return "let the " + std::string(name_of(foot_of(window.worst))) + " foot come down slower than " +
-         text::fixed(window.worst.limit, 2) + " m/s: use a lower lift or a longer step";
+  return "let the " + std::string(name_of(foot_of(window.worst))) +
+         " foot come down more slowly than " + text::fixed(window.worst.limit, 2) +
+         " m/s: use a lower lift or a longer step";
 }
 
 }  // namespace
@@ -278,17 +279,19 @@ Eigen::Matrix<double, 5, 1> landing_offset(const RobotModel& model, Side side,
 
 const Limit& swing_foot_limit() {
   static const Limit limit = {
-      .findings = {{.kind = FindingKind::landing_speed,
-                    .limit_class = LimitClass::rate,
-                    .unit = "m/s",
-                    .tolerance = kLandingTolerance,
-                    .meaning = "speed of a sole into the ground as it lands; a warning",
-                    .figure = {.key = "max_landing_speed_m_s",
-                               .label = "largest speed of a landing sole",
-                               .unit = "m/s",
-                               .line = 16},
-                    .place = foot_place,
-                    .advice = landing_advice}},
+      .findings =
+          {{.kind = FindingKind::landing_speed,
+            .limit_class = LimitClass::rate,
+            .unit = "m/s",
+            .tolerance = kLandingTolerance,
+            .meaning =
+                "speed of a sole towards the ground when the sole lands; it gives only a warning",
+            .figure = {.key = "max_landing_speed_m_s",
+                       .label = "largest speed of a landing sole",
+                       .unit = "m/s",
+                       .line = 16},
+            .place = foot_place,
+            .advice = landing_advice}},
       .judge_motion = judge_landings,
       .place_rows = place_swing_rows};
   return limit;

@@ -114,9 +114,8 @@ const Limit& torsion_limit() {
                     .limit_class = LimitClass::force,
                     .unit = "1",
                     .tolerance = kWholeMoment,
-                    .meaning =
-                        "moment about the normal through the ZMP, as a share of what friction "
-                        "resists when the soles press evenly",
+                    .meaning = "moment about the ground normal through the ZMP, as a share of the "
+                               "moment that friction resists when the soles press evenly",
                     .figure = {.key = "max_yaw_ratio",
                                .label = "largest yaw moment",
                                .unit = "% of what friction resists",

@@ -36,7 +36,7 @@ int find_joint(const RobotModel& model, const std::string& joint, const std::str
            place + ": joint '" + joint + "' " +
                (each.mimic.empty() ? "does not move; remove the key"
                                    : "follows '" + each.mimic + "' (mimic); set '" + each.mimic +
-                                         "' in its place"));
+                                         "' in place of this joint"));
   fail(ErrorCode::bad_pattern, place + ": the robot '" + model.name() + "' has no joint '" + joint +
                                    "'" + text::suggestion(joint, model.dof_names()));
 }

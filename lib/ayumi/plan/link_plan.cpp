@@ -572,14 +572,15 @@ void LinkPlan::complain(const Group& group, double t, const std::vector<Aim>& ai
     remedy = "give a point nearer to straight ahead, or turn the torso";
   } else if (missing > 0) {
     what = "the " + target.name + " is out of reach by " + millimetres(missing);
-    remedy = "it comes to " + numbers(in_trunk ? Vector3d(trunk.inverse() * end) : end, 4) +
+    remedy = "it reaches only " + numbers(in_trunk ? Vector3d(trunk.inverse() * end) : end, 4) +
              in_frame + "; move the target, or move or tilt the trunk";
   } else {
     what = "the " + target.name + " is at its place but points " + degrees(angle) +
            " away from its direction (allowed " + degrees(kAligned) + ")";
-    remedy = "its " + std::to_string(target.dofs.size()) + " joints can point it along " +
+    remedy = "at this place, its " + std::to_string(target.dofs.size()) +
+             " joints allow the direction " +
              numbers(in_trunk ? Vector3d(trunk.linear().transpose() * along) : along, 3) +
-             in_frame + " there; give this direction or leave it out";
+             in_frame + "; give this direction, or leave the direction out";
   }
   throw PlacedError(
       ErrorCode::bad_pattern,

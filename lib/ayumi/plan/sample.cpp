@@ -25,9 +25,10 @@ int sample_count(const Pattern& pattern, double duration, double dt) {
     fail(ErrorCode::usage, "sampling step " + text::exact(dt) + " s must be above 0");
   const double steps = std::ceil(duration / dt - 1e-6);
   if (steps < 5 || steps > kMostSamples)
-    fail(ErrorCode::bad_pattern, in_file(pattern, "phases") + ": " + text::exact(duration) +
-                                     " s at a step of " + text::exact(dt) +
-                                     " s is less than 5 or more than 4e6 samples");
+    fail(ErrorCode::bad_pattern,
+         in_file(pattern, "phases") + ": " + text::exact(duration) + " s at a step of " +
+             text::exact(dt) +
+             " s gives fewer than 5 or more than 4e6 samples; choose another step");
   return static_cast<int>(steps) + 1;
 }
 

@@ -79,7 +79,7 @@ void refuse_viip_phases(const Pattern& pattern, const std::string& done) {
            place_of_phase(pattern, i) +
                ": the controller decides the motion of a phase with a goal, so the pattern cannot "
                "be " +
-               done + "; simulate it and use the tables of the run");
+               done + "; simulate the pattern, and use the tables of the run");
 }
 
 Pattern without_viip_phases(const Pattern& pattern) {
@@ -134,7 +134,7 @@ CommandSeries with_viip_phases(const RobotModel& model, const Pattern& pattern,
     const CommandSample& rests = cut.samples[static_cast<size_t>(std::max(0l, at - 1))];
     if (from.support != Support::both && rests.support != Support::both)
       fail(ErrorCode::bad_pattern,
-           place + "begins on one foot; let a phase with support both come before it");
+           place + "begins on one foot; put a phase with support \"both\" before this phase");
     const double z = from.cog.z() - from.zmp.z();
     const double limit = kAtRest * std::sqrt(kGravity * z);
     if (from.dcog.norm() > limit)

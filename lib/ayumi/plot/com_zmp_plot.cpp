@@ -355,7 +355,7 @@ std::string range_note(const std::vector<LociRun>& runs) {
   return std::string("The axes fit the command and ") +
          (std::all_of(runs.begin(), runs.end(), fell) ? "the time before the fall"
                                                       : "the runs that stand") +
-         "; the curves of a fall end at the edge of the axes. A cross marks the fall.";
+         ". The curves of a run that falls end at the edge of the axes. A cross marks the fall.";
 }
 
 void draw_named(Drawing& drawing, const Axes& axes, const PanelPlan& panel,
@@ -477,7 +477,7 @@ std::string leave_out_equal(std::vector<PanelPlan>& panels, const std::vector<Lo
   }
   if (names.empty() || kept.empty()) return "";
   panels = std::move(kept);
-  return "The same in all: " + text::join(names, ", ") + ".";
+  return "These values are equal in all runs: " + text::join(names, ", ") + ".";
 }
 
 /// A sentence in lines of at most that width.

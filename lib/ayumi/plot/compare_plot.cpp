@@ -93,7 +93,8 @@ Drawing draw_comparison(const Comparison& comparison, const std::string& title) 
   const double step = kCurveHeight + kErrorGap + kErrorHeight + kCurveGap;
   drawing.height = kComparedTop + step * static_cast<double>(shown.size()) + 20;
   drawing.title = title;
-  drawing.description = "Measured (black) over simulated (orange), and their difference (red)";
+  drawing.description =
+      "Measured (black), simulated (orange), and the difference between the two (red)";
   drawing.items.push_back(
       DrawnText{.position = {kComparedLeft, 24}, .text = title, .size = 16, .bold = true});
   drawing.items.push_back(DrawnText{

@@ -96,7 +96,7 @@ Drawing draw_gait_map(const GaitMap& map) {
   std::vector<std::string> below = {
       "in each cell: smallest distance of the ZMP from the edge of the support [mm]; up: speed "
       "forward [m/s]; left: speed to the left [m/s]",
-      "grey bar: transitions both ways; orange bar: one way alone"};
+      "grey bar: transitions in both directions; orange bar: a transition in one direction only"};
   for (const auto& [mark, text] : map.marks) below.push_back(std::string(1, mark) + ": " + text);
   below.insert(below.end(), map.remarks.begin(), map.remarks.end());
 

@@ -139,7 +139,7 @@ void draw_legend(Drawing& drawing, const PushMap& map, bool capped) {
   entry(map.baseline, kOpen, false);
   for (size_t i = 0; i < map.laws.size(); ++i) entry(map.laws[i], kLaws[i], false);
   std::string unit = "N s, through the COG";
-  if (capped) unit += "; hollow: the largest tried";
+  if (capped) unit += "; hollow point: the robot survives also the largest push that was tried";
   drawing.items.push_back(
       DrawnText{.position = {x, kHead - 24}, .text = unit, .size = 11, .color = kQuiet});
 }

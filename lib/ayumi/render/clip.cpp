@@ -37,7 +37,8 @@ void check(const RobotModel& model, const SimulationLog& log, const ClipOptions&
   if (options.ghost.log) {
     duration(*options.ghost.log);
     need(options.ghost.log->joints == log.joints,
-         "ghost: the other run has other joints, so it is a run of another robot");
+         "ghost: the other run has other joints, so it is a run of another robot; choose a run of "
+         "the same robot");
   }
   need(!options.ghost.command || log.samples.front().command_theta.size() == model.dof_count(),
        "ghost: the log does not hold the commanded posture; simulate again");
@@ -276,9 +277,9 @@ void write_folder(const fs::path& path, bool overwrite,
       parent / (path.filename().string() + ".part" + std::to_string(::getpid()));
   std::error_code error, ignored;
   if (!fs::create_directory(temporary, error))
-    fail(ErrorCode::bad_file, path.string() + ": cannot be written (" +
-                                  (error ? error.message() : temporary.string() + " is there") +
-                                  ")");
+    fail(ErrorCode::bad_file,
+         path.string() + ": cannot be written (" +
+             (error ? error.message() : temporary.string() + " already exists") + ")");
   try {
     produce(temporary);
     require_frame_folder(path, overwrite);
@@ -461,7 +462,7 @@ double ClipRenderer::write_legend(Image* image, int width, double top, double si
        {on.forces, "↑ foot force", kForce},
        {on.push && !pushes_.empty(), "→ push", kPush},
        {on.heat, "■ joint near a limit of angle, speed or torque", heat_color(0)},
-       {on.heat, "■ joint at it", heat_color(1)},
+       {on.heat, "■ joint at its limit", heat_color(1)},
        {ghost, "▒ " + (options_.ghost.command ? "command" : options_.ghost.name),
         Exposure{}.tint}}};
   const double margin = 0.6 * size, line = 1.7 * size;

@@ -115,8 +115,8 @@ void require_encoder(const std::string& program) {
     begin = end + 1;
   }
   fail(ErrorCode::bad_file, "the program '" + program +
-                                "', which makes the clip, is in no folder of PATH; install ffmpeg, "
-                                "or leave the pictures out");
+                                "', which makes the clip, is not in any folder of PATH; install "
+                                "ffmpeg, or do not ask for pictures");
 }
 
 ClipEncoder::ClipEncoder(const std::filesystem::path& path, int width, int height, double fps,
@@ -190,7 +190,7 @@ void ClipEncoder::fail_with_log() {
   const size_t line = words.size() > 400 ? words.find('\n', words.size() - 400) : std::string::npos;
   if (line != std::string::npos) words.erase(0, line + 1);
   fail(ErrorCode::bad_file, path_.string() + ": " + program_ + " could not write the clip: " +
-                                (words.empty() ? "it ended without a message" : words));
+                                (words.empty() ? "the program gave no reason" : words));
 }
 
 void ClipEncoder::add(const Image& frame) {

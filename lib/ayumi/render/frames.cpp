@@ -83,8 +83,9 @@ Frame frame_of(const std::string& name) {
 SimulationLog in_frame(const RobotModel& model, SimulationLog log, Frame frame) {
   if (!model.has_soles()) {
     if (frame == Frame::world) return log;
-    fail(ErrorCode::usage, "frame foot: the robot " + model.name() +
-                               " has no soles; state them in its sidecar, or take the frame world");
+    fail(ErrorCode::usage,
+         "frame foot: the robot " + model.name() +
+             " has no soles; state them in its sidecar, or choose the frame world");
   }
   Side side = Side::left;
   Isometry3d real = Isometry3d::Identity(), plan = real;
@@ -124,9 +125,8 @@ void require_level_ground(const SimulationLog& log, Frame frame) {
   if (!world.slope.isZero(0) || !world.blocks.empty() || !world.fields.empty() ||
       !world.patches.empty() || bump || floor_moves(log))
     fail(ErrorCode::usage,
-         "frame foot: the ground of this run is not a level plane at rest, so it would jump at "
-         "every "
-         "step of the robot in this frame; take the frame world");
+         "frame foot: the ground of this run is not a level plane at rest, so the ground would "
+         "jump at every step of the robot in this frame; choose the frame world");
 }
 
 }  // namespace ayumi

@@ -27,7 +27,7 @@ Nlp relaxed(const Nlp& nlp, const Slacks& slacks);
 Eigen::VectorXd unrelaxed_multipliers(const Nlp& nlp, const Slacks& slacks,
                                       const Eigen::VectorXd& multipliers);
 
-/// What a violation of rows costs beside the weighted change: `change` [s], in the measure of
+/// Cost of a violation of rows beside the weighted change: `change` [s], in the measure of
 /// weighted_change(), for every `unit` of the largest violation of one limit in a `window` [s].
 struct ViolationPrice {
   double unit = 0, change = 0, window = 0;

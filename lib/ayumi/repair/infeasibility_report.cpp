@@ -210,12 +210,12 @@ void solve_relaxed(RepairState& state) {
   note_work(state, relaxed, solution);
   state.result.constraint_violation = violation;
   state.relaxation_cut_short = solution.status == NlpStatus::iteration_limit;
-  // The motion nearby that violates least still violates a limit: nothing passes. A search that
-  // stopped before its end does not show this.
+  // If the nearby motion with the smallest violation still violates a limit, no motion passes. A
+  // search that stopped before its end does not show this.
   if (solution.status != NlpStatus::failed)
     state.status = state.relaxation_cut_short ? NlpStatus::iteration_limit : NlpStatus::infeasible;
   take(state, problem.track(solution.x.head(problem.variable_count())));
-  // A search that stopped before its end has errors of its own making: then those of the given
+  // A search that stopped before its end has made errors itself. Then the errors of the given
   // motion show what stands in the way.
   RepairResult& result = state.result;
   if (!state.relaxation_cut_short &&

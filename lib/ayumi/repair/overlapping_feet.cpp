@@ -77,7 +77,7 @@ std::string words_of(const OverlappingFeet& feet) {
   return "the " + came + " foot is planned to stand on the " + stood + " foot from " +
          text::fixed(feet.begin, 2) + " to " + text::fixed(feet.end, 2) +
          " s: their soles overlap by " + text::fixed(1000 * feet.depth, 0) +
-         " mm, and a repair moves no foothold; move the place of the " + came +
+         " mm, and a repair does not move footholds; move the foothold of the " + came +
          " foot, which is (" + text::fixed(feet.place.x(), 3) + ", " +
          text::fixed(feet.place.y(), 3) + ") m, away from " + "the " + stood + " foot";
 }

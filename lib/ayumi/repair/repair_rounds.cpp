@@ -27,7 +27,7 @@ struct RoundMemory {
   std::set<FoundAt> errors = {};             // left by the last round where it was solved
 };
 
-// A motion whose margin the check only warns of is repaired too, if it is repaired at all.
+// If a motion is repaired at all, a margin that is only a warning is repaired too.
 bool has_full_margin(const ConsistencyReport& report) {
   return std::none_of(report.findings.begin(), report.findings.end(), [](const Finding& f) {
     return spec_of(f.kind).repair.warnings_too && f.severity == Severity::warning;
@@ -74,8 +74,8 @@ void increase_backoff(CorrectionSpec& spec, int round) {
   spec.limit_share -= policy::kBackoffStep.limit_share;
 }
 
-// Where an error outlasts the points that were added for it, or no solution is found, the knots are
-// too far apart: soles in their places ask for more than a coarse spline can follow.
+// If an error remains although points were added for it, or if no solution is found, the knots are
+// too far apart: a sole that has to stay in its place needs a finer spline.
 void refine_knots(RepairState& state, RoundMemory& memory) {
   if (state.result.check.consistent) return;
   const bool solved = state.status == NlpStatus::solved;

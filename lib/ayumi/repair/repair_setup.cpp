@@ -212,7 +212,8 @@ bool locked_out(const CorrectionSpec& spec, const ConsistencyReport& report) {
   return false;
 }
 
-// The finding of a mean over many samples at an end is no fault of the posture there.
+// A finding that is a mean over many samples is not an error of the posture at the end of the
+// motion.
 std::array<bool, 2> faulty_ends(const ConsistencyReport& report, double duration, double spacing) {
   std::array<bool, 2> ends = {};
   for (const Finding& f : report.findings) {

@@ -84,8 +84,8 @@ void note_work(RepairState& state, const Nlp& nlp, const NlpSolution& solution) 
 
 namespace {
 
-// Whether the next program starts at this result. Bodies that have met are hard to part again, so
-// that an unsolved program whose result has them meet is no start.
+// Whether the next program starts at this result. Bodies that overlap are hard to separate again,
+// so the overlapping result of an unsolved program is not used as a start.
 bool is_next_start(const RepairState& state, double violation) {
   if (state.status == NlpStatus::solved) return true;
   return state.status == NlpStatus::iteration_limit && violation < policy::rounds::kNearlyMet &&
@@ -118,8 +118,8 @@ VectorXd kept_multipliers(const RepairState& state) {
   return multipliers;
 }
 
-// The start of a program: a warm one is near its solution, and known where multipliers of the last
-// program go with it.
+// The start of a program. A warm start is near the solution. It is also known if the multipliers of
+// the last program come with it.
 struct Start {
   bool warm = false, known = false;
 };

@@ -106,7 +106,7 @@ std::string snapshots_section(const RobotModel& model, const ReportInput& input)
       "snapshots", "Snapshots",
       "<figure>" +
           picture(strip, "Eight snapshots of the " + html::name_of(input.runs.back()) +
-                             ": its pushes, its extreme postures, and what is between them") +
+                             ": the pushes, the extreme postures, and postures between them") +
           "</figure>\n");
 }
 
@@ -182,8 +182,8 @@ std::string page(const RobotModel& model, const ReportInput& input, const Pieces
     const ReplayData data = make_replay(model, input, plan.replay);
     scene += controls(data, plan.replay.rate) +
              "<p id=\"replay-state\" class=\"soft\" role=\"status\"></p>\n"
-             "<noscript><p class=\"soft\">With JavaScript the picture becomes a replay.</p>"
-             "</noscript>\n";
+             "<noscript><p class=\"soft\">If JavaScript is on, this picture becomes a "
+             "replay.</p></noscript>\n";
     script = data_element("replay-config", "application/json", data.config) +
              data_element("replay-series", "text/plain", html::base64(data.series)) +
              data_element("replay-scenery", "text/plain", html::base64(data.scenery)) +
@@ -232,9 +232,11 @@ std::vector<std::string> caps_of(const Plan& plan, const ReportOptions& options,
                    " postures per second and interpolates between them");
   const std::string size = size_words(options);
   if (!plan.with_replay && no_replay.empty())
-    caps.push_back("no replay: with it the page would be larger than " + size);
+    caps.push_back("there is no replay, because with a replay the page would be larger than " +
+                   size);
   if (!plan.with_snapshots)
-    caps.push_back("no snapshots: with them the page would be larger than " + size);
+    caps.push_back("there are no snapshots, because with snapshots the page would be larger than " +
+                   size);
   return caps;
 }
 
@@ -256,10 +258,11 @@ Report make_report(const RobotModel& model, const ReportInput& as_logged,
   const double last = duration(*input.runs.back().log);
   Plan plan;
   plan.with_replay = options.replay && has_replay();
-  const std::string no_replay = plan.with_replay ? ""
-                                : !options.replay
-                                    ? "no replay, as asked for"
-                                    : "no replay: the program was built without npm and three.js";
+  const std::string no_replay =
+      plan.with_replay ? ""
+      : !options.replay
+          ? "there is no replay, because it was not wanted"
+          : "there is no replay, because the program was built without npm and three.js";
   plan.replay.rate = std::min(options.rate, kMostKeys / std::max(1e-9, last));
   plan.replay.triangles = options.max_triangles;
   report(progress, {"report", 0.0, "loci"});

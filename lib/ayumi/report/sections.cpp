@@ -85,9 +85,9 @@ std::string export_words(const ExportNote& note, bool good) {
 std::string source_of_tables(const SimulationLog& log) {
   if (log.scenario.empty()) return "";
   return "<p>The tables <code>reference.csv</code> and <code>hoap.csv</code> are from the run "
-         "without the disturbances, which this page does not show. "
-         "<code>reference_pushed.csv</code> is from the disturbed run and contains the reactions "
-         "to the disturbances: it is not for a robot.</p>\n";
+         "without disturbances. This page does not show that run. "
+         "<code>reference_pushed.csv</code> is from the disturbed run. It contains the reactions "
+         "to the disturbances, so it is not for a robot.</p>\n";
 }
 
 std::string margin(double metres) {
@@ -231,15 +231,17 @@ std::string findings_section(const ReportInput& input) {
   if (!input.results.check) return "";
   const ConsistencyReport& check = *input.results.check;
   std::string out = "<p>Judged against the actuators " + escaped(check.profile) + ".</p>\n";
-  out += check.findings.empty() ? "<p>The check found nothing.</p>\n" : table(finding_table(check));
+  out +=
+      check.findings.empty() ? "<p>The check has no findings.</p>\n" : table(finding_table(check));
   return section("findings", "Findings", out + table(summary_table(check.summary)));
 }
 
 std::string thresholds_section(const ReportInput& input) {
   if (input.thresholds.empty()) return "";
   Table rows = {
-      "Largest survivable impulse of 20 ms through the COG. The bound is what a point mass "
-      "on the planned footholds could absorb; + means that the study's largest push was survived.",
+      "Largest survivable impulse of 20 ms through the COG. The bound is the impulse that a point "
+      "mass on the planned footholds could absorb; + means that the robot survives also the "
+      "largest push of the study.",
       {"phase", "at [s]", "towards [deg]", "law", "impulse [N s]", "open loop [N s]", "bound [N s]",
        "share of the bound"},
       {}};
@@ -260,9 +262,9 @@ std::string comparison_section(const ReportInput& input) {
   if (!input.comparison) return "";
   const Comparison& found = *input.comparison;
   constexpr double kDegree = M_PI / 180;
-  Table rows = {"Measured values beside the run. The recording begins " +
+  Table rows = {"Differences between the recording and the run. The recording begins " +
                     text::fixed(found.shift, 3) + " s after the run.",
-                {"curve", "mean", "largest", "at [s]", "behind [ms]", "correlation"},
+                {"curve", "mean", "largest", "at [s]", "measured later by [ms]", "correlation"},
                 {}};
   for (const auto* curves : {&found.joints, &found.loads, &found.imu})
     for (const ComparedCurve& curve : *curves) {

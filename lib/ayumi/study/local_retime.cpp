@@ -170,8 +170,9 @@ class LocalSearch {
       if (found.x.empty()) {
         const std::string broken = limits_->broken_at(found.stuck);
         const double at = points[static_cast<size_t>(found.stuck)].at / result_.path_scale;
-        result_.limited_by = "at " + text::fixed(at, 3) + " s no pace keeps all limits" +
-                             (broken.empty() ? "" : "; standing still breaks: " + broken);
+        result_.limited_by = "at " + text::fixed(at, 3) +
+                             " s, the limits cannot all be kept at any pace" +
+                             (broken.empty() ? "" : "; even a robot at rest violates: " + broken);
         return std::nullopt;
       }
       timing_.x = std::move(found.x);

@@ -87,8 +87,8 @@ UncertainTask::UncertainTask(const RobotModel& model, const CommandSeries& serie
       add_value(push.name + ": " + kPushParts[part], *parts[part], {}, static_cast<int>(i));
     if (push.bounds && !series.viip.empty())
       refuse(push.size.place,
-             "the pattern has VIIP goals and so no planned footholds from which the capture bound "
-             "follows; give the size in N s");
+             "the pattern has VIIP goals, so it has no planned footholds, and the capture bound is "
+             "not known; give the size in N s");
     if (push.phases && phases_.empty()) {
       for (const PushPhase& phase : default_push_phases(model, series, options_))
         if (!phase.standing) phases_.push_back(phase);
@@ -124,10 +124,12 @@ void UncertainTask::add_quantity(const UncertainQuantity& q) {
   using Target = UncertainKindInfo::Target;
   const Target target = info(q.kind).target;
   if (q.kind == UncertainKind::sensor_noise && !has_noise(model_->description().sensors))
-    refuse(q.place, "nothing uses this quantity: the sensors of " + model_->name() +
-                        " have no noise in the sidecar");
+    refuse(q.place, "this quantity has no effect: the sensors of " + model_->name() +
+                        " have no noise in the sidecar; state their noise, or remove the quantity");
   if (q.kind == UncertainKind::bumps && !options_.world.fields.empty())
-    refuse(q.place, "the ground of the pattern has a height field already");
+    refuse(
+        q.place,
+        "the ground of the pattern already has a height field; remove that field or this quantity");
   if (target == Target::none) return add_value(q.name, q, {}, -1);
   std::vector<int> found;
   std::vector<std::string> names;
@@ -152,7 +154,7 @@ void UncertainTask::add_quantity(const UncertainQuantity& q) {
     }
   }
   if (found.empty())
-    refuse(q.place, "nothing uses this quantity: " + model_->name() +
+    refuse(q.place, "this quantity has no effect: " + model_->name() +
                         (target == Target::link ? " has no link with a mass" : " has no servo") +
                         " '" + q.on + "'" + text::suggestion(q.on, names));
   if (!q.each) return add_value(q.name, q, found, -1);

@@ -46,7 +46,8 @@ std::vector<std::string> findings_under_scenario(const Task& task, const CheckOp
     const auto first = std::find_if(report.findings.begin(), report.findings.end(), is_new);
     const auto count = std::count_if(report.findings.begin(), report.findings.end(), is_new);
     std::string words =
-        words_of({d}) + " is a disturbance, which the verdict leaves out; with it, ";
+        words_of({d}) +
+        " is a disturbance, and the verdict is without disturbances. With this disturbance, ";
     if (first == report.findings.end())
       words += "check finds no other error";
     else

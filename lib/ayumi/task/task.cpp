@@ -170,7 +170,7 @@ std::string refusal_of_goals() {
 
 std::string refusal_of_disturbances(const std::string& disturbances) {
   return "the table is from a run with disturbances (" + disturbances +
-         ") and contains the reactions to them; --pushed exports it nevertheless";
+         ") and contains the reactions to them; --pushed exports this table nevertheless";
 }
 
 std::vector<std::string> export_refusals(const Task& task, const Judgement& judgement) {

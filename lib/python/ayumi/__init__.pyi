@@ -105,7 +105,7 @@ class Event:
 
     @property
     def text(self) -> str:
-        """In words."""
+        """Description in words."""
 
 class Finding:
     """One thing that the check says about a motion."""
@@ -132,7 +132,7 @@ class Finding:
 
     @property
     def worst(self) -> float:
-        """Value there, in `unit`."""
+        """Value at this time, in `unit`."""
 
     @property
     def limit(self) -> float:
@@ -155,7 +155,7 @@ class GainStudy:
 
     @property
     def omega(self) -> float:
-        """Of the pendulum [1/s]."""
+        """Natural frequency of the pendulum [1/s]."""
 
     @property
     def gains(self) -> dict[str, float]:
@@ -171,7 +171,7 @@ class GainStudy:
 
     @property
     def decay(self) -> float:
-        """Of the slowest mode [1/s]; negative when it grows."""
+        """Decay rate of the slowest mode [1/s]; negative when the mode grows."""
 
     @property
     def largest_ka(self) -> float:
@@ -229,11 +229,11 @@ class Log:
 
     @property
     def final_cog_error(self) -> float:
-        """Of the COG relative to the feet, horizontal [m]."""
+        """Horizontal error of the COG relative to the feet at the end [m]."""
 
     @property
     def zmp_tracking_rms(self) -> float:
-        """Measured ZMP against reference ZMP [m]."""
+        """Root mean square of the distance from the measured ZMP to the reference ZMP [m]."""
 
     @property
     def max_torque_ratio(self) -> float:
@@ -245,7 +245,7 @@ class Log:
 
     @property
     def events(self) -> list[Event]:
-        """What happened, by time."""
+        """Events of the run, in the order of time."""
 
     @property
     def controller(self) -> Optional[str]:
@@ -314,7 +314,7 @@ class Pattern:
 
     @property
     def file(self) -> str:
-        """File that it was read from; '' for none."""
+        """File from which the pattern was read; '' if there is none."""
 
     @property
     def parameters(self) -> dict[str, float]:
@@ -351,7 +351,7 @@ class Plant:
         """Puts the robot in this state and forgets the contacts."""
 
     def step(self, targets: numpy.ndarray, input: StepInput, dt: float) -> StepReport:
-        """Advances by `dt` [s] with the servo targets [rad, m], shape (dof,), held."""
+        """Advances by `dt` [s]. The servo targets [rad, m], shape (dof,), are held during this time."""
 
 class PushCase:
     """The limits of one phase and direction."""
@@ -370,7 +370,7 @@ class PushCase:
 
     @property
     def direction(self) -> float:
-        """Of the push, from forward anticlockwise [rad]."""
+        """Direction of the push, counted anticlockwise from forward [rad]."""
 
     @property
     def bound(self) -> float:
@@ -393,7 +393,7 @@ class PushStudy:
 
     @property
     def cases(self) -> list[PushCase]:
-        """Phase by phase, in each direction by direction."""
+        """Cases in the order of the phases, and in each phase in the order of the directions."""
 
     @property
     def controllers(self) -> list[str]:
@@ -435,7 +435,7 @@ class Repair:
 
     @property
     def at(self) -> float:
-        """The time at which it did [s]."""
+        """The time at which this joint moved most [s]."""
 
     @property
     def iterations(self) -> int:
@@ -540,7 +540,7 @@ class SafeTable:
 
     @property
     def table(self) -> Table:
-        """Ramp, motion and hold."""
+        """The table with ramp, motion and hold."""
 
     @property
     def safe(self) -> bool:
@@ -548,7 +548,7 @@ class SafeTable:
 
     @property
     def violations(self) -> list[str]:
-        """Why it may not, in words."""
+        """Why the robot may not receive the table, in words."""
 
     def to_dict(self) -> Any:
         """All figures of the judgement."""
@@ -625,14 +625,14 @@ class StepInput:
         """Friction coefficient of the whole ground in place of that of the world; None: that of the world."""
 
 class StepReport:
-    """Forces of a step, means over its duration."""
+    """Forces of a step, as means over the duration of the step."""
 
     def __init__(self, torque: numpy.ndarray, left: list[SoleForce], right: list[SoleForce], body_contact: bool = False) -> None:
         ...
 
     @property
     def torque(self) -> numpy.ndarray:
-        """Of the servos [N m, N], shape (dof,)."""
+        """Torques of the servos [N m, N], shape (dof,)."""
 
     @property
     def left(self) -> list[SoleForce]:
@@ -728,11 +728,11 @@ class TuneFigures:
 
     @property
     def recovery(self) -> float:
-        """Part of the pushes that are survived."""
+        """Part of the objective from the pushes that the robot survives."""
 
     @property
     def unpushed(self) -> float:
-        """Part of the run without a push."""
+        """Part of the objective from the run without a push."""
 
     @property
     def falls(self) -> int:
@@ -889,7 +889,7 @@ def read_table(path: Union[str, PathLike[str]]) -> Table:
     """Reads a table that Ayumi wrote, CSV or JSON."""
 
 def repair(task: Task, *, lock_joints: list[str] = [], lock_feet: list[str] = [], lock_windows: list[tuple[float, float]] = [], weights: dict[str, float] = {}, trust: Optional[str] = None, safety: Optional[float] = None, zmp_margin: Optional[float] = None, max_iterations: Optional[int] = None, progress: Optional[Callable[[str, float, str], Any]] = None) -> Repair:
-    """The nearest consistent motion. Locked joints, feet ('left', 'right') and windows (begin, end) [s] do not move; `weights` are factors on the cost of a joint; `trust` is 'posture', 'cog' or 'zmp'; `zmp_margin` [m] is the wanted distance of the ZMP from the edge. What is not given is the pattern's own preference."""
+    """The nearest consistent motion. Locked joints, feet ('left', 'right') and windows (begin, end) [s] do not move; `weights` are factors on the cost of a joint; `trust` is 'posture', 'cog' or 'zmp'; `zmp_margin` [m] is the wanted distance of the ZMP from the edge. An argument that is not given has the value in the pattern."""
 
 def retimed(robot: Robot, pattern: Pattern, scale: float) -> Pattern:
     """The pattern with all times multiplied by `scale`."""
@@ -925,7 +925,7 @@ def tune(task: Task, *, start: dict[str, float] = {}, times: list[float] = [], d
     """Searches for better gains of DTAD. `start`: gains to begin with; `times` of the pushes [s]; `level` of a push in capture bounds; `gains`: names of those that are changed."""
 
 def walk_pattern(robot: Robot, *, steps: Optional[int] = None, stride: Optional[float] = None, period: Optional[float] = None, double_support: Optional[float] = None, lift: Optional[float] = None, cog_height: Optional[float] = None, turn: Optional[float] = None, side: Optional[float] = None, rise: Optional[float] = None) -> Pattern:
-    """A walk from rest to rest. stride, lift, cog_height, side and rise (of a stair) in m, period in s, double_support as a share of the period, turn in rad per step, left positive. What is not given follows from the size of the robot."""
+    """A walk from rest to rest. stride, lift, cog_height, side and rise (of a stair) in m, period in s, double_support as a share of the period, turn in rad per step, left positive. Arguments that are not given follow from the size of the robot."""
 
 def write_clip(robot: Robot, log: Log, path: Union[str, PathLike[str]], *, width: int = 1280, height: int = 720, view: str = 'iso', fps: float = 30.0, speed: float = 1.0, title: str = '', threads: int = 1, progress: Optional[Callable[[str, float, str], Any]] = None) -> int:
     """Writes the run as a film (.mp4, .webm, .gif); needs the program ffmpeg. Returns the number of frames."""

@@ -63,8 +63,8 @@ Isometry3d stand(const Feet& feet) {
 void require_stand(const Pattern& pattern, const CommandSample& sample, const char* when) {
   if (sample.support != Support::both)
     fail(ErrorCode::bad_pattern, in_file(pattern, std::string(when)) +
-                                     ": both feet must be on the ground there, so that another "
-                                     "motion can follow");
+                                     ": only a motion with both feet on the ground here can be "
+                                     "joined to another motion; let both feet stand here");
 }
 
 RobotState moved(const Isometry3d& shift, const RobotState& state) {
@@ -146,7 +146,8 @@ std::vector<RobotState> transition(const RobotModel& model, const RobotState& fr
       if (!legs.solves(i)) state.theta[i] = (1 - s) * from.theta[i] + s * to.theta[i];
     if (!legs.solve(target, state, data).reached)
       fail(ErrorCode::bad_pattern,
-           "the legs do not reach from one posture to the other with both feet where they are");
+           "no transition is possible, because the legs cannot go from one posture to the other "
+           "while both feet stay in place; choose postures that are closer to each other");
     states.push_back(state);
   }
   return states;
@@ -179,7 +180,8 @@ void require_same_stand(const Pattern& second, const Feet& last, const Feet& fir
     fail(ErrorCode::bad_pattern,
          in_file(second, "start") + ": its feet stand " + text::fixed(1000 * distance, 1) +
              " mm from where the feet are at the end of the first motion; limit " +
-             text::fixed(1000 * kSamePlace, 1) + " mm; let one motion end where the other begins");
+             text::fixed(1000 * kSamePlace, 1) +
+             " mm; let the first motion end in the stance in which the second begins");
   }
 }
 
@@ -210,8 +212,9 @@ Pattern joined(const RobotModel& model, const MotionPart& first, const MotionPar
                double over, const std::string& table) {
   const CommandSeries &a = first.series, &b = second.series;
   if (std::abs(a.dt - b.dt) > 1e-12)
-    fail(ErrorCode::usage, "motions of " + text::exact(a.dt) + " and " + text::exact(b.dt) +
-                               " s per sample cannot be joined");
+    fail(ErrorCode::usage, "motions with sampling steps of " + text::exact(a.dt) + " and " +
+                               text::exact(b.dt) +
+                               " s cannot be joined; sample both with the same step");
   require_stand(first.pattern, a.samples.back(), "end");
   require_stand(second.pattern, b.samples.front(), "start");
   const Feet last = soles_of(model, a.samples.back().state);
@@ -334,8 +337,8 @@ void require_keys(const KeyedTracks& part) {
 void require_same_tracks(const KeyedTracks& a, const KeyedTracks& b) {
   const auto stop = [&](const std::string& what) {
     fail(ErrorCode::bad_pattern,
-         in_file(b.pattern, "keyframes") + ": only one of the motions has " + what +
-             "; keys of both motions are kept only where both have this or neither has it");
+         in_file(b.pattern, "keyframes") + ": only one of the two motions has " + what +
+             "; the keys are kept only if both motions have this, or none of them");
   };
   if (a.tracks.zmp.has_value() != b.tracks.zmp.has_value()) stop("keys of the ZMP");
   for (const size_t axis : {0, 1})
@@ -343,7 +346,7 @@ void require_same_tracks(const KeyedTracks& a, const KeyedTracks& b) {
       stop("keys of the COG's place");
   if (a.pattern.full_model != b.pattern.full_model) stop("the COG of a point mass");
   if (a.tracks.torso.has_value() != b.tracks.torso.has_value() && (a.turns() || b.turns()))
-    stop("keys of the trunk, which otherwise turns with the feet, and the feet turn here");
+    stop("keys of the trunk, and the feet turn (a trunk without keys turns with the feet)");
 }
 
 // Keyframes of the second pattern as they read in the first one.

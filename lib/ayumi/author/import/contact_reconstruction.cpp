@@ -92,9 +92,10 @@ class Grounding {
     }
     std::vector<std::string> result;
     if (floats > kSaid || sinks > kSaid)
-      result.push_back("while they carry the robot, soles float by up to " + millimetres(floats) +
-                       " and sink by up to " + millimetres(sinks) +
-                       " (--ground moves the robot up and down so that they do not)");
+      result.push_back(
+          "while they carry the robot, soles float by up to " + millimetres(floats) +
+          " and sink by up to " + millimetres(sinks) +
+          " (--ground moves the robot up and down, so that the supporting soles touch the ground)");
     if (slides > kSaid)
       result.push_back("while they carry the robot, soles slide by up to " + millimetres(slides));
     constexpr size_t kMost = 6;  // Chosen: a line that a person still reads
@@ -104,8 +105,8 @@ class Grounding {
       result.push_back("no sole rests on the ground for " + text::brief(flight, 3) + " s (" +
                        text::join(flights, ", ") +
                        (more > 0 ? " and " + std::to_string(more) + " more" : std::string()) +
-                       "): this is taken as flight (--contact-height and --contact-speed set when "
-                       "a sole counts as resting)");
+                       "). This time is taken as flight. --contact-height and --contact-speed "
+                       "decide when a sole counts as resting");
     return result;
   }
 
@@ -244,8 +245,8 @@ void require_motion(const RobotModel& model, const RawMotion& motion) {
                                    ": the robot has no soles; add the left and the right sole to "
                                    "\"soles\" in its sidecar");
   if (motion.theta.rows() < 6)
-    fail(ErrorCode::bad_pattern,
-         "a motion of " + std::to_string(motion.theta.rows()) + " rows; at least 6 are needed");
+    fail(ErrorCode::bad_pattern, "a motion of " + std::to_string(motion.theta.rows()) +
+                                     " rows is too short; at least 6 rows are needed");
 }
 
 // ---- Ends that were cut
@@ -364,13 +365,14 @@ CutEnds cut_ends(const RobotModel& model, const RawMotion& motion) {
   cut.begin = !first.empty();
   cut.end = !last.empty();
   const std::string peak =
-      ", so its torques have a peak at this time; --ramp S, such as 0.5, lets the motion ";
+      ", so the torques have a peak at this time. --ramp S, such as 0.5, lets the motion ";
   if (cut.begin)
     cut.words.push_back("the recording begins while the robot moves (" + first +
-                        "); a robot that plays it starts from rest" + peak + "begin slowly");
+                        "). A robot that plays the recording starts from rest" + peak +
+                        "begin slowly");
   if (cut.end)
     cut.words.push_back("the recording ends while the robot moves (" + last +
-                        "); a robot that plays it stops at once" + peak + "end slowly");
+                        "). A robot that plays the recording stops at once" + peak + "end slowly");
   return cut;
 }
 

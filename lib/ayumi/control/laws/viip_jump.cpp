@@ -193,7 +193,8 @@ ViipJump::ViipJump(const RobotModel& model, const ActuatorLimits& limits, const 
     fail(ErrorCode::bad_pattern,
          "jump: with the release 'spring' the stoop must be less than twice the height of " +
              text::brief(goal.height) + " m; with a stoop of " + text::brief(goal.stoop) +
-             " m, f_z would never be zero; change one of them or set the release to 'ref_z'");
+             " m, f_z would never be zero; choose a smaller stoop or a larger height, or set the "
+             "release to 'ref_z'");
   offset_ = held.cog.head<2>() - middle_of_soles(model, held.feet);
   plan_.feet = start.plan.feet;
   plan_.support = Support::both;

@@ -23,15 +23,17 @@ class BodyMotionReader {
     if (const YamlNode* version = root_.find("format_version", "formatVersion"))
       version_ = source_.number(version->text, line_of(*version), "format_version");
     if (version_ < 1 || version_ >= kNewestVersion + 1)
-      source_.refuse(static_cast<size_t>(root_.line),
-                     "format version " + text::brief(version_) + "; versions 1 to 4 are read");
+      source_.refuse(
+          static_cast<size_t>(root_.line),
+          "format version " + text::brief(version_) + " is unknown; Ayumi reads versions 1 to 4");
     motion_.rate = number_of(root_, "frame_rate", "frameRate", 0);
     const YamlNode* components = root_.find("components");
     if (!components || !components->is_list())
       source_.refuse(line_of(root_), "`components` is missing");
     for (const YamlNode& component : components->items) read_component(component);
     if (motion_.values.size() == 0)
-      source_.refuse(line_of(root_), "there is no sequence of joint angles (JointDisplacement)");
+      source_.refuse(line_of(root_),
+                     "there is no sequence of joint angles (JointDisplacement); add one");
     if (!(motion_.rate > 0)) {
       motion_.rate = 100;  // Definition: what Choreonoid takes where the file states none
       motion_.notes.push_back("frame rate: 100 per second, because the file states none");
@@ -70,7 +72,8 @@ class BodyMotionReader {
     if (rate > 0) {
       if (motion_.rate > 0 && rate != motion_.rate)
         source_.refuse(line_of(component), "the sequence '" + content + "' has " +
-                                               text::brief(rate) + " frames per second, another " +
+                                               text::brief(rate) +
+                                               " frames per second, but another sequence has " +
                                                text::brief(motion_.rate));
       motion_.rate = rate;
     }
@@ -172,9 +175,9 @@ class BodyMotionReader {
         base.attitude = scalar_last ? Eigen::Quaterniond(row[6], row[3], row[4], row[5])
                                     : Eigen::Quaterniond(row[3], row[4], row[5], row[6]);
         if (!(std::abs(base.attitude.norm() - 1) < kUnitQuaternion))
-          source_.refuse(
-              line_of(frames.items[k]),
-              "a quaternion of length " + text::brief(base.attitude.norm()) + "; 1 is needed");
+          source_.refuse(line_of(frames.items[k]), "the quaternion has length " +
+                                                       text::brief(base.attitude.norm()) +
+                                                       ", but 1 is needed");
       }
       motion_.base.push_back(base);
     }

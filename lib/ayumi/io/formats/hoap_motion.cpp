@@ -105,7 +105,7 @@ void apply_signs(const RobotModel& model, bool encoder_signs, Eigen::MatrixXd& t
   if (beyond.size() > beyond_limits(model, other).size())
     notes.push_back("with these signs, angles of " + text::join(beyond, ", ") +
                     " exceed the position limits; with --signs " +
-                    (encoder_signs ? "joint" : "encoder") + " fewer joints do");
+                    (encoder_signs ? "joint" : "encoder") + " fewer joints exceed them");
 }
 
 }  // namespace
@@ -144,7 +144,7 @@ MotionFile read_hoap_motion(const MotionInput& source) {
   motion.rate = 1 / dt;
   if (!sequence.even)
     motion.notes.push_back(
-        "the intervals change, so the rows are interpolated linearly, one every " +
+        "the intervals change, so the rows are interpolated linearly, with one row every " +
         std::to_string(sequence.tick_ms) + " ms");
   if (sequence.general_commands > 0)
     motion.notes.push_back(

@@ -80,7 +80,7 @@ std::string recognize_hrpsys(const MotionInput& source) {
       return "";
     if (line.find(',') != std::string_view::npos)
       return line.find(", ") == std::string_view::npos
-                 ? "rows of numbers with decimal commas between blanks"
+                 ? "its rows are numbers with decimal commas, with blanks between them"
                  : "";
     double time = 0;
     std::from_chars(line.data(), line.data() + line.size(), time);
@@ -88,7 +88,8 @@ std::string recognize_hrpsys(const MotionInput& source) {
     before = time;
     ++rows;
   }
-  return "rows of numbers between blanks, of which the first increases as a time does";
+  return "its rows are numbers with blanks between them, and the first number increases like a "
+         "time";
 }
 
 MotionFile read_hrpsys(const MotionInput& source) {

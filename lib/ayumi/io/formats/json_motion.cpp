@@ -60,7 +60,7 @@ BasePose frame_root(const MotionInput& source, const std::vector<double>& row, s
   if (!(std::abs(base.attitude.norm() - 1) < kUnitQuaternion))
     source.refuse(0, "Frames: frame " + std::to_string(k + 1) +
                          ": the quaternion of the root has length " +
-                         text::brief(base.attitude.norm()) + ", 1 is needed");
+                         text::brief(base.attitude.norm()) + ", but 1 is needed");
   return base;
 }
 

@@ -60,7 +60,7 @@ MotionFile read_motion_csv(const MotionInput& source) {
     const Eigen::Quaterniond q(row[6], row[3], row[4], row[5]);
     if (!(std::abs(q.norm() - 1) < kUnitQuaternion))
       source.refuse(table.lines[k], "the quaternion in columns 4 to 7 has length " +
-                                        text::brief(q.norm()) + ", 1 is needed");
+                                        text::brief(q.norm()) + ", but 1 is needed");
     motion.base.push_back({{row[0], row[1], row[2]}, q});
     for (size_t i = kRootColumns; i < width; ++i)
       motion.values(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i - kRootColumns)) =

@@ -176,7 +176,7 @@ const MotionFormat& format_of(const std::string& bytes, MotionInput& source,
   result.format = format->name;
   if (!format->binary && !text) {
     const size_t at = bytes.find('\0');
-    source.refuse(line_at(bytes, at), "is a binary file, text is needed");
+    source.refuse(line_at(bytes, at), "is a binary file, but text is needed");
   }
   if (!format->binary) refuse_other_encodings(source);
   return *format;
@@ -191,8 +191,8 @@ MotionFile read_file_of(const std::string& bytes, const std::string& file, const
   MotionFile motion = format->read(source);
   if (format->name == "hoap" && !motion.sequence.empty()) motion.sequence = bytes;
   if (static_cast<size_t>(motion.rows()) > kMostRows)
-    source.refuse(0, std::to_string(motion.rows()) + " rows; at most " + std::to_string(kMostRows) +
-                         " are read, so cut the file or leave out rows");
+    source.refuse(0, std::to_string(motion.rows()) + " rows are too many; Ayumi reads at most " +
+                         std::to_string(kMostRows) + "; cut the file or leave out rows");
   if (!options.motion.empty() && !motion.chosen)
     motion.notes.push_back("--motion is not used, because the file has one motion");
   if (!format->binary && may_be_cut(source.bytes))
@@ -429,12 +429,11 @@ std::vector<double> times_of(const MotionFile& motion, const ImportOptions& opti
                       text::brief(motion.rate) + " rows per second");
     const double rate = motion.rate > 0 ? motion.rate : options.rate;
     if (!(rate > 0))
-      fail(
-          ErrorCode::bad_file,
-          file +
-              ": the format does not hold the rate of its rows; give --rate HZ (LAFAN1 for Unitree "
-              "G1 has 30 rows per second), because with a rate that is too high by a factor, all "
-              "speeds are too high by this factor, and all accelerations by its square");
+      fail(ErrorCode::bad_file,
+           file +
+               ": this format does not state how many rows a second has; give --rate HZ (LAFAN1 "
+               "for Unitree G1 has 30 rows per second). A rate that is twice too high makes all "
+               "speeds twice and all accelerations four times too high");
     for (size_t k = 0; k < rows; ++k) times.push_back(static_cast<double>(k) / rate);
     return times;
   }
@@ -470,16 +469,16 @@ Rows even_rows(const MotionFile& motion, const Rows& rows, const ImportOptions& 
   const double last = times.back() / dt;
   if (last > static_cast<double>(kMostRows))
     fail(ErrorCode::bad_file, file + ": the motion lasts " + text::brief(times.back()) +
-                                  " s, more than is read; cut the file");
+                                  " s, which is longer than Ayumi reads; cut the file");
   const Eigen::Index count =
       spacing.even && !keys ? rows.rows() : static_cast<Eigen::Index>(std::floor(last + 1e-3)) + 1;
   if (keys)
     notes.push_back(text::counted(rows.rows(), "key posture") +
-                    "; between them, angles follow monotone cubics, one row every " +
+                    "; between these, the angles follow monotone cubics, with one row every " +
                     text::brief(1000 * dt) + " ms");
   else if (!spacing.even)
     notes.push_back(
-        "the rows are not evenly spaced, so they are interpolated linearly, one every " +
+        "the rows are not evenly spaced, so they are interpolated linearly, with one row every " +
         text::brief(dt) + " s");
   if (unset && !keys) notes.push_back("values that are not set in a row are interpolated linearly");
   if (spacing.even && !keys && !unset) return rows;

@@ -91,7 +91,8 @@ NpyArray array_of(const std::string& bytes, const std::string& place) {
   if (bytes.size() < 12 || bytes.compare(0, 6, kNpyMagic, 6) != 0) refuse("is not a NumPy array");
   // Definition: version 2 has a long head, version 3 has names in UTF-8.
   if (bytes[6] < 1 || bytes[6] > 3)
-    refuse("version " + std::to_string(bytes[6]) + " of NumPy's format; versions 1 to 3 are read");
+    refuse("version " + std::to_string(bytes[6]) +
+           " of the NumPy format is unknown; Ayumi reads versions 1 to 3");
   const bool long_head = bytes[6] != 1;
   const auto byte = [&](size_t i) {
     return static_cast<size_t>(static_cast<unsigned char>(bytes[i]));
@@ -110,14 +111,15 @@ NpyArray array_of(const std::string& bytes, const std::string& place) {
       size_t size = 0;
       std::from_chars(shape.data() + first, shape.data() + end, size);
       if (size > kMostNumbers || count * std::max<size_t>(size, 1) > kMostNumbers)
-        refuse("the array is larger than the 100 MB that are read");
+        refuse("the array is too large; Ayumi reads at most 100 MB");
       array.shape.push_back(size);
       count *= size;
     }
     at = end + 1;
   }
   if (value_in_head(head, "fortran_order") == "True" && array.shape.size() > 1) {
-    array.refused = "its columns follow each other (Fortran order); save numpy.ascontiguousarray";
+    array.refused =
+        "the array has Fortran order (column after column); save numpy.ascontiguousarray(array)";
     return array;
   }
   const size_t at = fixed + length;
@@ -127,7 +129,8 @@ NpyArray array_of(const std::string& bytes, const std::string& place) {
   const size_t item = text ? 4 * width : width;
   if (width > 1000 || (!text && !old_text && width > 8) ||
       !(text || old_text || type.starts_with("<") || type.starts_with("|"))) {
-    array.refused = "the type '" + type.substr(0, 12) + "' is not read";
+    array.refused = "the type '" + type.substr(0, 12) +
+                    "' is unknown; save the array as numbers of the type float64";
     return array;
   }
   if (bytes.size() - at < count * item)
@@ -151,7 +154,8 @@ NpyArray array_of(const std::string& bytes, const std::string& place) {
   else if (type == "<i2")
     take_numbers<std::int16_t>(bytes, at, count, array);
   else
-    array.refused = "the type '" + type + "' is not read";
+    array.refused =
+        "the type '" + type + "' is unknown; save the array as numbers of the type float64";
   return array;
 }
 
@@ -248,7 +252,7 @@ std::map<std::string, NpyArray> read_npz(const std::string& bytes, const std::st
       name.resize(name.size() - 4);
       total += stat.size;
       if (total > kMostNumbers * sizeof(double))
-        fail(ErrorCode::bad_file, file + ": the arrays have more than the 100 MB that are read");
+        fail(ErrorCode::bad_file, file + ": the arrays are too large; Ayumi reads at most 100 MB");
       zip_file_t* const opened = zip_fopen_index(archive, at, 0);
       std::string content(stat.size, '\0');
       const zip_int64_t got = opened ? zip_fread(opened, content.data(), content.size()) : -1;

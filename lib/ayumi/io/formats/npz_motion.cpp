@@ -98,7 +98,7 @@ std::vector<BasePose> roots_of(const MotionInput& source, const NpyArray& positi
                                  : Eigen::Quaterniond(q[3], q[0], q[1], q[2]);
     if (!(std::abs(base.attitude.norm() - 1) < kUnitQuaternion))
       source.refuse(0, "row " + std::to_string(k + 1) + ": the quaternion of the root has length " +
-                           text::brief(base.attitude.norm()) + ", 1 is needed");
+                           text::brief(base.attitude.norm()) + ", but 1 is needed");
     roots.push_back(base);
   }
   return roots;

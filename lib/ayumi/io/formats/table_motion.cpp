@@ -101,7 +101,8 @@ std::vector<BasePose> bases_of(const NumberTable& table, const TableLayout& layo
     for (int i = 0; i < 4; ++i) q[i] = table.values(k, layout.base[3 + i]);
     if (std::abs(q.norm() - 1) > 0.01)
       refuse_table(file, "data row " + std::to_string(k + 1) + ": base.qw...qz has length " +
-                             text::brief(q.norm()) + ", a unit quaternion (w, x, y, z) is needed");
+                             text::brief(q.norm()) +
+                             ", but a unit quaternion (w, x, y, z) is needed");
     BasePose base;
     base.position = {table.values(k, layout.base[0]), table.values(k, layout.base[1]),
                      table.values(k, layout.base[2])};

@@ -49,7 +49,8 @@ std::string recognize_webots_durations(const MotionInput& source) {
   std::string_view rest = source.bytes;
   const std::vector<std::string_view> head = split(take_line(rest), ',');
   return head[0] == kMagic && head.size() == 2 && take_line(rest).find('%') != std::string::npos
-             ? "its first line is #WEBOTS_MOTION and a version, and % parts the names in the second"
+             ? "its first line is #WEBOTS_MOTION with a version, and its second line has names "
+               "that contain %"
              : "";
 }
 
@@ -59,7 +60,8 @@ MotionFile read_webots_motion(const MotionInput& source) {
   std::vector<std::string_view> head = split(take_line(rest), ',');
   const std::string version(head.size() > 1 ? head[1] : "");
   if (version != "V1.0" && version != "V1.1")
-    source.refuse(1, "version '" + version.substr(0, 24) + "'; V1.0 and V1.1 are read");
+    source.refuse(1,
+                  "version '" + version.substr(0, 24) + "' is unknown; Ayumi reads V1.0 and V1.1");
   MotionFile motion;
   motion.time_step = kMillisecond;
   head.erase(head.begin(), head.begin() + 2);

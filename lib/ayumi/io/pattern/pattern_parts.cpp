@@ -30,7 +30,7 @@ double read_moment(const JsonNode& node, const char* absolute, const char* relat
                    PatternScope& scope) {
   if (node.has(absolute) == node.has(relative))
     node.complain("\"" + std::string(absolute) + "\" and \"" + relative + "\" " +
-                  (node.has(absolute) ? "are both there; keep one"
+                  (node.has(absolute) ? "are both given; keep one of them"
                                       : "are both missing; give one of these times in seconds"));
   if (node.has(absolute)) return read_time(node.at(absolute), scope);
   const double time = before + read_time(node.at(relative), scope);
@@ -57,12 +57,13 @@ Swing read_swing(const JsonNode& node, Support support, PatternScope& scope) {
   if (supports(support, swing.foot))
     node.at("foot").complain("the " + std::string(name_of(swing.foot)) +
                              " foot carries the robot in this phase (support " + name_of(support) +
-                             "), so this foot cannot swing; one of the two names the wrong foot: "
-                             "left and right may be exchanged");
+                             "), so this foot cannot swing. The support or the swing names the "
+                             "wrong foot; left and right may be exchanged");
   if (node.has("step") == node.has("to"))
-    node.complain(node.has("to") ? "\"to\" and \"step\" both say where the foot lands; keep one"
-                                 : "\"to\" is missing, the foothold, or \"step\", a step relative "
-                                   "to the other foot");
+    node.complain(node.has("to")
+                      ? "\"to\" and \"step\" both say where the foot lands; keep one of them"
+                      : "the place where the foot lands is missing; give the foothold as \"to\", "
+                        "or a step relative to the other foot as \"step\"");
   if (const auto step = node.find("step"))
     swing.step = read_step(*step, scope);
   else

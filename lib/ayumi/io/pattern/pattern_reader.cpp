@@ -210,9 +210,8 @@ std::string meant_time(double before, double previous, const std::string& place_
   const bool gross = previous > kGrossTime * t;
   for (const double slip : number_slips(previous))
     if (slip > before && slip < t && (gross || slip > previous / kGrossTime))
-      return "; where " + place_of_previous + " is meant at " + text::exact(slip) +
-             " s in place of " + text::exact(previous) +
-             " s, correct it there, else give a later time";
+      return "; if " + place_of_previous + " should be at " + text::exact(slip) + " s and not at " +
+             text::exact(previous) + " s, correct that time; otherwise give a later time here";
   for (const double slip : number_slips(t))
     if (slip > previous && slip < 2 * previous - before)
       return "; give a later time (" + text::exact(slip) + " s?)";

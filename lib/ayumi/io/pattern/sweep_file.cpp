@@ -150,7 +150,8 @@ void names_of(const Part& part, std::set<std::string>& names) {
 
 void refuse_too_many(const JsonNode& node, double size) {
   if (size > double(SweepStudy::kMostCases))
-    node.complain("the study has " + text::brief(size, 6) + " cases; the most are " +
+    node.complain("the study has " + text::brief(size, 6) +
+                  " cases; the largest number allowed is " +
                   std::to_string(SweepStudy::kMostCases));
 }
 

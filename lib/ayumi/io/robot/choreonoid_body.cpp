@@ -46,12 +46,13 @@ class BodyReader {
       fail(ErrorCode::bad_file, path_.string() + ":" + std::to_string(error.mark.line + 1) +
                                     ": not YAML (" + error.msg + ")");
     }
-    if (!root.IsMap()) complain(root, "a Choreonoid body is a map with format: ChoreonoidBody");
+    if (!root.IsMap())
+      complain(root, "a Choreonoid body must be a map with format: ChoreonoidBody");
     if (text_or(root, "format", "format", "") != "ChoreonoidBody")
-      complain(root, "a Choreonoid body has format: ChoreonoidBody");
+      complain(root, "a Choreonoid body must have format: ChoreonoidBody");
     const YAML::Node version = member(root, "format_version", "formatVersion");
     if (version && (number(version) < 1 || number(version) >= 3))
-      complain(version, "version " + version.Scalar() + " is not read; Ayumi reads 1.0 and 2.0");
+      complain(version, "version " + version.Scalar() + " is unknown; Ayumi reads 1.0 and 2.0");
     const std::string unit = text_or(root, "angle_unit", "angleUnit", "degree");
     if (unit != "degree" && unit != "radian")
       complain(root, "angle_unit is '" + unit + "'; expected degree or radian");
@@ -154,7 +155,7 @@ class BodyReader {
   }
 
   void read_link(const YAML::Node& node) {
-    if (!node.IsMap()) complain(node, "a link is a map");
+    if (!node.IsMap()) complain(node, "a link must be a map of keys and values");
     LinkDescription link;
     link.name = text_or(node, "name", "name", "");
     if (link.name.empty()) complain(node, "a link has no name");
@@ -312,7 +313,7 @@ class BodyReader {
 
   void place(const YAML::Node& geometry, const YAML::Node& owner, const Isometry3d& at, Use use,
              LinkDescription& link) {
-    if (!geometry.IsMap()) complain(geometry, "a geometry is a map with a type");
+    if (!geometry.IsMap()) complain(geometry, "a geometry must be a map with the key type");
     const std::string type = text_or(geometry, "type", "type", "Resource");
     const auto positive = [&](const char* key) {
       const YAML::Node value = geometry[key];

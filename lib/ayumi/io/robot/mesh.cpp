@@ -124,8 +124,8 @@ class MeshReader {
                            " bytes takes more memory than the " +
                            mebibytes(reading_.base_memory +
                                      reading_.memory_per_byte * (bytes.size() + companion_bytes_)) +
-                           " that a file of its size may take; the file may be broken; if it is "
-                           "not, simplify the mesh"};
+                           " that a file of this size may take. The file may be broken: export the "
+                           "mesh again, or simplify it"};
         default:
           throw ReaderLost{"the mesh reader's answer is not valid (message " +
                            std::to_string(static_cast<std::uint32_t>(head.kind)) + ")" + kRemedy};
@@ -206,17 +206,17 @@ class MeshReader {
     if (ending.signal == SIGXCPU)
       throw ReaderLost{
           "reading this mesh takes more than " + std::to_string(reading_.cpu_time) +
-              " s of processor time; the file may be broken; if it is not, simplify the mesh",
+              " s of processor time. The file may be broken: export the mesh again, or simplify it",
           false};
     throw ReaderLost{"the mesh reader crashed on this file (" + ending.words() +
-                     "), which is broken or hostile" + kRemedy};
+                     "). The file is broken or hostile" + kRemedy};
   }
 
   // Sends the companion file of this name, or that there is none.
   void answer(const std::string& name) {
     if (++companions_ > kMostCompanions)
-      throw ReaderLost{"it names more than " + std::to_string(kMostCompanions) +
-                       " other files; merge them"};
+      throw ReaderLost{"the mesh file names more than " + std::to_string(kMostCompanions) +
+                       " other files; merge these files"};
     const std::optional<std::string> bytes = companion(name);
     const char there = 1;
     send_head(MeshMessage::file, bytes ? 1 + bytes->size() : 0);
@@ -240,7 +240,7 @@ class MeshReader {
       companion_bytes_ += bytes.size();
       return bytes;
     } catch (const Error& error) {
-      complain(std::string("it needs ") + error.what());
+      complain(std::string("the mesh file needs ") + error.what());
     }
   }
 

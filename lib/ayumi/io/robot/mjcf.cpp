@@ -243,8 +243,8 @@ class MjcfReader {
     const int count = m_->body_jntnum[root];
     if (count == 0 || m_->jnt_type[m_->body_jntadr[root]] != mjJNT_FREE)
       robot_.assumptions.push_back("the body " + body_name(root) +
-                                   " has no free joint in the model; a robot that stands on its "
-                                   "feet floats, so it has one here");
+                                   " has no free joint in the model. A robot that stands on its "
+                                   "feet is free to move, so Ayumi adds a free joint");
     return root;
   }
 

@@ -69,7 +69,7 @@ class Cleaner {
     if (root->ValueStr() != "mujoco")
       complain_xml(path_.string(), root,
                    "the outermost element is <" + root->ValueStr() +
-                       ">, an MJCF model starts with <mujoco>");
+                       ">, but an MJCF model starts with <mujoco>");
     include(root, path_, 0);
     check_numbers(root);
     read_sensors(root);

@@ -25,7 +25,8 @@ fs::path file_in_folder(const fs::path& folder) {
   if (fs::is_regular_file(folder / kSidecarName, ignored)) return folder / kSidecarName;
   std::vector<fs::path> robots;
   for (const auto& entry : fs::directory_iterator(folder, ignored))
-    if (has_robot_ending(entry.path())) robots.push_back(entry.path());
+    if (has_robot_ending(entry.path()) && !entry.is_directory(ignored))
+      robots.push_back(entry.path());
   return robots.size() == 1 ? robots[0] : fs::path();
 }
 
@@ -33,7 +34,8 @@ fs::path find_file(const std::string& name, const RobotSearch& search) {
   const fs::path path = name;
   const bool named = has_robot_ending(path) || path.extension() == ".json";
   std::error_code ignored;
-  const bool folder = fs::is_directory(path, ignored) && !named;
+  // The name of a folder may end like the name of a file, for example my.urdf/.
+  const bool folder = fs::is_directory(path, ignored);
   if (folder)
     if (const fs::path file = file_in_folder(path); !file.empty()) return file;
   if (!folder && (fs::exists(path, ignored) || named)) return path;
@@ -44,8 +46,8 @@ fs::path find_file(const std::string& name, const RobotSearch& search) {
   }
   if (folder)
     fail(ErrorCode::bad_file,
-         name + ": holds neither a " + kSidecarName +
-             " nor exactly one robot in another format; name the robot's file");
+         name + ": this folder holds neither a " + kSidecarName +
+             " nor exactly one robot in another format; name the file of the robot");
   fail(ErrorCode::bad_file, "robot '" + name + "': no such file, folder or bundled robot" +
                                 (known.empty() ? "" : "; known: " + text::join(known, ", ")) +
                                 text::suggestion(name, known));

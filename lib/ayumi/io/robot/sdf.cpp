@@ -60,7 +60,7 @@ class SdfReader {
     const TiXmlElement* root = document.RootElement();
     if (root->ValueStr() != "sdf")
       complain(root,
-               "the outermost element is <" + root->ValueStr() + ">, an SDF starts with <sdf>");
+               "the outermost element is <" + root->ValueStr() + ">, but an SDF starts with <sdf>");
     version_ = version_of(root);
     const TiXmlElement* model = robot_of(root);
     robot_.name = required(model, "name");
@@ -115,7 +115,7 @@ class SdfReader {
     const size_t dot = text.find('.');
     const double minor = dot == std::string::npos ? 0 : std::atof(text.c_str() + dot + 1);
     if (std::floor(numbers[0]) != 1 || minor < 4)
-      complain(root, "version " + text + " of SDF is not read; Ayumi reads 1.4 to 1.11");
+      complain(root, "version " + text + " of SDF is unknown; Ayumi reads 1.4 to 1.11");
     return minor;
   }
 
@@ -336,9 +336,9 @@ class SdfReader {
   void make_joints() {
     for (const JointSource& source : joints_) {
       if (source.parent == "world" || source.child == "world") {
-        robot_.assumptions.push_back("the joint " + source.name +
-                                     " to the world is left out: a robot that stands on its feet "
-                                     "floats");
+        robot_.assumptions.push_back(
+            "the joint " + source.name +
+            " to the world is left out, because a robot that stands on its feet is free to move");
         continue;
       }
       make_joint(source);

@@ -455,8 +455,8 @@ std::filesystem::path find_urdf(const JsonNode& node,
   for (const std::filesystem::path& folder : folders)
     for (const std::filesystem::path& path : {folder / name, folder / "urdf" / name})
       if (std::filesystem::exists(path, ignored)) return path;
-  node.complain("there is no file " + beside.string() + ", and the folders of --robot-path have " +
-                name.string() + " neither directly nor in urdf/");
+  node.complain("there is no file " + beside.string() + ", and " + name.string() +
+                " is neither in a folder of --robot-path nor in its subfolder urdf/");
 }
 
 }  // namespace

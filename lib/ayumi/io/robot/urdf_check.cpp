@@ -273,7 +273,7 @@ UrdfText check_urdf(const std::string& bytes, const std::string& file) {
   const Checker checker(file);
   if (root->ValueStr() != "robot")
     checker.complain(root, "the outermost element is <" + root->ValueStr() +
-                               ">, a URDF starts with <robot name=\"...\">");
+                               ">, but a URDF starts with <robot name=\"...\">");
   refuse_xacro(root, checker);
   checker.required(root, "name", "");
   checker.refuse_misspellings(root);

@@ -68,7 +68,7 @@ void parse_xml(TiXmlDocument& document, const std::string& bytes, const std::str
                const std::string& kind) {
   const bool blank =
       std::all_of(bytes.begin(), bytes.end(), [](unsigned char c) { return std::isspace(c); });
-  if (blank) fail(ErrorCode::bad_file, file + ": the file is empty, " + kind + " is needed");
+  if (blank) fail(ErrorCode::bad_file, file + ": the file is empty, but " + kind + " is needed");
   refuse_deep_nesting(bytes, file, kind);
   refuse_many_attributes(bytes, file);
   document.Parse(bytes.c_str(), nullptr, TIXML_ENCODING_UTF8);

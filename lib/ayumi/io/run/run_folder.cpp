@@ -28,7 +28,8 @@ constexpr size_t kLargestFile = size_t{4} << 30;
 void make_folder(const fs::path& folder) {
   std::error_code error;
   if (fs::exists(folder) && !fs::is_directory(folder))
-    fail(ErrorCode::bad_file, folder.string() + ": exists and is not a folder");
+    fail(ErrorCode::bad_file,
+         folder.string() + ": this is a file, but a folder is needed; choose another name");
   fs::create_directories(folder, error);
   if (error)
     fail(ErrorCode::bad_file, folder.string() + ": cannot be made (" + error.message() + ")");
@@ -76,10 +77,9 @@ std::string sealed(const std::string& object) {
 }
 
 [[noreturn]] void complain_of_change(const fs::path& file) {
-  fail(ErrorCode::bad_file,
-       file.string() +
-           ": the file has changed since the run was written (its SHA-256 is not the "
-           "one in run.json)");
+  fail(ErrorCode::bad_file, file.string() +
+                                ": the file has changed since the run was written (its SHA-256 "
+                                "differs from the value in run.json); make the run again");
 }
 
 std::string checked_bytes(const fs::path& folder, const JsonNode& files, const std::string& name) {
@@ -230,7 +230,7 @@ SimulationLog read_run_log(const fs::path& path, const std::string& name) {
   std::string chosen = name;
   if (chosen.empty()) chosen = root.at("logs").has("closed_loop") ? "closed_loop" : names.front();
   if (!root.at("logs").has(chosen))
-    root.at("logs").complain("no log '" + chosen + "' in this run" +
+    root.at("logs").complain("the run has no log '" + chosen + "'" +
                              text::suggestion(chosen, names) + " (" + text::join(names, ", ") +
                              ")");
   return log_of(path, root, chosen);

@@ -86,7 +86,8 @@ void require_run_target(const fs::path& folder, bool replace,
   if (!is_there(folder)) return;
   std::error_code error;
   if (!fs::is_directory(folder, error))
-    fail(ErrorCode::bad_file, folder.string() + ": this is not a folder; -o needs a folder");
+    fail(ErrorCode::bad_file,
+         folder.string() + ": this is a file, but -o needs a folder; choose another name");
   if (!replace && is_there(folder / "run.json")) refuse_existing(folder);
   const std::set<std::string> previous = files_of_run_in(folder);
   for (const std::string& name : previous) require_own_file(folder / name);
@@ -97,9 +98,10 @@ void require_run_target(const fs::path& folder, bool replace,
   };
   for (const std::string& name : names)
     if (is_there(folder / name) && !may_go(name))
-      fail(ErrorCode::bad_file, (folder / name).string() +
-                                    ": this already exists and is not a file of a run, so no run "
-                                    "replaces it; move it away or choose another folder");
+      fail(ErrorCode::bad_file,
+           (folder / name).string() +
+               ": this file already exists and was not written by a run, so a run does not replace "
+               "it; move the file away or choose another folder");
 }
 
 RunOutput::RunOutput(const fs::path& folder, bool replace)

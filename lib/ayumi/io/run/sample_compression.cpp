@@ -279,7 +279,8 @@ size_t largest_head(size_t columns) {
 
 std::string compress_samples(std::string_view rows, size_t columns, const ColumnSources& sources) {
   const size_t count = columns == 0 ? 0 : rows.size() / (columns * sizeof(double));
-  require(sources.empty() || sources.size() == columns, "sources for another number of columns");
+  require(sources.empty() || sources.size() == columns,
+          "the sources are for another number of columns");
   std::vector<Column> values(columns, Column(count));
   for (size_t c = 0; c < columns; ++c)
     for (size_t k = 0; k < count; ++k) values[c][k] = float_at(rows, k * columns + c);
@@ -294,7 +295,7 @@ std::string compress_samples(std::string_view rows, size_t columns, const Column
         planes[plane_begin(plane, c, columns, count) + k] =
             static_cast<char>(numbers[k] >> (8 * plane));
   }
-  require(decoding_order(predictors).size() == columns, "columns that predict each other");
+  require(decoding_order(predictors).size() == columns, "some columns predict each other");
   return zstd_frame(head_of(predictors) + planes);
 }
 
@@ -322,7 +323,8 @@ std::string decompress_samples(std::string_view bytes, size_t columns, size_t ro
   size_t head = 0;
   const std::vector<Predictor> predictors = predictors_of(plain, columns, head);
   const std::vector<size_t> order = decoding_order(predictors);
-  if (order.size() != columns) stop("how the columns of the samples were predicted");
+  if (order.size() != columns)
+    stop("the file does not say correctly how the columns of the samples were predicted");
   if (plain.size() != head + planes) stop("the samples are not " + size);
   std::vector<Column> values(columns, Column(rows));
   for (const size_t c : order) {

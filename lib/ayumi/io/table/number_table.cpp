@@ -28,7 +28,7 @@ class CsvParser {
 
   NumberTable whole() {
     if (rest_.find('\0') != std::string_view::npos)
-      fail(ErrorCode::bad_file, file_ + ": is a binary file, a CSV table is needed");
+      fail(ErrorCode::bad_file, file_ + ": is a binary file, but a CSV table is needed");
     for (std::string_view line; next(line);) {
       if (line.empty()) continue;
       if (line.front() == '#') {
@@ -41,9 +41,10 @@ class CsvParser {
     }
     if (table_.columns.empty())
       fail(ErrorCode::bad_file, file_ +
-                                    ": no head row; the first line names the columns "
-                                    "(t[s],theta.<joint>[rad],...)");
-    if (cells_.empty()) fail(ErrorCode::bad_file, file_ + ": no data row below the head row");
+                                    ": the head row is missing; the first line must name the "
+                                    "columns (t[s],theta.<joint>[rad],...)");
+    if (cells_.empty())
+      fail(ErrorCode::bad_file, file_ + ": there is no data row below the head row");
     const auto width = static_cast<Eigen::Index>(table_.columns.size());
     table_.values = Eigen::Map<const decltype(table_.values)>(
         cells_.data(), static_cast<Eigen::Index>(cells_.size()) / width, width);
@@ -74,8 +75,8 @@ class CsvParser {
       const std::string name(cell);
       double number = 0;
       if (std::from_chars(cell.data(), cell.data() + cell.size(), number).ec == std::errc())
-        stop("the head row is missing: found the number " + shown(cell) +
-             " where column names are needed (t[s],theta.<joint>[rad],...)");
+        stop("the head row is missing: the first line has the number " + shown(cell) +
+             ", but it must name the columns (t[s],theta.<joint>[rad],...)");
       if (name.empty()) stop("column " + std::to_string(seen.size() + 1) + " has no name");
       if (!seen.insert(name).second) stop("the column " + shown(cell) + " appears twice");
       table_.columns.push_back(name);

@@ -65,12 +65,11 @@ void require_one_line_end(const std::string& bytes, const std::string& file) {
     ++line;
     (at > 0 && bytes[at - 1] == '\r' ? with : without) = true;
     if (with && without)
-      complain(
-          file, line,
-          std::string("this line ends with ") +
-              (bytes[at - 1] == '\r' ? "CR LF, those before with LF"
-                                     : "LF, those before with CR LF") +
-              "; the file may consist of two parts from different files: use one kind of line end");
+      complain(file, line,
+               std::string("this line ends with ") +
+                   (bytes[at - 1] == '\r' ? "CR LF, but the lines before it end with LF"
+                                          : "LF, but the lines before it end with CR LF") +
+                   "; the file may consist of parts of two files. Use one kind of line end");
   }
 }
 
@@ -197,14 +196,18 @@ void require_motion(const AngleTable& table, const std::vector<size_t>& lines,
         complain(file, lines[static_cast<size_t>(k)],
                  dof.name + " jumps by " +
                      text::brief(std::abs(theta[k] - theta[k - 1]) / kRadPerDegree, 3) +
-                     " deg from the row before, which no motor does (limit " +
+                     " deg from the row before, but a motor moves at most " +
                      text::brief(limit / kRadPerDegree, 3) +
-                     " deg): samples are missing, or the counter wrapped");
+                     " deg in this time. Samples are missing, or the 16-bit counter has "
+                     "overflowed: record again, or add or subtract 65536 counts from this row on");
     if (!dof.prismatic && theta.cwiseAbs().maxCoeff() > 2 * M_PI)
-      complain(file, dof.name + " reaches " + text::brief(theta.cwiseAbs().maxCoeff(), 4) +
-                         " rad, more than a turn: is the unit degrees? (--unit deg)");
+      complain(
+          file,
+          dof.name + " reaches " + text::brief(theta.cwiseAbs().maxCoeff(), 4) +
+              " rad, which is more than a turn; if the angles are in degrees, give --unit deg");
   }
-  if (!any) complain(file, "every angle is 0; the robot or its recorder was not running");
+  if (!any)
+    complain(file, "every angle is 0, so the robot or its recorder was not running; record again");
 }
 
 AngleTable empty_table(const RobotModel& model, Index rows, double dt) {
@@ -288,7 +291,8 @@ double interval_of(const NumberTable& table, const RecordingOptions& options,
     if (steps[k] > (1 + kGap) * usual)
       complain(file, at + std::to_string(std::max(1L, std::lround(steps[k] / usual) - 1)) +
                          " samples are missing: " + text::brief(1000 * steps[k]) +
-                         " ms to the next row, usually " + text::brief(1000 * usual) + " ms");
+                         " ms pass before the next row, but usually " + text::brief(1000 * usual) +
+                         " ms");
   }
   return (t[rows - 1] - t[0]) / static_cast<double>(rows - 1);
 }
@@ -336,7 +340,8 @@ AngleTable named_angles(const std::string& bytes, const std::string& file, const
     if (column.dof < 0) continue;
     const auto at = static_cast<size_t>(column.dof);
     if (result.has[at])
-      complain(file, "column '" + table.columns[c] + "': the joint has a column before already");
+      complain(file, "column '" + table.columns[c] +
+                         "': the joint already has another column; remove one of the two");
     any = true;
     result.has[at] = 1;
     result.theta.col(column.dof) = column.factor * table.values.col(static_cast<Index>(c));
@@ -402,7 +407,9 @@ SensorTable bare_sensors(const std::string& bytes, const std::string& file, cons
       }
       table.foot_load(static_cast<Index>(k), side) = polynomial(foot.force, sum);
     }
-  if (!any) complain(file, "every reading of the load cells is 0; the sensors were not running");
+  if (!any)
+    complain(file,
+             "every reading of the load cells is 0, so the sensors were not running; record again");
   return table;
 }
 
@@ -434,7 +441,7 @@ SensorTable named_sensors(const std::string& bytes, const std::string& file,
     for (const int side : {0, 1})
       result.foot_load.col(side) = table.values.col(foot[static_cast<size_t>(side)]);
     if (result.foot_load.cwiseAbs().maxCoeff() <= 0)
-      complain(file, "every load of the feet is 0; the sensors were not running");
+      complain(file, "every load of the feet is 0, so the sensors were not running; record again");
   }
   result.acceleration = named_axes(table, "acc", "m/s^2");
   result.gyro = named_axes(table, "gyro", "rad/s");

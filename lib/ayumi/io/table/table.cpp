@@ -145,7 +145,8 @@ TableServo servo_of(const std::map<std::string, std::string>& header) {
 void require_format(const NumberTable& table, const char* format, const std::string& file) {
   const auto found = table.header.find("format");
   if (found == table.header.end())
-    fail(ErrorCode::bad_file, file + ": no format line; '# format: " + format + "' is needed");
+    fail(ErrorCode::bad_file,
+         file + ": the format line is missing; add '# format: " + format + "'");
   if (found->second != format)
     fail(ErrorCode::bad_file, file + ": format '" + found->second +
                                   "' cannot be read; this version of Ayumi reads '" + format + "'");
@@ -246,7 +247,7 @@ ReferenceTrajectory read_reference(const std::filesystem::path& path) {
       if (contact != 0 && contact != 1)
         fail(ErrorCode::bad_file, file + ": row " + std::to_string(k + 1) + ": " +
                                       kContactColumns[i] + " is " + text::exact(contact) +
-                                      ", 0 or 1 is needed");
+                                      ", but 0 or 1 is needed");
       row.contact[i] = contact == 1;
     }
     reference.rows.push_back(std::move(row));
@@ -300,9 +301,9 @@ DenseTable read_dense_table(const std::filesystem::path& path) {
   read_import(table.header, path, dense);
   const Eigen::Index rows = table.values.rows();
   if (static_cast<double>(rows) * dense.dt > 3600)
-    fail(ErrorCode::bad_file, file + ": lasts " +
+    fail(ErrorCode::bad_file, file + ": the table lasts " +
                                   text::exact(static_cast<double>(rows) * dense.dt) +
-                                  " s, more than the 3600 s that are read");
+                                  " s, but Ayumi reads at most 3600 s");
   dense.theta.resize(rows, static_cast<Eigen::Index>(layout.joints.size()));
   for (Eigen::Index k = 0; k < rows; ++k) {
     dense.theta.row(k) = theta_of(table, k, layout.theta).transpose();

@@ -177,7 +177,7 @@ BasePose base_of(const NumberTable& table, const TableLayout& layout, Eigen::Ind
   const double norm = base.attitude.norm();
   if (std::abs(norm - 1) > 1e-6)
     stop(file, "row " + std::to_string(row + 1) + ": base.qw...qz has length " + text::exact(norm) +
-                   ", a unit quaternion (w, x, y, z) is needed");
+                   ", but a unit quaternion (w, x, y, z) is needed");
   return base;
 }
 

@@ -362,7 +362,7 @@ class Page {
     for (const one of findings) ++count[one.severity];
     byId("to-answers").textContent = findings.length ? `Answers (${findings.length})` : "Answers";
     const old = error && findings.length ? [element("p", { class: "soft" },
-      "These findings are of the old motion, before the file could no longer be read.")] : [];
+      "These findings are about the old motion, because the changed file cannot be read.")] : [];
     refill(byId("findings"), findings.length ? [...old, ...findings.map((one, i) => element("button", { type: "button",
       class: "answer " + one.severity, "data-id": "answer " + i, "aria-pressed": String(one === this.finding),
       onclick: () => this.showFinding(one) },
@@ -436,7 +436,7 @@ class Page {
           return false;
         }
       }
-      if (status !== 200) this.say(value.message || `The server refuses this (${status}).`);
+      if (status !== 200) this.say(value.message || `The server refuses this change (${status}). Please reload the page.`);
       await this.load();
       if (status === 200 && moves) this.movedSince = this.state.version;
       if (status !== 200) this.timeline.render();

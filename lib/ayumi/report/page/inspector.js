@@ -107,10 +107,10 @@ export class Inspector {
     return [element("h3", {}, `${name} key at ${seconds(key.time)}`),
       ...this.inputs(key.time_pointer, key.time_value, [key.time_pointer.split("/").at(-1)]),
       ...this.inputs(key.pointer, key.value, path, choices),
-      others.length ? element("p", { class: "soft" }, `The same keyframe has keys of: ${others.join(", ")}. They move together.`) : null,
+      others.length ? element("p", { class: "soft" }, `This keyframe also has keys of: ${others.join(", ")}. All keys of a keyframe move together.`) : null,
       key.track.name === "zmp" && named && this.page.can("edit") ? element("button", { type: "button",
         title: "Write the point [x, y] in place of the name", onclick: () => this.page.edit([{ kind: "set", pointer: key.pointer,
-          value: valueFromRow("zmp", this.page.row(), this.page.motion.columns, state.angle_unit) }]) }, "Use numbers") : null,
+          value: valueFromRow("zmp", this.page.row(), this.page.motion.columns, state.angle_unit) }]) }, "Write the point as numbers") : null,
       this.button(() => removeKey(state, key.original), "Remove this key")].filter(Boolean);
   }
 
@@ -122,7 +122,7 @@ export class Inspector {
         { support: ["both", "left", "right", "none"] }) : [],
       ...phase.swing ? this.inputs(phase.pointer + "/swing", phase.swing, ["swing"], { foot: ["left", "right"] }) : [],
       this.splitter = this.button(() => splitPhase(phase, this.page.time), "Cut at the cursor"),
-      index === state.phases.length - 1 ? this.button(() => appendPhase(state.phases), "Add a phase behind it") : null,
+      index === state.phases.length - 1 ? this.button(() => appendPhase(state.phases), "Add a phase after this one") : null,
       state.phases.length > 1 ? this.button(() => [{ kind: "remove", pointer: phase.pointer }], "Remove this phase") : null].filter(Boolean);
   }
 

@@ -17,7 +17,7 @@ export class Jobs {
   async start(kind) {
     const options = kind === "simulate" ? { law: byId("law").value } : {};
     const { status, value } = await this.page.server.ask("POST", "job", { kind, options });
-    if (status !== 200) return this.page.say(value.message || `The server does not start “${kind}”.`);
+    if (status !== 200) return this.page.say(value.message || `The server cannot start “${kind}”. Please reload the page.`);
     if (this.ended === value.id) return;
     this.running = { id: value.id, kind };
     this.show({ progress: null, text: "" });

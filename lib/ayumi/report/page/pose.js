@@ -116,7 +116,7 @@ export class Pose {
         const { status, value } = await this.page.server.ask("POST", "pose", { time: this.page.time, ...sent });
         if (!this.asked) break;
         this.answer = status === 200 ? value : null;
-        byId("pose-words").textContent = status === 200 ? value.message || "" : value.message || "The server cannot do this.";
+        byId("pose-words").textContent = status === 200 ? value.message || "" : value.message || "The server cannot make this change. Please reload the page.";
         if (this.answer?.row) this.page.preview(Float32Array.from(this.answer.row));
       }
     })();

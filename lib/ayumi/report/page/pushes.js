@@ -33,7 +33,7 @@ export class Pushes {
   draw(on) {
     this.page.drawing = on;
     byId("draw-push").setAttribute("aria-pressed", String(on));
-    this.page.say(on ? "Drag an arrow in the picture, away from the robot's COG. Escape ends this." : "");
+    this.page.say(on ? "Drag an arrow in the picture, away from the robot's COG. Escape ends the drawing." : "");
   }
 
   /// While an arrow is drawn; `done` when it is let go.

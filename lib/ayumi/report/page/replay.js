@@ -130,7 +130,7 @@ function start(gltf) {
 
 function without(reason) {
   byId("replay-state").textContent = "The replay cannot run here (" + reason +
-    "); the picture shows one instant.";
+    "). The picture shows one instant of the run.";
   document.documentElement.dataset.replay = "failed";
 }
 

@@ -27,7 +27,7 @@ export class Strip {
       const canvas = element("canvas", { role: "img", "aria-label": summary(lane, state.strip_dt),
         title: summary(lane, state.strip_dt) });
       const value = element("span", { class: "value" });
-      const button = element("button", { type: "button", class: "label", title: "Go to the worst instant",
+      const button = element("button", { type: "button", class: "label", title: "Go to the time of the worst value",
         "aria-label": summary(lane, state.strip_dt) + ". Go there.",
         onclick: () => {
           const worst = worstIn(lane, state.strip_dt, 0, Infinity);

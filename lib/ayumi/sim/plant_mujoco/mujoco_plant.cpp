@@ -181,7 +181,7 @@ void MujocoPlant::Impl::check_input(const VectorXd& targets, const StepInput& in
   if (input.bumps.size() > kMujocoBumps)
     fail(ErrorCode::bad_pattern, "the MuJoCo plant has room for " + std::to_string(kMujocoBumps) +
                                      " bumps at once, not " + std::to_string(input.bumps.size()) +
-                                     "; use Ayumi's own plant");
+                                     "; use --plant ayumi");
 }
 
 // Ground, loads, joints and pushes of this step.
