@@ -136,8 +136,8 @@ void measure_check(const RobotModel& model) {
     for (const CommandSample& s : series.samples)
       inverse_dynamics(model, s.state, s.acceleration, data);
   });
-  const double clearances =
-      quickest([&] { scan_clearance(model, series, collisions, 0.010, [](int, int, double) {}); });
+  const double clearances = quickest(
+      [&] { scan_clearance(model, series, collisions, 0.010, 0.002, [](int, int, double) {}); });
   const double all = quickest([&] { check_consistency(model, series); });
   const double sampled = quickest([&] { sample(model, walk); });
   std::printf(

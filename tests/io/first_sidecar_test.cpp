@@ -177,6 +177,79 @@ TEST(FirstSidecar, ReadsBackAsItWasGuessed) {
   }
 }
 
+// Whether the remarks have these words, wherever their lines end.
+bool says(std::string text, const std::string& words) {
+  const std::string line_end = "\n  // ";
+  for (size_t at = 0; (at = text.find(line_end, at)) != std::string::npos;)
+    text.replace(at, line_end.size(), " ");
+  return text.find(words) != std::string::npos;
+}
+
+// The trunk is the link that carries both legs, wherever the file begins. Soles and legs are named.
+TEST(FirstSidecar, TheTrunkCarriesBothLegs) {
+  const TemporaryFolder folder;
+  std::string text = UrdfBiped{}.text();
+  const FirstSidecar plain =
+      first_sidecar(folder.write("plain.urdf", text).string(), folder.path());
+  EXPECT_TRUE(says(plain.text, "Guess: the root link, the link that carries both legs"));
+  EXPECT_NE(plain.text.find("\"trunk_link\": \"trunk\""), std::string::npos);
+  std::string said;
+  for (const std::string& item : plain.to_do) said += item + "\n";
+  EXPECT_NE(said.find("left l_foot, 130 mm long and 70 mm wide, reaching 80 mm ahead of the ankle "
+                      "and 50 mm behind it, right r_foot"),
+            std::string::npos)
+      << said;
+  EXPECT_NE(said.find("Left: hip yaw l_hip_yaw, hip roll l_hip_roll, hip pitch l_hip_pitch, knee "
+                      "l_knee, ankle pitch l_ankle_pitch, ankle roll l_ankle_roll. Right: hip yaw "
+                      "r_hip_yaw"),
+            std::string::npos)
+      << said;
+  // A chest that carries the pelvis, which is still named "trunk", by a waist joint.
+  text.replace(
+      text.find("</robot>"), 8,
+      "<link name=\"chest\"><inertial><origin xyz=\"0 0 0.1\"/><mass value=\"1\"/><inertia "
+      "ixx=\"0.005\" iyy=\"0.005\" izz=\"0.005\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/>"
+      "</inertial></link><joint name=\"waist\" type=\"revolute\"><parent link=\"chest\"/>"
+      "<child link=\"trunk\"/><origin xyz=\"0 0 -0.1\"/><axis xyz=\"0 0 1\"/><limit "
+      "lower=\"-1\" upper=\"1\" effort=\"10\" velocity=\"8\"/></joint></robot>");
+  const FirstSidecar chest =
+      first_sidecar(folder.write("chest.urdf", text).string(), folder.path());
+  EXPECT_NE(chest.text.find("\"trunk_link\": \"trunk\""), std::string::npos) << chest.text;
+  EXPECT_TRUE(says(chest.text, "Guess: the link that carries both legs"));
+}
+
+// Inertias of 1 kg m^2 and impossible ones are replaced by those of boxes; others stay.
+TEST(FirstSidecar, PlaceholdersOfInertiasBecomeThoseOfTheShapes) {
+  const TemporaryFolder folder;
+  const std::string good = UrdfBiped{}.text();
+  const RobotModel right(load_robot_description(folder.write("good.urdf", good).string()));
+  EXPECT_EQ(
+      first_sidecar((folder.path() / "good.urdf").string(), folder.path()).text.find("\"links\""),
+      std::string::npos);
+  std::string text = good;
+  const auto spoil = [&](const std::string& link, const std::string& tensor) {
+    const size_t begin = text.find("ixx=\"", text.find("<link name=\"" + link + "\""));
+    text.replace(begin, text.find("ixy", begin) - begin, tensor);
+  };
+  spoil("l_thigh", "ixx=\"1\" iyy=\"1\" izz=\"1\" ");
+  spoil("r_foot", "ixx=\"1e-4\" iyy=\"1e-4\" izz=\"9e-4\" ");
+  const FirstSidecar sidecar =
+      first_sidecar(folder.write("bad.urdf", text).string(), folder.path());
+  const RobotModel mended(load_robot_description(folder.write("robot.json", sidecar.text)));
+  for (const char* name : {"l_thigh", "r_foot", "trunk"}) {
+    const auto inertia = [&](const RobotModel& model) {
+      return model.links()[static_cast<size_t>(model.find_link(name))].inertia;
+    };
+    EXPECT_LT((inertia(mended).about_com - inertia(right).about_com).norm(),
+              1e-3 * inertia(right).about_com.norm())
+        << name;
+    EXPECT_EQ(inertia(mended).mass, inertia(right).mass);
+  }
+  EXPECT_NE(sidecar.to_do.back().find("Replace the inertia of 2 links (l_thigh, r_foot)"),
+            std::string::npos)
+      << sidecar.to_do.back();
+}
+
 TEST(FirstSidecar, RefusesARobotThatHasOne) {
   const TemporaryFolder folder;
   folder.write("robot/robot.urdf", UrdfBiped{}.text());

@@ -10,9 +10,10 @@ namespace ayumi {
 
 /// Calls note(pair, sample, clearance) for every pair of `collisions`, in order of time within a
 /// pair: every 20 ms, and at every sample around the places where a pair has a least clearance
-/// below `near` [m], or begins or ends to overlap. Clearances above `near` are lower bounds.
+/// below `near` [m], or begins or ends to overlap. Clearances that are neither below `exact` [m]
+/// nor the least of all pairs are lower bounds.
 void scan_clearance(const RobotModel& model, const CommandSeries& series,
-                    const CollisionModel& collisions, double near,
+                    const CollisionModel& collisions, double near, double exact,
                     const std::function<void(int pair, int sample, double clearance)>& note);
 
 }  // namespace ayumi

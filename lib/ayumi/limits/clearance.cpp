@@ -32,9 +32,9 @@ void note_clearance(JudgedMotion& motion, int pair, int k, double clearance) {
 }
 
 void scan_clearances(JudgedMotion& motion) {
-  const double near = motion.tolerance(FindingKind::self_collision) + kRefineBelow;
-  scan_clearance(motion.model, motion.series, motion.collisions, near,
-                 [&motion](int pair, int k, double clearance) {
+  const double tolerance = motion.tolerance(FindingKind::self_collision);
+  scan_clearance(motion.model, motion.series, motion.collisions, tolerance + kRefineBelow,
+                 tolerance, [&motion](int pair, int k, double clearance) {
                    motion.clearances.push_back({pair, k, clearance});
                  });
 }

@@ -191,7 +191,7 @@ void add_near_pairs(const RobotModel& model, const CommandSeries& series,
                     const CollisionModel& collisions, std::vector<int>& pairs) {
   constexpr double kNear = policy::clearance::kWatchedBodies;
   std::set<int> near(pairs.begin(), pairs.end());
-  scan_clearance(model, series, collisions, kNear, [&](int pair, int, double clearance) {
+  scan_clearance(model, series, collisions, kNear, kNear, [&](int pair, int, double clearance) {
     if (clearance < kNear) near.insert(pair);
   });
   pairs.assign(near.begin(), near.end());

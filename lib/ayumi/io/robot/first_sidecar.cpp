@@ -13,6 +13,7 @@
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/io/robot/robot_guess.hpp"
 #include "ayumi/math/rotation.hpp"
+#include "ayumi/model/outline.hpp"
 
 namespace ayumi {
 
@@ -94,6 +95,65 @@ std::string sole_text(const SoleDescription& sole, const RobotModel& model, Side
   return text + "      \"polygon\": [" + text::join(corners, ", ") +
          "],\n      \"stiffness\": " + text::brief(whole.stiffness, 3) +
          ", \"damping_time\": " + text::exact(whole.damping_time) + "\n    }";
+}
+
+// The lowest body that carries both feet.
+int body_above_both_legs(const RobotModel& model) {
+  if (!model.has_soles()) return 0;
+  std::vector<char> above(model.bodies().size(), 0);
+  for (int body = model.sole(Side::left).body; body >= 0; body = model.bodies()[body].parent)
+    above[static_cast<size_t>(body)] = 1;
+  int body = model.sole(Side::right).body;
+  while (!above[static_cast<size_t>(body)]) body = model.bodies()[body].parent;
+  return body;
+}
+
+std::string trunk_text(const RobotModel& model) {
+  const int body = body_above_both_legs(model);
+  const std::string& name = model.bodies()[static_cast<size_t>(body)].name;
+  return remark("Trunk: its tilt decides whether the robot has fallen. Guess: " +
+                std::string(body == 0 ? "the root link, " : "") +
+                (model.has_soles() ? "the link that carries both legs."
+                                   : "because no legs were recognised.")) +
+         "  \"trunk_link\": " + json_text(name) + ",\n";
+}
+
+// "hip: yaw J0, roll J1; knee J3; ankle: pitch J4".
+std::string leg_in_words(const RobotModel& model, Side side) {
+  const InverseKinematics ik(model, model.posture());
+  RobotData data(model);
+  update_positions(model, model.rest_state(), data);
+  const Eigen::Matrix3d trunk = data.rotation[body_above_both_legs(model)];
+  std::vector<std::string> words;
+  std::string part = "hip ";
+  for (const int dof : ik.leg(side)) {
+    const std::string& name = model.dofs()[dof].name;
+    if (dof == ik.knee(side)) {
+      words.push_back("knee " + name);
+      part = "ankle ";
+      continue;
+    }
+    int major = 0;
+    (trunk.transpose() * data.axis[model.dofs()[dof].body]).cwiseAbs().maxCoeff(&major);
+    const char* turns[] = {"roll ", "pitch ", "yaw "};
+    words.push_back((model.dofs()[dof].prismatic ? std::string("slide ") : part + turns[major]) +
+                    name);
+  }
+  return text::join(words, ", ");
+}
+
+// "left l_foot, 98 mm long and 62 mm wide, 40 mm below the ankle".
+std::string sole_in_words(const RobotModel& model, Side side) {
+  const SoleDescription& sole = model.description().soles.at(name_of(side));
+  Vector2d low = sole.polygon[0], high = low;
+  for (const Vector2d& corner : sole.polygon) {
+    low = low.cwiseMin(corner);
+    high = high.cwiseMax(corner);
+  }
+  const auto millimetres = [](double length) { return text::fixed(1e3 * length, 0) + " mm"; };
+  return std::string(name_of(side)) + " " + sole.link + ", " + millimetres(high.x() - low.x()) +
+         " long and " + millimetres(high.y() - low.y()) + " wide, reaching " +
+         millimetres(high.x()) + " ahead of the ankle and " + millimetres(-low.x()) + " behind it";
 }
 
 std::string soles_text(const RobotModel& model, const RobotGuess& guess) {
@@ -295,6 +355,89 @@ std::string held_text(const std::vector<std::string>& held) {
          "  \"locked_joints\": " + joint_list(held) + ",\n";
 }
 
+// ---- inertias
+
+// The box around all shapes of a link, and how far they reach from its centre of mass.
+struct LinkExtent {
+  Eigen::AlignedBox3d box;
+  double reach = 0;
+};
+
+LinkExtent extent_of(const LinkDescription& link) {
+  LinkExtent extent;
+  for (const auto* shapes : {&link.visuals, &link.collisions})
+    for (const PlacedShape& placed : *shapes)
+      for (const Vector3d& point : outline(placed.shape)) {
+        extent.box.extend(placed.pose * point);
+        extent.reach = std::max(extent.reach, (placed.pose * point - link.inertia.com).norm());
+      }
+  return extent;
+}
+
+// An inertia that the link cannot have: none, one that no body has, or one of a body larger than
+// its shape, as model/diagnose says. `largest`: the largest reach of all links, for a link without
+// a shape [m].
+bool is_inertia_of_no_link(const LinkDescription& link, const LinkExtent& extent, double largest) {
+  const Eigen::Matrix3d& tensor = link.inertia.about_com;
+  const Vector3d moments = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(tensor).eigenvalues();
+  const double gyration = std::sqrt(tensor.trace() / 2 / link.inertia.mass);
+  return !(moments[0] > 0) || moments[2] > 1.01 * (moments[0] + moments[1]) ||
+         gyration > (extent.box.isEmpty() ? largest : extent.reach);
+}
+
+Eigen::Matrix3d inertia_of_extent(const LinkDescription& link, const LinkExtent& extent) {
+  // Density of a link without a shape [kg/m^3]. Chosen: that of water, between plastics and motors.
+  constexpr double kDensity = 1000;
+  // Smallest edge of a box [m]. Chosen: a sheet still has an inertia about every axis.
+  constexpr double kSheet = 1e-3;
+  const double mass = link.inertia.mass;
+  if (extent.box.isEmpty()) {
+    const double radius = std::cbrt(0.75 * mass / (std::numbers::pi * kDensity));
+    return 0.4 * mass * radius * radius * Eigen::Matrix3d::Identity();
+  }
+  const Vector3d square = extent.box.sizes().cwiseMax(kSheet).cwiseAbs2();
+  return mass / 12 * (Vector3d::Constant(square.sum()) - square).asDiagonal().toDenseMatrix();
+}
+
+// Gives links that cannot have the inertia of their file that of a box; their names.
+std::vector<std::string> take_inertias_of_shapes(RobotDescription& robot) {
+  std::vector<LinkExtent> extents;
+  double largest = 0;
+  for (const LinkDescription& link : robot.links) {
+    extents.push_back(extent_of(link));
+    largest = std::max(largest, extents.back().reach);
+  }
+  std::vector<std::string> changed;
+  for (size_t i = 0; i < robot.links.size(); ++i) {
+    LinkDescription& link = robot.links[i];
+    if (!(link.inertia.mass > 0) || !is_inertia_of_no_link(link, extents[i], largest)) continue;
+    link.inertia.about_com = inertia_of_extent(link, extents[i]);
+    changed.push_back(link.name);
+  }
+  return changed;
+}
+
+std::string inertias_text(const RobotDescription& robot, const std::vector<std::string>& changed) {
+  if (changed.empty()) return "";
+  std::string text = remark(
+      "Inertias [kg m^2]: xx, xy, xz, yy, yz, zz about the centre of mass. The robot's file states "
+      "placeholders here: inertias of bodies larger than these links, or of no body at all. Guess: "
+      "boxes with the extent of the links' shapes, and the masses of the file. Check them, or "
+      "state those of the CAD model.");
+  text += "  \"links\": {\n";
+  for (const LinkDescription& link : robot.links) {
+    if (std::find(changed.begin(), changed.end(), link.name) == changed.end()) continue;
+    const Eigen::Matrix3d& tensor = link.inertia.about_com;
+    std::vector<std::string> numbers;
+    for (int row = 0; row < 3; ++row)
+      for (int column = row; column < 3; ++column)
+        numbers.push_back(text::brief(tensor(row, column), 4));
+    text += "    " + json_text(link.name) + ": { \"inertia\": [" + text::join(numbers, ", ") +
+            "] }" + (link.name == changed.back() ? "\n" : ",\n");
+  }
+  return text + "  },\n";
+}
+
 std::vector<std::string> to_do_list(const RobotModel& model, const RobotGuess& guess) {
   std::vector<std::string> items;
   items.push_back(
@@ -304,10 +447,13 @@ std::vector<std::string> to_do_list(const RobotModel& model, const RobotGuess& g
   if (!model.has_soles()) {
     items.push_back("State the soles of both feet; without them no motion can be made.");
   } else {
-    items.push_back("Compare the outline of the soles with the real feet: link " +
-                    model.description().soles.at("left").link + " and " +
-                    model.description().soles.at("right").link + ".");
+    items.push_back(
+        "Compare the outline of the soles with the real feet: " + sole_in_words(model, Side::left) +
+        ", " + sole_in_words(model, Side::right) + ".");
     const InverseKinematics ik(model, model.posture());
+    items.push_back("Compare the legs with the robot, from the trunk down. Left: " +
+                    leg_in_words(model, Side::left) +
+                    ". Right: " + leg_in_words(model, Side::right) + ".");
     if (ik.lacks_joints())
       items.push_back(
           "Know what the legs can do: a leg has fewer than six joints of its own, so there are "
@@ -340,10 +486,17 @@ FirstSidecar first_sidecar(const std::string& robot, const std::filesystem::path
   const fs::path urdf = fs::weakly_canonical(fs::absolute(stated.urdf_file));
   const std::string urdf_as_written = seen_from(folder, urdf);
   const std::vector<std::string> held = hold_joints_without_mass(stated);
-  const RobotGuess guess = guess_robot(std::move(stated));
+  RobotGuess guess = guess_robot(std::move(stated));
+  const std::vector<std::string> boxes = take_inertias_of_shapes(guess.robot);
   const RobotModel model(guess.robot);
   FirstSidecar result;
   result.to_do = to_do_list(model, guess);
+  if (!boxes.empty())
+    result.to_do.push_back(
+        "Replace the inertia of " + text::counted(boxes.size(), "link") + " (" +
+        text::join({boxes.begin(), boxes.begin() + std::min<long>(3, std::ssize(boxes))}, ", ") +
+        (boxes.size() > 3 ? ", ..." : "") +
+        "): the file states placeholders, and boxes stand in their place.");
   result.text =
       "{\n" +
       remark("The first sidecar of " + model.name() +
@@ -356,13 +509,9 @@ FirstSidecar first_sidecar(const std::string& robot, const std::filesystem::path
           "Facing: axis of the URDF's root link along which the robot looks; the root link of "
           "this file is turned so that x is forward.",
           guess.facing_reason) +
-      "  \"facing\": " + json_text(guess.facing) + ",\n" +
-      remark(
-          "Trunk: its tilt decides whether the robot has fallen. Guess: the root link, which "
-          "carries both legs.") +
-      "  \"trunk_link\": " + json_text(model.bodies()[0].name) + ",\n" + soles_text(model, guess) +
-      home_text(model, guess) + aliases_text(model) + servos_text(model, guess) +
-      profiles_text(model, guess) + sensors_text(model) + "}\n";
+      "  \"facing\": " + json_text(guess.facing) + ",\n" + inertias_text(guess.robot, boxes) +
+      trunk_text(model) + soles_text(model, guess) + home_text(model, guess) + aliases_text(model) +
+      servos_text(model, guess) + profiles_text(model, guess) + sensors_text(model) + "}\n";
   result.robot = guess.robot;
   return result;
 }
