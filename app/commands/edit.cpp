@@ -35,7 +35,8 @@ struct EditCommand {
   PatternOptions input;
   double scale = 0;
   bool to_limits = false;
-  bool local = false;     // of retime: no single factor
+  bool local = false;  // of retime: no single factor
+  bool keep_pauses = false;
   double margin = -1;     // of retime [m]; below 0: none was given
   bool as_table = false;  // of concat, blend and loop
   int times = 1;          // of loop and alternate
@@ -174,6 +175,7 @@ void retime_locally(Context& context, const EditCommand& options, const Task& in
   LocalRetimeOptions local;
   local.path.check = check_options(input, options.tolerances);
   if (options.margin >= 0) local.path.most_margin = options.margin;
+  local.keep_pauses = options.keep_pauses;
   local.dt = input.series.dt;
   LocalPace pace = fastest_local_pace(
       input.robot, input.pattern, table_beside(options.out).string(), local, context.progress());
@@ -212,6 +214,9 @@ void retime(Context& context, const EditCommand& options) {
     fail(ErrorCode::usage, "edit retime: --local has a meaning with --to-limits only");
   if (options.margin >= 0 && !options.local)
     fail(ErrorCode::usage, "edit retime: --margin has a meaning with --to-limits --local only");
+  if (options.keep_pauses && !options.local)
+    fail(ErrorCode::usage,
+         "edit retime: --keep-pauses has a meaning with --to-limits --local only");
   const Task input = load(context, options);
   if (options.local) return retime_locally(context, options, input);
   const ConsistencyReport before =
@@ -509,6 +514,8 @@ void add_edit(CLI::App& app, Context& context) {
                   "eighth of the sole's width).")
       ->check(number_within(0.0, 1.0))
       ->type_name("M");
+  retime_command.add_flag("--keep-pauses", options.keep_pauses,
+                          "With --local: spans in which nothing moves keep their length.");
   retime_command.callback([&context] { retime(context, options); });
   CLI::App& loop_command =
       add_edit_of(*command, "loop", "repeat a motion whose end meets its beginning", options);
