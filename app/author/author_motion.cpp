@@ -131,8 +131,8 @@ class Tracks {
   }
   OrderedJson sorted() {
     const auto rank = [](const OrderedJson& track) {
-      static const std::vector<std::string> kinds = {"posture", "zmp",  "cog",  "fz",
-                                                     "trunk",   "foot", "joint"};
+      static const std::vector<std::string> kinds = {"posture", "zmp",  "cog",  "fz",   "trunk",
+                                                     "foot",    "hand", "gaze", "joint"};
       return std::find(kinds.begin(), kinds.end(), track["kind"].get<std::string>());
     };
     std::stable_sort(tracks_.begin(), tracks_.end(),
@@ -239,9 +239,23 @@ OrderedJson handles_json(const RobotModel& model) {
       one["body"] = handle.body;
       one["point"] = list(handle.point);
     }
+    if (!handle.link.empty()) one["link"] = handle.link;
+    if (handle.kind == AuthorHandle::Kind::gaze) one["gaze"] = true;
     handles.push_back(one);
   }
   return handles;
+}
+
+OrderedJson targets_json(const AuthorMotion& motion) {
+  OrderedJson targets = OrderedJson::array();
+  for (const AuthorTarget& target : targets_of(motion))
+    targets.push_back({{"pointer", target.pointer},
+                       {"label", target.label},
+                       {"handle", target.handle},
+                       {"time", target.time},
+                       {"until", target.until},
+                       {"place", list(target.place)}});
+  return targets;
 }
 
 struct Lane {
@@ -316,6 +330,7 @@ void describe(AuthorMotion& motion, const StabilitySeries& stability) {
                   {"disturbances", disturbances_json(motion)},
                   {"joints", joints_json(task.robot)},
                   {"handles", handles_json(task.robot)},
+                  {"targets", targets_json(motion)},
                   {"postures", postures_of(motion)},
                   {"own_postures", own},
                   {"strip", strip_json(motion, stability)},
@@ -375,6 +390,10 @@ Eigen::AlignedBox3d box_of(const RobotModel& model, int body) {
 // A limb whose end is this near the middle plane at rest is no arm [m]. Chosen: necks are in it.
 constexpr double kMiddle = 0.02;
 
+// Distance of the gaze's handle from the head, in heights of the robot at rest. Chosen: in the
+// picture, and far enough for a hand that steers.
+constexpr double kGazeAhead = 0.4;
+
 }  // namespace
 
 std::vector<AuthorHandle> handles_of(const RobotModel& robot) {
@@ -400,6 +419,9 @@ std::vector<AuthorHandle> handles_of(const RobotModel& robot) {
     limbs.push_back({Kind::limb, name, words_of(name), b, limb_point(robot, b), Side::left});
     const double y = data.position[static_cast<size_t>(b)].y();
     limbs.back().side = y > 0 ? Side::left : Side::right;
+    limbs.back().link = b == hand_body(robot, Side::left)    ? "left"
+                        : b == hand_body(robot, Side::right) ? "right"
+                                                             : name;
     if (std::abs(y) > kMiddle) ++on_side[static_cast<size_t>(limbs.back().side)];
   }
   if (on_side[0] == 1 && on_side[1] == 1)
@@ -409,6 +431,12 @@ std::vector<AuthorHandle> handles_of(const RobotModel& robot) {
       limb.label = std::string(name_of(limb.side)) + " hand";
     }
   handles.insert(handles.end(), limbs.begin(), limbs.end());
+  if (const int head = head_body(robot); head >= 0) {
+    const Vector3d& from = robot.bodies()[static_cast<size_t>(head)].inertia.com;
+    const double ahead = kGazeAhead * data.position[static_cast<size_t>(head)].z();
+    handles.push_back(
+        {Kind::gaze, "gaze", "gaze", head, from + ahead * gaze_axis(robot, head), Side::left});
+  }
   const int trunk = robot.trunk_body();
   const Eigen::AlignedBox3d box = box_of(robot, trunk);
   Vector3d top = box.isEmpty() ? Vector3d(0, 0, 0.1) : Vector3d(box.center());
@@ -416,6 +444,51 @@ std::vector<AuthorHandle> handles_of(const RobotModel& robot) {
   handles.push_back({Kind::trunk, "trunk", "trunk", trunk, top, Side::left});
   handles.push_back({Kind::cog, "cog", "COG", -1, Vector3d::Zero(), Side::left});
   return handles;
+}
+
+std::vector<AuthorTarget> targets_of(const AuthorMotion& motion) {
+  const RobotModel& robot = motion.task.robot;
+  const CommandSeries& series = motion.task.series;
+  const std::vector<Keyframe>& frames = motion.task.pattern.keyframes;
+  const std::vector<AuthorHandle> handles = handles_of(robot);
+  std::vector<AuthorTarget> targets;
+  RobotData data(robot);
+  const auto add = [&](size_t i, const std::string& link, const LinkTarget& wanted) {
+    if (!wanted.position) return;
+    AuthorTarget target;
+    target.time = frames[i].t;
+    target.until = series.duration();
+    const bool gaze = link.empty();
+    const auto named = [&](const Keyframe& key) {
+      return gaze ? key.gaze.has_value() : key.hands.contains(link);
+    };
+    for (size_t k = frames.size(); --k > i;)
+      if (named(frames[k])) target.until = frames[k].t;
+    target.pointer = pointer_of_keyframe(motion.task.pattern, i) +
+                     (gaze ? "/gaze" : "/hands" + pointer_token(link));
+    const bool hand = link == "left" || link == "right";
+    target.label = gaze ? "gaze" : hand ? link + " hand" : "link " + link;
+    for (const AuthorHandle& handle : handles)
+      if (gaze ? handle.kind == AuthorHandle::Kind::gaze : handle.link == link)
+        target.handle = handle.name;
+    target.place = *wanted.position;
+    target.axes.setIdentity();
+    if (wanted.frame == LinkTarget::Frame::trunk) {
+      const auto last = static_cast<double>(series.samples.size() - 1);
+      const auto k =
+          static_cast<size_t>(std::clamp(std::round(target.time / series.dt), 0.0, last));
+      update_positions(robot, series.samples[k].state, data);
+      const Eigen::Isometry3d trunk = data.pose(robot.trunk_body());
+      target.place = trunk * target.place;
+      target.axes = trunk.linear();
+    }
+    targets.push_back(target);
+  };
+  for (size_t i = 0; i < frames.size(); ++i) {
+    for (const auto& [link, wanted] : frames[i].hands) add(i, link, wanted);
+    if (frames[i].gaze) add(i, "", *frames[i].gaze);
+  }
+  return targets;
 }
 
 }  // namespace ayumi::app

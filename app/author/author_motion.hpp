@@ -45,15 +45,28 @@ std::string pointer_token(const std::string& key);
 /// The item of the pattern's list that holds a phase or keyframe: itself, or a block that repeats.
 std::string outermost(const std::string& pointer);
 
-/// What can be dragged in the picture: the soles, the ends of the arms, the trunk and the COG.
+/// What can be dragged in the picture: the soles, the ends of the arms, what the head looks at, the
+/// trunk and the COG.
 struct AuthorHandle {
-  enum class Kind { foot, limb, trunk, cog };
+  enum class Kind { foot, limb, gaze, trunk, cog };
   Kind kind = Kind::cog;
   std::string name, label;
   int body = -1;                                    ///< -1: the COG
   Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< frame of the body [m]
   Side side = Side::left;                           ///< of a foot
+  std::string link = {};                            ///< of a limb: its name in "hands"
 };
 std::vector<AuthorHandle> handles_of(const RobotModel& robot);
+
+/// Where a key wants a hand, another link, or what the head looks at.
+struct AuthorTarget {
+  std::string pointer;         ///< of the key's value
+  std::string label;           ///< "left hand"
+  std::string handle;          ///< that follows it; empty: none
+  double time = 0, until = 0;  ///< of the key, and until when it leads at most [s]
+  Eigen::Vector3d place;       ///< at its time, world [m]
+  Eigen::Matrix3d axes;        ///< of the written place, world
+};
+std::vector<AuthorTarget> targets_of(const AuthorMotion& motion);
 
 }  // namespace ayumi::app

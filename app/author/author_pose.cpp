@@ -277,6 +277,25 @@ size_t phase_at(const Pattern& pattern, double time) {
   return pattern.phases.size() - 1;
 }
 
+// Numbers of a place, each for itself, so that what does not move stays as it is written.
+void set_place(const AuthorMotion& motion, const std::string& pointer, const Vector3d& place,
+               std::vector<PatternEdit>& edits) {
+  const OrderedJson& written = motion.document.at(OrderedJson::json_pointer(pointer));
+  for (size_t i = 0; i < 3; ++i) {
+    const double value = metres(place[static_cast<Eigen::Index>(i)]);
+    if (written.at(i).is_number() && std::abs(written[i].get<double>() - value) < kStill) continue;
+    edits.push_back(
+        {PatternEdit::Kind::set, pointer + "/" + std::to_string(i), OrderedJson(value).dump()});
+  }
+}
+
+// A target's place, in the frame in which it is written.
+void set_target(const AuthorMotion& motion, const std::string& pointer, const Vector3d& place,
+                std::vector<PatternEdit>& edits) {
+  const bool alone = motion.document.at(OrderedJson::json_pointer(pointer)).is_array();
+  set_place(motion, alone ? pointer : pointer + "/position", place, edits);
+}
+
 // Where the foot stood before its first swing: in "start", both feet, so that only one moves.
 void drag_start(const AuthorMotion& motion, Side side, const Vector3d& change,
                 std::vector<PatternEdit>& edits) {
@@ -460,9 +479,16 @@ class Drag {
   PoseAnswer answer() {
     PoseAnswer out;
     switch (handle_.kind) {
-      case AuthorHandle::Kind::limb:
-        out.edits = limb();
+      case AuthorHandle::Kind::limb: {
+        const LinkTarget* const leads = leading_target();
+        out.edits = leads ? target(*leads) : limb();
         break;
+      }
+      case AuthorHandle::Kind::gaze: {
+        const LinkTarget* const leads = leading_target();
+        out.edits = target(leads ? *leads : LinkTarget{});
+        break;
+      }
       case AuthorHandle::Kind::cog:
         out.edits = cog();
         break;
@@ -493,7 +519,16 @@ class Drag {
   }
 
   Vector3d missed(const Tried& tried) const {
-    Vector3d off = wish_.to - place_of(motion_, handle_, sample_near(tried.series, wish_.time));
+    const CommandSample& sample = sample_near(tried.series, wish_.time);
+    Vector3d off = wish_.to - place_of(motion_, handle_, sample);
+    if (handle_.kind == AuthorHandle::Kind::gaze) {  // anything on the line of sight is looked at
+      const Isometry3d head = body_pose(motion_, sample, handle_.body);
+      const Vector3d& from =
+          motion_.task.robot.bodies()[static_cast<size_t>(handle_.body)].inertia.com;
+      const Vector3d axis = (head.linear() * (handle_.point - from)).normalized();
+      const Vector3d seen = wish_.to - head * from;
+      return seen - std::max(0.0, seen.dot(axis)) * axis;
+    }
     // A sole on the ground stays at its height, which is no miss.
     if (handle_.kind == AuthorHandle::Kind::foot) off.z() = 0;
     return off;
@@ -502,6 +537,7 @@ class Drag {
   std::string reason() const {
     if (handle_.kind == AuthorHandle::Kind::limb)
       return ": its joints are at their limits, or the place is too far away.";
+    if (handle_.kind == AuthorHandle::Kind::gaze) return ": the neck cannot turn farther.";
     if (handle_.kind == AuthorHandle::Kind::foot)
       return ": other keys of the pattern move this foot too.";
     return ": the soles and the balance allow no more at this time, or other keys of the pattern "
@@ -527,6 +563,81 @@ class Drag {
       if (missed(tried).norm() < 5e-4 || solution.missing > 1e-3) break;
     }
     return edits;
+  }
+
+  // The target that leads this limb or the gaze: of the last keyframe with one, unless it sets
+  // free, or a later one has keys of the joints.
+  const LinkTarget* leading_target() const {
+    const RobotModel& robot = motion_.task.robot;
+    const Pattern& pattern = motion_.task.pattern;
+    const std::vector<int> dofs = limb_dofs(robot, handle_.body);
+    const auto moves = [&](const auto& joints) {
+      return std::any_of(joints.begin(), joints.end(), [&](const auto& joint) {
+        return std::count(dofs.begin(), dofs.end(), robot.find_dof(joint.first)) > 0;
+      });
+    };
+    for (auto key = pattern.keyframes.rbegin(); key != pattern.keyframes.rend(); ++key) {
+      if (key->t > wish_.time + kSameTime) continue;
+      const LinkTarget* const found = target_in(*key);
+      if (found) return found->position ? found : nullptr;
+      if (moves(key->joints) ||
+          (key->posture && moves(posture_joints(robot, pattern, *key->posture, key->place))))
+        return nullptr;
+    }
+    return nullptr;
+  }
+
+  const LinkTarget* target_in(const Keyframe& key) const {
+    if (handle_.kind == AuthorHandle::Kind::gaze) return key.gaze ? &*key.gaze : nullptr;
+    const auto found = key.hands.find(handle_.link);
+    return found == key.hands.end() ? nullptr : &found->second;
+  }
+
+  // A key of the target at this time, in the frame of the one that leads. The trunk moves a little
+  // with the arm, so that a place in its frame takes some rounds.
+  std::vector<PatternEdit> target(const LinkTarget& leads) {
+    const bool in_trunk = leads.frame == LinkTarget::Frame::trunk;
+    Vector3d to = wish_.to;
+    std::vector<PatternEdit> edits;
+    for (int round = 0; round < 3; ++round) {
+      Isometry3d frame = Isometry3d::Identity();
+      if (in_trunk) frame = body_pose(motion_, now_, motion_.task.robot.trunk_body());
+      edits = target_edits(leads, frame.inverse() * to);
+      const Vector3d off = missed(sampled(edits));
+      if (!in_trunk || off.norm() < 5e-4) break;
+      to += off;
+    }
+    return edits;
+  }
+
+  std::vector<PatternEdit> target_edits(const LinkTarget& leads, const Vector3d& place) const {
+    const Pattern& pattern = motion_.task.pattern;
+    const bool gaze = handle_.kind == AuthorHandle::Kind::gaze;
+    std::vector<PatternEdit> edits;
+    for (size_t i = 0; i < pattern.keyframes.size(); ++i) {
+      const Keyframe& key = pattern.keyframes[i];
+      const LinkTarget* const there = target_in(key);
+      if (std::abs(key.t - wish_.time) > kSameTime || !there || !there->position) continue;
+      set_target(motion_,
+                 pointer_of_keyframe(pattern, i) +
+                     (gaze ? "/gaze" : "/hands" + pointer_token(handle_.link)),
+                 place, edits);
+      return edits;
+    }
+    OrderedJson value = {metres(place.x()), metres(place.y()), metres(place.z())};
+    if (leads.direction || leads.frame == LinkTarget::Frame::trunk) {
+      value = OrderedJson{{"position", value}};
+      if (leads.direction)
+        value["direction"] = {rounded(leads.direction->x(), 4), rounded(leads.direction->y(), 4),
+                              rounded(leads.direction->z(), 4)};
+      if (leads.frame == LinkTarget::Frame::trunk) value["frame"] = "trunk";
+    }
+    KeyEdits keys(motion_);
+    keys.set(
+        wish_.time,
+        gaze ? std::vector<std::string>{"gaze"} : std::vector<std::string>{"hands", handle_.link},
+        value);
+    return keys.edits();
   }
 
   // The base moves back under a trunk that leans, so that the COG stays: the trunk leans farther.
@@ -623,6 +734,25 @@ class Drag {
   std::string message_;
 };
 
+// The place of a key's target is moved, wherever the target is in the picture.
+std::vector<PatternEdit> moved_target(const AuthorMotion& motion, const PoseWish& wish) {
+  for (const AuthorTarget& target : targets_of(motion)) {
+    if (target.pointer != wish.target || std::abs(target.time - wish.time) > kSameTime) continue;
+    const OrderedJson& written = motion.document.at(OrderedJson::json_pointer(target.pointer));
+    const OrderedJson& place = written.is_array() ? written : written.at("position");
+    const std::string text = motion.document.dump();
+    const std::string pointer = target.pointer + (written.is_array() ? "" : "/position");
+    Vector3d now;
+    for (size_t i = 0; i < 3; ++i)
+      now[static_cast<Eigen::Index>(i)] = value_in_text(text, pointer + "/" + std::to_string(i));
+    std::vector<PatternEdit> edits;
+    if (place.size() == 3)
+      set_place(motion, pointer, now + target.axes.transpose() * (wish.to - target.place), edits);
+    return edits;
+  }
+  fail(ErrorCode::usage, "the pattern has no target '" + wish.target + "' at this time");
+}
+
 std::vector<PatternEdit> joint_edits(const AuthorMotion& motion, const PoseWish& wish) {
   KeyEdits keys(motion);
   for (const auto& [name, value] : wish.joints) {
@@ -640,7 +770,7 @@ PoseAnswer posed(const AuthorMotion& motion, const std::string& text, const Auth
   try {
     if (!wish.drag.empty()) return Drag(motion, text, setting, wish).answer();
     PoseAnswer out;
-    out.edits = joint_edits(motion, wish);
+    out.edits = wish.target.empty() ? joint_edits(motion, wish) : moved_target(motion, wish);
     out.row = row_of(motion, sampled_with(motion, text, setting, out.edits, wish.time));
     return out;
   } catch (const Error& error) {
@@ -665,6 +795,56 @@ std::vector<PatternEdit> captured(const AuthorMotion& motion, double time, const
     angles[robot.dofs()[static_cast<size_t>(dof)].name] =
         in_unit(motion, robot.dofs()[static_cast<size_t>(dof)], shown[dof]);
   return {{PatternEdit::Kind::set, "/postures" + pointer_token(name), angles.dump()}};
+}
+
+namespace {
+
+// The keyframes of a pattern as they are written.
+OrderedJson written_keyframes(const Pattern& pattern) {
+  return OrderedJson::parse(pattern_text(pattern), nullptr, true, true).at("keyframes");
+}
+
+// What has to be written for `to` in place of `from`, where the author's text says `from` in any
+// words.
+void difference(const OrderedJson& from, const OrderedJson& to, const std::string& pointer,
+                const OrderedJson& written, std::vector<PatternEdit>& edits) {
+  for (const auto& [name, value] : from.items())
+    if (!to.contains(name) && written.contains(name))
+      edits.push_back({PatternEdit::Kind::remove, pointer + pointer_token(name), ""});
+  for (const auto& [name, value] : to.items()) {
+    const std::string place = pointer + pointer_token(name);
+    if (from.contains(name) && from[name] == value) continue;
+    const bool inside = value.is_object() && from.contains(name) && from[name].is_object() &&
+                        written.contains(name) && written[name].is_object();
+    if (inside)
+      difference(from[name], value, place, written[name], edits);
+    else
+      edits.push_back({PatternEdit::Kind::set, place, value.dump()});
+  }
+}
+
+}  // namespace
+
+std::vector<PatternEdit> mirrored_keyframe(const AuthorMotion& motion, const std::string& pointer) {
+  const Pattern& pattern = motion.task.pattern;
+  for (size_t i = 0; i < pattern.keyframes.size(); ++i) {
+    if (pointer_of_keyframe(pattern, i) != pointer) continue;
+    KeyEdit edit;
+    edit.at = pattern.keyframes[i].t;
+    edit.mirror = true;
+    Pattern before = pattern;
+    before.table.reset();
+    const Pattern after = with_key_edited(motion.task.robot, before, edit);
+    OrderedJson from = written_keyframes(before).at(i), to = written_keyframes(after).at(i);
+    for (const char* const time : {"t", "after"}) {
+      from.erase(time);
+      to.erase(time);
+    }
+    std::vector<PatternEdit> edits;
+    difference(from, to, pointer, motion.document.at(OrderedJson::json_pointer(pointer)), edits);
+    return edits;
+  }
+  fail(ErrorCode::usage, "the pattern has no keyframe " + pointer);
 }
 
 }  // namespace ayumi::app

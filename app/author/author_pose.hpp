@@ -18,6 +18,7 @@ struct PoseWish {
   double time = 0;                               ///< [s]
   std::map<std::string, double> joints;          ///< [rad, m]
   std::string drag;                              ///< name of a handle; empty: none
+  std::string target;                            ///< pointer of an AuthorTarget at `time`
   Eigen::Vector3d to = Eigen::Vector3d::Zero();  ///< where its point shall be, world [m]
 };
 
@@ -35,5 +36,9 @@ PoseAnswer posed(const AuthorMotion& motion, const std::string& text, const Auth
 /// Error(usage) for an empty name, and Error(bad_model) where the robot has no mirror image.
 std::vector<PatternEdit> captured(const AuthorMotion& motion, double time, const std::string& name,
                                   bool mirror);
+
+/// The keyframe at this pointer with left and right exchanged: only values that change are written.
+/// Throws Error(usage) for a pointer without a keyframe, and Error(bad_model) as captured().
+std::vector<PatternEdit> mirrored_keyframe(const AuthorMotion& motion, const std::string& pointer);
 
 }  // namespace ayumi::app

@@ -106,7 +106,8 @@ class Router {
     static const std::map<std::string, Handler> handlers = {
         {"edit", &AuthorSession::edit},       {"undo", &AuthorSession::undo},
         {"redo", &AuthorSession::redo},       {"pose", &AuthorSession::pose},
-        {"posture", &AuthorSession::posture}, {"job", &AuthorSession::start_job}};
+        {"posture", &AuthorSession::posture}, {"mirror", &AuthorSession::mirror},
+        {"job", &AuthorSession::start_job}};
     const auto found = handlers.find(path);
     if (found == handlers.end())
       response.status = 404;

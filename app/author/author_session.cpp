@@ -16,6 +16,7 @@
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/io/pattern/pattern_table.hpp"
 #include "ayumi/io/run/sha256.hpp"
+#include "ayumi/plan/viip_phases.hpp"
 #include "ayumi/report/replay.hpp"
 
 namespace ayumi::app {
@@ -241,7 +242,7 @@ std::string AuthorSession::state() {
     json.update(shown->motion->parts);
     // Of a motion that is older than the text, nothing can be changed but the text.
     if (!shown->error) {
-      for (const char* const each : {"pose.joints", "pose.drag", "posture"})
+      for (const char* const each : {"pose.joints", "pose.drag", "posture", "mirror"})
         features.push_back(each);
       for (const std::string& kind : author_job_kinds()) features.push_back("job." + kind);
     }
@@ -295,6 +296,21 @@ AuthorAnswer AuthorSession::write(const std::string& seen, const std::string& te
   return {200, {{"version", view()->version}}};
 }
 
+namespace {
+
+// Keys inside a VIIP phase would make a pattern that is read now unreadable. Other errors are shown
+// at their line.
+void refuse_keys_in_goals(const std::string& text, const AuthorSetting& setting) {
+  std::optional<Pattern> pattern;
+  try {
+    pattern = pattern_of_text(text, setting.file, setting.set);
+  } catch (const Error&) {
+  }
+  if (pattern && has_viip_phases(*pattern)) without_viip_phases(*pattern);  // throws
+}
+
+}  // namespace
+
 AuthorAnswer AuthorSession::edit(const OrderedJson& request) {
   return answered([&]() -> AuthorAnswer {
     const std::lock_guard lock(reading_);
@@ -320,8 +336,10 @@ AuthorAnswer AuthorSession::edit(const OrderedJson& request) {
       return conflict(*shown, request.contains("text") ? request["text"].get<std::string>()
                                                        : edited_text(base, edits));
     }
-    return write(shown->text, request.contains("text") ? request["text"].get<std::string>()
-                                                       : edited_text(shown->text, edits));
+    const std::string text = request.contains("text") ? request["text"].get<std::string>()
+                                                      : edited_text(shown->text, edits);
+    if (!shown->error) refuse_keys_in_goals(text, setting_);
+    return write(shown->text, text);
   });
 }
 
@@ -346,6 +364,24 @@ AuthorAnswer AuthorSession::step(const OrderedJson& request, int by) {
   });
 }
 
+namespace {
+
+// As the page sends them back.
+OrderedJson edits_json(const std::vector<PatternEdit>& edits) {
+  OrderedJson list = OrderedJson::array();
+  for (const PatternEdit& edit : edits) {
+    const bool removes = edit.kind == PatternEdit::Kind::remove;
+    list.push_back({{"kind", removes                               ? "remove"
+                             : edit.kind == PatternEdit::Kind::set ? "set"
+                                                                   : "insert"},
+                    {"pointer", edit.pointer}});
+    if (!removes) list.back()["value"] = OrderedJson::parse(edit.value);
+  }
+  return list;
+}
+
+}  // namespace
+
 AuthorAnswer AuthorSession::pose(const OrderedJson& request) {
   return answered([&]() -> AuthorAnswer {
     const Shown shown = view();
@@ -354,17 +390,14 @@ AuthorAnswer AuthorSession::pose(const OrderedJson& request) {
     wish.time = request.at("time");
     if (request.contains("joints"))
       wish.joints = request["joints"].get<std::map<std::string, double>>();
-    if (request.contains("drag")) {
-      wish.drag = request["drag"];
+    if (request.contains("drag")) wish.drag = request["drag"];
+    if (request.contains("target")) wish.target = request["target"];
+    if (request.contains("to")) {
       const auto to = request.at("to").get<std::array<double, 3>>();
       wish.to = {to[0], to[1], to[2]};
     }
     const PoseAnswer answer = posed(*shown->motion, shown->text, setting_, wish);
-    OrderedJson edits = OrderedJson::array(), row = nullptr;
-    for (const PatternEdit& edit : answer.edits)
-      edits.push_back({{"kind", edit.kind == PatternEdit::Kind::set ? "set" : "insert"},
-                       {"pointer", edit.pointer},
-                       {"value", OrderedJson::parse(edit.value)}});
+    OrderedJson row = nullptr;
     if (!answer.row.empty()) {
       row = OrderedJson::array();
       for (size_t i = 0; i + sizeof(float) <= answer.row.size(); i += sizeof(float)) {
@@ -376,7 +409,7 @@ AuthorAnswer AuthorSession::pose(const OrderedJson& request) {
     return {
         200,
         {{"row", row},
-         {"edits", edits},
+         {"edits", edits_json(answer.edits)},
          {"message", answer.message.empty() ? OrderedJson(nullptr) : OrderedJson(answer.message)}}};
   });
 }
@@ -385,12 +418,17 @@ AuthorAnswer AuthorSession::posture(const OrderedJson& request) {
   return answered([&]() -> AuthorAnswer {
     const Shown shown = view();
     if (!shown->motion || shown->error) return refused("the pattern cannot be read at the moment");
-    OrderedJson edits = OrderedJson::array();
-    for (const PatternEdit& edit : captured(*shown->motion, request.at("time"), request.at("name"),
-                                            request.value("mirror", false)))
-      edits.push_back(
-          {{"kind", "set"}, {"pointer", edit.pointer}, {"value", OrderedJson::parse(edit.value)}});
-    return {200, {{"edits", edits}}};
+    return {200,
+            {{"edits", edits_json(captured(*shown->motion, request.at("time"), request.at("name"),
+                                           request.value("mirror", false)))}}};
+  });
+}
+
+AuthorAnswer AuthorSession::mirror(const OrderedJson& request) {
+  return answered([&]() -> AuthorAnswer {
+    const Shown shown = view();
+    if (!shown->motion || shown->error) return refused("the pattern cannot be read at the moment");
+    return {200, {{"edits", edits_json(mirrored_keyframe(*shown->motion, request.at("pointer")))}}};
   });
 }
 

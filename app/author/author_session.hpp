@@ -60,6 +60,7 @@ class AuthorSession {
   AuthorAnswer redo(const OrderedJson& request) { return step(request, 1); }
   AuthorAnswer pose(const OrderedJson& request);
   AuthorAnswer posture(const OrderedJson& request);
+  AuthorAnswer mirror(const OrderedJson& request);
   AuthorAnswer start_job(const OrderedJson& request);
   AuthorAnswer cancel_job(const std::string& id);
 

@@ -19,6 +19,7 @@
 #include "ayumi/io/pattern/pattern_table.hpp"
 #include "ayumi/io/run/results_json.hpp"
 #include "ayumi/plot/com_zmp_plot.hpp"
+#include "ayumi/task/payload_findings.hpp"
 #include "ayumi/task/plan_log.hpp"
 #include "ayumi/task/scenario_findings.hpp"
 #include "check_table.hpp"
@@ -200,13 +201,15 @@ Checked checked_one(const Context& context, const CheckCommand& options, const s
   const auto begin = std::chrono::steady_clock::now();
   const Task input = load_or_explain(context, file, options);
   const CheckOptions judged = check_options(input, options.tolerances);
-  const Judgement judgement = judge(input, judged);
+  std::vector<Mistake> payloads;
+  const Judgement judgement = judge(input, judged, &payloads);
   const ConsistencyReport& report = judgement.report;
   const ActuatorNeed& need = judgement.need();
   const std::string own = own_need(input, judged);
   const std::vector<Mistake> mistakes =
-      report.consistent ? doubtful_values(input.robot, input.pattern)
-                        : likely_mistakes(input.robot, input.pattern, judged, context.progress());
+      report.consistent   ? doubtful_values(input.robot, input.pattern)
+      : !payloads.empty() ? payloads
+                          : likely_mistakes(input.robot, input.pattern, judged, context.progress());
   const std::vector<std::string> disturbed = findings_under_scenario(input, judged, report);
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

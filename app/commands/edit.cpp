@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "ayumi/author/edit/gait_cycle.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/pattern/pattern_table.hpp"
@@ -35,10 +36,13 @@ struct EditCommand {
   PatternOptions input;
   double scale = 0;
   bool to_limits = false;
-  bool local = false;     // of retime: no single factor
+  bool local = false;  // of retime: no single factor
+  bool keep_pauses = false;
   double margin = -1;     // of retime [m]; below 0: none was given
   bool as_table = false;  // of concat, blend and loop
   int times = 1;          // of loop and alternate
+  bool cycle = false;     // of loop: two steps cut from a walk
+  bool whole = false;     // of loop: with the walk's begin and end
   bool open_end = false;  // of alternate
   KeyEdit key;
   double key_to = -1, key_by = 0;  // [s]
@@ -175,6 +179,7 @@ void retime_locally(Context& context, const EditCommand& options, const Task& in
   LocalRetimeOptions local;
   local.path.check = check_options(input, options.tolerances);
   if (options.margin >= 0) local.path.most_margin = options.margin;
+  local.keep_pauses = options.keep_pauses;
   local.dt = input.series.dt;
   LocalPace pace = fastest_local_pace(
       input.robot, input.pattern, table_beside(options.out).string(), local, context.progress());
@@ -219,6 +224,10 @@ void retime(Context& context, const EditCommand& options) {
     fail(ErrorCode::usage,
          "edit retime: --margin works only together with --to-limits --local; add both, or leave "
          "--margin out");
+  if (options.keep_pauses && !options.local)
+    fail(ErrorCode::usage,
+         "edit retime: --keep-pauses works only together with --to-limits --local; add both, or "
+         "leave --keep-pauses out");
   const Task input = load(context, options);
   if (options.local) return retime_locally(context, options, input);
   const ConsistencyReport before =
@@ -306,8 +315,81 @@ void join(Context& context, const EditCommand& options) {
                Json{{"joins_s", joins}, {"keys_kept", !input.pattern.table}});
 }
 
+// Of all cycles of two steps of a walk, the one whose end meets its beginning best.
+GaitCycle best_cycle(const RobotModel& robot, const MotionPart& walk) {
+  GaitCycle best = gait_cycle(robot, walk, 0);  // throws where there is none
+  const auto swings = std::count_if(walk.pattern.phases.begin(), walk.pattern.phases.end(),
+                                    [](const Phase& phase) { return phase.swing.has_value(); });
+  const auto open = [](const LoopGap& gap) {
+    return std::max({gap.feet, gap.base, gap.posture, gap.rate});
+  };
+  for (int swing = 1; swing + 3 <= swings; ++swing) {
+    const GaitCycle cycle = gait_cycle(robot, walk, swing);
+    if (open(cycle.gap) < open(best.gap)) best = cycle;
+  }
+  return best;
+}
+
+// Two steps from the middle of a walk, so many times; with what leads to them and from them where
+// the whole is wanted. Without it the result begins and ends in motion.
+void loop_cycle(Context& context, const EditCommand& options) {
+  if (options.over > 0)
+    fail(ErrorCode::usage,
+         "edit loop: --cycle repeats steps in motion, so that there is no transition; leave --over "
+         "out");
+  const Task input = load(context, options);
+  const MotionPart walk{input.pattern, input.series};
+  const GaitCycle cycle = best_cycle(input.robot, walk);
+  if (!cycle.gap.closed)
+    fail(ErrorCode::bad_pattern,
+         options.pattern + ": the best cycle of two steps begins at " +
+             text::fixed(static_cast<double>(cycle.begin) * input.series.dt, 3) +
+             " s, and its end does not meet its beginning: " + gap_words(cycle.gap) +
+             "; a walk of more equal steps has a cycle that does");
+  const std::string table = table_beside(options.out).string();
+  const auto part = [&](long first, long last) {
+    return cut(input.robot, walk, first, last, table);
+  };
+  const auto sampled = [&](const Pattern& pattern) {
+    return sample(input.robot, pattern, {.dt = input.series.dt}, context.progress());
+  };
+  std::vector<Pattern> parts(static_cast<size_t>(options.times), part(cycle.begin, cycle.end));
+  if (options.whole) {
+    parts.insert(parts.begin(), part(0, cycle.begin));
+    parts.push_back(part(cycle.end, static_cast<long>(input.series.samples.size()) - 1));
+  }
+  Pattern all = parts.front();
+  CommandSeries series = sampled(all);
+  for (size_t i = 1; i < parts.size(); ++i) {
+    const CommandSeries next = sampled(parts[i]);
+    Pattern more = joined(input.robot, {all, series}, {parts[i], next}, 0, table);
+    all = std::move(more);
+    series = sampled(all);
+  }
+  const double dt = input.series.dt;
+  const double begin = static_cast<double>(cycle.begin) * dt;
+  const double end = static_cast<double>(cycle.end) * dt;
+  write_edited(context, options, all, check_edited(context, options, input, all),
+               "  the cycle is from " + text::fixed(begin, 3) + " to " + text::fixed(end, 3) +
+                   " s of the walk, first the " + name_of(cycle.first) +
+                   " foot; its end meets its beginning: " + gap_words(cycle.gap) + "\n" +
+                   (options.whole ? ""
+                                  : "  the motion begins and ends while the robot walks; --whole "
+                                    "adds the walk's begin and end\n"),
+               Json{{"times", options.times},
+                    {"cycle_s", {begin, end}},
+                    {"first_swing", name_of(cycle.first)},
+                    {"displacement_m", {cycle.displacement.x(), cycle.displacement.y()}},
+                    {"turn_rad", cycle.turn},
+                    {"gap", gap_json(cycle.gap)},
+                    {"keys_kept", false}});
+}
+
 // The end meets the beginning, by a transition where it does not, and the motion is repeated.
 void loop(Context& context, const EditCommand& options) {
+  if (options.whole && !options.cycle)
+    fail(ErrorCode::usage, "edit loop: --whole has a meaning with --cycle only");
+  if (options.cycle) return loop_cycle(context, options);
   Task input = load(context, options);
   const LoopGap before = loop_gap(input.robot, {input.pattern, input.series});
   std::string reason;
@@ -459,6 +541,7 @@ void add_edit(CLI::App& app, Context& context) {
       "  ayumi edit blend squat.json sway.json --over 0.8 -o both.json\n"
       "  ayumi edit ramp imported.json --in 1.5 --back 1.5 -o from_home.json\n"
       "  ayumi edit loop squat.json --times 3 -o squats.json\n"
+      "  ayumi edit loop walk.json --cycle --whole --times 4 -o longer_walk.json\n"
       "  ayumi edit alternate step.json --times 6 -o walk.json\n"
       "  ayumi edit key wave.json --at 1.5 --to 3.5 --copy --mirror -o both_arms.json");
   static EditCommand options;
@@ -521,6 +604,8 @@ void add_edit(CLI::App& app, Context& context) {
                   "uniform pace, or an eighth of the width of the sole).")
       ->check(number_within(0.0, 1.0))
       ->type_name("M");
+  retime_command.add_flag("--keep-pauses", options.keep_pauses,
+                          "With --local: spans in which nothing moves keep their length.");
   retime_command.callback([&context] { retime(context, options); });
   CLI::App& loop_command =
       add_edit_of(*command, "loop", "repeat a motion that ends as it begins", options);
@@ -534,6 +619,11 @@ void add_edit(CLI::App& app, Context& context) {
                   "the two differ.")
       ->check(number_within(0.02, 60.0))
       ->type_name("S");
+  loop_command.add_flag("--cycle", options.cycle,
+                        "Cut two steps out of the middle of a walk and repeat them in motion.");
+  loop_command.add_flag("--whole", options.whole,
+                        "With --cycle: also write the walk's begin before them and its end after "
+                        "them.");
   add_table_flag(loop_command);
   loop_command.callback([&context] { loop(context, options); });
   CLI::App& alternate_command =

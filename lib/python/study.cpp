@@ -3,6 +3,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/plot/push_map.hpp"
 #include "ayumi/study/gain_study.hpp"
+#include "ayumi/study/local_retime.hpp"
 #include "ayumi/study/push.hpp"
 #include "ayumi/study/retime.hpp"
 #include "ayumi/study/tune.hpp"
@@ -245,6 +246,49 @@ void bind_gains(py::module_& m) {
       "`level` of a push in capture bounds; `gains`: names of those that are changed.");
 }
 
+void bind_local_pace(py::module_& m) {
+  py::class_<LocalPace>(m, "LocalPace", "The result of fastest_local_pace().")
+      .def_readonly("found", &LocalPace::found, "Whether a course of time passes the check.")
+      .def_readonly("pattern", &LocalPace::pattern, "The motion in this course, as a table.")
+      .def_readonly("scale", &LocalPace::scale, "Duration over that of the given pattern.")
+      .def_readonly("path_scale", &LocalPace::path_scale,
+                    "The same for the fastest uniform pace, whose postures the motion has.")
+      .def_property_readonly(
+          "binding",
+          [](const LocalPace& pace) {
+            py::list list;
+            for (const BindingLimit& limit : pace.binding)
+              list.append(py::make_tuple(limit.limit, limit.share));
+            return list;
+          },
+          "(limit, share of the duration for which it binds), the longest first; '' where none "
+          "does, 'pace' for the largest pace, 'pause' for pauses that are kept.")
+      .def_readonly("rounds", &LocalPace::rounds, "Number of courses of time that were checked.")
+      .def_readonly("limited_by", &LocalPace::limited_by, "Why no course of time passes, in words.")
+      .def_readonly("by_posture", &LocalPace::by_posture,
+                    "None passes because of a posture, which no course of time changes.");
+  m.def(
+      "fastest_local_pace",
+      [](const PyTask& given, const std::string& table, std::optional<double> margin,
+         bool keep_pauses, py::object progress) {
+        const Task& task = *given.task;
+        LocalRetimeOptions options;
+        options.path.check = check_options(task);
+        if (margin) options.path.most_margin = *margin;
+        options.keep_pauses = keep_pauses;
+        options.dt = task.series.dt;
+        return Watch(std::move(progress)).run([&](const Progress& watched) {
+          return fastest_local_pace(task.robot, task.pattern, table, options, watched);
+        });
+      },
+      py::arg("task"), py::kw_only(), py::arg("table") = "retimed.csv",
+      py::arg("margin") = py::none(), py::arg("keep_pauses") = false,
+      py::arg("progress") = py::none(),
+      "The fastest course of time along the motion: it slows only where a limit binds. The result "
+      "names its table `table`; the ZMP keeps at most `margin` [m] from the edge of the support; "
+      "with `keep_pauses`, spans in which nothing moves keep their length.");
+}
+
 void bind_pace(py::module_& m) {
   py::class_<FastestPace>(m, "Pace", "The result of fastest_pace().")
       .def_readonly("found", &FastestPace::found, "Whether a scale passes the check.")
@@ -268,6 +312,7 @@ void bind_pace(py::module_& m) {
       py::arg("task"), py::kw_only(), py::arg("resolution") = RetimeOptions().resolution,
       py::arg("progress") = py::none(),
       "The fastest uniform time scaling of the pattern that passes the check.");
+  bind_local_pace(m);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "ayumi/author/edit/edit.hpp"
+#include "ayumi/author/edit/gait_cycle.hpp"
 #include "ayumi/author/generate/generate.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/plan/foot_plan.hpp"
@@ -60,6 +61,25 @@ TEST(KeyEdit, CopiesMovesAndMirrors) {
       error_message([&] { with_key_edited(hoap1(), p, {.at = 0.8, .to = 2.5}); }, ErrorCode::usage)
           .find("the motion lasts from 0 to 2 s"),
       std::string::npos);
+}
+
+// Goals replace keys in a VIIP phase.
+TEST(KeyEdit, ComesToNoTimeInsideAViipPhase) {
+  Pattern p;
+  p.robot = "hoap1";
+  p.phases = {{1.0, Support::both, {}, {}}, {2.0, Support::both, {}, StepGoal{}}};
+  p.phases.push_back({3.0, Support::both, {}, {}});
+  p.keyframes = {key_of(0), key_of(0.5)};
+  p.keyframes[1].joints = {{"l_elbow", -0.6}};
+  for (const bool copy : {false, true})
+    EXPECT_NE(
+        error_message([&] { with_key_edited(hoap1(), p, {.at = 0.5, .to = 1.5, .copy = copy}); },
+                      ErrorCode::usage)
+            .find("phases/1: the keyframe would come to 1.5 s, inside the VIIP phase from 1 to "
+                  "2 s"),
+        std::string::npos);
+  for (const double t : {1.0, 2.0, 2.5})
+    EXPECT_EQ(with_key_edited(hoap1(), p, {.at = 0.5, .to = t}).keyframes.back().t, t);
 }
 
 TEST(Alternate, OneStepBecomesAWalk) {
@@ -122,6 +142,49 @@ TEST(Chained, KeysInSequenceEndWhereTheSamplesEnd) {
               .norm(),
           1e-6);
   }
+}
+
+// Two steps from the middle of a walk, in motion at both ends, follow each other without a jump.
+TEST(Loop, ACycleIsCutFromAWalk) {
+  const RobotModel& model = hoap1();
+  const Pattern walk = walk_pattern(model, {.steps = 8, .stride = 0.03, .period = 0.8});
+  const CommandSeries series = sample(model, walk, {.dt = 0.005});
+  const MotionPart whole{walk, series};
+  const GaitCycle cycle = gait_cycle(model, whole, 2);
+  ASSERT_TRUE(cycle.gap.closed);
+  const Pattern part = cut(model, whole, cycle.begin, cycle.end, "cycle.csv");
+  const CommandSeries once = sample(model, part, {.dt = 0.005});
+  ASSERT_EQ(once.samples.size(), static_cast<size_t>(cycle.end - cycle.begin) + 1);
+  EXPECT_GT(once.samples.front().state.dtheta.cwiseAbs().maxCoeff(), 0.1) << "it begins in motion";
+  EXPECT_TRUE(loop_gap(model, {part, once}).closed);
+  for (size_t k = 0; k < once.samples.size(); ++k) {
+    const CommandSample& a = once.samples[k];
+    const CommandSample& b = series.samples[static_cast<size_t>(cycle.begin) + k];
+    EXPECT_LT((a.state.theta - b.state.theta).cwiseAbs().maxCoeff(), 1e-9) << k;
+    EXPECT_LT((a.state.dtheta - b.state.dtheta).cwiseAbs().maxCoeff(), 0.02) << k;
+    EXPECT_EQ(a.support, b.support) << k;
+    EXPECT_LT((a.feet[0].translation() - b.feet[0].translation()).norm(), 1e-6) << k;
+  }
+  const Pattern twice = joined(model, {part, once}, {part, once}, 0, "twice.csv");
+  const CommandSeries both = sample(model, twice, {.dt = 0.005});
+  const double jump = [&] {
+    double most = 0;
+    for (size_t k = 1; k < both.samples.size(); ++k)
+      most = std::max(
+          most,
+          (both.samples[k].state.dtheta - both.samples[k - 1].state.dtheta).cwiseAbs().maxCoeff());
+    return most;
+  }();
+  double usual = 0;
+  for (size_t k = 1; k < series.samples.size(); ++k)
+    usual = std::max(usual, (series.samples[k].state.dtheta - series.samples[k - 1].state.dtheta)
+                                .cwiseAbs()
+                                .maxCoeff());
+  EXPECT_LT(jump, 1.2 * usual);
+  EXPECT_NE(error_message([&] { cut(model, whole, cycle.begin, cycle.begin + 60, "x.csv"); },
+                          ErrorCode::bad_pattern)
+                .find("a foot is in the air"),
+            std::string::npos);
 }
 
 TEST(Loop, SaysWhetherTheEndMeetsTheBeginning) {

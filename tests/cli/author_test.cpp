@@ -409,6 +409,69 @@ TEST_F(AuthorServer, SaysWhatCannotBeReached) {
   EXPECT_EQ(server.post("pose", {{"time", 2.4}, {"drag", "tail"}, {"to", {0, 0, 0}}}).first, 422);
 }
 
+// A key where goals replace keys would make the pattern unreadable: nothing is written.
+TEST_F(AuthorServer, RefusesAKeyInsideAViipPhase) {
+  const std::string text = contents(AYUMI_SOURCE_DIR "/patterns/hoap1_viip_step.json");
+  save(text);
+  const Server server(file);
+  const OrderedJson key = {{"t", 1.5}, {"joints", {{"l_elbow", -60}}}};
+  const auto refused = server.edit(
+      OrderedJson::array({{{"kind", "set"}, {"pointer", "/keyframes"}, {"value", {key}}}}));
+  EXPECT_EQ(refused.first, 422) << refused.second;
+  EXPECT_NE(refused.second["message"].get<std::string>().find(
+                "the key at 1.5 s lies inside the VIIP phase from 0.5 to 5.5 s"),
+            std::string::npos)
+      << refused.second;
+  EXPECT_EQ(contents(file), text) << "nothing is written";
+  EXPECT_TRUE(server.state()["error"].is_null());
+}
+
+// Targets of hands are moved where they are written, and a keyframe becomes its mirror image.
+TEST_F(AuthorServer, MovesTargetsAndMirrorsKeyframes) {
+  const std::string text = R"({
+  "format": "ayumi.pattern/1", "robot": "humanoid30",
+  "parameters": { "up": 0.6 },
+  "phases": [ { "until": 3, "support": "both" } ],
+  "keyframes": [
+    { "t": 0, "posture": "home" },
+    // beside the body
+    { "t": 1, "hands": { "left": [0.2, 0.25, "${up}"] }, "joints": { "r_elbow": -50 } },
+    { "t": 2, "hands": { "left": { "position": [0.25, 0.2, 0.1], "frame": "trunk" } }, "gaze": [1, 0.2, 1] }
+  ]
+}
+)";
+  save(text);
+  const Server server(file);
+  const OrderedJson state = server.state();
+  ASSERT_TRUE(state["error"].is_null()) << state["error"];
+  ASSERT_EQ(state["targets"].size(), 3u);
+  EXPECT_EQ(state["targets"][0]["place"], OrderedJson({0.2, 0.25, 0.6}));
+  EXPECT_EQ(state["targets"][0]["until"], 2);
+  EXPECT_EQ(state["targets"][0]["handle"], "left_hand");
+  EXPECT_GT(state["targets"][1]["place"][2], 0.5) << "in the world, not in the trunk's frame";
+  const auto moved = server.post(
+      "pose", {{"time", 1}, {"target", "/keyframes/1/hands/left"}, {"to", {0.22, 0.25, 0.6}}});
+  ASSERT_EQ(moved.first, 200) << moved.second;
+  EXPECT_TRUE(moved.second["message"].is_null()) << moved.second["message"];
+  EXPECT_EQ(moved.second["edits"],
+            OrderedJson::parse(
+                R"([{"kind": "set", "pointer": "/keyframes/1/hands/left/0", "value": 0.22}])"));
+  const auto far = server.post(
+      "pose", {{"time", 1}, {"target", "/keyframes/1/hands/left"}, {"to", {1.5, 0.25, 0.6}}});
+  EXPECT_TRUE(far.second["edits"].empty());
+  EXPECT_NE(far.second["message"].get<std::string>().find("out of reach by"), std::string::npos)
+      << far.second;
+  const auto mirrored = server.post("mirror", {{"pointer", "/keyframes/1"}});
+  ASSERT_EQ(mirrored.first, 200) << mirrored.second;
+  ASSERT_EQ(server.edit(mirrored.second["edits"]).first, 200);
+  const std::string now = contents(file);
+  EXPECT_NE(now.find("// beside the body"), std::string::npos);
+  const OrderedJson key = OrderedJson::parse(now, nullptr, true, true)["keyframes"][1];
+  EXPECT_FALSE(key["hands"].contains("left")) << key;
+  EXPECT_EQ(key["hands"]["right"], OrderedJson({0.2, -0.25, 0.6})) << key;
+  EXPECT_EQ(key["joints"], OrderedJson({{"l_elbow", -50}})) << key;
+}
+
 TEST_F(AuthorServer, CapturesPosturesAndTheirMirrorImages) {
   const Server server(file);
   const auto [status, plain] = server.post("posture", {{"time", 2.4}, {"name", "a b"}});

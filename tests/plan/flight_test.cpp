@@ -2,16 +2,19 @@
 // and the soles clear the ground; on the ground they stand still.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "ayumi/author/generate/generate.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/dynamics/reach.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/motion/differentiate.hpp"
 #include "ayumi/plan/sample.hpp"
 #include "tests/support/biped.hpp"
+#include "tests/support/hoap1.hpp"
 
 namespace ayumi {
 namespace {
@@ -124,6 +127,67 @@ TEST(Flight, KeysOnTheWayAreTheAuthors) {
   key.cog_x = key.cog_y = 0.0;
   pattern.keyframes.insert(pattern.keyframes.begin() + 3, key);
   EXPECT_GT(flight_of(model, sample(model, pattern)).fall, 1.0);
+}
+
+// A hand goes from one place beside the trunk to another in the air: it is on its way, the trunk
+// turns against it, and the COG falls freely.
+TEST(Flight, AHandFollowsItsTargetInTheAir) {
+  const RobotModel& model = test::hoap1();
+  const Pattern plain = jump_pattern(model, small_jump(model));
+  const double begin = plain.phases[0].until, end = plain.phases[1].until;
+  ASSERT_EQ(plain.phases[1].support, Support::none);
+  const int hand = hand_body(model, Side::left);
+  RobotData data(model);
+  const auto in_trunk = [&](const RobotState& state) -> Vector3d {
+    update_positions(model, state, data);
+    return data.pose(model.trunk_body()).inverse() * (data.pose(hand) * limb_point(model, hand));
+  };
+  RobotState posed = model.rest_state();
+  const Vector3d from = in_trunk(posed);
+  for (const int dof : limb_dofs(model, hand)) posed.theta[dof] += 0.3;
+  const Vector3d to = in_trunk(posed);
+  ASSERT_GT((to - from).norm(), 0.02);
+  const auto with_hand = [&](LinkTarget::Frame frame) {
+    Pattern pattern = plain;
+    const auto key_at = [&](double t) -> Keyframe& {
+      auto key = std::find_if(pattern.keyframes.begin(), pattern.keyframes.end(),
+                              [&](const Keyframe& k) { return k.t > t - 1e-9; });
+      if (key == pattern.keyframes.end() || key->t > t + 1e-9) {
+        Keyframe made;
+        made.t = t;
+        made.place = "keyframes";
+        key = pattern.keyframes.insert(key, made);
+      }
+      return *key;
+    };
+    key_at(begin).hands["left"] = {frame, from, {}};
+    key_at(end).hands["left"] = {frame, to, {}};
+    return pattern;
+  };
+  const CommandSeries series = sample(model, with_hand(LinkTarget::Frame::trunk));
+  const CommandSeries without = sample(model, plain);
+  int in_flight = 0;
+  for (size_t k = 0; k < series.samples.size(); ++k) {
+    const double t = series.dt * static_cast<double>(k);
+    if (t < begin || t > end) continue;
+    ++in_flight;
+    const double u = (t - begin) / (end - begin);
+    const double share = u * u * u * (10 - 15 * u + 6 * u * u);  // of a minimum jerk
+    EXPECT_LT((in_trunk(series.samples[k].state) - (from + share * (to - from))).norm(), 1e-4) << t;
+  }
+  EXPECT_GT(in_flight, 50);
+  const FlightFigures f = flight_of(model, series), still = flight_of(model, without);
+  EXPECT_LT(f.momentum, still.momentum + 2e-3);
+  EXPECT_LT(f.fall, still.fall + 0.1);
+  EXPECT_NEAR(f.rise, still.rise, 1e-4);
+  try {
+    sample(model, with_hand(LinkTarget::Frame::world));
+    ADD_FAILURE() << "a place in the world leads a hand in the air";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::bad_pattern);
+    EXPECT_NE(std::string(error.what()).find("\"frame\": \"trunk\""), std::string::npos)
+        << error.what();
+  }
 }
 
 std::string refused(const JumpParameters& p) {

@@ -85,6 +85,20 @@ class Values(unittest.TestCase):
         self.assertTrue(ayumi.check(ayumi.sample(
             ayumi.retimed(robot, task.pattern, pace.scale), robot)))
 
+    def test_the_fastest_local_pace_is_quicker_and_passes(self):
+        robot = ayumi.load_robot("hoap1", meshes=False)
+        task = ayumi.sample(ayumi.squat_pattern(robot, cycles=1, hold=1), robot)
+        uniform = ayumi.fastest_pace(task)
+        local = ayumi.fastest_local_pace(task)
+        self.assertTrue(local.found)
+        self.assertLess(local.scale, uniform.scale)
+        self.assertTrue(ayumi.check(ayumi.sample(local.pattern, robot)))
+        self.assertAlmostEqual(sum(share for _, share in local.binding), 1)
+        kept = ayumi.fastest_local_pace(task, keep_pauses=True)
+        self.assertTrue(kept.found)
+        self.assertGreater(kept.scale, local.scale)
+        self.assertIn("pause", [limit for limit, _ in kept.binding])
+
     def test_gains_are_those_of_the_program(self):
         said = program("gains", "hoap1")
         study = ayumi.gains(ayumi.load_robot("hoap1", meshes=False))

@@ -2,73 +2,8 @@
 // live page (it prints the address) on PATTERN, which is JSON without comments, loads the page in headless Chromium and works with it
 // as a person would. Prints one line per broken expectation, then "ok" or "failed".
 
-import { spawn } from "node:child_process";
-import { readFileSync, renameSync, writeFileSync } from "node:fs";
+import { conclude, data, driver, expect, openPage, quiet, save, server, shots, text } from "./author_page.mjs";
 import { startDriver, until, wait } from "./driver.mjs";
-
-const cut = process.argv.indexOf("--");
-const [driver, pattern, shots] = process.argv.slice(2, cut);
-const [program, ...programArguments] = process.argv.slice(cut + 1);
-let failures = 0;
-const expect = (good, words) => {
-  if (good) return;
-  ++failures;
-  console.log("broken: " + words);
-};
-
-const server = spawn(program, programArguments, { stdio: ["ignore", "pipe", "inherit"] });
-const address = await new Promise((resolve, reject) => {
-  server.stdout.on("data", (words) => {
-    const found = /http:\/\/127\.0\.0\.1:\d+\/\S*/.exec(String(words));
-    if (found) resolve(found[0]);
-  });
-  server.on("exit", () => reject(new Error("the server ended")));
-});
-
-const text = () => readFileSync(pattern, "utf8");
-const save = (words) => {
-  writeFileSync(pattern + ".saved", words);
-  renameSync(pattern + ".saved", pattern);
-};
-const data = () => JSON.parse(text());
-
-/// A page with what the trials need.
-async function openPage(driver_, width, height) {
-  const tab = await driver_.open(`${width},${height}`);
-  tab.size = (w, h) => tab.tool("Emulation.setDeviceMetricsOverride",
-    { width: w, height: h, deviceScaleFactor: 1, mobile: false });
-  await tab.size(width, height);
-  await tab.load(address);
-  const state = await until(() => tab.run("return document.documentElement.dataset.author"), 60);
-  expect(state === "ready", "the page says " + state);
-  /// The version that the page shows, once it shows all of the state that it has.
-  tab.version = () => until(() => tab.run(`const page = window.ayumiAuthor.page;
-    const shown = Number(document.documentElement.dataset.version);
-    return !page.loading && shown === page.state.version ? shown : null;`));
-  tab.after = async (doing) => {
-    const before = await tab.version();
-    await doing();
-    const now = await until(async () => (await tab.version()) > before);
-    expect(now, "a new version is shown after: " + doing);
-  };
-  tab.click = (selector) => tab.run(`const e = document.querySelector(${JSON.stringify(selector)});
-    e.focus(); e.click();`);
-  tab.key = (selector, key, more = {}) => tab.run(`document.querySelector(arguments[0]).dispatchEvent(
-    new KeyboardEvent("keydown", { key: arguments[1], bubbles: true, cancelable: true, ...arguments[2] }));`,
-  selector, key, more);
-  tab.type = (selector, value, event = "change") => tab.run(`const e = document.querySelector(arguments[0]);
-    e.focus(); e.value = arguments[1]; e.dispatchEvent(new Event(arguments[2], { bubbles: true })); e.blur();`,
-  selector, String(value), event);
-  tab.box = (selector) => tab.run(`const b = document.querySelector(arguments[0]).getBoundingClientRect();
-    return [b.left + b.width / 2, b.top + b.height / 2, b.width, b.height];`, selector);
-  tab.drag = (from, by) => tab.act([{ type: "pointer", id: "mouse", parameters: { pointerType: "mouse" }, actions: [
-    { type: "pointerMove", duration: 0, x: Math.round(from[0]), y: Math.round(from[1]) },
-    { type: "pointerDown", button: 0 },
-    { type: "pointerMove", duration: 50, x: Math.round(from[0] + by[0] / 2), y: Math.round(from[1] + by[1] / 2) },
-    { type: "pointerMove", duration: 50, x: Math.round(from[0] + by[0]), y: Math.round(from[1] + by[1]) },
-    { type: "pause", duration: 300 }, { type: "pointerUp", button: 0 }] }]);
-  return tab;
-}
 
 const keySelector = (i) => `[data-id="/keyframes/${i}/zmp"]`;
 
@@ -396,15 +331,6 @@ async function followsTheFile(driver_, tab) {
   await other.end();
 }
 
-async function quiet(tab) {
-  const errors = (await tab.log("browser")).filter((entry) => entry.level === "SEVERE" && !/status of (404|409|422)/.test(entry.message));
-  expect(errors.length === 0, "the console: " + errors.map((entry) => entry.message).join(" | "));
-  const requests = (await tab.log("performance")).map((entry) => JSON.parse(entry.message).message)
-    .filter((m) => m.method === "Network.requestWillBeSent").map((m) => m.params.request.url)
-    .filter((url) => !/^(data|blob|about|chrome):/.test(url) && !url.startsWith(address));
-  expect(requests.length === 0, "requests: " + requests.join(" "));
-}
-
 let driving;
 try {
   driving = await startDriver(driver, shots);
@@ -426,6 +352,4 @@ try {
   expect(false, error.message);
 }
 driving?.end();
-server.kill();
-console.log(failures ? "failed" : "ok");
-process.exit(failures ? 1 : 0);
+conclude();

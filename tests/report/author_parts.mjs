@@ -90,6 +90,15 @@ test("a value goes into the keyframe of its time, or into a new one in order", (
   assert.deepEqual(edits.putKey(state.keyframes, 5, "fz", 60)[0].pointer, "/keyframes/-");
 });
 
+test("a target goes into the hands of the keyframe of its time, or into a new keyframe", () => {
+  const hand = { name: "left_hand", link: "left" };
+  assert.deepEqual(edits.putTarget(state.keyframes, 1.1003, hand, [0.1, 0.2, 0.3]),
+    [{ kind: "set", pointer: "/keyframes/2/hands/left", value: [0.1, 0.2, 0.3] }]);
+  assert.deepEqual(edits.putTarget(state.keyframes, 1.3, hand, [0.1, 0.2, 0.3])[0].value,
+    { t: 1.3, hands: { left: [0.1, 0.2, 0.3] } });
+  assert.deepEqual(edits.putTarget(state.keyframes, 1.3, { name: "gaze", gaze: true }, [1, 0, 1])[0].value, { t: 1.3, gaze: [1, 0, 1] });
+});
+
 test("a removed key takes its keyframe only where nothing else is in it", () => {
   const [one, two] = state.tracks[0].keys;
   assert.deepEqual(edits.removeKey(state, one), [{ kind: "remove", pointer: "/keyframes/1" }]);

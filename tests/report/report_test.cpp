@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
 #include "ayumi/report/html.hpp"
 #include "ayumi/report/page.hpp"
 #include "tests/cli/program.hpp"
@@ -209,6 +213,63 @@ TEST(AuthorPage, IsWorkedWithInABrowser) {
   const Output said = run_program(
       {AYUMI_SOURCE_DIR "/tests/report/author_browser.mjs", AYUMI_CHROMEDRIVER,
        folder / "walk.json", "--", program_under_test(), "author", folder / "walk.json"},
+      folder.path(), AYUMI_NODE);
+  EXPECT_EQ(said.exit_code, 0) << said.out << said.err;
+  EXPECT_EQ(said.out, "ok\n");
+}
+
+// humanoid30 with seven fingers on each hand: 44 joints.
+void write_robot_with_fingers(const Folder& folder) {
+  fs::create_directories(folder / "fingers");
+  fs::create_symlink(AYUMI_SOURCE_DIR "/robots/humanoid30/meshes", folder / "fingers/meshes");
+  std::string urdf = contents(AYUMI_SOURCE_DIR "/robots/humanoid30/robot.urdf");
+  std::string fingers, names;
+  for (const std::string side : {"l", "r"})
+    for (int i = 0; i < 7; ++i) {
+      const std::string name = side + "_finger_" + std::to_string(i);
+      names += ", \"" + name + "\"";
+      fingers += "<link name=\"" + name +
+                 "_link\"><inertial><origin xyz=\"0 0 -0.015\"/><mass value=\"0.01\"/>"
+                 "<inertia ixx=\"1e-5\" ixy=\"0\" ixz=\"0\" iyy=\"1e-5\" iyz=\"0\" "
+                 "izz=\"1e-5\"/></inertial></link>\n<joint name=\"" +
+                 name + "\" type=\"revolute\"><parent link=\"" + side + "_hand\"/><child link=\"" +
+                 name + "_link\"/><origin xyz=\"0 " + text::fixed(0.008 * (i - 3), 3) +
+                 " -0.12\"/><axis xyz=\"0 1 0\"/><limit lower=\"-1\" upper=\"1\" effort=\"1\" "
+                 "velocity=\"12\"/></joint>\n";
+    }
+  write(folder / "fingers/robot.urdf", urdf.insert(urdf.rfind("</robot>"), fingers));
+  std::string sidecar = contents(AYUMI_SOURCE_DIR "/robots/humanoid30/robot.json");
+  const std::string last = "\"head_roll\", \"head_pitch\"";
+  write(folder / "fingers/robot.json", sidecar.insert(sidecar.find(last) + last.size(), names));
+}
+
+// A minute of standing in which a hand and the gaze go from target to target.
+std::string minute_of_targets() {
+  std::string keys;
+  for (int i = 0; i < 15; ++i) {
+    const double t = 2 + 4 * i, side = i % 2 == 0 ? 1 : -1;
+    keys += ",\n  {\"t\": " + text::exact(t) + ", \"cog\": {\"y\": " + text::exact(0.01 * side) +
+            "}, \"hands\": {\"left\": [0.2, " + text::exact(0.25 + 0.02 * side) +
+            ", 0.6]}, \"gaze\": [1.5, " + text::exact(0.2 * side) +
+            ", 1], \"joints\": {\"r_elbow\": " + text::exact(-40 - 5 * side) + "}}";
+  }
+  return "{\"format\": \"ayumi.pattern/1\", \"name\": \"targets\", \"robot\": \"./fingers\",\n"
+         "\"phases\": [{\"until\": 60, \"support\": \"both\"}],\n\"keyframes\": [\n"
+         "  {\"t\": 0, \"posture\": \"home\", \"cog\": {\"y\": 0}}" +
+         keys + "]}";
+}
+
+TEST(AuthorPage, ShowsTargetsOfManyJointsForAMinute) {
+  if (kAuthorPage.empty()) GTEST_SKIP() << "built without npm: there is no page to try";
+  if (std::string(AYUMI_CHROMEDRIVER).empty())
+    GTEST_SKIP() << "chromium-driver is not installed: the page is not tried in a browser";
+  const Folder folder;
+  write_robot_with_fingers(folder);
+  // As the trials write it.
+  write(folder / "targets.json", nlohmann::ordered_json::parse(minute_of_targets()).dump(1));
+  const Output said = run_program(
+      {AYUMI_SOURCE_DIR "/tests/report/author_targets.mjs", AYUMI_CHROMEDRIVER,
+       folder / "targets.json", "--", program_under_test(), "author", folder / "targets.json"},
       folder.path(), AYUMI_NODE);
   EXPECT_EQ(said.exit_code, 0) << said.out << said.err;
   EXPECT_EQ(said.out, "ok\n");

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 
 #include "ayumi/author/edit/edit.hpp"
@@ -14,6 +15,7 @@
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/plan/sample.hpp"
 #include "ayumi/sim/simulate.hpp"
+#include "ayumi/study/pauses.hpp"
 #include "ayumi/study/retime.hpp"
 #include "tests/support/hoap1.hpp"
 
@@ -204,6 +206,47 @@ TEST(LocalRetime, ThePathStaysAndThePlanMovesAlong) {
                 .cwiseAbs()
                 .maxCoeff(),
             1e-8);
+}
+
+// A pause between two motions and those at both ends last as long as the author wrote, also with
+// the COG solved from the ZMP, and also in a table; otherwise they become shorter.
+TEST(LocalRetime, PausesKeepTheirLength) {
+  Pattern walk = walk_pattern(hoap1(), {.steps = 2, .stride = 0.03});
+  const double end = walk.phases.back().until;
+  // A second walk's worth of standing at the end, and arms that move after it.
+  walk.phases.push_back({end + 4, Support::both, {}, {}, {}});
+  Keyframe before, after;
+  before.t = end + 3;
+  after.t = end + 3.5;
+  before.joints["l_shoulder_roll"] = 0.2;
+  after.joints["l_shoulder_roll"] = 0.8;
+  walk.keyframes.push_back(before);
+  walk.keyframes.push_back(after);
+  std::stable_sort(walk.keyframes.begin(), walk.keyframes.end(),
+                   [](const Keyframe& a, const Keyframe& b) { return a.t < b.t; });
+  const CommandSeries given = sample(hoap1(), walk);
+  const Pattern table = baked(hoap1(), walk, given, "given.csv");
+  const std::vector<TimeSpan> pauses = pauses_of(given);
+  const auto length = [](const TimeSpan& span) { return span.second - span.first; };
+  ASSERT_GE(pauses.size(), 2u);
+  LocalRetimeOptions keep;
+  keep.keep_pauses = true;
+  for (const Pattern& pattern : {walk, table}) {
+    const LocalPace pace = local_pace(hoap1(), pattern, keep);
+    ASSERT_TRUE(pace.found) << pace.limited_by;
+    const std::vector<TimeSpan> kept = pauses_of(pace.series);
+    ASSERT_EQ(kept.size(), pauses.size());
+    for (size_t i = 0; i < kept.size(); ++i)
+      EXPECT_NEAR(length(kept[i]), length(pauses[i]), 0.05) << i;
+    double paused = 0;
+    for (const BindingLimit& limit : pace.binding)
+      if (limit.limit == "pause") paused = limit.share;
+    EXPECT_GT(paused * pace.series.duration(), 2);
+    EXPECT_LT(pace.scale, 0.95);
+    const LocalPace shrunk = local_pace(hoap1(), pattern);
+    ASSERT_TRUE(shrunk.found) << shrunk.limited_by;
+    EXPECT_LT(shrunk.series.duration(), pace.series.duration() - 1.5);
+  }
 }
 
 // Gravity makes the time of a flight.

@@ -117,6 +117,14 @@ int head_body(const RobotModel& model) {
   return best;
 }
 
+Vector3d gaze_axis(const RobotModel& model, int head) {
+  RobotState state = model.rest_state();
+  state.theta.setZero();
+  RobotData data(model);
+  update_positions(model, state, data);
+  return data.rotation[head].transpose() * data.rotation[model.trunk_body()].col(0);
+}
+
 Vector3d limb_point(const RobotModel& model, int body) {
   Eigen::AlignedBox3d box;
   for (const Link& link : model.links()) {

@@ -28,6 +28,9 @@ int hand_body(const RobotModel& model, Side side);
 /// The highest end of a limb in the middle plane, above the trunk; -1: the robot has no neck.
 int head_body(const RobotModel& model);
 
+/// The way that a head looks: forward where all joints are 0 (frame of the body).
+Eigen::Vector3d gaze_axis(const RobotModel& model, int head);
+
 /// The far end of a body as seen from its joint: the middle of that side of the box around its
 /// collision shapes, or twice as far as its centre of mass where it has none (body frame).
 Eigen::Vector3d limb_point(const RobotModel& model, int body);

@@ -77,16 +77,6 @@ std::string numbers(const Vector3d& v, int digits) {
          text::fixed(v.z(), digits) + "]";
 }
 
-// The way that the head looks, in its frame: forward where all joints are 0.
-Vector3d gaze_axis(const RobotModel& model, int head) {
-  RobotState state = model.rest_state();
-  state.theta.setZero();
-  RobotData data(model);
-  update_positions(model, state, data);
-  const Vector3d forward = data.rotation[model.trunk_body()].col(0);
-  return data.rotation[head].transpose() * forward;
-}
-
 }  // namespace
 
 LinkPlan::LinkPlan(const RobotModel& model, const Pattern& pattern, const std::vector<bool>& solved)

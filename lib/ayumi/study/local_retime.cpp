@@ -12,6 +12,7 @@
 #include "ayumi/motion/servo_feedforward.hpp"
 #include "ayumi/plan/sample.hpp"
 #include "ayumi/plan/viip_phases.hpp"
+#include "ayumi/study/pauses.hpp"
 
 namespace ayumi {
 
@@ -52,6 +53,10 @@ constexpr int kMostPaces = 25;
 constexpr double kSlowerPath = 1.03;
 constexpr int kMostSlower = 6;
 
+// Least factor on the time of the still part of a pause, where its ends last longer than on the
+// path. Definition: the largest pace is four times that of the path.
+constexpr double kLeastStill = 0.25;
+
 // Margin of the ZMP that is kept where 80 % of its own is less, over half the width of the narrower
 // sole. Chosen: a quarter.
 constexpr double kLeastMargin = 0.25;
@@ -74,6 +79,9 @@ class LocalSearch {
     if (pattern_.table)
       *pattern_.table =
           postures_of(model, model.limits(options.path.check.profile), *pattern_.table);
+    if (options.keep_pauses)
+      pauses_ =
+          pauses_of(sample(model, pattern_, {.dt = std::max(options.dt, kSearchPeriod)}, progress));
   }
 
   LocalPace run() {
@@ -96,11 +104,52 @@ class LocalSearch {
     std::vector<double> u, x;
   };
 
+  /// A pause on the path, and the part of it that is still there, too.
+  struct Pause {
+    double begin = 0, end = 0;  ///< places
+    double length = 0;          ///< of the given pattern [s]
+    TimeSpan still;             ///< places
+  };
+
+  // At one pace, but for the pauses that are kept.
+  Pattern at_scale(double scale) const {
+    Pattern path = retimed(model_, pattern_, scale);
+    std::vector<TimeSpan> scaled = pauses_;
+    for (TimeSpan& pause : scaled) pause = {scale * pause.first, scale * pause.second};
+    return pauses_.empty() ? path : with_pauses_stretched(model_, path, scaled, 1 / scale);
+  }
+
+  // A faster path may come to rest only later in a pause.
+  void find_pauses() {
+    kept_.clear();
+    if (pauses_.empty()) return;
+    const std::vector<TimeSpan> still = pauses_of(path_);
+    const bool stretches = !pattern_.table && !pattern_.correction;
+    const double scale = result_.path_scale;
+    double later = 0;
+    for (const TimeSpan& given : pauses_) {
+      Pause pause;
+      pause.length = given.second - given.first;
+      pause.begin = scale * given.first + later;
+      pause.end = pause.begin + (stretches ? 1 : scale) * pause.length;
+      later = pause.end - scale * given.second;
+      for (const TimeSpan& span : still) {
+        const TimeSpan common = {std::max(pause.begin, span.first),
+                                 std::min(pause.end, span.second)};
+        if (common.second - common.first > pause.still.second - pause.still.first)
+          pause.still = common;
+      }
+      if (pause.still.second > pause.still.first) kept_.push_back(pause);
+    }
+  }
+
   void take_path(double least_margin) {
-    path_pattern_ = retimed(model_, pattern_, result_.path_scale);
+    path_pattern_ = at_scale(result_.path_scale);
     path_ = sample(model_, path_pattern_, {.dt = options_.dt}, progress_);
+    find_pauses();
     PathLimitOptions path = options_.path;
     path.least_margin = least_margin;
+    for (const Pause& pause : kept_) path.pauses.push_back(pause.still);
     limits_.emplace(model_, path_, path);
     share_.assign(limits_->points().size(), kFirstShare);
     timing_ = {};
@@ -149,8 +198,7 @@ class LocalSearch {
   std::optional<PathLimits::UniformPace> coarse_pace(double scale, const PathLimitOptions& path) {
     try {
       const double period = std::max(options_.dt, kSearchPeriod);
-      const CommandSeries series =
-          sample(model_, retimed(model_, pattern_, scale), {.dt = period}, progress_);
+      const CommandSeries series = sample(model_, at_scale(scale), {.dt = period}, progress_);
       return PathLimits(model_, series, path).uniform_pace();
     } catch (const Error& error) {
       if (error.code() != ErrorCode::bad_pattern || scale == 1) throw;
@@ -169,7 +217,7 @@ class LocalSearch {
       PathTiming found = quickest_timing(points);
       if (found.x.empty()) {
         const std::string broken = limits_->broken_at(found.stuck);
-        const double at = points[static_cast<size_t>(found.stuck)].at / result_.path_scale;
+        const double at = given_time(points[static_cast<size_t>(found.stuck)].at);
         result_.limited_by = "at " + text::fixed(at, 3) +
                              " s, the limits cannot all be kept at any pace" +
                              (broken.empty() ? "" : "; even a robot at rest violates: " + broken);
@@ -186,8 +234,9 @@ class LocalSearch {
   // Samples and checks; true when the check passes.
   bool play(const Timing& timing) {
     report(progress_, {"retime", -1, "round " + std::to_string(result_.rounds)});
-    result_.binding = limits_->binding(timing.u, timing.x);
-    const TimeCourse course = course_of(timing.x);
+    const std::vector<double> times = times_of(timing.x);
+    result_.binding = limits_->binding(timing.u, timing.x, times);
+    const TimeCourse course = course_of(timing.x, times);
     result_.pattern = with_course(model_, path_pattern_, path_, course, table_);
     result_.series = sample(model_, result_.pattern, {.dt = options_.dt}, progress_);
     result_.report = check_consistency(model_, result_.series, options_.path.check);
@@ -215,10 +264,44 @@ class LocalSearch {
       if (limits_->points()[i].at >= begin && limits_->points()[i].at <= end) share_[i] *= factor;
   }
 
-  // The place s by ticks, smoothed by three boxes, from rest to rest.
-  TimeCourse course_of(const std::vector<double>& x) const {
+  // A place on the path as a time of the given pattern.
+  double given_time(double place) const {
+    double time = place / result_.path_scale;
+    for (const Pause& pause : kept_) {
+      const double inside = std::clamp(place - pause.begin, 0.0, pause.end - pause.begin);
+      time += pause.length * inside / (pause.end - pause.begin) - inside / result_.path_scale;
+    }
+    return time;
+  }
+
+  // The time by point. The still part of a pause lasts until the whole pause has its length.
+  std::vector<double> times_of(const std::vector<double>& x) const {
     const std::vector<TimingPoint>& points = limits_->points();
-    const std::vector<double> times = times_along(points, x);
+    std::vector<double> times = times_along(points, x);
+    const auto first_at = [&](double place) {
+      return static_cast<size_t>(
+          std::lower_bound(points.begin(), points.end(), place - 1e-9,
+                           [](const TimingPoint& point, double at) { return point.at < at; }) -
+          points.begin());
+    };
+    for (const Pause& pause : kept_) {
+      const size_t begin = first_at(pause.begin), end = std::min(first_at(pause.end), x.size() - 1);
+      const size_t from = first_at(pause.still.first);
+      const size_t to = std::min(first_at(pause.still.second), x.size() - 1);
+      if (from >= to) continue;
+      const double missing = pause.length - (times[end] - times[begin]);
+      const double still = times[to] - times[from];
+      const double factor = std::max(kLeastStill, 1 + missing / still);
+      const double start = times[from];
+      for (size_t i = from + 1; i < times.size(); ++i)
+        times[i] = i <= to ? start + factor * (times[i] - start) : times[i] + (factor - 1) * still;
+    }
+    return times;
+  }
+
+  // The place s by ticks, smoothed by three boxes, from rest to rest.
+  TimeCourse course_of(const std::vector<double>& x, const std::vector<double>& times) const {
+    const std::vector<TimingPoint>& points = limits_->points();
     const int half = std::max(1, static_cast<int>(std::lround(kBox / options_.dt / 2)));
     const auto beside = static_cast<size_t>(3 * half);
     const double end = points.back().at;
@@ -228,8 +311,10 @@ class LocalSearch {
     for (size_t k = 0; k < count; ++k) {
       const double t = options_.dt * static_cast<double>(k);
       while (i + 2 < times.size() && times[i + 1] <= t) ++i;
-      const double later = t - times[i];
-      const double u = (x[i + 1] - x[i]) / (2 * (points[i + 1].at - points[i].at));
+      const double step = points[i + 1].at - points[i].at;
+      const double lasts = 2 * step / (std::sqrt(x[i]) + std::sqrt(x[i + 1]));  // but in a pause
+      const double later = (t - times[i]) * lasts / (times[i + 1] - times[i]);
+      const double u = (x[i + 1] - x[i]) / (2 * step);
       at.push_back(std::min(points[i].at + later * (std::sqrt(x[i]) + 0.5 * u * later), end));
     }
     at.insert(at.end(), beside, end);
@@ -272,6 +357,8 @@ class LocalSearch {
   const Progress& progress_;
   const double given_duration_;
   LocalPace result_;
+  std::vector<TimeSpan> pauses_;  // of the given pattern, where they are kept
+  std::vector<Pause> kept_;
   Pattern path_pattern_;
   CommandSeries path_;
   std::optional<PathLimits> limits_;

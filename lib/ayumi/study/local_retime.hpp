@@ -4,6 +4,9 @@
 // the ZMP depends on the pace. Along the path, math/path_timing finds the quickest timing within
 // the rows of study/path_limits, which is then made smooth, sampled and checked. Where the check
 // finds an error, less of the limits may be used, and the next round begins.
+//
+// Where nothing moves, no limit binds: such pauses keep their length, or are passed at the largest
+// pace.
 
 #include <string>
 #include <vector>
@@ -16,7 +19,8 @@
 namespace ayumi {
 
 struct LocalRetimeOptions {
-  PathLimitOptions path;                ///< its least margin is set by the search
+  PathLimitOptions path;                ///< its least margin and pauses are set by the search
+  bool keep_pauses = false;             ///< they last as long as in the given pattern
   double dt = 0.001;                    ///< of sampling [s]
   double fastest = 0.05, slowest = 20;  ///< range of the uniform scale of the path
 };

@@ -129,6 +129,10 @@ void PathLimits::place_points(const PathLimitOptions& options) {
     point.plane = support_plane(model_, plan_.support(k), point.ground);
     sites_.push_back(std::move(point));
     fixed_.push_back(fixed[static_cast<size_t>(k)]);
+    const double t = k * series_.dt;
+    paused_.push_back(
+        std::any_of(options.pauses.begin(), options.pauses.end(),
+                    [t](const TimeSpan& pause) { return t >= pause.first && t <= pause.second; }));
   }
 }
 
@@ -180,7 +184,7 @@ void PathLimits::linearize_point(size_t i, double u, double x, double share) {
   origins_[i].clear();
   cap_[i] = nullptr;
   point.least = fixed_[i] ? 1 : kLeastPace * kLeastPace;
-  point.most = fixed_[i] ? 1 : options_.most_pace * options_.most_pace;
+  point.most = fixed_[i] || paused_[i] ? 1 : options_.most_pace * options_.most_pace;
   const CollocationPoint& site = sites_[i];
   const CommandSample& sample = series_.samples[static_cast<size_t>(site.sample)];
   const Forces& f = forces_[i];
@@ -298,7 +302,8 @@ PathLimits::UniformPace PathLimits::uniform_pace() {
 }
 
 std::vector<BindingLimit> PathLimits::binding(const std::vector<double>& u,
-                                              const std::vector<double>& x) const {
+                                              const std::vector<double>& x,
+                                              const std::vector<double>& times) const {
   std::map<std::string, double> time;
   double all = 0;
   for (size_t i = 0; i + 1 < timing_.size(); ++i) {
@@ -316,8 +321,8 @@ std::vector<BindingLimit> PathLimits::binding(const std::vector<double>& u,
       }
     }
     if (x[i] >= point.most * (1 - kBinds)) limit = cap_[i] ? cap_[i]->name : "pace";
-    const double lasts =
-        2 * (timing_[i + 1].at - point.at) / (std::sqrt(x[i]) + std::sqrt(x[i + 1]));
+    if (paused_[i]) limit = "pause";
+    const double lasts = times[i + 1] - times[i];
     time[limit] += lasts;
     all += lasts;
   }

@@ -12,6 +12,7 @@
 
 #include "ayumi/limits/row_site.hpp"
 #include "ayumi/math/path_timing.hpp"
+#include "ayumi/study/pauses.hpp"
 
 namespace ayumi {
 
@@ -22,11 +23,12 @@ struct PathLimitOptions {
   double least_margin = 0;  ///< kept where that is less [m]
   double most_margin = kUnbounded;  ///< no larger margin is kept [m]
   double most_pace = 4;             ///< largest s'
+  std::vector<TimeSpan> pauses;     ///< of the path, where s' is at most 1 [s]
 };
 
 /// Which limit binds a timing, and for how much of it.
 struct BindingLimit {
-  std::string limit;  ///< name of its rows; "pace": the largest s'; "" where none binds
+  std::string limit;  ///< name of its rows; "pace": the largest s'; "pause"; "" where none binds
   double share = 0;   ///< of the duration
 };
 
@@ -65,9 +67,9 @@ class PathLimits {
   };
   UniformPace uniform_pace();
 
-  /// Which rows bind a timing, the longest first.
-  std::vector<BindingLimit> binding(const std::vector<double>& u,
-                                    const std::vector<double>& x) const;
+  /// Which rows bind a timing with these times by point, the longest first.
+  std::vector<BindingLimit> binding(const std::vector<double>& u, const std::vector<double>& x,
+                                    const std::vector<double>& times) const;
 
   /// Names of the rows that standing still breaks at a point.
   std::string broken_at(int point) const;
@@ -91,7 +93,8 @@ class PathLimits {
   const ContactPlan plan_;
   bool flies_ = false;
   std::vector<CollocationPoint> sites_;
-  std::vector<char> fixed_;  ///< by point, s' = 1: in flight and beside it
+  std::vector<char> fixed_;   ///< by point, s' = 1: in flight and beside it
+  std::vector<char> paused_;  ///< by point
   std::vector<RowBlock> rows_;
   std::vector<std::vector<const RowBlock*>> rows_of_;  ///< by point, of rows_
   std::vector<Forces> forces_;                         ///< by point

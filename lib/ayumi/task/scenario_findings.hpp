@@ -9,8 +9,7 @@
 
 namespace ayumi {
 
-/// A sentence for each payload and each change of friction in the scenario. `plain` is the report
-/// without them.
+/// A sentence for each change of friction in the scenario. `plain` is the report without them.
 std::vector<std::string> findings_under_scenario(const Task& task, const CheckOptions& options,
                                                  const ConsistencyReport& plain);
 

@@ -11,6 +11,7 @@
 #include "ayumi/limits/limit.hpp"
 #include "ayumi/plan/sample.hpp"
 #include "ayumi/sim/run_caution.hpp"
+#include "ayumi/task/payload_findings.hpp"
 
 namespace ayumi {
 
@@ -132,9 +133,17 @@ Provenance provenance(const Task& task, const std::string& controller,
           .command_line = command_line};
 }
 
+Judgement judge(const Task& task, const CheckOptions& options, std::vector<Mistake>* payloads) {
+  Judgement judgement =
+      judge(task.robot, task.series, keyed_goals(task.robot, task.series, task.pattern.controller),
+            options);
+  std::vector<Mistake> heavy = judge_payloads(task, options, judgement.report);
+  if (payloads) *payloads = std::move(heavy);
+  return judgement;
+}
+
 Judgement judge(const Task& task, const CheckOptions& options) {
-  return judge(task.robot, task.series,
-               keyed_goals(task.robot, task.series, task.pattern.controller), options);
+  return judge(task, options, nullptr);
 }
 
 Judgement judge(const Task& task) { return judge(task, check_options(task)); }

@@ -184,6 +184,41 @@ class GainStudy:
 class Interrupted(Exception):
     """Long work was stopped because its progress callback gave False."""
 
+class LocalPace:
+    """The result of fastest_local_pace()."""
+
+    @property
+    def found(self) -> bool:
+        """Whether a course of time passes the check."""
+
+    @property
+    def pattern(self) -> Pattern:
+        """The motion in this course, as a table."""
+
+    @property
+    def scale(self) -> float:
+        """Duration over that of the given pattern."""
+
+    @property
+    def path_scale(self) -> float:
+        """The same for the fastest uniform pace, whose postures the motion has."""
+
+    @property
+    def binding(self) -> list:
+        """(limit, share of the duration for which it binds), the longest first; '' where none does, 'pace' for the largest pace, 'pause' for pauses that are kept."""
+
+    @property
+    def rounds(self) -> int:
+        """Number of courses of time that were checked."""
+
+    @property
+    def limited_by(self) -> str:
+        """Why no course of time passes, in words."""
+
+    @property
+    def by_posture(self) -> bool:
+        """None passes because of a posture, which no course of time changes."""
+
 class Log:
     """A run with one sample per tick. log['cog'] is an array, log.units('cog') has its units. docs/formats.md describes the quantities."""
 
@@ -842,6 +877,9 @@ def controllers() -> list[str]:
 
 def data_folder(name: str) -> Path:
     """Folder of the bundled data: 'robots', 'patterns' or 'examples'."""
+
+def fastest_local_pace(task: Task, *, table: str = 'retimed.csv', margin: Optional[float] = None, keep_pauses: bool = False, progress: Optional[Callable[[str, float, str], Any]] = None) -> LocalPace:
+    """The fastest course of time along the motion: it slows only where a limit binds. The result names its table `table`; the ZMP keeps at most `margin` [m] from the edge of the support; with `keep_pauses`, spans in which nothing moves keep their length."""
 
 def fastest_pace(task: Task, *, resolution: float = 0.002, progress: Optional[Callable[[str, float, str], Any]] = None) -> Pace:
     """The fastest uniform time scaling of the pattern that passes the check."""

@@ -1,9 +1,11 @@
 #include "ayumi/author/edit/gait_cycle.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/motion/pattern_context.hpp"
 
@@ -61,6 +63,80 @@ GaitCycle gait_cycle(const RobotModel& model, const MotionPart& motion, int swin
   cycle.turn =
       std::remainder(matrix_to_rpy(to.linear()).z() - matrix_to_rpy(from.linear()).z(), 2 * M_PI);
   return cycle;
+}
+
+namespace {
+
+// Times closer than this are one [s]. Chosen: above rounding, below a tick.
+constexpr double kSameTick = 1e-6;
+
+// The phases that are not over at `begin`, up to `end`, from time 0 on.
+std::vector<Phase> phases_within(const std::vector<Phase>& phases, double begin, double end) {
+  std::vector<Phase> result;
+  double from = 0;
+  for (const Phase& phase : phases) {
+    if (phase.until > begin + kSameTick && from < end - kSameTick) {
+      result.push_back(phase);
+      result.back().until = std::min(phase.until, end) - begin;
+    }
+    from = phase.until;
+  }
+  if (!result.empty()) result.back().until = end - begin;
+  return result;
+}
+
+}  // namespace
+
+Pattern cut(const RobotModel& model, const MotionPart& motion, long first, long last,
+            const std::string& table) {
+  const CommandSeries& series = motion.series;
+  const auto count = static_cast<long>(series.samples.size());
+  if (!(first >= 0 && first < last && last < count))
+    fail(ErrorCode::usage, "samples " + std::to_string(first) + " to " + std::to_string(last) +
+                               " of " + std::to_string(count) + " are no part of a motion");
+  const CommandSample& start = series.samples[static_cast<size_t>(first)];
+  for (const long k : {first, last})
+    if (series.samples[static_cast<size_t>(k)].support != Support::both)
+      fail(ErrorCode::bad_pattern,
+           in_file(motion.pattern, "phases") + ": at " +
+               text::exact(series.dt * static_cast<double>(k)) +
+               " s a foot is in the air; a part of a motion begins and ends with both feet on the "
+               "ground");
+  Pattern result = baked(model, motion.pattern, series, table);
+  result.repair = {};  // its times and joints are those of the whole
+  DenseTable& dense = *result.table;
+  const long rows = last - first + 1;
+  dense.theta = dense.theta.middleRows(first, rows).eval();
+  dense.base = {dense.base.begin() + first, dense.base.begin() + last + 1};
+  dense.cog.clear();
+  dense.zmp.clear();
+  dense.fz.clear();
+  const double begin = series.dt * static_cast<double>(first);
+  const double end = series.dt * static_cast<double>(last);
+  result.phases = phases_within(result.phases, begin, end);
+  for (const size_t side : {0, 1}) {
+    const Eigen::Isometry3d& foot = start.feet[side];
+    result.start_feet[side] = Foothold{foot.translation(), matrix_to_rpy(foot.linear())};
+  }
+  std::erase_if(result.keyframes, [&](const Keyframe& key) {
+    return key.t < begin - kSameTick || key.t > end + kSameTick;
+  });
+  for (Keyframe& key : result.keyframes) key.t = std::clamp(key.t - begin, 0.0, end - begin);
+  std::erase_if(result.scenario, [&](const Disturbance& each) {
+    return each.at < begin - kSameTick || each.at > end - kSameTick;
+  });
+  for (Disturbance& each : result.scenario) each.at -= begin;
+  // Weights that were given before hold on.
+  Keyframe before;
+  for (const Keyframe& key : motion.pattern.keyframes)
+    if (key.t < begin - kSameTick)
+      for (const auto& [joint, weight] : key.weights) before.weights[joint] = weight;
+  if (before.weights.empty()) return result;
+  if (result.keyframes.empty() || result.keyframes.front().t > kSameTick)
+    result.keyframes.insert(result.keyframes.begin(), before);
+  else
+    result.keyframes.front().weights.merge(before.weights);
+  return result;
 }
 
 }  // namespace ayumi

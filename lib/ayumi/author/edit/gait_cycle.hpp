@@ -5,6 +5,7 @@
 // forgotten its start and does not yet know its end.
 
 #include <Eigen/Core>
+#include <string>
 
 #include "ayumi/author/edit/edit.hpp"
 
@@ -21,5 +22,12 @@ struct GaitCycle {
 /// The cycle that begins before swing `swing`, counted from 0. Throws Error(bad_pattern) where the
 /// pattern has fewer than `swing` + 3 swings or a foot is in the air at an end of the cycle.
 GaitCycle gait_cycle(const RobotModel& model, const MotionPart& motion, int swing);
+
+/// The samples `first` to `last` of a motion, such as a cycle, as a motion of its own: a table of
+/// posture and base (COG, ZMP and f_z are those of the full model), with the phases, weights and
+/// disturbances of this time. Throws Error(usage) for samples that are not there,
+/// Error(bad_pattern) where a foot is in the air at one of them, and as baked().
+Pattern cut(const RobotModel& model, const MotionPart& motion, long first, long last,
+            const std::string& table);
 
 }  // namespace ayumi

@@ -74,6 +74,14 @@ Pattern with_key_edited(const RobotModel& model, const Pattern& pattern, const K
       fail(ErrorCode::usage, in_file(pattern, "keyframes") + ": the keyframe would come to " +
                                  text::exact(*edit.to) + " s; the motion lasts from 0 to " +
                                  text::exact(end) + " s");
+    double begin = 0;
+    for (size_t i = 0; i < pattern.phases.size(); begin = pattern.phases[i++].until)
+      if (pattern.phases[i].viip && *edit.to > begin && *edit.to < pattern.phases[i].until)
+        fail(ErrorCode::usage, place_of_phase(pattern, i) + ": the keyframe would come to " +
+                                   text::exact(*edit.to) + " s, inside the VIIP phase from " +
+                                   text::exact(begin) + " to " +
+                                   text::exact(pattern.phases[i].until) +
+                                   " s, in which goals replace keys; choose a time outside it");
     if (!edit.copy) result.keyframes.erase(found);
     key.t = *edit.to;
     key.pointer.clear();

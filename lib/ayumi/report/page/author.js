@@ -27,7 +27,7 @@ const tabs = ["answers", "edit", "pose", "postures", "pushes", "text"];
 
 /// What a state has where the server says nothing of it.
 const nothing = { features: [], motions: ["plan"], findings: [], phases: [], tracks: [], keyframes: [],
-  disturbances: [], joints: [], handles: [], postures: [], own_postures: [], strip: [], strip_dt: 0.01,
+  disturbances: [], joints: [], handles: [], targets: [], postures: [], own_postures: [], strip: [], strip_dt: 0.01,
   result: null, error: null, stale: false };
 
 class Page {
@@ -103,6 +103,7 @@ class Page {
       this.axis.stretch(Math.max(state.duration, this.viewer.last));
       byId("scrub").max = String(this.viewer.last);
       this.handles.take(state.handles);
+      this.handles.takeTargets(state.targets);
       this.previewed = null;
       if (this.finding && !state.findings.some((one) => one.message === this.finding.message)) this.leaveFinding();
       this.render();
@@ -313,6 +314,14 @@ class Page {
     return this.selection?.kind === thing.kind && this.selection.pointer === thing.pointer;
   }
 
+  /// The server knows which joint is the image of which.
+  async mirror(pointer) {
+    const { status, value } = await this.server.ask("POST", "mirror", { pointer });
+    if (status !== 200) return this.say(value.message || "The keyframe cannot be mirrored.");
+    if (!value.edits.length) return this.say("The keyframe is its own mirror image.");
+    return this.edit(value.edits);
+  }
+
   select(thing, time) {
     this.selection = thing;
     this.leaveFinding();
@@ -335,6 +344,7 @@ class Page {
     }
     byId("keys-along").parentElement.hidden = !this.can("edit");
     byId("show-handles").parentElement.hidden = !this.can("pose.drag");
+    byId("mark-targets").parentElement.hidden = !state.targets.length;
     byId("to-pose").hidden = !this.can("pose.joints") && !this.can("pose.drag");
     byId("to-postures").hidden = !this.can("posture") && !state.postures.length;
     this.renderFindings();
@@ -598,6 +608,13 @@ window.ayumiAuthor = {
     viewer.paint();
     const mark = handles.marks.find((one) => one.handle.name === name);
     const at = mark.ball.position.clone().project(viewer.camera);
+    const box = viewer.renderer.domElement.getBoundingClientRect();
+    return [box.left + (at.x + 1) / 2 * box.width, box.top + (1 - at.y) / 2 * box.height];
+  },
+  pixelOfTarget: (i) => {
+    const { viewer, handles } = page, at = handles.targets[i].ball.position.clone();
+    viewer.paint();
+    at.project(viewer.camera);
     const box = viewer.renderer.domElement.getBoundingClientRect();
     return [box.left + (at.x + 1) / 2 * box.width, box.top + (1 - at.y) / 2 * box.height];
   },

@@ -65,6 +65,14 @@ export function putKey(keyframes, time, name, value) {
   return [added, ...follow(next, roundedTime(time))];
 }
 
+/// A place of a hand or of the gaze in the keyframe at this time.
+export function putTarget(keyframes, time, handle, place) {
+  if (handle.gaze) return putKey(keyframes, time, "gaze", place);
+  const there = keyframes.find((frame) => sameTime(frame.time, time));
+  return there ? [{ kind: "set", pointer: `${there.pointer}/hands/${handle.link}`, value: place }]
+    : putKey(keyframes, time, "hands", { [handle.link]: place });
+}
+
 /// The item of the pattern's list that holds a keyframe: itself, or a block that repeats.
 const outermost = (pointer) => pointer.split("/").slice(0, 3).join("/");
 

@@ -1,16 +1,20 @@
-// Feet, hands, trunk and COG as points in the picture that can be dragged, and pushes as arrows that
-// are drawn there. The server answers with the posture that brings the point to its place.
+// Feet, hands, gaze, trunk and COG as points in the picture that can be dragged, the targets of keys
+// of hands and gaze, and pushes as arrows that are drawn there. The server answers with the posture
+// that brings the point to its place.
 
-import { Mesh, MeshBasicMaterial, Plane, Raycaster, SphereGeometry, Vector2, Vector3 } from "three";
-import { byId } from "./dom.js";
+import { BufferGeometry, Line, LineBasicMaterial, Mesh, MeshBasicMaterial, OctahedronGeometry, Plane, Raycaster,
+  SphereGeometry, Vector2, Vector3 } from "three";
+import { byId, seconds } from "./dom.js";
 import { bodyOf } from "./viewer.js";
 
 const reach = 14;  // [px] around a point within which the pointer takes it
+const targetColor = 0x0a8f8f;
 
 export class Handles {
   constructor(page) {
     this.page = page;
     this.marks = [];
+    this.targets = [];
     this.raycaster = new Raycaster();
     const stage = page.viewer.stage;
     stage.addEventListener("pointerdown", (event) => this.down(event), true);
@@ -18,7 +22,8 @@ export class Handles {
       if (event.buttons) return;
       const mark = this.page.drawing ? null : this.near(event);
       stage.style.cursor = this.page.drawing ? "crosshair" : mark ? "grab" : "";
-      stage.title = mark ? `${mark.handle.label}: drag it, with Shift only up and down` : "";
+      const name = mark?.target ? `target of the ${mark.target.label} at ${seconds(mark.target.time)}` : mark?.handle.label;
+      stage.title = mark ? `${name}: drag it, with Shift only up and down` : "";
     });
   }
 
@@ -42,6 +47,34 @@ export class Handles {
     });
   }
 
+  /// The targets of the keys: an octahedron for each, and for the gaze a line from the head.
+  takeTargets(targets) {
+    const { viewer } = this.page, size = viewer.config.height;
+    for (const { ball, line } of this.targets) {
+      viewer.scene.remove(ball, line);
+      for (const gone of [ball, line]) {
+        gone.geometry.dispose();
+        gone.material.dispose();
+      }
+    }
+    this.targets = targets.map((target) => {
+      const paint = { color: targetColor, depthTest: false, transparent: true };
+      const ball = new Mesh(new OctahedronGeometry(0.024 * size), new MeshBasicMaterial({ ...paint }));
+      ball.position.set(...target.place);
+      ball.renderOrder = 8;
+      const line = new Line(new BufferGeometry().setFromPoints([ball.position, ball.position]), new LineBasicMaterial({ ...paint, opacity: 0.5 }));
+      line.renderOrder = 5;
+      viewer.scene.add(ball, line);
+      return { target, ball, line, handle: this.page.state.handles.find((one) => one.name === target.handle) };
+    });
+  }
+
+  /// The way a limb points, from its joint to its end.
+  directionOf(handle) {
+    const body = bodyOf(this.page.viewer.actors[0], handle.body);
+    return body.localToWorld(new Vector3(...handle.point)).sub(body.getWorldPosition(new Vector3())).normalize();
+  }
+
   /// Where the point of a handle is, for a row of the motion.
   placeOf(handle, row) {
     const { viewer } = this.page;
@@ -55,6 +88,14 @@ export class Handles {
       ball.visible = shown;
       if (shown) ball.position.copy(this.placeOf(handle, row));
     }
+    const seen = byId("mark-targets").checked, { time, viewer } = this.page;
+    for (const { target, ball, line, handle } of this.targets) {
+      const leads = time >= target.time - 5e-4 && time < Math.max(target.until, target.time + 5e-4);
+      ball.visible = seen;
+      ball.material.opacity = leads ? 0.95 : 0.35;
+      line.visible = seen && leads && Boolean(handle?.gaze);
+      if (line.visible) line.geometry.setFromPoints([bodyOf(viewer.actors[0], handle.body).getWorldPosition(new Vector3()), ball.position]);
+    }
   }
 
   pixels(event) {
@@ -65,7 +106,7 @@ export class Handles {
   near(event) {
     const [x, y, wide, high] = this.pixels(event);
     let best = null, least = reach;
-    for (const mark of this.marks) {
+    for (const mark of [...this.marks, ...this.page.can("pose.drag") ? this.targets : []]) {
       if (!mark.ball.visible) continue;
       const at = mark.ball.position.clone().project(this.page.viewer.camera);
       const far = Math.hypot((at.x + 1) / 2 * wide - x, (1 - at.y) / 2 * high - y);
@@ -109,12 +150,14 @@ export class Handles {
   }
 
   /// In the plane that faces the eye; with Shift upright only.
-  dragOf({ handle, ball }, event) {
+  dragOf({ handle, target, ball }, event) {
     const facing = this.page.viewer.camera.getWorldDirection(new Vector3());
     const plane = new Plane().setFromNormalAndCoplanarPoint(facing, ball.position);
     const begin = ball.position.clone(), first = this.hit(event, plane);
     if (!first) return null;
     let changed = false;
+    if (target) this.page.show(target.time);
+    const what = target ? { target: target.pointer } : { drag: handle.name };
     return {
       move: (e) => {
         const at = this.hit(e, plane);
@@ -122,9 +165,14 @@ export class Handles {
         const to = begin.clone().add(at.sub(first));
         if (e.shiftKey) to.set(begin.x, begin.y, to.z);
         changed = changed || to.distanceTo(begin) > 5e-4;
-        if (changed) this.page.pose.ask({ drag: handle.name, to: to.toArray() });
+        if (target) ball.position.copy(to);
+        if (changed) this.page.pose.ask({ ...what, to: to.toArray() });
       },
-      end: (write) => write && changed ? this.page.pose.write() : this.page.pose.drop(),
+      end: async (write) => {
+        await (write && changed ? this.page.pose.write() : this.page.pose.drop());
+        if (target) this.takeTargets(this.page.state.targets);
+        this.place(this.page.row());
+      },
     };
   }
 

@@ -1,7 +1,7 @@
 // What is selected on the timeline, with its values to be typed; and new keys at the cursor.
 
 import { byId, element, seconds } from "./dom.js";
-import { appendPhase, putKey, removeKey, splitPhase, valueFromRow, written } from "./edits.js";
+import { appendPhase, putKey, putTarget, removeKey, splitPhase, valueFromRow, written } from "./edits.js";
 import { nameOfTrack } from "./timeline.js";
 
 /// Unit of a value by the names that lead to it.
@@ -18,6 +18,7 @@ export function unitOf(path, angle) {
 }
 
 const places = ["forward", "left", "up", "yaw"];
+const millimetre = (value) => Number(value.toFixed(4));
 const words = { to: "lands", joint: "angle", zmp: "ZMP", cog: "COG", fz: "force", t: "time", x: "forward", y: "left" };
 const wholes = ["cog", "torso", "feet", "posture", "swing"];
 
@@ -27,6 +28,8 @@ export function nameOf(path) {
   return path.slice(from).map((name) => typeof name === "number" ? places[name] ?? String(name + 1)
     : words[name] || name).join(" ");
 }
+
+const isTarget = (track) => track.kind === "hand" || track.kind === "gaze";
 
 export class Inspector {
   constructor(page) {
@@ -101,7 +104,10 @@ export class Inspector {
     const named = typeof key.value === "string" && !key.value.includes("${");
     const choices = !named ? {} : key.track.name === "posture" ? { posture: state.postures }
       : key.track.name === "zmp" ? { zmp: ["left", "center", "right"] } : {};
-    const path = key.track.kind === "joint" ? ["joint"] : key.track.kind === "foot" ? ["feet"] : [key.track.name];
+    if (isTarget(key.track)) choices.frame = ["world", "trunk"];
+    const path = isTarget(key.track) ? Array.isArray(key.value) ? ["position"] : typeof key.value === "string" ? ["target"] : []
+      : key.track.kind === "joint" ? ["joint"] : key.track.kind === "foot" ? ["feet"] : [key.track.name];
+    const frame = state.keyframes.find((one) => key.pointer.startsWith(one.pointer + "/"));
     const others = state.tracks.flatMap((track) => track.keys.filter((one) =>
       one.time_pointer === key.time_pointer && one.pointer !== key.pointer).map(() => nameOfTrack(track)));
     return [element("h3", {}, `${name} key at ${seconds(key.time)}`),
@@ -111,7 +117,29 @@ export class Inspector {
       key.track.name === "zmp" && named && this.page.can("edit") ? element("button", { type: "button",
         title: "Write the point [x, y] in place of the name", onclick: () => this.page.edit([{ kind: "set", pointer: key.pointer,
           value: valueFromRow("zmp", this.page.row(), this.page.motion.columns, state.angle_unit) }]) }, "Write the point as numbers") : null,
+      ...isTarget(key.track) ? this.targetButtons(key) : [],
+      frame && this.page.can("mirror") ? element("button", { type: "button", title: "Exchange left and right in this keyframe",
+        onclick: () => this.page.mirror(frame.pointer) }, "Mirror this keyframe") : null,
       this.button(() => removeKey(state, key.original), "Remove this key")].filter(Boolean);
+  }
+
+  /// The handle that a key of a hand or the gaze moves, if there is one.
+  handleOf(track) {
+    const link = track.name.replace(/ hand$|^link /, "");
+    return this.page.state.handles.find((one) => track.kind === "gaze" ? one.gaze : one.link === link);
+  }
+
+  /// A target can be let go, be where the hand is now, and say where the hand points.
+  targetButtons(key) {
+    const handle = this.handleOf(key.track), set = (value) => [{ kind: "set", pointer: key.pointer, value }];
+    const place = () => this.page.handles.placeOf(handle, this.page.row()).toArray().map(millimetre);
+    if (typeof key.value === "string")
+      return handle ? [this.button(() => set(place()), "Hold the present place")] : [];
+    const written = Array.isArray(key.value) ? key.value : key.value.position;
+    const points = key.track.kind === "hand" && handle && !key.value.direction;
+    return [this.button(() => set("free"), "Let it go free here"),
+      points ? this.button(() => set({ ...Array.isArray(key.value) ? {} : key.value, position: written,
+        direction: this.page.handles.directionOf(handle).toArray().map(millimetre) }), "Also hold its direction") : null];
   }
 
   phase(phase, state) {
@@ -134,14 +162,22 @@ export class Inspector {
 
   offerTracks(state) {
     const select = byId("key-track"), chosen = select.value;
+    const targets = state.handles.filter((one) => one.link || one.gaze);
     const known = [["zmp", "ZMP"], ["cog", "COG"], ["fz", "vertical force"], ["torso", "trunk"]];
     select.replaceChildren(...known.map(([value, label]) => element("option", { value }, label)),
+      ...targets.length ? [element("optgroup", { label: "Hands and gaze" }, ...targets.map((one) =>
+        element("option", { value: "target " + one.name }, one.label)))] : [],
       element("optgroup", { label: "Joints" }, ...state.joints.map((one) => element("option", { value: one.name }, one.name))));
     if (chosen) select.value = chosen;
   }
 
   addKey() {
     const { state } = this.page, track = byId("key-track").value;
+    const handle = state.handles.find((one) => track === "target " + one.name);
+    if (handle) {
+      const place = this.page.handles.placeOf(handle, this.page.row()).toArray().map(millimetre);
+      return void this.page.edit(putTarget(state.keyframes, this.page.time, handle, place));
+    }
     const value = valueFromRow(track, this.page.row(), this.page.motion.columns, state.angle_unit);
     const whole = ["zmp", "cog", "fz", "torso"].includes(track);
     const there = state.keyframes.find((frame) => Math.abs(frame.time - this.page.time) < 5e-4);

@@ -1,0 +1,47 @@
+#include "ayumi/study/pauses.hpp"
+
+#include "ayumi/author/edit/edit.hpp"
+
+namespace ayumi {
+
+namespace {
+
+// Speeds of joints [rad/s] and of the trunk [m/s, rad/s] below which nothing moves. Chosen: a
+// millimetre in five seconds; the COG of a robot that comes to rest is slower after 0.6 s. Half or
+// twice of it changes the length of a pause by a tenth of a second.
+constexpr double kStillJoint = 1e-3, kStillTrunk = 2e-4, kStillTurn = 1e-3;
+// Shortest pause [s]. Chosen: keyed joints that turn back rest for some hundredths of a second.
+constexpr double kShortest = 0.1;
+
+bool is_still(const CommandSample& sample) {
+  const RobotState& state = sample.state;
+  return state.dtheta.lpNorm<Eigen::Infinity>() < kStillJoint &&
+         state.base_velocity.norm() < kStillTrunk &&
+         state.base_angular_velocity.norm() < kStillTurn;
+}
+
+}  // namespace
+
+std::vector<TimeSpan> pauses_of(const CommandSeries& series) {
+  std::vector<TimeSpan> result;
+  const size_t count = series.samples.size();
+  for (size_t k = 0; k < count; ++k) {
+    const size_t begin = k;
+    while (k < count && is_still(series.samples[k])) ++k;
+    const double from = series.dt * static_cast<double>(begin);
+    const double to = series.dt * (static_cast<double>(k) - 1);
+    if (k > begin && to - from >= kShortest) result.emplace_back(from, to);
+  }
+  return result;
+}
+
+Pattern with_pauses_stretched(const RobotModel& model, const Pattern& pattern,
+                              const std::vector<TimeSpan>& pauses, double factor) {
+  Pattern result = pattern;
+  if (pattern.table || pattern.correction) return result;
+  for (auto pause = pauses.rbegin(); pause != pauses.rend(); ++pause)
+    result = stretched(model, result, pause->first, pause->second, factor);
+  return result;
+}
+
+}  // namespace ayumi

@@ -1,0 +1,128 @@
+#include "ayumi/task/payload_findings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "ayumi/base/text.hpp"
+#include "ayumi/check/consistency.hpp"
+#include "ayumi/limits/limit.hpp"
+#include "ayumi/sim/payload.hpp"
+
+namespace ayumi {
+
+namespace {
+
+// Steps of the bisection for the mass that a motion bears. Chosen: 3 % of the payload.
+constexpr int kMassSteps = 5;
+
+bool overlap(const Disturbance& a, const Disturbance& b) {
+  return a.at <= b.at + b.duration && b.at <= a.at + a.duration;
+}
+
+std::string mass_text(double mass) { return text::brief(mass, 4) + " kg"; }
+
+// In whole grams, not above the mass itself.
+double rounded_down(double mass) { return 1e-3 * std::floor(1e3 * mass); }
+
+// The errors while this payload is carried that the motion alone does not have. What is carried at
+// the same time is carried together with it; `share` is that of this payload's mass.
+std::vector<Finding> errors_with(const Task& task, const CheckOptions& options,
+                                 const ConsistencyReport& plain, size_t which, double share) {
+  const Disturbance& carried = task.pattern.scenario[which];
+  std::vector<CarriedMass> masses;
+  for (size_t i = 0; i < task.pattern.scenario.size(); ++i) {
+    const Disturbance& other = task.pattern.scenario[i];
+    const auto* payload = std::get_if<Payload>(&other.what);
+    if (!payload || !overlap(carried, other)) continue;
+    const int link = task.robot.find_link(payload->on);
+    if (link >= 0)
+      masses.push_back({link, payload->point, (i == which ? share : 1) * payload->mass});
+  }
+  const ConsistencyReport report =
+      check_consistency(with_payloads(task.robot, masses), task.series, options);
+  std::vector<Finding> errors;
+  for (const Finding& f : report.findings) {
+    // The commands are those of the robot without it: its controller takes the difference.
+    if (f.severity != Severity::error || spec_of(f.kind).limit_class == LimitClass::command ||
+        f.begin > carried.at + carried.duration || f.end < carried.at)
+      continue;
+    const bool known =
+        std::any_of(plain.findings.begin(), plain.findings.end(), [&](const Finding& p) {
+          return p.severity == Severity::error && p.kind == f.kind && p.where == f.where &&
+                 p.begin <= f.end && f.begin <= p.end;
+        });
+    if (!known) errors.push_back(f);
+  }
+  return errors;
+}
+
+// A payload that brings errors, and the largest mass that brings none.
+struct HeavyPayload {
+  size_t which = 0;
+  std::vector<Finding> errors;
+  double bearable = 0;  ///< [kg]
+};
+
+std::vector<HeavyPayload> heavy_payloads(const Task& task, const CheckOptions& options,
+                                         const ConsistencyReport& plain) {
+  std::vector<HeavyPayload> heavy;
+  for (size_t i = 0; i < task.pattern.scenario.size(); ++i) {
+    const auto* payload = std::get_if<Payload>(&task.pattern.scenario[i].what);
+    if (!payload) continue;
+    HeavyPayload found{i, errors_with(task, options, plain, i, 1)};
+    if (found.errors.empty()) continue;
+    double least = 0, most = 1;
+    for (int step = 0; step < kMassSteps; ++step) {
+      const double share = 0.5 * (least + most);
+      (errors_with(task, options, plain, i, share).empty() ? least : most) = share;
+    }
+    found.bearable = rounded_down(least * payload->mass);
+    heavy.push_back(std::move(found));
+  }
+  return heavy;
+}
+
+}  // namespace
+
+std::vector<Mistake> judge_payloads(const Task& task, const CheckOptions& options,
+                                    ConsistencyReport& report) {
+  const std::vector<HeavyPayload> all = heavy_payloads(task, options, report);
+  if (all.empty()) return {};
+  std::vector<Mistake> mistakes;
+  std::vector<Finding> findings = report.findings;
+  for (const HeavyPayload& heavy : all) {
+    const auto& payload = std::get<Payload>(task.pattern.scenario[heavy.which].what);
+    const std::string mass = mass_text(payload.mass), carried = mass + " on " + payload.on;
+    const std::string bearable =
+        heavy.bearable > 0 ? "up to " + mass_text(heavy.bearable) : "no mass";
+    for (Finding f : heavy.errors) {
+      f.where += " with " + carried;
+      f.hint = f.remedy =
+          "comes with the payload of " + carried + "; this motion bears " + bearable + " there";
+      f.follows_from.clear();
+      f.cause = -1;
+      findings.push_back(std::move(f));
+    }
+    mistakes.push_back({"/scenario/" + std::to_string(heavy.which),
+                        "the payload on " + payload.on + " is " + mass +
+                            ", which this motion does not bear; it bears " + bearable + " there"});
+  }
+  // Errors stay in front, and causes are counted among them.
+  std::vector<size_t> order(findings.size());
+  std::iota(order.begin(), order.end(), size_t(0));
+  std::stable_sort(order.begin(), order.end(),
+                   [&](size_t a, size_t b) { return findings[a].severity < findings[b].severity; });
+  std::vector<int> place(order.size());
+  report.findings.clear();
+  for (const size_t i : order) {
+    place[i] = static_cast<int>(report.findings.size());
+    report.findings.push_back(findings[i]);
+  }
+  for (Finding& f : report.findings)
+    if (f.cause >= 0) f.cause = place[static_cast<size_t>(f.cause)];
+  report.consistent = false;
+  return mistakes;
+}
+
+}  // namespace ayumi

@@ -1,0 +1,23 @@
+#pragma once
+// What the payloads of the scenario mean for the verdict. The author knows that the robot carries
+// them, unlike a push, so the motion has to bear them: while a payload is carried, the motion is
+// judged for the robot with its mass.
+
+#include <string>
+#include <vector>
+
+#include "ayumi/check/likely_mistakes.hpp"
+#include "ayumi/task/task.hpp"
+
+namespace ayumi {
+
+/// Adds to the report of the motion alone the errors that come with payloads; each says in `where`
+/// what is carried, and in `hint` how heavy it may be. Returns the payloads that are too heavy, with
+/// the same words.
+std::vector<Mistake> judge_payloads(const Task& task, const CheckOptions& options,
+                                    ConsistencyReport& report);
+
+/// As judge() of task.hpp, and the payloads that are too heavy where they are asked for.
+Judgement judge(const Task& task, const CheckOptions& options, std::vector<Mistake>* payloads);
+
+}  // namespace ayumi
