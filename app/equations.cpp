@@ -219,12 +219,13 @@ EquationNumbers zmp_numbers(const RunInstant& i) {
     return w.take();
   }
   const double K = w.scalar("law.K", "1", law.K), D = w.scalar("law.D", "s", law.D);
-  w.line(previewed(i) ? "the wanted ZMP is that of the previewed COG, and " + fixed(K, 3) +
-                            " times the distance of the measured COG from it, x + " +
-                            fixed(1e3 * D / K, 0) + " ms times its speed"
-         : baseline(i) ? "the wanted ZMP is the planned one and " + fixed(K, 3) +
-                             " times the error of the DCM, x + " + fixed(1e3 * D / K, 0) +
-                             " ms times its speed"
+  w.line(previewed(i) ? "the wanted ZMP is that of the previewed COG plus " + fixed(K, 3) +
+                            " times the error of the COG. This error is the distance of the "
+                            "measured COG from the previewed COG plus " +
+                            fixed(1e3 * D / K, 0) + " ms times the difference of their speeds"
+         : baseline(i) ? "the wanted ZMP is the planned one plus " + fixed(K, 3) +
+                             " times the error of the DCM. The DCM is the COG plus " +
+                             fixed(1e3 * D / K, 0) + " ms times its speed"
          : dtad(i) ? "K = " + text::brief(K) + ", D = " + fixed(1e3 * D, 0) + " ms"
                    : "the wanted ZMP moves by K = " + fixed(K, 3) +
                          " times the displacement of the COG, and by D = " + fixed(1e3 * D, 0) +
@@ -400,9 +401,9 @@ const char* kPendulum =
 const char* kLong =
     "The long term of DTAD computes the ZMP that brings the COG back to the command. The ZMP moves "
     "by more than the error of the COG (K > 1), and by still more while this error grows (D > 0; "
-    "the printed + is a misprint). A ZMP outside the support is replaced by the nearest point of "
-    "the "
-    "support, because the ground cannot push outside the feet.";
+    "the sign + of the term with D in the paper is a misprint). A ZMP outside the support is "
+    "replaced by the nearest point of the support, because the ground cannot push outside the "
+    "feet.";
 const char* kResolve =
     "There are many sets of joint rates with which the COG has its reference velocity while the "
     "free foot and the trunk follow the plan. This equation selects the rates nearest to the "

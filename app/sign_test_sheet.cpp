@@ -78,8 +78,7 @@ Image sign_test_picture(const RobotModel& model, const SignTest& test) {
   Image image = ClipRenderer(model, log, options).exposures({0, 1});
   draw_text(image, 16, 24, test.name, {.size = 22, .bold = true, .plate = {1, 1, 1, 0.8F}});
   draw_text(image, 16, 52,
-            "from the pale to the full posture: " + in_units(dof, test.from) + " to " +
-                in_units(dof, test.to),
+            "pale: " + in_units(dof, test.from) + ", full colour: " + in_units(dof, test.to),
             {.size = 16, .plate = {1, 1, 1, 0.8F}});
   draw_text(image, 16, 76, "the picture enlarges the motion " + text::brief(factor, 2) + " times",
             {.size = 16, .plate = {1, 1, 1, 0.8F}});

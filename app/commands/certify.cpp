@@ -109,8 +109,8 @@ void print_certificate(const Context& context, const Certificate& c, const Known
                                   : std::string("no bound (a run fell)");
     };
     context.print("  " + in_percent(1 - options.failure) +
-                  " of all runs keep each of these bounds, with " + confidence + ": COG error " +
-                  figure(c.largest.cog_error, 1e3, " mm") + ", torque " +
+                  " of all runs stay within each of these bounds, with " + confidence +
+                  ": COG error " + figure(c.largest.cog_error, 1e3, " mm") + ", torque " +
                   figure(c.largest.torque, 100, " % of the limit") + ", foot tilt " +
                   figure(c.largest.foot_tilt, 180 / std::numbers::pi, " deg") + "\n");
   }
@@ -200,10 +200,10 @@ Json compare_with(Context& context, const CertifyCommand& options, const Task& i
   const std::string name = options.against.empty() ? options.against_controller : file;
   const long ours = c.both + c.only_first, theirs = c.both + c.only_second;
   context.print("  compared with " + name + " in the same " + text::counted(c.pairs, "case") +
-                ": " + std::to_string(ours) + " failed, and with " + name + " " +
-                std::to_string(theirs) + "; " + std::to_string(c.only_first) +
-                " failed only without " + name + ", and " + std::to_string(c.only_second) +
-                " only with " + name + "\n");
+                ": " + std::to_string(ours) + " failed without " + name + ", and " +
+                std::to_string(theirs) + " with " + name + "; of these, " +
+                std::to_string(c.only_first) + " failed only without " + name + ", and " +
+                std::to_string(c.only_second) + " only with " + name + "\n");
   context.print("  difference of the failure probabilities: " + in_percent(c.difference.low) +
                 " to " + in_percent(c.difference.high) + " with " + in_percent(pairs.confidence) +
                 " confidence; McNemar's exact test: p = " + text::brief(c.p_value, 3) + "\n");
@@ -348,7 +348,8 @@ void add_certify(CLI::App& app, Context& context) {
                    "of the robot if the pattern has none).")
       ->type_name("F");
   command
-      ->add_option("--failure", certify.failure, "Largest failure probability that is certified.")
+      ->add_option("--failure", certify.failure,
+                   "Failure probability that a certificate must not exceed.")
       ->check(number_within(1e-6, 0.5).description(""))
       ->type_name("P")
       ->capture_default_str();
@@ -358,13 +359,13 @@ void add_certify(CLI::App& app, Context& context) {
       ->capture_default_str();
   command
       ->add_option("--runs", certify.most,
-                   "Largest number of runs (default: 10 times the number of runs that certify if "
-                   "the robot fails in none of them).")
+                   "Largest number of runs (default: 10 times the number that is needed for a "
+                   "certificate if the robot never fails).")
       ->check(whole_number_within(1, 100000000).description(""))
       ->type_name("N");
   command->add_flag("--all", certify.all,
-                    "Do not stop when the verdict is known. All runs of --runs show better which "
-                    "uncertain values matter.");
+                    "Do not stop when the verdict is known, but do all runs. More runs show more "
+                    "clearly which uncertain values matter.");
   command
       ->add_option(
           "-o,--out", options->out,

@@ -116,7 +116,7 @@ void diff(Context& context, const DiffCommand& options) {
 }  // namespace
 
 void add_diff(CLI::App& app, Context& context) {
-  CLI::App* command = app.add_subcommand("diff", "say what moved from one pattern to another");
+  CLI::App* command = app.add_subcommand("diff", "say how the motions of two patterns differ");
   command->footer(
       "Examples:\n  ayumi diff walk.json repaired.json\n"
       "  ayumi diff walk.json repaired.json --plot moved.svg --json");
@@ -133,7 +133,7 @@ void add_diff(CLI::App& app, Context& context) {
       ->allow_extra_args(false);
   command
       ->add_option("--safety", options.safety,
-                   "Weight of safety compared with staying close to the original, as for repair "
+                   "Weight of safety compared with a small change, as for repair "
                    "(default: the weight in the pattern; 1 if the pattern has none).")
       ->check(number_within(0.0, 1e6))
       ->type_name("FACTOR");

@@ -128,7 +128,7 @@ std::string in_words(double scale, const ConsistencyReport& before, const ForceR
   std::string out = "  the motion takes " + text::brief(scale) + " times its original time\n";
   if (pace)
     out += pace->bounded ? "  a faster pace fails: " + pace->limited_by + "\n"
-                         : "  no limit was found down to this scale\n";
+                         : "  the fastest pace that was tried also passes the check\n";
   return out + "  ZMP margin " + mm(before.summary[FindingKind::support_margin]) + " mm before, " +
          mm(after.report.summary[FindingKind::support_margin]) + " mm after; f_z " +
          newtons(force_before) + " before, " + newtons(force) + " after\n";
@@ -152,10 +152,9 @@ FastestPace limits_of(const Context& context, const EditCommand& options, const 
   retime.dt = input.series.dt;
   FastestPace pace = fastest_pace(input.robot, input.pattern, retime, context.progress());
   if (pace.by_posture)
-    fail(ErrorCode::solver, options.pattern +
-                                ": the check fails at every pace: " + pace.limited_by +
-                                ". A pace does not change the postures of the table, and one of "
-                                "them is wrong. Try repair");
+    fail(ErrorCode::solver,
+         options.pattern + ": the check fails at every pace: " + pace.limited_by +
+             ". Another pace cannot help, because a posture of the table is wrong. Try repair");
   if (!pace.found)
     fail(ErrorCode::solver, options.pattern + ": no time scale up to " +
                                 text::brief(retime.slowest) + " passes the check: " +
@@ -184,12 +183,12 @@ void retime_locally(Context& context, const EditCommand& options, const Task& in
   LocalPace pace = fastest_local_pace(
       input.robot, input.pattern, table_beside(options.out).string(), local, context.progress());
   if (!pace.found)
-    fail(
-        ErrorCode::solver,
-        options.pattern + ": the check fails for every timing along this path: " + pace.limited_by +
-            (pace.by_posture ? ". The timing does not change the postures, and one of them is wrong"
-                             : ". More time alone is not enough") +
-            ". Try repair");
+    fail(ErrorCode::solver,
+         options.pattern +
+             ": the check fails for every timing along this path: " + pace.limited_by +
+             (pace.by_posture ? ". Another timing cannot help, because a posture is wrong"
+                              : ". More time alone is not enough") +
+             ". Try repair");
   Result result;
   result.caution = input.caution;
   result.series = std::move(pace.series);
@@ -599,8 +598,8 @@ void add_edit(CLI::App& app, Context& context) {
       "With --to-limits: slow the motion down only at the times when a limit binds.");
   retime_command
       .add_option("--margin", options.margin,
-                  "With --local: largest margin of the ZMP that has to be kept [m]. A smaller "
-                  "value allows a faster motion (default: 80 % of the margin at the fastest "
+                  "With --local: a ZMP margin of this size is enough [m]. A smaller value allows a "
+                  "faster motion (default: 80 % of the margin at the fastest "
                   "uniform pace, or an eighth of the width of the sole).")
       ->check(number_within(0.0, 1.0))
       ->type_name("M");

@@ -699,9 +699,9 @@ void add_export(CLI::App& app, Context& context) {
                     "the name of the table then say so, for example walk.UNSAFE.csv.");
   command
       ->add_option("--servo", options->servo,
-                   "Content of the targets: ideal (the joint angles), lead (default: the joint "
-                   "angles ahead by the lag of the servos of the profile) or lead+sag (like lead, "
-                   "and it also compensates for the sag under load).")
+                   "Content of the targets: ideal (the joint angles), lead (default: the "
+                   "targets are ahead of the posture by the lag of the profile's servos) or "
+                   "lead+sag (like lead, and the targets also compensate for the sag under load).")
       ->check(one_of({"ideal", "lead", "lead+sag"}));
   command->footer(
       "Examples:\n"

@@ -363,7 +363,7 @@ void add_gaits(CLI::App& app, Context& context) {
   gaits.study.failure = 0.15;
   command
       ->add_option("--failure", gaits.study.failure,
-                   "Largest failure probability that is certified.")
+                   "Failure probability that a certificate must not exceed.")
       ->check(number_within(1e-6, 0.5).description(""))
       ->type_name("P")
       ->capture_default_str();
@@ -373,8 +373,8 @@ void add_gaits(CLI::App& app, Context& context) {
       ->capture_default_str();
   command
       ->add_option("--runs", gaits.study.most,
-                   "Largest number of runs of a cell (default: 4 times the number of runs that "
-                   "certify if the robot fails in none of them).")
+                   "Largest number of runs of a cell (default: 4 times the number that is needed "
+                   "for a certificate if the robot never fails).")
       ->check(whole_number_within(1, 100000000).description(""))
       ->type_name("N");
   command

@@ -275,7 +275,9 @@ void add_identify(CLI::App& app, Context& context) {
                    "Support of the robot during the recording: feet (on level ground), or fixed (a "
                    "fixture holds the root upright) (default: feet if the robot has soles).")
       ->check(one_of({"auto", "feet", "fixed"}));
-  command->add_option("--unit", unit, "Unit of the columns that are named by the joint alone.")
+  command
+      ->add_option("--unit", unit,
+                   "Unit of the columns whose name is that of a joint, without a unit.")
       ->check(one_of({"rad", "deg"}))
       ->capture_default_str();
   command

@@ -199,8 +199,9 @@ void add_import(CLI::App& app, Context& context) {
       ->type_name("HZ");
   command
       ->add_option("--signs", signs,
-                   "Signs of rows of radians in the order of the motor numbers: encoder (as the "
-                   "encoders of the robot count) or joint (as the joints are defined).")
+                   "For radians in the order of the motor numbers: which signs the angles have, "
+                   "those of the robot's encoders (encoder) or those of the joints as the robot's "
+                   "file defines them (joint).")
       ->check(one_of({"encoder", "joint"}))
       ->capture_default_str();
   command->add_flag("--order", options.import.by_order,
@@ -220,8 +221,8 @@ void add_import(CLI::App& app, Context& context) {
       "Move the robot up and down so that the soles that carry it are on the ground.");
   command
       ->add_option("--ramp", options.ramp,
-                   "Time from rest to the speed of the recording [s]. It is used at an end of the "
-                   "recording where the robot moves.")
+                   "For a recording that begins or ends while the robot moves: time in which the "
+                   "motion speeds up from rest, or slows down to rest [s].")
       ->check(number_within(0.02, 10.0))
       ->type_name("S");
   command
@@ -241,10 +242,9 @@ void add_import(CLI::App& app, Context& context) {
           "Smallest vertical force with which soles carry the robot, as a multiple of its weight.")
       ->check(number_within(0.0, 2.0))
       ->capture_default_str();
-  command->add_flag(
-      "--commands", options.import.commands,
-      "The angles are servo targets (as written by export): subtract the velocity lead. "
-      "Reference tables are always treated so.");
+  command->add_flag("--commands", options.import.commands,
+                    "The angles are servo targets, as export writes them: subtract the lead of the "
+                    "servos to get the joint angles. For reference tables this is always done.");
   command
       ->add_option("--smooth", options.import.smooth,
                    "Largest change of an angle by smoothing [deg] (default: 0.1 for HOAP counts, 0 "

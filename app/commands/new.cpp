@@ -514,7 +514,7 @@ void new_excite(const Context& context, const NewOptions& options) {
   write_new(context, model, excite_pattern(model, scale), options,
             {"Slow sweeps, chirps and steps of every joint, for `ayumi identify`. Joints of a leg "
              "are moved while the robot stands on one foot.",
-             "Amplitudes are " + text::brief(100 * scale, 3) + " % of the generator's own."});
+             "The amplitudes are " + text::brief(100 * scale, 3) + " % of the usual ones."});
 }
 
 // Options that several generators share.
@@ -555,8 +555,8 @@ void add_gait(CLI::App& command, NewOptions& options) {
   add_height(command, options.walk.cog_height);
   command
       .add_option("--zmp-inwards", options.walk.zmp_inwards,
-                  "Distance of the ZMP from the middle of the standing sole towards the other foot "
-                  "[m], so that the COG sways less.")
+                  "Distance by which the ZMP is moved from the middle of the standing sole towards "
+                  "the other foot [m]. With a larger distance the COG sways less.")
       ->capture_default_str()
       ->type_name("M");
   command.add_option("--first", options.first, "Foot that swings first.")

@@ -465,7 +465,7 @@ void add_repair(CLI::App& app, Context& context) {
       ->type_name("M");
   command
       ->add_option("--safety", options.safety,
-                   "Weight of safety compared with staying close to the original. 0 gives the "
+                   "Weight of safety compared with a small change. 0 gives the "
                    "smallest change that passes the check (default: the weight in the pattern; 1 "
                    "if the pattern has none).")
       ->check(number_within(0.0, 1e6))

@@ -261,8 +261,8 @@ void MainJob::write_hoap(const Task& input, const SimulationLog& log) {
     text = "no table for a robot: " + caution.unfit + "\n            not for a robot: " + text;
   } else if (!caution.disturbances.empty()) {
     text =
-        "no table for a robot, because the table of the pattern is from a run with disturbances: " +
-        caution.disturbances + "\n            not for a robot: " + text;
+        "no table for a robot, because the table of the pattern is from a run with disturbances (" +
+        caution.disturbances + ")\n            not for a robot: " + text;
   } else if (encoders && safe.report.safe && !options_.light) {
     write_file(output_->file("hoap.csv"), hoap_csv(input.robot, safe.table, safety));
     note_file("hoap.csv");

@@ -104,9 +104,10 @@ void compare(Context& context) {
     if (!same) table += "           SHA-256 " + found + ", expected " + job.sha256 + "\n";
   }
   table += different == 0
-               ? "This machine gives the published bits.\n"
+               ? "All results are the same as the published ones, bit for bit.\n"
                : text::counted(different, "result") + (different == 1 ? " differs" : " differ") +
-                     " in bits. If the tests pass on this machine, its verdicts are still right, "
+                     " from what was published. If the tests pass on this machine, its verdicts "
+                     "are still right, "
                      "but the tables that it writes differ in some bytes from the published ones. "
                      "Possible causes: the robot or the patterns belong to another version, or the "
                      "compiler or a library rounds differently. Please report this difference "

@@ -118,9 +118,10 @@ void add_simulate(CLI::App& app, Context& context) {
       ->check(whole_number_within(0, 1000000000).description(""))
       ->type_name("N");
   command
-      ->add_option("--study", options->study,
-                   "Study file of the case of --case (default: the uncertainty of the pattern, or "
-                   "of the robot if the pattern has none).")
+      ->add_option(
+          "--study", options->study,
+          "Study file to which the case belongs (default: the uncertainty of the pattern, or "
+          "of the robot if the pattern has none).")
       ->type_name("F");
   command->callback([options, &context] { simulate_pattern(context, *options); });
 }

@@ -148,7 +148,8 @@ void ResultsDatabase::complain(const std::string& doing) const {
   std::string why = database_ ? sqlite3_errmsg(database_) : "out of memory";
   if (code == SQLITE_FULL || unwritten)
     why =
-        "the disk is full or the file may not grow; what was written before is kept. Make room "
+        "the disk is full, or the system does not let the file grow; what was written before is "
+        "kept. Make room "
         "and run the same command again to go on";
   else if (code == SQLITE_NOTADB || code == SQLITE_CORRUPT)
     why = "this is not a file of sweep results, or the file is damaged; choose another name";

@@ -116,7 +116,7 @@ void bind_table(py::module_& m) {
       },
       py::arg("task"), py::arg("log") = py::none(), py::kw_only(), py::arg("content") = "lead",
       "The table of a run, or without a log of the pattern itself. `content`: 'ideal' (the "
-      "posture), 'lead' (ahead by the lag of the servos) or 'lead+sag'.");
+      "posture), 'lead' (ahead of the posture by the lag of the servos) or 'lead+sag'.");
   m.def(
       "make_safe",
       [](const PyTask& task, const Table& given, const std::shared_ptr<Log>& log, double ramp,

@@ -158,7 +158,7 @@ TEST(PatternInFewWords, MistakesInBlocksAreNamed) {
             std::string::npos);
   std::string deep = R"({"duration": 0.1, "support": "both"})";
   for (int i = 0; i < 9; ++i) deep = R"({"repeat": 2, "phases": [)" + deep + "]}";
-  EXPECT_NE(said("\"phases\": [" + deep + "]").find("at most 8 blocks may repeat in each other"),
+  EXPECT_NE(said("\"phases\": [" + deep + "]").find("at most 8 repeated blocks may be nested"),
             std::string::npos);
   std::string many = R"({"duration": 0.000001, "support": "both"})";
   for (int i = 0; i < 3; ++i) many = R"({"repeat": 9999, "phases": [)" + many + "]}";

@@ -66,8 +66,9 @@ ActuatorNeed actuator_need(const RobotModel& model, const std::vector<KeyedGoal>
     ActuatorNeed need =
         need_of(model, goal.motion, options, check_consistency(model, goal.motion, options));
     if (need.text.empty()) continue;
-    need.text = goal.place + ": " + need.text +
-                " (this time counts from the start of the planned motion that represents the goal)";
+    need.text =
+        goal.place + ": " + need.text +
+        " (times are counted from the beginning of the motion that was planned for this goal)";
     return need;
   }
   return {};

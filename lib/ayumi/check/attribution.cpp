@@ -208,7 +208,8 @@ const Where kInfluence = {"in the influence interval of the cause", [](const Sce
                             return std::vector<Interval>{influence_of(scene, i)};
                           }};
 const Where kAngleInfluence = {
-    "in the excursion or the influence interval of the cause", [](const Scene& scene, int i) {
+    "in the excursion of the joint, or in the influence interval of the cause",
+    [](const Scene& scene, int i) {
       return std::vector<Interval>{
           around(wrong_angle_around(scene.motion, scene.window(i)), pad_samples(scene.motion))};
     }};
@@ -414,7 +415,7 @@ const Condition kUncountedFoot = {"a foot stands on the ground without a planned
                                     return uncounted_foot_stands(scene.motion, scene.of(j).sample);
                                   }};
 
-const Condition kSlowerPace = {"the speed explains cause and effect",
+const Condition kSlowerPace = {"both the cause and the effect come from the speed",
                                [](Scene& scene, int i, int j, const Interval&) {
                                  return slower_pace_removes(scene.motion, scene.of(i), scene.of(j));
                                }};

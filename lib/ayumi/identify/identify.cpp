@@ -317,7 +317,8 @@ class Advice {
     else if (!kp)
       say("the load changes too little to show kp: record a squat or a sway, or use --per type");
     if (kp && !joint.coulomb.known)
-      say("Coulomb friction is not determined: record a slow sweep with turns");
+      say("Coulomb friction is not determined: record a slow sweep in which the joint reverses its "
+          "direction");
     if (kp && !type.delay_takes_damping && !joint.damping.known)
       say("viscous friction and damping are not determined: record steps or a chirp");
     if (type.has_backlash && tied(Constant::backlash, Constant::dry))

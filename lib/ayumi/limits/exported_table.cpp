@@ -194,7 +194,8 @@ const Limit& exported_table_limit() {
                     .unit = "1",
                     .tolerance = kExport.step_share,
                     .meaning = "step of the servo target from row to row of the table, divided by "
-                               "the step that `export` accepts; a larger tolerance has no effect",
+                               "the step that `export` accepts; only a smaller tolerance has an "
+                               "effect",
                     .figure = {.key = "max_table_step_ratio",
                                .label = "largest step of the exported table",
                                .unit = "% of the step that `export` accepts",
@@ -211,7 +212,7 @@ const Limit& exported_table_limit() {
                     .unit = "rad",
                     .tolerance = kExport.beyond_range,
                     .meaning = "servo target beyond the range of the joint, which `export` "
-                               "refuses; a larger tolerance has no effect",
+                               "refuses; only a smaller tolerance has an effect",
                     .repair = {.is_of_one_joint = true},
                     .finding_unit = table_unit,
                     .place = joint_place,
@@ -222,7 +223,7 @@ const Limit& exported_table_limit() {
                     .unit = "rad/s",
                     .tolerance = kExport.rest_speed,
                     .meaning = "speed of the servo target at the ends of the table, which has to "
-                               "begin and end at rest; a larger tolerance has no effect",
+                               "begin and end at rest; only a smaller tolerance has an effect",
                     .repair = {.is_of_one_joint = true},
                     .finding_unit = rest_unit,
                     .place = joint_place,

@@ -118,7 +118,7 @@ const Limit& torsion_limit() {
                                "moment that friction resists when the soles press evenly",
                     .figure = {.key = "max_yaw_ratio",
                                .label = "largest yaw moment",
-                               .unit = "% of what friction resists",
+                               .unit = "% of the moment that friction resists",
                                .scale = 100,
                                .share_name = "yaw",
                                .line = 12},

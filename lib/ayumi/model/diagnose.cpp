@@ -379,8 +379,9 @@ class Doctor {
     const auto differ = [](double a, double b) { return a != b && !(std::abs(a - b) <= kDegree); };
     if (differ(lower, right.lower) || differ(upper, right.upper))
       warn("joint", names, "left and right limits differ",
-           "mirrored, the left has " + text::brief(lower) + " to " + text::brief(upper) +
-               ", the right has " + text::brief(right.lower) + " to " + text::brief(right.upper),
+           "the mirror image of the left range is " + text::brief(lower) + " to " +
+               text::brief(upper) + ", the right range is " + text::brief(right.lower) + " to " +
+               text::brief(right.upper),
            std::max(std::abs(lower - right.lower), std::abs(upper - right.upper)));
     const double counts = left.encoder.counts_per_degree * right.encoder.counts_per_degree * along;
     if (counts != 0) (counts > 0 ? same : opposite).push_back(left.name + "/" + right.name);

@@ -262,10 +262,11 @@ std::string comparison_section(const ReportInput& input) {
   if (!input.comparison) return "";
   const Comparison& found = *input.comparison;
   constexpr double kDegree = M_PI / 180;
-  Table rows = {"Differences between the recording and the run. The recording begins " +
-                    text::fixed(found.shift, 3) + " s after the run.",
-                {"curve", "mean", "largest", "at [s]", "measured later by [ms]", "correlation"},
-                {}};
+  Table rows = {
+      "Differences between the recording and the run. The recording begins " +
+          text::fixed(found.shift, 3) + " s after the run.",
+      {"curve", "mean", "largest", "at [s]", "delay of the recording [ms]", "correlation"},
+      {}};
   for (const auto* curves : {&found.joints, &found.loads, &found.imu})
     for (const ComparedCurve& curve : *curves) {
       const double unit = curve.unit == "rad" ? kDegree : 1;
@@ -278,7 +279,7 @@ std::string comparison_section(const ReportInput& input) {
   std::string words = table(rows);
   for (const std::string& note : found.notes) words += "<p>" + escaped(note) + "</p>\n";
   if (!found.landings.empty()) {
-    Table landings = {"Landings", {"foot", "run [s]", "measured later by [ms]"}, {}};
+    Table landings = {"Landings", {"foot", "run [s]", "delay of the recording [ms]"}, {}};
     for (const ComparedLanding& landing : found.landings)
       landings.rows.push_back({ayumi::name_of(landing.foot), text::fixed(landing.simulated, 3),
                                text::fixed(1000 * (landing.measured - landing.simulated), 0)});

@@ -125,8 +125,8 @@ void Simulator::calibrate_ankles() {
   }
   if (!calibration.done()) {
     events_.push_back({0, "calibration",
-                       "a sole bears on its edge while the robot stands, and no offsets of the "
-                       "ankles' encoders explain it"});
+                       "the robot stands on an edge of a sole, and no offsets of the ankles' "
+                       "encoders explain this"});
     return;
   }
   for (const std::string& line : calibration.lines()) events_.push_back({0, "calibration", line});

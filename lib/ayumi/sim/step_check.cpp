@@ -54,15 +54,22 @@ void check_world(const RobotModel& model, const World& world) {
     complain("friction is " + text::brief(world.friction) + "; it has to be 0 or more");
   if (!sound(world.slope) || !sound(world.height)) complain("slope or height is not a number");
   for (size_t i = 0; i < world.blocks.size(); ++i)
-    if (!sound(world.blocks[i])) complain("block " + std::to_string(i) + " is not made of numbers");
+    if (!sound(world.blocks[i]))
+      complain("block " + std::to_string(i) +
+               " is not valid; its values must be numbers below 1e6, and its radius must not be "
+               "negative");
   for (size_t i = 0; i < world.patches.size(); ++i) {
     const FrictionPatch& patch = world.patches[i];
     if (!sound(patch.low) || !sound(patch.high) || !sound_friction(patch.friction))
-      complain("patch " + std::to_string(i) + " is not made of numbers");
+      complain("patch " + std::to_string(i) +
+               " is not valid; its values must be numbers below 1e6, and its friction must not be "
+               "negative");
   }
   for (const HeightField& field : world.fields)
     if (!sound(field.origin) || !(field.spacing > 0) || !sound(field.heights))
-      complain("field is not made of numbers");
+      complain(
+          "field is not valid; its values must be numbers below 1e6, and its spacing must be above "
+          "0");
 }
 
 void check_state(const RobotModel& model, const RobotState& state) {
@@ -115,11 +122,15 @@ void check_step(const RobotModel& model, const VectorXd& targets, const StepInpu
     if (!(carried.mass >= 0 && sound(carried.mass) && sound(carried.point) && carried.link >= 0 &&
           carried.link < static_cast<int>(model.links().size())))
       complain("a payload is not a mass on a link");
-  if (input.floor && !sound(*input.floor)) complain("the floor's motion is not made of numbers");
+  if (input.floor && !sound(*input.floor))
+    complain("a value of the floor's motion is not a number below 1e6");
   if (input.friction && !sound_friction(*input.friction))
     complain("the floor's friction is " + text::brief(*input.friction));
   for (const RisingDisc& bump : input.bumps)
-    if (!sound(bump.block) || !sound(bump.rate)) complain("a bump is not made of numbers");
+    if (!sound(bump.block) || !sound(bump.rate))
+      complain(
+          "a bump is not valid; its values must be numbers below 1e6, and its radius must not be "
+          "negative");
 }
 
 }  // namespace ayumi

@@ -957,7 +957,7 @@ def sway_pattern(robot: Robot, *, side: Optional[float] = None, forward: Optiona
     """The COG moves to and fro over both feet by `side` and `forward` m, one cycle in `period` s."""
 
 def table(task: Task, log: Log = None, *, content: str = 'lead') -> Table:
-    """The table of a run, or without a log of the pattern itself. `content`: 'ideal' (the posture), 'lead' (ahead by the lag of the servos) or 'lead+sag'."""
+    """The table of a run, or without a log of the pattern itself. `content`: 'ideal' (the posture), 'lead' (ahead of the posture by the lag of the servos) or 'lead+sag'."""
 
 def tune(task: Task, *, start: dict[str, float] = {}, times: list[float] = [], directions: int = 4, level: float = 0.9, gains: Optional[list[str]] = None, rounds: int = 3, seed: int = 1, threads: int = 0, progress: Optional[Callable[[str, float, str], Any]] = None) -> Tuning:
     """Searches for better gains of DTAD. `start`: gains to begin with; `times` of the pushes [s]; `level` of a push in capture bounds; `gains`: names of those that are changed."""

@@ -338,7 +338,7 @@ void require_same_tracks(const KeyedTracks& a, const KeyedTracks& b) {
   const auto stop = [&](const std::string& what) {
     fail(ErrorCode::bad_pattern,
          in_file(b.pattern, "keyframes") + ": only one of the two motions has " + what +
-             "; the keys are kept only if both motions have this, or none of them");
+             "; the keys can be kept only if both motions have this, or neither motion has it");
   };
   if (a.tracks.zmp.has_value() != b.tracks.zmp.has_value()) stop("keys of the ZMP");
   for (const size_t axis : {0, 1})
@@ -500,8 +500,9 @@ RobotState standing_at(const RobotModel& model, const Pattern& pattern, const st
   }
   target.cog.head<2>() = middle.head<2>();
   if (!legs.solve(target, state, data).reached)
-    fail(ErrorCode::bad_pattern, in_file(pattern, "ramp") + ": posture '" + posture +
-                                     "' is out of reach with the feet where the motion has them");
+    fail(ErrorCode::bad_pattern,
+         in_file(pattern, "ramp") + ": posture '" + posture +
+             "' cannot be reached while the feet stay at their places in the motion");
   return state;
 }
 

@@ -164,8 +164,9 @@ Pattern alternated(const RobotModel& model, const Pattern& pattern, int times, b
   if (pattern.table || pattern.correction)
     fail(ErrorCode::bad_pattern,
          in_file(pattern, pattern.table ? "table" : "correction") +
-             ": only a pattern without a table and a correction can alternate with its mirror "
-             "image, because each step begins where the last one has ended");
+             ": a pattern with a table or a correction cannot alternate with its mirror image. "
+             "Each step has to begin where the last one has ended, and a table or a correction "
+             "cannot be moved to that place");
   const bool foot_keys =
       std::any_of(pattern.keyframes.begin(), pattern.keyframes.end(),
                   [](const Keyframe& key) { return key.feet[0] || key.feet[1]; });

@@ -92,7 +92,8 @@ void check_baseline(const DtadParams& p) {
     need(p.preview_effort >= 1e-9 && p.preview_effort <= 1, "effort", p.preview_effort,
          "from 1e-9 to 1 (the cost of changing the jerk of the COG)");
     need(p.preview_horizon > 0 && p.preview_horizon <= 50, "horizon", p.preview_horizon,
-         "above 0 and at most 50 (how far the planned ZMP is seen ahead, times omega)");
+         "above 0 and at most 50 (the time for which the planned ZMP is known in advance, "
+         "multiplied by omega)");
   }
   if (p.kind == ControllerKind::foot_guided) positive("soonest", p.least_guide_time);
   if (p.kind == ControllerKind::dcm_step) {
@@ -101,7 +102,7 @@ void check_baseline(const DtadParams& p) {
     positive("offset", p.steps.offset);
     positive("zmp", p.steps.zmp);
     need(p.steps.slowest >= 0.1 && p.steps.slowest <= 1, "slowest", p.steps.slowest,
-         "from 0.1 to 1 (the least factor on the speed of the pattern)");
+         "from 0.1 to 1 (the controller may slow the pattern down to this share of its speed)");
   }
 }
 

@@ -229,7 +229,7 @@ MotionFile read_open_duck(const MotionInput& source) {
   if (offsets.empty()) root.at("Frame_offset").complain("there is no offset");
   const auto offset = [&](const char* key) {
     const int at = offsets[0].at(key).integer();
-    if (at < 0) offsets[0].at(key).complain("an offset is not below 0");
+    if (at < 0) offsets[0].at(key).complain("an offset must not be below 0");
     return static_cast<size_t>(at);
   };
   const size_t place = offset("root_pos"), turn = offset("root_quat"), first = offset("joints_pos");

@@ -389,8 +389,8 @@ class PoseSequenceReader {
     notes_.push_back("units: seconds, metres and radians, as the format defines them");
     notes_.push_back(text::counted(keys_.size(), "key pose") + ", " +
                      text::counted(zmp_keys(), "ZMP key") + " (" + std::to_string(still_) +
-                     " of them stationary); between them everything follows minimum jerk and rests "
-                     "at its keys");
+                     " of them stationary); between two keys, every value follows minimum jerk, "
+                     "and at each of its keys it is at rest");
     if (places_feet())
       notes_.push_back(
           "the file places the feet, so the " + text::counted(legs_, "leg joint") +

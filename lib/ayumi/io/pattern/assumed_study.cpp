@@ -66,7 +66,7 @@ std::string assumed_study_text(const RobotModel& robot) {
     add({{"what", "attitude_bias"}, {"axis", axis}}, "uniform", {-0.2, 0.2},
         "beside the bias of the model");
   add({{"what", "sensor_latency"}}, "uniform", {0, tidy(sensors.latency + kMoreLatency)},
-      "none to 2 ms more than the model has");
+      "from 0 to 2 ms more than that of the model");
   const StudyJson factor = {{"name", "mass of the robot"},
                             {"source", "assumed: all parts are weighed on the same scales"}};
   const StudyJson study = {

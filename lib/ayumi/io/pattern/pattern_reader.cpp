@@ -171,7 +171,7 @@ void each_item(const JsonNode& list, const std::string& name, PatternScope& scop
       continue;
     }
     if (depth == kMostBlocks)
-      node.complain("at most " + std::to_string(kMostBlocks) + " blocks may repeat in each other");
+      node.complain("at most " + std::to_string(kMostBlocks) + " repeated blocks may be nested");
     only_pattern_keys(node, "repeated_" + name);
     const double times = read_number(node.at("repeat"), scope, 1, kMostRounds);
     if (times != std::floor(times)) node.at("repeat").complain("expected a whole number");

@@ -608,7 +608,8 @@ void find_servos(RobotGuess& guess) {
   guess.servo_reason = {
       "kp gives the full effort of the joint's own limit at an error of " +
           text::brief(kFullEffortError) + " rad, and for legs at least " +
-          text::brief(kLegStiffness) + " m g z = " + text::brief(kLegStiffness * weight * z, 3) +
+          text::brief(kLegStiffness) +
+          " times weight times COG height (m g z) = " + text::brief(kLegStiffness * weight * z, 3) +
           " N m/rad, with which they hold the robot; kd = " +
           text::brief(kDampingTime * std::sqrt(z / kGravity), 2) + " s times kp" +
           (estimated == 0
