@@ -22,16 +22,17 @@ TEST_F(NewViip, RefusesWhatTheRobotCannotReach) {
     int exit_code;
     const char* words;
   };
-  for (const Case& c : {Case{{"--cog", "0.2,0,0"}, 3, "outside the support of the feet"},
-                        Case{{"--cog", "0,0,-0.1"}, 3, "is possible"},
-                        Case{{"--cog", "nan,0,0"}, 2, "not a finite"},
-                        Case{{"--cog-velocity", "0.06,0,0"}, 3, "is possible"},
-                        Case{{"--cog-velocity", "0.06,0,0", "--duration", "0"}, 2, "--duration"},
-                        Case{{"--cog-velocity", "0.01,0,0", "--steps", "2"}, 2, "give exactly one of"},
-                        Case{{"--steps", "6", "--velocity", "0.5"}, 3, "the largest step is"},
-                        Case{{"--steps", "6", "--turn", "300"}, 3, "deg/s"},
-                        Case{{"--steps", "1", "--velocity", "0.1"}, 2, "--steps 2"},
-                        Case{{"--steps", "6", "--velocity", "inf"}, 2, "not a finite"}}) {
+  for (const Case& c :
+       {Case{{"--cog", "0.2,0,0"}, 3, "outside the support of the feet"},
+        Case{{"--cog", "0,0,-0.1"}, 3, "is possible"},
+        Case{{"--cog", "nan,0,0"}, 2, "not a finite"},
+        Case{{"--cog-velocity", "0.06,0,0"}, 3, "is possible"},
+        Case{{"--cog-velocity", "0.06,0,0", "--duration", "0"}, 2, "--duration"},
+        Case{{"--cog-velocity", "0.01,0,0", "--steps", "2"}, 2, "give exactly one of"},
+        Case{{"--steps", "6", "--velocity", "0.5"}, 3, "the largest step is"},
+        Case{{"--steps", "6", "--turn", "300"}, 3, "deg/s"},
+        Case{{"--steps", "1", "--velocity", "0.1"}, 2, "--steps 2"},
+        Case{{"--steps", "6", "--velocity", "inf"}, 2, "not a finite"}}) {
     const Output output = make(c.arguments);
     EXPECT_EQ(output.exit_code, c.exit_code) << output.err;
     EXPECT_NE(output.err.find(c.words), std::string::npos) << output.err;

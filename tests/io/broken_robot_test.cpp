@@ -98,8 +98,9 @@ TEST(BrokenRobot, WhatIsNoUrdf) {
   EXPECT_EQ(urdf_error(" \n"), "r.urdf: the file is empty, but a URDF is needed");
   EXPECT_TRUE(urdf_error("hello").starts_with("r.urdf: not XML"));
   EXPECT_TRUE(urdf_error("<robot name=\"r\">\n<link name=\"a\">\n</robot>").starts_with("r.urdf"));
-  EXPECT_EQ(urdf_error("<sdf/>"),
-            "r.urdf:1: the outermost element is <sdf>, but a URDF starts with <robot name=\"...\">");
+  EXPECT_EQ(
+      urdf_error("<sdf/>"),
+      "r.urdf:1: the outermost element is <sdf>, but a URDF starts with <robot name=\"...\">");
   EXPECT_EQ(
       urdf_error(urdf("  <xacro:macro/>\n")),
       "r.urdf:3: this is a xacro file; expand it with `xacro FILE > robot.urdf` of ROS, and use "

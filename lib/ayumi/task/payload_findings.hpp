@@ -12,8 +12,8 @@
 namespace ayumi {
 
 /// Adds to the report of the motion alone the errors that come with payloads; each says in `where`
-/// what is carried, and in `hint` how heavy it may be. Returns the payloads that are too heavy, with
-/// the same words.
+/// what is carried, and in `hint` how heavy it may be. Returns the payloads that are too heavy,
+/// with the same words.
 std::vector<Mistake> judge_payloads(const Task& task, const CheckOptions& options,
                                     ConsistencyReport& report);
 
