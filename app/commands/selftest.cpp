@@ -83,7 +83,7 @@ const std::array<Job, 5> kJobs = {{
     {"jump", "a jump", jump_text,
      "1938dddba37b5a55e337e8e4f25802909b83f573ebbc287cf7a11dc7aa377b84"},
     {"viip", "a walk by VIIP", viip_text,
-     "a4981d7dcce16b9a69d8b0cbe56573c81acbb7a71bf7b47157e146703d80c818"},
+     "a87c0184cfa0b6153244b2fa9be994925fa0918e778f6a53998919d5d29b58de"},
     {"repair", "a repaired walk", repair_text,
      "25d4131c5e871d06919d81441e1aab94eed84262cbf7fdef7be675d9fbc6c33d"},
     {"push", "limits of pushes", push_text,

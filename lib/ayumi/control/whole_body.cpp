@@ -100,16 +100,17 @@ void add_chain(const RobotModel& model, const RobotData& data, int body, const V
   }
 }
 
-/// Joint rates for work.softened; a joint that would leave its position limits is held there and
+/// Joint rates for the given task; a joint that would leave its position limits is held there and
 /// the rest solved again, a joint too fast slows all down.
 void within_limits(const RobotModel& model, const ActuatorLimits& limits,
-                   const RobotState& reference, const VectorXd& weight, double dt,
-                   const ResolverOptions& options, ResolverWork& work, Resolution& result) {
+                   const RobotState& reference, const StackedTask& given, const VectorXd& weight,
+                   double dt, const ResolverOptions& options, ResolverWork& work,
+                   Resolution& result) {
   const int n = model.dof_count();
   result.scale = 1;
   result.limiting_dof = -1;
   result.held.clear();
-  const StackedTask* task = &work.softened;
+  const StackedTask* task = &given;
   work.start = work.bias;
   for (int pass = 0; pass < kLimitPasses; ++pass) {
     solve_stacked_task(*task, weight, work.start, options.damping, work.weighted, result.dtheta);
@@ -122,8 +123,8 @@ void within_limits(const RobotModel& model, const ActuatorLimits& limits,
       const double stop = std::clamp(after, dof.lower, dof.upper);
       if (stop == after) continue;
       const double rate = (stop - reference.theta[j]) / dt;
-      if (task == &work.softened) {
-        work.moving = work.softened;
+      if (task == &given) {
+        work.moving = given;
         task = &work.moving;
       }
       work.moving.u -= work.moving.J.col(j) * rate;
@@ -209,7 +210,7 @@ void resolve(const RobotModel& model, const ActuatorLimits& limits, const RobotS
   StackedTask::Vector& u = task.u;
   cog_jacobian(model, data, anchor, work.cog);
   task.J.resize(StackedTask::kRows, n);
-  task.J.topRows<3>() = work.cog;
+  task.J.topRows<3>() = Eigen::Map<const Eigen::Matrix3Xd>(work.cog.data(), 3, n);
   task.J.bottomRows<9>().setZero();
   u.head<3>() = cog_velocity - carried(data.cog);
 
@@ -253,11 +254,12 @@ void resolve(const RobotModel& model, const ActuatorLimits& limits, const RobotS
   result.limiting_dof = -1;
   for (const YieldingTasks yielding : {YieldingTasks{}, YieldingTasks{.height = true},
                                        YieldingTasks{.height = true, .trunk = true}}) {
-    work.softened = task;
+    if (yielding.height) work.softened = task;
+    const StackedTask& asked = yielding.height ? work.softened : task;
     if (yielding.height) soften(work.softened, 2, 1);
     if (yielding.trunk) soften(work.softened, 9, 3);
     Resolution& attempt = work.attempt;
-    within_limits(model, limits, reference, weight, dt, options, work, attempt);
+    within_limits(model, limits, reference, asked, weight, dt, options, work, attempt);
     if (yielding.height) {  // keep the joints that made it yield
       attempt.held.insert(attempt.held.end(), result.held.begin(), result.held.end());
       std::sort(attempt.held.begin(), attempt.held.end());
@@ -267,8 +269,8 @@ void resolve(const RobotModel& model, const ActuatorLimits& limits, const RobotS
     attempt.yielding = yielding;
     std::swap(result, attempt);
     if (!options.in_order) break;
-    if (result.scale == 1 && (result.held.empty() ||
-                              left_of(work.softened, result.dtheta).cwiseAbs().maxCoeff() < kDone))
+    if (result.scale == 1 &&
+        (result.held.empty() || left_of(asked, result.dtheta).cwiseAbs().maxCoeff() < kDone))
       break;
   }
   work.left = left_of(task, result.dtheta);

@@ -55,10 +55,11 @@ void add_held_base_columns(const RobotModel& model, RobotData& data, int first, 
     const double mass = data.subtree_mass[i];
     const Vector3d& moment = data.composite[i].moment;
     const Vector3d a = body.ratio * per_mass * data.axis[i];
+    Eigen::Map<Vector3d> column(J.data() + 3 * (first + body.dof));
     if (body.prismatic)
-      J.col(first + body.dof) += mass * a;
+      column += mass * a;
     else
-      J.col(first + body.dof) += a.cross(moment - mass * data.position[i]);
+      column += a.cross(moment - mass * data.position[i]);
     data.composite[static_cast<size_t>(body.parent)].moment += moment;
   }
 }
@@ -69,7 +70,8 @@ void cog_jacobian(const RobotModel& model, RobotData& data, Side support, Matrix
   held_base_cog_jacobian(model, data, J);
   for (int i = model.sole(support).body; i > 0; i = model.bodies()[static_cast<size_t>(i)].parent) {
     const Body& body = model.bodies()[static_cast<size_t>(i)];
-    J.col(body.dof) -= point_rate(body, data, static_cast<size_t>(i), data.cog_offset).linear;
+    Eigen::Map<Vector3d>(J.data() + 3 * body.dof) -=
+        point_rate(body, data, static_cast<size_t>(i), data.cog_offset).linear;
   }
 }
 

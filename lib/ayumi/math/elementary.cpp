@@ -109,14 +109,16 @@ double sin(double x) {
   if (!std::isfinite(x)) return kNan;
   if (std::abs(x) < 1e-8) return x;
   const parts::Reduced<double> r = reduced(x);
-  const double value = r.quadrant % 2 ? parts::cosine_of(r.rest) : parts::sine_of(r.rest);
+  double value = 0;
+  r.quadrant % 2 ? parts::cosine_of(r.rest, value) : parts::sine_of(r.rest, value);
   return r.quadrant >= 2 ? -value : value;
 }
 
 double cos(double x) {
   if (!std::isfinite(x)) return kNan;
   const parts::Reduced<double> r = reduced(x);
-  const double value = r.quadrant % 2 ? parts::sine_of(r.rest) : parts::cosine_of(r.rest);
+  double value = 0;
+  r.quadrant % 2 ? parts::sine_of(r.rest, value) : parts::cosine_of(r.rest, value);
   return r.quadrant == 1 || r.quadrant == 2 ? -value : value;
 }
 

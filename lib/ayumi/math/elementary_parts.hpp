@@ -1,7 +1,7 @@
 #pragma once
 // The series behind the elementary functions, for one number T or for several side by side (a
 // vector of the compiler's): the same operations in the same order, so that both give the same
-// bits.
+// bits. All are inlined into their callers, which may be compiled for wider registers than others.
 
 #include <bit>
 #include <cstdint>
@@ -17,23 +17,23 @@ struct Pair {
   T high{}, low{};
 };
 template <typename T>
-Pair<T> sum(T a, T b) {  // exact
+[[gnu::always_inline]] inline Pair<T> sum(const T& a, const T& b) {  // exact
   const T s = a + b, part = s - a;
   return {s, (a - (s - part)) + (b - part)};
 }
 template <typename T>
-Pair<T> quick_sum(T a, T b) {  // exact where |a| >= |b|
+[[gnu::always_inline]] inline Pair<T> quick_sum(const T& a, const T& b) {  // exact where |a| >= |b|
   const T s = a + b;
   return {s, b - (s - a)};
 }
 template <typename T>
-Pair<T> split(T a) {
+[[gnu::always_inline]] inline Pair<T> split(const T& a) {
   const T c = 134217729.0 * a;  // 2^27 + 1
   const T high = c - (c - a);
   return {high, a - high};
 }
 template <typename T, typename U>
-Pair<T> product(T a, U b) {  // exact (Dekker)
+[[gnu::always_inline]] inline Pair<T> product(const T& a, const U& b) {  // exact (Dekker)
   const T p = a * b;
   const Pair<T> x = split(a);
   const Pair<U> y = split(b);
@@ -51,13 +51,16 @@ struct Reduced<double> {
   Pair<double> rest;
   int quadrant = 0;
 };
-inline int low_bits(double x) { return static_cast<int>(std::bit_cast<std::int64_t>(x) & 3); }
-template <typename T>
-auto low_bits(T x) {
-  return std::bit_cast<decltype(x < x)>(x) & 3;
+inline void low_bits(double x, int& bits) {
+  bits = static_cast<int>(std::bit_cast<std::int64_t>(x) & 3);
+}
+template <typename T, typename Bits>
+[[gnu::always_inline]] inline void low_bits(const T& x, Bits& bits) {
+  __builtin_memcpy(&bits, &x, sizeof bits);
+  bits &= 3;
 }
 template <typename T>
-Reduced<T> reduced(T x) {
+[[gnu::always_inline]] inline Reduced<T> reduced(const T& x) {
   // pi/2 in three parts; the first two have 33 bits and so multiply k to 2^20 exactly.
   constexpr double kFirst = 0x1.921fb544p0, kSecond = 0x1.0b4611a6p-34,
                    kThird = 0x1.3198a2e037073p-69;
@@ -68,12 +71,14 @@ Reduced<T> reduced(T x) {
   const Pair<T> a = sum<T>(x - first.high, -first.low);
   const Pair<T> b = sum<T>(a.high, -second.high);
   const T low = a.low + b.low - second.low - k * kThird;
-  return {quick_sum(b.high, low), low_bits(shifted)};
+  Reduced<T> result{quick_sum(b.high, low)};
+  low_bits(shifted, result.quadrant);
+  return result;
 }
 
 // Taylor's series on |x| <= pi/4, with a small rest of the argument.
 template <typename T>
-T sine_of(const Pair<T>& r) {
+[[gnu::always_inline]] inline void sine_of(const Pair<T>& r, T& sine) {
   const T x = r.high, z = x * x;
   T s = -1.0 / 1307674368000.0 + z * (1.0 / 355687428096000.0);
   s = 1.0 / 6227020800.0 + z * s;
@@ -82,10 +87,10 @@ T sine_of(const Pair<T>& r) {
   s = -1.0 / 5040.0 + z * s;
   s = 1.0 / 120.0 + z * s;
   s = -1.0 / 6.0 + z * s;
-  return x + (x * z * s + r.low * (1.0 - 0.5 * z));
+  sine = x + (x * z * s + r.low * (1.0 - 0.5 * z));
 }
 template <typename T>
-T cosine_of(const Pair<T>& r) {
+[[gnu::always_inline]] inline void cosine_of(const Pair<T>& r, T& cosine) {
   const T x = r.high, z = x * x;
   T c = 1.0 / 20922789888000.0 - z * (1.0 / 6402373705728000.0);
   c = -1.0 / 87178291200.0 + z * c;
@@ -95,7 +100,7 @@ T cosine_of(const Pair<T>& r) {
   c = -1.0 / 720.0 + z * c;
   c = 1.0 / 24.0 + z * c;
   const T half = 0.5 * z, most = 1.0 - half;
-  return most + (((1.0 - most) - half) + (z * z * c - x * r.low));
+  cosine = most + (((1.0 - most) - half) + (z * z * c - x * r.low));
 }
 
 // log 2 in two parts; the first has 33 bits.
@@ -104,7 +109,7 @@ constexpr double kRootHalf = 0.70710678118654752;
 
 // log(m 2^k) as a pair, for m from the root of 1/2 to that of 2.
 template <typename T>
-Pair<T> log_of(T m, T k) {
+[[gnu::always_inline]] inline Pair<T> log_of(const T& m, const T& k) {
   // log m = 2 atanh(s), s = f / (2 + f), with f = m - 1 exact.
   const T f = m - 1.0, below = 2.0 + f;
   const T s = f / below;

@@ -6,13 +6,13 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/elementary.hpp"
-#include "ayumi/math/heading.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/model/gravity.hpp"
 
 namespace ayumi {
 
 using Eigen::Isometry3d;
+using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 namespace {
@@ -23,6 +23,9 @@ namespace {
 /// 46 deg is beyond the postures of the bundled patterns and long before the trunk touches the
 /// ground. Half: thrown stand, fall at 0.744 to 0.617 s; twice: 0.938 s.
 constexpr double kFallTilt = 0.8;
+/// Cosine of a tilt above which the robot surely has not fallen: the angle is not needed then.
+/// Definition: above the cosine of kFallTilt, 0.697.
+constexpr double kSurelyUpright = 0.75;
 /// Fraction of the commanded COG height below which the robot has fallen. Chosen: lower than a
 /// robot with bent knees under its load, higher than one that sits or lies. Half: no change; twice:
 /// pushed walk falls.
@@ -76,14 +79,22 @@ Isometry3d plan_to_world(const RobotModel& model, const RobotData& data,
     const Isometry3d r = sole_pose(model, data, side);
     plan += p.translation();
     real += r.translation();
-    const double yaw = heading_of(r.linear()) - heading_of(p.linear());
-    sine += elementary::sin(yaw);
-    cosine += elementary::cos(yaw);
+    const Vector2d from = p.linear().block<2, 1>(0, 0).normalized();
+    const Vector2d to = r.linear().block<2, 1>(0, 0).normalized();
+    sine += from.x() * to.y() - from.y() * to.x();
+    cosine += from.dot(to);
     ++count;
   }
+  // The mean heading of the soles, without an angle.
+  const double length = std::sqrt(sine * sine + cosine * cosine);
+  Eigen::Matrix3d about_z = Eigen::Matrix3d::Identity();
+  if (length > 0) {
+    about_z(0, 0) = about_z(1, 1) = cosine / length;
+    about_z(1, 0) = sine / length;
+    about_z(0, 1) = -about_z(1, 0);
+  }
   Isometry3d turn = Isometry3d::Identity();
-  turn.linear() = rotation_between(Vector3d::UnitZ(), normal).toRotationMatrix() *
-                  elementary::turn_matrix(elementary::atan2(sine, cosine), Vector3d::UnitZ());
+  turn.linear() = rotation_between(Vector3d::UnitZ(), normal).toRotationMatrix() * about_z;
   turn.translation() = real / count - turn.linear() * plan / count;
   return turn;
 }
@@ -112,11 +123,14 @@ bool FallMonitor::observe(double t, const CommandSample& command, const Simulati
                           const RobotData& truth, const StepReport& report, double dt) {
   const double weight = model_->mass() * kGravity;
   const Vector3d up = truth.rotation[model_->trunk_body()].col(2);
-  const double tilt = elementary::acos(std::clamp(up.dot(normal()), -1.0, 1.0));
+  const double upright = std::clamp(up.dot(normal()), -1.0, 1.0);
   SimulationResult& r = result_;
   const bool fallen_before = r.fell_at >= 0;
   if (!fallen_before) {
-    r.max_tilt = std::max(r.max_tilt, tilt);
+    if (upright < least_upright_) {
+      least_upright_ = upright;
+      r.max_tilt = elementary::acos(upright);
+    }
     // In flight the command rises too; the apex is relative to the height at lift-off.
     if (command.support != Support::none) level_ = command.cog.z();
     r.max_penetration = std::max(r.max_penetration, report.max_penetration);
@@ -156,6 +170,7 @@ bool FallMonitor::observe(double t, const CommandSample& command, const Simulati
 
   if (fallen_before) return false;
   std::string reason;
+  const double tilt = upright > kSurelyUpright ? 0.0 : elementary::acos(upright);
   if (tilt > kFallTilt)
     reason = "trunk tilt " + text::fixed(tilt * 180 / EIGEN_PI, 1) + " deg";
   else if ((ground_.inverse() * sample.cog).z() < kFallHeight * (command.cog.z() - command.zmp.z()))
@@ -196,9 +211,11 @@ void FallMonitor::observe_feet(double t, const CommandSample& command, const Rob
       const double slip = (place - stance_start_[i]).head<2>().norm();
       result_.max_slip = std::max(result_.max_slip, slip);
       const Vector3d planned = to_world.linear() * command.feet[i].linear().col(2);
-      const double tilt =
-          elementary::acos(std::clamp(planned.dot(sole.linear().col(2)), -1.0, 1.0));
-      largest_.foot_tilt = std::max(largest_.foot_tilt, tilt);
+      const double level = std::clamp(planned.dot(sole.linear().col(2)), -1.0, 1.0);
+      if (level < least_level_) {
+        least_level_ = level;
+        largest_.foot_tilt = elementary::acos(level);
+      }
     }
     in_stance_[i] = supports(command.support, side) && (in_stance_[i] || loaded);
   }

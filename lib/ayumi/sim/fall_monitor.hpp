@@ -48,6 +48,8 @@ class FallMonitor {
   Eigen::Isometry3d ground_ = Eigen::Isometry3d::Identity();
   SimulationResult result_;
   LargestErrors largest_;
+  double least_upright_ = 1;  // cosine of result_.max_tilt
+  double least_level_ = 1;    // cosine of largest_.foot_tilt
   std::vector<SimulationEvent> events_;
   double zmp_square_sum_ = 0;
   long zmp_count_ = 0;

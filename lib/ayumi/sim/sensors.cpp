@@ -1,7 +1,6 @@
 #include "ayumi/sim/sensors.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "ayumi/dynamics/kinematics.hpp"
@@ -19,15 +18,13 @@ namespace {
 /// 5 % from half to twice.
 constexpr double kRestRoot = 20;
 
-/// Load cells whose noise is drawn at once. Definition: a workspace; results do not depend on it.
-constexpr size_t kNumbersAtOnce = 4;
-
 }  // namespace
 
 Sensors::Sensors(const RobotModel& model, const ActuatorLimits& actuators, double dt, bool noise,
                  std::uint64_t seed)
     : model_(&model),
       offset_(Eigen::VectorXd::Zero(model.dof_count())),
+      counts_(offset_.size()),
       imu_(std::max(0, model.find_link(model.description().sensors.imu_link))),
       dt_(dt),
       noise_(noise),
@@ -37,6 +34,9 @@ Sensors::Sensors(const RobotModel& model, const ActuatorLimits& actuators, doubl
   ring_.resize(latency_ + 1);
   for (Eigen::Index j = 0; j < offset_.size(); ++j)
     offset_[j] = actuators.servo[static_cast<size_t>(j)].offset;
+  for (Eigen::Index j = 0; j < counts_.size(); ++j)
+    counts_[j] =
+        std::abs(model.dofs()[static_cast<size_t>(j)].encoder.counts_per_degree) * 180.0 / M_PI;
 }
 
 void Sensors::reach_back(double latency) {
@@ -54,15 +54,14 @@ void Sensors::measure(const RobotState& state, const RobotData& truth, const Ste
                       const SensorFault& fault, const std::vector<JointFault>& faults,
                       Measurement& m) {
   const SensorDescription& s = model_->description().sensors;
+  if (noise_) draw_numbers(report);
   // Encoders are on the motors, in front of their gears.
   m.theta = (report.motor.size() > 0 ? report.motor : state.theta) - offset_;
   for (size_t j = 0; j < faults.size(); ++j)
     m.theta[static_cast<Eigen::Index>(j)] += faults[j].encoder;
   if (noise_ && s.encoder_quantisation) {
-    for (int j = 0; j < model_->dof_count(); ++j) {
-      const double counts = std::abs(model_->dofs()[j].encoder.counts_per_degree) * 180.0 / M_PI;
-      if (counts > 0) m.theta[j] = std::round(m.theta[j] * counts) / counts;
-    }
+    for (Eigen::Index j = 0; j < counts_.size(); ++j)
+      if (counts_[j] > 0) m.theta[j] = std::round(m.theta[j] * counts_[j]) / counts_[j];
   }
   // Rates are differences of successive readings. Without noise they are exact, because the
   // integrator moves joints by rate times step.
@@ -81,14 +80,10 @@ void Sensors::measure(const RobotState& state, const RobotData& truth, const Ste
     FootLoad& load = m.feet[side];
     load.fz = 0;
     Eigen::Vector2d moment = Eigen::Vector2d::Zero();
-    std::array<double, kNumbersAtOnce> numbers;
     for (size_t i = 0; i < cells.size(); ++i) {
       double f = (to_sole * cells[i].force).z();
       if (noise_) {
-        if (i % kNumbersAtOnce == 0)
-          random_.normals(numbers.data(),
-                          static_cast<int>(std::min(kNumbersAtOnce, cells.size() - i)));
-        f += s.force_noise * numbers[i % kNumbersAtOnce];
+        f += s.force_noise * numbers_[used_++];
         if (s.force_resolution > 0) f = std::round(f / s.force_resolution) * s.force_resolution;
       }
       f = std::max(f + fault.force, 0.0);
@@ -99,9 +94,18 @@ void Sensors::measure(const RobotState& state, const RobotData& truth, const Ste
   }
 }
 
+// All numbers of a reading at once, in the order in which they are used.
+void Sensors::draw_numbers(const StepReport& report) {
+  size_t vectors = 2;  // gyro and attitude
+  if (model_->description().sensors.accelerometer_noise > 0) vectors += tilt_.started() ? 1 : 3;
+  numbers_.resize(3 * vectors + report.soles[0].size() + report.soles[1].size());
+  random_.normals(numbers_.data(), static_cast<int>(numbers_.size()));
+  used_ = 0;
+}
+
 Vector3d Sensors::noise(double sigma) {
-  Vector3d numbers;
-  random_.normals(numbers.data(), 3);
+  const Eigen::Map<const Vector3d> numbers(&numbers_[used_]);
+  used_ += 3;
   // The published tables were made with z drawn first.
   return sigma * numbers.reverse();
 }

@@ -32,16 +32,20 @@ class Sensors {
   void measure(const RobotState& state, const RobotData& truth, const StepReport& report,
                const SensorFault& fault, const std::vector<JointFault>& faults, Measurement& m);
   void measure_imu(const RobotData& truth, const SensorFault& fault, Measurement& m);
+  void draw_numbers(const StepReport& report);
   Eigen::Vector3d noise(double sigma);
   /// Mean specific force at the IMU since the last reading, IMU axes [m/s^2].
   Eigen::Vector3d specific_force(const RobotData& truth, const Eigen::Quaterniond& attitude);
 
   const RobotModel* model_;
   Eigen::VectorXd offset_;  // of the encoders [rad, m]
+  Eigen::VectorXd counts_;  // per rad; 0: not known
   int imu_;                 // link
   double dt_;
   bool noise_;
   Random random_;
+  std::vector<double> numbers_;  // normal, of one reading
+  size_t used_ = 0;              // of them
   Eigen::VectorXd previous_theta_;
   TiltEstimate tilt_;
   Eigen::Vector3d imu_velocity_ = Eigen::Vector3d::Zero();  // at the last reading, world [m/s]

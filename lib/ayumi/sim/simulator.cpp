@@ -75,7 +75,11 @@ Simulator::Simulator(const RobotModel& model, const CommandSeries& series,
                                                 options.controller)),
       counts_targets_(options.sensor_noise && !options.true_state &&
                       model_->description().sensors.encoder_quantisation),
+      counts_(counts_targets_ ? model.dof_count() : 0),
       saturated_(static_cast<size_t>(model.dof_count())) {
+  for (Eigen::Index j = 0; j < counts_.size(); ++j)
+    counts_[j] =
+        std::abs(model_->dofs()[static_cast<size_t>(j)].encoder.counts_per_degree) * 180 / M_PI;
   model.sole(Side::left);  // throws when the robot has no soles
   set_scenario(options.scenario);
   if (options.targets)
@@ -208,10 +212,9 @@ const ControlOutput& Simulator::in_counts(const ControlOutput& out) {
   changed_ = out;
   if (encoder_offset_.size() > 0) changed_.target += encoder_offset_;
   if (!counts_targets_) return changed_;
-  for (int j = 0; j < model_->dof_count(); ++j) {
-    const double counts = std::abs(model_->dofs()[j].encoder.counts_per_degree) * 180 / M_PI;
-    if (counts > 0) changed_.target[j] = std::round(changed_.target[j] * counts) / counts;
-  }
+  for (Eigen::Index j = 0; j < counts_.size(); ++j)
+    if (counts_[j] > 0)
+      changed_.target[j] = std::round(changed_.target[j] * counts_[j]) / counts_[j];
   return changed_;
 }
 

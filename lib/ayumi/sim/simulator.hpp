@@ -81,6 +81,7 @@ class Simulator {
   Controller controller_;
   ControlOutput changed_;           // the law's with the targets of the caller, or in counts
   bool counts_targets_;             // servos receive whole counts of their encoders
+  Eigen::VectorXd counts_;          // per rad, where counts_targets_; 0: not known
   Measurement corrected_;           // readings less encoder_offset_
   Eigen::VectorXd encoder_offset_;  // estimated while standing [rad, m]; empty: none was found
   CommandSample plan_;              // of the last tick done

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/model/gravity.hpp"
@@ -61,6 +62,14 @@ JointLaws::JointLaws(const RobotModel& model, const ActuatorLimits& limits)
       joint.rotor = servo.rotor_inertia;
       joint.half_play = 0.5 * servo.backlash;
     }
+    joint.plain_error = !servo.quantized && servo.dead_band <= 0;
+    joint.offset = servo.offset;
+    joint.most = limits.peak_torque[static_cast<Eigen::Index>(j)];
+    const double speed = limits.speed[static_cast<Eigen::Index>(j)];
+    joint.fastest = std::isfinite(speed) ? speed : std::numeric_limits<double>::infinity();
+    joint.stall = servo.stall_torque;
+    joint.back_emf = servo.back_emf;
+    joint.speed_command = servo.speed_command_limit;
     joint.needs_friction = servo.stribeck_rate > 0 || !(servo.load == LoadFriction{});
     // A joint without a motor has an end stop too; that of a hinge has 20 weights times 1 m/rad.
     const double weight = model.mass() * kGravity;
@@ -97,6 +106,11 @@ void JointLaws::set(const VectorXd& targets, const std::vector<JointFault>& faul
                     (joint.needs_friction
                          ? dry_friction(servo, joint.last_rate, joint.last_torque, joint.external)
                          : servo.coulomb);
+    if (joint.plain_error) {
+      joint.target = delayed[i] - fault.encoder + joint.offset;
+      joint.inside_band = false;
+      continue;
+    }
     const ServoError error = servo_error(servo, model_->dofs()[j], delayed[i] - fault.encoder,
                                          joint.has_gear ? joint.phi : theta[i]);
     joint.target = error.target;
@@ -200,12 +214,20 @@ bool JointLaws::check_bound(Joint& joint, size_t j, double dphi) {
   return true;
 }
 
+/// Whether torque_range() at this rate surely holds the torque: no speed limit and no voltage bends
+/// the bound. Most servos are there in most steps.
+bool JointLaws::far_from_bounds(const Joint& joint, double torque, double dphi) {
+  if (!(std::abs(torque) <= joint.most && std::abs(dphi) <= joint.fastest)) return false;
+  if (joint.stall <= 0) return true;
+  const double lost = joint.back_emf * dphi;
+  return torque <= joint.stall - lost && -torque <= joint.stall + lost;
+}
+
 bool JointLaws::check_servo(Joint& joint, size_t j, double phi, double dphi, double dt) {
-  const ServoDescription& servo = limits_.servo[j];
   double& torque = torque_[static_cast<Eigen::Index>(j)];
   if (joint.saturated) return check_bound(joint, j, dphi);
   const double error = joint.target - phi - dt * dphi;
-  const double most = joint.kd * servo.speed_command_limit;
+  const double most = joint.kd * joint.speed_command;
   if (most > 0 && !joint.speed_bound && !joint.inside_band && std::abs(joint.kp * error) > most) {
     joint.speed_bound = true;
     joint.speed_torque = std::copysign(most, error);
@@ -213,6 +235,7 @@ bool JointLaws::check_servo(Joint& joint, size_t j, double phi, double dphi, dou
   }
   torque = joint.speed_bound ? joint.speed_torque : joint.inside_band ? 0 : joint.kp * error;
   torque -= joint.kd * dphi;
+  if (far_from_bounds(joint, torque, dphi)) return false;
   const TorqueRange range = torque_range(limits_, static_cast<int>(j), dphi);
   if (torque >= range.low && torque <= range.high) return false;
   joint.saturated = true;

@@ -69,6 +69,11 @@ class JointLaws {
     double kp = 0, kd = 0;            // with the faults of the step [N m/rad, N m s/rad]
     double viscous = 0, coulomb = 0;  // [N m s/rad, N m]
     bool has_gear = false, needs_friction = false;
+    bool plain_error = false;      // neither counts nor a dead band: servo_error() adds the offset
+    double offset = 0;             // of the encoder [rad]
+    double most = 0, fastest = 0;  // peak torque, and the speed up to which it holds [N m, rad/s]
+    double stall = 0, back_emf = 0;     // voltage_torque(); a stall torque of 0: no bound
+    double speed_command = 0;           // limit of the speed loop's command [rad/s]
     double gear = 0, gear_damping = 0;  // [N m/rad, N m s/rad]
     double rotor = 0, half_play = 0;    // of a motor behind a gear [kg m^2, rad]
     double stop = 0, stop_damping = 0;  // end stop, as kp and kd
@@ -101,6 +106,7 @@ class JointLaws {
   void solve_motor(Joint& joint, double theta, double dt, Impulse& on_joint) const;
   bool check_bound(Joint& joint, size_t j, double dphi);
   bool check_servo(Joint& joint, size_t j, double phi, double dphi, double dt);
+  static bool far_from_bounds(const Joint& joint, double torque, double dphi);
   static bool check_friction(Joint& joint, double dphi);
   static bool check_gear(Joint& joint, double theta, double rate, double dphi, double dt);
   /// Rate at the end of the step, with that of the joint.
