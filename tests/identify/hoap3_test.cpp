@@ -107,24 +107,73 @@ TEST(IdentifyHoap3, RefusesLoadCellsThatAreLate) {
   EXPECT_THROW(require_loads(motion.sensors, motion.measured, agreement(), "l.csv"), Error);
 }
 
-// Five rows of a file without time are missing: the answer comes earlier from there on.
+std::string refusal_of(const RobotModel& model, const RecordedMotion& motion) {
+  try {
+    require_answer(model, motion.command, motion.measured, 0.03, "m.csv");
+    require_loads(motion.sensors, motion.measured, 1, "l.csv");
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+Eigen::MatrixXd without_rows(const Eigen::MatrixXd& whole, Eigen::Index gap, Eigen::Index missing) {
+  const Eigen::Index rows = whole.rows() - missing;
+  Eigen::MatrixXd rest(rows, whole.cols());
+  rest << whole.topRows(gap), whole.bottomRows(rows - gap);
+  return rest;
+}
+
+// Rows of files without time are missing or repeated: the message names the row, to two rows.
 TEST(IdentifyHoap3, RefusesMissingRows) {
   if (!has_recordings()) GTEST_SKIP() << "no recordings of HOAP-3 at " << kHoap3;
   const RobotModel model = recorded_robot();
   RecordedMotion motion = recorded_walk(model);
+  EXPECT_EQ(refusal_of(model, motion), "");
   const Eigen::MatrixXd whole = motion.measured.theta;
-  EXPECT_NO_THROW(require_answer(model, motion.command, motion.measured, 0.03, "m.csv"));
-  const Eigen::Index gap = 8000, missing = 5, rows = whole.rows() - missing;
-  motion.measured.theta.resize(rows, whole.cols());
-  motion.measured.theta << whole.topRows(gap), whole.bottomRows(rows - gap);
-  try {
-    require_answer(model, motion.command, motion.measured, 0.03, "m.csv");
-    FAIL() << "accepted";
-  } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("5 ms earlier than before: rows are missing"),
-              std::string::npos)
-        << error.what();
+  for (const Eigen::Index missing : {1, 2, 3, 5})
+    for (const Eigen::Index gap : {2353, 4902, 8000, 12331, 15228}) {
+      motion.measured.theta = without_rows(whole, gap, missing);
+      const std::string said = refusal_of(model, motion);
+      EXPECT_NE(said.find(std::to_string(missing) + (missing == 1 ? " row is" : " rows are") +
+                          " missing: from here on, the angles are " + std::to_string(missing) +
+                          " ms earlier than before"),
+                std::string::npos)
+          << gap << ": " << said;
+      // "m.csv: data row 8001 (8.000 s, one row every 1 ms) ...": the row, or one beside it.
+      ASSERT_TRUE(said.starts_with("m.csv: data row ")) << said;
+      EXPECT_NEAR(std::stod(said.substr(16)), static_cast<double>(gap + 1), 2) << said;
+    }
+  // Where nothing moves, the number of rows tells.
+  for (const Eigen::Index missing : {1, 2, 3}) {
+    motion.measured.theta = without_rows(whole, 300, missing);
+    EXPECT_NE(
+        refusal_of(model, motion).find(missing == 1 ? "1 row is missing" : "rows are missing"),
+        std::string::npos)
+        << refusal_of(model, motion);
   }
+  motion.measured.theta.resize(whole.rows() + 2, whole.cols());
+  motion.measured.theta << whole.topRows(8002), whole.bottomRows(whole.rows() - 8000);
+  EXPECT_NE(refusal_of(model, motion).find("2 rows are repeated"), std::string::npos)
+      << refusal_of(model, motion);
+}
+
+// Load cells are recorded with the angles, row by row.
+TEST(IdentifyHoap3, RefusesLoadCellsWithMissingRows) {
+  if (!has_recordings()) GTEST_SKIP() << "no recordings of HOAP-3 at " << kHoap3;
+  const RobotModel model = recorded_robot();
+  RecordedMotion motion = recorded_walk(model);
+  const Eigen::MatrixXd whole = motion.sensors.foot_load;
+  for (const Eigen::Index missing : {1, 2, 3}) {
+    motion.sensors.foot_load = without_rows(whole, 8000, missing);
+    EXPECT_NE(refusal_of(model, motion)
+                  .find("l.csv: has " + std::to_string(17902 - missing) +
+                        " rows, one every 1 ms, which last"),
+              std::string::npos)
+        << refusal_of(model, motion);
+  }
+  motion.sensors.timed = true;
+  EXPECT_EQ(refusal_of(model, motion), "");
 }
 
 }  // namespace

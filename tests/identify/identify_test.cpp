@@ -188,6 +188,41 @@ TEST(RecordingChecks, OneLineForARecordingThatIsNotTheAnswer) {
        "no joint of this recording moves");
 }
 
+/// Two movements, and 1.5 s of rest between them.
+double moves_with_a_rest(double t) {
+  const double moved = t < 4 ? t : t < 5.5 ? 4 : t - 1.5;
+  return 0.35 * (1 - std::cos(2 * M_PI * moved / 2)) + 0.1 * std::sin(2 * M_PI * moved);
+}
+
+// Three rows are lost while nothing moves, and the recorder ran on at the end: the delays before
+// and after show it. Without a lost row, and with times of the rows, nothing is wrong.
+TEST(RecordingChecks, RowsThatAreMissingInARest) {
+  const SyntheticServo servo = soft();
+  const RobotModel model(pendulum_robot(servo));
+  RecordedMotion motion = recorded(simulated_angles(servo, 9.5, moves_with_a_rest), kNoise, kCount,
+                                   1, moves_with_a_rest);
+  const auto refusal = [&] {
+    try {
+      require_answer(model, motion.command, motion.measured, 0.03, "m.csv");
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(refusal(), "");
+  const Eigen::MatrixXd whole = motion.measured.theta;
+  const Eigen::Index gap = 4700, missing = 3, rows = whole.rows();
+  motion.measured.theta << whole.topRows(gap), whole.bottomRows(rows - gap - missing),
+      whole.bottomRows(missing);
+  EXPECT_NE(refusal().find("3 rows are missing"), std::string::npos) << refusal();
+  motion.measured.theta = whole.topRows(rows - 2);
+  EXPECT_NE(refusal().find("2 rows are missing where nothing moves, or at the end"),
+            std::string::npos)
+      << refusal();
+  motion.measured.timed = true;
+  EXPECT_EQ(refusal(), "");
+}
+
 TEST(RecordingChecks, OneLineForLoadCellsOfAnotherMotion) {
   AngleTable measured;
   measured.dt = 0.001;

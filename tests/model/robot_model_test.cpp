@@ -287,5 +287,39 @@ TEST(RobotModel, NamesWhatIsWrongInTheSidecar) {
             "robot.json: /control/joint_weight: the weight of 'l_knee' is 0; it must be above 0");
 }
 
+// What no motor of a robot of this mass and size can have is refused, in a profile too. Two links
+// of a leg are 0.1 m long each, and a centre of mass is 37 mm away: 0.474 m stretched out and 6 kg.
+TEST(RobotModel, RefusesServosThatAreTooLargeForIt) {
+  const auto with = [](double ServoDescription::*constant, double value) {
+    return error_of([&](RobotDescription& robot) { robot.servos["l_knee"].*constant = value; });
+  };
+  EXPECT_EQ(
+      with(&ServoDescription::rotor_inertia, 100),
+      "robot.json: profile 'urdf': joint l_knee: rotor_inertia 100 kg m^2 is too large for a "
+      "robot of 6 kg and 0.475 m; the largest allowed value is 1.35 kg m^2. Check the unit of "
+      "the constant, and the masses of the links");
+  for (const auto constant :
+       {&ServoDescription::coulomb, &ServoDescription::stribeck_torque, &ServoDescription::kp,
+        &ServoDescription::kd, &ServoDescription::viscous})
+    EXPECT_NE(with(constant, 9e6).find("is too large for a robot of 6 kg"), std::string::npos);
+  EXPECT_EQ(with(&ServoDescription::rotor_inertia, 0.01), "no error");
+  EXPECT_NE(error_of([](RobotDescription& robot) {
+              robot.profiles.resize(2);
+              robot.profiles[0].name = "first";
+              robot.profiles[1].name = "second";
+              robot.profiles[1].servos["r_hip"].coulomb = 100;
+            }).find("robot.json: profile 'second': joint r_hip: coulomb 100 N m is too large"),
+            std::string::npos);
+  // Of a sliding joint the mass of the whole robot is the bound.
+  EXPECT_NE(
+      error_of([](RobotDescription& robot) {
+        robot.joints[0].type = JointType::prismatic;
+        robot.servos["l_knee"].rotor_inertia = 7;
+      })
+          .find("rotor_inertia 7 kg is too large for a robot of 6 kg and 0.475 m; the largest "
+                "allowed value is 6 kg"),
+      std::string::npos);
+}
+
 }  // namespace
 }  // namespace ayumi

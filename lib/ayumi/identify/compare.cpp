@@ -8,6 +8,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/identify/joint_loads.hpp"
+#include "ayumi/identify/lost_rows.hpp"
 #include "ayumi/identify/recording_checks.hpp"
 #include "ayumi/model/gravity.hpp"
 
@@ -53,6 +54,13 @@ AngleTable angles_of(const RobotModel& model, const SimulationLog& log) {
   table.has.assign(static_cast<size_t>(model.dof_count()), 1);
   table.resolution = VectorXd::Zero(model.dof_count());
   return table;
+}
+
+AngleTable rows_until(const AngleTable& table, double end) {
+  AngleTable first = table;
+  const auto rows = static_cast<Index>(end / table.dt) + 1;
+  if (rows < table.theta.rows()) first.theta = table.theta.topRows(std::max<Index>(2, rows));
+  return first;
 }
 
 void summarize(ComparedCurve& curve, const std::vector<double>& times) {
@@ -253,9 +261,19 @@ Comparison compare(const RobotModel& model, const SimulationLog& log,
     result.times.push_back(t);
   }
   if (measured) {
+    const size_t before = result.notes.size();
     for (const std::string& line :
          motion_complaints(model, simulated, *measured, -result.shift, result.begin, result.end))
       result.notes.push_back(line);
+    if (result.notes.size() == before) {
+      const AngleTable run = rows_until(simulated, result.end),
+                       recorded = rows_until(*measured, result.end - result.shift);
+      const std::string lost = lost_rows_words(
+          lost_rows(run, recorded, moving_joints(run, recorded), -result.shift), measured->dt);
+      if (!lost.empty()) result.notes.push_back("the recording: " + lost);
+    }
+    if (const std::string wrong = loads_rows_complaint(sensors, *measured); !wrong.empty())
+      result.notes.push_back("the recording of sensors " + wrong);
     std::string missing;
     for (int j = 0; j < model.dof_count(); ++j) {
       const std::string& name = model.dofs()[static_cast<size_t>(j)].name;

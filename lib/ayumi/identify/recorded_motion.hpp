@@ -12,6 +12,7 @@ struct AngleTable {
   double dt = 0.001;      ///< [s]
   Eigen::MatrixXd theta;  ///< rows x dof [rad, m]
   std::vector<char> has;  ///< by dof: the file has this joint
+  bool timed = false;     ///< the file says when each row was
   /// Step of the values of each dof, 0 where they are not rounded [rad, m].
   Eigen::VectorXd resolution;
 
@@ -23,6 +24,7 @@ struct SensorTable {
   double dt = 0.001;                   ///< [s]
   Eigen::MatrixXd foot_load;           ///< rows x (left, right) [N], of the file's own calibration
   Eigen::MatrixXd acceleration, gyro;  ///< rows x (x, y, z) [m/s^2, rad/s]
+  bool timed = false;                  ///< the file says when each row was
 };
 
 struct RecordedMotion {

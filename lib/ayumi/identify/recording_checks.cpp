@@ -5,8 +5,10 @@
 #include <cmath>
 #include <vector>
 
+#include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/identify/lost_rows.hpp"
 
 namespace ayumi {
 
@@ -29,11 +31,6 @@ constexpr double kLengthShare = 0.02, kLengthTime = 0.25, kShorter = 0.05;
 // Share of the weight on the standing foot, in the mean of all single supports, below which load
 // cells are not of this motion. Chosen: cells that are 0.3 s late, or of the other side, have less.
 constexpr double kStandingShare = 0.8;
-
-// Windows over which the delay of the answer is followed [s], and a change of it that only missing
-// or repeated rows explain [s]. Chosen: a motion has all its rates within a window, and a change
-// that is far beyond what friction and load do to the mean of several windows.
-constexpr double kDelayWindow = 1.5, kDelayJump = 0.003;
 
 // Squared correlation with the command: from the first on, slope and sign have a meaning; below the
 // second, the joint does not follow. Chosen.
@@ -58,30 +55,8 @@ constexpr double kShiftStep = 0.01, kShiftGain = 0.25;
 // short end without motion fits anywhere.
 constexpr double kLeastOverlap = 0.5;
 
-double value_at(const AngleTable& table, Index dof, double t) {
-  const double at = t / table.dt;
-  const Index last = table.theta.rows() - 1;
-  if (at <= 0) return table.theta(0, dof);
-  const auto k = static_cast<Index>(at);
-  if (k >= last) return table.theta(last, dof);
-  const double u = at - static_cast<double>(k);
-  return (1 - u) * table.theta(k, dof) + u * table.theta(k + 1, dof);
-}
-
 double range(const AngleTable& table, Index dof) {
   return table.theta.col(dof).maxCoeff() - table.theta.col(dof).minCoeff();
-}
-
-// Joints of both tables whose command moves, the liveliest first.
-std::vector<Index> moving(const AngleTable& command, const AngleTable& measured) {
-  std::vector<Index> dofs;
-  for (Index j = 0; j < command.theta.cols(); ++j)
-    if (command.has[static_cast<size_t>(j)] && measured.has[static_cast<size_t>(j)] &&
-        range(command, j) > kMoves)
-      dofs.push_back(j);
-  std::stable_sort(dofs.begin(), dofs.end(),
-                   [&](Index a, Index b) { return range(command, a) > range(command, b); });
-  return dofs;
 }
 
 // Distance of the joints' movements when `measured` is `shift` behind, in parts of these movements;
@@ -97,7 +72,7 @@ double distance(const AngleTable& command, const AngleTable& measured,
   for (const Index j : dofs) {
     double m = 0, c = 0, mm = 0, cc = 0, mc = 0, n = 0;
     for (double t = begin; t <= end; t += step) {
-      const double x = value_at(measured, j, t), y = value_at(command, j, t - shift);
+      const double x = angle_at(measured, j, t), y = angle_at(command, j, t - shift);
       m += x, c += y, mm += x * x, cc += y * y, mc += x * y, ++n;
     }
     const double vm = mm - m * m / n, vc = cc - c * c / n, both = mc - m * c / n;
@@ -118,7 +93,7 @@ Relation relation(const AngleTable& command, const AngleTable& measured, Index d
     const double at = measured.dt * static_cast<double>(k) - shift;
     if (at < std::max(0.0, begin) || at > std::min(command.duration(), end)) continue;
     ++n;
-    const double c = value_at(command, dof, at);
+    const double c = angle_at(command, dof, at);
     const double m = measured.theta(k, dof);
     x += c, y += m, xx += c * c, yy += m * m, xy += c * m, away += m - c;
   }
@@ -131,85 +106,24 @@ Relation relation(const AngleTable& command, const AngleTable& measured, Index d
   return r;
 }
 
-// Time by which one joint is behind its command from row `begin` on, by least squares with its
-// position, the direction of its rate and a constant, which load and friction change. `weight` is
-// the information that the window has.
-double delay_in_window(const AngleTable& command, const AngleTable& measured, Index dof,
-                       Index begin, Index rows, double& weight) {
-  Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
-  Eigen::Vector4d right = Eigen::Vector4d::Zero();
-  const double h = measured.dt;
-  for (Index k = begin; k < begin + rows; ++k) {
-    const double t = h * static_cast<double>(k), c = value_at(command, dof, t);
-    const double rate =
-        (value_at(command, dof, t + 5 * h) - value_at(command, dof, t - 5 * h)) / (10 * h);
-    const Eigen::Vector4d row(rate, c, rate > 0 ? 1 : rate < 0 ? -1 : 0, 1);
-    normal += row * row.transpose();
-    right += (c - measured.theta(k, dof)) * row;
-  }
-  weight = 0;
-  if (normal(0, 0) <= 0) return 0;
-  normal.diagonal().array() += 1e-9 * normal.diagonal().array().maxCoeff();
-  const Eigen::Matrix4d inverse = normal.inverse();
-  weight = inverse(0, 0) > 0 ? 1 / inverse(0, 0) : 0;
-  return (inverse * right)[0];
-}
-
-// The row before which rows are missing or repeated, and the change of the delay there [s].
-struct DelayJump {
-  bool found = false;
-  double at = 0, change = 0;  // [s]
-};
-DelayJump delay_jump(const AngleTable& command, const AngleTable& measured,
-                     const std::vector<Index>& dofs) {
-  const auto rows = static_cast<Index>(std::lround(kDelayWindow / measured.dt));
-  std::vector<double> delays, weights, times;
-  for (Index begin = 0; begin + rows <= measured.theta.rows(); begin += rows) {
-    double sum = 0, total = 0;
-    for (const Index j : dofs) {
-      double weight = 0;
-      const double delay = delay_in_window(command, measured, j, begin, rows, weight);
-      sum += weight * delay, total += weight;
-    }
-    delays.push_back(total > 0 ? sum / total : 0);
-    weights.push_back(total);
-    times.push_back(measured.dt * static_cast<double>(begin));
-  }
-  if (delays.size() < 4) return {};
-  const double most = *std::max_element(weights.begin(), weights.end());
-  DelayJump jump;
-  // Both sides of a jump have a delay of their own, which changes little.
-  const auto side = [&](size_t from, size_t to, double& mean, double& spread) {
-    double n = 0, sum = 0, square = 0;
-    for (size_t i = from; i < to; ++i)
-      if (weights[i] > 0.1 * most) ++n, sum += delays[i], square += delays[i] * delays[i];
-    if (n < 2) return false;
-    mean = sum / n;
-    spread = std::sqrt(std::max(0.0, square / n - mean * mean));
-    return true;
-  };
-  double least = HUGE_VAL;
-  for (size_t split = 2; split + 2 <= delays.size(); ++split) {
-    double before = 0, after = 0, spread0 = 0, spread1 = 0;
-    // The window of the jump belongs to neither side.
-    if (!side(0, split - 1, before, spread0) || !side(split, delays.size(), after, spread1))
-      continue;
-    const double change = after - before, spread = spread0 + spread1;
-    if (std::abs(change) < kDelayJump || spread > 0.25 * std::abs(change) || spread >= least)
-      continue;
-    least = spread;
-    jump = {true, times[split - 1], change};
-  }
-  return jump;
-}
-
 }  // namespace
 
 double least_motion() { return kMoves; }
 
+std::vector<Index> moving_joints(const AngleTable& command, const AngleTable& measured) {
+  std::vector<Index> dofs;
+  for (Index j = 0; j < command.theta.cols(); ++j)
+    if (command.has[static_cast<size_t>(j)] && measured.has[static_cast<size_t>(j)] &&
+        range(command, j) > kMoves)
+      dofs.push_back(j);
+  std::stable_sort(dofs.begin(), dofs.end(),
+                   [&](Index a, Index b) { return range(command, a) > range(command, b); });
+  return dofs;
+}
+
 double time_shift(const RobotModel&, const AngleTable& command, const AngleTable& measured,
                   double reach) {
-  std::vector<Index> dofs = moving(command, measured);
+  std::vector<Index> dofs = moving_joints(command, measured);
   if (dofs.size() > 4) dofs.resize(4);
   if (dofs.empty()) return 0;
   double best = 0, least = distance(command, measured, dofs, 0, kShiftStep);
@@ -247,7 +161,7 @@ std::vector<std::string> motion_complaints(const RobotModel& model, const AngleT
                                            const AngleTable& measured, double shift, double begin,
                                            double end) {
   std::vector<std::string> complaints;
-  for (const Index j : moving(command, measured)) {
+  for (const Index j : moving_joints(command, measured)) {
     const Relation r = relation(command, measured, j, shift, begin, end);
     std::string wrong = wrong_sign_or_unit(r);
     if (range(measured, j) <= 0)
@@ -276,7 +190,7 @@ void require_answer(const RobotModel& model, const AngleTable& command, const An
   const auto complain = [&](const std::string& what) {
     fail(ErrorCode::bad_file, file + ": " + what);
   };
-  std::vector<Index> dofs = moving(command, measured);
+  std::vector<Index> dofs = moving_joints(command, measured);
   if (dofs.empty())
     complain("no joint of this recording moves by " + text::brief(kMoves / kDegree) +
              " deg in its command; record a motion");
@@ -307,21 +221,34 @@ void require_answer(const RobotModel& model, const AngleTable& command, const An
                           : "") +
                "; the recording is shifted, so let both begin at the same time");
   }
-  const DelayJump jump = delay_jump(command, measured, dofs);
-  if (jump.found)
-    complain("from about " + text::fixed(jump.at, 1) + " s on, the angles are " +
-             text::fixed(1000 * std::abs(jump.change), 0) + " ms " +
-             (jump.change < 0 ? "earlier than before: rows are missing there"
-                              : "later than before: rows are repeated there") +
-             "; record again, or give the rows a time column");
-  const std::vector<std::string> wrong = motion_complaints(
-      model, command, measured, std::clamp(shift, 0.0, longest_lag), 0, command.duration());
+  const double behind = std::clamp(shift, 0.0, longest_lag);
+  if (const LostRows lost = lost_rows(command, measured, dofs, behind); lost.found)
+    complain(lost_rows_words(lost, measured.dt));
+  // What is missing where nothing moves shows at the end only.
+  const double least = std::abs(measured.dt - command.dt) < 1e-9
+                           ? 0.5 * command.dt
+                           : 1.5 * std::max(measured.dt, command.dt);
+  if (!measured.timed && asked - lasts > least) {
+    const long missing = std::max(1L, std::lround((asked - lasts) / measured.dt));
+    complain("has " + std::to_string(measured.theta.rows()) + " rows, one every " +
+             text::brief(1000 * measured.dt) + " ms, which last " + text::fixed(lasts, 3) +
+             " s, but its command lasts " + text::fixed(asked, 3) +
+             " s: " + text::counted(missing, "row") + (missing == 1 ? " is" : " are") +
+             " missing where nothing moves, or at the end; record again, or give the rows a time "
+             "column");
+  }
+  const std::vector<std::string> wrong =
+      motion_complaints(model, command, measured, behind, 0, command.duration());
   if (!wrong.empty()) complain(wrong.front());
 }
 
 void require_loads(const SensorTable& loads, const AngleTable& measured, double agreement,
                    const std::string& file) {
   if (loads.foot_load.rows() == 0) return;
+  if (const std::string wrong = loads_rows_complaint(loads, measured);
+      !wrong.empty() && std::abs(loads.dt * static_cast<double>(loads.foot_load.rows() - 1) -
+                                 measured.duration()) <= kLengthTime)
+    fail(ErrorCode::bad_file, file + ": " + wrong);
   const double lasts = loads.dt * static_cast<double>(loads.foot_load.rows() - 1);
   if (std::abs(lasts - measured.duration()) > kLengthTime)
     fail(ErrorCode::bad_file,

@@ -12,6 +12,9 @@ namespace ayumi {
 /// Range of a command below which its joint stands still [rad, m].
 double least_motion();
 
+/// Joints of both tables whose command moves, the liveliest first.
+std::vector<Eigen::Index> moving_joints(const AngleTable& command, const AngleTable& measured);
+
 /// Time by which `measured` is behind `command` [s], from the joints that move most, within
 /// -`reach`..`reach`, in steps of the slower of both.
 double time_shift(const RobotModel& model, const AngleTable& command, const AngleTable& measured,
@@ -24,14 +27,14 @@ std::vector<std::string> motion_complaints(const RobotModel& model, const AngleT
                                            double end);
 
 /// Throws Error(bad_file) "`file`: what" for the first of these, and where `measured` is of another
-/// length than the command, comes earlier or later than `longest_lag` [s], or has no joint that
-/// moves.
+/// length than the command, comes earlier or later than `longest_lag` [s], lost or repeated rows
+/// (lost_rows()), or has no joint that moves.
 void require_answer(const RobotModel& model, const AngleTable& command, const AngleTable& measured,
                     double longest_lag, const std::string& file);
 
 /// Throws Error(bad_file) "`file`: what" for load cells that were not recorded with `measured`:
-/// another length, or a standing foot, as the angles show it, that does not carry the robot.
-/// `agreement` is that of JointLoads.
+/// another number of rows, or a standing foot, as the angles show it, that does not carry the
+/// robot. `agreement` is that of JointLoads.
 void require_loads(const SensorTable& loads, const AngleTable& measured, double agreement,
                    const std::string& file);
 

@@ -12,6 +12,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/model/gravity.hpp"
+#include "ayumi/model/servo_bounds.hpp"
 #include "ayumi/model/validate.hpp"
 
 namespace ayumi {
@@ -306,6 +307,7 @@ RobotModel::RobotModel(RobotDescription description) : description_(std::move(de
   }
   if (has_soles() && soles_[0].body == soles_[1].body)
     complain_sidecar(description_, "/soles: both feet are on one body; name two foot links");
+  require_servos_that_fit(*this);
 }
 
 std::vector<std::string> RobotModel::dof_names() const {

@@ -334,6 +334,7 @@ AngleTable named_angles(const std::string& bytes, const std::string& file, const
   const NumberTable table = number_table(plain_table_text(bytes, file), file);
   const double dt = interval_of(table, options, file);
   AngleTable result = empty_table(model, table.values.rows(), dt);
+  result.timed = time_of(table).column >= 0;
   bool any = false;
   for (size_t c = 0; c < table.columns.size(); ++c) {
     const JointColumn column = joint_column(table.columns[c], model, options.degrees, file);
@@ -430,6 +431,7 @@ SensorTable named_sensors(const std::string& bytes, const std::string& file,
   const NumberTable table = number_table(plain_table_text(bytes, file), file);
   SensorTable result;
   result.dt = interval_of(table, options, file);
+  result.timed = time_of(table).column >= 0;
   std::array<int, 2> foot = {-1, -1};
   for (const int side : {0, 1}) {
     const std::string name = side == 0 ? "left" : "right";
@@ -474,7 +476,9 @@ AngleTable read_angles(const std::string& bytes, const std::string& file, const 
   while (!rest.empty() && line.empty()) line = take_line(rest);
   if (is_sequence(cells_of(line))) {
     const BareRows rows = sequence_rows(bytes, file, devices);
-    return angles_of(rows, model, file, 0, rows.dt);
+    AngleTable table = angles_of(rows, model, file, 0, rows.dt);
+    table.timed = true;
+    return table;
   }
   const BareRows rows = bare_rows(bytes, file, devices, "the robot '" + model.name() + "'");
   for (size_t r = 0; r < rows.rows.size(); ++r)

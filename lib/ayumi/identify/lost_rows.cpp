@@ -1,0 +1,337 @@
+#include "ayumi/identify/lost_rows.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "ayumi/base/counted.hpp"
+#include "ayumi/base/text.hpp"
+
+namespace ayumi {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+namespace {
+
+// Rows on each side of a place that show a step. Chosen: noise of an encoder of half a count then
+// hides one lost row only where all joints move by less than a fifth of a count per row.
+constexpr Index kStepRows = 5;
+
+// A step has to be this many of its standard deviations. Chosen: in a recorded walk of 17902 rows
+// without a lost row, steps that are near a whole number of rows reach less than half of it.
+constexpr double kClearStep = 5;
+
+// What follows a lost row stays earlier. Time on both sides of a step in which the delays are
+// compared [s], the least of it, the least lasting change in rows, and how far it may be from the
+// step, in rows and in parts of the step. Chosen: recorders take some rows up to 0.45 rows late and
+// the next ones in time again, and joints begin to slide within a row, which does not last.
+constexpr double kLastingTime = 0.75, kLeastLastingTime = 0.3;
+constexpr double kLeastStep = 0.6, kStepMargin = 0.35, kStepShare = 0.25;
+
+// Clearest steps that are looked at. Chosen: each belongs to about ten rows.
+constexpr size_t kMostSteps = 60;
+
+// Smallest noise of a joint, in steps of its encoder, or without any in [rad, m]. Derived: rounding
+// alone has a standard deviation of 0.29 steps.
+constexpr double kLeastNoise = 0.29, kLeastNoiseAngle = 1e-7;
+
+// Windows over which the delay of the answer is followed [s], and a change of it that only missing
+// or repeated rows explain [s]. Chosen: a motion has all its rates within a window, and a change
+// that is far beyond what friction and load do to the mean of several windows.
+constexpr double kDelayWindow = 1.5, kDelayJump = 0.003;
+
+// A change of delay around a rest is lost rows from this part of a row on. Chosen: between a whole
+// row and the delays of a recorded walk, which differ by 0.1 ms between windows.
+constexpr double kRestJump = 0.75;
+
+// Time without motion that is a rest [s], and the part of the mean information below which nothing
+// moves. Chosen: a step of the method above cannot be seen in it.
+constexpr double kRestTime = 0.05, kRestShare = 0.02;
+
+double middle_of(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+// Standard deviation of what is normal but for a few values.
+double robust_deviation(std::vector<double> values) {
+  for (double& value : values) value = std::abs(value);
+  return 1.4826 * middle_of(std::move(values));
+}
+
+// A joint beside its delayed command, by row of the recording; both in parts of its noise.
+struct FollowingJoint {
+  VectorXd error, per_row;  // difference, and change of it by one lost row
+};
+FollowingJoint following(const AngleTable& command, const AngleTable& measured, Index dof,
+                         double delay) {
+  const Index rows = measured.theta.rows();
+  const double h = measured.dt;
+  FollowingJoint joint{VectorXd(rows), VectorXd(rows)};
+  std::vector<double> steps;
+  for (Index k = 0; k < rows; ++k) {
+    const double t = h * static_cast<double>(k) - delay;
+    joint.error[k] = measured.theta(k, dof) - angle_at(command, dof, t);
+    joint.per_row[k] = (angle_at(command, dof, t + 5 * h) - angle_at(command, dof, t - 5 * h)) / 10;
+    if (k > 0) steps.push_back(joint.error[k] - joint.error[k - 1]);
+  }
+  const double count = measured.resolution.size() > dof ? measured.resolution[dof] : 0;
+  const double noise = std::max(
+      {robust_deviation(std::move(steps)) / std::sqrt(2.0), kLeastNoise * count, kLeastNoiseAngle});
+  joint.error /= noise;
+  joint.per_row /= noise;
+  return joint;
+}
+
+// Lost rows before row k by least squares, beside a constant and a slope of each joint and a delay
+// that they have in common, and what its standard deviation is for noise alone. One joint may slip,
+// so the others have to agree: `without_clearest` leaves out the joint that shows most.
+struct RowStep {
+  double rows = 0, deviation = HUGE_VAL;
+};
+RowStep row_step(const std::vector<FollowingJoint>& joints, Index k,
+                 bool without_clearest = false) {
+  constexpr Index kRows = 2 * kStepRows;
+  using Window = Eigen::Matrix<double, kRows, 1>;
+  static const Window kSlope = Window::LinSpaced(kRows, -1, 1).normalized();
+  const auto without_line = [](Window x) -> Window {
+    x.array() -= x.mean();
+    return x - x.dot(kSlope) * kSlope;
+  };
+  using Sums = Eigen::Matrix<double, 5, 1>;
+  Sums sums = Sums::Zero(), clearest = Sums::Zero();
+  for (const FollowingJoint& joint : joints) {
+    const Window delay = joint.per_row.segment<kRows>(k - kStepRows);
+    Window step = delay;
+    step.head<kStepRows>().setZero();
+    const Window u = without_line(delay), v = without_line(step),
+                 e = without_line(joint.error.segment<kRows>(k - kStepRows));
+    const Sums joint_sums = {u.squaredNorm(), u.dot(v), v.squaredNorm(), u.dot(e), v.dot(e)};
+    sums += joint_sums;
+    if (joint_sums[2] > clearest[2]) clearest = joint_sums;
+  }
+  if (without_clearest) sums -= clearest;
+  const double b = sums[1], c = sums[2], x = sums[3], y = sums[4];
+  // At a constant speed, a delay shows nothing: it is then as unlikely as a thousandth of a step.
+  const double a = sums[0] + 1e-3 * c;
+  const double determinant = a * c - b * b;
+  if (!(c > 0) || !(determinant > 0)) return {};
+  return {(a * y - b * x) / determinant, std::sqrt(a / determinant)};
+}
+
+// Time by which one joint is behind its command from row `begin` on, by least squares with its
+// position, the direction of its rate and a constant, which load and friction change. `weight` is
+// the information that the window has.
+double delay_in_window(const AngleTable& command, const AngleTable& measured, Index dof,
+                       Index begin, Index rows, double& weight) {
+  Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d right = Eigen::Vector4d::Zero();
+  const double h = measured.dt;
+  for (Index k = begin; k < begin + rows; ++k) {
+    const double t = h * static_cast<double>(k), c = angle_at(command, dof, t);
+    const double rate =
+        (angle_at(command, dof, t + 5 * h) - angle_at(command, dof, t - 5 * h)) / (10 * h);
+    const Eigen::Vector4d row(rate, c, rate > 0 ? 1 : rate < 0 ? -1 : 0, 1);
+    normal += row * row.transpose();
+    right += (c - measured.theta(k, dof)) * row;
+  }
+  weight = 0;
+  if (normal(0, 0) <= 0) return 0;
+  normal.diagonal().array() += 1e-9 * normal.diagonal().array().maxCoeff();
+  const Eigen::Matrix4d inverse = normal.inverse();
+  weight = inverse(0, 0) > 0 ? 1 / inverse(0, 0) : 0;
+  return (inverse * right)[0];
+}
+
+// Mean delay of the joints in `rows` rows from `begin` on [s]; none where nothing moves.
+std::optional<double> delay_of_rows(const AngleTable& command, const AngleTable& measured,
+                                    const std::vector<Index>& dofs, Index begin, Index rows) {
+  double sum = 0, total = 0;
+  for (const Index j : dofs) {
+    double weight = 0;
+    const double delay = delay_in_window(command, measured, j, begin, rows, weight);
+    sum += weight * delay, total += weight;
+  }
+  if (!(total > 0)) return std::nullopt;
+  return sum / total;
+}
+
+// Rows by which the recording is earlier after row k than before it.
+std::optional<double> lasting_step(const AngleTable& command, const AngleTable& measured,
+                                   const std::vector<Index>& dofs, Index k) {
+  const auto rows_of = [&](double time) {
+    return static_cast<Index>(std::lround(time / measured.dt));
+  };
+  const Index before = std::min(k - kStepRows, rows_of(kLastingTime)),
+              after = std::min(measured.theta.rows() - k - kStepRows, rows_of(kLastingTime));
+  if (std::min(before, after) < rows_of(kLeastLastingTime)) return std::nullopt;
+  const auto earlier = delay_of_rows(command, measured, dofs, k - kStepRows - before, before),
+             later = delay_of_rows(command, measured, dofs, k + kStepRows, after);
+  if (!earlier || !later) return std::nullopt;
+  return (*earlier - *later) / measured.dt;
+}
+
+LostRows step_in_motion(const AngleTable& command, const AngleTable& measured,
+                        const std::vector<Index>& dofs, double delay) {
+  std::vector<FollowingJoint> joints;
+  for (const Index j : dofs) joints.push_back(following(command, measured, j, delay));
+  const Index rows = measured.theta.rows();
+  std::vector<RowStep> steps(static_cast<size_t>(rows));
+  std::vector<double> ratios;
+  for (Index k = kStepRows; k + kStepRows <= rows; ++k) {
+    const RowStep step = row_step(joints, k);
+    steps[static_cast<size_t>(k)] = step;
+    if (std::isfinite(step.deviation)) ratios.push_back(step.rows / step.deviation);
+  }
+  // What a servo does beside its delay is no white noise.
+  const double more = std::max(1.0, robust_deviation(ratios));
+  std::vector<size_t> clear;
+  const auto ratio = [&](size_t k) { return std::abs(steps[k].rows) / steps[k].deviation; };
+  for (size_t k = 0; k < steps.size(); ++k)
+    if (std::abs(steps[k].rows) >= kLeastStep && ratio(k) > kClearStep * more) clear.push_back(k);
+  std::stable_sort(clear.begin(), clear.end(),
+                   [&](size_t a, size_t b) { return ratio(a) > ratio(b); });
+  if (clear.size() > kMostSteps) clear.resize(kMostSteps);
+  LostRows lost;
+  double least = HUGE_VAL;
+  for (const size_t k : clear) {
+    const auto row = static_cast<Index>(k);
+    const double step = steps[k].rows;
+    const auto lasting = lasting_step(command, measured, dofs, row);
+    if (!lasting || std::abs(*lasting) < kLeastStep) continue;
+    const auto agrees = [&](double other) {
+      return std::abs(*lasting - other) <= kStepMargin + kStepShare * std::abs(other);
+    };
+    const RowStep others = row_step(joints, row, true);
+    if (!agrees(step) || !agrees(others.rows) ||
+        std::abs(others.rows) < kClearStep * others.deviation)
+      continue;
+    const double whole = std::round(*lasting),
+                 apart = std::abs(step - whole) + std::abs(*lasting - whole);
+    if (apart >= least) continue;
+    least = apart;
+    lost = {true, true, row, whole};
+  }
+  return lost;
+}
+
+// Whether nothing moves for a while around a row.
+bool rests_near(const AngleTable& command, const std::vector<Index>& dofs, double begin,
+                double end) {
+  const auto information = [&](double t) {
+    double sum = 0;
+    for (const Index j : dofs) {
+      const double d =
+          angle_at(command, j, t + kRestTime / 2) - angle_at(command, j, t - kRestTime / 2);
+      sum += d * d;
+    }
+    return sum;
+  };
+  double mean = 0, least = HUGE_VAL;
+  long count = 0;
+  for (double t = 0; t <= command.duration(); t += kRestTime, ++count) mean += information(t);
+  for (double t = begin; t <= end; t += kRestTime / 2) least = std::min(least, information(t));
+  return count > 0 && least < kRestShare * mean / static_cast<double>(count);
+}
+
+LostRows change_of_delay(const AngleTable& command, const AngleTable& measured,
+                         const std::vector<Index>& dofs) {
+  const auto rows = static_cast<Index>(std::lround(kDelayWindow / measured.dt));
+  std::vector<double> delays, weights, times;
+  for (Index begin = 0; begin + rows <= measured.theta.rows(); begin += rows) {
+    double sum = 0, total = 0;
+    for (const Index j : dofs) {
+      double weight = 0;
+      const double delay = delay_in_window(command, measured, j, begin, rows, weight);
+      sum += weight * delay, total += weight;
+    }
+    delays.push_back(total > 0 ? sum / total : 0);
+    weights.push_back(total);
+    times.push_back(measured.dt * static_cast<double>(begin));
+  }
+  if (delays.size() < 4) return {};
+  const double most = *std::max_element(weights.begin(), weights.end());
+  LostRows lost;
+  // Both sides of a jump have a delay of their own, which changes little.
+  const auto side = [&](size_t from, size_t to, double& mean, double& spread) {
+    double n = 0, sum = 0, square = 0;
+    for (size_t i = from; i < to; ++i)
+      if (weights[i] > 0.1 * most) ++n, sum += delays[i], square += delays[i] * delays[i];
+    if (n < 2) return false;
+    mean = sum / n;
+    spread = std::sqrt(std::max(0.0, square / n - mean * mean));
+    return true;
+  };
+  double least = HUGE_VAL;
+  for (size_t split = 2; split + 2 <= delays.size(); ++split) {
+    double before = 0, after = 0, spread0 = 0, spread1 = 0;
+    // The window of the jump belongs to neither side.
+    if (!side(0, split - 1, before, spread0) || !side(split, delays.size(), after, spread1))
+      continue;
+    const double change = after - before, spread = spread0 + spread1;
+    const bool rest = std::abs(change) >= kRestJump * measured.dt &&
+                      rests_near(command, dofs, times[split - 1], times[split]);
+    if ((std::abs(change) < kDelayJump && !rest) || spread > 0.25 * std::abs(change) ||
+        spread >= least)
+      continue;
+    least = spread;
+    lost = {true, false, static_cast<Index>(split - 1) * rows, -change / measured.dt};
+  }
+  return lost;
+}
+
+}  // namespace
+
+double angle_at(const AngleTable& table, Index dof, double t) {
+  const double at = t / table.dt;
+  const Index last = table.theta.rows() - 1;
+  if (at <= 0) return table.theta(0, dof);
+  const auto k = static_cast<Index>(at);
+  if (k >= last) return table.theta(last, dof);
+  const double u = at - static_cast<double>(k);
+  return (1 - u) * table.theta(k, dof) + u * table.theta(k + 1, dof);
+}
+
+LostRows lost_rows(const AngleTable& command, const AngleTable& measured,
+                   const std::vector<Index>& dofs, double delay) {
+  const LostRows lost = step_in_motion(command, measured, dofs, delay);
+  return lost.found ? lost : change_of_delay(command, measured, dofs);
+}
+
+std::string lost_rows_words(const LostRows& lost, double dt) {
+  if (!lost.found) return "";
+  const long count = std::max(1L, std::lround(std::abs(lost.rows)));
+  const std::string time = text::fixed(dt * static_cast<double>(lost.row), 3) +
+                           " s, one row every " + text::brief(1000 * dt) + " ms",
+                    rows = text::counted(count, "row"), are = count == 1 ? " is " : " are ",
+                    change = text::brief(1000 * dt * static_cast<double>(count), 3) + " ms " +
+                             (lost.rows > 0 ? "earlier" : "later") + " than before";
+  return (lost.exact ? "data row " : "after about data row ") + std::to_string(lost.row + 1) +
+         " (" + time + ") " + rows + are + (lost.rows > 0 ? "missing" : "repeated") +
+         ": from here on, the angles are " + change +
+         "; record again, or give the rows a time column";
+}
+
+std::string loads_rows_complaint(const SensorTable& loads, const AngleTable& measured) {
+  const Index rows =
+      std::max({loads.foot_load.rows(), loads.acceleration.rows(), loads.gyro.rows()});
+  if (loads.timed || rows == 0) return "";
+  const double lasts = loads.dt * static_cast<double>(rows - 1), asked = measured.duration(),
+               row = std::max(loads.dt, measured.dt),
+               // Two recorders of different rates end up to a row apart.
+      allowed = std::abs(loads.dt - measured.dt) < 1e-9 ? 0.5 * row : 1.5 * row;
+  if (std::abs(lasts - asked) <= allowed) return "";
+  const long missing = std::max(1L, std::lround(std::abs(lasts - asked) / loads.dt));
+  return "has " + std::to_string(rows) + " rows, one every " + text::brief(1000 * loads.dt) +
+         " ms, which last " + text::fixed(lasts, 3) + " s, but the measured angles last " +
+         text::fixed(asked, 3) + " s: " + text::counted(missing, "row") +
+         (missing == 1 ? " is " : " are ") + (lasts < asked ? "missing" : "too many") +
+         ", and no row says when it was measured; record both again, or give the rows a time "
+         "column";
+}
+
+}  // namespace ayumi
