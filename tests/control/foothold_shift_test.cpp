@@ -134,6 +134,32 @@ TEST(FootholdShift, ShiftedPlanIsSmooth) {
   EXPECT_LT((shift.plan().cog - end.cog - moved).norm(), 1e-6);
 }
 
+// The plan has the foot next to the ground for the last part of a swing. Load on it is the planned
+// landing then, and the plan's motion goes on without a jump; the velocity of the COG changes by no
+// more than the ZMP at the edge of a sole asks for, 3 mm/s in a tick.
+TEST(FootholdShift, AFootThatBearsWhereThePlanHasItOnTheGroundIsNotEarly) {
+  FootholdShift shift(walk().model, walk().series, {.share = 1, .time_scale_limit = 1.5});
+  const std::vector<PlannedSwing> swings = swings_of(walk().series);
+  const double weight = walk().model.mass() * kGravity;
+  Vector3d dcog = shift.plan().dcog;
+  int bears = 0;
+  for (int k = 0; k < 7000; ++k) {
+    const bool push = k >= 2300 && k < 2310;
+    Estimate e = on_plan(shift.plan(), push ? Vector2d(0.07, 0) : Vector2d(0, 0));
+    for (const PlannedSwing& swing : swings)
+      if (shift.phase() > swing.land - 25 && shift.phase() < swing.land) {
+        e.foot_fz[static_cast<size_t>(swing.foot)] = 0.2 * weight;
+        ++bears;
+      }
+    shift.advance(e);
+    if (k > 2320) {
+      ASSERT_LT((shift.plan().dcog - dcog).norm(), 0.004) << k;
+    }
+    dcog = shift.plan().dcog;
+  }
+  EXPECT_GT(bears, 8 * 15);
+}
+
 struct Outcomes {
   SimulationResult result;
   Vector2d beside;  // change of the feet against each other [m]

@@ -360,11 +360,16 @@ void FootholdShift::search_foothold(const Vector2d& dcm) {
   time_scale_ = chosen;
 }
 
+// In the last part of the swing, where the plan itself has the foot next to the ground and moves it
+// no more, contact is the landing that is planned: the clock goes on as planned, and so does the
+// DCM of the plan, which a jump of the clock would carry along.
 bool FootholdShift::lands_early(const Estimate& e) const {
   if (!moved_ || coming_ == steps_.size()) return false;
   const PlannedSwing& swing = steps_[coming_].swing;
-  return phase_ > swing.lift + kSwingLandingAfter * (swing.land - swing.lift) &&
-         e.stance != swing.foot && bears(*model_, e, swing.foot);
+  const double length = swing.land - swing.lift;
+  return phase_ > swing.lift + kSwingLandingAfter * length &&
+         phase_ < swing.land - kSwingMargin * length && e.stance != swing.foot &&
+         bears(*model_, e, swing.foot);
 }
 
 /// The foot stays where it has met the ground, and the clock goes to its landing; the COG does not

@@ -197,11 +197,17 @@ void FallMonitor::observe_feet(double t, const CommandSample& command, const Rob
     double fz = 0;
     for (const SoleForce& cell : report.soles[i]) fz += normal().dot(cell.force);
     const bool loaded = fz > kTouchLoad * weight;
-    if (loaded && unloaded_[i] > kMinFootFlight) {
+    // A foot that still touches the ground has not left it, however little it bears. Once it has
+    // been off it for long enough, the next load is its touchdown.
+    const bool lifted = unloaded_[i] > kMinFootFlight;
+    if (loaded && lifted) {
       ++result_.steps;
       events_.push_back({t, "touchdown", std::string(name_of(side)) + " foot"});
     }
-    unloaded_[i] = loaded ? 0.0 : unloaded_[i] + dt;
+    if (fz <= 0)
+      unloaded_[i] += dt;
+    else if (loaded || !lifted)
+      unloaded_[i] = 0;
     // Slip is measured from the place where the foot first carried load in its stance.
     const bool stance = supports(command.support, side) && loaded;
     const Isometry3d sole = sole_pose(*model_, truth, side);
