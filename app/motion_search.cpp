@@ -120,6 +120,17 @@ SearchResult search_motion(const RobotModel& model, const std::vector<Dial>& dia
   return result;
 }
 
+bool postures_pass(const RobotModel& model, const std::function<Pattern()>& make) {
+  try {
+    Pattern pattern = make();
+    pattern.file.clear();
+    return wrong_posture(model, pattern).empty();
+  } catch (const Error& error) {
+    if (!cannot_be_done(error)) throw;
+    return false;
+  }
+}
+
 std::string changed_values(const std::vector<Dial>& dials, const SearchResult& result) {
   std::vector<std::string> changed;
   for (size_t i = 0; i < dials.size(); ++i)

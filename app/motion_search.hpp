@@ -37,4 +37,8 @@ SearchResult search_motion(const RobotModel& model, const std::vector<Dial>& dia
 /// "--stride 0.02 m, --period 0.7 s": the values that are not the defaults.
 std::string changed_values(const std::vector<Dial>& dials, const SearchResult& result);
 
+/// Whether the motion can be sampled, with every posture inside its limits. False where it cannot
+/// be made.
+bool postures_pass(const RobotModel& model, const std::function<Pattern()>& make);
+
 }  // namespace ayumi::app

@@ -15,6 +15,7 @@
 #include "ayumi/io/formats/motion_formats.hpp"
 #include "ayumi/io/formats/sign_test.hpp"
 #include "ayumi/io/formats/table_motion.hpp"
+#include "ayumi/io/import_pattern.hpp"
 #include "ayumi/io/kept_rows.hpp"
 #include "ayumi/io/run/results_json.hpp"
 #include "ayumi/io/run/run_folder.hpp"
@@ -57,6 +58,7 @@ struct Source {
   std::optional<Task> plan;        ///< of a pattern: the check knows what it needs
   std::vector<std::string> unfit;  ///< why no robot should receive the table
   std::optional<KeptRows> kept = {};
+  std::optional<std::string> original = {};  ///< bytes of the imported file of the format
   double interval = 0;  ///< from row to row of the file that was imported; 0: none was [s]
 };
 
@@ -79,8 +81,13 @@ void take_kept_rows(const Task& task, const ExportOptions& options, Source& sour
   if (!options.servo.empty()) return;
   if (motion_format(options)) {
     source.interval = task.pattern.table->dt;
-    if (const auto rows = rows_of_table(task, source.reference))
-      source.reference.rows = rows->rows, source.reference.dt = rows->dt;
+    const auto rows = rows_of_table(task, source.reference);
+    if (!rows) return;
+    source.reference.rows = rows->rows;
+    source.reference.dt = rows->dt;
+    const bool as_it_was = !options.interval && !options.rate && options.ramp.value_or(0) == 0 &&
+                           options.hold.value_or(0) == 0 && options.robot.empty();
+    if (as_it_was) source.original = kept_file(*task.pattern.table, options.format);
     return;
   }
   source.kept = kept_rows(task);
@@ -469,7 +476,10 @@ std::string note_text(const TableCaution& caution) {
 void write_motion(const MotionFormat& format, const ExportOptions& options, const Context& context,
                   const Source& source, const SafeTable& safe) {
   std::vector<std::pair<fs::path, std::string>> files;
-  for (WrittenFile& file : format.write(source.model, motion_file_of(source, safe.table))) {
+  if (source.original) files.emplace_back(options.output, *source.original);
+  for (WrittenFile& file : source.original
+                               ? std::vector<WrittenFile>()
+                               : format.write(source.model, motion_file_of(source, safe.table))) {
     fs::path path = options.output;
     if (!file.extension.empty()) path.replace_extension(file.extension);
     refuse_overwriting(context, path);
@@ -512,7 +522,7 @@ std::string as_json(const ExportOptions& options, const Source& source, const Sa
       {"servo", safe.table.servo.content.empty()
                     ? nlohmann::ordered_json(nullptr)
                     : nlohmann::ordered_json(safe.table.servo.content)},
-      {"imported_rows_unchanged", source.kept.has_value()},
+      {"imported_rows_unchanged", source.kept.has_value() || source.original.has_value()},
       {"joints", safe.table.joints},
       {"cannot_hold", motion_format(options)
                           ? nlohmann::ordered_json(cannot_hold(*motion_format(options),
@@ -609,7 +619,9 @@ void export_table(ExportOptions options, Context& context) {
   }
   if (refused.empty()) write_table(options, context, source, safe);
   context.print(in_words(options, source, safe, refused) +
-                (motion_format(options) ? "" : words_on_sequence(source, safe)));
+                (source.original          ? "  the file is the imported one, byte for byte\n"
+                 : motion_format(options) ? ""
+                                          : words_on_sequence(source, safe)));
   if (!safe.report.safe)
     context.print("  judged by the profile " + options.safety.profile + "; " +
                   (others.empty()

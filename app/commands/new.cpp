@@ -124,9 +124,11 @@ void fit_walk(const Context& context, const RobotModel& model, const NewOptions&
   const Dial height =
       lacking ? Dial{"--cog-height", "m", {w.cog_height}} : height_dial(model, w.cog_height);
   const std::vector<double> paces =
-      lacking ? std::vector{0.55, 0.75} : std::vector{1.25, 1.6, 0.8, 2.2};
+      lacking ? std::vector{0.55, 0.34, 0.75} : std::vector{1.25, 1.6, 0.8, 2.2};
+  const std::vector<double> strides =
+      lacking ? std::vector{0.5, 0.25} : std::vector{0.75, 0.5, 0.25};
   const std::vector<Dial> dials = {
-      height, dial("--stride", "m", w.stride, 1e-3, !options.stride, {0.75, 0.5, 0.25}),
+      height, dial("--stride", "m", w.stride, 1e-3, !options.stride, strides),
       dial("--period", "s", w.period, 0.01, !options.period, paces), inwards};
   const auto with = [&](const std::vector<double>& values) {
     WalkParameters walk = w;
@@ -139,6 +141,44 @@ void fit_walk(const Context& context, const RobotModel& model, const NewOptions&
   w = with(values_that_pass(context, model, dials, [&](const std::vector<double>& values) {
     return walk_pattern(model, with(values));
   }));
+}
+
+// Motions that a robot can do that cannot walk, as commands; "" where none was found.
+std::string what_it_can_do(const RobotModel& model, const std::string& robot) {
+  struct Other {
+    std::string command;
+    std::function<Pattern(double share)> make;
+    std::function<std::string(double share)> option;
+  };
+  const double depth = squat_defaults(model).depth, side = sway_defaults(model).side;
+  const auto length = [](double value) { return text::brief(rounded(value, 1e-3)); };
+  const std::vector<Other> others = {
+      {"stand", [&](double) { return stand_pattern(model, 3); }, [](double) { return ""; }},
+      {"squat",
+       [&](double share) {
+         SquatParameters p = squat_defaults(model);
+         p.depth = rounded(share * depth, 1e-3);
+         return squat_pattern(model, p);
+       },
+       [&](double share) { return share == 1 ? "" : " --depth " + length(share * depth); }},
+      {"sway",
+       [&](double share) {
+         SwayParameters p = sway_defaults(model);
+         p.side = rounded(share * side, 1e-3);
+         return sway_pattern(model, p);
+       },
+       [&](double share) { return share == 1 ? "" : " --side " + length(share * side); }}};
+  std::vector<std::string> commands;
+  for (const Other& other : others)
+    for (const double share : {1.0, 0.5, 0.25}) {
+      if (!postures_pass(model, [&] { return other.make(share); })) continue;
+      commands.push_back("`ayumi new " + other.command + " --robot " + robot + other.option(share) +
+                         " -o " + other.command + ".json`");
+      break;
+    }
+  return commands.empty()
+             ? ""
+             : "; no walk was found, but the robot can do " + text::join(commands, ", ");
 }
 
 void new_walk(const Context& context, NewOptions options) {
@@ -163,8 +203,9 @@ void new_walk(const Context& context, NewOptions options) {
     if (write_new(context, model, walk_pattern(model, w), options, comments)) return;
   } catch (const Error& error) {
     const std::string fits = error.code() == ErrorCode::bad_pattern ? what_fits(model, w) : "";
-    if (fits.empty()) throw;
-    fail(error.code(), error.what() + std::string("; ") + fits);
+    if (error.code() != ErrorCode::bad_pattern) throw;
+    fail(error.code(), error.what() + (fits.empty() ? what_it_can_do(model, options.robot)
+                                                    : std::string("; ") + fits));
   }
   const std::string fits = what_fits(model, w);
   if (!fits.empty()) context.print("  " + fits + "\n");

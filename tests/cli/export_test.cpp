@@ -265,6 +265,74 @@ TEST_F(Export, ImportedSequencesComeBackToTheByte) {
     }
 }
 
+/// An action file as the editor of ROBOTIS leaves it, with what a table does not have: two motions,
+/// speeds, pauses, exits, gains, bytes of unused fields, and a page without steps.
+std::string action_file() {
+  std::string bytes(256 * 512, '\0');
+  const auto set = [&](size_t at, int value) { bytes[at] = static_cast<char>(value); };
+  const auto page = [&](size_t number, const std::string& name, int steps, int next) {
+    const size_t begin = 512 * number;
+    bytes.replace(begin, name.size(), name);
+    set(begin + 14, 7);  // not used
+    set(begin + 15, 2);  // repeats
+    set(begin + 20, steps);
+    set(begin + 22, 40);  // speed
+    set(begin + 24, 17);
+    set(begin + 25, next);
+    set(begin + 26, 200);  // exit
+    for (size_t i = 0; i < 31; ++i) set(begin + 32 + i, static_cast<int>(0x40 + i));
+    for (int s = 0; s < 7; ++s) {
+      const size_t step = begin + 64 * static_cast<size_t>(s + 1);
+      for (size_t id = 0; id < 31; ++id) {
+        const int value = id == 0 || id > 20 ? 0x4000 : 2048 + 5 * s * static_cast<int>(id % 3);
+        set(step + 2 * id, value & 0xff);
+        set(step + 2 * id + 1, value >> 8);
+      }
+      set(step + 62, s == 2 ? 30 : 0);
+      set(step + 63, 60 + s);
+    }
+    int sum = 0;
+    for (size_t i = 0; i < 512; ++i)
+      if (i != 31) sum += static_cast<unsigned char>(bytes[begin + i]);
+    set(begin + 31, 0xff - (sum & 0xff));
+  };
+  page(1, "walkready", 4, 2);
+  page(2, "", 3, 0);
+  page(15, "sit down", 7, 0);
+  page(16, "one", 1, 0);
+  page(200, "no steps", 0, 0);
+  return bytes;
+}
+
+// Whichever motion of the file is read, the file that is written is the whole file.
+TEST_F(Export, ImportedActionFilesComeBackToTheByte) {
+  const std::string bytes = action_file();
+  write(folder.path() / "motion_4095.bin", bytes);
+  const auto written = [&](const std::vector<std::string>& more) {
+    const fs::path unsafe = folder.path() / "b.UNSAFE.bin", safe = folder.path() / "b.bin";
+    fs::remove(unsafe);
+    fs::remove(safe);
+    std::vector<std::string> words = {"i.json", "--format", "op3-action",    "-o",
+                                      "b.bin",  "--force",  "--force-unsafe"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Output output = ayumi(words);
+    EXPECT_EQ(output.exit_code, 0) << output.err << output.out;
+    return contents(fs::exists(unsafe) ? unsafe : safe);
+  };
+  for (const char* const motion : {"1", "sit down", "one"}) {
+    const Output imported = run_program({"import", "motion_4095.bin", "--robot", "hoap1",
+                                         "--motion", motion, "-o", "i.json", "--force"},
+                                        folder.path());
+    ASSERT_EQ(imported.exit_code, 0) << motion << imported.err;
+    EXPECT_NE(imported.out.find("i.sequence.bin"), std::string::npos) << imported.out;
+    EXPECT_TRUE(written({}) == bytes) << motion;
+  }
+  // At another rate the steps are computed.
+  EXPECT_TRUE(written({"--interval", "40"}) != bytes);
+  write(folder.path() / "i.sequence.bin", bytes + "x");
+  EXPECT_EQ(ayumi({"i.json", "--format", "op3-action", "-o", "c.bin"}).exit_code, 3);
+}
+
 // With a ramp and a hold, the rows around those of the file have its columns and interval.
 TEST_F(Export, RampAndHoldAroundAnImportedSequence) {
   const std::string bytes = sequence("2", ",R,R,R", "\r\n");

@@ -294,18 +294,21 @@ TEST(Mjcf, IsReadAsMujocoCompilesIt) {
               leg.visuals[0].pose.translation().norm() < 1e-12);
 }
 
-TEST(Mjcf, MeshesAreReadAsInOtherFormats) {
-  if (!has_mujoco()) GTEST_SKIP() << "built without MuJoCo";
-  const TemporaryFolder folder;
-  // A box of 0.2 x 0.4 x 0.6 m, in millimetres, away from the origin.
+// A box of 0.2 x 0.4 x 0.6 m, away from the origin.
+std::string box_in_millimetres() {
   std::string box;
   for (int i = 0; i < 8; ++i)
     box += "v " + std::to_string(i & 1 ? 300 : 100) + " " + std::to_string(i & 2 ? 200 : -200) +
            " " + std::to_string(i & 4 ? 600 : 0) + "\n";
-  box +=
-      "f 1 3 2\nf 2 3 4\nf 5 6 7\nf 6 8 7\nf 1 2 5\nf 2 6 5\nf 3 7 4\nf 4 7 8\nf 1 5 3\nf 3 5 7\n"
-      "f 2 4 6\nf 4 8 6\n";
-  folder.write("parts/Box.obj", box);
+  return box +
+         "f 1 3 2\nf 2 3 4\nf 5 6 7\nf 6 8 7\nf 1 2 5\nf 2 6 5\nf 3 7 4\nf 4 7 8\nf 1 5 3\n"
+         "f 3 5 7\nf 2 4 6\nf 4 8 6\n";
+}
+
+TEST(Mjcf, MeshesAreReadAsInOtherFormats) {
+  if (!has_mujoco()) GTEST_SKIP() << "built without MuJoCo";
+  const TemporaryFolder folder;
+  folder.write("parts/Box.obj", box_in_millimetres());
   const std::string head =
       "<mujoco model='m'><compiler meshdir='parts'/><asset><mesh name='box' file='box.obj' "
       "scale='0.001 0.001 0.001'/><mesh file='gone.stl'/></asset><worldbody><body name='a'>"
@@ -331,6 +334,53 @@ TEST(Mjcf, MeshesAreReadAsInOtherFormats) {
   std::string without = head + tail;
   without.replace(without.find("mesh='box' density"), 10, "mesh='gone'");
   EXPECT_THROW(load_robot(folder.write("n.xml", without).string()), Error);
+}
+
+// A primitive that names a mesh gets the size that MuJoCo fits, and not the size of its own.
+TEST(Mjcf, PrimitivesFittedToAMeshHaveItsSize) {
+  if (!has_mujoco()) GTEST_SKIP() << "built without MuJoCo";
+  const TemporaryFolder folder;
+  folder.write("box.obj", box_in_millimetres());
+  const std::string text =
+      "<mujoco model='m'><asset><mesh name='box' file='box.obj' scale='0.001 0.001 0.001'/>"
+      "<mesh name='gone' file='gone.stl'/></asset>"
+      "<default><default class='fits'><geom type='box' mesh='box' density='1000'/></default>"
+      "</default><worldbody><body name='a'><freejoint/><geom class='fits'/>"
+      "<geom type='mesh' mesh='box' density='0' pos='0 0 2'/>"
+      "<body name='b'><joint name='j' axis='0 0 1'/><inertial pos='0 0 0' mass='1' "
+      "diaginertia='1 1 1'/><geom type='sphere' mesh='box' pos='0 0 1' size='7'/>"
+      "<geom type='capsule' mesh='box'/><geom type='cylinder' mesh='box'/>"
+      "<geom mesh='box'/><geom type='box' mesh='gone'/></body></body></worldbody></mujoco>";
+  const RobotModel model = load_robot(folder.write("m.xml", text).string(), {}, {.meshes = true});
+  const Link& a = model.links()[0];
+  EXPECT_NEAR(a.inertia.mass, 48, 1e-4);
+  EXPECT_TRUE(a.inertia.com.isApprox(Eigen::Vector3d(0.2, 0, 0.3), 1e-6));
+  ASSERT_EQ(a.collisions.size(), 2u);
+  // The corners of the box are those of the mesh.
+  const Eigen::Vector3d size = std::get<Box>(a.collisions[0].shape).size;
+  Eigen::AlignedBox3d extent;
+  for (int i = 0; i < 8; ++i) {
+    const Eigen::Vector3d half(i & 1 ? 0.5 : -0.5, i & 2 ? 0.5 : -0.5, i & 4 ? 0.5 : -0.5);
+    extent.extend(a.collisions[0].pose * half.cwiseProduct(size));
+  }
+  EXPECT_TRUE(extent.min().isApprox(Eigen::Vector3d(0.1, -0.2, 0), 1e-5)) << extent.min();
+  EXPECT_TRUE(extent.max().isApprox(Eigen::Vector3d(0.3, 0.2, 0.6), 1e-5)) << extent.max();
+  // The mesh that is no primitive is where the model has it.
+  EXPECT_TRUE(
+      a.collisions[1].pose.isApprox(Eigen::Isometry3d(Eigen::Translation3d(0, 0, 2)), 1e-12));
+  // Definition: MuJoCo's rules for the half sizes 0.1, 0.2, 0.3 of the box of equal inertia.
+  const Link& b = model.links()[1];
+  ASSERT_EQ(b.collisions.size(), 4u);
+  EXPECT_NEAR(std::get<Sphere>(b.collisions[0].shape).radius, 0.2, 1e-6);
+  EXPECT_TRUE(b.collisions[0].pose.translation().isApprox(Eigen::Vector3d(0.2, 0, 1.3), 1e-6));
+  EXPECT_NEAR(std::get<Capsule>(b.collisions[1].shape).radius, 0.15, 1e-6);
+  EXPECT_NEAR(std::get<Cylinder>(b.collisions[2].shape).radius, 0.15, 1e-6);
+  EXPECT_NEAR(std::get<Cylinder>(b.collisions[2].shape).length, 0.6, 1e-6);
+  EXPECT_NEAR(std::get<Sphere>(b.collisions[3].shape).radius, 0.2, 1e-6);
+  bool missing = false;
+  for (const std::string& each : model.description().assumptions)
+    missing |= each.find("gone.stl of link b") != std::string::npos;
+  EXPECT_TRUE(missing);
 }
 
 TEST(Mjcf, IncludedFilesStandInTheirPlace) {

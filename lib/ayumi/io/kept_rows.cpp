@@ -34,8 +34,9 @@ bool moves_as_table(const Task& task) {
 std::optional<KeptRows> kept_rows(const Task& task) {
   if (!task.pattern.table) return {};
   const DenseTable& table = *task.pattern.table;
-  if (!table.sequence || theta_sha256(table) != table.sequence->theta_sha256 ||
-      !moves_as_table(task))
+  // A copy of another format (io/import_pattern.hpp) has no rows of targets.
+  if (!table.sequence || !table.sequence->file.ends_with(sequence_beside("").string()) ||
+      theta_sha256(table) != table.sequence->theta_sha256 || !moves_as_table(task))
     return {};
   std::string bytes = kept_sequence(table);
   HoapFile file =

@@ -135,6 +135,35 @@ Keyframe stance_key(const RobotModel& model, const WalkParameters& p, Side stanc
   return key;
 }
 
+// Half-way from the middle between the soles to the ZMP over one of the feet.
+Keyframe half_key(const RobotModel& model, const WalkParameters& p, Side side,
+                  const std::array<Isometry3d, 2>& feet) {
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+  for (const Side each : {Side::left, Side::right}) {
+    const Eigen::Vector2d center = model.sole(each).center;
+    middle +=
+        0.5 * (feet[static_cast<size_t>(each)] * Vector3d(center.x(), center.y(), 0)).head<2>();
+  }
+  const Keyframe key = stance_key(model, p, side, feet[static_cast<size_t>(side)]);
+  const Eigen::Vector2d half = 0.5 * (middle + key.zmp->point);
+  Keyframe result;
+  result.zmp =
+      ZmpKey{ZmpKey::Place::point, {to_tenth_millimetre(half.x()), to_tenth_millimetre(half.y())}};
+  return result;
+}
+
+// A step without a swing, over half the way: with both feet on the ground, the ZMP goes towards one
+// of them and stays there for the time of a swing. The COG then sways before the first swing as it
+// does in the walk, and never farther; a ZMP that goes to the first standing foot and waits there
+// would draw the COG with it. Legs that carry the COG a few millimetres aside need this.
+void sway_in_place(PatternBuilder& writer, const Keyframe& key, const WalkParameters& p) {
+  const double change = to_millisecond(p.period * p.double_support);
+  writer.phase(change, Support::both);
+  writer.add(writer.t, key);
+  writer.phase(p.period - change, Support::both);
+  writer.add(writer.t, key);
+}
+
 void write_step(PatternBuilder& writer, const RobotModel& model, const WalkParameters& p,
                 Side swing_foot, const Foothold& to, std::array<Isometry3d, 2>& feet) {
   const double single = p.period * (1 - p.double_support);
@@ -239,10 +268,17 @@ Pattern walk_in_parts(const RobotModel& model, const std::vector<WalkParameters>
   PatternBuilder writer{pattern};
   writer.key(0, ZmpKey::Place::center);
   writer.key(rest, ZmpKey::Place::center);
-  writer.phase(rest + shift, Support::both);
+  Side swing = first.first_swing;
+  const bool sways = first.zmp_inwards > 0;
+  if (sways) {
+    writer.phase(rest, Support::both);
+    sway_in_place(writer, half_key(model, first, swing, feet), first);
+    writer.phase(first.period * first.double_support, Support::both);
+  } else {
+    writer.phase(rest + shift, Support::both);
+  }
   Vector3d center = Vector3d::Zero();
   double yaw = 0;
-  Side swing = first.first_swing;
   if (first.rise != 0) {
     pattern.world = stairs(model, first);
     // Between soles of different height the height of the ZMP is a convention.
@@ -268,6 +304,14 @@ Pattern walk_in_parts(const RobotModel& model, const std::vector<WalkParameters>
       if (!closing) writer.phase(p.period * p.double_support, Support::both);
       swing = other(swing);
     }
+  }
+  if (sways) {
+    const WalkParameters& p = parts.back();
+    sway_in_place(writer, half_key(model, p, other(swing), feet), p);
+    const double change = to_millisecond(p.period * p.double_support);
+    writer.key(writer.t + change, ZmpKey::Place::center);
+    writer.phase(rest + change, Support::both);
+    return pattern;
   }
   writer.key(writer.t + shift, ZmpKey::Place::center);
   writer.phase(rest + shift, Support::both);

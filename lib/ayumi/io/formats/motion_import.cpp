@@ -456,16 +456,17 @@ std::vector<double> times_of(const MotionFile& motion, const ImportOptions& opti
 /// Step from row to row from which on rows are key postures [s]. Chosen: recordings have at least
 /// 20 rows per second, and players do not hold a posture for longer.
 constexpr double kKeyStep = 0.06;
-/// Rows between key postures [s]. Chosen: half of the interval of hobby servos (20 ms).
-constexpr double kKeyTick = 0.01;
+/// Rows between key postures [s]. Chosen: half of the interval of hobby servos (20 ms); for action
+/// files the unit of their times, so that their keys are rows.
+constexpr double kKeyTick = 0.01, kActionTick = 0.008;
 
 Rows even_rows(const MotionFile& motion, const Rows& rows, const ImportOptions& options,
-               const std::string& file, double& dt, std::vector<std::string>& notes) {
+               const std::string& file, double tick, double& dt, std::vector<std::string>& notes) {
   const std::vector<double> times = times_of(motion, options, file, notes);
   const Spacing spacing = spacing_of(times, motion.time_step);
   const bool keys = (motion.keys && !spacing.even) || spacing.dt > kKeyStep;
   const bool unset = rows.array().isNaN().any();
-  dt = keys ? kKeyTick : spacing.dt;
+  dt = keys ? tick : spacing.dt;
   const double last = times.back() / dt;
   if (last > static_cast<double>(kMostRows))
     fail(ErrorCode::bad_file, file + ": the motion lasts " + text::brief(times.back()) +
@@ -630,7 +631,8 @@ void read_rows(const std::string& bytes, const std::string& file, const RobotMod
     result.filled.push_back(options.degrees ? "units: degrees, as --unit says"
                                             : "units: radians (assumed; --unit deg changes this)");
   const Rows rows = rows_of(read, columns, model, options.degrees && assumed);
-  set_motion(even_rows(read, rows, options, file, result.motion.dt, result.filled), read,
+  const double tick = result.format == "op3-action" ? kActionTick : kKeyTick;
+  set_motion(even_rows(read, rows, options, file, tick, result.motion.dt, result.filled), read,
              model.dof_count(), result.motion);
   result.motion.support =
       supports_on_ticks(read, static_cast<size_t>(result.motion.theta.rows()), result.motion.dt);

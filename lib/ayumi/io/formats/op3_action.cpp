@@ -20,6 +20,8 @@ constexpr int kNotUsed = 0x4000, kTorqueOff = 0x2000, kZero = 2048;
 constexpr unsigned char kUsualSpeed = 32;
 constexpr double kTick = 0.008;              // [s]
 constexpr double kCount = EIGEN_PI / kZero;  // [rad]
+// How long a page of one posture lasts [s]. Chosen: long enough to be judged, in units of 8 ms.
+constexpr double kHeld = 0.8;
 
 size_t byte_at(const std::string& bytes, size_t at) {
   return static_cast<unsigned char>(bytes[at]);
@@ -116,6 +118,12 @@ MotionFile read_op3_action(const MotionInput& source) {
     page = byte_at(bytes, begin + kNext);
     if (page == 0) break;
   }
+  if (rows.size() == 1) {  // one posture: the robot holds it
+    rows.push_back(rows.front());
+    motion.times.push_back(now + kHeld);
+    motion.notes.push_back("the file has one posture, which is held for " + text::brief(kHeld) +
+                           " s");
+  }
   motion.values.resize(static_cast<Eigen::Index>(rows.size()), 0);
   for (size_t id = 0; id < kServos; ++id) {
     if (!used[id]) continue;
@@ -131,6 +139,7 @@ MotionFile read_op3_action(const MotionInput& source) {
                           : (rows[k][id] - kZero) * kCount;
   }
   motion.keys = true;
+  motion.sequence = bytes;
   motion.notes.push_back("positions: 4096 counts a turn, 2048 at 0 rad; times in units of 8 ms");
   motion.notes.push_back(text::counted(pages, "page") + " from page " + std::to_string(start));
   return motion;

@@ -12,6 +12,7 @@
 #include "ayumi/dynamics/inverse_kinematics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/io/robot/robot_guess.hpp"
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/model/outline.hpp"
 
@@ -392,7 +393,8 @@ Eigen::Matrix3d inertia_of_extent(const LinkDescription& link, const LinkExtent&
   constexpr double kSheet = 1e-3;
   const double mass = link.inertia.mass;
   if (extent.box.isEmpty()) {
-    const double radius = std::cbrt(0.75 * mass / (std::numbers::pi * kDensity));
+    const double radius =
+        elementary::exp(elementary::log(0.75 * mass / (std::numbers::pi * kDensity)) / 3);
     return 0.4 * mass * radius * radius * Eigen::Matrix3d::Identity();
   }
   const Vector3d square = extent.box.sizes().cwiseMax(kSheet).cwiseAbs2();

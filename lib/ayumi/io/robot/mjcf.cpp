@@ -154,9 +154,18 @@ class MjcfReader {
 
   RobotDescription read(const std::string& bytes) {
     const QuietMujoco quiet;
-    text_ = mjcf_text(bytes, path_, schema_of_mujoco());
-    compiled_ = compile(path_, {{"model.xml", text_.xml}, {kMjcfProbe, probe()}});
-    weigh();
+    text_ = mjcf_text(bytes, path_, schema_of_mujoco(),
+                      [&](const std::string& body, const std::string& file) {
+                        return !places_.find(body, file).empty();
+                      });
+    Files files = {{kMjcfProbe, probe()}};
+    for (const auto& [asset, mesh] : text_.fitted_meshes) {
+      const MjcfMesh& made = text_.meshes.at(mesh);
+      use_true_mesh(asset, made, places_.find("", made.file), files);
+    }
+    files["model.xml"] = text_.xml;
+    compiled_ = compile(path_, files);
+    weigh(std::move(files));
     m_ = compiled_.get();
     robot_.name = m_->names[0] ? std::string(m_->names) : path_.stem().string();
     robot_.urdf_file = path_.string();
@@ -175,36 +184,38 @@ class MjcfReader {
   }
 
  private:
+  // Puts the vertices of a file in the place of the probe of an asset.
+  void use_true_mesh(const std::string& name, const MjcfMesh& mesh, const std::string& file,
+                     Files& files) {
+    std::vector<Eigen::Vector3f> vertices;
+    std::vector<std::array<std::uint32_t, 3>> faces;
+    const Isometry3d to_asset = mesh.reference.inverse();
+    for (const MeshPart& part : load_mesh(file, mesh.scale).parts) {
+      const auto before = static_cast<std::uint32_t>(vertices.size());
+      for (const Eigen::Vector3f& v : part.vertices)
+        vertices.push_back((to_asset * v.cast<double>()).cast<float>());
+      for (const auto& t : part.triangles)
+        faces.push_back({t[0] + before, t[1] + before, t[2] + before});
+    }
+    const std::string asset = "mesh" + std::to_string(files.size()) + ".msh";
+    files[asset] = msh_of(vertices, faces);
+    const std::string head = "<mesh name=\"" + name + "\" file=\"";
+    if (const size_t at = text_.xml.find(head + kMjcfProbe); at != std::string::npos)
+      text_.xml.replace(at + head.size(), std::strlen(kMjcfProbe), asset);
+  }
+
   // Bodies without <inertial> get their masses from the true meshes, in a second model.
-  void weigh() {
+  void weigh(Files files) {
     if (text_.weighed_meshes.empty()) return;
-    Files files = {{kMjcfProbe, probe()}};
-    std::string xml = text_.xml;
     std::vector<std::string> missing;
-    int number = 0;
     for (const std::string& name : text_.weighed_meshes) {
       const auto mesh = text_.meshes.find(name);
       if (mesh == text_.meshes.end()) continue;
       const std::string file = places_.find("whose mass follows from it", mesh->second.file);
-      if (file.empty()) {
+      if (file.empty())
         missing.push_back(mesh->second.file);
-        continue;
-      }
-      std::vector<Eigen::Vector3f> vertices;
-      std::vector<std::array<std::uint32_t, 3>> faces;
-      const Isometry3d to_asset = mesh->second.reference.inverse();
-      for (const MeshPart& part : load_mesh(file, mesh->second.scale).parts) {
-        const auto before = static_cast<std::uint32_t>(vertices.size());
-        for (const Eigen::Vector3f& v : part.vertices)
-          vertices.push_back((to_asset * v.cast<double>()).cast<float>());
-        for (const auto& t : part.triangles)
-          faces.push_back({t[0] + before, t[1] + before, t[2] + before});
-      }
-      const std::string asset = "mesh" + std::to_string(++number) + ".msh";
-      files[asset] = msh_of(vertices, faces);
-      const std::string head = "<mesh name=\"" + name + "\" file=\"";
-      if (const size_t at = xml.find(head + kMjcfProbe); at != std::string::npos)
-        xml.replace(at + head.size(), std::strlen(kMjcfProbe), asset);
+      else
+        use_true_mesh(name, mesh->second, file, files);
     }
     if (!missing.empty())
       fail(ErrorCode::bad_file, path_.string() +
@@ -212,7 +223,7 @@ class MjcfReader {
                                     "from meshes that are missing: " +
                                     text::join(missing, ", ") +
                                     "; add the files, or give these bodies an <inertial>");
-    files["model.xml"] = xml;
+    files["model.xml"] = text_.xml;
     weighed_ = compile(path_, files);
   }
 

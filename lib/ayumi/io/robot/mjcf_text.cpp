@@ -60,7 +60,8 @@ void remove_attributes(TiXmlElement* element, std::initializer_list<const char*>
 
 class Cleaner {
  public:
-  Cleaner(const fs::path& path, const MjcfSchema& schema) : path_(path), schema_(schema) {}
+  Cleaner(const fs::path& path, const MjcfSchema& schema, const MeshIsThere& is_there)
+      : path_(path), schema_(schema), is_there_(is_there) {}
 
   MjcfText clean(const std::string& bytes) {
     TiXmlDocument document;
@@ -82,6 +83,7 @@ class Cleaner {
          world = world->NextSiblingElement("worldbody"))
       walk_bodies(world, "", weighed);
     text_.weighed_meshes.assign(weighed.begin(), weighed.end());
+    add_fitted_assets(root);
     read_actuators(root);
     keep_known(root);
     for (auto& [what, count] : unknown_)
@@ -281,13 +283,20 @@ class Cleaner {
   void walk_bodies(TiXmlElement* body, const std::string& above, std::set<std::string>& weighed) {
     const std::string child_class = xml_attribute(body, "childclass", above);
     const bool weighs = weigh_all_ || !body->FirstChildElement("inertial");
-    for (auto* child = body->FirstChildElement(); child; child = child->NextSiblingElement()) {
+    for (TiXmlElement *child = body->FirstChildElement(), *next = nullptr; child; child = next) {
+      next = child->NextSiblingElement();
       const std::string& kind = child->ValueStr();
       if (kind == "body" || kind == "frame" || kind == "replicate")
         walk_bodies(child, child_class, weighed);
-      if (kind == "geom" && weighs && body->ValueStr() == "body")
-        if (const std::string mesh = found(child, "mesh", child_class); !mesh.empty())
-          weighed.insert(mesh);
+      if (kind == "geom" && body->ValueStr() == "body")
+        if (const std::string mesh = found(child, "mesh", child_class); !mesh.empty()) {
+          const std::string type = found(child, "type", child_class);
+          if (type != "mesh" && text_.meshes.contains(mesh)) {
+            fit(xml_attribute(body, "name", ""), mesh, child);
+            continue;
+          }
+          if (weighs) weighed.insert(mesh);
+        }
       if (kind != "joint") continue;
       const std::vector<double> range = mjcf_numbers(found(child, "actuatorfrcrange", child_class));
       const std::string limited = found(child, "actuatorfrclimited", child_class);
@@ -295,6 +304,31 @@ class Cleaner {
       if (range.size() == 2 && limited != "false" && !name.empty())
         text_.force_limits[name] = std::max(std::abs(range[0]), std::abs(range[1]));
     }
+  }
+
+  // MuJoCo fits a primitive that names a mesh (a sphere where no type is stated) to this mesh. It
+  // gets an asset of its own, because the probe of an asset has another size.
+  void fit(const std::string& body, const std::string& mesh, TiXmlElement* geom) {
+    if (!is_there_(body, text_.meshes.at(mesh).file)) {
+      geom->Parent()->RemoveChild(geom);
+      return;
+    }
+    const std::string asset = mesh + " fitted";
+    text_.fitted_meshes[asset] = mesh;
+    geom->SetAttribute("mesh", asset);
+  }
+
+  void add_fitted_assets(TiXmlElement* root) const {
+    if (text_.fitted_meshes.empty()) return;
+    TiXmlElement assets("asset");
+    for (const auto& [asset, mesh] : text_.fitted_meshes) {
+      TiXmlElement probe("mesh");
+      probe.SetAttribute("name", asset);
+      probe.SetAttribute("file", kMjcfProbe);
+      probe.SetAttribute("scale", "1 1 1");
+      assets.InsertEndChild(probe);
+    }
+    root->InsertEndChild(assets);
   }
 
   // Actuators of tendons and sites move no single joint.
@@ -359,6 +393,7 @@ class Cleaner {
 
   const fs::path& path_;
   const MjcfSchema& schema_;
+  const MeshIsThere& is_there_;
   MjcfText text_;
   size_t elements_ = 0;
   std::set<fs::path> included_;
@@ -396,8 +431,9 @@ MjcfSchema mjcf_schema(const std::string& printed) {
   return schema;
 }
 
-MjcfText mjcf_text(const std::string& bytes, const fs::path& path, const MjcfSchema& schema) {
-  return Cleaner(path, schema).clean(bytes);
+MjcfText mjcf_text(const std::string& bytes, const fs::path& path, const MjcfSchema& schema,
+                   const MeshIsThere& is_there) {
+  return Cleaner(path, schema, is_there).clean(bytes);
 }
 
 }  // namespace ayumi

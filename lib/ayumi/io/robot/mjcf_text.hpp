@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <set>
 #include <string>
@@ -31,6 +32,8 @@ struct MjcfText {
   std::map<std::string, double> velocity_gains;  ///< kv of position actuators, by joint
   std::string imu_site;                          ///< of the gyroscope, else the accelerometer
   std::vector<std::string> weighed_meshes;       ///< assets that give a body its mass
+  std::map<std::string, std::string> fitted_meshes;  ///< assets that only give primitives their
+                                                     ///< size, with the name in `meshes`
   std::vector<std::string> notes;                ///< what was left out, in words
 };
 
@@ -40,9 +43,13 @@ using MjcfSchema = std::map<std::string, std::set<std::string>>;
 /// The schema in the words of mj_printSchema().
 MjcfSchema mjcf_schema(const std::string& printed);
 
-/// Throws Error(bad_file) with file and line for text that is no MJCF, for numbers that are none,
-/// and for included files that are missing or include each other.
+/// Whether the file of a mesh that a body names is there.
+using MeshIsThere = std::function<bool(const std::string& body, const std::string& file)>;
+
+/// A primitive whose size follows from a mesh that is not there is left out. Throws Error(bad_file)
+/// with file and line for text that is no MJCF, for numbers that are none, and for included files
+/// that are missing or include each other.
 MjcfText mjcf_text(const std::string& bytes, const std::filesystem::path& path,
-                   const MjcfSchema& schema);
+                   const MjcfSchema& schema, const MeshIsThere& is_there);
 
 }  // namespace ayumi

@@ -1,0 +1,138 @@
+#include "ayumi/io/import_pattern.hpp"
+
+#include <cmath>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/file.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/io/formats/motion_formats.hpp"
+#include "ayumi/io/pattern/pattern_file.hpp"
+#include "ayumi/io/pattern/pattern_table.hpp"
+#include "ayumi/io/run/sha256.hpp"
+#include "ayumi/io/table/table.hpp"
+
+namespace ayumi {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+void add_ramps(double seconds, const RobotModel& model, ImportedMotion& imported) {
+  const CutEnds cut = cut_ends(model, imported.motion);
+  if (seconds <= 0) {
+    imported.filled.insert(imported.filled.end(), cut.words.begin(), cut.words.end());
+    return;
+  }
+  const std::string ends = cut.begin && cut.end ? "begins and ends" : cut.begin ? "begins" : "ends";
+  if (!cut.begin && !cut.end) {
+    imported.filled.push_back("--ramp is not used, because the motion begins and ends at rest");
+    return;
+  }
+  if (!imported.motion.zmp.empty() || !imported.motion.fz.empty())
+    imported.filled.push_back(
+        "the ZMP and the vertical force of the file are left out, because a ramp changes them");
+  imported.motion = with_ramps(model, std::move(imported.motion), seconds);
+  imported.sequence.clear();  // its rows are no longer those of the motion
+  imported.filled.push_back("the motion " + ends + " slowly (--ramp): it takes " +
+                            text::brief(seconds) +
+                            " s between rest and the recorded speed, along the recorded path");
+}
+
+ImportedPattern of_keys(ImportedKeys keys, const PatternImport& options) {
+  ImportedPattern result;
+  result.pattern = std::move(keys.pattern);
+  result.format = keys.format;
+  result.reason = keys.reason;
+  result.rows = static_cast<int>(result.pattern.keyframes.size());
+  result.filled = std::move(keys.filled);
+  if (options.ground || options.ramp > 0)
+    result.filled.push_back("--ground and --ramp are not used, because the file has key poses");
+  return result;
+}
+
+ImportedPattern of_rows(const RobotModel& model, ImportedMotion imported,
+                        const PatternImport& options) {
+  imported.motion.contact = options.contact;
+  add_ramps(options.ramp, model, imported);
+  if (options.ground) imported.motion = put_on_ground(model, std::move(imported.motion));
+  GroundedMotion motion = grounded(model, imported.motion, "motion.csv");
+  ImportedPattern result;
+  result.pattern = std::move(motion.pattern);
+  result.format = imported.format;
+  result.reason = imported.reason;
+  result.rows = imported.rows;
+  result.contacts = std::move(motion.contacts);
+  result.filled = std::move(imported.filled);
+  result.filled.insert(result.filled.end(), motion.notes.begin(), motion.notes.end());
+  result.caution = imported.caution;
+  result.sequence = std::move(imported.sequence);
+  if (!result.sequence.empty() && result.format == "hoap")
+    result.pattern.table->interval_ms = static_cast<int>(std::lround(1000 * imported.motion.dt));
+  return result;
+}
+
+}  // namespace
+
+ImportedPattern import_pattern(const std::string& bytes, const std::string& file,
+                               const RobotModel& model, const PatternImport& options) {
+  if (bytes.find("\"ayumi.pattern/") != std::string::npos)
+    fail(ErrorCode::bad_file,
+         file + ": this is a pattern already; import reads motions in the formats " +
+             text::join(read_format_names(), ", "));
+  std::optional<ImportedKeys> keys = read_key_poses(bytes, file, model, options.reading);
+  ImportedPattern result =
+      keys ? of_keys(std::move(*keys), options)
+           : of_rows(model, read_motion(bytes, file, model, options.reading), options);
+  result.pattern.name = "imported from " + fs::path(file).filename().string();
+  result.pattern.file = "imported";  // relative names hold from the working folder
+  return result;
+}
+
+fs::path copy_beside(const fs::path& path, const std::string& format) {
+  return format == "hoap" ? sequence_beside(path)
+                          : fs::path(path).replace_extension(".sequence.bin");
+}
+
+std::optional<std::string> kept_file(const DenseTable& table, const std::string& format) {
+  // The ending of the copy says of which format it is.
+  if (!table.sequence || !table.sequence->file.ends_with(copy_beside("", format).string()) ||
+      theta_sha256(table) != table.sequence->theta_sha256)
+    return {};
+  return kept_sequence(table);
+}
+
+std::vector<fs::path> files_of_import(const fs::path& path) {
+  return {path, table_beside(path), sequence_beside(path), copy_beside(path, "op3-action")};
+}
+
+void write_imported(const fs::path& path, ImportedPattern& imported) {
+  if (imported.sequence.empty() || !imported.pattern.table) {
+    write_pattern_and_table(path, imported.pattern, imported.filled, imported.caution);
+    return;
+  }
+  const bool rows = imported.format == "hoap";
+  const fs::path copy = copy_beside(path, imported.format);
+  imported.filled.push_back("a copy of the " + std::string(rows ? "sequence" : "file") +
+                            " is kept in " + copy.filename().string() +
+                            "; as long as the motion is unchanged, `ayumi export" +
+                            (rows ? "" : " --format " + imported.format) + "` writes " +
+                            (rows ? "the rows of this copy" : "the bytes of this copy"));
+  if (rows) {
+    write_pattern_and_table(path, imported.pattern, imported.filled, imported.caution,
+                            imported.sequence);
+    return;
+  }
+  DenseTable& table = *imported.pattern.table;
+  table.sequence = {fs::absolute(copy).lexically_normal().string(), sha256(imported.sequence),
+                    theta_sha256(table)};
+  write_file(copy, imported.sequence);
+  try {
+    write_pattern_and_table(path, imported.pattern, imported.filled, imported.caution);
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove(copy, ignored);
+    throw;
+  }
+}
+
+}  // namespace ayumi
