@@ -34,7 +34,7 @@ struct MjcfText {
   std::vector<std::string> weighed_meshes;       ///< assets that give a body its mass
   std::map<std::string, std::string> fitted_meshes;  ///< assets that only give primitives their
                                                      ///< size, with the name in `meshes`
-  std::vector<std::string> notes;                ///< what was left out, in words
+  std::vector<std::string> notes;                    ///< what was left out, in words
 };
 
 /// Elements, and the attributes of each, that a MuJoCo knows.
