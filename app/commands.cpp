@@ -112,8 +112,8 @@ void add_global_options(CLI::App& app, Context& context) {
       ->type_name("DIR")
       ->allow_extra_args(false);
   app.add_option("--package-path", context.package_path,
-                 "Folder for the names package://NAME/... in robot files. It contains packages, or "
-                 "it is a package itself.")
+                 "Folder in which Ayumi looks for the package NAME of package://NAME/... in robot "
+                 "files. The folder contains packages, or it is a package itself.")
       ->type_name("DIR")
       ->allow_extra_args(false);
 }

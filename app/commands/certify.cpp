@@ -122,8 +122,8 @@ void print_influences(const Context& context, std::vector<ValueInfluence> influe
                      return std::abs(a.correlation) > std::abs(b.correlation);
                    });
   context.print(
-      "  influence of each uncertain value: rank correlation with the severity, failures in the "
-      "lower half and in the upper half of its range\n");
+      "  influence of each uncertain value: its rank correlation with how bad a run is, then the "
+      "failed runs with the value in the lower half and in the upper half of its range\n");
   for (size_t i = 0; i < std::min(influences.size(), kShownInfluences); ++i) {
     const ValueInfluence& each = influences[i];
     context.print("    " + text::fixed(each.correlation, 2) + "  " + each.name + ": " +
@@ -349,11 +349,13 @@ void add_certify(CLI::App& app, Context& context) {
       ->type_name("F");
   command
       ->add_option("--failure", certify.failure,
-                   "Failure probability that a certificate must not exceed.")
+                   "Largest failure probability with which the robot is certified.")
       ->check(number_within(1e-6, 0.5).description(""))
       ->type_name("P")
       ->capture_default_str();
-  command->add_option("--confidence", certify.confidence, "Confidence of every statement.")
+  command
+      ->add_option("--confidence", certify.confidence,
+                   "Confidence of the certificate and of all bounds.")
       ->check(number_within(0.5, 0.999999).description(""))
       ->type_name("P")
       ->capture_default_str();

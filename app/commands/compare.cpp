@@ -243,9 +243,7 @@ void add_compare(CLI::App& app, Context& context) {
                    "Write a report of the run that shows this comparison, with the recording as a "
                    "ghost (.html).")
       ->type_name("F");
-  command
-      ->add_option("--unit", unit,
-                   "Unit of the columns whose name is that of a joint, without a unit.")
+  command->add_option("--unit", unit, "Unit of the joint columns whose names do not state a unit.")
       ->check(one_of({"rad", "deg"}))
       ->capture_default_str();
   command

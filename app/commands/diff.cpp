@@ -133,8 +133,8 @@ void add_diff(CLI::App& app, Context& context) {
       ->allow_extra_args(false);
   command
       ->add_option("--safety", options.safety,
-                   "Weight of safety compared with a small change, as for repair "
-                   "(default: the weight in the pattern; 1 if the pattern has none).")
+                   "How much safety counts in comparison with a small change, as for repair "
+                   "(default: the factor in the pattern; 1 if the pattern has none).")
       ->check(number_within(0.0, 1e6))
       ->type_name("FACTOR");
   add_pattern_options(*command, options.input);

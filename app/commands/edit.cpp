@@ -334,7 +334,7 @@ GaitCycle best_cycle(const RobotModel& robot, const MotionPart& walk) {
 void loop_cycle(Context& context, const EditCommand& options) {
   if (options.over > 0)
     fail(ErrorCode::usage,
-         "edit loop: --cycle repeats steps in motion, so that there is no transition; leave --over "
+         "edit loop: --cycle repeats steps without a stop, so there is no transition; leave --over "
          "out");
   const Task input = load(context, options);
   const MotionPart walk{input.pattern, input.series};
@@ -344,7 +344,7 @@ void loop_cycle(Context& context, const EditCommand& options) {
          options.pattern + ": the best cycle of two steps begins at " +
              text::fixed(static_cast<double>(cycle.begin) * input.series.dt, 3) +
              " s, and its end does not meet its beginning: " + gap_words(cycle.gap) +
-             "; a walk of more equal steps has a cycle that does");
+             "; take a walk that has more steps, all of the same length and period");
   const std::string table = table_beside(options.out).string();
   const auto part = [&](long first, long last) {
     return cut(input.robot, walk, first, last, table);
@@ -599,8 +599,8 @@ void add_edit(CLI::App& app, Context& context) {
   retime_command
       .add_option("--margin", options.margin,
                   "With --local: a ZMP margin of this size is enough [m]. A smaller value allows a "
-                  "faster motion (default: 80 % of the margin at the fastest "
-                  "uniform pace, or an eighth of the width of the sole).")
+                  "faster motion (default: 80 % of the margin at the fastest uniform pace or an "
+                  "eighth of the width of the sole, whichever is larger).")
       ->check(number_within(0.0, 1.0))
       ->type_name("M");
   retime_command.add_flag("--keep-pauses", options.keep_pauses,
@@ -618,8 +618,9 @@ void add_edit(CLI::App& app, Context& context) {
                   "the two differ.")
       ->check(number_within(0.02, 60.0))
       ->type_name("S");
-  loop_command.add_flag("--cycle", options.cycle,
-                        "Cut two steps out of the middle of a walk and repeat them in motion.");
+  loop_command.add_flag(
+      "--cycle", options.cycle,
+      "Cut two steps out of the middle of a walk and repeat them without a stop.");
   loop_command.add_flag("--whole", options.whole,
                         "With --cycle: also write the walk's begin before them and its end after "
                         "them.");

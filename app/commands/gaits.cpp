@@ -363,7 +363,7 @@ void add_gaits(CLI::App& app, Context& context) {
   gaits.study.failure = 0.15;
   command
       ->add_option("--failure", gaits.study.failure,
-                   "Failure probability that a certificate must not exceed.")
+                   "Largest failure probability with which a walk is certified.")
       ->check(number_within(1e-6, 0.5).description(""))
       ->type_name("P")
       ->capture_default_str();

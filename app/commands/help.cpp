@@ -37,7 +37,8 @@ void add_help(CLI::App& app, Context&) {
   CLI::App* command = app.add_subcommand("help", "print the help of a command");
   command->footer("Examples:\n  ayumi help check\n  ayumi help new walk");
   static std::vector<std::string> words;
-  command->add_option("COMMAND", words, "The command, and the kind where it has kinds.");
+  command->add_option("COMMAND", words,
+                      "Name of a command, and of its subcommand if it has subcommands.");
   command->callback([&app] { print_help(app, words); });
 }
 

@@ -275,9 +275,7 @@ void add_identify(CLI::App& app, Context& context) {
                    "Support of the robot during the recording: feet (on level ground), or fixed (a "
                    "fixture holds the root upright) (default: feet if the robot has soles).")
       ->check(one_of({"auto", "feet", "fixed"}));
-  command
-      ->add_option("--unit", unit,
-                   "Unit of the columns whose name is that of a joint, without a unit.")
+  command->add_option("--unit", unit, "Unit of the joint columns whose names do not state a unit.")
       ->check(one_of({"rad", "deg"}))
       ->capture_default_str();
   command
@@ -288,9 +286,10 @@ void add_identify(CLI::App& app, Context& context) {
       ->type_name("HZ");
   command
       ->add_option("--longest-lag", options.longest_lag_ms,
-                   "Largest time by which a servo may follow its command [ms]. A recording in "
-                   "which the angles are later is refused, because it is shifted (default: 30, or "
-                   "twice the lag of the slowest servo of ROBOT).")
+                   "Largest time by which a servo may be behind its command [ms]. If the measured "
+                   "angles are later than this, the recording does not begin at the same time as "
+                   "the command, and is refused (default: 30 or twice the lag of the slowest servo "
+                   "of ROBOT, whichever is larger).")
       ->check(number_within(1.0, 500.0))
       ->type_name("MS");
   command->callback([&context] {

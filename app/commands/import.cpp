@@ -122,9 +122,9 @@ void add_import(CLI::App& app, Context& context) {
       ->type_name("HZ");
   command
       ->add_option("--signs", signs,
-                   "For radians in the order of the motor numbers: which signs the angles have, "
-                   "those of the robot's encoders (encoder) or those of the joints as the robot's "
-                   "file defines them (joint).")
+                   "Signs of the angles in a file with radians in the order of the motor numbers: "
+                   "as the robot's encoders count (encoder), or as the robot's file defines the "
+                   "joints (joint).")
       ->check(one_of({"encoder", "joint"}))
       ->capture_default_str();
   command->add_flag("--order", options.how.reading.by_order,

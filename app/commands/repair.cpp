@@ -464,10 +464,11 @@ void add_repair(CLI::App& app, Context& context) {
       ->check(number_within(0.0, 0.1))
       ->type_name("M");
   command
-      ->add_option("--safety", options.safety,
-                   "Weight of safety compared with a small change. 0 gives the "
-                   "smallest change that passes the check (default: the weight in the pattern; 1 "
-                   "if the pattern has none).")
+      ->add_option(
+          "--safety", options.safety,
+          "How much safety counts in comparison with a small change. With a larger factor, the "
+          "repair changes more to gain safety. 0 gives the smallest change that passes "
+          "the check (default: the factor in the pattern; 1 if the pattern has none).")
       ->check(number_within(0.0, 1e6))
       ->type_name("FACTOR");
   command

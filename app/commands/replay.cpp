@@ -275,9 +275,10 @@ void add_replay(CLI::App& app, Context& context) {
           "Actuator profile, which also sets the servos (default: the first profile of the robot).")
       ->type_name("NAME");
   command
-      ->add_option("--plant", options->plant,
-                   "Simulator: ayumi, mujoco, or both (ayumi alone if this program was built "
-                   "without MuJoCo).")
+      ->add_option(
+          "--plant", options->plant,
+          "Simulator: ayumi, mujoco or both. If this program was built without MuJoCo, both "
+          "means ayumi alone.")
       ->type_name("NAME")
       ->capture_default_str();
   command

@@ -123,9 +123,10 @@ void add_tune(CLI::App& app, Context& context) {
       "  ayumi tune walk.json -o tuned.json\n"
       "  ayumi tune walk.json --tune ka,tau_z --level 1.0 --directions 8 --json\n"
       "The objective is the sum of two means; smaller is better. The first is a mean over the\n"
-      "pushes: omega times the integral of |DCM - commanded DCM| / z over 1.2 s, or 10 for a push\n"
-      "after which the robot falls. The second is the mean of |ZMP - reference ZMP| / z of the\n"
-      "pattern without a push. Gains whose loop is unstable are not tried.");
+      "pushes. A push counts 10 if the robot falls. Otherwise it counts omega / z times the\n"
+      "integral of |DCM - commanded DCM| during 1.2 s. The second is the mean of\n"
+      "|ZMP - reference ZMP| / z of the pattern without a push. z is the COG height, and omega is\n"
+      "the square root of g / z. Gains whose loop is unstable are not tried.");
   auto options = std::make_shared<TuneCommand>();
   TuneOptions& t = options->tune;
   command->add_option("PATTERN", options->pattern, "Pattern file.")->required();

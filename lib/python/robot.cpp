@@ -154,7 +154,8 @@ void bind_robot(py::module_& m) {
         return std::make_shared<RobotModel>(load_robot(name, robot_search(path), {meshes}));
       },
       py::arg("name"), py::arg("path") = std::vector<Path>(), py::arg("meshes") = true,
-      "The robot of this name, folder, sidecar or URDF. `meshes`: read what only pictures need.");
+      "The robot of this name, folder, sidecar or URDF. `meshes`: also read the meshes, which only "
+      "pictures need.");
 }
 
 }  // namespace ayumi::python

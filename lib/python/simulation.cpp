@@ -124,9 +124,12 @@ PlantKind plant_of(const py::object& plant) {
   if (name == "ayumi") return {};
 #ifdef AYUMI_HAS_MUJOCO
   if (name == "mujoco") return mujoco_plant_kind();
-  fail(ErrorCode::usage, "plant '" + name + "': one of ayumi and mujoco, or a function");
+  fail(ErrorCode::usage,
+       "plant '" + name + "' is not one of ayumi and mujoco; give one of these, or a function");
 #else
-  fail(ErrorCode::usage, "plant '" + name + "': ayumi, or a function (built without MuJoCo)");
+  fail(ErrorCode::usage,
+       "plant '" + name +
+           "' is not possible; give ayumi or a function (this program was built without MuJoCo)");
 #endif
 }
 

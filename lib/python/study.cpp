@@ -149,8 +149,9 @@ void bind_push(py::module_& m) {
       py::arg("progress") = py::none(),
       "The largest push that the robot survives, by phase of the gait and direction, in open loop "
       "and with each controller (the pattern's when none is named). `times` [s] in place of the "
-      "default phases; `step` and `cap` as multiples of the capture bound; `replicas`: small "
-      "variations of every push, all of which must be survived; `duration` of a push [s]; "
+      "default phases; `step`: resolution of the search, and `cap`: largest push tried, both as "
+      "multiples of the capture bound; `replicas`: number of small variations of every push, all "
+      "of which the robot must survive; `duration` of a push [s]; "
       "`threads`: 0 for all, results do not depend on it.");
 }
 
@@ -250,7 +251,7 @@ void bind_local_pace(py::module_& m) {
   py::class_<LocalPace>(m, "LocalPace", "The result of fastest_local_pace().")
       .def_readonly("found", &LocalPace::found, "Whether a course of time passes the check.")
       .def_readonly("pattern", &LocalPace::pattern, "The motion in this course, as a table.")
-      .def_readonly("scale", &LocalPace::scale, "Duration over that of the given pattern.")
+      .def_readonly("scale", &LocalPace::scale, "Duration divided by that of the given pattern.")
       .def_readonly("path_scale", &LocalPace::path_scale,
                     "The same for the fastest uniform pace, whose postures the motion has.")
       .def_property_readonly(

@@ -92,7 +92,7 @@ void bind_check(py::module_& m) {
 Trust trust_of(const std::string& name) {
   for (const Trust trust : {Trust::posture, Trust::cog, Trust::zmp})
     if (name == name_of(trust)) return trust;
-  fail(ErrorCode::usage, "trust '" + name + "': one of posture, cog and zmp");
+  fail(ErrorCode::usage, "trust '" + name + "' is not one of posture, cog and zmp");
 }
 
 /// A repair, and the task that it makes of the pattern.
@@ -233,7 +233,8 @@ void bind_task(py::module_& m) {
       py::arg("meshes") = true, py::arg("progress") = py::none(),
       "Reads a pattern (a file, or a Pattern) and its robot, and samples the motion. `set` gives "
       "values to declared parameters of a file, `robot` is a name or path in place of the "
-      "pattern's, `path` lists folders with robots. `meshes`: read what only pictures need.");
+      "pattern's, `path` lists folders with robots. `meshes`: also read the meshes, which only "
+      "pictures need.");
   m.def(
       "sample",
       [](const Pattern& pattern, const RobotModel& robot, const std::string& profile,

@@ -93,7 +93,7 @@ TEST(Hoap, SaysWhatIsWrong) {
   EXPECT_NE(
       hoap_error("1,2,0,0,R,R,R\n").find("s.csv:1: 7 columns; sequences of this robot have 8"),
       std::string::npos);
-  EXPECT_NE(hoap_error("1,4,0,0,0,R,R,R\n").find("expected an interval, then 2"),
+  EXPECT_NE(hoap_error("1,4,0,0,0,R,R,R\n").find("expected an interval, then the code 2"),
             std::string::npos);
   EXPECT_NE(hoap_error("1,2,0,0,1.5,R,R,R\n").find("column 5: '1.5' is not a count of 16 bits"),
             std::string::npos);

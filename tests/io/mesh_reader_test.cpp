@@ -203,7 +203,7 @@ class FailingMeshReader : public testing::Test {
 
 TEST_F(FailingMeshReader, EndsBeforeItBegins) {
   const std::string text = message("exit 7\n");
-  EXPECT_NE(text.find("reader: the mesh reader ended before it began (exit code 7)"),
+  EXPECT_NE(text.find("reader: the mesh reader ended before it was ready (exit code 7)"),
             std::string::npos)
       << text;
 }

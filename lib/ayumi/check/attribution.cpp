@@ -221,7 +221,7 @@ const Where kEdges = {
     "within 3 samples of the beginning or the end of the cause",
     [](const Scene& scene, int i) { return std::vector<Interval>{edges_of(scene, i)}; }};
 const Where kSameFlight = {
-    "in the flight of the cause", [](const Scene& scene, int i) {
+    "in the flight in which the cause occurs", [](const Scene& scene, int i) {
       return std::vector<Interval>{flight_around(scene.motion, scene.window(i))};
     }};
 const Where kFlightEdges = {
@@ -230,7 +230,7 @@ const Where kFlightEdges = {
       return std::vector<Interval>{{f.first - kEdgeReach, f.first + kEdgeReach},
                                    {f.last - kEdgeReach, f.last + kEdgeReach}};
     }};
-const Where kNearFlight = {"within 5 samples of the flight of the cause",
+const Where kNearFlight = {"within 5 samples of the flight in which the cause occurs",
                            [](const Scene& scene, int i) {
                              return std::vector<Interval>{
                                  around(flight_around(scene.motion, scene.window(i)), kEdgeReach)};
@@ -322,8 +322,7 @@ const Condition kTouchesByAngle = {
     }};
 
 const Condition kRateOfAngle = {
-    "cause and effect concern the same joint. If the effect is a jump, another jump undoes this "
-    "jump",
+    "cause and effect concern the same joint. If the effect is a jump, the joint also jumps back",
     [](Scene& scene, int i, int j, const Interval&) {
       const Violation& v = scene.of(j);
       if (!same_item(scene, i, j)) return false;
@@ -426,8 +425,8 @@ const Condition kTorqueOfLeg = {"the joint belongs to a leg",
                                 }};
 
 const Condition kHeldByFriction = {
-    "the yaw moment is at most twice its limit, if this limit is computed with the friction "
-    "coefficient that the motion needs",
+    "with the friction coefficient that the motion needs, the yaw moment would be at most twice "
+    "its limit",
     [](Scene& scene, int i, int j, const Interval&) {
       const double more = scene.of(i).value / scene.of(i).limit;
       return scene.of(j).value <= kArmFactor * more * scene.of(j).limit;

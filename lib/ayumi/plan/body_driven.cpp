@@ -61,9 +61,9 @@ namespace {
                             ": t = " + text::fixed(t, 3) + " s: the " + name_of(solution.foot);
   if (job.ik.lacks_joints() && !solution.knee_flipped)
     throw in_phase(where + " foot is out of reach by " + millimetres(solution.missing) +
-                   ", of which " + millimetres(kLackingTolerance) +
-                   " are allowed because a leg has fewer than six joints; with level soles, such "
-                   "legs cannot move the COG farther to the side. Make the COG sway less (shorten "
+                   " (allowed: " + millimetres(kLackingTolerance) +
+                   ", because a leg has fewer than six joints). With level soles, such legs cannot "
+                   "move the COG farther to the side. Make the COG sway less (shorten "
                    "the step period, or move the ZMP towards the other foot with new walk "
                    "--zmp-inwards), or lower the COG height");
   const std::string remedy = "; lower the COG height (here " +
@@ -287,8 +287,10 @@ void describe(const SampleJob& job, const CogPlan& plan, const Worst& worst,
     origin["cog"] = both ? solved : "keys; " + solved;
   }
   if (!job.tracks.zmp)
-    origin["zmp"] = any ? "centres of the supporting soles, from the phases" : "of the full model";
-  if (!job.tracks.zmp && any && !both) origin["zmp"] += "; of the full model where COG is keyed";
+    origin["zmp"] =
+        any ? "centres of the supporting soles, from the phases" : "computed from the full model";
+  if (!job.tracks.zmp && any && !both)
+    origin["zmp"] += "; where the COG has keys, computed from the full model";
   const double moved =
       std::max(plan.bump[0].cwiseAbs().maxCoeff(), plan.bump[1].cwiseAbs().maxCoeff()) * 4 *
       elementary::exp(-2.0);

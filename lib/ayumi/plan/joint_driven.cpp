@@ -228,8 +228,8 @@ CommandSeries sample_joint_driven(const SampleJob& job) {
   series.servo_commands = job.pattern.table && job.pattern.table->commands;
   series.origin["joints"] = job.tracks.driver + ", others from keys and default posture";
   series.origin.try_emplace("cog", "of the posture");
-  series.origin.try_emplace("zmp", "of the full model");
-  series.origin.try_emplace("fz", "of the full model");
+  series.origin.try_emplace("zmp", "computed from the full model");
+  series.origin.try_emplace("fz", "computed from the full model");
   return series;
 }
 

@@ -197,7 +197,7 @@ class LocalPace:
 
     @property
     def scale(self) -> float:
-        """Duration over that of the given pattern."""
+        """Duration divided by that of the given pattern."""
 
     @property
     def path_scale(self) -> float:
@@ -891,10 +891,10 @@ def jump_pattern(robot: Robot, *, height: Optional[float] = None, stoop: Optiona
     """Stoop, lift-off, flight, touchdown and settling; all lengths in m."""
 
 def load_robot(name: str, path: list[Union[str, PathLike[str]]] = [], meshes: bool = True) -> Robot:
-    """The robot of this name, folder, sidecar or URDF. `meshes`: read what only pictures need."""
+    """The robot of this name, folder, sidecar or URDF. `meshes`: also read the meshes, which only pictures need."""
 
 def load_task(pattern: Union[Pattern, Union[str, PathLike[str]]], *, set: dict[str, float] = {}, profile: str = '', robot: str = '', path: list[Union[str, PathLike[str]]] = [], meshes: bool = True, progress: Optional[Callable[[str, float, str], Any]] = None) -> Task:
-    """Reads a pattern (a file, or a Pattern) and its robot, and samples the motion. `set` gives values to declared parameters of a file, `robot` is a name or path in place of the pattern's, `path` lists folders with robots. `meshes`: read what only pictures need."""
+    """Reads a pattern (a file, or a Pattern) and its robot, and samples the motion. `set` gives values to declared parameters of a file, `robot` is a name or path in place of the pattern's, `path` lists folders with robots. `meshes`: also read the meshes, which only pictures need."""
 
 def loci(robot: Robot, logs: dict[str, Log], *, title: str = '', scale: float = 1.5) -> bytes:
     """COG, ZMP and vertical force of runs against time as the bytes of a PNG file. `logs`: runs by the label that the legend has."""
@@ -915,7 +915,7 @@ def picture(robot: Robot, log: Log, *, at: float = 0.0, width: int = 1280, heigh
     """The run at the time `at` [s] as the bytes of a PNG file. `view`: 'front', 'side', 'iso', 'back', 'top', 'ortho-side' or 'ortho-front'; `width` and `height` in pixels."""
 
 def push(task: Task, *, controllers: list[str] = [], gains: dict[str, float] = {}, times: list[float] = [], directions: int = 8, step: float = 0.06, cap: float = 2.4, replicas: int = 2, duration: float = 0.02, seed: int = 1, threads: int = 0, progress: Optional[Callable[[str, float, str], Any]] = None) -> PushStudy:
-    """The largest push that the robot survives, by phase of the gait and direction, in open loop and with each controller (the pattern's when none is named). `times` [s] in place of the default phases; `step` and `cap` as multiples of the capture bound; `replicas`: small variations of every push, all of which must be survived; `duration` of a push [s]; `threads`: 0 for all, results do not depend on it."""
+    """The largest push that the robot survives, by phase of the gait and direction, in open loop and with each controller (the pattern's when none is named). `times` [s] in place of the default phases; `step`: resolution of the search, and `cap`: largest push tried, both as multiples of the capture bound; `replicas`: number of small variations of every push, all of which the robot must survive; `duration` of a push [s]; `threads`: 0 for all, results do not depend on it."""
 
 def read_log(path: Union[str, PathLike[str]], name: str = '') -> Log:
     """The log of a file or of the folder that `ayumi run` wrote: 'open_loop', 'closed_loop' (the default) or 'undisturbed'."""

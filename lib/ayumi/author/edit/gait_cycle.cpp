@@ -93,7 +93,8 @@ Pattern cut(const RobotModel& model, const MotionPart& motion, long first, long 
   const auto count = static_cast<long>(series.samples.size());
   if (!(first >= 0 && first < last && last < count))
     fail(ErrorCode::usage, "samples " + std::to_string(first) + " to " + std::to_string(last) +
-                               " of " + std::to_string(count) + " are no part of a motion");
+                               " cannot be cut out of a motion with the samples 0 to " +
+                               std::to_string(count - 1) + "; the last must come after the first");
   const CommandSample& start = series.samples[static_cast<size_t>(first)];
   for (const long k : {first, last})
     if (series.samples[static_cast<size_t>(k)].support != Support::both)

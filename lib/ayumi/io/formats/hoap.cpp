@@ -96,7 +96,9 @@ class Reader {
         interval > kLongestInterval)
       stop("'" + std::string(cells[0].substr(0, 24)) + "' is not an interval in milliseconds");
     if (cells.size() < 3 || (cells[1] != "2" && cells[1] != "3"))
-      stop("expected an interval, then 2 (targets) or 3 (a command to one device)");
+      stop(
+          "expected an interval, then the code 2 (targets follow) or 3 (a command to one device "
+          "follows)");
     if (cells[1] == "3")
       ++result_.general_commands;
     else

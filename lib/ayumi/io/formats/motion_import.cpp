@@ -585,10 +585,11 @@ void say_rough(const RobotModel& model, ImportedMotion& imported) {
   if (worst < kSaid) return;
   imported.filled.push_back(
       "the angles are rough, as if they were rounded or measured with noise: " +
-      model.dof_names()[static_cast<size_t>(joint)] + " has " + text::brief(worst, 2) +
+      model.dof_names()[static_cast<size_t>(joint)] + " has an acceleration of " +
+      text::brief(worst, 2) +
       (model.dofs()[static_cast<size_t>(joint)].prismatic ? " m/s2" : " rad/s2") +
-      " from row to row (root mean square), and forces follow from accelerations; --smooth DEG, "
-      "such as 0.1, smooths the angles by at most this");
+      " (root mean square), and the forces are computed from the accelerations; --smooth DEG, "
+      "such as 0.1, changes no angle by more than DEG");
 }
 
 // Counts are rounded, and straight between the times for which they were made: differences of that

@@ -143,7 +143,8 @@ UncertainQuantity read_quantity(const JsonNode& node, const std::vector<Uncertai
   }
   if (const auto each = node.find("each")) q.each = each->boolean();
   if (q.each && kind.target == UncertainKindInfo::Target::none)
-    node.at("each").complain("the quantity '" + what + "' belongs to no link or joint");
+    node.at("each").complain("the quantity '" + what +
+                             "' belongs to no link or joint; leave \"each\" out");
   if (kind.kind == UncertainKind::payload && q.on.empty())
     node.complain("a payload needs a link; add \"on\"");
   if (const auto point = node.find("point")) {

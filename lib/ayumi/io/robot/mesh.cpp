@@ -156,9 +156,9 @@ class MeshReader {
     MeshMessageHead head;
     const Exchange exchange = child_->receive(&head, sizeof head);
     if (exchange == Exchange::closed)
-      fail(ErrorCode::bad_file, program_.string() + ": the mesh reader ended before it began (" +
-                                    child_->end().words() +
-                                    "); start it by itself to see why, or install Ayumi again");
+      fail(ErrorCode::bad_file,
+           program_.string() + ": the mesh reader ended before it was ready (" +
+               child_->end().words() + "); start it by itself to see why, or install Ayumi again");
     need(exchange);
     if (head.kind != MeshMessage::hello || head.size != kMeshMessageVersion)
       fail(ErrorCode::bad_file,

@@ -117,7 +117,8 @@ BareRows sequence_rows(std::string_view rest, const std::string& file, size_t de
     if (cells.size() < 3 || !interval || *interval < 1 || *interval != std::round(*interval) ||
         (cells[1] != "2" && cells[1] != "3"))
       complain(file, line,
-               "expected an interval [ms], then 2 (targets) or 3 (a command to a device)");
+               "expected an interval [ms], then the code 2 (targets follow) or 3 (a command to one "
+               "device follows)");
     if (cells[1] == "2") {
       if (columns != 0 && cells.size() != columns)
         complain(file, line,
