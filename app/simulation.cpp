@@ -59,7 +59,8 @@ void refuse_unstable_gains(const Task& input, const ControllerSpec& spec, bool a
 
 void note_missing_noise(const RobotModel& robot, bool noise) {
   const SensorDescription& sensors = robot.description().sensors;
-  if (!noise || sensors.latency > 0 || sensors.attitude_noise > 0 || sensors.attitude_bias != 0 ||
+  if (!noise || sensors.oldest(robot.description().servo_period) > 0 ||
+      !sensors.force_cells.empty() || sensors.attitude_noise > 0 || sensors.attitude_bias != 0 ||
       sensors.gyro_noise > 0 || sensors.accelerometer_noise > 0 || sensors.force_noise > 0 ||
       sensors.force_resolution > 0 || sensors.encoder_quantisation)
     return;

@@ -311,6 +311,24 @@ std::string sole_lines(const RobotModel& model) {
   return text;
 }
 
+/// What load cells do with the force on them, foot by foot.
+std::string cell_lines(const SensorDescription& sensors) {
+  std::string text;
+  for (const auto& [side, cells] : sensors.force_cells) {
+    text += "  cells of the " + side + " sole:";
+    for (size_t i = 0; i < cells.size(); ++i) {
+      const CellResponse& cell = cells[i];
+      text += (i > 0 ? "; gain " : " gain ") + text::brief(cell.gain) + ", dead zone " +
+              text::brief(cell.dead_zone) + " N, hysteresis " + text::brief(cell.hysteresis) +
+              " N, " +
+              (cell.saturation > 0 ? "at most " + text::brief(cell.saturation) + " N"
+                                   : "no saturation");
+    }
+    text += cells.size() == 1 ? " (each)\n" : "\n";
+  }
+  return text;
+}
+
 std::string sensor_lines(const RobotModel& model) {
   const SensorDescription& sensors = model.description().sensors;
   const Eigen::Vector3d at = 1000 * sensors.imu_position;
@@ -321,9 +339,17 @@ std::string sensor_lines(const RobotModel& model) {
       text::brief(sensors.attitude_bias) + " rad, gyro noise " + text::brief(sensors.gyro_noise) +
       " rad/s, accelerometer noise " + text::brief(sensors.accelerometer_noise) + " m/s^2\n";
   text += "  load cells at the sole corners: noise " + text::brief(sensors.force_noise) +
-          " N, resolution " + text::brief(sensors.force_resolution) + " N\n";
-  return text + "  latency " + text::brief(1000 * sensors.latency) + " ms, servo period " +
-         text::brief(1000 * model.description().servo_period) + " ms, joint angles " +
+          " N, resolution " + text::brief(sensors.force_resolution) + " N";
+  if (sensors.force_readings > 1)
+    text += ", mean of " + std::to_string(sensors.force_readings) + " readings";
+  text += "\n" + cell_lines(sensors) + "  latency " + text::brief(1000 * sensors.latency) + " ms";
+  for (const auto& [latency, what] :
+       {std::pair(sensors.encoder_latency, "joint angles"), std::pair(sensors.imu_latency, "IMU"),
+        std::pair(sensors.force_latency, "load cells")})
+    if (latency)
+      text += ", of the " + std::string(what) + " " + text::brief(1000 * *latency) + " ms";
+  return text + ", servo period " + text::brief(1000 * model.description().servo_period) +
+         " ms, joint angles " +
          (sensors.encoder_quantisation ? "rounded to counts" : "not rounded") + "\n";
 }
 

@@ -195,6 +195,58 @@ TEST(Sidecar, LocksJoints) {
   EXPECT_NEAR(model.mass(), 6.5, 1e-9);
 }
 
+TEST(Sidecar, StatesLoadCellsAndTheLatencyOfEachSensor) {
+  const test::JsonSchema schema(nlohmann::json::parse(
+      read_file(AYUMI_SOURCE_DIR "/docs/schemas/robot-1.schema.json"), nullptr, true, true));
+  const TemporaryFolder folder;
+  folder.write("robot.urdf", read_file(kRobots + "/hoap1/robot.urdf"));
+  std::filesystem::create_directory_symlink(kRobots + "/hoap1/meshes", folder.path() / "meshes");
+  nlohmann::json sidecar =
+      nlohmann::json::parse(read_file(kRobots + "/hoap1/robot.json"), nullptr, true, true);
+  const auto load = [&](const std::string& sensors) {
+    sidecar["sensors"] = nlohmann::json::parse(sensors);
+    EXPECT_TRUE(schema.accepts(sidecar)) << sensors;
+    folder.write("robot.json", sidecar.dump());
+    return load_robot(folder.path().string());
+  };
+  const RobotModel model =
+      load(R"({"latency": 0.003, "encoder_latency": 0.001, "force_latency": 0.004,
+               "force_readings": 8,
+               "force_cells": {"left": [{"gain": 1.1}, {"dead_zone": 0.5}, {"hysteresis": 2},
+                                        {"saturation": 80}],
+                               "right": [{"gain": 0.9}]}})");
+  const SensorDescription& s = model.description().sensors;
+  EXPECT_EQ(s.encoder_latency, 0.001);
+  EXPECT_EQ(s.imu_latency, std::nullopt);
+  EXPECT_EQ(s.force_latency, 0.004);
+  EXPECT_NEAR(s.oldest(0.001), 0.0075, 1e-15);
+  EXPECT_EQ(s.force_readings, 8);
+  const std::vector<CellResponse>& left = s.force_cells.at("left");
+  ASSERT_EQ(left.size(), 4u);
+  EXPECT_EQ(left[0], (CellResponse{.gain = 1.1}));
+  EXPECT_EQ(left[1], (CellResponse{.dead_zone = 0.5}));
+  EXPECT_EQ(left[2], (CellResponse{.hysteresis = 2}));
+  EXPECT_EQ(left[3], (CellResponse{.saturation = 80}));
+  EXPECT_EQ(s.force_cells.at("right"), (std::vector<CellResponse>{{.gain = 0.9}}));
+
+  try {
+    load(R"({"force_cells": {"left": [{}, {}, {}]}})");
+    FAIL() << "three cells on four corners";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("/sensors/force_cells/left: 3 cells, but the sole has 4"),
+              std::string::npos)
+        << e.what();
+  }
+  for (const char* bad :
+       {R"({"force_readings": 0})", R"({"force_cells": {"middle": [{}]}})",
+        R"({"force_cells": {"left": [{"gain": -1}]}})", R"({"imu_latency": 2})"}) {
+    sidecar["sensors"] = nlohmann::json::parse(bad);
+    EXPECT_FALSE(schema.accepts(sidecar)) << bad;
+    folder.write("robot.json", sidecar.dump());
+    EXPECT_THROW(load_robot(folder.path().string()), Error) << bad;
+  }
+}
+
 // The published schema takes the bundled sidecar, and refuses what the reader refuses.
 TEST(Sidecar, FitsItsSchema) {
   const auto json = [](const std::string& file) {

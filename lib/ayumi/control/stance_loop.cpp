@@ -247,7 +247,7 @@ std::vector<LoopModel> stance_loops(const RobotModel& model, const ActuatorLimit
                                        model.dofs()[static_cast<size_t>(j)].name +
                                        " has no servo (kp); give it one in the sidecar");
     }
-  like.delay = model.description().sensors.latency + servo_delay;
+  like.delay = model.description().sensors.oldest(tick) + servo_delay;
   std::vector<LoopModel> loops;
   Stance stance(model, actuators);
   for (const bool both : {true, false}) {

@@ -4,7 +4,9 @@
 // RobotModel validates.
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -153,18 +155,45 @@ struct AxisReadings {
   Eigen::Vector3d scale = Eigen::Vector3d::Ones();  ///< [m/s^2, rad/s per reading]
 };
 
+/// How a load cell of a sole answers to the force on it, in this order (sim/load_cell).
+struct CellResponse {
+  double dead_zone = 0;   ///< force that the cell does not feel; of a larger one it feels the rest
+                          ///< [N]
+  double hysteresis = 0;  ///< what it feels during unloading in excess of loading [N]
+  double gain = 1;        ///< reading for what it feels [1]
+  double saturation = 0;  ///< largest reading [N]; 0: no bound
+  bool operator==(const CellResponse&) const = default;
+};
+
 struct SensorDescription {
   std::string imu_link;                                    ///< empty: the root link
   Eigen::Vector3d imu_position = Eigen::Vector3d::Zero();  ///< in that link [m]
   double latency = 0;                                      ///< [s]
-  double attitude_noise = 0, attitude_bias = 0;            ///< [rad], standard deviation, bias
-  double gyro_noise = 0;                                   ///< [rad/s]
-  double accelerometer_noise = 0;                          ///< [m/s^2]
-  double force_noise = 0;                                  ///< per load cell [N]
-  double force_resolution = 0;                             ///< per load cell [N]
-  bool encoder_quantisation = false;                       ///< round joint angles to counts
-  std::map<std::string, LoadCells> load_cells;             ///< "left", "right"
+  /// In place of `latency`, of the joint angles, of attitude and gyro, of the load cells [s].
+  std::optional<double> encoder_latency, imu_latency, force_latency;
+  double attitude_noise = 0, attitude_bias = 0;  ///< [rad], standard deviation, bias
+  double gyro_noise = 0;                         ///< [rad/s]
+  double accelerometer_noise = 0;                ///< [m/s^2]
+  double force_noise = 0;                        ///< per load cell [N]
+  double force_resolution = 0;                   ///< per load cell [N]
+  int force_readings = 1;  ///< of a load cell, one in every tick, of which the mean is reported
+  /// "left", "right": by corner of the sole, or one for all corners; empty: exact cells.
+  std::map<std::string, std::vector<CellResponse>> force_cells;
+  bool encoder_quantisation = false;            ///< round joint angles to counts
+  std::map<std::string, LoadCells> load_cells;  ///< "left", "right"
   AxisReadings accelerometer, gyro;
+
+  /// Age of the oldest quantity that a controller with ticks of this length receives [s]. A mean of
+  /// N readings is as old as its middle, (N - 1)/2 ticks.
+  double oldest(double tick) const {
+    const double force = force_latency.value_or(latency) + 0.5 * (force_readings - 1) * tick;
+    return std::max({force, encoder_latency.value_or(latency), imu_latency.value_or(latency)});
+  }
+  /// Every quantity is as old as this [s].
+  void set_latency(double age) {
+    latency = age;
+    encoder_latency = imu_latency = force_latency = std::nullopt;
+  }
 };
 
 /// Controller defaults of this robot for values that a pattern does not set. Dimensionless as in

@@ -263,6 +263,19 @@ void validate_sole(const RobotDescription& robot, const std::string& side,
     complain_sidecar(robot, pointer + ": stiffness and damping_time cannot be negative");
 }
 
+void validate_force_cells(const RobotDescription& robot) {
+  for (const auto& [side, cells] : robot.sensors.force_cells) {
+    const auto sole = robot.soles.find(side);
+    const std::string where = "/sensors/force_cells/" + side + ": ";
+    if (sole == robot.soles.end()) complain_sidecar(robot, where + "the robot has no such sole");
+    const size_t corners = sole->second.polygon.size();
+    if (cells.size() != 1 && cells.size() != corners)
+      complain_sidecar(robot, where + std::to_string(cells.size()) + " cells, but the sole has " +
+                                  std::to_string(corners) +
+                                  " corners; give one cell for each corner, or one for all");
+  }
+}
+
 void validate_servos(const RobotDescription& robot) {
   for (const auto& [name, servo] : robot.servos)
     if (!(servo.kp >= 0 && servo.kd >= 0 && servo.rotor_inertia >= 0 && servo.viscous >= 0 &&
@@ -276,6 +289,7 @@ void validate_sidecar(const RobotDescription& robot, const std::vector<std::stri
   for (const auto& [side, sole] : robot.soles) validate_sole(robot, side, sole);
   if (robot.soles.size() == 1)
     complain_sidecar(robot, "/soles: only one foot is given; name 'left' and 'right'");
+  validate_force_cells(robot);
   for (const auto& [posture, values] : robot.postures)
     known_joints(robot, "posture '" + posture + "'", values, names);
   known_joints(robot, "/servos", robot.servos, names);

@@ -29,8 +29,18 @@ Sensors::Sensors(const RobotModel& model, const ActuatorLimits& actuators, doubl
       dt_(dt),
       noise_(noise),
       random_(seed) {
-  const double latency = noise ? model.description().sensors.latency : 0.0;
-  latency_ = static_cast<size_t>(std::lround(latency / dt));
+  const SensorDescription& s = model.description().sensors;
+  if (noise) {
+    const auto ticks = [&](const std::optional<double>& latency) {
+      return static_cast<size_t>(std::lround(latency.value_or(s.latency) / dt));
+    };
+    encoder_latency_ = ticks(s.encoder_latency);
+    imu_latency_ = ticks(s.imu_latency);
+    force_latency_ = ticks(s.force_latency);
+    for (const Side side : {Side::left, Side::right})
+      cells_[static_cast<size_t>(side)] = load_cells(model, side);
+  }
+  latency_ = std::max({encoder_latency_, imu_latency_, force_latency_});
   ring_.resize(latency_ + 1);
   for (Eigen::Index j = 0; j < offset_.size(); ++j)
     offset_[j] = actuators.servo[static_cast<size_t>(j)].offset;
@@ -80,13 +90,16 @@ void Sensors::measure(const RobotState& state, const RobotData& truth, const Ste
     FootLoad& load = m.feet[side];
     load.fz = 0;
     Eigen::Vector2d moment = Eigen::Vector2d::Zero();
+    std::vector<LoadCell>& response = cells_[static_cast<size_t>(side)];
     for (size_t i = 0; i < cells.size(); ++i) {
       double f = (to_sole * cells[i].force).z();
+      if (!response.empty()) f = response[i].felt(f);
       if (noise_) {
         f += s.force_noise * numbers_[used_++];
         if (s.force_resolution > 0) f = std::round(f / s.force_resolution) * s.force_resolution;
       }
       f = std::max(f + fault.force, 0.0);
+      if (!response.empty()) f = response[i].reported(f);
       load.fz += f;
       moment += f * sole.polygon[i];
     }
@@ -155,9 +168,21 @@ const Measurement& Sensors::read(const RobotState& state, const RobotData& truth
   newest_ = filled_ ? (newest_ + 1) % ring_.size() : 0;
   measure(state, truth, report, fault, faults, ring_[newest_]);
   filled_ = std::min(filled_ + 1, ring_.size());
-  // Until the latency has passed this is the very first reading.
-  const size_t wanted = latency_ + static_cast<size_t>(std::lround(fault.latency / dt_));
-  return ring_[(newest_ + ring_.size() - std::min(wanted, filled_ - 1)) % ring_.size()];
+  const auto added = static_cast<size_t>(std::lround(fault.latency / dt_));
+  if (encoder_latency_ == latency_ && imu_latency_ == latency_ && force_latency_ == latency_)
+    return before(latency_ + added);
+  const Measurement& joints = before(encoder_latency_ + added);
+  const Measurement& imu = before(imu_latency_ + added);
+  together_.theta = joints.theta;
+  together_.dtheta = joints.dtheta;
+  together_.attitude = imu.attitude;
+  together_.gyro = imu.gyro;
+  together_.feet = before(force_latency_ + added).feet;
+  return together_;
+}
+
+const Measurement& Sensors::before(size_t ticks) const {
+  return ring_[(newest_ + ring_.size() - std::min(ticks, filled_ - 1)) % ring_.size()];
 }
 
 }  // namespace ayumi

@@ -1,12 +1,15 @@
 #pragma once
 // The robot's sensors, computed from the true state of the plant: encoders, IMU, and load cells at
 // the corners of each sole. With noise, the sidecar's noise, bias, resolution and latency are
-// added, and an IMU whose accelerometer noise is given estimates its attitude with TiltEstimate.
+// added, load cells have the errors that are stated for them, and an IMU whose accelerometer noise
+// is given estimates its attitude with TiltEstimate.
 
+#include <array>
 #include <vector>
 
 #include "ayumi/control/estimator.hpp"
 #include "ayumi/math/random.hpp"
+#include "ayumi/sim/load_cell.hpp"
 #include "ayumi/sim/schedule.hpp"
 #include "ayumi/sim/step.hpp"
 #include "ayumi/sim/tilt_estimate.hpp"
@@ -33,6 +36,8 @@ class Sensors {
                const SensorFault& fault, const std::vector<JointFault>& faults, Measurement& m);
   void measure_imu(const RobotData& truth, const SensorFault& fault, Measurement& m);
   void draw_numbers(const StepReport& report);
+  /// The reading that is this much older than the newest, or the very first one.
+  const Measurement& before(size_t ticks) const;
   Eigen::Vector3d noise(double sigma);
   /// Mean specific force at the IMU since the last reading, IMU axes [m/s^2].
   Eigen::Vector3d specific_force(const RobotData& truth, const Eigen::Quaterniond& attitude);
@@ -49,9 +54,12 @@ class Sensors {
   Eigen::VectorXd previous_theta_;
   TiltEstimate tilt_;
   Eigen::Vector3d imu_velocity_ = Eigen::Vector3d::Zero();  // at the last reading, world [m/s]
-  size_t latency_ = 0;                                      // of the robot's own sensors [ticks]
+  // Of the robot's own joint angles, IMU and load cells, and the longest of them [ticks].
+  size_t encoder_latency_ = 0, imu_latency_ = 0, force_latency_ = 0, latency_ = 0;
+  std::array<std::vector<LoadCell>, 2> cells_;  // by Side and corner; empty: exact cells
   std::vector<Measurement> ring_;  // longest latency + 1 readings, the newest at newest_
   size_t newest_ = 0, filled_ = 0;
+  Measurement together_;  // of readings of different ages
 };
 
 }  // namespace ayumi

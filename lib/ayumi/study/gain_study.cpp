@@ -72,7 +72,8 @@ GainStudy study_gains(const RobotModel& model, const GainWishes& wishes,
   d.params = design_gains(d.omega, wishes, dtad_params(model, spec));
   d.loops = stance_loops(model, model.limits(), z, model.description().servo_period);
   if (latency)
-    for (LoopModel& loop : d.loops) loop.delay += *latency - model.description().sensors.latency;
+    for (LoopModel& loop : d.loops)
+      loop.delay += *latency - model.description().sensors.oldest(loop.tick);
   d.weakest = weakest_loop(d.loops, d.params);
   d.largest_ka = largest_stable_ka(d.loops, d.params, GainStudy::kMostKa);
   d.reaches = reaches(model);

@@ -289,7 +289,7 @@ RobotUnit UncertainTask::unit(const std::vector<double>& drawn) const {
         d.sensors.force_noise *= v;
         break;
       case UncertainKind::sensor_latency:
-        d.sensors.latency = v;
+        d.sensors.set_latency(v);
         break;
       default:
         break;  // of the ground, a bias or a push: options()

@@ -65,7 +65,7 @@ std::string assumed_study_text(const RobotModel& robot) {
   for (const char* axis : {"x", "y"})
     add({{"what", "attitude_bias"}, {"axis", axis}}, "uniform", {-0.2, 0.2},
         "beside the bias of the model");
-  add({{"what", "sensor_latency"}}, "uniform", {0, tidy(sensors.latency + kMoreLatency)},
+  add({{"what", "sensor_latency"}}, "uniform", {0, tidy(sensors.oldest(0) + kMoreLatency)},
       "from 0 to 2 ms more than that of the model");
   const StudyJson factor = {{"name", "mass of the robot"},
                             {"source", "assumed: all parts are weighed on the same scales"}};

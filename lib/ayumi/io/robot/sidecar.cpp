@@ -22,6 +22,10 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
+/// Longest running mean of load cells. Definition: a second of readings that are taken every
+/// millisecond, which is the bound of a latency.
+constexpr int kMostForceReadings = 1000;
+
 // '*' stands for any run of characters.
 bool matches(std::string_view pattern, std::string_view name) {
   if (pattern.empty()) return name.empty();
@@ -269,10 +273,29 @@ void read_axes(const JsonNode& node, AxisReadings& axes) {
   if (const auto scale = node.find("scale")) axes.scale = scale->vector3();
 }
 
+void read_force_cells(const JsonNode& node,
+                      std::map<std::string, std::vector<CellResponse>>& feet) {
+  node.only_keys({"left", "right"});
+  for (const auto& [side, foot] : node.members()) {
+    std::vector<CellResponse> cells;
+    for (const JsonNode& item : foot.items()) {
+      item.only_keys({"dead_zone", "hysteresis", "gain", "saturation"});
+      CellResponse cell;
+      read_not_negative(item, "dead_zone", cell.dead_zone);
+      read_not_negative(item, "hysteresis", cell.hysteresis);
+      read_not_negative(item, "gain", cell.gain);
+      read_not_negative(item, "saturation", cell.saturation);
+      cells.push_back(cell);
+    }
+    feet[side] = cells;
+  }
+}
+
 void read_sensors(const JsonNode& node, SensorDescription& sensors) {
   node.only_keys({"imu_link", "imu_position", "latency", "attitude_noise", "attitude_bias",
                   "gyro_noise", "accelerometer_noise", "force_noise", "force_resolution",
-                  "encoder_quantisation", "load_cells", "accelerometer", "gyro"});
+                  "encoder_quantisation", "load_cells", "accelerometer", "gyro", "encoder_latency",
+                  "imu_latency", "force_latency", "force_readings", "force_cells"});
   if (const auto cells = node.find("load_cells")) read_load_cells(*cells, sensors.load_cells);
   if (const auto axes = node.find("accelerometer")) read_axes(*axes, sensors.accelerometer);
   if (const auto axes = node.find("gyro")) read_axes(*axes, sensors.gyro);
@@ -280,6 +303,18 @@ void read_sensors(const JsonNode& node, SensorDescription& sensors) {
   if (const auto position = node.find("imu_position")) sensors.imu_position = position->vector3();
   // Readings older than one second are of no use to a balance law; the bound is that of a scenario.
   if (const auto latency = node.find("latency")) sensors.latency = latency->number_within(0, 1);
+  for (const auto& [key, latency] : {std::pair("encoder_latency", &sensors.encoder_latency),
+                                     std::pair("imu_latency", &sensors.imu_latency),
+                                     std::pair("force_latency", &sensors.force_latency)})
+    if (const auto found = node.find(key)) *latency = found->number_within(0, 1);
+  if (const auto readings = node.find("force_readings")) {
+    sensors.force_readings = readings->integer();
+    if (sensors.force_readings < 1 || sensors.force_readings > kMostForceReadings)
+      readings->complain("a mean of " + std::to_string(sensors.force_readings) +
+                         " readings; expected 1 (each reading as it is) to " +
+                         std::to_string(kMostForceReadings));
+  }
+  if (const auto cells = node.find("force_cells")) read_force_cells(*cells, sensors.force_cells);
   read_not_negative(node, "attitude_noise", sensors.attitude_noise);
   read_number(node, "attitude_bias", sensors.attitude_bias);
   read_not_negative(node, "gyro_noise", sensors.gyro_noise);

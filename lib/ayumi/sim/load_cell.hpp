@@ -1,0 +1,37 @@
+#pragma once
+// A load cell between a sole and the ground, with the errors that the sidecar states for it: dead
+// zone, hysteresis, gain, saturation, and the mean of its last readings. docs/theory_plant.md,
+// "Load cells".
+
+#include <vector>
+
+#include "ayumi/model/robot_model.hpp"
+
+namespace ayumi {
+
+class LoadCell {
+ public:
+  /// `readings`: at least 1, of which the mean is reported.
+  LoadCell(const CellResponse& response, int readings);
+
+  /// What the cell feels of the force of this reading, times the gain [N]:
+  ///   x = max(f - dead zone, 0),   y = y' moved no farther than into x -/+ hysteresis/2,
+  /// with the y' of the reading before, at first 0. So y is x - hysteresis/2 while the force rises
+  /// by more than the hysteresis, and x + hysteresis/2 while it falls.
+  double felt(double force);
+
+  /// Takes the value [N] of this reading, with what noise and rounding have made of it. The mean of
+  /// the last readings, or of all until there are enough; each at most the saturation.
+  double reported(double value);
+
+ private:
+  CellResponse response_;
+  double played_ = 0;             // y
+  std::vector<double> readings_;  // the last ones, the newest at newest_
+  size_t newest_ = 0, filled_ = 0;
+};
+
+/// The cells at the corners of a sole; empty where the sidecar states no errors of load cells.
+std::vector<LoadCell> load_cells(const RobotModel& model, Side side);
+
+}  // namespace ayumi
