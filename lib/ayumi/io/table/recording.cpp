@@ -183,8 +183,20 @@ double jump_limit(const RobotModel& model, int dof, double dt, double resolution
   return std::max(rate * dt, kJumpCounts * resolution);
 }
 
+void require_less_than_a_turn(const AngleTable& table, int j, const RobotModel& model,
+                              const std::string& file) {
+  const Dof& dof = model.dofs()[static_cast<size_t>(j)];
+  const double most = table.theta.col(j).cwiseAbs().maxCoeff();
+  if (!dof.prismatic && most > 2 * M_PI)
+    complain(file, dof.name + " reaches " + text::brief(most, 4) +
+                       " rad, more than a turn: is the unit degrees? (--unit deg)");
+}
+
 void require_motion(const AngleTable& table, const std::vector<size_t>& lines,
                     const RobotModel& model, const std::string& file) {
+  // Angles in degrees jump too, so the unit comes first; counts can wrap.
+  for (int j = 0; j < model.dof_count(); ++j)
+    if (table.resolution[j] <= 0) require_less_than_a_turn(table, j, model, file);
   bool any = false;
   for (int j = 0; j < model.dof_count(); ++j) {
     if (!table.has[static_cast<size_t>(j)]) continue;
@@ -200,9 +212,7 @@ void require_motion(const AngleTable& table, const std::vector<size_t>& lines,
                      " deg from the row before, which no motor does (limit " +
                      text::brief(limit / kRadPerDegree, 3) +
                      " deg): samples are missing, or the counter wrapped");
-    if (!dof.prismatic && theta.cwiseAbs().maxCoeff() > 2 * M_PI)
-      complain(file, dof.name + " reaches " + text::brief(theta.cwiseAbs().maxCoeff(), 4) +
-                         " rad, more than a turn: is the unit degrees? (--unit deg)");
+    require_less_than_a_turn(table, j, model, file);
   }
   if (!any) complain(file, "every angle is 0; the robot or its recorder was not running");
 }
