@@ -1,5 +1,6 @@
 // `ayumi replay` and `ayumi export --sign-test`: tables as the robot receives them.
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "tests/cli/program.hpp"
@@ -130,6 +131,35 @@ TEST_F(Replay, TheSignTestMovesOneJointAtATime) {
   }
   EXPECT_EQ(ayumi({"export", "hoap1", "--sign-test", "--format", "hoap", "-o", "signs"}).exit_code,
             3);
+}
+
+// A recorded walk of a real HOAP-3, replayed as it was sent: the encoders agree within 0.05 degrees
+// in the mean and 0.2 at most, and the feet share the load alike. The data are not part of this
+// program.
+TEST(RecordedReplay, ARecordedWalkOfARealRobot) {
+  const std::string data = AYUMI_SOURCE_DIR "/../shared/data/hoap3";
+  if (!std::filesystem::exists(data + "/recordings"))
+    GTEST_SKIP() << "no recordings of HOAP-3 at " << data;
+  const Folder folder;
+  const std::string robot = AYUMI_SOURCE_DIR "/examples/hoap3/recorded.json";
+  const Output replayed = run_program(
+      {"replay", data + "/motions/walk_m03_fujitsu_sample_pulses_1ms.csv", "--robot", robot,
+       "--robot-path", data + "/hoap3_description", "--plant", "ayumi", "-o", "out", "-q"},
+      folder.path());
+  ASSERT_EQ(replayed.exit_code, 0) << replayed.out << replayed.err;
+  const Output compared =
+      run_program({"compare", "out", data + "/recordings/walk_m03_measured_encoder_pulses_1ms.csv",
+                   data + "/recordings/walk_m03_measured_sensors_adc_1ms.csv", "--robot", robot,
+                   "--robot-path", data + "/hoap3_description", "--json", "-q"},
+                  folder.path());
+  ASSERT_EQ(compared.exit_code, 0) << compared.err;
+  const Json json = Json::parse(compared.out);
+  EXPECT_LT(json.at("joint_mean_rad"), 0.05 * M_PI / 180);
+  EXPECT_LT(json.at("joint_max_rad"), 0.2 * M_PI / 180);
+  EXPECT_GT(json.at("end_s"), 17.8);
+  EXPECT_TRUE(json.at("notes").empty()) << json.at("notes");
+  // Measured: 0.949. Stiff soles give 0.77 until the robot falls.
+  EXPECT_GT(json.at("loads").at(2).at("correlation"), 0.94);
 }
 
 }  // namespace

@@ -83,6 +83,10 @@ TEST(Recording, ATableWithGapsOrOtherUnitsGetsOneLine) {
   EXPECT_EQ(recording_error("t,r_knee\n0,45\n0.001,45\n0.002,45\n"),
             "m.csv: r_knee reaches 45 rad, which is more than a turn; if the angles are in "
             "degrees, give --unit deg");
+  // Degrees that move by more than a motor does are degrees first.
+  EXPECT_EQ(recording_error("t,r_knee\n0,40\n0.001,45\n0.002,45\n"),
+            "m.csv: r_knee reaches 45 rad, which is more than a turn; if the angles are in "
+            "degrees, give --unit deg");
   EXPECT_EQ(recording_error("t,r_knee[mm]\n0,45\n0.001,45\n"),
             "m.csv: column 'r_knee[mm]': the unit 'mm' is not rad, deg or counts");
   EXPECT_TRUE(recording_error("t,knee\n0,0.1\n0.001,0.1\n")

@@ -183,8 +183,21 @@ double jump_limit(const RobotModel& model, int dof, double dt, double resolution
   return std::max(rate * dt, kJumpCounts * resolution);
 }
 
+void require_less_than_a_turn(const AngleTable& table, int j, const RobotModel& model,
+                              const std::string& file) {
+  const Dof& dof = model.dofs()[static_cast<size_t>(j)];
+  const double most = table.theta.col(j).cwiseAbs().maxCoeff();
+  if (!dof.prismatic && most > 2 * M_PI)
+    complain(file,
+             dof.name + " reaches " + text::brief(most, 4) +
+                 " rad, which is more than a turn; if the angles are in degrees, give --unit deg");
+}
+
 void require_motion(const AngleTable& table, const std::vector<size_t>& lines,
                     const RobotModel& model, const std::string& file) {
+  // Angles in degrees jump too, so the unit comes first; counts can wrap.
+  for (int j = 0; j < model.dof_count(); ++j)
+    if (table.resolution[j] <= 0) require_less_than_a_turn(table, j, model, file);
   bool any = false;
   for (int j = 0; j < model.dof_count(); ++j) {
     if (!table.has[static_cast<size_t>(j)]) continue;
@@ -201,11 +214,7 @@ void require_motion(const AngleTable& table, const std::vector<size_t>& lines,
                      text::brief(limit / kRadPerDegree, 3) +
                      " deg in this time. Samples are missing, or the 16-bit counter has "
                      "overflowed: record again, or add or subtract 65536 counts from this row on");
-    if (!dof.prismatic && theta.cwiseAbs().maxCoeff() > 2 * M_PI)
-      complain(
-          file,
-          dof.name + " reaches " + text::brief(theta.cwiseAbs().maxCoeff(), 4) +
-              " rad, which is more than a turn; if the angles are in degrees, give --unit deg");
+    require_less_than_a_turn(table, j, model, file);
   }
   if (!any)
     complain(file, "every angle is 0, so the robot or its recorder was not running; record again");
