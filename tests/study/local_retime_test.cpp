@@ -213,22 +213,22 @@ TEST(LocalRetime, ThePathStaysAndThePlanMovesAlong) {
 TEST(LocalRetime, PausesKeepTheirLength) {
   Pattern walk = walk_pattern(hoap1(), {.steps = 2, .stride = 0.03});
   const double end = walk.phases.back().until;
-  // A second walk's worth of standing at the end, and arms that move after it.
+  // Three seconds of standing at the end, an arm that moves, and half a second more.
   walk.phases.push_back({end + 4, Support::both, {}, {}, {}});
   Keyframe before, after;
   before.t = end + 3;
   after.t = end + 3.5;
+  walk.keyframes.front().joints["l_shoulder_roll"] = 0.2;
   before.joints["l_shoulder_roll"] = 0.2;
   after.joints["l_shoulder_roll"] = 0.8;
   walk.keyframes.push_back(before);
   walk.keyframes.push_back(after);
-  std::stable_sort(walk.keyframes.begin(), walk.keyframes.end(),
-                   [](const Keyframe& a, const Keyframe& b) { return a.t < b.t; });
   const CommandSeries given = sample(hoap1(), walk);
   const Pattern table = baked(hoap1(), walk, given, "given.csv");
   const std::vector<TimeSpan> pauses = pauses_of(given);
   const auto length = [](const TimeSpan& span) { return span.second - span.first; };
   ASSERT_GE(pauses.size(), 2u);
+  ASSERT_GT(length(pauses[pauses.size() - 2]), 2);
   LocalRetimeOptions keep;
   keep.keep_pauses = true;
   for (const Pattern& pattern : {walk, table}) {
@@ -237,7 +237,8 @@ TEST(LocalRetime, PausesKeepTheirLength) {
     const std::vector<TimeSpan> kept = pauses_of(pace.series);
     ASSERT_EQ(kept.size(), pauses.size());
     for (size_t i = 0; i < kept.size(); ++i)
-      EXPECT_NEAR(length(kept[i]), length(pauses[i]), 0.05) << i;
+      // The COG of a quicker walk has more to come to rest from: ln(scale^-2) / omega later.
+      EXPECT_NEAR(length(kept[i]), length(pauses[i]), 0.2) << i;
     double paused = 0;
     for (const BindingLimit& limit : pace.binding)
       if (limit.limit == "pause") paused = limit.share;
