@@ -1,25 +1,16 @@
 #pragma once
-// A picture of a robot that stands in its home posture.
+// The picture of a robot as a file.
 
 #include <string>
 #include <vector>
 
-#include "ayumi/render/image.hpp"
+#include "ayumi/render/robot_picture.hpp"
 #include "commands.hpp"
 
 namespace ayumi::app {
 
-struct RobotPicture {
-  Image image;
-  std::vector<std::string> notes;  ///< what is drawn otherwise than the robot's files say
-};
-
-/// In its home posture, or at the joint angles `theta` [rad]. `marks`: with the outlines of the
-/// soles, the axes of the joints and an arrow ahead.
-RobotPicture draw_robot(const RobotModel& model, const std::string& view, bool marks,
-                        const Eigen::VectorXd* theta = nullptr);
-
-/// Writes it without marks. Throws Error(usage) for a name that does not end in .png.
+/// Writes the robot in its home posture, without marks. Throws Error(usage) for a name that does
+/// not end in .png.
 std::vector<std::string> write_robot_picture(const Context& context, const RobotModel& model,
                                              const std::string& file, const std::string& view);
 

@@ -43,5 +43,6 @@ void bind_simulation(py::module_& m);
 void bind_table(py::module_& m);
 void bind_study(py::module_& m);
 void bind_picture(py::module_& m);
+void bind_recording(py::module_& m);
 
 }  // namespace ayumi::python

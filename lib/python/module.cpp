@@ -111,6 +111,7 @@ PYBIND11_MODULE(_native, m) {
   bind_table(m);
   bind_study(m);
   bind_picture(m);
+  bind_recording(m);
 }
 
 }  // namespace ayumi::python

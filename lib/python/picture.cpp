@@ -4,7 +4,9 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/plot/com_zmp_plot.hpp"
 #include "ayumi/render/clip.hpp"
+#include "ayumi/render/robot_picture.hpp"
 #include "ayumi/render/snapshots.hpp"
+#include "ayumi/task/plan_log.hpp"
 #include "bindings.hpp"
 
 namespace ayumi::python {
@@ -52,6 +54,37 @@ py::bytes png(const Draw& draw) {
 }  // namespace
 
 void bind_picture(py::module_& m) {
+  m.def(
+      "plan",
+      [](const PyTask& task) {
+        const Task& t = *task.task;
+        const py::gil_scoped_release release;
+        SimulationLog log = plan_log(t.robot, t.robot.limits(t.profile), t.series, t.series);
+        log.provenance = provenance(t, "");
+        log.world = t.pattern.world;
+        auto data = std::make_shared<const SimulationLog>(std::move(log));
+        return std::make_shared<Log>(data, data->joints, prismatic_of(t.robot));
+      },
+      py::arg("task"),
+      "The motion as it is planned, in the shape of a run, without a simulation: posture, COG, "
+      "ZMP, forces on the feet, and the motor torques that the full model needs. Pictures and "
+      "plots show it like a run; `outcome`, `hash` and `events` say nothing of it.");
+  m.def(
+      "robot_picture",
+      [](const RobotModel& robot, const std::string& posture,
+         const std::optional<Eigen::VectorXd>& theta, const std::string& view, bool marks) {
+        const Eigen::VectorXd angles = theta ? *theta : robot.posture(posture);
+        if (angles.size() != robot.dof_count())
+          fail(ErrorCode::usage, "theta has " + std::to_string(angles.size()) +
+                                     " values, but robot '" + robot.name() + "' has " +
+                                     std::to_string(robot.dof_count()) + " joints");
+        return png([&] { return draw_robot(robot, view, marks, &angles).image; });
+      },
+      py::arg("robot"), py::kw_only(), py::arg("posture") = "home", py::arg("theta") = py::none(),
+      py::arg("view") = "iso", py::arg("marks") = true,
+      "The robot on the ground, in a named posture or at the joint angles `theta` [rad, m], shape "
+      "(dof,), as the bytes of a PNG file. `marks`: with the outlines of the soles, the axes of "
+      "the joints and an arrow in the direction that the robot faces.");
   m.def(
       "picture",
       [](const RobotModel& robot, const Log& log, double at, int width, int height,

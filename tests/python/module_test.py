@@ -451,6 +451,84 @@ class Pictures(unittest.TestCase):
         self.assertIn("<svg", ayumi.loci_svg(task.robot, {"walk": log}))
 
 
+    def test_a_plan_is_drawn_without_a_simulation(self):
+        robot = ayumi.load_robot("hoap1")
+        task = ayumi.sample(ayumi.squat_pattern(robot, cycles=1), robot)
+        plan = ayumi.plan(task)
+        self.assertEqual(len(plan), len(task.series))
+        np.testing.assert_array_equal(plan["theta"], task.series["theta"])
+        self.assertGreater(np.abs(plan["torque"]).max(), 0.1)
+        self.assertTrue(ayumi.picture(robot, plan, at=0.5, width=320, height=240).startswith(b"\x89PNG"))
+        self.assertIn("<svg", ayumi.loci_svg(robot, {"plan": plan}))
+
+    def test_a_robot_in_a_posture(self):
+        robot = ayumi.load_robot("hoap1")
+        home = ayumi.robot_picture(robot)
+        self.assertTrue(home.startswith(b"\x89PNG"))
+        self.assertEqual(ayumi.robot_picture(robot, theta=robot.posture()), home)
+        self.assertNotEqual(ayumi.robot_picture(robot, marks=False), home)
+        self.assertNotEqual(ayumi.robot_picture(robot, theta=np.zeros(len(robot.joints))), home)
+        with self.assertRaisesRegex(ayumi.Error, "theta has 3 values, but robot 'hoap1' has 20"):
+            ayumi.robot_picture(robot, theta=np.zeros(3))
+
+
+class Recordings(unittest.TestCase):
+    def test_an_imported_motion_is_that_of_the_program(self):
+        robot = ayumi.load_robot("hoap1", meshes=False)
+        with tempfile.TemporaryDirectory() as scratch:
+            folder = pathlib.Path(scratch)
+            subprocess.run([PROGRAM, "export", WALK, "--format", "choreonoid", "--interval", "10",
+                            "-o", folder / "walk.seq", "-q"], check=True,
+                           stdout=subprocess.DEVNULL)
+            said = program("import", folder / "walk.seq", "--robot", "hoap1", "-o", folder / "a.json")
+            found = ayumi.import_motion(folder / "walk.seq", robot)
+            self.assertEqual(found.format, "choreonoid")
+            self.assertIn(found.format, ayumi.motion_formats())
+            self.assertEqual(found.reason, said["format_reason"])
+            self.assertEqual(found.rows, said["rows"])
+            self.assertEqual(found.notes, said["filled"])
+            self.assertEqual([(c.foot, c.begin, c.end) for c in found.contacts],
+                             [(c["foot"], c["begin_s"], c["end_s"]) for c in said["contacts"]])
+            found.write(folder / "b.json")
+            self.assertEqual((folder / "b.csv").read_bytes(), (folder / "a.csv").read_bytes())
+            task = ayumi.sample(found.pattern, robot)
+            again = ayumi.load_task(folder / "a.json", meshes=False)
+            np.testing.assert_array_equal(task.series["theta"], again.series["theta"])
+
+    def test_a_file_of_another_robot_is_an_error(self):
+        robot = ayumi.load_robot("hoap1", meshes=False)
+        with tempfile.TemporaryDirectory() as scratch:
+            file = pathlib.Path(scratch) / "a.motion"
+            file.write_text("#WEBOTS_MOTION,V1.0,A,B\n00:00:000,a,0,0\n00:00:040,b,0,0\n")
+            with self.assertRaisesRegex(ayumi.Error, "motion of another robot") as raised:
+                ayumi.import_motion(file, robot)
+            self.assertEqual(raised.exception.code, "bad_file")
+            self.assertEqual(raised.exception.place, str(file))
+
+    def test_servos_are_found_in_a_simulated_recording(self):
+        robot = ayumi.load_robot("hoap1", meshes=False)
+        task = ayumi.sample(ayumi.squat_pattern(robot, depth=0.03, cycles=2), robot)
+        log = ayumi.simulate(task, controller="none")
+        sent, answered = (log.dt, log["target"]), (log.dt, log["theta"])
+        seen = set()
+        found = ayumi.identify(robot, sent, answered, progress=lambda stage, *_: seen.add(stage))
+        self.assertEqual([j.joint for j in found.joints], robot.joints)
+        self.assertAlmostEqual(found.seconds, log.t[-1], places=9)
+        knee = found.joints[robot.joints.index("l_knee")]
+        self.assertTrue(knee.moved)
+        self.assertLess(knee.mean_error, 1e-4)
+        text = found.sidecar("hoap1", "mine")
+        self.assertEqual(json.loads(text)["base"], "hoap1")
+        with tempfile.TemporaryDirectory() as scratch:
+            file = pathlib.Path(scratch) / "mine.json"
+            file.write_text(text)
+            self.assertEqual(ayumi.load_robot(str(file), meshes=False).joints, robot.joints)
+        with self.assertRaisesRegex(ayumi.Error, "measured: 3 columns, but robot 'hoap1' has 20"):
+            ayumi.identify(robot, sent, (log.dt, np.zeros((5, 3))))
+        with self.assertRaisesRegex(ayumi.Error, "one of auto, feet and fixed"):
+            ayumi.identify(robot, sent, answered, stand="hands")
+
+
 class Authoring(unittest.TestCase):
     def test_generated_patterns_are_consistent(self):
         robot = ayumi.load_robot("hoap1", meshes=False)

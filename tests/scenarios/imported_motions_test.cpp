@@ -174,6 +174,31 @@ TEST(ImportedMotions, KeyPosesAreKeysOfAPattern) {
   EXPECT_FALSE(read_key_poses("time,0,1\nl_knee,0,1\n", "k.csv", model).has_value());
 }
 
+// A file with steps and one ZMP key: the ZMP stays in the soles, as where the editor generates it.
+TEST(ImportedMotions, KeyPosesWithoutZmpStepWithTheZmpUnderTheStandingFoot) {
+  const RobotModel& model = hoap1();
+  std::string text = step_of_key_poses(model);
+  for (size_t at = text.find("      zmp: ") + 1;
+       (at = text.find("      zmp: ", at)) != std::string::npos;)
+    text.erase(at, text.find('\n', at) + 1 - at);  // all but the first one
+  ImportOptions options;
+  options.by_order = true;
+  std::optional<ImportedKeys> keys = read_key_poses(text, "step.pseq", model, options);
+  ASSERT_TRUE(keys.has_value());
+  keys->pattern.robot = "hoap1";
+  const CommandSeries series =
+      sample(model, pattern_of_text(pattern_text(keys->pattern), "step.json"));
+  const Eigen::Vector2d center = model.sole(Side::left).center;
+  for (const CommandSample& sample : series.samples)
+    if (sample.support == Support::left) {
+      const Eigen::Vector3d at = sample.feet[0] * Eigen::Vector3d(center.x(), center.y(), 0);
+      EXPECT_LT((sample.zmp - at).head<2>().norm(), 2e-3);
+    }
+  std::string said;
+  for (const std::string& line : keys->filled) said += line + "\n";
+  EXPECT_NE(said.find("under the middle of the standing foot"), std::string::npos) << said;
+}
+
 // A file of every format and robot, whole and cut at either end: what was read makes a pattern that
 // can be written, read and sampled.
 TEST(ImportedMotions, EveryFormatCanBeSampled) {

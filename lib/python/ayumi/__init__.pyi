@@ -54,6 +54,29 @@ class Command:
     def support(self) -> str:
         """'both', 'left', 'right' or 'none'."""
 
+class Contact:
+    """One foot on the ground, in a motion that was imported."""
+
+    @property
+    def foot(self) -> str:
+        """'left' or 'right'."""
+
+    @property
+    def begin(self) -> float:
+        """Begin of the contact [s]."""
+
+    @property
+    def end(self) -> float:
+        """End of the contact [s]."""
+
+    @property
+    def position(self) -> numpy.ndarray:
+        """Place of the sole in the world [m], shape (3,)."""
+
+    @property
+    def yaw(self) -> float:
+        """Heading of the sole [rad]."""
+
 class Error(Exception):
     """What is wrong with a call, a file, a robot or a pattern. `code` is one of 'usage', 'bad_file', 'bad_model', 'bad_pattern', 'solver' and 'internal'; `place` is the file and the place in it, '' where there is none. An inconsistent pattern, a fall and a solver that did not converge are results, not errors."""
 
@@ -180,6 +203,113 @@ class GainStudy:
     @property
     def reaches(self) -> list:
         """(support, direction, error of the DCM that needs no step [m], its impulse [N s])."""
+
+class Identification:
+    """Servo constants of a robot from a recording."""
+
+    @property
+    def joints(self) -> list[IdentifiedJoint]:
+        """In the order of the robot; those that the recording has."""
+
+    @property
+    def seconds(self) -> float:
+        """Length of the recording [s]."""
+
+    @property
+    def caution(self) -> str:
+        """That the recording may be shifted; '' where it is not."""
+
+    def sidecar(self, base: str, name: str = 'identified') -> str:
+        """The text of a sidecar with these servos. `base` is the name or path of the robot, as the sidecar names it; `name` is added to the name of the robot."""
+
+class IdentifiedJoint:
+    """The servo constants of one joint."""
+
+    @property
+    def joint(self) -> str:
+        """Name of the joint."""
+
+    @property
+    def type(self) -> str:
+        """Its motor type, named by the first joint."""
+
+    @property
+    def moved(self) -> bool:
+        """False: only the mean distance from the command is known."""
+
+    @property
+    def delay(self) -> ServoEstimate:
+        """Transport delay [s]."""
+
+    @property
+    def kp(self) -> ServoEstimate:
+        """Stiffness [N m/rad]."""
+
+    @property
+    def damping(self) -> ServoEstimate:
+        """kd + viscous friction [N m s/rad]."""
+
+    @property
+    def viscous(self) -> ServoEstimate:
+        """Viscous friction [N m s/rad]."""
+
+    @property
+    def coulomb(self) -> ServoEstimate:
+        """Dry friction [N m]."""
+
+    @property
+    def backlash(self) -> ServoEstimate:
+        """Whole play [rad]."""
+
+    @property
+    def offset(self) -> ServoEstimate:
+        """Mean distance of the unloaded joint from its command [rad]."""
+
+    @property
+    def lag(self) -> float:
+        """By which the angle is behind a slow command [s]."""
+
+    @property
+    def mean_error(self) -> float:
+        """Mean of what the constants leave over [rad]."""
+
+    @property
+    def largest_error(self) -> float:
+        """Largest of what they leave over [rad]."""
+
+    @property
+    def confounded(self) -> list[str]:
+        """What cannot be told apart in this recording, in words."""
+
+class Import:
+    """A motion of another program or robot as a pattern."""
+
+    @property
+    def pattern(self) -> Pattern:
+        """The pattern; ayumi.sample(found.pattern, robot) samples it."""
+
+    @property
+    def format(self) -> str:
+        """Name of the format of the file."""
+
+    @property
+    def reason(self) -> str:
+        """Why the content is of this format; '' where the caller stated it."""
+
+    @property
+    def rows(self) -> int:
+        """Data rows, or key poses, of the file."""
+
+    @property
+    def contacts(self) -> list[Contact]:
+        """Feet on the ground by time of begin; none for a file of key poses."""
+
+    @property
+    def notes(self) -> list[str]:
+        """What was assumed, left out or changed, one sentence each."""
+
+    def write(self, path: Union[str, PathLike[str]]) -> None:
+        """Writes the pattern, its table beside it, and, for formats that come back unchanged, a copy of the file; all of them or none."""
 
 class Interrupted(Exception):
     """Long work was stopped because its progress callback gave False."""
@@ -627,6 +757,25 @@ class Series:
     def support(self) -> list[str]:
         """Planned support of every sample: 'both', 'left', 'right' or 'none'."""
 
+class ServoEstimate:
+    """A value with its 95 % interval."""
+
+    @property
+    def value(self) -> float:
+        """The value."""
+
+    @property
+    def lower(self) -> float:
+        """Lower end of the interval."""
+
+    @property
+    def upper(self) -> float:
+        """Upper end; inf where there is none."""
+
+    @property
+    def known(self) -> bool:
+        """Whether the recording determines it to better than half its value."""
+
 class SoleForce:
     """Ground force at one vertex of a sole."""
 
@@ -887,6 +1036,12 @@ def fastest_pace(task: Task, *, resolution: float = 0.002, progress: Optional[Ca
 def gains(robot: Robot, *, poles: Optional[list[complex[2]]] = None, absorb: Optional[float] = None, return_time: Optional[float] = None, zmp_filter: Optional[float] = None, forget: Optional[float] = None, set: dict[str, float] = {}, latency: Optional[float] = None) -> GainStudy:
     """Gains of DTAD: two `poles` of the COG [1/s], the share of a ZMP error that is absorbed at once, times [s] of the return to the command, of the filter of the ZMP and of a lasting offset; `set` gives gains by name, `latency` [s] that of the sensors."""
 
+def identify(robot: Robot, command: Union[Union[str, PathLike[str]], tuple[float, numpy.ndarray]], measured: Union[Union[str, PathLike[str]], tuple[float, numpy.ndarray]], *, loads: Optional[Union[str, PathLike[str]]] = None, per_type: bool = False, stand: str = 'auto', rate: float = 0.0, degrees: bool = False, longest_lag: float = 0.0, threads: int = 0, progress: Optional[Callable[[str, float, str], Any]] = None) -> Identification:
+    """The servo constants with which the simulated servos come nearest to what was measured. `command` and `measured` are files, or (dt, angles) with the time between two rows [s] and an array of angles [rad, m], shape (n, dof). `loads` is a file of load cells; `per_type`: one set for all joints of one motor type; `stand`: 'feet', 'fixed' (the root is held upright) or 'auto'; `rate` [1/s] and `degrees` are of files that do not state them; `longest_lag` [s]: an answer that comes later is refused (0: 30 ms, or twice the lag of the slowest servo)."""
+
+def import_motion(path: Union[str, PathLike[str]], robot: Robot, *, format: str = '', rate: float = 0.0, degrees: bool = False, order: bool = False, joints: list[str] = [], motion: str = '', commands: bool = False, smooth: Optional[float] = None, ground: bool = False, ramp: float = 0.0, contact_height: Optional[float] = None, contact_speed: Optional[float] = None, contact_load: Optional[float] = None) -> Import:
+    """Reads a motion of another program or robot, as `ayumi import` does. The format follows from the content unless `format` names one of motion_formats(). `rate` [1/s] is that of rows without times; `degrees`: angles of a file that does not state their unit are in degrees; `order`: the columns are the joints of the robot in its order, `joints`: their names; `motion`: name or number, of a file with several; `commands`: the angles are servo targets; `smooth`: largest change for smoothing [deg]; `ground`: the soles that carry are put on the ground; `ramp`: time from rest to the speed of a recording that was cut [s]. A sole carries the robot when it is at most `contact_height` [m] above the lowest one, slower than `contact_speed` [m/s], and the motion of the COG needs `contact_load` times the weight."""
+
 def jump_pattern(robot: Robot, *, height: Optional[float] = None, stoop: Optional[float] = None, cog_height: Optional[float] = None, forward: Optional[float] = None, times: Optional[int] = None) -> Pattern:
     """Stoop, lift-off, flight, touchdown and settling; all lengths in m."""
 
@@ -908,11 +1063,17 @@ def make_safe(task: Task, table: Table, log: Log = None, *, ramp: float = 2.0, h
 def mirrored(robot: Robot, pattern: Pattern) -> Pattern:
     """The pattern with left and right exchanged."""
 
+def motion_formats() -> list[str]:
+    """Names of the formats that import_motion() reads."""
+
 def parse_pattern(text: str, path: Union[str, PathLike[str]] = 'pattern.json', set: dict[str, float] = {}) -> Pattern:
     """Reads a pattern from the text of a file. Messages call this file `path`, and files that the text names are looked for beside `path`."""
 
 def picture(robot: Robot, log: Log, *, at: float = 0.0, width: int = 1280, height: int = 720, view: str = 'iso', zoom: float = 1.0, title: str = '') -> bytes:
     """The run at the time `at` [s] as the bytes of a PNG file. `view`: 'front', 'side', 'iso', 'back', 'top', 'ortho-side' or 'ortho-front'; `width` and `height` in pixels."""
+
+def plan(task: Task) -> Log:
+    """The motion as it is planned, in the shape of a run, without a simulation: posture, COG, ZMP, forces on the feet, and the motor torques that the full model needs. Pictures and plots show it like a run; `outcome`, `hash` and `events` say nothing of it."""
 
 def push(task: Task, *, controllers: list[str] = [], gains: dict[str, float] = {}, times: list[float] = [], directions: int = 8, step: float = 0.06, cap: float = 2.4, replicas: int = 2, duration: float = 0.02, seed: int = 1, threads: int = 0, progress: Optional[Callable[[str, float, str], Any]] = None) -> PushStudy:
     """The largest push that the robot survives, by phase of the gait and direction, in open loop and with each controller (the pattern's when none is named). `times` [s] in place of the default phases; `step`: resolution of the search, and `cap`: largest push tried, both as multiples of the capture bound; `replicas`: number of small variations of every push, all of which the robot must survive; `duration` of a push [s]; `threads`: 0 for all, results do not depend on it."""
@@ -931,6 +1092,9 @@ def repair(task: Task, *, lock_joints: list[str] = [], lock_feet: list[str] = []
 
 def retimed(robot: Robot, pattern: Pattern, scale: float) -> Pattern:
     """The pattern with all times multiplied by `scale`."""
+
+def robot_picture(robot: Robot, *, posture: str = 'home', theta: Optional[numpy.ndarray] = None, view: str = 'iso', marks: bool = True) -> bytes:
+    """The robot on the ground, in a named posture or at the joint angles `theta` [rad, m], shape (dof,), as the bytes of a PNG file. `marks`: with the outlines of the soles, the axes of the joints and an arrow in the direction that the robot faces."""
 
 def robots(path: list[Union[str, PathLike[str]]] = []) -> list[str]:
     """Names of the robots in the folders of `path` and of the bundled ones."""

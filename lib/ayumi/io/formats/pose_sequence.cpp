@@ -311,7 +311,7 @@ class PoseSequenceReader {
     }
     add_phases(moves, result);
     add_joints(solver, feet);
-    if (feet) add_places(solver);
+    if (feet) add_places(solver, result.phases);
     for (auto& [time, frame] : frames_) {
       frame.t = time;
       result.keyframes.push_back(std::move(frame));
@@ -354,7 +354,43 @@ class PoseSequenceReader {
     for (int dof = 0; dof < model_.dof_count(); ++dof) legs_ += feet && solver.solves(dof);
   }
 
-  void add_places(const InverseKinematics& solver) {
+  static bool is_single(const Phase& phase) {
+    return phase.support == Support::left || phase.support == Support::right;
+  }
+
+  // The ZMP of a file that states it once or never, as the editor of such files generates it: under
+  // the standing foot, and between steps from foot to foot. Before the first and after the last
+  // step it is where the file has it, else between the feet, as far as the next key pose allows.
+  void add_zmp_of_feet(const std::vector<Phase>& phases) {
+    const auto set = [&](double time, ZmpKey zmp) { frame_at(time).zmp = zmp; };
+    const auto first = std::find_if(phases.begin(), phases.end(), is_single);
+    const auto last = std::find_if(phases.rbegin(), phases.rend(), is_single);
+    const double begin = first == phases.begin() ? 0 : std::prev(first)->until;
+    const double end = last->until;
+    ZmpKey rest{ZmpKey::Place::center, Eigen::Vector2d::Zero()};
+    if (keys_.front().zmp) rest = {ZmpKey::Place::point, keys_.front().zmp->head<2>()};
+    double leaves = 0, arrives = keys_.back().time;
+    for (const PoseKey& key : keys_) {
+      if (key.time < begin) leaves = key.time;
+      if (key.time > end && arrives == keys_.back().time) arrives = key.time;
+    }
+    if (begin > 0) set(0, rest);
+    if (leaves > 0) set(leaves, rest);
+    double since = 0;
+    for (const Phase& phase : phases) {
+      if (is_single(phase)) {
+        const ZmpKey zmp{
+            phase.support == Support::left ? ZmpKey::Place::left : ZmpKey::Place::right,
+            Eigen::Vector2d::Zero()};
+        set(since, zmp);
+        set(phase.until, zmp);
+      }
+      since = phase.until;
+    }
+    if (arrives > end) set(arrives, {ZmpKey::Place::center, Eigen::Vector2d::Zero()});
+  }
+
+  void add_places(const InverseKinematics& solver, const std::vector<Phase>& phases) {
     for (const size_t foot : {size_t{0}, size_t{1}})
       add_track(
           [&](const PoseKey& key) { return key.feet[foot]; },
@@ -369,12 +405,16 @@ class PoseSequenceReader {
                 [](Keyframe& frame, const Vector3d& zmp) {
                   frame.zmp = ZmpKey{ZmpKey::Place::point, zmp.head<2>()};
                 });
+    zmp_follows_ = !zmp_leads_ && std::any_of(phases.begin(), phases.end(), is_single) &&
+                   std::none_of(phases.begin(), phases.end(),
+                                [](const Phase& phase) { return phase.support == Support::none; });
+    if (zmp_follows_) add_zmp_of_feet(phases);
     const std::vector<std::optional<Vector3d>> cogs = cogs_of_bases(solver);
     for (size_t i = 0; i < keys_.size(); ++i) out_of_reach_ += keys_[i].base && !cogs[i];
     add_track([&](const PoseKey& key) { return cogs[static_cast<size_t>(&key - keys_.data())]; },
               [&](Keyframe& frame, const Vector3d& cog) {
                 frame.cog_height = cog.z();
-                if (zmp_leads_) return;
+                if (zmp_leads_ || zmp_follows_) return;
                 frame.cog_x = cog.x();
                 frame.cog_y = cog.y();
               });
@@ -395,8 +435,11 @@ class PoseSequenceReader {
       notes_.push_back(
           "the file places the feet, so the " + text::counted(legs_, "leg joint") +
           " follow from the feet, the trunk and the " +
-          (zmp_leads_ ? "ZMP" : "COG; the COG follows from the places of the base link") +
-          (zmp_keys() == 1 ? "; the single ZMP key is left out" : ""));
+          (zmp_leads_     ? "ZMP"
+           : zmp_follows_ ? "ZMP. The file does not state the ZMP of its steps, so it is under the "
+                            "middle of the standing foot, and the base link sways as this needs"
+                          : "COG; the COG follows from the places of the base link") +
+          (zmp_keys() == 1 && !zmp_follows_ ? "; the single ZMP key is left out" : ""));
     else
       notes_.push_back(
           "the file does not place both feet, so the legs follow their joints, with both feet on "
@@ -421,7 +464,7 @@ class PoseSequenceReader {
   std::map<double, Keyframe> frames_;  // by time
   std::set<std::string> left_out_, other_;
   int still_ = 0, legs_ = 0, out_of_reach_ = 0;
-  bool zmp_leads_ = false;
+  bool zmp_leads_ = false, zmp_follows_ = false;
 };
 
 }  // namespace

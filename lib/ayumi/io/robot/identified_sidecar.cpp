@@ -1,0 +1,91 @@
+#include "ayumi/io/robot/identified_sidecar.hpp"
+
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "ayumi/base/text.hpp"
+
+namespace ayumi {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Digits that the interval of a value leaves, one more.
+double sidecar_number(double value) { return std::stod(text::brief(value, 5)); }
+
+// A zero offset that a sidecar may state [rad]. Definition: the reader of sidecars takes no more.
+constexpr double kWritableOffset = 0.5;
+
+// What a joint's servo is in the simulation: that of `source`. A stiffness that is not determined
+// is at least the lower end of its interval, which is written; where there is none, the robot keeps
+// its own. A delay that stands for the damping too is written as damping, because a servo without
+// any would let the joint oscillate. The offset is the joint's own: where it stands, beside its
+// command, without load.
+Json servo_group(const IdentifiedJoint& joint, const IdentifiedJoint& source,
+                 const ServoDescription& own) {
+  Json group = {{"joints", {joint.joint}}};
+  if (std::abs(joint.offset.value) <= kWritableOffset)
+    group["offset"] = sidecar_number(joint.offset.value);
+  if (!source.moved) return group;
+  const bool has_kp = source.kp.known || source.kp.lower > 0;
+  const double kp = source.kp.known ? source.kp.value : has_kp ? source.kp.lower : own.kp;
+  const double share = kp / source.kp.value;
+  const double lag = (joint.moved ? joint : source).lag;
+  if (has_kp) group["kp"] = sidecar_number(kp);
+  if (source.delay_is_lag || !has_kp) {
+    group["kd"] = sidecar_number(kp * lag);
+    group["viscous"] = 0;
+    group["delay"] = 0;
+  } else {
+    group["kd"] = sidecar_number(share * (source.damping.value - source.viscous.value));
+    group["viscous"] = sidecar_number(share * source.viscous.value);
+    group["delay"] =
+        sidecar_number((joint.moved && !joint.delay_is_lag ? joint : source).delay.value);
+  }
+  if (has_kp) group["coulomb"] = sidecar_number(share * source.coulomb.value);
+  if (source.backlash.value > 0) group["backlash"] = sidecar_number(source.backlash.value);
+  return group;
+}
+
+// Whether the profile of `model` states servos of its own, which hide those of the robot.
+bool profile_has_servos(const RobotModel& model) {
+  for (const ActuatorProfile& profile : model.description().profiles)
+    if (profile.name == model.limits().name) return !profile.servos.empty();
+  return false;
+}
+
+}  // namespace
+
+std::string identified_sidecar(const RobotModel& model, const Identification& found,
+                               const IdentifiedNames& names) {
+  Json groups = Json::array();
+  std::map<std::string, const IdentifiedJoint*> of_type;
+  for (const IdentifiedJoint& joint : found.joints) {
+    const IdentifiedJoint*& best = of_type[joint.type];
+    const auto width = [](const IdentifiedJoint& each) {
+      return each.moved && each.kp.known ? (each.kp.upper - each.kp.lower) / each.kp.value
+                                         : HUGE_VAL;
+    };
+    if (!best || width(joint) < width(*best) || (joint.moved && !best->moved)) best = &joint;
+  }
+  for (const IdentifiedJoint& joint : found.joints) {
+    const IdentifiedJoint& source = joint.moved && joint.kp.known ? joint : *of_type.at(joint.type);
+    const auto dof = static_cast<size_t>(model.find_dof(joint.joint));
+    groups.push_back(servo_group(joint, source, model.limits().servo[dof]));
+  }
+  Json json = {
+      {"format", "ayumi.robot/1"},
+      {"base", names.base},
+      {"name", model.name() + " (" + names.name + ")"},
+      {"servos", groups},
+      {"assumptions",
+       {"servos: identified from " + names.measured + " as the answer to " + names.command}}};
+  // Servos of a profile hide those of the robot, so what was found stands there too.
+  if (profile_has_servos(model))
+    json["profiles"] = {{{"name", model.limits().name}, {"servos", groups}}};
+  return json.dump(2) + "\n";
+}
+
+}  // namespace ayumi

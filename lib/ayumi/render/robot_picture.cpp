@@ -1,0 +1,52 @@
+#include "ayumi/render/robot_picture.hpp"
+
+#include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/model/body_poses.hpp"
+#include "ayumi/render/clip.hpp"
+
+namespace ayumi {
+
+namespace {
+
+/// A posture on the ground with its COG, drawn as the instant of a run is. The lower sole is on the
+/// ground.
+SimulationLog stand_of(const RobotModel& model, const Eigen::VectorXd& theta) {
+  SimulationLog log;
+  log.joints = model.dof_names();
+  log.dt = 1e-3;
+  SimulationSample sample;
+  sample.state = model.rest_state();
+  sample.state.theta = theta;
+  RobotData data(model);
+  update_positions(model, sample.state, data);
+  if (model.has_soles()) {
+    const bool left = sole_pose(model, data, Side::left).translation().z() <=
+                      sole_pose(model, data, Side::right).translation().z();
+    anchor_base(model, left ? Side::left : Side::right, Eigen::Isometry3d::Identity(), sample.state,
+                data);
+  } else
+    sample.state.base.position.z() -=
+        robot_bounds(robot_surface(model), body_poses(model, sample.state)).min().z();
+  update_positions(model, sample.state, data);
+  sample.cog = data.cog;
+  sample.torque = sample.command_theta = sample.state.theta;
+  log.samples.push_back(std::move(sample));
+  return log;
+}
+
+}  // namespace
+
+RobotPicture draw_robot(const RobotModel& model, const std::string& view, bool marks,
+                        const Eigen::VectorXd* theta) {
+  ClipOptions options;
+  options.camera.view = view;
+  OverlayOptions& overlay = options.overlay;  // of those, a robot without motion has a COG
+  overlay.zmp = overlay.reference_zmp = overlay.support = overlay.forces = overlay.push = false;
+  overlay.trails = overlay.caption = false;
+  overlay.model = marks;
+  const SimulationLog log = stand_of(model, theta ? *theta : model.rest_state().theta);
+  ClipRenderer renderer(model, log, options);
+  return {renderer.frame(0), renderer.notes()};
+}
+
+}  // namespace ayumi
