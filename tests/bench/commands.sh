@@ -37,4 +37,6 @@ compare "inspect hoap1" 15 inspect hoap1
 compare "check, walk of 7.09 s" 15 check "$here/patterns/hoap1_walk.json"
 compare "check, walk of 9.84 s" 15 check "$folder/walk.json"
 compare "run, with clip, pictures and report" 3 run "$here/patterns/hoap1_walk.json" -o "$folder/out"
+compare "certify, 100 runs without pushes" 3 certify "$here/patterns/hoap1_walk.json" --scenario none --runs 100 \
+  --all --failure 0.05
 compare "push, 40 cases" 1 push "$here/patterns/hoap1_walk.json" -o "$folder/out"
