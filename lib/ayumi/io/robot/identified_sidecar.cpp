@@ -81,7 +81,7 @@ std::string identified_sidecar(const RobotModel& model, const Identification& fo
       {"name", model.name() + " (" + names.name + ")"},
       {"servos", groups},
       {"assumptions",
-       {"servos: identified from " + names.measured + " as the answer to " + names.command}}};
+       {"servos: identified from " + names.measured + " with the command " + names.command}}};
   // Servos of a profile hide those of the robot, so what was found stands there too.
   if (profile_has_servos(model))
     json["profiles"] = {{{"name", model.limits().name}, {"servos", groups}}};
