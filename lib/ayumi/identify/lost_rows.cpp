@@ -88,8 +88,9 @@ FollowingJoint following(const AngleTable& command, const AngleTable& measured, 
 }
 
 // Lost rows before row k by least squares, beside a constant and a slope of each joint and a delay
-// that they have in common, and what its standard deviation is for noise alone. One joint may slip,
-// so the others have to agree: `without_clearest` leaves out the joint that shows most.
+// that they have in common, and what its standard deviation is for noise alone. A joint and
+// its twin of the other side may slip, so the others have to agree: `without_clearest` leaves out
+// the two joints that show most.
 struct RowStep {
   double rows = 0, deviation = HUGE_VAL;
 };
@@ -103,7 +104,7 @@ RowStep row_step(const std::vector<FollowingJoint>& joints, Index k,
     return x - x.dot(kSlope) * kSlope;
   };
   using Sums = Eigen::Matrix<double, 5, 1>;
-  Sums sums = Sums::Zero(), clearest = Sums::Zero();
+  Sums sums = Sums::Zero(), clearest = Sums::Zero(), second = Sums::Zero();
   for (const FollowingJoint& joint : joints) {
     const Window delay = joint.per_row.segment<kRows>(k - kStepRows);
     Window step = delay;
@@ -112,9 +113,12 @@ RowStep row_step(const std::vector<FollowingJoint>& joints, Index k,
                  e = without_line(joint.error.segment<kRows>(k - kStepRows));
     const Sums joint_sums = {u.squaredNorm(), u.dot(v), v.squaredNorm(), u.dot(e), v.dot(e)};
     sums += joint_sums;
-    if (joint_sums[2] > clearest[2]) clearest = joint_sums;
+    if (joint_sums[2] > clearest[2])
+      second = clearest, clearest = joint_sums;
+    else if (joint_sums[2] > second[2])
+      second = joint_sums;
   }
-  if (without_clearest) sums -= clearest;
+  if (without_clearest) sums -= clearest + second;
   const double b = sums[1], c = sums[2], x = sums[3], y = sums[4];
   // At a constant speed, a delay shows nothing: it is then as unlikely as a thousandth of a step.
   const double a = sums[0] + 1e-3 * c;
