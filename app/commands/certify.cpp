@@ -198,11 +198,14 @@ Json compare_with(Context& context, const CertifyCommand& options, const Task& i
   const KnownResults b = run_cases(second, pairs, {}, {}, context.progress());
   const PairedComparison c = compare(a, b, pairs.confidence);
   const std::string name = options.against.empty() ? options.against_controller : file;
-  const long ours = c.both + c.only_first, theirs = c.both + c.only_second;
+  const std::string own =
+      options.against.empty()
+          ? name_of(simulation_options(context, input, options.choice).controller.type)
+          : options.pattern;
   context.print("  compared with " + name + " in the same " + text::counted(c.pairs, "case") +
-                ": " + std::to_string(ours) + " failed without " + name + ", and " +
-                std::to_string(theirs) + " with " + name + "; of these, " +
-                std::to_string(c.only_first) + " failed only without " + name + ", and " +
+                ": " + std::to_string(c.both + c.only_first) + " failed with " + own + ", and " +
+                std::to_string(c.both + c.only_second) + " with " + name + "; of these, " +
+                std::to_string(c.only_first) + " failed only with " + own + ", and " +
                 std::to_string(c.only_second) + " only with " + name + "\n");
   context.print("  difference of the failure probabilities: " + in_percent(c.difference.low) +
                 " to " + in_percent(c.difference.high) + " with " + in_percent(pairs.confidence) +

@@ -42,7 +42,7 @@ struct EditCommand {
   bool as_table = false;  // of concat, blend and loop
   int times = 1;          // of loop and alternate
   bool cycle = false;     // of loop: two steps cut from a walk
-  bool whole = false;     // of loop: with the walk's begin and end
+  bool alone = false;     // of loop: without the walk's begin and end
   bool open_end = false;  // of alternate
   KeyEdit key;
   double key_to = -1, key_by = 0;  // [s]
@@ -329,8 +329,7 @@ GaitCycle best_cycle(const RobotModel& robot, const MotionPart& walk) {
   return best;
 }
 
-// Two steps from the middle of a walk, so many times; with what leads to them and from them where
-// the whole is wanted. Without it the result begins and ends in motion.
+// Two steps in the middle of a walk, so many times. Alone, they begin and end in motion.
 void loop_cycle(Context& context, const EditCommand& options) {
   if (options.over > 0)
     fail(ErrorCode::usage,
@@ -346,14 +345,15 @@ void loop_cycle(Context& context, const EditCommand& options) {
              " s, and its end does not meet its beginning: " + gap_words(cycle.gap) +
              "; take a walk that has more steps, all of the same length and period");
   const std::string table = table_beside(options.out).string();
+  const CommandSeries closed = with_closed_cycle(input.series, cycle);
   const auto part = [&](long first, long last) {
-    return cut(input.robot, walk, first, last, table);
+    return cut(input.robot, {input.pattern, closed}, first, last, table);
   };
   const auto sampled = [&](const Pattern& pattern) {
     return sample(input.robot, pattern, {.dt = input.series.dt}, context.progress());
   };
   std::vector<Pattern> parts(static_cast<size_t>(options.times), part(cycle.begin, cycle.end));
-  if (options.whole) {
+  if (!options.alone) {
     parts.insert(parts.begin(), part(0, cycle.begin));
     parts.push_back(part(cycle.end, static_cast<long>(input.series.samples.size()) - 1));
   }
@@ -372,9 +372,7 @@ void loop_cycle(Context& context, const EditCommand& options) {
                "  the cycle is from " + text::fixed(begin, 3) + " to " + text::fixed(end, 3) +
                    " s of the walk, first the " + name_of(cycle.first) +
                    " foot; its end meets its beginning: " + gap_words(cycle.gap) + "\n" +
-                   (options.whole ? ""
-                                  : "  the motion begins and ends while the robot walks; --whole "
-                                    "adds the walk's begin and end\n"),
+                   (!options.alone ? "" : "  the motion begins and ends while the robot walks\n"),
                Json{{"times", options.times},
                     {"cycle_s", {begin, end}},
                     {"first_swing", name_of(cycle.first)},
@@ -386,8 +384,8 @@ void loop_cycle(Context& context, const EditCommand& options) {
 
 // The end meets the beginning, by a transition where it does not, and the motion is repeated.
 void loop(Context& context, const EditCommand& options) {
-  if (options.whole && !options.cycle)
-    fail(ErrorCode::usage, "edit loop: --whole has a meaning with --cycle only");
+  if (options.alone && !options.cycle)
+    fail(ErrorCode::usage, "edit loop: --alone has a meaning with --cycle only");
   if (options.cycle) return loop_cycle(context, options);
   Task input = load(context, options);
   const LoopGap before = loop_gap(input.robot, {input.pattern, input.series});
@@ -540,7 +538,7 @@ void add_edit(CLI::App& app, Context& context) {
       "  ayumi edit blend squat.json sway.json --over 0.8 -o both.json\n"
       "  ayumi edit ramp imported.json --in 1.5 --back 1.5 -o from_home.json\n"
       "  ayumi edit loop squat.json --times 3 -o squats.json\n"
-      "  ayumi edit loop walk.json --cycle --whole --times 4 -o longer_walk.json\n"
+      "  ayumi edit loop walk.json --cycle --times 4 -o longer_walk.json\n"
       "  ayumi edit alternate step.json --times 6 -o walk.json\n"
       "  ayumi edit key wave.json --at 1.5 --to 3.5 --copy --mirror -o both_arms.json");
   static EditCommand options;
@@ -618,12 +616,10 @@ void add_edit(CLI::App& app, Context& context) {
                   "the two differ.")
       ->check(number_within(0.02, 60.0))
       ->type_name("S");
-  loop_command.add_flag(
-      "--cycle", options.cycle,
-      "Cut two steps out of the middle of a walk and repeat them without a stop.");
-  loop_command.add_flag("--whole", options.whole,
-                        "With --cycle: also write the walk's begin before them and its end after "
-                        "them.");
+  loop_command.add_flag("--cycle", options.cycle,
+                        "Repeat two steps in the middle of a walk, without a stop.");
+  loop_command.add_flag("--alone", options.alone,
+                        "With --cycle: without the walk's begin and end, in motion at both ends.");
   add_table_flag(loop_command);
   loop_command.callback([&context] { loop(context, options); });
   CLI::App& alternate_command =

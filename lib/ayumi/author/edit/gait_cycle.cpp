@@ -6,6 +6,7 @@
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/motion/pattern_context.hpp"
 
@@ -137,6 +138,33 @@ Pattern cut(const RobotModel& model, const MotionPart& motion, long first, long 
     result.keyframes.insert(result.keyframes.begin(), before);
   else
     result.keyframes.front().weights.merge(before.weights);
+  return result;
+}
+
+CommandSeries with_closed_cycle(const CommandSeries& series, const GaitCycle& cycle) {
+  CommandSeries result = series;
+  const CommandSample& begin = series.samples[static_cast<size_t>(cycle.begin)];
+  const CommandSample& end = series.samples[static_cast<size_t>(cycle.end)];
+  const Isometry3d shift = middle_of(end) * middle_of(begin).inverse();
+  const Vector3d place = shift * begin.state.base.position - end.state.base.position;
+  const Eigen::Quaterniond turn = Eigen::Quaterniond(shift.linear()) * begin.state.base.attitude *
+                                  end.state.base.attitude.conjugate();
+  const Eigen::VectorXd joints = begin.state.theta - end.state.theta;
+  const auto last = static_cast<long>(series.samples.size()) - 1;
+  const auto rest_to_rest = [](double u) { return u * u * u * (10 - 15 * u + 6 * u * u); };
+  for (long k = cycle.begin + 1; k <= last; ++k) {
+    const double from = static_cast<double>(k - cycle.begin),
+                 after = static_cast<double>(k - cycle.end);
+    const double share = k <= cycle.end
+                             ? rest_to_rest(from / static_cast<double>(cycle.end - cycle.begin))
+                             : 1 - rest_to_rest(after / static_cast<double>(last - cycle.end));
+    RobotState& state = result.samples[static_cast<size_t>(k)].state;
+    state.base.position += share * place;
+    state.base.attitude =
+        (elementary::between(Eigen::Quaterniond::Identity(), turn, share) * state.base.attitude)
+            .normalized();
+    state.theta += share * joints;
+  }
   return result;
 }
 

@@ -23,6 +23,12 @@ struct GaitCycle {
 /// pattern has fewer than `swing` + 3 swings or a foot is in the air at an end of the cycle.
 GaitCycle gait_cycle(const RobotModel& model, const MotionPart& motion, int swing);
 
+/// The samples of a walk, in which the end of the cycle is its beginning to the last digit, moved
+/// over the ground. What is missing (less than what a loop may leave open, else it stays visible)
+/// is spread over the cycle and taken back after it, because a jump of a tenth of a micrometre in a
+/// millisecond moves the ZMP by millimetres.
+CommandSeries with_closed_cycle(const CommandSeries& series, const GaitCycle& cycle);
+
 /// The samples `first` to `last` of a motion, such as a cycle, as a motion of its own: a table of
 /// posture and base (COG, ZMP and f_z are those of the full model), with the phases, weights and
 /// disturbances of this time. Throws Error(usage) for samples that are not there,
