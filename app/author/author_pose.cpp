@@ -280,12 +280,12 @@ size_t phase_at(const Pattern& pattern, double time) {
 // Numbers of a place, each for itself, so that what does not move stays as it is written.
 void set_place(const AuthorMotion& motion, const std::string& pointer, const Vector3d& place,
                std::vector<PatternEdit>& edits) {
-  const OrderedJson& written = motion.document.at(OrderedJson::json_pointer(pointer));
-  for (size_t i = 0; i < 3; ++i) {
-    const double value = metres(place[static_cast<Eigen::Index>(i)]);
-    if (written.at(i).is_number() && std::abs(written[i].get<double>() - value) < kStill) continue;
-    edits.push_back(
-        {PatternEdit::Kind::set, pointer + "/" + std::to_string(i), OrderedJson(value).dump()});
+  const std::string text = motion.document.dump();
+  for (int i = 0; i < 3; ++i) {
+    const std::string number = pointer + "/" + std::to_string(i);
+    const double value = metres(place[i]);
+    if (std::abs(value_in_text(text, number) - value) >= kStill)
+      edits.push_back({PatternEdit::Kind::set, number, OrderedJson(value).dump()});
   }
 }
 
@@ -835,13 +835,19 @@ std::vector<PatternEdit> mirrored_keyframe(const AuthorMotion& motion, const std
     Pattern before = pattern;
     before.table.reset();
     const Pattern after = with_key_edited(motion.task.robot, before, edit);
+    const OrderedJson& written = motion.document.at(OrderedJson::json_pointer(pointer));
     OrderedJson from = written_keyframes(before).at(i), to = written_keyframes(after).at(i);
-    for (const char* const time : {"t", "after"}) {
-      from.erase(time);
-      to.erase(time);
+    for (OrderedJson* const frame : {&from, &to}) {
+      frame->erase("t");
+      // Angles of joints are a posture without a name; the author may have called them joints.
+      if (!written.contains("joints") || !frame->contains("posture") ||
+          !frame->at("posture").is_object())
+        continue;
+      (*frame)["joints"] = frame->at("posture");
+      frame->erase("posture");
     }
     std::vector<PatternEdit> edits;
-    difference(from, to, pointer, motion.document.at(OrderedJson::json_pointer(pointer)), edits);
+    difference(from, to, pointer, written, edits);
     return edits;
   }
   fail(ErrorCode::usage, "the pattern has no keyframe " + pointer);

@@ -414,7 +414,7 @@ TEST_F(AuthorServer, RefusesAKeyInsideAViipPhase) {
   const std::string text = contents(AYUMI_SOURCE_DIR "/patterns/hoap1_viip_step.json");
   save(text);
   const Server server(file);
-  const OrderedJson key = {{"t", 1.5}, {"joints", {{"l_elbow", -60}}}};
+  const OrderedJson key = {{"t", 1.5}, {"cog", {{"height", 0.22}}}};
   const auto refused = server.edit(
       OrderedJson::array({{{"kind", "set"}, {"pointer", "/keyframes"}, {"value", {key}}}}));
   EXPECT_EQ(refused.first, 422) << refused.second;
@@ -429,7 +429,7 @@ TEST_F(AuthorServer, RefusesAKeyInsideAViipPhase) {
 // Targets of hands are moved where they are written, and a keyframe becomes its mirror image.
 TEST_F(AuthorServer, MovesTargetsAndMirrorsKeyframes) {
   const std::string text = R"({
-  "format": "ayumi.pattern/1", "robot": "humanoid30",
+  "format": "ayumi.pattern/1", "robot": "humanoid30", "units": { "angle": "deg" },
   "parameters": { "up": 0.6 },
   "phases": [ { "until": 3, "support": "both" } ],
   "keyframes": [

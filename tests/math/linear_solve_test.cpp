@@ -59,7 +59,8 @@ TEST(LinearSolve, LeastNormStaysOutOfTheKernel) {
     const MatrixXd b = random_matrix(random, 12, 2);
     const MatrixXd x = solve_least_norm(A, b);
     EXPECT_LT((A.transpose() * (b - A * x)).norm(), 1e-11);
-    const MatrixXd in_rows = rows.transpose() * solve_general(rows * rows.transpose(), rows * x);
+    const MatrixXd square = rows * rows.transpose(), right = rows * x;
+    const MatrixXd in_rows = rows.transpose() * solve_general(square, right);
     EXPECT_LT((x - in_rows).norm(), 1e-11);
   }
 }

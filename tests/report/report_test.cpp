@@ -253,7 +253,8 @@ std::string minute_of_targets() {
             ", 0.6]}, \"gaze\": [1.5, " + text::exact(0.2 * side) +
             ", 1], \"joints\": {\"r_elbow\": " + text::exact(-40 - 5 * side) + "}}";
   }
-  return "{\"format\": \"ayumi.pattern/1\", \"name\": \"targets\", \"robot\": \"./fingers\",\n"
+  return "{\"format\": \"ayumi.pattern/1\", \"name\": \"targets\", \"units\": {\"angle\": "
+         "\"deg\"}, \"robot\": \"./fingers\",\n"
          "\"phases\": [{\"until\": 60, \"support\": \"both\"}],\n\"keyframes\": [\n"
          "  {\"t\": 0, \"posture\": \"home\", \"cog\": {\"y\": 0}}" +
          keys + "]}";

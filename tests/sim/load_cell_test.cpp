@@ -108,8 +108,8 @@ TEST(LoadCell, MeanOfEightHasItsFrequencyResponse) {
 }
 
 /// The biped at rest with these sensors; each of its eight cells carries the same force [N].
-struct Standing {
-  explicit Standing(const SensorDescription& s, std::uint64_t seed = 1)
+struct StandingRobot {
+  explicit StandingRobot(const SensorDescription& s, std::uint64_t seed = 1)
       : model([&] {
           RobotDescription d = test::biped_description();
           d.sensors = s;
@@ -146,7 +146,7 @@ TEST(LoadCells, StatedExactCellsChangeNoBit) {
   SensorDescription stated = plain;
   stated.encoder_latency = stated.imu_latency = stated.force_latency = 0.003;
   stated.force_cells = {{"left", {{}}}, {"right", {{}, {}, {}, {}}}};
-  Standing a(plain), b(stated);
+  StandingRobot a(plain), b(stated);
   for (int k = 0; k < 200; ++k) {
     const double force = 10 + 10 * std::sin(0.1 * k);
     const Measurement x = a.read(force), y = b.read(force);
@@ -164,7 +164,7 @@ TEST(LoadCells, AGainOfOneCellMovesTheCentreOfPressure) {
   const double e = 0.2;
   SensorDescription s;
   s.force_cells["left"] = {{.gain = 1 + e}, {}, {}, {}};
-  Standing standing(s);
+  StandingRobot standing(s);
   const Measurement& m = standing.read(20);
   EXPECT_NEAR(m.feet[0].fz, 80 + 20 * e, 1e-9);
   EXPECT_NEAR(m.feet[1].fz, 80, 1e-9);
@@ -178,7 +178,7 @@ TEST(LoadCells, AMeanOfEightDividesTheNoiseByTheRootOfEight) {
     SensorDescription s;
     s.force_noise = 1;
     s.force_readings = readings;
-    Standing standing(s);
+    StandingRobot standing(s);
     double squares = 0;
     const int count = 8000;
     for (int k = 0; k < 8; ++k) standing.read(50);
@@ -195,7 +195,7 @@ TEST(LoadCells, EachKindOfSensorIsAsLateAsItsOwnLatency) {
   s.encoder_latency = 0.001;
   s.force_latency = 0.005;
   EXPECT_NEAR(s.oldest(kTick), 0.005, 1e-15);
-  Standing standing(s);
+  StandingRobot standing(s);
   for (int k = 0; k < 30; ++k) {
     standing.state.theta[0] = 0.01 * k;
     standing.state.base_angular_velocity = {0.1 * k, 0, 0};
@@ -215,7 +215,7 @@ TEST(LoadCells, EachKindOfSensorIsAsLateAsItsOwnLatency) {
 TEST(LoadCells, AddedLatencyCountsForEverySensor) {
   SensorDescription s;
   s.force_latency = 0.004;
-  Standing standing(s);
+  StandingRobot standing(s);
   standing.sensors.reach_back(0.003);
   SensorFault late;
   late.latency = 0.003;
