@@ -14,7 +14,7 @@
 namespace ayumi {
 namespace {
 
-constexpr double kTick = 1e-3;
+constexpr double kReading = 1e-3;
 
 TEST(LoadCell, IsExactWithoutStatedErrors) {
   LoadCell cell({}, 1);
@@ -93,9 +93,10 @@ TEST(LoadCell, MeanOfEightFollowsARiseThreeAndAHalfTicksLate) {
 TEST(LoadCell, MeanOfEightHasItsFrequencyResponse) {
   for (const double hertz : {5.0, 30.0, 60.0, 125.0}) {
     LoadCell cell({}, 8);
-    const double w = 2 * M_PI * hertz * kTick;
+    const double w = 2 * M_PI * hertz * kReading;
     double sine = 0, cosine = 0;
-    const int period = static_cast<int>(std::lround(1 / (hertz * kTick) * 6));  // six, whole ticks
+    const int period =
+        static_cast<int>(std::lround(1 / (hertz * kReading) * 6));  // six, whole ticks
     for (int k = 0; k < 20 + period; ++k) {
       const double mean = cell.reported(std::sin(w * k));
       if (k < 20) continue;
@@ -115,7 +116,7 @@ struct StandingRobot {
           d.sensors = s;
           return d;
         }()),
-        sensors(model, model.limits(), kTick, true, seed),
+        sensors(model, model.limits(), kReading, true, seed),
         data(model),
         state(model.rest_state()) {
     update_velocities(model, state, data);
@@ -194,7 +195,7 @@ TEST(LoadCells, EachKindOfSensorIsAsLateAsItsOwnLatency) {
   s.latency = 0.002;
   s.encoder_latency = 0.001;
   s.force_latency = 0.005;
-  EXPECT_NEAR(s.oldest(kTick), 0.005, 1e-15);
+  EXPECT_NEAR(s.oldest(kReading), 0.005, 1e-15);
   StandingRobot standing(s);
   for (int k = 0; k < 30; ++k) {
     standing.state.theta[0] = 0.01 * k;
@@ -206,9 +207,9 @@ TEST(LoadCells, EachKindOfSensorIsAsLateAsItsOwnLatency) {
     EXPECT_NEAR(m.feet[1].fz, 4.0 * (10 + std::max(k - 5, 0)), 1e-9) << k;
   }
   s.force_readings = 8;
-  EXPECT_NEAR(s.oldest(kTick), 0.0085, 1e-15);
+  EXPECT_NEAR(s.oldest(kReading), 0.0085, 1e-15);
   s.set_latency(0.001);
-  EXPECT_NEAR(s.oldest(kTick), 0.0045, 1e-15);
+  EXPECT_NEAR(s.oldest(kReading), 0.0045, 1e-15);
 }
 
 // A scenario's latency adds to each.
