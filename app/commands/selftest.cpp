@@ -79,7 +79,7 @@ std::string push_text(const Context& context) {
 
 const std::array<Job, 5> kJobs = {{
     {"walk", "a walk with a push and DTAD", walk_text,
-     "f275829135f2879bcf5371dcfc94eb16f1e39d77b88526c6fe1d698cc3b417f3"},
+     "2d9764e3c3ea7a57a06f20ddc4e2b9b5d87d7c86cabd9a4a59648df333cbfc65"},
     {"jump", "a jump", jump_text,
      "1938dddba37b5a55e337e8e4f25802909b83f573ebbc287cf7a11dc7aa377b84"},
     {"viip", "a walk by VIIP", viip_text,

@@ -115,9 +115,9 @@ TEST_F(Infeasible, AFootOutOfReachNamesTheStrideThatPasses) {
   const Output failed = ayumi({"repair", "step.json", "-o", "out.json"});
   EXPECT_EQ(failed.exit_code, 3);
   EXPECT_NE(failed.err.find("out of reach"), std::string::npos) << failed.err;
-  const size_t at = failed.err.find("with stride = ");
+  const size_t at = failed.err.find("if stride = ");
   ASSERT_NE(at, std::string::npos) << failed.err;
-  const std::string value = failed.err.substr(at + 14, failed.err.find(' ', at + 14) - at - 14);
+  const std::string value = failed.err.substr(at + 12, failed.err.find(' ', at + 12) - at - 12);
   EXPECT_EQ(ayumi({"check", "step.json", "--set", "stride=" + value}).exit_code, 0) << value;
 }
 

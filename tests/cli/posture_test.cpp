@@ -107,7 +107,7 @@ TEST_F(PostureCommand, BadInputIsRefusedAndNothingIsWritten) {
   };
   refused({"posture", "adjust", "hoap1", "home", "--joint", "l_elbow=1", "--as", "ready", "-o",
            "mine.json"},
-          3, "has a posture 'ready' already");
+          3, "already has a posture 'ready'");
   refused(with_save({"posture", "mirror", "mine.json", "redy"}), 2, "did you mean 'ready'?");
   refused(with_save({"posture", "adjust", "hoap1", "home", "--joint", "l_elbo=1"}), 2,
           "did you mean 'l_elbow'?");

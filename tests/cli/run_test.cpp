@@ -292,7 +292,7 @@ TEST_F(Run, AFileOfTheUserIsNeverOverwritten) {
        {std::vector<std::string>{}, std::vector<std::string>{"--force"}}) {
     const Output refused = run("calm.json", more);
     EXPECT_EQ(refused.exit_code, 3);
-    EXPECT_NE(refused.err.find("out/hoap.csv: this already exists"), std::string::npos)
+    EXPECT_NE(refused.err.find("out/hoap.csv: this file already exists"), std::string::npos)
         << refused.err;
   }
   EXPECT_EQ(contents(folder / "out/hoap.csv"), "mine");

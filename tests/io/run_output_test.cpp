@@ -97,7 +97,7 @@ TEST_F(RunOutputTest, AKilledDeliveryIsUndoneByTheNextStart) {
     killed_delivery(replaces ? Names{"run.json", "b.csv", "a.csv"} : Names{}, {"a.csv", "c.csv"});
     EXPECT_FALSE(is_run_folder(target));
     folder.write("out/d.csv", "mine");
-    EXPECT_NE(refusal({"d.csv"}, true).find("d.csv: this already exists"), std::string::npos);
+    EXPECT_NE(refusal({"d.csv"}, true).find("d.csv: this file already exists"), std::string::npos);
     EXPECT_EQ(names(), replaces ? (Names{"a.csv", "b.csv", "d.csv", "run.json"}) : Names{"d.csv"});
     if (replaces) verify_run(target);
     EXPECT_EQ(read_file(target / "d.csv"), "mine");
@@ -108,7 +108,7 @@ TEST_F(RunOutputTest, AKilledDeliveryIsUndoneByTheNextStart) {
 TEST_F(RunOutputTest, AKilledDeliveryLeavesFilesThatHaveChangedSince) {
   killed_delivery({}, {"a.csv"});
   folder.write("out/a.csv", "mine");
-  EXPECT_NE(refusal({"a.csv"}).find("a.csv: this already exists"), std::string::npos);
+  EXPECT_NE(refusal({"a.csv"}).find("a.csv: this file already exists"), std::string::npos);
   EXPECT_EQ(read_file(target / "a.csv"), "mine");
 }
 
