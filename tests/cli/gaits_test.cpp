@@ -39,7 +39,9 @@ TEST(Gaits, ALibraryOfTwoCellsHasAllItsParts) {
   ASSERT_EQ(made.exit_code, 0) << made.err << made.out;
   EXPECT_NE(made.out.find("2 cells, of which 2 are made and 0 are missing"), std::string::npos)
       << made.out;
-  EXPECT_NE(made.out.find("2 transitions, of which 2 are made and 0 are missing"), std::string::npos) << made.out;
+  EXPECT_NE(made.out.find("2 transitions, of which 2 are made and 0 are missing"),
+            std::string::npos)
+      << made.out;
   const Json index = index_of(folder / "lib");
   const JsonSchema schema(
       Json::parse(contents(AYUMI_SOURCE_DIR "/docs/schemas/gaits-1.schema.json")));
