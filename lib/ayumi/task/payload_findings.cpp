@@ -6,8 +6,8 @@
 
 #include "ayumi/base/text.hpp"
 #include "ayumi/check/consistency.hpp"
-#include "ayumi/limits/limit.hpp"
 #include "ayumi/sim/payload.hpp"
+#include "ayumi/task/acting_disturbances.hpp"
 
 namespace ayumi {
 
@@ -16,45 +16,21 @@ namespace {
 // Steps of the bisection for the mass that a motion bears. Chosen: 3 % of the payload.
 constexpr int kMassSteps = 5;
 
-bool overlap(const Disturbance& a, const Disturbance& b) {
-  return a.at <= b.at + b.duration && b.at <= a.at + a.duration;
-}
-
 std::string mass_text(double mass) { return text::brief(mass, 4) + " kg"; }
 
 // In whole grams, not above the mass itself.
 double rounded_down(double mass) { return 1e-3 * std::floor(1e3 * mass); }
 
-// The errors while this payload is carried that the motion alone does not have. What is carried at
-// the same time is carried together with it; `share` is that of this payload's mass.
+// The errors that this payload brings when its mass is multiplied by `share`. What is carried at
+// the same time is carried together with it.
 std::vector<Finding> errors_with(const Task& task, const CheckOptions& options,
                                  const ConsistencyReport& plain, size_t which, double share) {
-  const Disturbance& carried = task.pattern.scenario[which];
-  std::vector<CarriedMass> masses;
-  for (size_t i = 0; i < task.pattern.scenario.size(); ++i) {
-    const Disturbance& other = task.pattern.scenario[i];
-    const auto* payload = std::get_if<Payload>(&other.what);
-    if (!payload || !overlap(carried, other)) continue;
-    const int link = task.robot.find_link(payload->on);
-    if (link >= 0)
-      masses.push_back({link, payload->point, (i == which ? share : 1) * payload->mass});
-  }
-  const ConsistencyReport report =
-      check_consistency(with_payloads(task.robot, masses), task.series, options);
-  std::vector<Finding> errors;
-  for (const Finding& f : report.findings) {
-    // The commands are those of the robot without it: its controller takes the difference.
-    if (f.severity != Severity::error || spec_of(f.kind).limit_class == LimitClass::command ||
-        f.begin > carried.at + carried.duration || f.end < carried.at)
-      continue;
-    const bool known =
-        std::any_of(plain.findings.begin(), plain.findings.end(), [&](const Finding& p) {
-          return p.severity == Severity::error && p.kind == f.kind && p.where == f.where &&
-                 p.begin <= f.end && f.begin <= p.end;
-        });
-    if (!known) errors.push_back(f);
-  }
-  return errors;
+  std::vector<Disturbance> scenario = task.pattern.scenario;
+  std::get<Payload>(scenario[which].what).mass *= share;
+  const Disturbance& carried = scenario[which];
+  const RobotModel loaded =
+      with_payloads(task.robot, masses_carried_while(carried, scenario, task.robot));
+  return errors_brought_by(carried, check_consistency(loaded, task.series, options), plain);
 }
 
 // A payload that brings errors, and the largest mass that brings none.
