@@ -181,8 +181,8 @@ KnownResults merged(const CertifyCommand& options, const Json& study) {
   return results;
 }
 
-Json compare_with(Context& context, const CertifyCommand& options, const Task& input,
-                  const Study& study, const UncertainTask& first, const KnownResults& known) {
+Json compare_with(Context& context, const CertifyCommand& options, const Study& study,
+                  const UncertainTask& first, const std::string& law, const KnownResults& known) {
   SimulationChoice choice = options.choice;
   if (!options.against_controller.empty()) choice.controller = options.against_controller;
   const std::string file = options.against.empty() ? options.pattern : options.against;
@@ -198,10 +198,7 @@ Json compare_with(Context& context, const CertifyCommand& options, const Task& i
   const KnownResults b = run_cases(second, pairs, {}, {}, context.progress());
   const PairedComparison c = compare(a, b, pairs.confidence);
   const std::string name = options.against.empty() ? options.against_controller : file;
-  const std::string own =
-      options.against.empty()
-          ? name_of(simulation_options(context, input, options.choice).controller.type)
-          : options.pattern;
+  const std::string own = options.against.empty() ? law : options.pattern;
   context.print("  compared with " + name + " in the same " + text::counted(c.pairs, "case") +
                 ": " + std::to_string(c.both + c.only_first) + " failed with " + own + ", and " +
                 std::to_string(c.both + c.only_second) + " with " + name + "; of these, " +
@@ -316,7 +313,7 @@ void certify_pattern(Context& context, CertifyCommand& options) {
                {"influences", influences_json(influence)},
                {"worst_cases", worst_cases_json(task, context.seed, results, worst)}};
   if (!options.against.empty() || !options.against_controller.empty())
-    json["comparison"] = compare_with(context, options, input, study, task, results);
+    json["comparison"] = compare_with(context, options, study, task, law, results);
   if (options.rare) json["rare_failures"] = rare_failures(context, options, task);
   if (!options.map.empty()) {
     write_drawing(options.map,

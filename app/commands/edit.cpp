@@ -618,8 +618,10 @@ void add_edit(CLI::App& app, Context& context) {
       ->type_name("S");
   loop_command.add_flag("--cycle", options.cycle,
                         "Repeat two steps in the middle of a walk, without a stop.");
-  loop_command.add_flag("--alone", options.alone,
-                        "With --cycle: without the walk's begin and end, in motion at both ends.");
+  loop_command.add_flag(
+      "--alone", options.alone,
+      "With --cycle: write the repeated steps only, without the beginning and the end of "
+      "the walk.");
   add_table_flag(loop_command);
   loop_command.callback([&context] { loop(context, options); });
   CLI::App& alternate_command =
