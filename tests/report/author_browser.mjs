@@ -2,7 +2,7 @@
 // live page (it prints the address) on PATTERN, which is JSON without comments, loads the page in headless Chromium and works with it
 // as a person would. Prints one line per broken expectation, then "ok" or "failed".
 
-import { conclude, data, driver, expect, openPage, quiet, save, server, shots, text } from "./author_page.mjs";
+import { conclude, data, driver, expect, openPage, quiet, runTrials, save, server, shots, text } from "./author_page.mjs";
 import { startDriver, until, wait } from "./driver.mjs";
 
 const keySelector = (i) => `[data-id="/keyframes/${i}/zmp"]`;
@@ -335,14 +335,8 @@ let driving;
 try {
   driving = await startDriver(driver, shots);
   const tab = await openPage(driving, 1280, 800);
-  for (const trial of [looks, namesEverything, editsByKeyboard, addsPhasesAndKeys, dragsInTime, showsFindings, keepsBothVersions,
-    poses, postures, pushesTheRobot, works, showsResults, keepsWhatIsBeingTyped, showsNoDeadControls]) {
-    try {
-      await trial(tab);
-    } catch (error) {
-      expect(false, `${trial.name}: ${error.message}`);
-    }
-  }
+  await runTrials(tab, [looks, namesEverything, editsByKeyboard, addsPhasesAndKeys, dragsInTime, showsFindings, keepsBothVersions,
+    poses, postures, pushesTheRobot, works, showsResults, keepsWhatIsBeingTyped, showsNoDeadControls]);
   await followsTheFile(driving, tab);
   await quiet(tab);
   server.kill();

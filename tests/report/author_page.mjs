@@ -68,6 +68,17 @@ export async function openPage(driver_, width, height) {
   return tab;
 }
 
+/// One trial after the other: what one of them throws breaks that one only.
+export async function runTrials(tab, trials) {
+  for (const trial of trials) {
+    try {
+      await trial(tab);
+    } catch (error) {
+      expect(false, `${trial.name}: ${error.message}`);
+    }
+  }
+}
+
 /// Nothing in the console, and no request to another place.
 export async function quiet(tab) {
   const errors = (await tab.log("browser")).filter((entry) => entry.level === "SEVERE" && !/status of (404|409|422)/.test(entry.message));

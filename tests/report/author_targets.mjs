@@ -2,7 +2,7 @@
 // many joints whose hands and gaze have targets: they are seen, dragged and typed, a keyframe is mirrored, two pages show the same, and the
 // last of a hundred quick saves is shown.
 
-import { conclude, data, driver, expect, openPage, quiet, save, shots, text } from "./author_page.mjs";
+import { conclude, data, driver, expect, openPage, quiet, runTrials, save, shots, text } from "./author_page.mjs";
 import { startDriver, until, wait } from "./driver.mjs";
 
 const near = (a, b, most) => Math.abs(a - b) <= most;
@@ -135,13 +135,7 @@ let driving;
 try {
   driving = await startDriver(driver, shots);
   const tab = await openPage(driving, 1280, 800);
-  for (const trial of [showsTargets, dragsTargets, typesTargets, worksNarrow]) {
-    try {
-      await trial(tab);
-    } catch (error) {
-      expect(false, `${trial.name}: ${error.message}`);
-    }
-  }
+  await runTrials(tab, [showsTargets, dragsTargets, typesTargets, worksNarrow]);
   await twoPages(driving, tab);
   await quiet(tab);
   await tab.end();

@@ -199,6 +199,16 @@ TEST(AuthorPage, PartsThatNeedNoBrowser) {
   EXPECT_EQ(said.exit_code, 0) << said.out << said.err;
 }
 
+// Runs the trials of a script on the live page of a pattern.
+void expect_page_works(const std::string& script, const Folder& folder, const char* pattern) {
+  const fs::path file = folder / pattern;
+  const Output said = run_program({AYUMI_SOURCE_DIR "/tests/report/" + script, AYUMI_CHROMEDRIVER,
+                                   file, "--", program_under_test(), "author", file},
+                                  folder.path(), AYUMI_NODE);
+  EXPECT_EQ(said.exit_code, 0) << said.out << said.err;
+  EXPECT_EQ(said.out, "ok\n");
+}
+
 TEST(AuthorPage, IsWorkedWithInABrowser) {
   if (kAuthorPage.empty()) GTEST_SKIP() << "built without npm: there is no page to try";
   if (std::string(AYUMI_CHROMEDRIVER).empty())
@@ -210,12 +220,7 @@ TEST(AuthorPage, IsWorkedWithInABrowser) {
   for (std::string line; std::getline(lines, line);)
     if (!line.starts_with("//")) walk += line + "\n";
   write(folder / "walk.json", walk);
-  const Output said = run_program(
-      {AYUMI_SOURCE_DIR "/tests/report/author_browser.mjs", AYUMI_CHROMEDRIVER,
-       folder / "walk.json", "--", program_under_test(), "author", folder / "walk.json"},
-      folder.path(), AYUMI_NODE);
-  EXPECT_EQ(said.exit_code, 0) << said.out << said.err;
-  EXPECT_EQ(said.out, "ok\n");
+  expect_page_works("author_browser.mjs", folder, "walk.json");
 }
 
 // humanoid30 with seven fingers on each hand: 44 joints.
@@ -268,12 +273,7 @@ TEST(AuthorPage, ShowsTargetsOfManyJointsForAMinute) {
   write_robot_with_fingers(folder);
   // As the trials write it.
   write(folder / "targets.json", nlohmann::ordered_json::parse(minute_of_targets()).dump(1));
-  const Output said = run_program(
-      {AYUMI_SOURCE_DIR "/tests/report/author_targets.mjs", AYUMI_CHROMEDRIVER,
-       folder / "targets.json", "--", program_under_test(), "author", folder / "targets.json"},
-      folder.path(), AYUMI_NODE);
-  EXPECT_EQ(said.exit_code, 0) << said.out << said.err;
-  EXPECT_EQ(said.out, "ok\n");
+  expect_page_works("author_targets.mjs", folder, "targets.json");
 }
 
 TEST(Html, Base64OfEveryRemainder) {
