@@ -113,11 +113,12 @@ std::string check_table(const ConsistencyReport& report, const RobotModel& model
   const std::vector<std::string> bare = bodies_without_collision_shapes(model);
   const double apart = at(FindingKind::self_collision);
   if (std::isnan(apart))
-    out += "self-collision not checked, because the legs have no collision shapes";
+    out += "self-collisions are not checked, because the legs have no collision shapes";
   else
     out += "nearest bodies " + mm(apart) + " apart" + place(FindingKind::self_collision);
   if (!std::isnan(apart) && !bare.empty())
-    out += "; self-collision not checked for " + text::join(bare, ", ") + " (no collision shapes)";
+    out += "; self-collisions of " + text::join(bare, ", ") +
+           " are not checked, because these bodies have no collision shapes";
   out += "\n";
   return out;
 }

@@ -4,6 +4,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "help.hpp"
 #include "option_checks.hpp"
 
 namespace ayumi::app {
@@ -135,8 +136,8 @@ std::string manual(const CLI::App& app, const std::string& version) {
   for (const Level& level : levels_of(app)) {
     text += ".SS ayumi " + roff(level.words) + "\n" + roff(level.app->get_description()) + "\n";
     text += manual_options(*level.app);
-    const std::string footer = level.app->get_footer();
-    if (!footer.empty()) text += ".PP\n.nf\n" + roff(footer) + "\n.fi\n";
+    const std::string examples = examples_of(*level.app);
+    if (!examples.empty()) text += ".PP\n.nf\n" + roff(examples) + "\n.fi\n";
   }
   return text +
          ".SH EXIT STATUS\n0: the motion is good. 1: it is not. 2: wrong usage. 3: bad input. 4: "

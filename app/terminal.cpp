@@ -1,8 +1,10 @@
 #include "terminal.hpp"
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -57,6 +59,16 @@ std::string safe_for_terminal(const std::string& text) {
     begin = escape + std::max<size_t>(1, own.size());
   }
   return shown;
+}
+
+size_t terminal_columns() {
+  const char* const stated = std::getenv("COLUMNS");
+  const std::string_view word = stated ? stated : "";
+  size_t columns = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), columns);
+  if (error == std::errc() && end == word.data() + word.size() && columns > 0) return columns;
+  winsize size{};
+  return ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
 }
 
 void clear_screen() {

@@ -18,6 +18,10 @@ std::string painted(Paint paint, const std::string& words);
 /// and every other control character is written out (text::printable).
 std::string safe_for_terminal(const std::string& text);
 
+/// Width of a line on standard output: the environment's COLUMNS, else the width of the terminal;
+/// 0 where standard output is no terminal.
+size_t terminal_columns();
+
 /// Clears the screen and its history where standard output is a terminal.
 void clear_screen();
 

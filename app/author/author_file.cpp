@@ -36,7 +36,7 @@ class TemporaryFile {
     stream.close();
     if (!stream)
       fail(ErrorCode::bad_file,
-           beside.string() + ": cannot be written (" + std::strerror(errno) + ")");
+           beside.string() + ": the file cannot be written (" + std::strerror(errno) + ")");
   }
   ~TemporaryFile() {
     std::error_code ignored;
@@ -69,7 +69,8 @@ bool replace_text(const fs::path& file, const std::string& expected, const std::
   std::error_code error;
   fs::rename(written.path(), file, error);
   if (error)
-    fail(ErrorCode::bad_file, file.string() + ": cannot be written (" + error.message() + ")");
+    fail(ErrorCode::bad_file,
+         file.string() + ": the file cannot be written (" + error.message() + ")");
   return true;
 }
 

@@ -47,9 +47,10 @@ void author(Context& context, const AuthorCommand& options) {
   serve_author(
       session, {options.port},
       [&](const std::string& address) {
-        context.print(options.pattern + " is shown at\n  " + address +
-                      "\n  Every change of the file is followed, and the page can change it. "
-                      "Ctrl-C ends the server.\n");
+        context.print(
+            options.pattern + " is shown at\n  " + address +
+            "\n  The page follows every change of the file, and can itself change the file. "
+            "Ctrl-C ends the server.\n");
         context.print_json(nlohmann::ordered_json{{"address", address}}.dump());
         std::fflush(stdout);
         if (options.open) open_in_browser(address);
@@ -65,8 +66,8 @@ void add_author(CLI::App& app, Context& context) {
   command->footer(
       "Examples:\n  ayumi author walk.json\n  ayumi author walk.json --open\n"
       "  ayumi author walk.json --profile hoap1-strong --port 8080\n"
-      "The page is served on this machine alone. Whoever knows the address may change the file, "
-      "so keep it to yourself.");
+      "The page is served on this machine alone. Everyone who knows the address can change the "
+      "file, so keep the address secret.");
   auto options = std::make_shared<AuthorCommand>();
   command->add_option("PATTERN", options->pattern, "Pattern file.")->required();
   command->add_option("--set", options->set, "Set a parameter that the pattern declares.")

@@ -333,7 +333,8 @@ void certify_pattern(Context& context, CertifyCommand& options) {
 
 void add_certify(CLI::App& app, Context& context) {
   CLI::App* command = app.add_subcommand(
-      "certify", "bound the probability that the robot fails under declared uncertainty");
+      "certify",
+      "show that the robot fails with at most a given probability, under declared uncertainty");
   command->footer(
       "Examples:\n  ayumi certify patterns/hoap1_walk.json --failure 0.01 --confidence 0.95\n"
       "  ayumi certify walk.json --study study.json -o out/cases.json --map out/matters.svg\n"

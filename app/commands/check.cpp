@@ -23,6 +23,7 @@
 #include "ayumi/task/plan_log.hpp"
 #include "ayumi/task/scenario_findings.hpp"
 #include "check_table.hpp"
+#include "help.hpp"
 #include "motion_words.hpp"
 #include "pattern_input.hpp"
 #include "signals.hpp"
@@ -43,7 +44,7 @@ struct CheckCommand {
 };
 
 void print_tolerances(const Context& context) {
-  context.print(tolerance_table());
+  context.print(broken_at(tolerance_table(), terminal_columns()));
   Json kinds = Json::array();
   for (const FindingSpec* spec : finding_specs())
     kinds.push_back({{"kind", name_of(spec->kind)},

@@ -268,7 +268,7 @@ Pattern joined_pattern(const Context& context, const EditCommand& options, const
       series = std::move(of_keys);
       return keyed;
     }
-    reason = "with keys the joined motion would fail the check, and as samples it passes";
+    reason = "the joined motion passes the check as a table, but would fail the check with keys";
     return tabled;
   } catch (const Error& error) {
     if (error.code() != ErrorCode::bad_pattern) throw;
@@ -297,7 +297,7 @@ void join(Context& context, const EditCommand& options) {
     const Task next = load_pattern(context, options.patterns[i], options.input);
     if (next.robot.description().sha256 != input.robot.description().sha256)
       fail(ErrorCode::bad_pattern, options.patterns[i] + ": /robot: the robot is '" +
-                                       next.pattern.robot + "', but that of " +
+                                       next.pattern.robot + "', but the robot of " +
                                        options.patterns.front() + " is '" + input.pattern.robot +
                                        "'; give patterns of the same robot");
     joins.push_back(input.series.duration());
@@ -368,24 +368,26 @@ void loop_cycle(Context& context, const EditCommand& options) {
   const double dt = input.series.dt;
   const double begin = static_cast<double>(cycle.begin) * dt;
   const double end = static_cast<double>(cycle.end) * dt;
-  write_edited(context, options, all, check_edited(context, options, input, all),
-               "  the cycle is from " + text::fixed(begin, 3) + " to " + text::fixed(end, 3) +
-                   " s of the walk, first the " + name_of(cycle.first) +
-                   " foot; its end meets its beginning: " + gap_words(cycle.gap) + "\n" +
-                   (!options.alone ? "" : "  the motion begins and ends while the robot walks\n"),
-               Json{{"times", options.times},
-                    {"cycle_s", {begin, end}},
-                    {"first_swing", name_of(cycle.first)},
-                    {"displacement_m", {cycle.displacement.x(), cycle.displacement.y()}},
-                    {"turn_rad", cycle.turn},
-                    {"gap", gap_json(cycle.gap)},
-                    {"keys_kept", false}});
+  write_edited(
+      context, options, all, check_edited(context, options, input, all),
+      "  the cycle is from " + text::fixed(begin, 3) + " to " + text::fixed(end, 3) +
+          " s of the walk, and the " + name_of(cycle.first) +
+          " foot swings first; the end of the cycle meets its beginning: " + gap_words(cycle.gap) +
+          "\n" + (!options.alone ? "" : "  the motion begins and ends while the robot walks\n"),
+      Json{{"times", options.times},
+           {"cycle_s", {begin, end}},
+           {"first_swing", name_of(cycle.first)},
+           {"displacement_m", {cycle.displacement.x(), cycle.displacement.y()}},
+           {"turn_rad", cycle.turn},
+           {"gap", gap_json(cycle.gap)},
+           {"keys_kept", false}});
 }
 
 // The end meets the beginning, by a transition where it does not, and the motion is repeated.
 void loop(Context& context, const EditCommand& options) {
   if (options.alone && !options.cycle)
-    fail(ErrorCode::usage, "edit loop: --alone has a meaning with --cycle only");
+    fail(ErrorCode::usage,
+         "edit loop: --alone works only together with --cycle; add --cycle, or leave --alone out");
   if (options.cycle) return loop_cycle(context, options);
   Task input = load(context, options);
   const LoopGap before = loop_gap(input.robot, {input.pattern, input.series});
@@ -550,7 +552,8 @@ void add_edit(CLI::App& app, Context& context) {
   });
   const auto add_table_flag = [](CLI::App& of) {
     of.add_flag("--table", options.as_table,
-                "Write the result as a table of samples, also where its keys could be kept.");
+                "Write the result as a table of samples, even if the keys of the patterns could be "
+                "kept.");
   };
   CLI::App& concat_command =
       add_join_of(*command, "concat", "play one pattern after the other, without a pause", options);
@@ -579,7 +582,9 @@ void add_edit(CLI::App& app, Context& context) {
       ->type_name("S")
       ->capture_default_str();
   ramp_command
-      .add_option("--posture", options.ramps.posture, "A posture of the pattern or of the robot.")
+      .add_option(
+          "--posture", options.ramps.posture,
+          "Posture at the beginning and at the end: a posture of the pattern or of the robot.")
       ->type_name("NAME")
       ->capture_default_str();
   ramp_command.callback([&context] { ramp(context, options); });

@@ -410,9 +410,10 @@ std::string in_words(const ExportOptions& options, const Source& source, const S
             " % of the limit (" + report.worst_joint + " at " +
             on_both_clocks(report.worst_at, report.ramp, report.ramp + report.motion) + ")";
   if (!report.margin_joint.empty())
-    text += "; " + text::brief(std::abs(report.min_limit_margin) * 180 / EIGEN_PI, 3) + " deg " +
-            (report.min_limit_margin < 0 ? "beyond a" : "from the nearest") + " position limit (" +
-            report.margin_joint + ")";
+    text += "; " + report.margin_joint +
+            (report.min_limit_margin < 0 ? " goes " : " comes nearest to its position limit, to ") +
+            text::brief(std::abs(report.min_limit_margin) * 180 / EIGEN_PI, 3) + " deg" +
+            (report.min_limit_margin < 0 ? " beyond its position limit" : "");
   text += "\n";
   for (const SafetyViolation& violation : report.violations)
     text += "  unsafe: " + text_of(violation) + "\n";

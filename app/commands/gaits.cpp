@@ -340,7 +340,7 @@ void add_gaits(CLI::App& app, Context& context) {
     command->add_option(name, words, what)->type_name("LIST");
   };
   add_axis("--forward", options->forward,
-           "Speeds forward [m/s] (default: speeds around that of `new walk`).");
+           "Speeds forward [m/s] (default: speeds around the speed of `new walk`).");
   add_axis("--sideways", options->sideways,
            "Speeds to the left [m/s] (default: 0, and one speed on each side of 0).");
   add_axis("--turn", options->turn, "Turning rates to the left [deg/s] (default: -8, 0 and 8).");

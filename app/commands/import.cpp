@@ -122,9 +122,9 @@ void add_import(CLI::App& app, Context& context) {
       ->type_name("HZ");
   command
       ->add_option("--signs", signs,
-                   "Signs of the angles in a file with radians in the order of the motor numbers: "
-                   "as the robot's encoders count (encoder), or as the robot's file defines the "
-                   "joints (joint).")
+                   "Signs of angles in radians whose columns are in the order of the motor "
+                   "numbers: encoder = the encoders of the robot define the positive direction, "
+                   "joint = the file of the robot defines the positive direction.")
       ->check(one_of({"encoder", "joint"}))
       ->capture_default_str();
   command->add_flag("--order", options.how.reading.by_order,
@@ -162,7 +162,8 @@ void add_import(CLI::App& app, Context& context) {
   command
       ->add_option(
           "--contact-load", options.how.contact.load,
-          "Smallest vertical force with which soles carry the robot, as a multiple of its weight.")
+          "Where the motion needs a smaller vertical ground force than this, no sole carries the "
+          "robot [multiple of the weight].")
       ->check(number_within(0.0, 2.0))
       ->capture_default_str();
   command->add_flag("--commands", options.how.reading.commands,

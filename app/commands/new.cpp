@@ -18,10 +18,12 @@
 #include "ayumi/motion/pattern_context.hpp"
 #include "ayumi/plan/sample.hpp"
 #include "ayumi/task/task.hpp"
+#include "help.hpp"
 #include "motion_search.hpp"
 #include "new_pattern.hpp"
 #include "option_checks.hpp"
 #include "pattern_input.hpp"
+#include "terminal.hpp"
 #include "walk_that_fits.hpp"
 
 namespace ayumi::app {
@@ -721,8 +723,8 @@ void add_which(CLI::App& command, const char* name, const char* what, NewOptions
 
 void add_seat(CLI::App& command, NewOptions& options) {
   add_common(command, options);
-  add_scaled(command, "--depth", options.depth, "Height between standing and sitting [m]",
-             SeatParameters().depth, "M");
+  add_scaled(command, "--depth", options.depth,
+             "Distance of the COG between standing and sitting [m]", SeatParameters().depth, "M");
   command
       .add_option("--lean", options.angle_deg,
                   "Lean of the trunk in the middle of the motion [deg] (default: 20).")
@@ -790,8 +792,10 @@ void list_kinds(const Context& context, const CLI::App& command) {
   const auto kinds = command.get_subcommands([](const CLI::App*) { return true; });
   for (const CLI::App* kind : kinds) width = std::max(width, kind->get_name().size());
   for (const CLI::App* kind : kinds)
-    context.print(kind->get_name() + std::string(width + 2 - kind->get_name().size(), ' ') +
-                  kind->get_description() + "\n");
+    context.print(broken_at(kind->get_name() +
+                                std::string(width + 2 - kind->get_name().size(), ' ') +
+                                kind->get_description() + "\n",
+                            terminal_columns()));
 }
 
 }  // namespace

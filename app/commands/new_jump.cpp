@@ -163,16 +163,18 @@ void add_new_jump(CLI::App& parent, Context& context) {
   };
   command
       ->add_option("--height", options.height,
-                   "Height of the jump: COG above ref z_G [m]" + scaled(JumpParameters().height))
+                   "Height of the jump: rise of the COG after lift-off [m]" +
+                       scaled(JumpParameters().height))
       ->type_name("M");
   command
       ->add_option("--stoop", options.stoop,
-                   "Depth of the stoop below ref z_G [m]" + scaled(JumpParameters().stoop))
+                   "Depth of the stoop below the COG height at lift-off [m]" +
+                       scaled(JumpParameters().stoop))
       ->type_name("M");
   command
-      ->add_option(
-          "--cog-height", options.cog_height,
-          "ref z_G: COG height at lift-off and touchdown [m]" + scaled(JumpParameters().cog_height))
+      ->add_option("--cog-height", options.cog_height,
+                   "COG height at lift-off and touchdown (ref z_G in the paper) [m]" +
+                       scaled(JumpParameters().cog_height))
       ->type_name("M");
   command->add_option("--forward", options.forward, "Distance of each jump forward [m].")
       ->capture_default_str()
@@ -187,7 +189,7 @@ void add_new_jump(CLI::App& parent, Context& context) {
       ->type_name("NAME");
   command->add_flag(
       "--highest", options.highest,
-      "Search for the height, ref z_G and stoop that give the highest jump that the profile "
+      "Search for the --height, --stoop and --cog-height of the highest jump that the profile "
       "allows.");
   command->callback([shared, &context] { new_jump(context, *shared); });
 }

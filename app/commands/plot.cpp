@@ -137,8 +137,9 @@ void add_plot(CLI::App& app, Context& context) {
   command->add_option("--title", options->loci.title, "Title of the picture.");
   command->add_option("--width", options->loci.width, "Width in pixels.")->capture_default_str();
   command
-      ->add_option("--frame", options->frame,
-                   "Frame of places: world, or foot (the middle of the supporting sole).")
+      ->add_option(
+          "--frame", options->frame,
+          "Reference frame of positions: world, or foot (the middle of the supporting sole).")
       ->check(one_of(frame_names()).description(""))
       ->capture_default_str();
   command->add_option("--robot", options->robot,

@@ -316,11 +316,10 @@ void capture(const Context& context, const PostureCommand& options) {
 using Options = std::shared_ptr<PostureCommand>;
 
 CLI::App& add_kind(CLI::App& parent, const std::string& name, const std::string& what,
-                   const Options& options, const char* source = "ROBOT|PATTERN|LIBRARY") {
+                   const Options& options, const char* source = "ROBOT|PATTERN|LIBRARY",
+                   const char* source_words = "Robot, pattern or library that has the posture.") {
   CLI::App* command = parent.add_subcommand(name, what);
-  command->add_option("SOURCE", options->source, "Robot or file from which the posture is taken.")
-      ->required()
-      ->type_name(source);
+  command->add_option("SOURCE", options->source, source_words)->required()->type_name(source);
   command
       ->add_option("--robot", options->robot, "Robot to use in place of the one that SOURCE names.")
       ->type_name("ROBOT");
@@ -331,7 +330,8 @@ void add_name(CLI::App& command, const Options& options) {
   command.add_option("POSTURE", options->name, "Name of the posture.")->required();
 }
 
-void add_library(CLI::App& command, const Options& options) {
+void add_library(CLI::App& command, const Options& options,
+                 const char* radians = "Use radians in place of degrees in a new library.") {
   command.add_option("--as", options->as, "Name of the new posture.")
       ->required()
       ->type_name("NAME");
@@ -340,8 +340,7 @@ void add_library(CLI::App& command, const Options& options) {
                   "Posture library to write; if the file exists, the posture is added to it.")
       ->required()
       ->type_name("F");
-  command.add_flag("--rad", options->radians,
-                   "Use radians in place of degrees for --joint and in a new library.");
+  command.add_flag("--rad", options->radians, radians);
 }
 
 }  // namespace
@@ -359,7 +358,8 @@ void add_posture(CLI::App& app, Context& context) {
       "  ayumi posture draw mine.json ready -o ready.png\n"
       "A pattern uses the library with \"include\": \"mine.json\".");
   const auto options = std::make_shared<PostureCommand>();
-  add_kind(*command, "list", "print the postures with their angles", options)
+  add_kind(*command, "list", "print the postures with their angles", options,
+           "ROBOT|PATTERN|LIBRARY", "Robot, pattern or library whose postures are printed.")
       .callback([options, &context] { list(context, *options); });
   CLI::App& drawn = add_kind(*command, "draw", "draw the robot in a posture", options);
   add_name(drawn, options);
@@ -381,10 +381,12 @@ void add_posture(CLI::App& app, Context& context) {
       ->required()
       ->type_name("JOINT=ANGLE")
       ->allow_extra_args(false);
-  add_library(adjusted, options);
+  add_library(adjusted, options,
+              "Use radians in place of degrees for --joint and in a new library.");
   adjusted.callback([options, &context] { adjust(context, *options); });
-  CLI::App& captured = add_kind(*command, "capture", "take the posture of a motion at one time",
-                                options, "RUN|TABLE|PATTERN");
+  CLI::App& captured =
+      add_kind(*command, "capture", "take the posture of a motion at one time", options,
+               "RUN|TABLE|PATTERN", "Run, table or pattern with the motion.");
   captured.add_option("--at", options->at, "Time [s].")->required()->type_name("S");
   captured.add_option("--log", options->log, "Log of the run (default: closed_loop).")
       ->type_name("NAME");

@@ -271,8 +271,9 @@ void add_picture_options(CLI::App& command, PreviewOptions& options) {
       ->check(one_of({"follow", "fixed", "orbit"}).description(""))
       ->capture_default_str();
   command
-      .add_option("--frame", options.frame,
-                  "Frame of the picture: world, or foot (the supporting foot stands still).")
+      .add_option(
+          "--frame", options.frame,
+          "Reference frame: world, or foot (the supporting foot stands still in the picture).")
       ->check(one_of(frame_names()).description(""))
       ->capture_default_str();
   command

@@ -80,8 +80,10 @@ void add_report(CLI::App& app, Context& context) {
       ->check(number_within(1.0, 1000.0))
       ->capture_default_str();
   command
-      ->add_option("--frame", options->frame,
-                   "Frame of curves and replay: world, or foot (the supporting foot stands still).")
+      ->add_option(
+          "--frame", options->frame,
+          "Reference frame of curves and replay: world, or foot (the supporting foot stands "
+          "still).")
       ->check(one_of(frame_names()).description(""))
       ->capture_default_str();
   command->add_flag("--no-replay", options->no_replay, "Write the page without the replay.");

@@ -285,6 +285,7 @@ void add_sweep(CLI::App& app, Context& context) {
       "Examples:\n  ayumi sweep examples/sweep/friction.json -o out/results.db --page "
       "out/page.html\n"
       "  ayumi sweep study.json -o a.db --shard 1/2\n  ayumi sweep merge a.db b.db -o all.db\n"
+      "  ayumi sweep status results.db\n"
       "  ayumi sweep study.json -o results.db --expect 'falls == 0' --junit results.xml\n"
       "Run again with the same -o to go on: only what is missing is run. Exit code 1: an "
       "expectation is not met, or a case could not be run.");

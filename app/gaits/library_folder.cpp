@@ -89,7 +89,8 @@ LibraryFolder::LibraryFolder(const fs::path& folder, const Json& asked, bool rep
   fs::remove_all(staging_, error);
   fs::create_directories(staging_ / "done", error);
   if (error)
-    fail(ErrorCode::bad_file, target_.string() + ": cannot be written (" + error.message() + ")");
+    fail(ErrorCode::bad_file,
+         target_.string() + ": the folder cannot be written (" + error.message() + ")");
   write_file(staging_ / kAsked, text);
 }
 
@@ -135,7 +136,7 @@ void LibraryFolder::deliver(const Json& index, const std::vector<std::string>& p
     fs::rename(staging_ / kIndex, target_ / kIndex);
   } catch (const fs::filesystem_error& error) {
     fail(ErrorCode::bad_file,
-         target_.string() + ": cannot be written (" + error.code().message() + ")");
+         target_.string() + ": the folder cannot be written (" + error.code().message() + ")");
   }
   std::error_code ignored;
   fs::remove_all(staging_, ignored);

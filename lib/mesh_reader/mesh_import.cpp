@@ -70,7 +70,8 @@ class Collector {
   void add_mesh(const aiMesh& source, const Eigen::Matrix4d& transform) {
     const Eigen::Matrix3d turn = scale_ * transform.topLeftCorner<3, 3>();
     const Eigen::Vector3d shift = scale_ * transform.topRightCorner<3, 1>();
-    if (std::abs(turn.determinant()) < 1e-30) throw Refusal("a scale of zero flattens the mesh");
+    if (std::abs(turn.determinant()) < 1e-30)
+      throw Refusal("a scale of zero flattens the mesh; give a scale other than 0");
     const Eigen::Matrix3d normal_turn = turn.inverse().transpose();
     MeshPart part;
     for (unsigned i = 0; i < source.mNumVertices; ++i) {
@@ -99,7 +100,7 @@ class Collector {
       std::array<std::uint32_t, 3> corners = {face.mIndices[0], face.mIndices[1], face.mIndices[2]};
       for (const std::uint32_t corner : corners)
         if (corner >= part.vertices.size())
-          throw Refusal("a triangle names a vertex that is not there");
+          throw Refusal("a triangle names a vertex that does not exist; export the mesh again");
       if (mirrored) std::swap(corners[1], corners[2]);
       part.triangles.push_back(corners);
     }

@@ -48,9 +48,9 @@ TEST(ReadFile, OpensRegularFilesOnlyAndNeverWaits) {
   const fs::path pipe = folder.path() / "pipe";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
   EXPECT_EQ(error(pipe),
-            pipe.string() + ": is a device or a named pipe, but a regular file is needed");
+            pipe.string() + ": this is a device or a named pipe, but a regular file is needed");
   EXPECT_EQ(error("/dev/zero"),
-            "/dev/zero: is a device or a named pipe, but a regular file is needed");
+            "/dev/zero: this is a device or a named pipe, but a regular file is needed");
   EXPECT_EQ(error(folder.path()),
             folder.path().string() + ": this is a folder, but a file is needed");
   const fs::path file = folder.write("a.txt", "12345");
@@ -146,7 +146,7 @@ TEST(FolderLock, DoesNotFollowALink) {
 TEST(FolderLock, NamesAFolderThatCannotBeMade) {
   const test::TemporaryFolder folder;
   folder.write("file", "text");
-  EXPECT_NE(lock_error(folder.path() / "file" / "out").find("out: cannot be made"),
+  EXPECT_NE(lock_error(folder.path() / "file" / "out").find("out: the folder cannot be made"),
             std::string::npos);
 }
 

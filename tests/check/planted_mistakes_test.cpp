@@ -145,7 +145,7 @@ std::vector<Mistaken> list() {
   add("a force in kg", small(), steps, "/keyframes/2: f_z is 6 N",
       [](Pattern& p) { p.keyframes[2].fz = 6; });
   add("a phase that ends too early", small(), steps,
-      "/phases/3: the phase ends at .*while others like it last",
+      "/phases/3: the phase ends at .*while similar phases last",
       [](Pattern& p) { p.phases[3].until = p.phases[2].until + 0.05; });
   add("a foot under the ground", small(), kick, "/keyframes/4: the right foot's z is -0.03 m",
       [](Pattern& p) { p.keyframes[4].feet[1]->position.z() *= -1; });

@@ -80,8 +80,8 @@ TEST_F(CheckRepair, APayloadOfTheScenarioIsPartOfTheVerdict) {
   const Output load = ayumi({"check", "load.json", "-q"});
   EXPECT_EQ(load.exit_code, 1);
   const std::regex cause(
-      "likely cause: /scenario/0: the payload on r_forearm is 3 kg, which this motion does not "
-      "bear; it bears up to ([0-9.]+) kg there");
+      "likely cause: /scenario/0: the payload on r_forearm is 3 kg, which is too heavy for "
+      "this motion; the robot can carry up to ([0-9.]+) kg there");
   std::smatch words;
   ASSERT_TRUE(std::regex_search(load.out, words, cause)) << load.out;
   EXPECT_NE(load.out.find(" with 3 kg on r_forearm"), std::string::npos) << load.out;

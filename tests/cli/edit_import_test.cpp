@@ -125,7 +125,7 @@ TEST_F(Edit, WhatDoesNotJoinIsRefused) {
   EXPECT_EQ(ayumi({"edit", "concat", "squat.json", "-o", "a.json"}).exit_code, 2);
   const Output robots = ayumi({"edit", "concat", "squat.json", "other.json", "-o", "a.json"});
   EXPECT_EQ(robots.exit_code, 3);
-  EXPECT_NE(robots.err.find("the robot is 'humanoid30', but that of squat.json is 'hoap1'"),
+  EXPECT_NE(robots.err.find("the robot is 'humanoid30', but the robot of squat.json is 'hoap1'"),
             std::string::npos)
       << robots.err;
   EXPECT_EQ(

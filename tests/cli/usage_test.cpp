@@ -1,5 +1,6 @@
 // What every call of the program has in common: help, version, mistakes, exit codes.
 
+#include <cstdlib>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
@@ -35,6 +36,35 @@ TEST_F(Usage, HelpOfACommandBeginsWithExamples) {
   const size_t example = help.out.find("ayumi inspect hoap1"), options = help.out.find("--json");
   ASSERT_NE(example, std::string::npos) << help.out;
   EXPECT_LT(example, options);
+}
+
+// No line is cut in the middle of a word. Examples stay whole, so that they can be pasted.
+TEST_F(Usage, HelpFitsTheTerminal) {
+  ::setenv("COLUMNS", "80", 1);
+  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+           {}, {"import"}, {"export"}, {"certify"}, {"edit", "loop"}}) {
+    std::vector<std::string> arguments = words;
+    arguments.push_back("--help");
+    std::istringstream lines(ayumi(arguments).out);
+    for (std::string line; std::getline(lines, line);)
+      EXPECT_TRUE(line.size() <= 80 || line.starts_with("  ayumi ")) << line;
+  }
+  std::istringstream kinds(ayumi({"check", "--tolerances"}).out);
+  for (std::string line; std::getline(kinds, line);) EXPECT_LE(line.size(), 80u) << line;
+  ::unsetenv("COLUMNS");
+  const std::string whole = ayumi({"import", "--help"}).out;
+  EXPECT_NE(
+      whole.find("  --order                     The columns are the joints of the robot, in the "
+                 "order of the robot's file.\n"),
+      std::string::npos)
+      << whole;
+}
+
+TEST_F(Usage, HelpOfASubcommandHasItsOwnExamples) {
+  const std::string bake = ayumi({"edit", "bake", "--help"}).out;
+  EXPECT_NE(bake.find("Examples:\n  ayumi edit bake walk.json -o baked.json\n\nUsage:"),
+            std::string::npos)
+      << bake;
 }
 
 // An example that names an option of the past would be pasted and refused.

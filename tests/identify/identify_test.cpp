@@ -176,7 +176,7 @@ TEST(RecordingChecks, OneLineForARecordingThatIsNotTheAnswer) {
   said(answer_error([](RecordedMotion& m) { m.measured.theta *= -1; }),
        "arm_joint moves against its command");
   said(answer_error([](RecordedMotion& m) { m.measured.theta *= 180 / M_PI; }),
-       "one of them is in degrees");
+       "one of the two files is in degrees");
   said(answer_error([](RecordedMotion& m) { m.measured.theta.setConstant(0.3); }),
        "arm_joint stays at");
   said(answer_error([](RecordedMotion& m) {

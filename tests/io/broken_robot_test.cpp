@@ -91,7 +91,7 @@ TEST(BrokenRobot, WhatIsNoFile) {
             "name the file of the robot");
   std::filesystem::create_symlink("loop.urdf", folder.path() / "loop.urdf");
   EXPECT_EQ(message_of(folder, "loop.urdf"),
-            "loop.urdf: cannot be read (Too many levels of symbolic links)");
+            "loop.urdf: the file cannot be read (Too many levels of symbolic links)");
 }
 
 TEST(BrokenRobot, WhatIsNoUrdf) {
@@ -107,7 +107,8 @@ TEST(BrokenRobot, WhatIsNoUrdf) {
       "robot.urdf");
   std::string deep;
   for (int i = 0; i < 100000; ++i) deep += "<a>";
-  EXPECT_EQ(urdf_error(deep), "r.urdf: nested too deeply for a URDF");
+  EXPECT_EQ(urdf_error(deep),
+            "r.urdf: elements are nested more than 200 levels deep, too deep for a URDF");
   EXPECT_EQ(urdf_error("<robot name=\"r\"/>"), "r.urdf: the robot has no link; add one");
 }
 

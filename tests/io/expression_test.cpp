@@ -42,8 +42,10 @@ TEST(Expression, SaysWhatIsWrong) {
   EXPECT_NE(value_error("${a}*inf").find("unknown name 'inf'"), std::string::npos);
   EXPECT_NE(value_error("${a}*1e300*1e300").find("not a finite number"), std::string::npos);
   EXPECT_NE(value_error("$a").find("write a parameter as ${name}"), std::string::npos);
-  EXPECT_NE(value_error(std::string(100000, '(')).find("nested too deeply"), std::string::npos);
-  EXPECT_NE(value_error(std::string(100000, '-')).find("nested too deeply"), std::string::npos);
+  EXPECT_NE(value_error(std::string(100000, '(')).find("nested more than 64 levels"),
+            std::string::npos);
+  EXPECT_NE(value_error(std::string(100000, '-')).find("nested more than 64 levels"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -260,7 +260,8 @@ TEST_F(FailingMeshReader, CannotBeStarted) {
   const auto path = folder_.write("t.obj", kTriangle);
   const std::string text =
       error_message([&] { load_mesh(path, Eigen::Vector3d::Ones(), reading); });
-  EXPECT_NE(text.find("missing: cannot be started (No such file or directory)"), std::string::npos)
+  EXPECT_NE(text.find("missing: the program cannot be started (No such file or directory)"),
+            std::string::npos)
       << text;
 }
 

@@ -211,7 +211,8 @@ TEST(MotionFormats, DamagedArchivesAndActionFilesAreRefused) {
   EXPECT_NE(refusal_of(find_motion_format("gmr-npz")->write(hoap1(), bad)[0].bytes)
                 .find("not a finite number"),
             std::string::npos);
-  EXPECT_NE(refusal_of(std::string(256 * 512, '\0')).find("no page has steps"), std::string::npos);
+  EXPECT_NE(refusal_of(std::string(256 * 512, '\0')).find("no page has both steps"),
+            std::string::npos);
 }
 
 TEST(MotionFormats, WrittenOnlyFormatsHaveARowForEachRow) {
@@ -268,7 +269,9 @@ TEST(MotionFormats, SolesThatHoverCarryAndSolesThatFallDoNot) {
   EXPECT_EQ(jump[90], Support::both);
   const GroundedMotion found = grounded(hoap1(), hovering, "t.csv");
   ASSERT_EQ(found.notes.size(), 1u);
-  EXPECT_NE(found.notes[0].find("soles float by up to 9 mm"), std::string::npos) << found.notes[0];
+  EXPECT_NE(found.notes[0].find("supporting soles are up to 9 mm above the ground"),
+            std::string::npos)
+      << found.notes[0];
   const RawMotion low = put_on_ground(hoap1(), hovering);
   EXPECT_TRUE(grounded(hoap1(), low, "t.csv").notes.empty());
 }

@@ -83,7 +83,7 @@ TEST_F(PatternSchema, SchemaAndReaderAgree) {
                                            "unknown parameter",
                                            "write a parameter as",
                                            "no such file",
-                                           "the direction is zero",
+                                           "the vector has no direction",
                                            "the velocity must be at most 10 m/s",
                                            "a point needs a link",
                                            "a payload needs a link",

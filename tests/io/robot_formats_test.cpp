@@ -213,7 +213,8 @@ parent: base
             "legs.ztk:50: COM: 3 numbers needed, found 2");
   EXPECT_NE(refusal("jointtype: revolute", "jointtype: hooke").find("'hooke' is not supported"),
             std::string::npos);
-  EXPECT_NE(refusal("face: 0 1 2", "face: 0 1 7").find("none of the 3 that are given"),
+  EXPECT_NE(refusal("face: 0 1 2", "face: 0 1 7")
+                .find("corner 7 does not exist; the shape has 3 corners"),
             std::string::npos);
   EXPECT_NE(refusal(" 1, 0, 0, 0.2", " 2, 0, 0, 0.2").find("are no rotation"), std::string::npos);
   EXPECT_NE(refusal("parent: base", "parent: bas").find("bas"), std::string::npos);

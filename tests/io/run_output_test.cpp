@@ -139,11 +139,11 @@ TEST_F(RunOutputTest, LeavesALinkOrAFolderInPlaceOfAFileOfTheRun) {
   deliver({"a.csv"});
   fs::remove(target / "a.csv");
   fs::create_symlink(mine, target / "a.csv");
-  EXPECT_NE(refusal({"a.csv"}, true).find("a.csv: is a symbolic link"), std::string::npos);
+  EXPECT_NE(refusal({"a.csv"}, true).find("a.csv: this is a symbolic link"), std::string::npos);
   EXPECT_EQ(read_file(mine), "text");
   fs::remove(target / "a.csv");
   folder.write("out/a.csv/inside", "mine");
-  EXPECT_NE(refusal({"a.csv"}, true).find("a.csv: is a folder"), std::string::npos);
+  EXPECT_NE(refusal({"a.csv"}, true).find("a.csv: this is a folder"), std::string::npos);
   EXPECT_EQ(read_file(target / "a.csv" / "inside"), "mine");
 }
 

@@ -180,7 +180,7 @@ TEST(Table, BrokenTablesGetOneClearMessage) {
            {std::string("\x89PNG\r\n\x1a\n\0\0\0", 11), "is a binary file"},
            {head + "0,1\n1e9,1\n", "but Ayumi reads at most 3600 s"},
            {"{\"columns\": [\"t[s]\"]}", "the key 'data' is missing"},
-           {"{\"columns\": [\"t[s]\"], \"data\": []}", "/data: no data row"},
+           {"{\"columns\": [\"t[s]\"], \"data\": []}", "/data: the table has no data row"},
            {"{\"columns\": [\"t[s]\"], \"data\": [[0], [1, 2]]}", "/data/1: 2 values in the row"},
            {"{\"columns\": [\"t[s]\"], \"data\": [[\"0\"]]}",
             "/data/0/0: expected a number, found a string"}}) {

@@ -81,7 +81,7 @@ void expect_part_or_one_line(const Outcome& outcome, const MotionFile& whole,
   // A number that was cut is another number: that may be in the last row alone, and is said.
   const auto& said = outcome.motion.filled;
   const bool warned = std::any_of(said.begin(), said.end(), [](const std::string& line) {
-    return line.starts_with("the last line of the file does not end");
+    return line.starts_with("the last line of the file has no line end");
   });
   const Eigen::Index sure = theta.rows() - (warned ? 1 : 0);
   EXPECT_LE((theta.topRows(sure) - whole.values.topRows(sure)).cwiseAbs().maxCoeff(), 1e-3) << what;

@@ -116,7 +116,7 @@ TEST(Diagnose, NamesAHomePostureThatCannotStand) {
 
 TEST(Diagnose, NamesLinksWithoutCollisionShape) {
   EXPECT_TRUE(mentions(findings([](auto& r) { link(r, "l_foot").collisions.clear(); }),
-                       "link l_foot", "no collision shape"));
+                       "link l_foot", "no collision shape is stated"));
 }
 
 // One cause is one line, whatever the number of joints and links.

@@ -89,7 +89,7 @@ TEST(ViipPhases, ComplaintsNameThePlace) {
   broken.phases[1].until -= 0.1;
   broken.phases.push_back({on_one_foot + 2, Support::both, {}, CogGoal{}});
   while (broken.keyframes.back().t > broken.phases[1].until) broken.keyframes.pop_back();
-  EXPECT_NE(complaint(broken).find("phases/2: begins on one foot"), std::string::npos)
+  EXPECT_NE(complaint(broken).find("phases/2: the phase begins on one foot"), std::string::npos)
       << complaint(broken);
   Pattern moving = walk;
   moving.phases.insert(moving.phases.begin() + 3,
@@ -97,7 +97,8 @@ TEST(ViipPhases, ComplaintsNameThePlace) {
   for (size_t i = 4; i < moving.phases.size(); ++i) moving.phases[i].until += 1;
   for (Keyframe& each : moving.keyframes)
     if (each.t > walk.phases[2].until - 1e-9) each.t += 1;
-  EXPECT_NE(complaint(moving).find("phases/3: begins while the COG moves"), std::string::npos)
+  EXPECT_NE(complaint(moving).find("phases/3: the phase begins while the COG moves"),
+            std::string::npos)
       << complaint(moving);
 }
 

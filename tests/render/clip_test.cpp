@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <cstdint>
 #include <cstdio>
 
 #include "ayumi/base/error.hpp"
@@ -156,6 +157,17 @@ TEST_F(Clip, CaptionAndMarksCanBeSwitchedOff) {
     }
   EXPECT_GT(changed, 500);
   EXPECT_EQ(changed_middle, 0);
+}
+
+TEST_F(Clip, ALongTitleLeavesRoomForTheTime) {
+  options.title = std::string(400, 'A');
+  const ClipRenderer renderer(model, log, options);
+  const auto line_at = [&](double t) {
+    Image line{640, 30, std::vector<std::uint8_t>(3 * 640 * 30, 255)};
+    renderer.write_title(line, 0, 12, t);
+    return line.rgb;
+  };
+  EXPECT_NE(line_at(0.1), line_at(0.2));
 }
 
 TEST_F(Clip, ThePushStaysVisibleForAWhile) {

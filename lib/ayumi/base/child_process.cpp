@@ -107,7 +107,7 @@ ChildProcess::ChildProcess(const std::filesystem::path& program,
       start.environment.push_back(variable + "=" + value);
   const auto refuse = [&](int reason) {
     fail(ErrorCode::bad_file,
-         start.program + ": cannot be started (" + std::strerror(reason) + ")");
+         start.program + ": the program cannot be started (" + std::strerror(reason) + ")");
   };
   int ends[2] = {-1, -1};
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) refuse(errno);

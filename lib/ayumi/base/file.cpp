@@ -23,17 +23,19 @@ std::string read_file(const fs::path& path, size_t max_bytes) {
   // a named pipe would wait for its writer.
   const int opened = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
   if (opened < 0 && errno == ENOENT) refuse("no such file");
-  if (opened < 0 && errno == ENXIO) refuse("is a socket or a device, but a regular file is needed");
-  if (opened < 0) refuse(std::string("cannot be read (") + std::strerror(errno) + ")");
+  if (opened < 0 && errno == ENXIO)
+    refuse("this is a socket or a device, but a regular file is needed");
+  if (opened < 0) refuse(std::string("the file cannot be read (") + std::strerror(errno) + ")");
   struct Closer {
     int descriptor;
     ~Closer() { ::close(descriptor); }
   } const closer{opened};
   struct stat about {};
   if (::fstat(opened, &about) != 0)
-    refuse(std::string("cannot be read (") + std::strerror(errno) + ")");
+    refuse(std::string("the file cannot be read (") + std::strerror(errno) + ")");
   if (S_ISDIR(about.st_mode)) refuse("this is a folder, but a file is needed");
-  if (!S_ISREG(about.st_mode)) refuse("is a device or a named pipe, but a regular file is needed");
+  if (!S_ISREG(about.st_mode))
+    refuse("this is a device or a named pipe, but a regular file is needed");
   const auto too_large = [&](size_t size) {
     refuse(std::to_string(size) + " bytes are too many; Ayumi reads at most " +
            std::to_string(max_bytes) + " bytes of this file");
@@ -78,23 +80,26 @@ void require_file_target(const fs::path& path) {
     case fs::file_type::regular:
       return;
     case fs::file_type::directory:
-      refuse("is a folder; name a file");
+      refuse("this is a folder; name a file");
       break;
     case fs::file_type::symlink:
-      refuse("is a symbolic link, which Ayumi neither replaces nor follows; name the file itself");
+      refuse(
+          "this is a symbolic link, which Ayumi neither replaces nor follows; name the file to "
+          "which the link points");
       break;
     case fs::file_type::character:
     case fs::file_type::block:
-      refuse("is a device, but a regular file is needed");
+      refuse("this is a device, but a regular file is needed");
       break;
     case fs::file_type::fifo:
-      refuse("is a named pipe, but a regular file is needed");
+      refuse("this is a named pipe, but a regular file is needed");
       break;
     case fs::file_type::socket:
-      refuse("is a socket, but a regular file is needed");
+      refuse("this is a socket, but a regular file is needed");
       break;
     default:
-      refuse("cannot be written (" + (error ? error.message() : "unknown type of file") + ")");
+      refuse("the file cannot be written (" + (error ? error.message() : "unknown type of file") +
+             ")");
   }
 }
 
@@ -118,7 +123,7 @@ void write_file_with(const fs::path& path, const std::function<void(const fs::pa
     std::error_code ignored;
     fs::remove(temporary, ignored);
     fail(ErrorCode::bad_file,
-         path.string() + ": cannot be written (" + error.code().message() + ")");
+         path.string() + ": the file cannot be written (" + error.code().message() + ")");
   } catch (...) {
     std::error_code ignored;
     fs::remove(temporary, ignored);
@@ -134,7 +139,7 @@ void write_file(const fs::path& path, const std::string& bytes) {
     stream.close();
     if (!stream)
       fail(ErrorCode::bad_file,
-           path.string() + ": cannot be written (" + std::strerror(errno) + ")");
+           path.string() + ": the file cannot be written (" + std::strerror(errno) + ")");
   });
 }
 
@@ -160,10 +165,11 @@ FolderLock::FolderLock(const fs::path& folder) : folder_(folder), file_(folder /
   for (int i = 0; i < kTries; ++i) {
     std::error_code error;
     made_ = fs::create_directories(folder_, error) || made_;
-    if (error) stop("cannot be made (" + error.message() + ")");
+    if (error) stop("the folder cannot be made (" + error.message() + ")");
     descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
     if (descriptor_ < 0 && errno == ENOENT) continue;
-    if (descriptor_ < 0) stop(std::string("cannot be written (") + std::strerror(errno) + ")");
+    if (descriptor_ < 0)
+      stop(std::string("the folder cannot be written (") + std::strerror(errno) + ")");
     if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
       const int reason = errno;
       ::close(descriptor_);
@@ -171,14 +177,14 @@ FolderLock::FolderLock(const fs::path& folder) : folder_(folder), file_(folder /
         stop(
             "another run is being written to this folder; wait until it has ended, or choose "
             "another folder");
-      stop(std::string("cannot be locked (") + std::strerror(reason) + ")");
+      stop(std::string("the folder cannot be locked (") + std::strerror(reason) + ")");
     }
     if (is_file_of(descriptor_, file_)) return;
     ::close(descriptor_);
   }
   stop(
-      "cannot be locked, because other processes lock this folder again and again; wait until they "
-      "have ended, or choose another folder");
+      "the folder cannot be locked, because other processes lock it again and again; wait until "
+      "they have ended, or choose another folder");
 }
 
 FolderLock::~FolderLock() {

@@ -151,8 +151,9 @@ ConsistencyReport check_consistency(const RobotModel& model, const CommandSeries
                                    ": the robot has no soles, so its "
                                    "contacts cannot be checked; give /soles in the sidecar");
   if (series.samples.empty())
-    fail(ErrorCode::bad_pattern, "the command series is empty: nothing to check");
-  if (!(series.dt > 0)) fail(ErrorCode::usage, "the command series has no sample time");
+    fail(ErrorCode::bad_pattern,
+         "the motion has no samples, so there is nothing to check; sample a pattern first");
+  if (!(series.dt > 0)) fail(ErrorCode::usage, "the time step of the motion is not above 0 s");
   JudgedMotion motion(model, series, options);
   judge(motion, options.threads);
   return report_of(motion);

@@ -282,11 +282,12 @@ class Hypotheses {
   }
 
   void time_units(std::vector<Hypothesis>& made) const {
-    for (const auto& [unit, factor] : {std::pair("ms", 1e-3), std::pair("hundredths", 1e-2)})
+    for (const auto& [unit, factor] :
+         {std::pair("ms", 1e-3), std::pair("hundredths of a second", 1e-2)})
       if (pattern_.duration() * factor > 0.1 && pattern_.duration() > 30)
         made.push_back({Rank::unit,
                         {"/phases", "the motion lasts " + seconds(pattern_.duration()),
-                         std::string("times are in seconds, and with all of them read as ") + unit},
+                         std::string("times are in seconds; with all times read as ") + unit},
                         [factor = factor](Pattern& p) {
                           for (Phase& phase : p.phases) phase.until *= factor;
                           for (Keyframe& key : p.keyframes) key.t *= factor;
@@ -306,7 +307,7 @@ class Hypotheses {
     for (const auto& [unit, factor] : {std::pair("mm", 1e-3), std::pair("cm", 1e-2)})
       made.push_back(
           {Rank::unit,
-           {"/units", "lengths are in metres", std::string("with all of them read as ") + unit},
+           {"/units", "lengths are in metres", std::string("with all lengths read as ") + unit},
            [this, factor = factor](Pattern& p) { scale_all(p, Quantity::length, factor); }});
   }
 
@@ -374,7 +375,7 @@ class Hypotheses {
       for (const double slip : number_slips(until)) meant.push_back(slip);
       const std::string lasts = "the phase ends at " + seconds(until) + " and lasts " +
                                 seconds(until - begin) +
-                                (usual ? ", while others like it last " + seconds(*usual) : "");
+                                (usual ? ", while similar phases last " + seconds(*usual) : "");
       for (const double t : meant)
         if (t > begin && t < after && t != until)
           made.push_back({Rank::slip,

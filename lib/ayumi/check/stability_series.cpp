@@ -71,7 +71,8 @@ double dcm_margin(const RobotModel& model, const CommandSample& now, const Comma
 StabilitySeries stability_series(const RobotModel& model, const CommandSeries& series,
                                  const CheckOptions& options, double dt) {
   if (series.samples.empty())
-    fail(ErrorCode::bad_pattern, "the command series is empty: there is nothing to show");
+    fail(ErrorCode::bad_pattern,
+         "the motion has no samples, so there is nothing to show; sample a pattern first");
   const ActuatorLimits& limits = model.limits(options.profile);
   const ContactPlan plan = contact_plan(series);
   MotionDynamics dynamics(model, limits, series, plan);

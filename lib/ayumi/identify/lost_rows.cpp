@@ -314,7 +314,7 @@ std::string lost_rows_words(const LostRows& lost, double dt) {
                     rows = text::counted(count, "row"), are = count == 1 ? " is " : " are ",
                     change = text::brief(1000 * dt * static_cast<double>(count), 3) + " ms " +
                              (lost.rows > 0 ? "earlier" : "later") + " than before";
-  return (lost.exact ? "data row " : "after about data row ") + std::to_string(lost.row + 1) +
+  return (lost.exact ? "at data row " : "after about data row ") + std::to_string(lost.row + 1) +
          " (" + time + ") " + rows + are + (lost.rows > 0 ? "missing" : "repeated") +
          ": from here on, the angles are " + change +
          "; record again, or give the rows a time column";
@@ -330,12 +330,12 @@ std::string loads_rows_complaint(const SensorTable& loads, const AngleTable& mea
       allowed = std::abs(loads.dt - measured.dt) < 1e-9 ? 0.5 * row : 1.5 * row;
   if (std::abs(lasts - asked) <= allowed) return "";
   const long missing = std::max(1L, std::lround(std::abs(lasts - asked) / loads.dt));
-  return "has " + std::to_string(rows) + " rows, one every " + text::brief(1000 * loads.dt) +
-         " ms, which last " + text::fixed(lasts, 3) + " s, but the measured angles last " +
-         text::fixed(asked, 3) + " s: " + text::counted(missing, "row") +
-         (missing == 1 ? " is " : " are ") + (lasts < asked ? "missing" : "too many") +
-         ", and no row says when it was measured; record both again, or give the rows a time "
-         "column";
+  return "the recording has " + std::to_string(rows) + " rows, one every " +
+         text::brief(1000 * loads.dt) + " ms, which last " + text::fixed(lasts, 3) +
+         " s, but the measured angles last " + text::fixed(asked, 3) +
+         " s: " + text::counted(missing, "row") + (missing == 1 ? " is " : " are ") +
+         (lasts < asked ? "missing" : "too many") +
+         ", and the rows have no times; record both again, or give the rows a time column";
 }
 
 }  // namespace ayumi

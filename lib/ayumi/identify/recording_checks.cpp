@@ -149,7 +149,7 @@ std::string wrong_sign_or_unit(const Relation& r) {
   if (r.slope < 0) return "moves against its command; change the sign of its encoder";
   const std::string times = "moves " + text::brief(factor, 3) + " times as far as its command; ";
   if (std::abs(factor * kDegree - 1) < 0.2 || std::abs(factor / kDegree - 1) < 0.2)
-    return times + "one of them is in degrees (--unit deg)";
+    return times + "one of the two files is in degrees (--unit deg)";
   if (factor > kScale || factor < 1 / kScale)
     return times + "is this the recording of another robot, or are its counts per degree wrong?";
   return "";
@@ -196,7 +196,7 @@ void require_answer(const RobotModel& model, const AngleTable& command, const An
              " deg in its command; record a motion");
   const double lasts = measured.duration(), asked = command.duration();
   if (lasts - asked > kLengthShare * asked + kLengthTime || asked - lasts > kShorter)
-    complain("lasts " + text::fixed(lasts, 3) + " s, but its command lasts " +
+    complain("the recording lasts " + text::fixed(lasts, 3) + " s, but its command lasts " +
              text::fixed(asked, 3) +
              " s; the recording is incomplete, has another rate (give --rate), or belongs to "
              "another command");
@@ -230,7 +230,7 @@ void require_answer(const RobotModel& model, const AngleTable& command, const An
                            : 1.5 * std::max(measured.dt, command.dt);
   if (!measured.timed && asked - lasts > least) {
     const long missing = std::max(1L, std::lround((asked - lasts) / measured.dt));
-    complain("has " + std::to_string(measured.theta.rows()) + " rows, one every " +
+    complain("the recording has " + std::to_string(measured.theta.rows()) + " rows, one every " +
              text::brief(1000 * measured.dt) + " ms, which last " + text::fixed(lasts, 3) +
              " s, but its command lasts " + text::fixed(asked, 3) +
              " s: " + text::counted(missing, "row") + (missing == 1 ? " is" : " are") +
@@ -252,8 +252,8 @@ void require_loads(const SensorTable& loads, const AngleTable& measured, double 
   const double lasts = loads.dt * static_cast<double>(loads.foot_load.rows() - 1);
   if (std::abs(lasts - measured.duration()) > kLengthTime)
     fail(ErrorCode::bad_file,
-         file + ": lasts " + text::fixed(lasts, 3) + " s, but the measured angles last " +
-             text::fixed(measured.duration(), 3) +
+         file + ": the recording lasts " + text::fixed(lasts, 3) +
+             " s, but the measured angles last " + text::fixed(measured.duration(), 3) +
              " s; the load cells are incomplete, have another rate (give --rate), or belong to "
              "another recording");
   if (agreement < kStandingShare)

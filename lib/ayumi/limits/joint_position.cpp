@@ -91,7 +91,7 @@ const Limit& joint_position_limit() {
   static const Limit limit = {.findings = {{.kind = FindingKind::joint_position,
                                             .unit = "rad",
                                             .tolerance = kPositionTolerance,
-                                            .meaning = "joint angle beyond its limit",
+                                            .meaning = "angle by which a joint is beyond its limit",
                                             .figure = {.key = "max_joint_position_ratio",
                                                        .label = "largest joint angle",
                                                        .unit = "% of half the range",

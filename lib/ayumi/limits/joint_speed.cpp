@@ -62,7 +62,7 @@ const Limit& joint_speed_limit() {
                                             .limit_class = LimitClass::rate,
                                             .unit = "1",
                                             .tolerance = kWholeSpeed,
-                                            .meaning = "joint speed over its limit",
+                                            .meaning = "joint speed divided by its limit",
                                             .figure = {.key = "max_joint_speed_ratio",
                                                        .label = "largest joint speed",
                                                        .unit = "% of the limit",

@@ -82,7 +82,7 @@ const Limit& joint_torque_limit() {
                                             .limit_class = LimitClass::force,
                                             .unit = "1",
                                             .tolerance = kWholeTorque,
-                                            .meaning = "motor torque over its peak limit",
+                                            .meaning = "motor torque divided by its peak limit",
                                             .figure = {.key = "max_torque_ratio",
                                                        .label = "largest torque",
                                                        .unit = "% of the limit",

@@ -117,8 +117,9 @@ Advice support_advice(const JudgedMotion&, const FindingWindow& window) {
                 " outside the support: reduce the displacement of the COG by this distance, or "
                 "give the step more time",
             kOrRepair};
-  return whose + " is only " + in_mm(v.value) + " inside the support, but the wanted margin is " +
-         in_mm(v.limit);
+  return {whose + " is only " + in_mm(v.value) + " inside the support, but the wanted margin is " +
+              in_mm(v.limit) + ": reduce the displacement of the COG by the difference",
+          kOrRepair};
 }
 
 std::string support_infeasibility(const Finding& f, double violation) {

@@ -114,8 +114,9 @@ const Limit& torsion_limit() {
                     .limit_class = LimitClass::force,
                     .unit = "1",
                     .tolerance = kWholeMoment,
-                    .meaning = "moment about the ground normal through the ZMP, as a share of the "
-                               "moment that friction resists when the soles press evenly",
+                    .meaning = "moment about the normal of the ground at the ZMP, divided "
+                               "by the largest moment that friction can resist when the pressure "
+                               "under the soles is even",
                     .figure = {.key = "max_yaw_ratio",
                                .label = "largest yaw moment",
                                .unit = "% of the moment that friction resists",

@@ -135,11 +135,11 @@ class Doctor {
       const Body& body = model_.bodies()[link.body];
       if (body.inertia.mass == 0 && body.name == link.name)
         warn("link", link.name,
-             "has no mass although a joint moves it; Ayumi takes this link for a frame between two "
-             "axes");
+             "no mass is stated, although a joint moves the link; Ayumi takes such a link for a "
+             "frame between two axes");
       else if (!link.visuals.empty() || !link.collisions.empty())
         warn("link", link.name,
-             "has a shape but no mass; the body that carries it must contain its mass");
+             "a shape is stated but no mass; the link that carries this one must contain its mass");
       return;
     }
     examine_tensor(link);
@@ -218,7 +218,8 @@ class Doctor {
       }
       if (same.size() > 2 && other_mass)
         warn("link", text::join(same, ", "),
-             "have the same inertia tensor but different masses; are these placeholders?");
+             "these links have the same inertia tensor but different masses; are the tensors "
+             "placeholders?");
     }
   }
 
@@ -226,10 +227,12 @@ class Doctor {
     const std::vector<std::string> missing = bodies_without_collision_shapes(model_);
     if (missing.size() == 1)
       warn("link", missing[0],
-           "has no collision shape; its contacts and self-collisions are not detected");
+           "no collision shape is stated, so contacts and self-collisions of this link are not "
+           "detected");
     else if (!missing.empty())
       warn("link", text::join(missing, ", "),
-           "have no collision shape; their contacts and self-collisions are not detected");
+           "no collision shapes are stated, so contacts and self-collisions of these links are not "
+           "detected");
   }
 
   void examine_dof(const Dof& dof) {
@@ -237,7 +240,7 @@ class Doctor {
     const ActuatorLimits& limits = model_.limits();
     const auto suspect = [&](const std::string& message) { warn("joint", dof.name, message); };
     if (!dof.limited)
-      suspect("has no position limits; state them");
+      suspect("no position limits are stated; add them");
     else if (dof.upper - dof.lower < 1e-6)
       suspect("its lower and upper limit are equal; make it a fixed joint");
     else if (!dof.prismatic && dof.upper - dof.lower > 4 * std::numbers::pi)
@@ -249,11 +252,11 @@ class Doctor {
               " rad/s is faster than servos are; is this a placeholder?");
     if (std::isinf(limits.peak_torque[index])) suspect("no torque limit is stated");
     if (!limits.has_servo[static_cast<size_t>(index)])
-      suspect("has no servo constants; give it a kp and kd");
+      suspect("no servo constants are stated; give kp and kd");
     else if (limits.servo[static_cast<size_t>(index)].kp <= 0)
-      suspect("is passive: its servo's kp is 0");
+      suspect("kp of the servo is 0, so the joint is passive");
     if (dof.encoder.device == 0 && !model_.description().encoders.empty())
-      suspect("has no encoder entry although other joints have one");
+      suspect("no encoder is stated, although other joints have one");
   }
 
   void examine_placeholder_torques() {

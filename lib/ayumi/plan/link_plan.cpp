@@ -143,10 +143,11 @@ void LinkPlan::add_target(const std::string& name, bool gaze, const std::vector<
   for (const int dof : target.dofs)
     if (solved[static_cast<size_t>(dof)])
       complain(
-          "the legs move this link, and feet, trunk and COG determine the legs; give keys of "
-          "these in its place");
+          "the legs move this link, and feet, trunk and COG determine the legs; remove this key, "
+          "and give keys of feet, trunk or COG");
   if (target.dofs.empty())
-    complain("no joint moves this link alone; give keys of \"torso\" or of joints in its place");
+    complain(
+        "no joint moves this link alone; remove this key, and give keys of \"torso\" or of joints");
   const auto& bodies = model.bodies();
   for (int b = target.body; b > 0; b = bodies[static_cast<size_t>(b)].parent)
     if (contains(target.dofs, bodies[static_cast<size_t>(b)].dof) && b != target.body)

@@ -189,19 +189,22 @@ Track table_track(double dt, size_t rows, const std::function<double(size_t)>& v
 void check_table(const Pattern& pattern, const FootPlan& feet) {
   const DenseTable& table = *pattern.table;
   const auto rows = static_cast<size_t>(table.theta.rows());
-  if (rows < 2) complain_table(pattern, "has fewer than two rows");
+  if (rows < 2) complain_table(pattern, "the table has fewer than two rows; give at least two");
   if (!(table.dt > 0)) complain_table(pattern, "the time step is not above 0");
   if (!table.theta.allFinite()) complain_table(pattern, "a joint angle is not a finite number");
   const double end = table.dt * static_cast<double>(rows - 1);
   if (end > feet.duration() + 0.5 * table.dt)
-    complain_table(pattern, "ends at " + text::exact(end) + " s, after the last phase (" +
+    complain_table(pattern, "the table ends at " + text::exact(end) + " s, after the last phase (" +
                                 text::exact(feet.duration()) + " s); extend the phases");
   if (static_cast<size_t>(table.theta.cols()) != table.joints.size())
-    complain_table(pattern, "has " + std::to_string(table.theta.cols()) + " joint columns for " +
-                                std::to_string(table.joints.size()) + " names");
+    complain_table(pattern, "the table has " + std::to_string(table.theta.cols()) +
+                                " joint columns, but " + std::to_string(table.joints.size()) +
+                                " joint names");
   for (const size_t count :
        {table.base.size(), table.cog.size(), table.zmp.size(), table.fz.size()})
-    if (count != 0 && count != rows) complain_table(pattern, "columns differ in length");
+    if (count != 0 && count != rows)
+      complain_table(pattern,
+                     "the columns differ in length; give every column the same number of rows");
 }
 
 void read_table(const RobotModel& model, const Pattern& pattern, KeyReader& reader,

@@ -128,9 +128,18 @@ Drawing start_drawing(const std::vector<LociRun>& runs, const LociOptions& optio
   // A long title begins at the edge, and in smaller letters where that is not enough.
   const double wide = text_width(drawing.title, 16, true);
   const double left = kLeft + wide > drawing.width - kRight ? 8.0 : kLeft;
-  const double size = std::clamp(16 * (drawing.width - left - 8) / std::max(1.0, wide), 11.0, 16.0);
+  const double room = drawing.width - left - 8;
+  const double size = std::clamp(16 * room / std::max(1.0, wide), 11.0, 16.0);
+  std::string shown = drawing.title;
+  if (text_width(shown, size, true) > room) {
+    while (!shown.empty() && text_width(shown + "…", size, true) > room) {
+      while ((static_cast<unsigned char>(shown.back()) & 0xC0) == 0x80) shown.pop_back();
+      shown.pop_back();
+    }
+    shown += "…";
+  }
   drawing.items.push_back(
-      DrawnText{.position = {left, 24}, .text = drawing.title, .size = size, .bold = true});
+      DrawnText{.position = {left, 24}, .text = shown, .size = size, .bold = true});
   return drawing;
 }
 

@@ -278,7 +278,7 @@ void write_folder(const fs::path& path, bool overwrite,
   std::error_code error, ignored;
   if (!fs::create_directory(temporary, error))
     fail(ErrorCode::bad_file,
-         path.string() + ": cannot be written (" +
+         path.string() + ": the folder cannot be written (" +
              (error ? error.message() : temporary.string() + " already exists") + ")");
   try {
     produce(temporary);
@@ -288,7 +288,7 @@ void write_folder(const fs::path& path, bool overwrite,
   } catch (const fs::filesystem_error& error) {
     fs::remove_all(temporary, ignored);
     fail(ErrorCode::bad_file,
-         path.string() + ": cannot be written (" + error.code().message() + ")");
+         path.string() + ": the folder cannot be written (" + error.code().message() + ")");
   } catch (const Error& error) {
     fs::remove_all(temporary, ignored);
     fail(error.code(), with_name(error.what(), temporary.string(), path.string()));
@@ -423,6 +423,29 @@ Image ClipRenderer::finished(const Scene& scene, const Overlay& overlay, double 
   return image;
 }
 
+namespace {
+
+// Writes a title in at most `room` pixels: in smaller letters, and shortened where these are not
+// enough. Returns the width it takes.
+double write_within(Image& image, double x, double y, std::string title, TextStyle style,
+                    double room) {
+  constexpr double kSmallest = 0.7;  // share of the size. Chosen: as small as still reads well
+  if (title.empty()) return 0;
+  const double wide = drawn_width(title, style);
+  if (wide > room) style.size *= std::clamp(room / wide, kSmallest, 1.0);
+  const std::string dots = "…";
+  if (drawn_width(title, style) > room) {
+    while (!title.empty() && drawn_width(title + dots, style) > room) {
+      while ((static_cast<unsigned char>(title.back()) & 0xC0) == 0x80) title.pop_back();
+      title.pop_back();
+    }
+    title += dots;
+  }
+  return draw_text(image, x, y, title, style);
+}
+
+}  // namespace
+
 double ClipRenderer::write_title(Image& image, double top, double size, double t) const {
   const double margin = 0.6 * size, y = top + margin + 0.7 * size;
   const TextStyle plain = {.size = size, .plate = {1, 1, 1, 0.72f}};
@@ -430,8 +453,14 @@ double ClipRenderer::write_title(Image& image, double top, double size, double t
   bold.bold = true;
   const std::string title =
       options_.title.empty() ? plain_name(log_.provenance.pattern) : options_.title;
+  // The same room at every time, so that the title does not change its size in a clip.
+  double room = image.width - 2 * margin;
+  if (log_.controller)
+    room -= drawn_width(law_name(*log_.controller), plain) +
+            drawn_width(verdict_text(log_.result), bold);
+  if (!framing_) room -= drawn_width("t = " + text::fixed(duration(log_), 3) + " s", plain);
   double x = margin;
-  x += draw_text(image, x, y, title, bold);
+  x += write_within(image, x, y, title, bold, room);
   if (log_.controller) x += draw_text(image, x, y, law_name(*log_.controller), plain);
   if (!framing_) draw_text(image, x, y, "t = " + text::fixed(t, 3) + " s", plain);
   if (log_.controller && t >= verdict_at_ - 1e-9) {  // a plan neither stands nor falls

@@ -199,7 +199,8 @@ void check(const RobotModel& model, const Motion& motion) {
   const auto count = static_cast<Eigen::Index>(motion.times.size());
   if (motion.times.empty() || motion.theta.cols() != count ||
       motion.base.size() != motion.times.size())
-    fail(ErrorCode::usage, "the motion " + motion.name + " has no postures, or not one per time");
+    fail(ErrorCode::usage,
+         "the motion " + motion.name + " needs one posture for each time, and at least one");
   if (motion.theta.rows() != model.dof_count())
     fail(ErrorCode::usage, "the motion " + motion.name + " has " +
                                std::to_string(motion.theta.rows()) + " joints, the robot " +

@@ -43,7 +43,8 @@ constexpr long kReservedSamples = 1 << 15;
 constexpr double kZmpMinLoad = 0.02;
 
 const CommandSeries& checked(const CommandSeries& series, const SimulateOptions& options) {
-  if (series.samples.empty()) fail(ErrorCode::bad_pattern, "the command series is empty");
+  if (series.samples.empty())
+    fail(ErrorCode::bad_pattern, "the motion has no samples; sample a pattern first");
   if (options.substeps < 1) fail(ErrorCode::usage, "substeps must be at least 1");
   return series;
 }

@@ -102,7 +102,8 @@ void check_step(const RobotModel& model, const VectorXd& targets, const StepInpu
   const std::string count = std::to_string(model.dof_count());
   if (!(dt > 0 && dt < 1)) complain("step length " + text::brief(dt) + " s is not within 0..1 s");
   if (targets.size() != model.dof_count())
-    complain(std::to_string(targets.size()) + " servo targets for " + count + " joints");
+    complain(std::to_string(targets.size()) + " servo targets are given, but the robot has " +
+             count + " joints");
   for (int j = 0; j < model.dof_count(); ++j)
     if (!sound(targets[j]))
       complain("servo target of " + model.dofs()[j].name + " is " + text::brief(targets[j]));
@@ -113,7 +114,8 @@ void check_step(const RobotModel& model, const VectorXd& targets, const StepInpu
           "an external force must consist of finite numbers below 1e6 and act on a body of the "
           "robot");
   if (!input.joints.empty() && static_cast<int>(input.joints.size()) != model.dof_count())
-    complain("faults of " + std::to_string(input.joints.size()) + " joints for " + count);
+    complain("faults of " + std::to_string(input.joints.size()) +
+             " joints are given, but the robot has " + count + " joints");
   for (size_t j = 0; j < input.joints.size(); ++j)
     if (!sound(input.joints[j]))
       complain("the fault of joint " + model.dofs()[j].name +
@@ -121,7 +123,7 @@ void check_step(const RobotModel& model, const VectorXd& targets, const StepInpu
   for (const CarriedMass& carried : input.payloads)
     if (!(carried.mass >= 0 && sound(carried.mass) && sound(carried.point) && carried.link >= 0 &&
           carried.link < static_cast<int>(model.links().size())))
-      complain("a payload is not a mass on a link");
+      complain("a payload needs a mass that is not negative, a point, and a link of the robot");
   if (input.floor && !sound(*input.floor))
     complain("a value of the floor's motion is not a number below 1e6");
   if (input.friction && !sound_friction(*input.friction))

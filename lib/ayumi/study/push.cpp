@@ -223,7 +223,8 @@ PushLimit Search::find(int guess) {
 
 void check_options(const PushOptions& options, const CommandSeries& series) {
   const auto refuse = [](const std::string& text) { fail(ErrorCode::usage, "push: " + text); };
-  if (series.samples.empty()) fail(ErrorCode::bad_pattern, "the command series is empty");
+  if (series.samples.empty())
+    fail(ErrorCode::bad_pattern, "the motion has no samples; sample a pattern first");
   if (options.directions < 1 || options.directions > 360)
     refuse("directions: " + std::to_string(options.directions) + "; give 1 to 360");
   if (!(options.step > 0) || !(options.cap >= options.step))

@@ -154,7 +154,8 @@ TuneFigures Tuner::evaluate(const Gains& gains) {
 
 void check(const TuneOptions& options, const CommandSeries& series, const Gains& known) {
   const auto refuse = [](const std::string& why) { fail(ErrorCode::usage, "tune: " + why); };
-  if (series.samples.empty()) fail(ErrorCode::bad_pattern, "the command series is empty");
+  if (series.samples.empty())
+    fail(ErrorCode::bad_pattern, "the motion has no samples; sample a pattern first");
   if (options.simulate.controller.type != ControllerKind::dtad)
     refuse("controller '" + name_of(options.simulate.controller.type) +
            "' has no gains to tune; use dtad");

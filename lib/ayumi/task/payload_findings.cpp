@@ -74,15 +74,17 @@ std::vector<Mistake> judge_payloads(const Task& task, const CheckOptions& option
         heavy.bearable > 0 ? "up to " + mass_text(heavy.bearable) : "no mass";
     for (Finding f : heavy.errors) {
       f.where += " with " + carried;
-      f.hint = f.remedy =
-          "comes with the payload of " + carried + "; this motion bears " + bearable + " there";
+      f.hint = f.remedy = "the payload of " + carried +
+                          " causes this finding; in this motion, the robot can carry " + bearable +
+                          " there";
       f.follows_from.clear();
       f.cause = -1;
       findings.push_back(std::move(f));
     }
     mistakes.push_back({"/scenario/" + std::to_string(heavy.which),
                         "the payload on " + payload.on + " is " + mass +
-                            ", which this motion does not bear; it bears " + bearable + " there"});
+                            ", which is too heavy for this motion; the robot can carry " +
+                            bearable + " there"});
   }
   // Errors stay in front, and causes are counted among them.
   std::vector<size_t> order(findings.size());

@@ -324,29 +324,31 @@ void require_keys(const KeyedTracks& part) {
   const Pattern& pattern = part.pattern;
   const auto stop = [&](const std::string& place, const std::string& why) {
     fail(ErrorCode::bad_pattern, in_file(pattern, place) + ": " + why +
-                                     "; such a motion cannot be joined to another motion by keys");
+                                     ", so the motion cannot be joined to another one by keys");
   };
-  if (part.tracks.joint_driven) stop("keyframes", part.tracks.driver + " lead the legs");
+  if (part.tracks.joint_driven)
+    stop("keyframes", part.tracks.driver + " determine the joints of the legs");
   for (const Keyframe& key : pattern.keyframes)
     if (key.feet[0] || key.feet[1]) stop(key.place, "a foot has keys");
   for (const auto& [link, led] : part.hands)
-    if (led) stop("keyframes", "the target of " + link + " holds until the end");
-  if (part.gaze.value_or(false)) stop("keyframes", "the gaze holds until the end");
+    if (led) stop("keyframes", "the target of " + link + " is kept until the end of the motion");
+  if (part.gaze.value_or(false))
+    stop("keyframes", "the target of the gaze is kept until the end of the motion");
 }
 
 void require_same_tracks(const KeyedTracks& a, const KeyedTracks& b) {
   const auto stop = [&](const std::string& what) {
     fail(ErrorCode::bad_pattern,
          in_file(b.pattern, "keyframes") + ": only one of the two motions has " + what +
-             "; the keys can be kept only if both motions have this, or neither motion has it");
+             "; the keys can be kept only if the two motions agree in this point");
   };
   if (a.tracks.zmp.has_value() != b.tracks.zmp.has_value()) stop("keys of the ZMP");
   for (const size_t axis : {0, 1})
     if (a.tracks.cog[axis].has_value() != b.tracks.cog[axis].has_value())
-      stop("keys of the COG's place");
-  if (a.pattern.full_model != b.pattern.full_model) stop("the COG of a point mass");
+      stop("keys of the COG position");
+  if (a.pattern.full_model != b.pattern.full_model) stop("\"cog_model\": \"point_mass\"");
   if (a.tracks.torso.has_value() != b.tracks.torso.has_value() && (a.turns() || b.turns()))
-    stop("keys of the trunk, and the feet turn (a trunk without keys turns with the feet)");
+    stop("keys of the trunk, although the feet turn");
 }
 
 // Keyframes of the second pattern as they read in the first one.
@@ -382,7 +384,8 @@ Pattern chained(const RobotModel& model, const MotionPart& first, const MotionPa
     refuse_viip_phases(*pattern, "joined");
     if (pattern->table || pattern->correction)
       fail(ErrorCode::bad_pattern, in_file(*pattern, pattern->table ? "table" : "correction") +
-                                       ": it has no keys that could be kept");
+                                       ": a pattern with a table or a correction has no keys that "
+                                       "could be kept");
   }
   const CommandSeries &a = first.series, &b = second.series;
   require_stand(first.pattern, a.samples.back(), "end");
@@ -502,7 +505,8 @@ RobotState standing_at(const RobotModel& model, const Pattern& pattern, const st
   if (!legs.solve(target, state, data).reached)
     fail(ErrorCode::bad_pattern,
          in_file(pattern, "ramp") + ": posture '" + posture +
-             "' cannot be reached while the feet stay at their places in the motion");
+             "' cannot be reached while the feet stay at their places in the motion; choose "
+             "another posture");
   return state;
 }
 

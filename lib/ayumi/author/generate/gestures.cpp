@@ -238,8 +238,8 @@ Pattern wave_pattern(const RobotModel& model, const WaveParameters& p) {
   update_positions(model, state, data);
   const int hand = hand_body(model, p.side);
   if (hand < 0)
-    fail(ErrorCode::usage,
-         "wave: " + model.name() + " has no " + name_of(p.side) + " arm of three joints or more");
+    fail(ErrorCode::usage, "wave: " + model.name() + " has no " + name_of(p.side) +
+                               " arm of three joints or more; choose the other hand");
   const std::vector<int> arm = limb_dofs(model, hand);
   const Vector3d point = limb_point(model, hand);
   const Vector3d shoulder =
@@ -261,7 +261,7 @@ Pattern wave_pattern(const RobotModel& model, const WaveParameters& p) {
       fail(ErrorCode::usage, std::string("wave: the ") + name_of(p.side) + " hand stays " +
                                  text::fixed(1e3 * found.missing, 0) +
                                  " mm away from its place beside the head, because joints of the "
-                                 "arm are at their limits");
+                                 "arm are at their limits; choose the other hand");
     raised[i] = found.theta;
     state.theta = found.theta;  // the other end is sought near this one
   }

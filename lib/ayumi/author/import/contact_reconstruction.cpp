@@ -93,11 +93,10 @@ class Grounding {
     std::vector<std::string> result;
     if (floats > kSaid || sinks > kSaid)
       result.push_back(
-          "while they carry the robot, soles float by up to " + millimetres(floats) +
-          " and sink by up to " + millimetres(sinks) +
+          "supporting soles are up to " + millimetres(floats) + " above the ground and up to " +
+          millimetres(sinks) + " below the ground" +
           " (--ground moves the robot up and down, so that the supporting soles touch the ground)");
-    if (slides > kSaid)
-      result.push_back("while they carry the robot, soles slide by up to " + millimetres(slides));
+    if (slides > kSaid) result.push_back("supporting soles slide by up to " + millimetres(slides));
     constexpr size_t kMost = 6;  // Chosen: a line that a person still reads
     const size_t more = flights.size() > kMost ? flights.size() - kMost : 0;
     flights.resize(flights.size() - more);

@@ -159,7 +159,9 @@ ViipParams viip_params(const RobotModel& model, const ControllerSpec& spec) {
     fail(ErrorCode::usage, "controller gains: with dz = " + text::brief(p.height_damping) +
                                " the COG height overshoots; dz must be at least 1 (equation (25): "
                                "K_Dz^2 >= 4 m K_Pz)");
-  if (p.recovery > 1) fail(ErrorCode::usage, "controller gains: hold must be at most 1");
+  if (p.recovery > 1)
+    fail(ErrorCode::usage,
+         "controller gains: hold is " + text::brief(p.recovery) + "; it must be from 0 to 1");
   p.landings = spec.type.demonstration != Demonstration::no_feedback;
   p.feedback = p.landings && spec.type.demonstration != Demonstration::landings_only;
   return p;

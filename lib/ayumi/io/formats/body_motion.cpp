@@ -113,7 +113,10 @@ class BodyMotionReader {
                                            " in the frame, but " + std::to_string(needed) +
                                            " are needed");
     }
-    if (rows.empty()) source_.refuse(line_of(frames), "there is no frame");
+    if (rows.empty())
+      source_.refuse(
+          line_of(frames),
+          "the sequence has no frame, so there is no motion to read; write the file again");
     if (rows_ == 0) rows_ = rows.size();
     if (rows.size() != rows_)
       source_.refuse(line_of(frames), text::counted(rows.size(), "frame") +

@@ -177,10 +177,11 @@ class Reader {
           layout.radians == fraction_)
         found = &layout;
     if (!found)
-      fail(ErrorCode::bad_file,
-           file_ + (fraction_ ? ": the values are not whole numbers" : ": the values are counts") +
-               ", but among the layouts of this robot that have no interval column, none has " +
-               std::to_string(columns) + " columns in " + (fraction_ ? "radians" : "counts"));
+      fail(ErrorCode::bad_file, file_ + ": the file has " + std::to_string(columns) +
+                                    " columns in " + (fraction_ ? "radians" : "counts") +
+                                    " and no interval column, and this robot has no such layout; "
+                                    "add it to \"layouts\" in "
+                                    "the sidecar");
     result_.layout = *found;
     const int interval = given_ > 0                    ? given_
                          : found->intervals_ms.empty() ? 1
@@ -261,7 +262,9 @@ Eigen::MatrixXi counts_of(const RobotModel& model, const ReferenceTrajectory& ta
   const Eigen::MatrixXi counts =
       encoder_counts(model, table, count_step_limits(model, table.dt, options));
   if (counts.cwiseAbs().maxCoeff() > 32767)
-    fail(ErrorCode::bad_pattern, "a joint angle needs more counts than 16 bits hold");
+    fail(ErrorCode::bad_pattern,
+         "a joint angle needs more than 32767 encoder counts, the largest number of the format; "
+         "keep the joint nearer to its zero");
   return counts;
 }
 

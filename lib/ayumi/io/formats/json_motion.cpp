@@ -46,7 +46,8 @@ std::vector<std::vector<double>> frames_of(const MotionInput& source, const Json
                                       : "at least " + std::to_string(least)) +
                      " are needed");
   }
-  if (rows.empty()) source.refuse(0, "there is no frame");
+  if (rows.empty())
+    source.refuse(0, "the file has no frame, so there is no motion to read; write the file again");
   return rows;
 }
 
@@ -116,7 +117,9 @@ MotionFile read_poppy_move(const MotionInput& source) {
       if (std::find(names.begin(), names.end(), motor) == names.end()) names.push_back(motor);
     }
   }
-  if (rows.empty()) source.refuse(0, "there is no position");
+  if (rows.empty())
+    source.refuse(0,
+                  "the file has no position, so there is no motion to read; write the file again");
   MotionFile motion;
   motion.joints = names;
   motion.values.setConstant(static_cast<Eigen::Index>(rows.size()),
@@ -197,8 +200,10 @@ MotionFile read_deep_mimic(const MotionInput& source) {
   if (const auto names = root.find("Joints")) motion.joints = names->strings();
   if (!motion.joints.empty() &&
       static_cast<Eigen::Index>(motion.joints.size()) != motion.values.cols())
-    source.refuse(0, text::counted(motion.joints.size(), "name") + " in \"Joints\" for " +
-                         text::counted(motion.values.cols(), "column"));
+    source.refuse(0, "\"Joints\" has " + text::counted(motion.joints.size(), "name") +
+                         ", but the frames have " +
+                         text::counted(motion.values.cols(), "joint column") +
+                         "; give one name for each column");
   return motion;
 }
 
@@ -226,7 +231,9 @@ MotionFile read_open_duck(const MotionInput& source) {
   MotionFile motion;
   motion.joints = root.at("Joints").strings();
   const std::vector<JsonNode> offsets = root.at("Frame_offset").items();
-  if (offsets.empty()) root.at("Frame_offset").complain("there is no offset");
+  if (offsets.empty())
+    root.at("Frame_offset")
+        .complain("the list of offsets is empty; give root_pos, root_quat and joints_pos");
   const auto offset = [&](const char* key) {
     const int at = offsets[0].at(key).integer();
     if (at < 0) offsets[0].at(key).complain("an offset must not be below 0");

@@ -93,7 +93,9 @@ NumberRows number_rows(const MotionInput& source, std::string_view text,
     result.rows.push_back(std::move(row));
     result.lines.push_back(line);
   }
-  if (result.rows.empty()) source.refuse(0, "there is no row of numbers");
+  if (result.rows.empty())
+    source.refuse(
+        0, "the file has no row of numbers, so there is no motion to read; write the file again");
   return result;
 }
 

@@ -176,7 +176,7 @@ const MotionFormat& format_of(const std::string& bytes, MotionInput& source,
   result.format = format->name;
   if (!format->binary && !text) {
     const size_t at = bytes.find('\0');
-    source.refuse(line_at(bytes, at), "is a binary file, but text is needed");
+    source.refuse(line_at(bytes, at), "this is a binary file, but text is needed");
   }
   if (!format->binary) refuse_other_encodings(source);
   return *format;
@@ -197,7 +197,8 @@ MotionFile read_file_of(const std::string& bytes, const std::string& file, const
     motion.notes.push_back("--motion is not used, because the file has one motion");
   if (!format->binary && may_be_cut(source.bytes))
     motion.notes.push_back(
-        "the last line of the file does not end; if the file was cut, its last value may be wrong");
+        "the last line of the file has no line end; if the file was cut there, the last value may "
+        "be wrong");
   return motion;
 }
 
@@ -470,7 +471,8 @@ Rows even_rows(const MotionFile& motion, const Rows& rows, const ImportOptions& 
   const double last = times.back() / dt;
   if (last > static_cast<double>(kMostRows))
     fail(ErrorCode::bad_file, file + ": the motion lasts " + text::brief(times.back()) +
-                                  " s, which is longer than Ayumi reads; cut the file");
+                                  " s, which is more than " + std::to_string(kMostRows) +
+                                  " rows at this rate; cut the file");
   const Eigen::Index count =
       spacing.even && !keys ? rows.rows() : static_cast<Eigen::Index>(std::floor(last + 1e-3)) + 1;
   if (keys)
@@ -588,8 +590,8 @@ void say_rough(const RobotModel& model, ImportedMotion& imported) {
       model.dof_names()[static_cast<size_t>(joint)] + " has an acceleration of " +
       text::brief(worst, 2) +
       (model.dofs()[static_cast<size_t>(joint)].prismatic ? " m/s2" : " rad/s2") +
-      " (root mean square), and the forces are computed from the accelerations; --smooth DEG, "
-      "such as 0.1, changes no angle by more than DEG");
+      " (root mean square), and the forces are computed from the accelerations. --smooth DEG "
+      "smooths the angles and changes each by at most DEG degrees (try 0.1)");
 }
 
 // Counts are rounded, and straight between the times for which they were made: differences of that

@@ -88,7 +88,8 @@ NpyArray array_of(const std::string& bytes, const std::string& place) {
   const auto refuse = [&](const std::string& reason) {
     fail(ErrorCode::bad_file, place + ": " + reason);
   };
-  if (bytes.size() < 12 || bytes.compare(0, 6, kNpyMagic, 6) != 0) refuse("is not a NumPy array");
+  if (bytes.size() < 12 || bytes.compare(0, 6, kNpyMagic, 6) != 0)
+    refuse("this is not a NumPy array; save the arrays with numpy.savez");
   // Definition: version 2 has a long head, version 3 has names in UTF-8.
   if (bytes[6] < 1 || bytes[6] > 3)
     refuse("version " + std::to_string(bytes[6]) +
@@ -100,7 +101,7 @@ NpyArray array_of(const std::string& bytes, const std::string& place) {
   const size_t fixed = long_head ? 12 : 10;
   size_t length = byte(8) | byte(9) << 8;
   if (long_head) length |= byte(10) << 16 | byte(11) << 24;
-  if (fixed + length > bytes.size()) refuse("the array is truncated");
+  if (fixed + length > bytes.size()) refuse("the array is truncated; save the file again");
   const std::string head = bytes.substr(fixed, length), type = value_in_head(head, "descr");
   NpyArray array;
   size_t count = 1;
@@ -135,7 +136,7 @@ NpyArray array_of(const std::string& bytes, const std::string& place) {
   }
   if (bytes.size() - at < count * item)
     refuse("the array is truncated: " + std::to_string(bytes.size() - at) + " bytes of " +
-           std::to_string(count * item));
+           std::to_string(count * item) + "; save the file again");
   if (text)
     for (size_t i = 0; i < count; ++i)
       array.words.push_back(word_of(bytes.data() + at + i * item, width));

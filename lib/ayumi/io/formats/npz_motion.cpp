@@ -21,6 +21,11 @@ bool has_array(const MotionInput& source, const std::string& name) {
   return source.bytes.find(name + ".npy") != std::string::npos;
 }
 
+[[noreturn]] void refuse_names(const MotionInput& source, size_t names, size_t columns) {
+  source.refuse(0, "the file has " + text::counted(names, "joint name") + ", but " +
+                       text::counted(columns, "joint column") + "; give one name for each column");
+}
+
 class ArrayReader {
  public:
   explicit ArrayReader(const MotionInput& source)
@@ -139,8 +144,7 @@ MotionFile read_tracking_npz(const MotionInput& source) {
   if (const NpyArray* names = arrays.find(isaac ? "joint_names" : "dof_names"))
     motion.joints = names->words;
   if (!motion.joints.empty() && motion.joints.size() != joints.shape[1])
-    source.refuse(0, text::counted(motion.joints.size(), "name") + " for " +
-                         text::counted(joints.shape[1], "joint column"));
+    refuse_names(source, motion.joints.size(), joints.shape[1]);
   motion.notes = {
       "units: metres and radians; quaternion order: w x y z, as the format defines it; the first "
       "body is read as the root"};
@@ -235,8 +239,7 @@ MotionFile read_gmr_npz(const MotionInput& source) {
   for (const char* key : {"joint_names", "dof_names"})
     if (const NpyArray* names = arrays.find(key)) motion.joints = names->words;
   if (!motion.joints.empty() && motion.joints.size() != joints.shape[1])
-    source.refuse(0, text::counted(motion.joints.size(), "name") + " for " +
-                         text::counted(joints.shape[1], "joint column"));
+    refuse_names(source, motion.joints.size(), joints.shape[1]);
   motion.notes = {"units: metres and radians; quaternion order: x y z w, as GMR writes it"};
   return motion;
 }

@@ -60,8 +60,8 @@ std::string recognize_op3_action(const MotionInput& source) {
 MotionFile read_op3_action(const MotionInput& source) {
   const std::string& bytes = source.bytes;
   if (bytes.size() != kPages * kPageBytes)
-    source.refuse(0, std::to_string(bytes.size()) + " bytes; an action file has " +
-                         std::to_string(kPages * kPageBytes));
+    source.refuse(0, "the file has " + std::to_string(bytes.size()) +
+                         " bytes, but an action file has " + std::to_string(kPages * kPageBytes));
   std::vector<size_t> full;
   std::vector<bool> follows(kPages, false);
   for (size_t page = 0; page < kPages; ++page) {
@@ -73,7 +73,10 @@ MotionFile read_op3_action(const MotionInput& source) {
     const size_t next = byte_at(bytes, page * kPageBytes + kNext);
     if (next != page) follows[next] = true;
   }
-  if (full.empty()) source.refuse(0, "no page has steps and a right checksum");
+  if (full.empty())
+    source.refuse(
+        0,
+        "no page has both steps and a correct checksum; the file may be damaged, so save it again");
   // A motion is a page that follows no other one, and the pages that follow it.
   std::vector<size_t> starts;
   for (const size_t page : full)

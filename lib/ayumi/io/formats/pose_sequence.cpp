@@ -429,21 +429,21 @@ class PoseSequenceReader {
     notes_.push_back("units: seconds, metres and radians, as the format defines them");
     notes_.push_back(text::counted(keys_.size(), "key pose") + ", " +
                      text::counted(zmp_keys(), "ZMP key") + " (" + std::to_string(still_) +
-                     " of them stationary); between two keys, every value follows minimum jerk, "
-                     "and at each of its keys it is at rest");
+                     " of them stationary); every value follows a minimum-jerk curve between its "
+                     "keys, and is at rest at each key");
     if (places_feet())
       notes_.push_back(
           "the file places the feet, so the " + text::counted(legs_, "leg joint") +
           " follow from the feet, the trunk and the " +
           (zmp_leads_     ? "ZMP"
            : zmp_follows_ ? "ZMP. The file does not state the ZMP of its steps, so it is under the "
-                            "middle of the standing foot, and the base link sways as this needs"
+                            "middle of the standing foot, and the base link sways accordingly"
                           : "COG; the COG follows from the places of the base link") +
           (zmp_keys() == 1 && !zmp_follows_ ? "; the single ZMP key is left out" : ""));
     else
       notes_.push_back(
-          "the file does not place both feet, so the legs follow their joints, with both feet on "
-          "the ground" +
+          "the file does not place both feet, so the leg joints have the angles of the file, and "
+          "both feet are on the ground" +
           std::string(zmp_keys() > 0 ? "; its ZMP is left out" : ""));
     if (out_of_reach_ > 0)
       notes_.push_back("places of the base link that the legs do not reach, left out: " +

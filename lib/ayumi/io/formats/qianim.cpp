@@ -78,7 +78,8 @@ MotionFile read_qianim(const MotionInput& source) {
   double rate = kUsualFrames;
   std::vector<Curve> curves;
   find_curves(source, *document.RootElement(), rate, curves);
-  if (curves.empty()) source.refuse(0, "there is no key");
+  if (curves.empty())
+    source.refuse(0, "the file has no key, so there is no motion to read; write the file again");
   std::map<double, Eigen::Index> frames;
   for (const Curve& curve : curves)
     for (const auto& [frame, value] : curve.keys) frames[frame] = 0;

@@ -45,8 +45,9 @@ void add_key(const MotionInput& source, size_t line, double time, std::vector<do
     source.refuse(line, "time " + text::brief(time) + " s does not come after " +
                             text::brief(result.times.back()) + " s; times must increase");
   if (row.size() != result.joints.size())
-    source.refuse(line, text::counted(row.size(), "position") + " for " +
-                            text::counted(result.joints.size(), "joint"));
+    source.refuse(line, "the point has " + text::counted(row.size(), "position") +
+                            ", but there are " + text::counted(result.joints.size(), "joint") +
+                            "; give one position for each joint");
   result.times.push_back(time);
   result.rows.push_back(std::move(row));
 }
@@ -68,13 +69,15 @@ Trajectory trajectory_of(const MotionInput& source, const YamlNode& names, const
       if (!list->items.empty())
         source.refuse(yaml_line(*list), "the " + std::string(key) + " are not finite numbers");
       if (!list->numbers.empty() && list->numbers.size() != result.joints.size())
-        source.refuse(yaml_line(*list), text::counted(list->numbers.size(), "value") + " of " +
-                                            key + " for " +
-                                            text::counted(result.joints.size(), "joint"));
+        source.refuse(yaml_line(*list),
+                      std::string(key) + " has " + text::counted(list->numbers.size(), "value") +
+                          ", but there are " + text::counted(result.joints.size(), "joint") +
+                          "; give one value for each joint");
     }
     add_key(source, yaml_line(point), duration_of(source, *time), positions->numbers, result);
   }
-  if (result.times.empty()) source.refuse(yaml_line(points), "there is no point");
+  if (result.times.empty())
+    source.refuse(yaml_line(points), "the trajectory has no point; write the file again");
   return result;
 }
 
@@ -186,7 +189,8 @@ MotionFile read_ros_trajectory(const MotionInput& source) {
   std::vector<Trajectory> found;
   for (const std::string& document : documents_of(source.bytes))
     find_trajectories(source, parse_yaml(document, source.file), found);
-  if (found.empty()) source.refuse(0, "there is no trajectory with joint_names and points");
+  if (found.empty())
+    source.refuse(0, "the file has no trajectory with joint_names and points; add one");
   return joined(source, std::move(found));
 }
 
@@ -224,7 +228,7 @@ MotionFile read_play_motion(const MotionInput& source) {
   const YamlNode root = parse_yaml(source.bytes, source.file);
   const YamlNode* motions = motions_of(root);
   if (!motions || !motions->is_map() || motions->items.empty())
-    source.refuse(yaml_line(root), "there is no motion");
+    source.refuse(yaml_line(root), "the list of motions is empty; add a motion");
   MotionFile about;
   const YamlNode& first = motions->items[source.chosen_motion(motions->keys, {}, about)];
   const YamlNode *names = first.find("joints"), *positions = first.find("positions"),
@@ -236,15 +240,17 @@ MotionFile read_play_motion(const MotionInput& source) {
   const size_t width = one.joints.size(), rows = times->numbers.size();
   if (!positions->items.empty() || !times->items.empty() ||
       positions->numbers.size() != rows * width)
-    source.refuse(yaml_line(*positions), text::counted(positions->numbers.size(), "position") +
-                                             " for " + text::counted(width, "joint") + " and " +
-                                             text::counted(rows, "time"));
+    source.refuse(yaml_line(*positions),
+                  "the motion has " + text::counted(positions->numbers.size(), "position") +
+                      ", but " + text::counted(width, "joint") + " at " +
+                      text::counted(rows, "time") + " need " + std::to_string(rows * width));
   for (size_t k = 0; k < rows; ++k) {
     const auto begin = positions->numbers.begin() + static_cast<long>(k * width);
     add_key(source, yaml_line(*times), times->numbers[k],
             std::vector<double>(begin, begin + static_cast<long>(width)), one);
   }
-  if (one.times.empty()) source.refuse(yaml_line(first), "there is no posture");
+  if (one.times.empty())
+    source.refuse(yaml_line(first), "the motion has no posture; write the file again");
   MotionFile motion = joined(source, {std::move(one)});
   motion.name = about.name;
   motion.chosen = about.chosen;

@@ -42,7 +42,8 @@ MotionFile read_transposed_csv(const MotionInput& source) {
           source.refuse(line, "time " + text::brief(row[i]) + " s does not come after " +
                                   text::brief(row[i - 1]) +
                                   " s; times must increase, so correct or remove this column");
-      if (row.empty()) source.refuse(line, "there is no time");
+      if (row.empty())
+        source.refuse(line, "the first row has no time; give the times of the columns");
       motion.times = std::move(row);
       continue;
     }
@@ -53,7 +54,8 @@ MotionFile read_transposed_csv(const MotionInput& source) {
     motion.joints.emplace_back(cells[0]);
     joints.push_back(std::move(row));
   }
-  if (joints.empty()) source.refuse(0, "there is no row of a joint");
+  if (joints.empty())
+    source.refuse(0, "the file has no row of a joint below the row of times; write the file again");
   motion.values.resize(static_cast<Eigen::Index>(motion.times.size()),
                        static_cast<Eigen::Index>(joints.size()));
   for (size_t i = 0; i < joints.size(); ++i)

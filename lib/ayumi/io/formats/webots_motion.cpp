@@ -113,7 +113,9 @@ MotionFile read_webots_motion(const MotionInput& source) {
   if (without_time > 0)
     motion.notes.push_back(text::counted(without_time, "row") +
                            " with a duration of 0 s are left out");
-  if (motion.times.empty()) source.refuse(line, "there is no pose");
+  if (motion.times.empty())
+    source.refuse(line,
+                  "the file has no pose, so there is no motion to read; write the file again");
   motion.values = Eigen::Map<Eigen::Matrix<double, -1, -1, Eigen::RowMajor>>(
       cells.data(), static_cast<Eigen::Index>(motion.times.size()),
       static_cast<Eigen::Index>(head.size()));

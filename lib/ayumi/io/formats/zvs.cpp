@@ -66,7 +66,8 @@ MotionFile read_zvs(const MotionInput& source) {
     for (size_t i = 2; i < tokens.size(); ++i)
       cells.push_back(source.number(tokens[i], line, "value " + std::to_string(i - 1)));
   }
-  if (motion.times.empty()) source.refuse(0, "there is no row");
+  if (motion.times.empty())
+    source.refuse(0, "the file has no row, so there is no motion to read; write the file again");
   Eigen::MatrixXd all = Eigen::Map<Eigen::Matrix<double, -1, -1, Eigen::RowMajor>>(
       cells.data(), static_cast<Eigen::Index>(motion.times.size()),
       static_cast<Eigen::Index>(width));

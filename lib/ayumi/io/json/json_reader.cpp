@@ -170,8 +170,8 @@ Json parse_json(const std::string& bytes, const std::string& file, ErrorCode cod
   }
   if (builder.too_deep())
     fail_in_text(code, file, bytes, too_deep_at(bytes),
-                 "more than " + std::to_string(kDeepestNesting) +
-                     " arrays and objects inside each other; Ayumi's files need few");
+                 "arrays and objects are nested more than " + std::to_string(kDeepestNesting) +
+                     " levels deep; correct the brackets");
   if (!builder.duplicate().empty())
     fail(code,
          file + ": the key '" + builder.duplicate() + "' appears twice in one object; keep one");

@@ -45,7 +45,8 @@ std::string assumed_study_text(const RobotModel& robot) {
   add({{"what", "inertia"}, {"each", true}}, "uniform", {0.8, 1.2}, "20 % for each link");
   add({{"what", "friction"}}, "uniform", {0.4, 1.0},
       "rubber on polished wood to rubber on dry linoleum");
-  add({{"what", "sole_stiffness"}}, "uniform", {0.5, 2}, "half to twice that of the model");
+  add({{"what", "sole_stiffness"}}, "uniform", {0.5, 2},
+      "half to twice the value of the robot model");
   for (const char* axis : {"x", "y"})
     add({{"what", "slope"}, {"axis", axis}}, "truncated", {0, 0.1, -0.3, 0.3},
         "a floor that is level within 5 mm on 1 m");
@@ -61,12 +62,13 @@ std::string assumed_study_text(const RobotModel& robot) {
   const SensorDescription& sensors = robot.description().sensors;
   if (sensors.attitude_noise > 0 || sensors.gyro_noise > 0 || sensors.accelerometer_noise > 0 ||
       sensors.force_noise > 0)
-    add({{"what", "sensor_noise"}}, "uniform", {0.5, 2}, "half to twice that of the model");
+    add({{"what", "sensor_noise"}}, "uniform", {0.5, 2},
+        "half to twice the value of the robot model");
   for (const char* axis : {"x", "y"})
     add({{"what", "attitude_bias"}, {"axis", axis}}, "uniform", {-0.2, 0.2},
-        "beside the bias of the model");
+        "in addition to the bias of the robot model");
   add({{"what", "sensor_latency"}}, "uniform", {0, tidy(sensors.oldest(0) + kMoreLatency)},
-      "from 0 to 2 ms more than that of the model");
+      "from 0 to 2 ms more than the latency of the robot model");
   const StudyJson factor = {{"name", "mass of the robot"},
                             {"source", "assumed: all parts are weighed on the same scales"}};
   const StudyJson study = {

@@ -107,7 +107,9 @@ class Parser {
   }
 
   double factor() {
-    if (++depth_ > kMaxDepth) stop("nested too deeply");
+    if (++depth_ > kMaxDepth)
+      stop("parentheses and signs are nested more than " + std::to_string(kMaxDepth) +
+           " levels deep; simplify the expression");
     double value = 0;
     if (take('-')) {
       value = -factor();

@@ -149,7 +149,8 @@ LinkTarget read_link_target(const JsonNode& node, const std::string& kind, Patte
                                                                 : LinkTarget::Frame::trunk;
   if (const auto direction = node.find("direction")) {
     const Eigen::Vector3d along = read_vector3(*direction, scope);
-    if (!(along.norm() > 1e-6)) direction->complain("the vector has no direction; its length is 0");
+    if (!(along.norm() > 1e-6))
+      direction->complain("the vector has no direction; give a vector whose length is above 0");
     target.direction = along.normalized();
   }
   return target;

@@ -59,7 +59,9 @@ GroundBlock read_block(const JsonNode& node, PatternScope& scope) {
   if (node.has("radius") || node.has("position")) {
     for (const char* const key : {"x", "y"})
       if (node.has(key))
-        node.at(key).complain("a block is a rectangle (x, y) or a disc (position, radius)");
+        node.at(key).complain(
+            "the block has the keys of a rectangle (x, y) and of a disc (position, radius); keep "
+            "the keys of one shape");
     block.kind = GroundBlock::Kind::disc;
     block.center = read_vector2(node.at("position"), scope);
     block.radius = read_positive(node.at("radius"), scope, 100);
@@ -136,7 +138,9 @@ What read_push(const JsonNode& node, PatternScope& scope) {
     node.at("frame").complain("\"link\" needs a link: set \"on\" to a link name");
   push.direction = read_vector3(node.at("direction"), scope);
   const double length = push.direction.norm();
-  if (!(length > 1e-9)) node.at("direction").complain("the direction is zero");
+  if (!(length > 1e-9))
+    node.at("direction")
+        .complain("the vector has no direction; give a vector whose length is above 0");
   // A unit vector stays as it is, so that writing and reading is the identity.
   if (std::abs(length - 1) > 1e-15) push.direction /= length;
   if (const auto shape = node.find("shape"))

@@ -12,6 +12,7 @@
 #include <numbers>
 #include <set>
 
+#include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/robot/mesh_place.hpp"
@@ -67,9 +68,10 @@ class BodyReader {
     order_joints();
     if (const YAML::Node extra = member(root, "extra_joints", "extraJoints"); extra && extra.size())
       robot_.assumptions.push_back(
-          "extra joints, which close loops, are left out: Ayumi computes trees");
+          "extra joints, which close loops, are left out, because Ayumi does not simulate loops of "
+          "links");
     if (!left_out_.empty())
-      robot_.assumptions.push_back("shapes that Ayumi does not have are left out: " +
+      robot_.assumptions.push_back("shapes that Ayumi does not support are left out: " +
                                    text::join({left_out_.begin(), left_out_.end()}, ", "));
     validate_links(robot_);
     validate_joints(robot_);
@@ -274,7 +276,9 @@ class BodyReader {
   // A list of elements with types, or a map from types to elements.
   void read_elements(const YAML::Node& elements, const Isometry3d& at, Use use, int depth,
                      LinkDescription& link) {
-    if (depth > kDeepestBodyElement) complain(elements, "elements are nested too deeply");
+    if (depth > kDeepestBodyElement)
+      complain(elements, "elements are nested more than " + std::to_string(kDeepestBodyElement) +
+                             " levels deep; simplify the body");
     if (elements.IsSequence()) {
       for (const YAML::Node& each : elements)
         read_element(each, text_or(each, "type", "type", ""), at, use, depth, link);
@@ -384,8 +388,8 @@ class BodyReader {
       } else if (index < static_cast<double>(points.size())) {
         face.push_back(static_cast<size_t>(index));
       } else {
-        complain(each, "the corner " + each.Scalar() + " is none of the " +
-                           std::to_string(points.size()) + " that are given");
+        complain(each, "corner " + each.Scalar() + " does not exist; the shape has " +
+                           text::counted(points.size(), "corner") + ", numbered from 0");
       }
     }
     finish();

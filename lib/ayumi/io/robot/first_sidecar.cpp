@@ -458,9 +458,9 @@ std::vector<std::string> to_do_list(const RobotModel& model, const RobotGuess& g
                     ". Right: " + leg_in_words(model, Side::right) + ".");
     if (ik.lacks_joints())
       items.push_back(
-          "Know what the legs can do: a leg has fewer than six joints of its own, so there are "
-          "places at which it cannot put the sole flat. The robot stands, squats and shuffles, and "
-          "its trunk leans.");
+          "Expect limits of the legs: each leg has fewer than six joints of its own, so at some "
+          "places it cannot put the sole flat on the ground. The robot can stand, squat and take "
+          "small steps, and its trunk leans.");
     items.push_back("Measure how soft the soles are (stiffness).");
   }
   items.push_back(

@@ -126,7 +126,8 @@ Model compile(const fs::path& path, const Files& files) {
   mj_defaultVFS(vfs.get());
   for (const auto& [name, bytes] : files) {
     if (mj_makeEmptyFileVFS(vfs.get(), name.c_str(), static_cast<int>(bytes.size())) != 0)
-      fail(ErrorCode::bad_model, path.string() + ": the model has too many meshes");
+      fail(ErrorCode::bad_model,
+           path.string() + ": the model has more mesh files than MuJoCo accepts; merge meshes");
     std::memcpy(vfs->filedata[mj_findFileVFS(vfs.get(), name.c_str())], bytes.data(), bytes.size());
   }
   char words[1000] = "the model could not be read";
@@ -244,7 +245,8 @@ class MjcfReader {
     const int root =
         static_cast<int>(std::max_element(joints.begin(), joints.end()) - joints.begin());
     if (m_->nbody < 2 || root == 0)
-      fail(ErrorCode::bad_model, path_.string() + ": the model has no body with a joint");
+      fail(ErrorCode::bad_model,
+           path_.string() + ": the model has no body with a joint; name the file of a robot");
     std::vector<std::string> others;
     for (int i = 1; i < m_->nbody; ++i)
       if (m_->body_parentid[i] == 0 && i != root) others.push_back(body_name(i));
@@ -444,8 +446,8 @@ class MjcfReader {
     }
     if (loops > 0)
       robot_.assumptions.push_back(text::counted(loops, "equality", "equalities") +
-                                   " that close a loop or weld bodies are left out: Ayumi computes "
-                                   "trees");
+                                   " that close a loop or weld bodies are left out, because Ayumi "
+                                   "does not simulate loops of links");
     if (curves > 0)
       robot_.assumptions.push_back(
           text::counted(curves, "joint equality", "joint equalities") +

@@ -422,8 +422,8 @@ void find_soles(RobotGuess& guess) {
       [&](const Link& link) { return link.body == feet[0].body && !link.collisions.empty(); });
   guess.sole_reason = {"hull of everything of the foot's " +
                            std::string(collisions ? "collision shapes" : "visual shapes") +
-                           " that is at most 1 mm above the ground, with at most " +
-                           std::to_string(kMostCorners) + " corners from the inside",
+                           " that is at most 1 mm above the ground; the outline has at most " +
+                           std::to_string(kMostCorners) + " corners and lies inside this hull",
                        "that this is the outline of the part of the foot that touches the ground; "
                        "when in doubt, make "
                        "the outline smaller"};
@@ -606,19 +606,17 @@ void find_servos(RobotGuess& guess) {
     return;
   }
   guess.servo_reason = {
-      "kp gives the full effort of the joint's own limit at an error of " +
-          text::brief(kFullEffortError) + " rad, and for legs at least " +
-          text::brief(kLegStiffness) +
-          " times weight times COG height (m g z) = " + text::brief(kLegStiffness * weight * z, 3) +
-          " N m/rad, with which they hold the robot; kd = " +
+      "kp is the effort limit of the joint divided by " + text::brief(kFullEffortError) +
+          " rad; for legs it is at least " + text::brief(kLegStiffness) +
+          " m g z = " + text::brief(kLegStiffness * weight * z, 3) +
+          " N m/rad (weight times COG height), so that the legs hold the robot; kd = " +
           text::brief(kDampingTime * std::sqrt(z / kGravity), 2) + " s times kp" +
-          (estimated == 0
-               ? ""
-               : "; the effort limits of " + std::to_string(estimated) +
-                     " joints are missing or placeholders, so " + text::brief(kLegEffort) +
-                     " m g z = " + text::brief(kLegEffort * weight * z, 3) +
-                     " N m is taken for legs and " + text::brief(kOtherEffort) +
-                     " m g z for other joints"),
+          (estimated == 0 ? ""
+                          : "; the effort limits of " + std::to_string(estimated) +
+                                " joints are missing or placeholders, and are replaced by " +
+                                text::brief(kLegEffort) + " m g z = " +
+                                text::brief(kLegEffort * weight * z, 3) + " N m for legs and by " +
+                                text::brief(kOtherEffort) + " m g z for other joints"),
       "gains and rotor inertia of your servos; `ayumi identify` finds them in a recording"};
   robot.assumptions.push_back("servos: " + guess.servo_reason.why);
 }

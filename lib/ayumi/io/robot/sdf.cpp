@@ -179,7 +179,8 @@ class SdfReader {
     if (xml_attribute(element, "rotation_format", "") == "quat_xyzw") {
       const std::vector<double> v = numbers(element, 7);
       const Eigen::Quaterniond turn(v[6], v[3], v[4], v[5]);
-      if (turn.norm() < 1e-9) complain(element, "the quaternion of the pose is zero");
+      if (turn.norm() < 1e-9)
+        complain(element, "the quaternion of the pose is zero; give a unit quaternion");
       pose.linear() = turn.normalized().toRotationMatrix();
       pose.translation() = Vector3d(v[0], v[1], v[2]);
       return pose;
@@ -226,7 +227,9 @@ class SdfReader {
   }
 
   void read_model(const TiXmlElement* model, const std::string& scope, int depth) {
-    if (depth > kDeepestModel) complain(model, "models are nested too deeply");
+    if (depth > kDeepestModel)
+      complain(model, "models are nested more than " + std::to_string(kDeepestModel) +
+                          " levels deep; simplify the file");
     const std::string own = scope + kModelFrame;
     for (auto* each = model->FirstChildElement(); each; each = each->NextSiblingElement()) {
       const std::string& kind = each->ValueStr();
@@ -286,7 +289,9 @@ class SdfReader {
     if (!fs::is_regular_file(found, ignored))
       complain(element, "the included model " + uri +
                             " is not there; --package-path names the folder of the models");
-    if (depth > kDeepestModel) complain(element, "models include each other too deeply");
+    if (depth > kDeepestModel)
+      complain(element, "models include each other more than " + std::to_string(kDeepestModel) +
+                            " levels deep; check that no model includes itself");
     TiXmlDocument& document = included_.emplace_back();
     const std::string bytes = read_file(found, kLargestSdfPart);
     files_ += bytes;

@@ -263,7 +263,8 @@ void check_servo(const JsonNode& group, const std::string& joint, const ServoDes
                    ": speed_command_limit needs an inner speed loop; state position_gain and "
                    "speed_gain");
   if (servo.quantized && servo.kp <= 0)
-    group.complain("joint " + joint + ": a joint without a servo has no counts to round to");
+    group.complain("joint " + joint +
+                   ": quantized needs a servo; state kp of this joint, or remove quantized");
 }
 
 }  // namespace

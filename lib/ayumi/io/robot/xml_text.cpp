@@ -28,7 +28,9 @@ void refuse_deep_nesting(const std::string& bytes, const std::string& file,
       ++depth;
     if (bytes[i] == '/' && bytes[i + 1] == '>') --depth;
     if (depth > kDeepestNesting)
-      fail(ErrorCode::bad_file, file + ": nested too deeply for " + kind);
+      fail(ErrorCode::bad_file, file + ": elements are nested more than " +
+                                    std::to_string(kDeepestNesting) +
+                                    " levels deep, too deep for " + kind);
   }
 }
 

@@ -77,7 +77,7 @@ class ZtkReader {
       if (section.tag == "roki::link") read_link(section);
     if (robot_.links.empty()) complain(1, "there is no [roki::link]; a chain of RoKi is needed");
     if (!left_out_.empty())
-      robot_.assumptions.push_back("shapes that Ayumi does not have are left out: " +
+      robot_.assumptions.push_back("shapes that Ayumi does not support are left out: " +
                                    text::join({left_out_.begin(), left_out_.end()}, ", "));
     validate_links(robot_);
     validate_joints(robot_);
@@ -245,8 +245,9 @@ class ZtkReader {
       if (field.key == "vert") {
         const std::vector<double> v = numbers(field, 4);
         if (v[0] != static_cast<double>(corners.size()))
-          complain(field.line, "corner " + text::brief(v[0]) + " stands where corner " +
-                                   std::to_string(corners.size()) + " is needed");
+          complain(field.line, "corner " + text::brief(v[0]) + " is given, but corner " +
+                                   std::to_string(corners.size()) +
+                                   " must come next; number the corners from 0 in their order");
         corners.emplace_back(v[1], v[2], v[3]);
       }
       if (field.key != "face") continue;
@@ -254,8 +255,8 @@ class ZtkReader {
       const std::vector<double> v = numbers(field, 3);
       for (size_t i = 0; i < 3; ++i) {
         if (!(v[i] >= 0) || v[i] >= static_cast<double>(corners.size()) || v[i] != std::floor(v[i]))
-          complain(field.line, "the corner " + text::brief(v[i]) + " is none of the " +
-                                   std::to_string(corners.size()) + " that are given");
+          complain(field.line, "corner " + text::brief(v[i]) + " does not exist; the shape has " +
+                                   text::counted(corners.size(), "corner") + ", numbered from 0");
         face[i] = corners[static_cast<size_t>(v[i])];
       }
       add_face(face, part);

@@ -32,7 +32,8 @@ void make_folder(const fs::path& folder) {
          folder.string() + ": this is a file, but a folder is needed; choose another name");
   fs::create_directories(folder, error);
   if (error)
-    fail(ErrorCode::bad_file, folder.string() + ": cannot be made (" + error.message() + ")");
+    fail(ErrorCode::bad_file,
+         folder.string() + ": the folder cannot be made (" + error.message() + ")");
 }
 
 OrderedJson json_of(const TableCaution& caution) {

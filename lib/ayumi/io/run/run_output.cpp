@@ -116,7 +116,8 @@ RunOutput::RunOutput(const fs::path& folder, bool replace)
   fs::remove_all(staging_, error);  // of a process that ended before its run was complete
   fs::create_directory(staging_, error);
   if (error)
-    fail(ErrorCode::bad_file, target_.string() + ": cannot be written (" + error.message() + ")");
+    fail(ErrorCode::bad_file,
+         target_.string() + ": the folder cannot be written (" + error.message() + ")");
 }
 
 RunOutput::~RunOutput() {
@@ -141,7 +142,7 @@ void RunOutput::deliver() const {
   } catch (const fs::filesystem_error& error) {
     undo_delivery(target_);
     fail(ErrorCode::bad_file,
-         target_.string() + ": cannot be written (" + error.code().message() + ")");
+         target_.string() + ": the folder cannot be written (" + error.code().message() + ")");
   }
   std::error_code ignored;
   fs::remove_all(replaced_, ignored);

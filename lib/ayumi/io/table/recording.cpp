@@ -134,7 +134,8 @@ BareRows sequence_rows(std::string_view rest, const std::string& file, size_t de
     }
     now += static_cast<int>(*interval);
   }
-  if (rows.size() < 2) complain(file, "fewer than two rows with targets");
+  if (rows.size() < 2)
+    complain(file, "the sequence has fewer than two rows with targets; record a motion");
   BareRows result;
   result.dt = 0.001 * tick;
   for (size_t r = 0; r + 1 < rows.size(); ++r)
@@ -173,7 +174,8 @@ BareRows bare_rows(const std::string& bytes, const std::string& file, size_t nee
     result.rows.push_back(numbers_of(cells, 0, columns, file, line));
     result.lines.push_back(line);
   }
-  if (result.rows.size() < 2) complain(file, "fewer than two rows");
+  if (result.rows.size() < 2)
+    complain(file, "the recording has fewer than two rows; record a motion");
   return result;
 }
 
@@ -283,7 +285,7 @@ TimeColumn time_of(const NumberTable& table) {
 double interval_of(const NumberTable& table, const RecordingOptions& options,
                    const std::string& file) {
   const Index rows = table.values.rows();
-  if (rows < 2) complain(file, "fewer than two rows");
+  if (rows < 2) complain(file, "the recording has fewer than two rows; record a motion");
   const TimeColumn time = time_of(table);
   if (time.column < 0) return options.rate > 0 ? 1 / options.rate : 0.001;
   const VectorXd t = time.unit * table.values.col(time.column);
@@ -293,16 +295,16 @@ double interval_of(const NumberTable& table, const RecordingOptions& options,
   std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
                    sorted.end());
   const double usual = sorted[sorted.size() / 2];
-  if (!(usual > 0)) complain(file, "time does not increase");
+  if (!(usual > 0)) complain(file, "the times do not increase; correct the time column");
   for (size_t k = 0; k < steps.size(); ++k) {
     const std::string at = "after t = " + text::exact(t[static_cast<Index>(k)]) + " s (data row " +
                            std::to_string(k + 1) + ") ";
-    if (!(steps[k] > 0)) complain(file, at + "time does not increase");
+    if (!(steps[k] > 0)) complain(file, at + "the time does not increase; correct the time column");
     if (steps[k] > (1 + kGap) * usual)
       complain(file, at + std::to_string(std::max(1L, std::lround(steps[k] / usual) - 1)) +
                          " samples are missing: " + text::brief(1000 * steps[k]) +
                          " ms pass before the next row, but usually " + text::brief(1000 * usual) +
-                         " ms");
+                         " ms; record again");
   }
   return (t[rows - 1] - t[0]) / static_cast<double>(rows - 1);
 }

@@ -73,7 +73,7 @@ NumberTable parse_json_table(const std::string& bytes, const std::string& file) 
   table.columns = root.at("columns").strings();
   const JsonNode data = root.at("data");
   data.expect_array();
-  if (data.size() == 0) data.complain("no data row");
+  if (data.size() == 0) data.complain("the table has no data row; add one");
   const auto width = static_cast<Eigen::Index>(table.columns.size());
   table.values.resize(static_cast<Eigen::Index>(data.size()), width);
   const std::vector<JsonNode> rows = data.items();
