@@ -283,8 +283,9 @@ void MainJob::draw(const RobotModel& model, const std::string& title) {
   LociOptions loci;
   loci.title = title;
   loci.model = &model;
+  const Drawing drawing = draw_loci(runs, loci);
   for (const char* name : {"loci.svg", "loci.png"}) {
-    write_loci(runs, output_->file(name), loci);
+    write_drawing(output_->file(name), drawing, loci.png_scale);
     note_file(name);
   }
   StripOptions strip;

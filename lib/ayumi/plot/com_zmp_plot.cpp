@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
@@ -166,10 +167,11 @@ PanelPlan moved_panel(const RobotModel& model, const SimulationLog& log, const I
 /// Distance, seen from above, of the ZMP inside the hull of the soles planned down, where they
 /// really are; no number in flight.
 Value zmp_margin(const RobotModel& model) {
-  return [&model](const SimulationSample& s) {
+  const auto data = std::make_shared<RobotData>(model);  // a workspace
+  return [&model, data](const SimulationSample& s) {
     std::vector<Vector2d> corners;
     for (const Eigen::Vector3d& corner :
-         support_corners(model, body_poses(model, s.state), s.planned_contact))
+         support_corners(model, body_poses(model, s.state, *data), s.planned_contact))
       corners.push_back(corner.head<2>());
     const ConvexPolygon support(std::move(corners));
     return support.empty() || !is_loaded(s) ? std::nan("")

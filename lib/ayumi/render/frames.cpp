@@ -5,8 +5,8 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/render/log_reading.hpp"
-#include "ayumi/render/robot_surface.hpp"
 
 namespace ayumi {
 namespace {
@@ -18,15 +18,26 @@ using Eigen::Vector3d;
 // Chosen: soles of a walk tilt by less than 3 degrees; a robot that falls passes this at once.
 constexpr double kTilted = 0.1;
 
-Isometry3d sole_of(const RobotModel& model, Side side, const BasePose& base,
-                   const Eigen::VectorXd& theta) {
-  RobotState state = model.rest_state();
-  state.base = base;
-  state.theta = theta;
-  const Sole& sole = model.sole(side);
-  Isometry3d pose = body_poses(model, state)[static_cast<size_t>(sole.body)] * sole.frame;
-  return pose * Eigen::Translation3d(sole.center.x(), sole.center.y(), 0);
-}
+/// Poses of the soles' middles in many postures.
+class SolePoses {
+ public:
+  explicit SolePoses(const RobotModel& model)
+      : model_(model), data_(model), state_(model.rest_state()) {}
+
+  Isometry3d at(Side side, const BasePose& base, const Eigen::VectorXd& theta) {
+    state_.base = base;
+    state_.theta = theta;
+    update_positions(model_, state_, data_);
+    const Sole& sole = model_.sole(side);
+    const Isometry3d pose = data_.pose(sole.body) * sole.frame;
+    return pose * Eigen::Translation3d(sole.center.x(), sole.center.y(), 0);
+  }
+
+ private:
+  const RobotModel& model_;
+  RobotData data_;
+  RobotState state_;
+};
 
 /// Without its tilt.
 Isometry3d upright(const Isometry3d& pose) {
@@ -87,19 +98,19 @@ SimulationLog in_frame(const RobotModel& model, SimulationLog log, Frame frame) 
          "frame foot: the robot " + model.name() +
              " has no soles; state them in its sidecar, or choose the frame world");
   }
+  SolePoses soles(model);
   Side side = Side::left;
   Isometry3d real = Isometry3d::Identity(), plan = real;
   for (SimulationSample& s : log.samples) {
     const bool left = s.planned_contact[0], right = s.planned_contact[1];
     if (left != right) side = left ? Side::left : Side::right;
     if (left || right) {
-      const Isometry3d now = sole_of(model, side, s.state.base, s.state.theta);
+      const Isometry3d now = soles.at(side, s.state.base, s.state.theta);
       const bool has_reference = s.reference_theta.size() == model.dof_count();
       const bool has_command = s.command_theta.size() == model.dof_count();
-      const Isometry3d planned =
-          has_reference ? sole_of(model, side, s.reference_base, s.reference_theta)
-          : has_command ? sole_of(model, side, s.command_base, s.command_theta)
-                        : now;
+      const Isometry3d planned = has_reference ? soles.at(side, s.reference_base, s.reference_theta)
+                                 : has_command ? soles.at(side, s.command_base, s.command_theta)
+                                               : now;
       if (now.linear().col(2).dot(planned.linear().col(2)) > std::cos(kTilted)) {
         real = upright(now);
         plan = upright(planned);

@@ -79,6 +79,11 @@ std::vector<const Triangles*> parts_of(const BodySurface& body) {
 
 std::vector<Eigen::Isometry3d> body_poses(const RobotModel& model, const RobotState& state) {
   RobotData data(model);
+  return body_poses(model, state, data);
+}
+
+std::vector<Eigen::Isometry3d> body_poses(const RobotModel& model, const RobotState& state,
+                                          RobotData& data) {
   update_positions(model, state, data);
   std::vector<Eigen::Isometry3d> poses;
   for (size_t i = 0; i < model.bodies().size(); ++i)

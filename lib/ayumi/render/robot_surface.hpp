@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "ayumi/dynamics/robot_data.hpp"
 #include "ayumi/model/robot_model.hpp"
 #include "ayumi/render/triangles.hpp"
 
@@ -36,6 +37,9 @@ std::vector<const Triangles*> parts_of(const BodySurface& body);
 
 /// Body frames in the world, one per body.
 std::vector<Eigen::Isometry3d> body_poses(const RobotModel& model, const RobotState& state);
+/// The same for many states: `data` is a workspace of the model.
+std::vector<Eigen::Isometry3d> body_poses(const RobotModel& model, const RobotState& state,
+                                          RobotData& data);
 
 /// Axis-aligned bounds in the world [m].
 Eigen::AlignedBox3d robot_bounds(const std::vector<BodySurface>& surface,

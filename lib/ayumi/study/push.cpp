@@ -1,9 +1,10 @@
-// For each phase and controller one baseline runs up to just before the push and is copied for
-// every push. Level i is an impulse of i step B, with B the capture bound. A level is survived when
-// the nominal push and all its variations are survived. The search probes, narrows [survived,
-// failed] to one step, then tries levels below it that were skipped; a failure there moves the
-// limit down. A run counts as survived as soon as the DCM has stayed near the plan for kNearTime;
-// at the limit itself the nominal run continues to its end.
+// For each controller one baseline runs without a push. Just before the pushes of each phase it is
+// copied, and every push of that phase goes on from the copy. Level i is an impulse of i step B,
+// with B the capture bound. A level is survived when the nominal push and all its variations are
+// survived. The search probes, narrows [survived, failed] to one step, then tries levels below it
+// that were skipped; a failure there moves the limit down. A run counts as survived as soon as it
+// is in the set around the baseline from which the robot stands (study/recorded_run); a run that
+// does not get there goes on to its end.
 #include "ayumi/study/push.hpp"
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <memory>
 #include <mutex>
 
 #include "ayumi/base/text.hpp"
@@ -19,6 +21,7 @@
 #include "ayumi/math/random.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/sim/simulator.hpp"
+#include "ayumi/study/recorded_run.hpp"
 #include "ayumi/study/runs.hpp"
 
 namespace ayumi {
@@ -28,18 +31,13 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// Distance of the DCM from the plan, in units of z, below which a run is near the plan. Chosen: 10
+/// Distance of the DCM from the plan, in units of z, below which a robot has recovered. Chosen: 10
 /// mm for z = 0.22 m, a third of the half-width of HOAP-1's sole. Half: push while walking,
 /// recovery [s] 0.019 to 0.054; twice: push while standing, recovery [s] 0.019 to 0.
 constexpr double kNearPlan = 0.045;
-/// Time from the push before which a DCM near the plan does not show that the robot survives [s].
-/// Chosen: 5 / omega for z = 0.22 m, after which an error that grows has grown by a factor of 150.
-/// No measured case changes from half to twice (constants.md).
-constexpr double kSettlingTime = 0.8;
-/// Time for which the DCM has to stay near the plan [s]. Chosen: 2 / omega for z = 0.22 m, in which
-/// an error that grows leaves the neighbourhood of the plan. No measured case changes from half to
-/// twice (constants.md).
-constexpr double kNearTime = 0.3;
+/// Share of the set around the unpushed run. Measured: a run that has been in it never drifts out
+/// of the whole set, if there is no sensor noise (docs/measurements/pushes.md, "Early verdicts").
+constexpr double kWellInside = 1.0 / 3;
 /// Tilt beyond which a stance foot is tilted [rad]. Chosen: above the tilt that the compliance of a
 /// loaded sole allows. No measured case changes from half to twice (constants.md).
 constexpr double kTiltedFoot = 2 * M_PI / 180;
@@ -47,6 +45,15 @@ constexpr double kTiltedFoot = 2 * M_PI / 180;
 /// the distance is then at most 0.1 % too large. No measured case changes from half to twice
 /// (constants.md).
 constexpr int kEdgeDirections = 72;
+/// Level at which the search begins, in capture bounds. Chosen: near what HOAP-1 and humanoid30
+/// survive (docs/measurements/pushes.md). It changes the number of runs, and a limit only where a
+/// robot survives a push but not a smaller one.
+constexpr double kGuess = 1.2;
+constexpr double kOpenLoopGuess = 0.4;
+constexpr double kStandingOpenLoopGuess = 1.0;
+/// First step away from that level with control, in levels; 1 in open loop. Chosen: limits with
+/// control lie farther apart.
+constexpr int kStride = 3;
 /// Ticks between two tests of a run. Chosen: 10 ms, short against 1/omega. No measured case changes
 /// from half to twice (constants.md).
 constexpr long kTicksPerTest = 10;
@@ -56,9 +63,20 @@ double near_distance(const Simulator& run) {
   return kNearPlan * (cmd.cog.z() - cmd.zmp.z());
 }
 
-/// A simulator just before the pushes of a phase, and whether the robot stands without a push.
+/// A whole run without a push.
+struct Unpushed {
+  RecordedRun states;
+  // By tick, the largest from there on.
+  std::vector<double> divergence = {};  // in units of z
+  std::vector<double> foot_tilt = {};   // of the stance foot [rad]
+  double trunk_tilt = 0;                // largest of the whole run [rad]
+};
+
+/// A simulator just before the pushes of a phase, how the run goes on without a push, and whether
+/// the robot then stands.
 struct PushBaseline {
   std::optional<Simulator> simulator;
+  std::shared_ptr<const Unpushed> unpushed;
   bool stands = false;
 };
 
@@ -82,17 +100,16 @@ class Search {
     }
   }
 
-  PushLimit find(int guess);
+  PushLimit find(int guess, int stride);
 
  private:
   struct Variation {
     double time, angle;
   };
   Simulator pushed(double impulse, const Variation& variation) const;
-  bool comes_near(Simulator& run);
   bool survives(Simulator& run);
   bool survives(int level);
-  bool survives_to_the_end(int level);
+  bool is_decided(const Simulator& run) const;
   PushFigures figures();
   double impulse(int level) const { return level * options_.step * case_.bound; }
 
@@ -104,7 +121,7 @@ class Search {
   const std::atomic<bool>& stop_;
   std::vector<Variation> variations_;
   std::map<int, bool> tried_;
-  std::optional<std::pair<int, Simulator>> nominal_;  // the last that survived, by level
+  size_t hardest_ = 0;  // the variation that failed last: it is tried first
   int runs_ = 0;
 };
 
@@ -118,48 +135,43 @@ Simulator Search::pushed(double impulse, const Variation& variation) const {
   return run;
 }
 
-// Goes on until the run shows that the robot survives, or to its end.
-bool Search::comes_near(Simulator& run) {
-  double near_since = -1;
+// Until the run is in the set from which the robot stands, or to its end.
+bool Search::survives(Simulator& run) {
+  const double after = case_.phase.at + options_.time_spread + options_.duration;
   while (run.advance(kTicksPerTest) && !run.fell()) {
     if (stop_) throw Interrupted();
-    if (plan_moves_ || run.time() < case_.phase.at + kSettlingTime) continue;
-    if (divergence(run) > near_distance(run))
-      near_since = -1;
-    else if (near_since < 0)
-      near_since = run.time();
-    else if (run.time() - near_since > kNearTime)
-      return true;
+    if (!plan_moves_ && run.time() > after && baseline_.unpushed->states.contains(run)) return true;
   }
-  return false;
-}
-
-// To its end.
-bool Search::survives(Simulator& run) {
-  while (run.advance(kTicksPerTest) && !run.fell())
-    if (stop_) throw Interrupted();
   return !run.fell() && run.result().outcome == Outcome::stands;
 }
 
 bool Search::survives(int level) {
   const auto found = tried_.find(level);
   if (found != tried_.end()) return found->second;
-  bool all = true;
-  for (size_t i = 0; all && i < variations_.size(); ++i) {
+  std::vector<size_t> order = {hardest_};
+  for (size_t i = 0; i < variations_.size(); ++i)
+    if (i != hardest_) order.push_back(i);
+  for (const size_t i : order) {
     Simulator run = pushed(impulse(level), variations_[i]);
     ++runs_;
-    all = comes_near(run) || survives(run);
-    if (all && i == 0) nominal_ = {level, std::move(run)};
+    if (survives(run)) continue;
+    hardest_ = i;
+    return tried_[level] = false;
   }
-  return tried_[level] = all;
+  return tried_[level] = true;
 }
 
-// The nominal push. Goes on with the run that came near the plan, where that is the last one.
-bool Search::survives_to_the_end(int level) {
-  if (!nominal_ || nominal_->first != level)
-    nominal_ = {level, pushed(impulse(level), variations_[0])};
-  ++runs_;
-  return survives(nominal_->second);
+// Whether the figures of a run do not change any more. The run stays in the set around the unpushed
+// run, in which nothing larger follows than what there has been.
+bool Search::is_decided(const Simulator& run) const {
+  const Unpushed& unpushed = *baseline_.unpushed;
+  if (plan_moves_ || options_.simulate.sensor_noise || !unpushed.states.contains(run, kWellInside))
+    return false;
+  const auto k = static_cast<size_t>(run.tick());
+  return unpushed.divergence[k] + RecordedRun::dcm_bound() <= kNearPlan &&
+         unpushed.foot_tilt[k] + RecordedRun::tilt_bound() <= kTiltedFoot &&
+         run.result().max_tilt >=
+             unpushed.trunk_tilt + RecordedRun::tilt_bound() + unpushed.states.reference_turn(run);
 }
 
 PushFigures Search::figures() {
@@ -168,23 +180,25 @@ PushFigures Search::figures() {
   ++runs_;
   const double end = case_.phase.at + options_.duration;
   double far = end;
-  while (run.advance(1) && !run.fell()) {
+  bool decided = false;
+  for (long k = 1; !decided && run.advance(1) && !run.fell(); ++k) {
     if (stop_) throw Interrupted();
     if (run.last_estimate().foot_tilt.norm() > kTiltedFoot) f.foot_tilt += dt_;
     if (divergence(run) > near_distance(run)) far = run.time();
+    decided = k % kTicksPerTest == 0 && run.time() > end && is_decided(run);
   }
-  f.survives = !run.fell() && run.result().outcome == Outcome::stands;
+  f.survives = decided || (!run.fell() && run.result().outcome == Outcome::stands);
   f.recovery = std::max(0.0, far - end);
   f.trunk_tilt = run.result().max_tilt;
   return f;
 }
 
-PushLimit Search::find(int guess) {
+PushLimit Search::find(int guess, int stride) {
   PushLimit limit;
   if (!baseline_.stands || case_.bound <= 0) return limit;
   const int cap = std::max(1, static_cast<int>(std::lround(options_.cap / options_.step)));
   tried_[0] = true;
-  int probe = guess, stride = 3, verified = 0;
+  int probe = guess;
   for (;;) {
     int low = 0, high = cap + 1;
     for (const auto& [level, survived] : tried_) {
@@ -206,11 +220,6 @@ PushLimit Search::find(int guess) {
     limit.impulse = impulse(low);
     limit.capped = high == cap + 1;
     if (low == 0) break;
-    if (verified != low) {
-      verified = low;
-      tried_[low] = survives_to_the_end(low);
-      if (!tried_[low]) continue;
-    }
     bool prefix = true;
     for (int level : {low - 1, 3 * low / 4, low / 2})
       prefix = prefix && (level <= 0 || survives(level));
@@ -251,26 +260,60 @@ struct Study {
   const CommandSeries& series_of(const PushPhase& phase) const {
     return phase.standing ? stand : series;
   }
-  void run_baseline(size_t i);
+  void run_baselines(size_t controller, bool standing);
   PushCase plan(size_t i) const;
   double standing_edge_bound() const;
   bool plan_moves(const ControllerSpec& controller) const;
   void search(size_t i, PushCase& found);
 };
 
-void Study::run_baseline(size_t i) {
-  const PushPhase& phase = phases[i / controllers.size()];
+// Of a controller, standing or not: up to its end, copied on the way for each phase.
+void Study::run_baselines(size_t controller, bool standing) {
+  std::vector<std::pair<long, PushBaseline*>> branches;  // by tick
+  for (size_t p = 0; p < phases.size(); ++p)
+    if (phases[p].standing == standing)
+      branches.emplace_back(static_cast<long>((phases[p].at - options.time_spread) / series.dt) - 1,
+                            &baselines[p * controllers.size() + controller]);
+  if (branches.empty()) return;
   SimulateOptions simulate = options.simulate;
-  simulate.controller = controllers[i % controllers.size()];
+  simulate.controller = controllers[controller];
   simulate.scenario.clear();
-  Simulator run(model, series_of(phase), simulate);
+  Simulator run(model, standing ? stand : series, simulate);
   run.keep_samples(false);
-  const long before = static_cast<long>((phase.at - options.time_spread) / series.dt) - 1;
-  run.advance(before);
-  baselines[i].simulator = run;
-  while (run.advance(kTicksPerTest) && !run.fell())
+  const auto unpushed = std::make_shared<Unpushed>(Unpushed{RecordedRun(simulate.world)});
+  const auto take_figures = [&] {
+    unpushed->divergence.push_back(kNearPlan * divergence(run) / near_distance(run));
+    unpushed->foot_tilt.push_back(run.last_estimate().foot_tilt.norm());
+  };
+  unpushed->divergence = unpushed->foot_tilt = {0};  // before the first tick
+  const auto branch = [&] {
+    for (const auto& [tick, baseline] : branches)
+      if (std::max(0L, tick) == run.tick()) baseline->simulator = run;
+  };
+  // Whether a run that goes on from one of the copies is tested after this tick.
+  const auto tested = [&] {
+    return std::any_of(branches.begin(), branches.end(), [&](const auto& b) {
+      const long since = run.tick() - std::max(0L, b.first);
+      return since > 0 && since % kTicksPerTest == 0;
+    });
+  };
+  branch();
+  while (run.advance(1) && !run.fell()) {
     if (stop) throw Interrupted();
-  baselines[i].stands = !run.fell() && run.result().outcome == Outcome::stands;
+    branch();
+    take_figures();
+    if (tested()) unpushed->states.record(run);
+  }
+  take_figures();
+  for (std::vector<double>* values : {&unpushed->divergence, &unpushed->foot_tilt})
+    for (size_t k = values->size() - 1; k > 0; --k)
+      (*values)[k - 1] = std::max((*values)[k - 1], (*values)[k]);
+  unpushed->trunk_tilt = run.result().max_tilt;
+  const bool stands = !run.fell() && run.result().outcome == Outcome::stands;
+  for (const auto& [tick, baseline] : branches) {
+    baseline->unpushed = unpushed;
+    baseline->stands = stands;
+  }
 }
 
 // VIIP chooses its footholds, so that there are no planned ones. The bound is then the distance to
@@ -314,8 +357,11 @@ void Study::search(size_t i, PushCase& found) {
     const PushBaseline& baseline = baselines[phase * controllers.size() + c];
     Search search(baseline, options, found, series.dt, plan_moves(controllers[c]),
                   options.simulate.seed + 1000 * i, stop);
+    const double guess = c > 0                  ? kGuess
+                         : found.phase.standing ? kStandingOpenLoopGuess
+                                                : kOpenLoopGuess;
     const PushLimit limit =
-        search.find(static_cast<int>(std::lround((c == 0 ? 0.8 : 1.2) / options.step)));
+        search.find(static_cast<int>(std::lround(guess / options.step)), c > 0 ? kStride : 1);
     if (c == 0)
       found.open_loop = limit;
     else
@@ -354,8 +400,8 @@ std::vector<PushCase> push_limits(const RobotModel& model, const CommandSeries& 
   };
   if (!all_known) {
     study.baselines.resize(study.phases.size() * study.controllers.size());
-    in_parallel(study.baselines.size(), options.threads, study.stop, [&](size_t i) {
-      study.run_baseline(i);
+    in_parallel(2 * study.controllers.size(), options.threads, study.stop, [&](size_t i) {
+      study.run_baselines(i / 2, i % 2 == 1);
       const std::lock_guard lock(mutex);
       report_progress("baselines");
     });

@@ -1,0 +1,62 @@
+#pragma once
+// A run without disturbances that stands, and the set of states around it from which another run of
+// the same plan stands too. docs/theory.md, "Early verdicts of pushes", has the proof and its
+// assumption.
+
+#include <vector>
+
+#include "ayumi/sim/simulator.hpp"
+
+namespace ayumi {
+
+class RecordedRun {
+ public:
+  explicit RecordedRun(const World& world);
+
+  /// Appends the state after the last tick done. The ticks must grow.
+  void record(const Simulator& run);
+
+  /// How far the state of `run` after its last tick is from the recorded one: 1 at the edge of the
+  /// set. Infinite where that tick was not recorded.
+  double deviation(const Simulator& run) const;
+
+  /// The same of the DCM and the tilts alone, which decide whether the robot stands. A landing that
+  /// comes a moment earlier or later moves the ZMP far for this moment.
+  double drift(const Simulator& run) const;
+
+  /// Whether that state is in the set, or in a smaller one where `share` is below 1. False where
+  /// too little time is left for the robot to come to rest.
+  bool contains(const Simulator& run, double share = 1) const;
+
+  /// Turn of the reference of `run` against the recorded one [rad]. The law leads it back to 0.
+  double reference_turn(const Simulator& run) const;
+
+  /// Bounds of the set for the deviation of the DCM, in units of z, and for the tilts of the base
+  /// against the reference and of the stance foot [rad].
+  static double dcm_bound();
+  static double tilt_bound();
+
+ private:
+  /// In the plan frame, thus without the place and the heading in the world.
+  struct State {
+    long tick = 0;
+    double time = 0;             // [s]
+    double height = 0;           // of the planned COG over the planned ZMP [m]
+    Eigen::Vector2d dcm, zmp;    // estimated [m]
+    Eigen::Vector2d tilt;        // of the base against the reference [rad]
+    Eigen::Vector3d foot_tilt;   // of the stance foot against the plan [rad]
+    Eigen::VectorXd deflection;  // of the joints against the reference [rad, m]
+    Eigen::Quaterniond reference_attitude;
+    Eigen::VectorXd reference_theta;  // [rad, m]
+    Eigen::Vector3d position;         // of the base in the world [m]
+    Eigen::Quaterniond attitude;      // of the base in the world
+  };
+  static State state_of(const Simulator& run);
+  static double drift(const State& here, const State& there);
+  const State* state_at(long tick) const;
+
+  std::vector<State> states_;
+  bool same_everywhere_;  // the ground, in every direction
+};
+
+}  // namespace ayumi
