@@ -140,9 +140,9 @@ TEST(IdentifyHoap3, RefusesMissingRows) {
                           " ms earlier than before"),
                 std::string::npos)
           << gap << ": " << said;
-      // "m.csv: data row 8001 (8.000 s, one row every 1 ms) ...": the row, or one beside it.
-      ASSERT_TRUE(said.starts_with("m.csv: data row ")) << said;
-      EXPECT_NEAR(std::stod(said.substr(16)), static_cast<double>(gap + 1), 2) << said;
+      // "m.csv: at data row 8001 (8.000 s, one row every 1 ms) ...": the row, or one beside it.
+      ASSERT_TRUE(said.starts_with("m.csv: at data row ")) << said;
+      EXPECT_NEAR(std::stod(said.substr(19)), static_cast<double>(gap + 1), 2) << said;
     }
   // Where nothing moves, the number of rows tells.
   for (const Eigen::Index missing : {1, 2, 3}) {
@@ -167,7 +167,7 @@ TEST(IdentifyHoap3, RefusesLoadCellsWithMissingRows) {
   for (const Eigen::Index missing : {1, 2, 3}) {
     motion.sensors.foot_load = without_rows(whole, 8000, missing);
     EXPECT_NE(refusal_of(model, motion)
-                  .find("l.csv: has " + std::to_string(17902 - missing) +
+                  .find("l.csv: the recording has " + std::to_string(17902 - missing) +
                         " rows, one every 1 ms, which last"),
               std::string::npos)
         << refusal_of(model, motion);

@@ -163,7 +163,7 @@ TEST(RecordingChecks, OneLineForARecordingThatIsNotTheAnswer) {
   };
   EXPECT_EQ(answer_error([](RecordedMotion&) {}), "");
   said(answer_error([](RecordedMotion& m) { m.measured.theta.conservativeResize(3000, 1); }),
-       "m.csv: lasts 2.999 s, but its command lasts 6.000 s");
+       "m.csv: the recording lasts 2.999 s, but its command lasts 6.000 s");
   said(answer_error(late_by(800)),
        "ms behind their command, and a servo is at most 30 ms behind (--longest-lag); the "
        "recording is shifted");
@@ -172,7 +172,7 @@ TEST(RecordingChecks, OneLineForARecordingThatIsNotTheAnswer) {
        "ms behind their command, and a servo is at most 30 ms behind (--longest-lag); the "
        "recording is shifted");
   said(answer_error([](RecordedMotion& m) { m.measured.theta.conservativeResize(5901, 1); }),
-       "m.csv: lasts 5.900 s, but its command lasts 6.000 s");
+       "m.csv: the recording lasts 5.900 s, but its command lasts 6.000 s");
   said(answer_error([](RecordedMotion& m) { m.measured.theta *= -1; }),
        "arm_joint moves against its command");
   said(answer_error([](RecordedMotion& m) { m.measured.theta *= 180 / M_PI; }),
@@ -240,8 +240,9 @@ TEST(RecordingChecks, OneLineForLoadCellsOfAnotherMotion) {
             std::string::npos)
       << message(0.6);
   loads.foot_load.conservativeResize(1500, 2);
-  EXPECT_NE(message(1).find("l.csv: lasts 2.998 s, but the measured angles last 6.000 s"),
-            std::string::npos)
+  EXPECT_NE(
+      message(1).find("l.csv: the recording lasts 2.998 s, but the measured angles last 6.000 s"),
+      std::string::npos)
       << message(1);
 }
 

@@ -99,7 +99,7 @@ TEST(Diagnose, NamesMissingAndPlaceholderLimits) {
   EXPECT_TRUE(
       mentions(findings([](auto& r) { r.servos["l_knee"].kp = 0; }), "joint l_knee", "is passive"));
   EXPECT_TRUE(mentions(findings([](auto& r) { r.encoders.erase("l_knee"); }), "joint l_knee",
-                       "no encoder entry"));
+                       "no encoder is stated"));
 }
 
 TEST(Diagnose, NamesAHomePostureThatCannotStand) {
