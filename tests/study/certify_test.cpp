@@ -187,6 +187,35 @@ TEST(UncertainTask, RefusesWhatNothingUsesAndWhatNoRobotCanHave) {
       << text;
 }
 
+TEST(UncertainTask, RefusesPushesThatHaveNoEffectAndValuesInAWrongUnit) {
+  const auto of_push = [](const std::string& part) {
+    return R"("pushes": [{"unit": "N s", "direction": 0, "duration": 0.02, )" + part + "}]";
+  };
+  EXPECT_EQ(
+      error_message([&] {
+        StandingTask t(of_push(R"("size": 1, "time": 0.1, "on":
+      {"choice": ["cog", "trunk", "l_fot"], "source": "t"})"));
+      }),
+      "study.json: /uncertainty/pushes/0/on: hoap1 has no link 'l_fot'; did you mean 'l_foot'?; "
+      "a push acts on a link, on \"trunk\" or on \"cog\"");
+  const auto message = [](const std::string& members) {
+    const StandingTask t(members);
+    return error_message([&] { t.task.check(values_of(t.task, 0), "case 0"); });
+  };
+  const auto expect = [&](const std::string& members, const std::string& part) {
+    EXPECT_NE(message(members).find(part), std::string::npos) << message(members);
+  };
+  expect(of_push(R"("size": 1, "time": 1.5)"), "the run ends at 1.401 s");
+  expect(of_push(R"("size": 1, "time": -0.5)"), "case 0 draws -0.5 for the push: time");
+  expect(of_push(R"("size": -1, "time": 0.1)"), "it must not be negative");
+  EXPECT_EQ(message(of_push(R"("size": 1, "time": 1.3, "on": "trunk")")), "no error");
+  const auto of_kind = [](const std::string& what) {
+    return R"("quantities": [{"what": ")" + what + R"(", "choice": [4], "source": "t"}])";
+  };
+  expect(of_kind("servo_delay"), "the largest value allowed is 0.1; check the unit");
+  expect(of_kind("sensor_latency"), "the largest value allowed is 1; check the unit");
+}
+
 TEST(UncertainTask, ARobotEqualToItsModelRunsAsWithoutUncertainty) {
   const StandingTask same(R"("quantities": [{"what": "mass", "choice": [1], "source": "t"}])");
   const CaseNumbers numbers = same.task.numbers(1, 0);

@@ -1,7 +1,6 @@
 #include "ayumi/base/file.hpp"
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -10,6 +9,7 @@
 #include <fstream>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/file_lock.hpp"
 
 namespace ayumi {
 
@@ -143,54 +143,17 @@ void write_file(const fs::path& path, const std::string& bytes) {
   });
 }
 
-namespace {
-
-// Whether the open file still is the one of that name: its last holder may have removed it between
-// our opening and locking it.
-bool is_file_of(int descriptor, const fs::path& path) {
-  struct stat opened {
-  }, named{};
-  return ::fstat(descriptor, &opened) == 0 && ::lstat(path.c_str(), &named) == 0 &&
-         opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
+FolderLock::FolderLock(const fs::path& folder) {
+  const LockedFolder locked = lock_folder(
+      folder, folder.string(),
+      "another run is being written to this folder; wait until it has ended, or choose another "
+      "folder");
+  folder_ = locked.folder;
+  file_ = locked.file;
+  made_ = locked.made;
+  descriptor_ = locked.descriptor;
 }
 
-}  // namespace
-
-FolderLock::FolderLock(const fs::path& folder) : folder_(folder), file_(folder / ".ayumi_lock") {
-  // Chosen: another process may remove folder or file between two calls, but not a hundred times.
-  constexpr int kTries = 100;
-  const auto stop = [&](const std::string& reason) {
-    fail(ErrorCode::bad_file, folder_.string() + ": " + reason);
-  };
-  for (int i = 0; i < kTries; ++i) {
-    std::error_code error;
-    made_ = fs::create_directories(folder_, error) || made_;
-    if (error) stop("the folder cannot be made (" + error.message() + ")");
-    descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
-    if (descriptor_ < 0 && errno == ENOENT) continue;
-    if (descriptor_ < 0)
-      stop(std::string("the folder cannot be written (") + std::strerror(errno) + ")");
-    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
-      const int reason = errno;
-      ::close(descriptor_);
-      if (reason == EWOULDBLOCK)
-        stop(
-            "another run is being written to this folder; wait until it has ended, or choose "
-            "another folder");
-      stop(std::string("the folder cannot be locked (") + std::strerror(reason) + ")");
-    }
-    if (is_file_of(descriptor_, file_)) return;
-    ::close(descriptor_);
-  }
-  stop(
-      "the folder cannot be locked, because other processes lock it again and again; wait until "
-      "they have ended, or choose another folder");
-}
-
-FolderLock::~FolderLock() {
-  ::unlink(file_.c_str());
-  ::close(descriptor_);
-  if (made_) ::rmdir(folder_.c_str());  // succeeds on an empty folder only
-}
+FolderLock::~FolderLock() { unlock_folder({folder_, file_, made_, descriptor_}); }
 
 }  // namespace ayumi

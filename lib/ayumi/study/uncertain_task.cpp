@@ -62,6 +62,37 @@ bool has_noise(const SensorDescription& s) {
   return s.attitude_noise > 0 || s.gyro_noise > 0 || s.accelerometer_noise > 0 || s.force_noise > 0;
 }
 
+/// The least value that a quantity of this kind can have.
+double least_of(UncertainKind kind) {
+  // A push of a negative size would be one in the opposite direction, with another capture bound.
+  if (kind == UncertainKind::push_size || kind == UncertainKind::push_time) return 0;
+  return info(kind).least;
+}
+
+/// Largest values, to catch a wrong unit. Definition: those that a sidecar may have.
+constexpr double kMostDelay = 0.1;  // [s]
+constexpr double kMostPlay = 0.2;   // [rad]
+constexpr double kMostLatency = 1;  // [s]
+double most_of(UncertainKind kind) {
+  if (kind == UncertainKind::servo_delay) return kMostDelay;
+  if (kind == UncertainKind::backlash) return kMostPlay;
+  if (kind == UncertainKind::sensor_latency) return kMostLatency;
+  return std::numeric_limits<double>::infinity();
+}
+
+/// When a run ends that does not fall [s].
+double run_end(const CommandSeries& series, const SimulateOptions& options) {
+  return static_cast<double>(static_cast<long>(series.samples.size()) +
+                             std::lround(options.settle / series.dt)) *
+         series.dt;
+}
+
+/// The link that carries the trunk.
+std::string trunk_of(const RobotModel& model) {
+  const std::string& trunk = model.description().trunk_link;
+  return trunk.empty() ? model.links().front().name : trunk;
+}
+
 constexpr const char* kPushParts[] = {"size", "direction", "time", "link"};
 
 }  // namespace
@@ -85,6 +116,14 @@ UncertainTask::UncertainTask(const RobotModel& model, const CommandSeries& serie
     const UncertainQuantity* parts[] = {&push.size, &push.direction, &push.time, &push.link};
     for (size_t part = 0; part < std::size(parts); ++part)
       add_value(push.name + ": " + kPushParts[part], *parts[part], {}, static_cast<int>(i));
+    for (const std::string& link : push.links) {
+      if (link == "cog" || link == "trunk" || model.find_link(link) >= 0) continue;
+      std::vector<std::string> names = {"cog", "trunk"};
+      for (const Link& each : model.links()) names.push_back(each.name);
+      refuse(push.link.place, model.name() + " has no link '" + link + "'" +
+                                  text::suggestion(link, names) +
+                                  "; a push acts on a link, on \"trunk\" or on \"cog\"");
+    }
     if (push.bounds && !series.viip.empty())
       refuse(push.size.place,
              "the pattern has VIIP goals, so it has no planned footholds, and the capture bound is "
@@ -134,9 +173,7 @@ void UncertainTask::add_quantity(const UncertainQuantity& q) {
   std::vector<int> found;
   std::vector<std::string> names;
   if (target == Target::link) {
-    const std::string& trunk = model_->description().trunk_link;
-    const std::string& root = model_->links().front().name;
-    const std::string wanted = q.on == "trunk" ? (trunk.empty() ? root : trunk) : q.on;
+    const std::string wanted = q.on == "trunk" ? trunk_of(*model_) : q.on;
     for (size_t i = 0; i < model_->links().size(); ++i) {
       const Link& link = model_->links()[i];
       names.push_back(link.name);
@@ -203,16 +240,29 @@ std::vector<double> UncertainTask::draw(const CaseNumbers& numbers) const {
 }
 
 void UncertainTask::check(const std::vector<double>& drawn, const std::string& which) const {
+  const double end = run_end(*series_, options_);
   for (size_t i = 0; i < values_.size(); ++i) {
     const UncertainQuantity& q = *values_[i].quantity;
+    const bool named_phase = q.kind == UncertainKind::push_time &&
+                             uncertainty_->pushes[static_cast<size_t>(values_[i].push)].phases;
+    if (named_phase) continue;
     const bool positive = q.kind == UncertainKind::mass || q.kind == UncertainKind::inertia ||
                           q.kind == UncertainKind::sole_stiffness ||
                           q.kind == UncertainKind::servo_kp;
-    if (drawn[i] > info(q.kind).least || (!positive && drawn[i] == info(q.kind).least)) continue;
-    refuse(q.place, which + " draws " + text::brief(drawn[i]) + " for the " + values_[i].name +
-                        " (" + info(q.kind).meaning + "), but it must " +
-                        (positive ? "be above 0" : "not be negative") +
-                        "; bound the distribution, for example with \"truncated\"");
+    const double least = least_of(q.kind), most = most_of(q.kind);
+    const auto complain = [&](const std::string& why) {
+      refuse(q.place, which + " draws " + text::brief(drawn[i]) + " for the " + values_[i].name +
+                          " (" + info(q.kind).meaning + "), but " + why);
+    };
+    if (!(drawn[i] >= least) || (positive && drawn[i] == least))
+      complain(std::string("it must ") + (positive ? "be above 0" : "not be negative") +
+               "; bound the distribution, for example with \"truncated\"");
+    if (drawn[i] > most)
+      complain("the largest value allowed is " + text::brief(most) +
+               "; check the unit, and bound the distribution, for example with \"truncated\"");
+    if (q.kind == UncertainKind::push_time && drawn[i] >= end)
+      complain("the run ends at " + text::brief(end) +
+               " s, so the push would have no effect; give an earlier time [s]");
   }
 }
 
@@ -337,8 +387,9 @@ Disturbance UncertainTask::push(size_t index, const std::vector<double>& drawn) 
         push.phases ? regions_[phase % phases_.size()] : capture_region(*model_, *series_, k), u);
     impulse *= std::max(0.0, bound);
   }
+  const std::string& on = push.links[static_cast<size_t>(link) % push.links.size()];
   const Push what{.magnitude = impulse,
-                  .on = push.links[static_cast<size_t>(link) % push.links.size()],
+                  .on = on == "trunk" ? trunk_of(*model_) : on,
                   .direction = {u.x(), u.y(), 0}};
   return {.at = at, .duration = push.duration, .what = what};
 }

@@ -90,7 +90,7 @@ Distribution read_distribution(const JsonNode& node, bool angle, PatternScope& s
 
 std::string read_source(const JsonNode& node) {
   const auto source = node.find("source");
-  if (!source || source->string().empty())
+  if (!source || source->string().find_first_not_of(" \t\r\n") == std::string::npos)
     node.complain(
         "the distribution has no source of its numbers; add \"source\": a paper, a data sheet or "
         "a measurement, or \"assumed: why\"");
