@@ -14,6 +14,7 @@
 #include "ayumi/plan/sample.hpp"
 #include "ayumi/repair/infeasibility_report.hpp"
 #include "ayumi/study/retime.hpp"
+#include "ayumi/task/payload_findings.hpp"
 
 namespace ayumi::app {
 
@@ -47,6 +48,13 @@ double rounded_away(double value, double given) {
   return digits >= 1 ? count / std::round(digits) : count * std::round(1 / digits);
 }
 
+// Of the motion with the payloads of the scenario.
+ConsistencyReport with_payloads_judged(const Task& task, const CheckOptions& options) {
+  ConsistencyReport report = check_consistency(task.robot, task.series, options);
+  judge_payloads(task, options, report);
+  return report;
+}
+
 class Search {
  public:
   Search(const Context& context, const std::string& pattern, const PatternOptions& options,
@@ -66,8 +74,7 @@ class Search {
     silent.quiet = true;
     try {
       const Task input = load_pattern(silent, pattern_, options);
-      return total_violation(
-          check_consistency(input.robot, input.series, check_options(input, tolerances_)));
+      return total_violation(with_payloads_judged(input, check_options(input, tolerances_)));
     } catch (const Interrupted&) {
       throw;
     } catch (const Error&) {
@@ -189,6 +196,14 @@ std::vector<std::pair<double, double>> segments_around(const Pattern& pattern,
   return merged(std::move(all));
 }
 
+// Whether the task with this pattern in place of its own passes.
+bool passes_with(const Task& input, const Pattern& pattern, const CheckOptions& check) {
+  Task other = input;
+  other.pattern = pattern;
+  other.series = sample(input.robot, pattern, {.dt = input.series.dt});
+  return with_payloads_judged(other, check).consistent;
+}
+
 bool stretched_passes(const Context& context, const Task& input, const CheckOptions& check,
                       const std::vector<std::pair<double, double>>& windows, double factor) {
   report(context.progress(), {"slower", -1, "times " + text::brief(factor)});
@@ -196,8 +211,7 @@ bool stretched_passes(const Context& context, const Task& input, const CheckOpti
     Pattern pattern = input.pattern;
     for (auto w = windows.rbegin(); w != windows.rend(); ++w)
       pattern = stretched(input.robot, pattern, w->first, w->second, factor);
-    const CommandSeries series = sample(input.robot, pattern, {.dt = input.series.dt});
-    return check_consistency(input.robot, series, check).consistent;
+    return passes_with(input, pattern, check);
   } catch (const Interrupted&) {
     throw;
   } catch (const Error&) {
@@ -262,7 +276,13 @@ PassingPace passing_pace(const Context& context, const Task& input, const Consis
   retime.slowest = kSlowest;
   retime.resolution = kPaceResolution;
   const FastestPace found = fastest_pace(input.robot, input.pattern, retime, context.progress());
-  if (found.found) pace.whole = found.scale;
+  // The pace was found for the robot without payloads.
+  const bool carries =
+      std::any_of(input.pattern.scenario.begin(), input.pattern.scenario.end(),
+                  [](const Disturbance& d) { return std::holds_alternative<Payload>(d.what); });
+  if (found.found &&
+      (!carries || passes_with(input, retimed(input.robot, input.pattern, found.scale), judged)))
+    pace.whole = found.scale;
   return pace;
 }
 

@@ -13,11 +13,11 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/plot/push_map.hpp"
-#include "ayumi/repair/repair_pattern.hpp"
 #include "ayumi/report/replay.hpp"
 #include "ayumi/study/push.hpp"
 #include "ayumi/task/plan_log.hpp"
 #include "motion_words.hpp"
+#include "repairing.hpp"
 #include "simulation.hpp"
 
 namespace ayumi::app {
@@ -74,7 +74,7 @@ AuthorResult repair_job(const AuthorMotion& motion, const std::string& text,
   const Task& task = motion.task;
   RepairOptions options = preferred_options(task.pattern);
   options.check = check_options(task);
-  const RepairResult result = repair(task.robot, task.pattern, task.series, options, progress);
+  const RepairResult result = repair_task(task, options, progress);
   if (result.status == RepairStatus::already_consistent)
     return {result_json("repair", "The pattern is consistent, so nothing has to change.", true,
                         OrderedJson::array()),

@@ -334,10 +334,9 @@ RepairResult repair_telling(const Task& input, const RepairOptions& wishes, bool
   RepairOptions options = wishes;
   options.on_check = [&teller](const ConsistencyReport& check) { teller.note(check); };
   try {
-    RepairResult result =
-        from_scratch
-            ? generate(input.robot, input.pattern, input.series, options, teller.around(progress))
-            : repair(input.robot, input.pattern, input.series, options, teller.around(progress));
+    RepairResult result = from_scratch ? generate(input.robot, input.pattern, input.series, options,
+                                                  teller.around(progress))
+                                       : repair_task(input, options, teller.around(progress));
     if (result.partial) {
       teller.note(result.check);
       teller.say_what_is_left();

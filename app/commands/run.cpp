@@ -180,8 +180,7 @@ void MainJob::check(Task& input) {
 void MainJob::repair_pattern(Task& input, bool goals_reachable) {
   RepairOptions options = preferred_options(input.pattern);
   options.check = check_options(input);
-  const RepairResult result =
-      repair(input.robot, input.pattern, input.series, options, context_.progress());
+  const RepairResult result = repair_task(input, options, context_.progress());
   say("repair", std::string(name_of(result.status)) + ": " + std::to_string(result.iterations) +
                     " iterations, joints moved by at most " +
                     text::fixed(result.max_joint_change * 180 / EIGEN_PI, 2) + " deg, COG by " +

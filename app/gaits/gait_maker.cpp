@@ -18,11 +18,11 @@
 #include "ayumi/io/table/table.hpp"
 #include "ayumi/math/elementary.hpp"
 #include "ayumi/model/gravity.hpp"
-#include "ayumi/repair/repair_pattern.hpp"
 #include "ayumi/sim/simulator.hpp"
 #include "ayumi/task/servo_table.hpp"
 #include "certify_results.hpp"
 #include "loop_words.hpp"
+#include "repairing.hpp"
 #include "simulation.hpp"
 #include "uncertain_input.hpp"
 
@@ -188,7 +188,7 @@ GaitMaker::Made GaitMaker::made(Pattern pattern, const Progress& progress) const
   if (judged.good()) return result;
   RepairOptions wishes = preferred_options(task.pattern);
   wishes.check = check_options(task);
-  const RepairResult repaired = repair(task.robot, task.pattern, task.series, wishes, progress);
+  const RepairResult repaired = repair_task(task, wishes, progress);
   if (repaired.status != RepairStatus::repaired) {
     std::string reason = judged.reason() + "; the repair ends with " + name_of(repaired.status);
     if (!repaired.reasons.empty()) reason += ": " + repaired.reasons.front();

@@ -14,10 +14,10 @@
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/io/task_file.hpp"
 #include "ayumi/limits/limit.hpp"
-#include "ayumi/repair/repair_pattern.hpp"
 #include "ayumi/sim/simulator.hpp"
 #include "ayumi/study/push.hpp"
 #include "pattern_input.hpp"
+#include "repairing.hpp"
 #include "simulation.hpp"
 #include "uncertain_input.hpp"
 
@@ -448,7 +448,7 @@ std::vector<Cell> check_figures(const Task& task) {
 std::vector<Cell> repair_figures(const Task& task, const Progress& progress) {
   RepairOptions options = preferred_options(task.pattern);
   options.check = check_options(task);
-  const RepairResult r = repair(task.robot, task.pattern, task.series, options, progress);
+  const RepairResult r = repair_task(task, options, progress);
   return {std::string(name_of(r.status)), cell(r.max_joint_change), cell(r.max_cog_change),
           cell(r.check.summary[FindingKind::support_margin])};
 }

@@ -164,6 +164,43 @@ std::vector<Mistaken> list() {
       [](Pattern& p) { p.keyframes[4].feet[1]->position.y() *= -1; });
   add("a missing double support", small(), steps, "/phases/4: .*\"both\" may be missing",
       [](Pattern& p) { p.phases.erase(p.phases.begin() + 4); });
+  add("all ZMP keys under the other foot", small(), steps,
+      "/keyframes: the keys put the ZMP under the left foot where .*exchanged in all ZMP keys",
+      [](Pattern& p) {
+        for (Keyframe& key : p.keyframes)
+          if (key.zmp && key.zmp->place != ZmpKey::Place::center)
+            key.zmp->place =
+                key.zmp->place == ZmpKey::Place::left ? ZmpKey::Place::right : ZmpKey::Place::left;
+      });
+  add("no ZMP key under a foot", small(), steps,
+      "/phases/1: the robot stands on the left foot, .*at \"center\"; so it is in 4 phases",
+      [](Pattern& p) {
+        for (Keyframe& key : p.keyframes)
+          if (key.zmp) key.zmp->place = ZmpKey::Place::center;
+      });
+  add("longer phases with the keyframes left", small(), steps,
+      "/keyframes: the times of the keyframes do not fit .*multiplied by 1.5", [](Pattern& p) {
+        for (Phase& phase : p.phases) phase.until *= 1.5;
+      });
+  add("a point of the ZMP in mm", small(), kick, "/keyframes/.: the ZMP is at \\(7, 35\\) m.*in mm",
+      [](Pattern& p) {
+        for (Keyframe& key : p.keyframes)
+          if (key.zmp && key.zmp->place == ZmpKey::Place::left) {
+            *key.zmp = {ZmpKey::Place::point, {7, 35}};
+            return;
+          }
+      });
+  add("a foot that stays up", small(), kick, "/keyframes/.: the right foot's z is 0.02 m",
+      [](Pattern& p) {
+        for (size_t k = p.keyframes.size(); k-- > 0;)
+          if (p.keyframes[k].feet[1]) {
+            p.keyframes[k].feet[1]->position.z() = 0.02;
+            return;
+          }
+      });
+  add("a bow within 60 ms", small(), bow,
+      "/keyframes/2: t is .*, so the segment before it lasts 0.06",
+      [](Pattern& p) { p.keyframes[2].t = p.keyframes[1].t + 0.06; });
   add("a swing too short, and all after it", tall(), strides,
       "/phases/3: the phase ends .*everything after it later", [](Pattern& p) {
         const double until = p.phases[3].until, cut = until - p.phases[2].until - 0.1;

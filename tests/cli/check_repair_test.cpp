@@ -93,6 +93,54 @@ TEST_F(CheckRepair, APayloadOfTheScenarioIsPartOfTheVerdict) {
   EXPECT_EQ(light.exit_code, 0) << light.out;
 }
 
+// `repair` judges as `check` does: what the motion does not bear is no repair.
+TEST_F(CheckRepair, ARepairHasToBearThePayload) {
+  const std::string push =
+      R"("type": "impulse", "at": 3, "duration": 0.02, "on": "cog", "direction": [0, 1, 0], "impulse": 1.1)";
+  ASSERT_EQ(ayumi({"new", "stand", "--duration", "2", "-o", "stand.json", "-q"}).exit_code, 0);
+  std::string text = contents(folder / "stand.json");
+  const std::string controller = R"("controller": { "type": "dtad" })";
+  text.replace(text.find(controller), controller.size(),
+               R"("scenario": [{ "type": "payload", "at": 0.5, "on": "r_forearm", "mass": 60 }])");
+  write(folder / "load.json", text);
+  const Output heavy = ayumi({"repair", "load.json", "-o", "no.json", "--json", "-q"});
+  EXPECT_EQ(heavy.exit_code, 4) << heavy.out << heavy.err;
+  EXPECT_FALSE(fs::exists(folder / "no.json"));
+  const Json refused = Json::parse(heavy.out);
+  EXPECT_NE(refused["status"], "already_consistent");
+  EXPECT_NE(heavy.out.find("the payload on r_forearm is 60 kg"), std::string::npos) << heavy.out;
+
+  // A mass that is just too large: the answer is one that `check` accepts.
+  plant("little.json", push,
+        R"("type": "payload", "at": 1, "duration": 3, "on": "r_forearm", "mass": 1.4)");
+  ASSERT_EQ(ayumi({"check", "little.json", "-q"}).exit_code, 1);
+  const Output mended = ayumi({"repair", "little.json", "-o", "mended.json", "-q"});
+  ASSERT_EQ(mended.exit_code, 0) << mended.out << mended.err;
+  const Output checked = ayumi({"check", "mended.json", "-q"});
+  EXPECT_EQ(checked.exit_code, 0) << checked.out;
+
+  // What the motion bears asks for no repair.
+  plant("light.json", push,
+        R"("type": "payload", "at": 1, "duration": 3, "on": "r_forearm", "mass": 0.5)");
+  const Output light = ayumi({"repair", "light.json", "-o", "same.json", "--json", "-q"});
+  EXPECT_EQ(light.exit_code, 0) << light.out << light.err;
+  EXPECT_EQ(Json::parse(light.out)["status"], "already_consistent");
+}
+
+TEST_F(CheckRepair, AChangeOfFrictionBesideAPayloadIsSaidApart) {
+  plant(
+      "both.json",
+      R"({ "type": "impulse", "at": 3, "duration": 0.02, "on": "cog", "direction": [0, 1, 0], "impulse": 1.1 })",
+      R"({ "type": "payload", "at": 1, "duration": 3, "on": "r_forearm", "mass": 3 },
+    { "type": "friction", "at": 1, "duration": 2, "friction": 0.6 })");
+  const Output both = ayumi({"check", "both.json", "-q"});
+  EXPECT_EQ(both.exit_code, 1);
+  EXPECT_NE(both.out.find("the verdict is without disturbances other than payloads. With this "
+                          "disturbance, check finds no other error"),
+            std::string::npos)
+      << both.out;
+}
+
 TEST_F(CheckRepair, JointsAreDrawnAgainstTheirLimits) {
   const Output drawn = ayumi({"check", kWalk, "--plot", "joints.svg", "-q"});
   EXPECT_EQ(drawn.exit_code, 0) << drawn.err;

@@ -91,6 +91,72 @@ TEST_F(Edit, RetimeLocallyIsQuicker) {
       2);
 }
 
+// The time in which nothing moves is as long as in the given motion: a choreography stays in time.
+TEST_F(Edit, RetimeKeepsPausesWhereAsked) {
+  ASSERT_EQ(ayumi({"new", "bow", "-o", "bow.json", "-q"}).exit_code, 0);
+  const auto retimed = [&](const std::string& out, std::vector<std::string> more) {
+    std::vector<std::string> words = {
+        "edit", "retime", "bow.json", "--to-limits", "--local", "--json", "-q", "-o", out};
+    words.insert(words.end(), more.begin(), more.end());
+    const Output made = ayumi(words);
+    EXPECT_EQ(made.exit_code, 0) << made.out << made.err;
+    return Json::parse(made.out);
+  };
+  const auto paused = [](const Json& json) {
+    double share = 0;
+    for (const Json& limit : json["limited_by"])
+      if (limit["limit"] == "pause") share += double(limit["share"]);
+    return share * double(json["duration_s"]);
+  };
+  const Json kept = retimed("kept.json", {"--keep-pauses"}), quick = retimed("quick.json", {});
+  EXPECT_EQ(paused(quick), 0);
+  EXPECT_GT(paused(kept), 0.5);
+  // What moves is as quick with the pauses as without them.
+  EXPECT_NEAR(double(kept["duration_s"]) - paused(kept), double(quick["duration_s"]),
+              0.25 * double(quick["duration_s"]));
+  EXPECT_EQ(ayumi({"check", "kept.json"}).exit_code, 0);
+  // Pauses are a matter of local timing.
+  EXPECT_EQ(ayumi({"edit", "retime", "bow.json", "--to-limits", "--keep-pauses", "-o", "a.json"})
+                .exit_code,
+            2);
+}
+
+// Two steps in the middle of a walk, again and again.
+TEST_F(Edit, TheCycleOfAWalkIsRepeated) {
+  const auto looped = [&](const std::string& out, std::vector<std::string> more, int exit_code) {
+    std::vector<std::string> words = {"edit", "loop", kWalk, "--cycle", "--json", "-q", "-o", out};
+    words.insert(words.end(), more.begin(), more.end());
+    const Output made = ayumi(words);
+    EXPECT_EQ(made.exit_code, exit_code) << made.out << made.err;
+    return Json::parse(made.out);
+  };
+  const Json whole = Json::parse(ayumi({"check", kWalk, "--json", "-q"}).out);
+  const Json once = looped("once.json", {"--times", "1"}, 0);
+  const Json thrice = looped("thrice.json", {"--times", "3"}, 0);
+  const double cycle = double(once["cycle_s"][1]) - double(once["cycle_s"][0]);
+  EXPECT_NEAR(cycle, 1.1, 1e-9);  // two periods
+  EXPECT_NEAR(double(thrice["duration_s"]), double(once["duration_s"]) + 2 * cycle, 1e-9);
+  EXPECT_NEAR(double(once["displacement_m"][0]), 0.06, 1e-6);  // two strides
+  EXPECT_LT(double(once["gap"]["feet_m"]), 1e-6);
+  EXPECT_EQ(thrice["check"]["verdict"], "consistent");
+  EXPECT_EQ(whole["verdict"], "consistent");
+  // The cycle alone begins and ends in the middle of a step, so that its table does not rest there.
+  const Json alone = looped("alone.json", {"--times", "2", "--alone"}, 1);
+  EXPECT_NEAR(double(alone["duration_s"]), 2 * cycle, 1e-9);
+  for (const Json& finding : alone["check"]["findings"]) {
+    if (finding["severity"] != "error") continue;
+    EXPECT_EQ(finding["kind"], "table_rest");
+  }
+
+  // A walk of two steps has no such cycle, and a wish for the cycle alone needs one.
+  ASSERT_EQ(ayumi({"new", "walk", "--steps", "2", "-o", "short.json", "-q"}).exit_code, 0);
+  const Output refused = ayumi({"edit", "loop", "short.json", "--cycle", "-o", "a.json", "-q"});
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_NE(refused.err.find("its end does not meet its beginning"), std::string::npos)
+      << refused.err;
+  EXPECT_NE(ayumi({"edit", "loop", kWalk, "--alone", "-o", "a.json", "-q"}).exit_code, 0);
+}
+
 // The same twice, and a squat where a walk that turned has ended.
 TEST_F(Edit, MotionsJoin) {
   const Output made = ayumi({"new", "walk", "--steps", "2", "--turn", "4", "-o", "walk.json"});

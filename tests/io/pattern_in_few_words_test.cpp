@@ -148,7 +148,9 @@ TEST(PatternInFewWords, MistakesInBlocksAreNamed) {
   // The round is named, because the place alone does not tell it.
   EXPECT_NE(block(R"("repeat": 3, "count": "i", "phases": [{"until": "2 - ${i}",
                      "support": "both"}])")
-                .find("this phase begins at 2 s and ends at 1 s; give a later time (round 2 of 3)"),
+                .find("this phase begins at 2 s and ends at 1 s; give a later time; if 1 s are "
+                      "counted from there, write \"duration\" in place of \"until\" (round 2 of "
+                      "3)"),
             std::string::npos);
   // A count is known in its block only.
   EXPECT_NE(said(R"("keyframes": [{"t": "${i}", "zmp": "center"}], "phases": [{"repeat": 2,

@@ -134,7 +134,10 @@ inline const std::vector<Broken>& mistakes() {
       {"phases", R"([{"until": 0, "support": "both"}])",
        "/phases/0/until: this phase begins at 0 s and ends at 0 s"},
       {"phases", R"([{"until": 2, "support": "both"}, {"until": 1, "support": "both"}])",
-       "/phases/1/until: this phase begins at 2 s and ends at 1 s; give a later time"},
+       "/phases/1/until: this phase begins at 2 s and ends at 1 s; give a later time; if 1 s "
+       "are counted from there, write \"duration\" in place of \"until\""},
+      {"keyframes", R"([{"t": 2, "zmp": "center"}, {"t": 1.5, "zmp": "center"}])",
+       "give a later time; if 1.5 s are counted from there, write \"after\" in place of \"t\""},
       {"keyframes", R"([{"t": 2, "zmp": "center"}, {"t": 2300, "zmp": "center"},
                         {"t": 2.6, "zmp": "center"}])",
        "if /keyframes/1 should be at 2.3 s and not at 2300 s, correct that time"},

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <optional>
 
@@ -65,6 +66,16 @@ constexpr double kDoubleSupport = 0.2;
 // A phase whose duration differs by less than this share from that of its like is as long as it was
 // meant to be. Chosen: generated walks differ by 1 %.
 constexpr double kUsualShare = 0.2;
+// So many keyframes that would be at ends of phases are no chance. Chosen: those of two steps.
+constexpr long kManyKeys = 4;
+// A time that is nearer to another than this share of it is meant to be the same. Chosen: times are
+// written in milliseconds, and a factor that is read off one of them is out by as much.
+constexpr double kSameTime = 0.005;
+// A length below this is none [m]. Definition: what rounding leaves.
+constexpr double kNoLength = 1e-4;
+// A segment that lasts less than this share of its neighbour is too short before a value is out by
+// a power of ten. Chosen: keys of one motion are seldom so unequal.
+constexpr double kShortSegment = 0.15;
 // Errors of a motion that cannot be sampled. Definition: more than of any that can.
 constexpr int kUnsampled = std::numeric_limits<int>::max();
 
@@ -198,6 +209,7 @@ class Hypotheses {
     std::vector<Hypothesis> made;
     angle_units(made);
     time_units(made);
+    stretched_keys(made);
     length_units(made);
     return made;
   }
@@ -212,7 +224,9 @@ class Hypotheses {
   std::vector<Hypothesis> exchanges() const {
     std::vector<Hypothesis> made;
     footholds(made);
+    zmp_sides(made);
     zmp_keys(made);
+    all_zmp_keys(made);
     phase_sides(made);
     starts(made);
     key_sides(made);
@@ -294,6 +308,40 @@ class Hypotheses {
                         }});
   }
 
+  // Phases that were stretched while the keyframes were left, or the other way round.
+  void stretched_keys(std::vector<Hypothesis>& made) const {
+    const auto& keys = pattern_.keyframes;
+    const auto fitting = [&](double factor) {
+      return std::count_if(keys.begin(), keys.end(), [&](const Keyframe& key) {
+        return std::any_of(pattern_.phases.begin(), pattern_.phases.end(), [&](const Phase& phase) {
+          return std::abs(phase.until - factor * key.t) < kSameTime * phase.until;
+        });
+      });
+    };
+    const long now = fitting(1);
+    long most = now;
+    double best = 1;
+    for (const Keyframe& key : keys) {
+      if (key.t <= 0) continue;
+      const double factor = pattern_.phases.front().until / key.t;
+      if (const long fit = fitting(factor); fit > most) {
+        most = fit;
+        best = factor;
+      }
+    }
+    if (most < kManyKeys || most <= 2 * now || 2 * most < static_cast<long>(keys.size())) return;
+    made.push_back(
+        {Rank::unit,
+         {"/keyframes",
+          "the times of the keyframes do not fit those of the phases: " + std::to_string(now) +
+              " of " + std::to_string(keys.size()) + " keyframes are at the end of a phase",
+          "with the times of all keyframes multiplied by " + text::brief(best) + ", where " +
+              std::to_string(most) + " are,"},
+         [best](Pattern& p) {
+           for (Keyframe& key : p.keyframes) key.t *= best;
+         }});
+  }
+
   // Where most lengths are farther than three legs reach.
   void length_units(std::vector<Hypothesis>& made) const {
     const double leg = leg_length(model_);
@@ -327,22 +375,30 @@ class Hypotheses {
       if (!reaches_key(i) || is_repeated(i)) continue;
       const double before = i > 0 ? keys[i - 1].t : 0;
       const double after = i + 1 < keys.size() ? keys[i + 1].t : pattern_.duration();
-      const auto add = [&](Rank rank, double t, const std::string& why) {
+      const auto add = [&](Rank rank, double t, const std::string& why, double change = 0) {
         if (t <= before || t >= after || t == keys[i].t) return;
         made.push_back(
             {rank,
              {key_place(i), "t is " + seconds(keys[i].t) + why, "with t = " + seconds(t)},
-             [i, t](Pattern& p) { p.keyframes[i].t = t; }});
+             [i, t](Pattern& p) { p.keyframes[i].t = t; },
+             change});
       };
-      for (const double t : number_slips(keys[i].t)) add(Rank::slip, t, "");
-      if (i == 0) continue;
       const double in = keys[i].t - before, out = after - keys[i].t;
+      const bool too_early = in < kShortSegment * out;
+      // What was meant leaves no shorter segment than what is written.
+      for (const double t : number_slips(keys[i].t))
+        if (std::min(t - before, after - t) >= std::min(in, out))
+          add(Rank::slip, t, "", too_early ? -2 : 0);
+      if (i == 0) continue;
       const std::string lasts = ", so the segment before it lasts " + seconds(in) +
                                 " and the one after it " + seconds(out);
       // Between a short and a long neighbour, towards the long one.
       for (const double share : {0.35, 0.6, 0.8}) {
         const double t = in < out ? keys[i].t + share * out : keys[i].t - share * in;
-        add(Rank::amount, std::round(1000 * t) / 1000, lasts);
+        if (too_early)
+          add(Rank::slip, std::round(1000 * t) / 1000, lasts, -1);
+        else
+          add(Rank::amount, std::round(1000 * t) / 1000, lasts);
         const double back = in < out ? keys[i].t - share * in : keys[i].t + share * out;
         add(Rank::amount, std::round(1000 * back) / 1000, lasts);
       }
@@ -396,28 +452,104 @@ class Hypotheses {
 
   // ---- sides
 
+  static ZmpKey::Place place_under(Support single) {
+    return single == Support::left ? ZmpKey::Place::left : ZmpKey::Place::right;
+  }
+
+  /// The keys that lead the ZMP while the robot stands on one foot, and put it elsewhere: those of
+  /// the phase, and where it begins or ends between keys, the nearest ones outside.
+  std::vector<size_t> wrong_zmp_keys(size_t phase) const {
+    const double begin = begin_of(phase), until = pattern_.phases[phase].until;
+    std::vector<size_t> keys, wrong;
+    std::optional<size_t> before, after;
+    for (size_t k = 0; k < pattern_.keyframes.size(); ++k) {
+      const Keyframe& key = pattern_.keyframes[k];
+      if (!key.zmp) continue;
+      if (key.t <= begin + 1e-9) before = k;
+      if (key.t >= until - 1e-9 && !after) after = k;
+      if (key.t > begin + 1e-9 && key.t < until - 1e-9) keys.push_back(k);
+    }
+    if (before) keys.insert(keys.begin(), *before);
+    if (after) keys.push_back(*after);
+    for (const size_t k : keys)
+      if (pattern_.keyframes[k].zmp->place != place_under(pattern_.phases[phase].support))
+        wrong.push_back(k);
+    return wrong;
+  }
+
+  // The ZMP stays in the middle, or elsewhere, in several phases on one foot.
+  void all_zmp_keys(std::vector<Hypothesis>& made) const {
+    std::map<size_t, ZmpKey::Place> meant;
+    std::vector<size_t> phases;
+    for (size_t i = 0; i < pattern_.phases.size(); ++i) {
+      if (!is_single(pattern_.phases[i].support)) continue;
+      const std::vector<size_t> wrong = wrong_zmp_keys(i);
+      if (!wrong.empty()) phases.push_back(i);
+      for (const size_t k : wrong) meant[k] = place_under(pattern_.phases[i].support);
+    }
+    if (phases.size() < 2) return;
+    const Phase& first = pattern_.phases[phases.front()];
+    made.push_back({Rank::exchange,
+                    {phase_place(phases.front()),
+                     std::string("the robot stands on the ") + name_of(stance_of(first.support)) +
+                         " foot, but " + key_place(wrong_zmp_keys(phases.front()).front()) +
+                         " puts the ZMP " + zmp_words(wrong_zmp_keys(phases.front()).front()) +
+                         "; so it is in " + std::to_string(phases.size()) + " phases",
+                     "with the ZMP under the foot that carries the robot in each of them"},
+                    [meant](Pattern& p) {
+                      for (const auto& [k, place] : meant) p.keyframes[k].zmp->place = place;
+                    }});
+  }
+
+  std::string zmp_words(size_t key) const {
+    const ZmpKey::Place place = pattern_.keyframes[key].zmp->place;
+    return place == ZmpKey::Place::left     ? "under the left foot"
+           : place == ZmpKey::Place::right  ? "under the right foot"
+           : place == ZmpKey::Place::center ? "at \"center\""
+                                            : "at a point";
+  }
+
+  // All keys of the ZMP under the other foot.
+  void zmp_sides(std::vector<Hypothesis>& made) const {
+    size_t wrong = 0, single = 0;  // phases
+    for (size_t i = 0; i < pattern_.phases.size(); ++i) {
+      const Phase& phase = pattern_.phases[i];
+      if (!is_single(phase.support)) continue;
+      ++single;
+      const std::vector<size_t> keys = wrong_zmp_keys(i);
+      if (std::any_of(keys.begin(), keys.end(), [&](size_t k) {
+            return pattern_.keyframes[k].zmp->place == place_under(opposite(phase.support));
+          }))
+        ++wrong;
+    }
+    if (wrong < 2 || 2 * wrong <= single) return;
+    made.push_back({Rank::exchange,
+                    {"/keyframes",
+                     "the keys put the ZMP under the left foot where the robot stands on the right "
+                     "foot, or the other way round; left and right may be exchanged",
+                     "with left and right exchanged in all ZMP keys"},
+                    [](Pattern& p) {
+                      for (Keyframe& key : p.keyframes) {
+                        if (!key.zmp) continue;
+                        if (key.zmp->place == ZmpKey::Place::left)
+                          key.zmp->place = ZmpKey::Place::right;
+                        else if (key.zmp->place == ZmpKey::Place::right)
+                          key.zmp->place = ZmpKey::Place::left;
+                      }
+                    }});
+  }
+
   void zmp_keys(std::vector<Hypothesis>& made) const {
     for (size_t i = 0; i < pattern_.phases.size(); ++i) {
       const Phase& phase = pattern_.phases[i];
       if (!is_single(phase.support) || !reaches(i)) continue;
-      const ZmpKey::Place meant =
-          phase.support == Support::left ? ZmpKey::Place::left : ZmpKey::Place::right;
-      std::vector<size_t> wrong;
-      for (size_t k = 0; k < pattern_.keyframes.size(); ++k) {
-        const Keyframe& key = pattern_.keyframes[k];
-        if (key.zmp && key.t >= begin_of(i) - 1e-9 && key.t <= phase.until + 1e-9 &&
-            key.zmp->place != meant)
-          wrong.push_back(k);
-      }
+      const ZmpKey::Place meant = place_under(phase.support);
+      const std::vector<size_t> wrong = wrong_zmp_keys(i);
       if (wrong.empty()) continue;
       std::vector<std::string> places;
       for (const size_t k : wrong) places.push_back(key_place(k));
       const std::string foot = name_of(stance_of(phase.support));
-      const auto place = pattern_.keyframes[wrong.front()].zmp->place;
-      const std::string at = place == ZmpKey::Place::left     ? "under the left foot"
-                             : place == ZmpKey::Place::right  ? "under the right foot"
-                             : place == ZmpKey::Place::center ? "at \"center\""
-                                                              : "at a point";
+      const std::string at = zmp_words(wrong.front());
       made.push_back(
           {Rank::exchange,
            {phase_place(i),
@@ -470,9 +602,11 @@ class Hypotheses {
   void footholds(std::vector<Hypothesis>& made) const {
     const auto add = [&](const std::string& place, Side side, const Foothold& foot,
                          const std::function<Foothold&(Pattern&)>& in) {
-      if (foot.position.norm() < 1e-9) return;
-      for (const auto& [unit, factor] :
-           {std::pair("mm", 1e-3), std::pair("cm", 1e-2), std::pair("dm", 1e-1)}) {
+      // A single number that is too large is no matter of the unit.
+      for (const double length : foot.position)
+        if (std::abs(length) > kNoLength && std::abs(length) < leg_length(model_)) return;
+      if (foot.position.norm() < leg_length(model_)) return;
+      for (const auto& [unit, factor] : {std::pair("mm", 1e-3), std::pair("cm", 1e-2)}) {
         const Eigen::Vector3d meant = foot.position * factor;
         made.push_back(
             {Rank::slip,
@@ -496,6 +630,26 @@ class Hypotheses {
         if (const auto& foot = pattern_.keyframes[i].feet[side]; foot && reaches_key(i))
           add(key_place(i), static_cast<Side>(side), *foot,
               [i, side](Pattern& p) -> Foothold& { return *p.keyframes[i].feet[side]; });
+    for (size_t i = 0; i < pattern_.keyframes.size(); ++i) zmp_point(i, made);
+  }
+
+  // A whole point of the ZMP in another unit.
+  void zmp_point(size_t key, std::vector<Hypothesis>& made) const {
+    const auto& zmp = pattern_.keyframes[key].zmp;
+    if (!zmp || zmp->place != ZmpKey::Place::point || zmp->point.norm() < leg_length(model_) ||
+        !reaches_key(key))
+      return;
+    for (const auto& [unit, factor] : {std::pair("mm", 1e-3), std::pair("cm", 1e-2)}) {
+      const Eigen::Vector2d meant = zmp->point.head<2>() * factor;
+      made.push_back(
+          {Rank::slip,
+           {key_place(key),
+            "the ZMP is at (" + text::brief(zmp->point.x()) + ", " + text::brief(zmp->point.y()) +
+                ") m; lengths are in metres",
+            std::string("read in ") + unit + ", as (" + text::brief(meant.x()) + ", " +
+                text::brief(meant.y()) + ") m,"},
+           [key, factor = factor](Pattern& p) { p.keyframes[key].zmp->point *= factor; }});
+    }
   }
 
   void starts(std::vector<Hypothesis>& made) const {
@@ -892,6 +1046,13 @@ class Search {
     std::vector<Candidate> sorted;
     for (const Candidate& c : tried_)
       if (c.outcome.errors < found_.errors) sorted.push_back(c);
+    // Another sign or another digit counts as meant only where nothing is left to mend.
+    for (Candidate& c : sorted)
+      if ((c.hypothesis.rank == Rank::sign || c.hypothesis.rank == Rank::slip) &&
+          !c.outcome.good()) {
+        c.hypothesis.rank = Rank::amount;
+        c.hypothesis.change = 2;
+      }
     std::stable_sort(sorted.begin(), sorted.end(), [](const Candidate& a, const Candidate& b) {
       return std::tie(a.outcome.errors, a.hypothesis.rank, a.hypothesis.change) <
              std::tie(b.outcome.errors, b.hypothesis.rank, b.hypothesis.change);
@@ -941,6 +1102,8 @@ std::vector<Explanation> find_explanations(const RobotModel& model, const Patter
     if (best.empty()) break;
     for (Candidate& c : best) {
       c.hypothesis.says.instead += result_words(found, c.outcome);
+      // The steps before this one are part of what is enough.
+      if (round > 0) c.hypothesis.says.instead += " (together with the change before)";
       explanations.push_back(c.hypothesis.says);
     }
     Pattern mended = current;

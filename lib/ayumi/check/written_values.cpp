@@ -31,7 +31,8 @@ struct TrackNumber {
 struct NumberTrack {
   std::string words;
   Quantity quantity = Quantity::length;
-  double start = 0;  ///< what holds before the first of them
+  double start = 0;                 ///< what holds before the first of them
+  std::optional<double> rest = {};  ///< what holds after the last of them, where it is known
   bool across = false;
   std::vector<TrackNumber> numbers = {};
 };
@@ -98,6 +99,8 @@ class Reader {
         const double to = value(track.numbers[after]);
         neutral =
             t > since ? from + (t - since) / (track.numbers[after].t - since) * (to - from) : to;
+      } else if (track.rest) {
+        neutral = *track.rest;
       }
       made.numbers.push_back({track.numbers[i].in, value(track.numbers[i]), neutral});
     }
@@ -215,6 +218,7 @@ class Reader {
             .quantity = turn ? Quantity::angle : Quantity::length,
             .start = turn ? 0 : from[axis],
             .across = axis == 1};
+        if (axis == 2) track.rest = from[axis];  // it comes back to the ground
         each_key([&](size_t i, const Keyframe& key) {
           if (key.feet[s])
             track.numbers.push_back({key.t, key_place(i), [i, s, axis](Pattern& p) -> double& {

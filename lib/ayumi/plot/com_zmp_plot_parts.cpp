@@ -83,10 +83,15 @@ FramedRuns::FramedRuns(const RobotModel* model, const std::vector<LociRun>& as_l
 }
 
 double draw_legend(Drawing& drawing, const Legend& entries, double top) {
-  double x = kLeft, y = top;
+  const auto width_of = [](const std::string& name) { return 34 + text_width(name, kLegend) + 22; };
+  // Below each other, all begin at one place.
+  const bool too_wide = std::any_of(entries.begin(), entries.end(), [&](const auto& entry) {
+    return kLeft + width_of(entry.first) > drawing.width;
+  });
+  const double left = too_wide ? 8.0 : kLeft;
+  double x = left, y = top;
   for (const auto& [name, style] : entries) {
-    const double wide = 34 + text_width(name, kLegend) + 22;
-    const double left = kLeft + wide > drawing.width ? 8.0 : kLeft;
+    const double wide = width_of(name);
     if (x > left && x + wide - 22 > drawing.width - 8) {
       x = left;
       y += 1.6 * kLegend;

@@ -16,6 +16,9 @@ namespace ayumi {
 std::vector<std::string> findings_under_scenario(const Task& task, const CheckOptions& options,
                                                  const ConsistencyReport& plain) {
   std::vector<std::string> sentences;
+  const bool has_payload =
+      std::any_of(task.pattern.scenario.begin(), task.pattern.scenario.end(),
+                  [](const Disturbance& d) { return std::holds_alternative<Payload>(d.what); });
   for (const Disturbance& d : task.pattern.scenario) {
     if (!std::holds_alternative<FrictionChange>(d.what)) continue;
     // What acts at the same time acts together with it.
@@ -24,13 +27,17 @@ std::vector<std::string> findings_under_scenario(const Task& task, const CheckOp
       if (const auto* friction = std::get_if<FrictionChange>(&other.what);
           friction && act_together(d, other))
         loaded.friction = std::min(loaded.friction, friction->friction);
-    const RobotModel robot =
-        with_payloads(task.robot, masses_carried_while(d, task.pattern.scenario, task.robot));
+    const std::vector<CarriedMass> carried =
+        masses_carried_while(d, task.pattern.scenario, task.robot);
+    const RobotModel robot = with_payloads(task.robot, carried);
+    // The verdict counts what comes with the payloads alone.
+    const ConsistencyReport& counted =
+        carried.empty() ? plain : check_consistency(robot, task.series, options);
     const std::vector<Finding> errors =
-        errors_brought_by(d, check_consistency(robot, task.series, loaded), plain);
-    std::string words =
-        words_of({d}) +
-        " is a disturbance, and the verdict is without disturbances. With this disturbance, ";
+        errors_brought_by(d, check_consistency(robot, task.series, loaded), counted);
+    std::string words = words_of({d}) + " is a disturbance, and the verdict is without " +
+                        (has_payload ? "disturbances other than payloads" : "disturbances") +
+                        ". With this disturbance, ";
     if (errors.empty())
       words += "check finds no other error";
     else

@@ -138,6 +138,7 @@ Judgement judge(const Task& task, const CheckOptions& options, std::vector<Mista
       judge(task.robot, task.series, keyed_goals(task.robot, task.series, task.pattern.controller),
             options);
   std::vector<Mistake> heavy = judge_payloads(task, options, judgement.report);
+  if (!heavy.empty()) judgement.motion_consistent = false;
   if (payloads) *payloads = std::move(heavy);
   return judgement;
 }

@@ -205,7 +205,7 @@ constexpr double kGrossTime = 5;
 // in order with a slip of the keyboard less, or else that one itself. `before` is the time before
 // both.
 std::string meant_time(double before, double previous, const std::string& place_of_previous,
-                       double t) {
+                       double t, const std::string& otherwise) {
   // A time that is a little too late has no decimal point out of place.
   const bool gross = previous > kGrossTime * t;
   for (const double slip : number_slips(previous))
@@ -215,7 +215,15 @@ std::string meant_time(double before, double previous, const std::string& place_
   for (const double slip : number_slips(t))
     if (slip > previous && slip < 2 * previous - before)
       return "; give a later time (" + text::exact(slip) + " s?)";
-  return "; give a later time";
+  return "; give a later time" + otherwise;
+}
+
+// Times that are counted from the one before, where the file has them from the beginning on.
+std::string meant_span(const JsonNode& node, const std::string& absolute,
+                       const std::string& relative, double value) {
+  if (!node.has(absolute) || !(value > 0)) return "";
+  return "; if " + text::exact(value) + " s are counted from there, write \"" + relative +
+         "\" in place of \"" + absolute + "\"";
 }
 
 void read_phases(const JsonNode& root, PatternScope& scope, Pattern& pattern) {
@@ -238,7 +246,7 @@ void read_phases(const JsonNode& root, PatternScope& scope, Pattern& pattern) {
                                           ? pattern.phases[pattern.phases.size() - 3].until
                                           : 0,
                                       previous, pattern.phases[pattern.phases.size() - 2].pointer,
-                                      until)));
+                                      until, meant_span(node, "until", "duration", until))));
     if (pattern.phases.size() > kMostItems) complain_of_many(phases);
   });
 }
@@ -259,16 +267,16 @@ void read_keyframes(const JsonNode& root, PatternScope& scope, Pattern& pattern)
     const double t = pattern.keyframes.back().t;
     if (!(t > previous || (first && t == previous)))
       node.at(node.has("t") ? "t" : "after")
-          .complain("this keyframe is at " + text::exact(t) + " s, but " +
-                    (first ? "the motion begins at 0 s"
-                           : "the keyframe before it is at " + text::exact(previous) + " s") +
-                    (first
-                         ? "; give a later time"
-                         : meant_time(pattern.keyframes.size() > 2
-                                          ? pattern.keyframes[pattern.keyframes.size() - 3].t
-                                          : 0,
-                                      previous,
-                                      pattern.keyframes[pattern.keyframes.size() - 2].pointer, t)));
+          .complain(
+              "this keyframe is at " + text::exact(t) + " s, but " +
+              (first ? "the motion begins at 0 s"
+                     : "the keyframe before it is at " + text::exact(previous) + " s") +
+              (first ? "; give a later time"
+                     : meant_time(pattern.keyframes.size() > 2
+                                      ? pattern.keyframes[pattern.keyframes.size() - 3].t
+                                      : 0,
+                                  previous, pattern.keyframes[pattern.keyframes.size() - 2].pointer,
+                                  t, meant_span(node, "t", "after", t))));
     if (pattern.keyframes.size() > kMostItems) complain_of_many(*keyframes);
   });
 }
