@@ -11,6 +11,8 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 constexpr const char* kFormat = "ayumi.certify/1";
+/// Largest number of cases in a file. Definition: that of `certify --runs`.
+constexpr size_t kMostCases = 100000000;
 
 Outcome outcome_of(const std::string& name) {
   for (const Outcome each : {Outcome::stands, Outcome::unsettled, Outcome::fell})
@@ -56,7 +58,7 @@ std::string case_results_text(const Json& study, const std::string& shard,
 }
 
 std::string add_case_results(const std::filesystem::path& file, const Json& study, bool must_exist,
-                             size_t count, KnownResults& results) {
+                             KnownResults& results) {
   if (!must_exist && !std::filesystem::exists(file)) return "";
   std::string shard;
   const auto refuse = [&](const std::string& why) {
@@ -77,10 +79,11 @@ std::string add_case_results(const std::filesystem::path& file, const Json& stud
              "' differs); choose another name, or replace the file with --force");
     }
     shard = json.value("shard", "");
-    results.resize(std::max(results.size(), count));
     for (const Json& row : json.at("cases")) {
       const size_t number = row.at(0);
-      if (number >= count) continue;
+      if (number >= kMostCases)
+        refuse("case " + std::to_string(number) + ": there is no such case");
+      if (number >= results.size()) results.resize(number + 1);
       const CaseResult result = case_of(Json(row.begin() + 1, row.end()));
       if (results[number] && !(*results[number] == result))
         refuse("case " + std::to_string(number) +

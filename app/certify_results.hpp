@@ -14,11 +14,11 @@ namespace ayumi::app {
 std::string case_results_text(const nlohmann::ordered_json& study, const std::string& shard,
                               const KnownResults& results);
 
-/// Adds the cases of a file of at most `count` cases. Nothing where the file does not exist and
-/// `must_exist` is false. Throws Error(bad_file) when it is no file of results or another study's,
-/// and when a case has another result than the one that is known. Returns the shard of the file.
+/// Adds the cases of a file. Nothing where the file does not exist and `must_exist` is false.
+/// Throws Error(bad_file) when it is no file of results or another study's, and when a case has
+/// another result than the one that is known. Returns the shard of the file.
 std::string add_case_results(const std::filesystem::path& file, const nlohmann::ordered_json& study,
-                             bool must_exist, size_t count, KnownResults& results);
+                             bool must_exist, KnownResults& results);
 
 /// One row for each case: its number, outcome, figures, and all values that were drawn.
 std::string case_table(const UncertainTask& task, std::uint64_t seed, const KnownResults& results);

@@ -1,6 +1,7 @@
 #include "uncertain_input.hpp"
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
 #include "ayumi/io/pattern/assumed_study.hpp"
 
 namespace ayumi::app {
@@ -21,6 +22,27 @@ Study load_study(const Task& input, const std::string& file) {
   const std::filesystem::path standard = default_study(input.robot);
   if (standard.empty()) return assumed_study(input.robot);
   return read_study(standard);
+}
+
+std::string fit_to_plant(Study& study, const std::string& plant, bool stated) {
+  if (plant != "mujoco") return "";
+  // The contacts of MuJoCo have a stiffness and a damping of their own (mujoco_model.cpp).
+  const auto unused = [](const UncertainQuantity& q) {
+    return q.kind == UncertainKind::sole_stiffness || q.kind == UncertainKind::sole_damping;
+  };
+  std::vector<std::string> names;
+  std::vector<UncertainQuantity>& all = study.uncertainty.quantities;
+  for (const UncertainQuantity& q : all) {
+    if (!unused(q)) continue;
+    if (stated)
+      fail(ErrorCode::bad_pattern,
+           q.place + ": this quantity has no effect: with --plant mujoco, the soles have the " +
+               "stiffness and the damping of MuJoCo's contacts; remove the quantity");
+    names.push_back(q.name);
+  }
+  std::erase_if(all, unused);
+  if (names.empty()) return "";
+  return "  not varied, because --plant mujoco does not use it: " + text::join(names, ", ") + "\n";
 }
 
 }  // namespace ayumi::app

@@ -13,4 +13,9 @@ namespace ayumi::app {
 /// Error(bad_pattern) where the file has no uncertainty.
 Study load_study(const Task& input, const std::string& file);
 
+/// Quantities that the plant of that name does not use are an error where the user `stated` them:
+/// Error(bad_pattern). Of a default uncertainty they are left out, and the answer says so in one
+/// line; it is empty where nothing is left out.
+std::string fit_to_plant(Study& study, const std::string& plant, bool stated);
+
 }  // namespace ayumi::app

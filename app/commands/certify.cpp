@@ -12,12 +12,14 @@
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
+#include "ayumi/base/file_lock.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
 #include "ayumi/plot/influence_plot.hpp"
 #include "ayumi/study/subset_simulation.hpp"
 #include "certify_results.hpp"
 #include "option_checks.hpp"
+#include "output_files.hpp"
 #include "pattern_input.hpp"
 #include "shard.hpp"
 #include "simulation.hpp"
@@ -162,12 +164,13 @@ void print_sources(const Context& context, const Study& study) {
 
 /// The cases of the merged files. Every case that the verdict needs must be there.
 KnownResults merged(const CertifyCommand& options, const Json& study) {
-  KnownResults results(static_cast<size_t>(most_cases(options.certify)));
+  KnownResults results;
   std::vector<std::string> shards;
   for (const std::string& file : options.merge) {
-    const std::string theirs = add_case_results(file, study, true, results.size(), results);
+    const std::string theirs = add_case_results(file, study, true, results);
     if (!theirs.empty()) shards.push_back(theirs);
   }
+  results.resize(static_cast<size_t>(most_cases(options.certify)));
   const Certificate c = certificate(options.certify, results);
   const auto first = std::find(results.begin(), results.end(), std::nullopt);
   const bool complete = first == results.end();
@@ -250,10 +253,16 @@ void refuse_targets(const Context& context, const CertifyCommand& options) {
   }
   if (!options.table.empty()) refuse_overwriting(context, options.table);
   if (!options.out.empty()) require_file_target(options.out);
+  if (!options.out.empty() && !options.merge.empty()) refuse_overwriting(context, options.out);
+  refuse_same_files({{"--out", options.out}, {"--table", options.table}, {"--map", options.map}});
   if (options.certify.shards > 1 && options.out.empty())
     fail(ErrorCode::usage,
          "--shard needs -o, the file that receives the results of this shard; --merge puts such "
          "files together");
+  if (options.rare && options.subset.runs % 10 != 0)
+    fail(ErrorCode::usage, "--rare-runs " + std::to_string(options.subset.runs) +
+                               ": it must be a multiple of 10, because a tenth of the runs of a "
+                               "level starts the chains of the next level");
   if (options.certify.shards > 1 && !options.merge.empty())
     fail(ErrorCode::usage, "--shard and --merge cannot be given together; leave one of them out");
 }
@@ -267,26 +276,30 @@ void certify_pattern(Context& context, CertifyCommand& options) {
   refuse_targets(context, options);
   plant_of(options.choice.plant);
   const Task input = load_pattern(context, options.pattern, options.input);
-  const Study study = load_study(input, options.study);
+  Study study = load_study(input, options.study);
+  const bool stated = !options.study.empty() || !input.pattern.uncertainty.empty();
+  const std::string left_out = fit_to_plant(study, options.choice.plant, stated);
   SimulateOptions simulate = simulation_options(context, input, options.choice);
   const UncertainTask task(input.robot, input.series, study.uncertainty, simulate);
   if (!study.uncertainty.pushes.empty()) simulate.scenario.clear();
   const Json asked = study_json(context, input, study, simulate);
   const std::string shard = options.certify.shards > 1 ? options.shard : "";
   // Two programs that write the same file would lose cases of each other.
-  std::optional<FolderLock> lock;
-  if (!options.out.empty()) lock.emplace(options.out + ".lock");
-  const auto save = [&](const KnownResults& results) {
-    if (!options.out.empty()) write_file(options.out, case_results_text(asked, shard, results));
+  std::optional<FileLock> lock;
+  if (!options.out.empty()) lock.emplace(options.out);
+  KnownResults results, known;
+  // Cases that an earlier command has run stay in the file, also where this one needs fewer.
+  const auto save = [&](KnownResults all) {
+    if (options.out.empty()) return;
+    all.resize(std::max(all.size(), known.size()));
+    for (size_t i = 0; i < known.size(); ++i)
+      if (!all[i]) all[i] = known[i];
+    write_file(options.out, case_results_text(asked, shard, all));
   };
-  KnownResults results;
   if (!options.merge.empty()) {
     results = merged(options, asked);
   } else {
-    KnownResults known;
-    if (!options.out.empty() && !context.force)
-      add_case_results(options.out, asked, false, static_cast<size_t>(most_cases(options.certify)),
-                       known);
+    if (!options.out.empty() && !context.force) add_case_results(options.out, asked, false, known);
     results = run_cases(task, options.certify, known, save, context.progress());
   }
   save(results);
@@ -306,6 +319,7 @@ void certify_pattern(Context& context, CertifyCommand& options) {
   context.print(options.pattern + ", " + input.robot.name() + ", " + law + "\n");
   print_certificate(context, found, results, options.certify);
   print_sources(context, study);
+  context.print(left_out);
   if (!influence.empty()) print_influences(context, influence);
   print_worst(context, results, worst);
   Json json = {{"study", asked},

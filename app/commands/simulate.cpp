@@ -30,7 +30,9 @@ struct SimulateCommand {
 /// One case of `certify`: the robot, ground and pushes that it draws.
 SimulationLog simulate_case(const Context& context, const Task& input,
                             const SimulateCommand& options) {
-  const Study study = load_study(input, options.study);
+  Study study = load_study(input, options.study);
+  const bool stated = !options.study.empty() || !input.pattern.uncertainty.empty();
+  context.print(fit_to_plant(study, options.choice.plant, stated));
   const UncertainTask task(input.robot, input.series, study.uncertainty,
                            simulation_options(context, input, options.choice));
   const CaseNumbers numbers = task.numbers(context.seed, options.number);

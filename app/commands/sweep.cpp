@@ -1,13 +1,16 @@
 // Many cases of one study, on this machine, in shards or on a cluster: results as one row per case.
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
+#include "ayumi/base/file_lock.hpp"
 #include "ayumi/base/text.hpp"
 #include "option_checks.hpp"
+#include "output_files.hpp"
 #include "pattern_input.hpp"
 #include "shard.hpp"
 #include "sweep/expectations.hpp"
@@ -99,25 +102,33 @@ void remove_companions(const fs::path& file) {
   for (const char* part : {"-wal", "-shm"}) fs::remove(file.string() + part, ignored);
 }
 
+/// Calls `work`; in the message of its error, the name of the file stands for the temporary one.
+void with_name_of(const fs::path& file, const fs::path& temporary,
+                  const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    std::error_code ignored;
+    fs::remove(temporary, ignored);
+    remove_companions(temporary);
+    std::string words = error.what();
+    if (const size_t at = words.find(temporary.string()); at != std::string::npos)
+      words.replace(at, temporary.string().size(), file.string());
+    fail(error.code(), words);
+  }
+}
+
 /// A file that is there as a whole or not at all, also where the program is killed meanwhile. It
 /// takes the place of an older one only after the expectations are known to be understood.
 void create_results(const fs::path& file, const SweepHead& head,
                     const std::vector<std::string>& expect) {
   write_file_with(file, [&](const fs::path& temporary) {
-    try {
+    with_name_of(file, temporary, [&] {
       ResultsDatabase results(temporary, head);
       judge_expectations(results, expect);
       results.close();
       remove_companions(file);
-    } catch (const Error& error) {
-      std::error_code ignored;
-      fs::remove(temporary, ignored);
-      remove_companions(temporary);
-      std::string words = error.what();  // in which the user's name stands for the temporary one
-      if (const size_t at = words.find(temporary.string()); at != std::string::npos)
-        words.replace(at, temporary.string().size(), file.string());
-      fail(error.code(), words);
-    }
+    });
   });
 }
 
@@ -142,12 +153,16 @@ void run_sweep(Context& context, const SweepCommand& options) {
   const Shard shard = read_shard(options.shard);
   refuse_bad_names(context, options.outputs);
   require_file_target(options.out);
+  refuse_same_files({{"--out", options.out},
+                     {"--csv", options.outputs.csv},
+                     {"--junit", options.outputs.junit},
+                     {"--page", options.outputs.page}});
   const SweepStudy study(read_file(options.study), options.study);
   CaseRunner runner(context, study);
   runner.limit_case(options.case_limit);
   const std::vector<bool> asked = asked_cases(options, shard, study.size());
   const SweepHead head = head_of(runner, context.seed);
-  const FolderLock lock(options.out + ".lock");
+  const FileLock lock(options.out);
   if (context.force || !fs::exists(options.out)) {
     if (options.engine == "slurm") require_slurm();  // before there is an empty file of results
     create_results(options.out, head, options.outputs.expect);
@@ -157,7 +172,7 @@ void run_sweep(Context& context, const SweepCommand& options) {
   judge_expectations(*results, options.outputs.expect);  // a wrong one is refused before the work
   if (!shard.whole()) results->add_shards({shard.word()});
   if (options.retry)
-    context.print("  " + text::counted(results->forget_errors(), "case") +
+    context.print("  " + text::counted(results->forget_errors(asked), "case") +
                   " that could not be run will be run again\n");
   std::vector<bool> missing = results->done();
   for (size_t i = 0; i < missing.size(); ++i) missing[i] = asked[i] && !missing[i];
@@ -217,7 +232,7 @@ void merge_results(Context& context, const MergeCommand& options) {
   if (!options.partial) refuse_missing(files, files.front()->head().cases);
   const SweepHead head = files.front()->head();
   files.clear();
-  const FolderLock lock(out + ".lock");
+  const FileLock lock(out);
   long added = 0;
   const auto merge_into = [&](ResultsDatabase& results) {
     for (const std::string& file : options.files)
@@ -229,9 +244,11 @@ void merge_results(Context& context, const MergeCommand& options) {
     results.close();
   } else {
     write_file_with(out, [&](const fs::path& temporary) {
-      ResultsDatabase results(temporary, head);
-      merge_into(results);
-      results.close();
+      with_name_of(out, temporary, [&] {
+        ResultsDatabase results(temporary, head);
+        merge_into(results);
+        results.close();
+      });
     });
   }
   const ResultsDatabase results(out, ResultsDatabase::Mode::read);

@@ -164,6 +164,13 @@ struct CaseRunner::Draws {
   UncertainTask task;
 };
 
+/// What check and repair find of a motion on a ground of one friction.
+struct CaseRunner::Judged {
+  std::once_flag judged, repaired;
+  std::vector<Cell> check, repair;
+  std::optional<Error> repair_error;
+};
+
 /// A motion, what is known of it, and its laws.
 struct CaseRunner::Prepared {
   std::string key;
@@ -188,9 +195,16 @@ struct CaseRunner::Prepared {
     all[kept_key] = made;
     return made;
   }
-  std::once_flag judged, repaired;
-  std::vector<Cell> check, repair;
-  std::optional<Error> repair_error;
+  std::map<double, std::shared_ptr<Judged>> judged;  ///< by the friction of the ground
+
+  /// Shared by all cases of this friction, of which only one judges.
+  std::shared_ptr<Judged> judged_with(double friction) {
+    const std::lock_guard lock(mutex);
+    if (!judged.contains(friction) && judged.size() >= kKeptLaws) judged.clear();
+    std::shared_ptr<Judged>& found = judged[friction];
+    if (!found) found = std::make_shared<Judged>();
+    return found;
+  }
 };
 
 CaseRunner::~CaseRunner() = default;
@@ -430,8 +444,8 @@ std::vector<Cell> run_figures(const Task& task, const SimulateOptions& options,
   return cells;
 }
 
-std::vector<Cell> check_figures(const Task& task) {
-  const Judgement judged = judge(task);
+std::vector<Cell> check_figures(const Task& task, const CheckOptions& options) {
+  const Judgement judged = judge(task, options);
   double errors = 0;
   std::string first;
   for (const Finding& finding : judged.report.findings) {
@@ -445,9 +459,10 @@ std::vector<Cell> check_figures(const Task& task) {
   return cells;
 }
 
-std::vector<Cell> repair_figures(const Task& task, const Progress& progress) {
+std::vector<Cell> repair_figures(const Task& task, const CheckOptions& check,
+                                 const Progress& progress) {
   RepairOptions options = preferred_options(task.pattern);
-  options.check = check_options(task);
+  options.check = check;
   const RepairResult r = repair_task(task, options, progress);
   return {std::string(name_of(r.status)), cell(r.max_joint_change), cell(r.max_cog_change),
           cell(r.check.summary[FindingKind::support_margin])};
@@ -561,23 +576,27 @@ std::vector<Cell> CaseRunner::figures(long number, const Settings& settings, Wat
     motion = prepared(settings);
   }
   const TimeSpent useful{useful_};
+  if (!measures.check && !measures.repair) return cells;
+  CheckOptions check = check_options(*motion->task);
+  if (const auto world = study_->world(settings)) check.friction = world->friction;
+  const std::shared_ptr<Judged> judged = motion->judged_with(check.friction);
   if (measures.check) {
-    std::call_once(motion->judged, [&] { motion->check = check_figures(*motion->task); });
-    place("consistent", motion->check);
+    std::call_once(judged->judged, [&] { judged->check = check_figures(*motion->task, check); });
+    place("consistent", judged->check);
   }
   if (measures.repair) {
-    std::call_once(motion->repaired, [&] {
+    std::call_once(judged->repaired, [&] {
       try {
-        motion->repair = repair_figures(*motion->task, progress);
+        judged->repair = repair_figures(*motion->task, check, progress);
       } catch (const Error& error) {  // also for the other cases of this motion
-        motion->repair_error = error;
+        judged->repair_error = error;
       } catch (const Interrupted&) {
         if (watch.exceeded.empty()) throw;
-        motion->repair_error = Error(ErrorCode::bad_pattern, watch.reason());
+        judged->repair_error = Error(ErrorCode::bad_pattern, watch.reason());
       }
     });
-    if (motion->repair_error) throw Error(*motion->repair_error);
-    place("repair", motion->repair);
+    if (judged->repair_error) throw Error(*judged->repair_error);
+    place("repair", judged->repair);
   }
   return cells;
 }

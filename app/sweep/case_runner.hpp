@@ -73,6 +73,7 @@ class CaseRunner {
   double setup_seconds() const { return setup_seconds_; }
 
  private:
+  struct Judged;
   struct Prepared;
   struct Law;
   struct Draws;

@@ -178,7 +178,12 @@ ResultsDatabase::ResultsDatabase(const fs::path& file, Mode mode) : file_(file) 
   // Also for reading: the last one who could write removes the files that SQLite keeps beside a
   // database. Where the file is write-protected, SQLite opens it for reading.
   open(SQLITE_OPEN_READWRITE);
-  read_head();
+  try {
+    read_head();
+  } catch (...) {  // an open database would leave the files that SQLite keeps beside it
+    sqlite3_close(database_);
+    throw;
+  }
   if (mode == Mode::read) execute("PRAGMA query_only = ON");
   if (mode == Mode::write) execute("PRAGMA synchronous = NORMAL");
 }
@@ -259,10 +264,10 @@ void ResultsDatabase::make_tables() {
   sql +=
       "CREATE VIEW summary AS SELECT (SELECT CAST(value AS INTEGER) FROM about WHERE key = "
       "'cases') AS cases, COUNT(*) AS done, COUNT(error) AS errors, "
-      "CAST(TOTAL(outcome = 'stands') AS INTEGER) AS stands, "
-      "CAST(TOTAL(outcome = 'fell') AS INTEGER) AS falls, "
-      "CAST(TOTAL(outcome = 'unsettled') AS INTEGER) AS unsettled, "
-      "CAST(TOTAL(outcome <> 'stands') AS INTEGER) AS failures, "
+      "CAST(SUM(outcome = 'stands') AS INTEGER) AS stands, "
+      "CAST(SUM(outcome = 'fell') AS INTEGER) AS falls, "
+      "CAST(SUM(outcome = 'unsettled') AS INTEGER) AS unsettled, "
+      "CAST(SUM(outcome <> 'stands') AS INTEGER) AS failures, "
       "TOTAL(outcome <> 'stands') / COUNT(outcome) AS failure_rate, " +
       std::string(judged ? "CAST(TOTAL(consistent = 0) AS INTEGER)" : "NULL") + " AS inconsistent" +
       extremes +
@@ -393,9 +398,24 @@ SweepCounts ResultsDatabase::counts() const {
   return {count(0), count(1), count(2), count(3), count(4), count(5), count(6)};
 }
 
-long ResultsDatabase::forget_errors() {
-  execute("DELETE FROM cases WHERE error IS NOT NULL");
-  return sqlite3_changes(database_);
+long ResultsDatabase::forget_errors(const std::vector<bool>& cases) {
+  std::vector<long> numbers;
+  for (const auto& row : query("SELECT \"case\" FROM cases WHERE error IS NOT NULL")) {
+    const long number = std::atol(row[0].c_str());
+    if (number >= 0 && number < head_.cases && cases[static_cast<size_t>(number)])
+      numbers.push_back(number);
+  }
+  execute("BEGIN IMMEDIATE");
+  Statement remove(database_, "DELETE FROM cases WHERE \"case\" = ?");
+  if (!remove.good()) complain("the results cannot be written");
+  for (const long number : numbers) {
+    remove.bind(1, number);
+    remove.step();
+    if (!remove.done()) complain("the results cannot be written");
+    remove.reset();
+  }
+  execute("COMMIT");
+  return static_cast<long>(numbers.size());
 }
 
 void ResultsDatabase::add(const std::vector<CaseRow>& rows) {
@@ -450,7 +470,7 @@ long ResultsDatabase::merge(const fs::path& other) {
   if (different.step())
     fail(ErrorCode::bad_file, other.string() + ": case " + std::to_string(different.integer(0)) +
                                   " has another result than in " + file_.string() +
-                                  "; nothing was merged");
+                                  "; nothing of this file was merged");
   if (!different.done()) complain("the files cannot be compared");
   different.reset();
   execute(

@@ -76,8 +76,8 @@ class ResultsDatabase {
   /// Marks the cases that have a row.
   void mark_done(std::vector<bool>& cases) const;
   SweepCounts counts() const;
-  /// Removes the rows of cases that could not be run; returns how many.
-  long forget_errors();
+  /// Removes the rows of those of these cases that could not be run; returns how many.
+  long forget_errors(const std::vector<bool>& cases);
 
   /// Adds rows; they are kept when this returns.
   void add(const std::vector<CaseRow>& rows);

@@ -77,6 +77,53 @@ TEST(CertifyCommand, GoesOnAndRefusesOtherStudies) {
       << other.err;
 }
 
+// A command that needs fewer cases leaves the others in the file, and reads back what it needs.
+TEST(CertifyCommand, KeepsTheCasesThatItDoesNotNeed) {
+  const CertifyStudy study;
+  ASSERT_EQ(study.certify({"-o", "cases.json"}).exit_code, 1);
+  const std::string whole = contents(study.folder / "cases.json");
+  const Output fewer = study.run({"certify", "stand.json", "--quiet", "--study", "study.json",
+                                  "--failure", "0.1", "--runs", "29", "-o", "cases.json"});
+  EXPECT_EQ(fewer.exit_code, 1) << fewer.err;
+  EXPECT_NE(fewer.out.find("within 29 runs"), std::string::npos) << fewer.out;
+  EXPECT_EQ(contents(study.folder / "cases.json"), whole);
+}
+
+TEST(CertifyCommand, ReplacesNoFileWithoutForce) {
+  const CertifyStudy study;
+  ASSERT_EQ(study.certify({"-o", "cases.json"}).exit_code, 1);
+  write(study.folder / "mine.txt", "mine");
+  const Output merged = study.certify({"--merge", "cases.json", "-o", "mine.txt"});
+  EXPECT_EQ(merged.exit_code, 3);
+  EXPECT_NE(merged.err.find("mine.txt: this already exists"), std::string::npos) << merged.err;
+  EXPECT_EQ(contents(study.folder / "mine.txt"), "mine");
+  const Output same = study.certify({"-o", "x.json", "--table", "x.json"});
+  EXPECT_EQ(same.exit_code, 2);
+  EXPECT_NE(same.err.find("--out and --table name the same file"), std::string::npos) << same.err;
+  EXPECT_FALSE(fs::exists(study.folder / "x.json"));
+}
+
+TEST(CertifyCommand, RefusesWhatThePlantDoesNotUse) {
+  const CertifyStudy study;
+  write(study.folder / "soles.json", R"({"format": "ayumi.study/1", "uncertainty": {"quantities": [
+    {"what": "sole_stiffness", "uniform": [0.5, 1], "source": "assumed: test"}]}})");
+  const std::vector<std::string> words = {"certify", "stand.json", "--quiet", "--plant",
+                                          "mujoco",  "--failure",  "0.5",     "--confidence",
+                                          "0.5",     "--runs",     "1"};
+  std::vector<std::string> with_study = words;
+  with_study.insert(with_study.end(), {"--study", "soles.json"});
+  const Output stated = study.run(with_study);
+  if (stated.exit_code == 2) GTEST_SKIP() << "Ayumi was built without MuJoCo";
+  EXPECT_EQ(stated.exit_code, 3);
+  EXPECT_NE(stated.err.find("soles.json: /uncertainty/quantities/0: this quantity has no effect"),
+            std::string::npos)
+      << stated.err;
+  const Output usual = study.run(words);
+  EXPECT_LE(usual.exit_code, 1) << usual.err;
+  EXPECT_NE(usual.out.find("--plant mujoco does not use it: sole_stiffness"), std::string::npos)
+      << usual.out;
+}
+
 TEST(CertifyCommand, ACaseCanBeSimulatedAlone) {
   const CertifyStudy study;
   const Output all = study.certify({"--json"});

@@ -163,6 +163,68 @@ TEST(SweepCommand, RecordsFailuresAndRunsThemAgain) {
   EXPECT_EQ(s.sweep({"-o", "r.db", "--expect", "errors == 1"}).exit_code, 0);
 }
 
+// A case that is not asked for keeps the record of its failure.
+TEST(SweepCommand, RetryForgetsOnlyCasesThatItRuns) {
+  const Sweep s;
+  write(s.folder / "study.json", R"({"format": "ayumi.study/1", "sweep": {
+    "settings": {"pattern": "stand.json", "world": "w"},
+    "cases": {"value.mu": [-1, 0.8, -2]}, "worlds": {"w": {"friction": "${mu}"}}}})");
+  ASSERT_EQ(s.sweep({"-o", "r.db"}).exit_code, 1);
+  const Output again = s.sweep({"-o", "r.db", "--json", "--retry", "--cases", "0"});
+  EXPECT_EQ(Json::parse(again.out).at("run_now"), 1) << again.err;
+  EXPECT_EQ(Json::parse(again.out).at("done"), 3);
+  EXPECT_EQ(Json::parse(again.out).at("errors"), 2);
+}
+
+TEST(SweepCommand, MergeNamesTheFilesThatDiffer) {
+  const Sweep s;
+  ASSERT_EQ(s.sweep({"-o", "a.db"}).exit_code, 0);
+  const std::string all = contents(s.folder / "a.db");
+  std::string other = all;
+  for (size_t i = other.find("stands"); i != std::string::npos; i = other.find("stands", i + 1))
+    other[i + 5] = 'S';  // also in the views, which only count
+  write(s.folder / "b.db", other);
+  const Output merged = s.run({"sweep", "merge", "a.db", "b.db", "-o", "m.db"});
+  EXPECT_EQ(merged.exit_code, 3);
+  EXPECT_NE(merged.err.find(" has another result than in m.db; nothing of this file"),
+            std::string::npos)
+      << merged.err;
+  EXPECT_FALSE(fs::exists(s.folder / "m.db"));
+}
+
+TEST(SweepCommand, FilesOfOneCommandDiffer) {
+  const Sweep s;
+  const Output same = s.sweep({"-o", "x.db", "--csv", "./x.db"});
+  EXPECT_EQ(same.exit_code, 2);
+  EXPECT_NE(same.err.find("--out and --csv name the same file"), std::string::npos) << same.err;
+  EXPECT_EQ(s.sweep({"-o", "x.db", "--junit", "a", "--page", "a"}).exit_code, 2);
+  EXPECT_FALSE(fs::exists(s.folder / "x.db"));
+}
+
+// A check is no simulation: nothing is known of falls then.
+TEST(SweepCommand, WhatIsNotMeasuredMeetsNoExpectation) {
+  const Sweep s;
+  write(s.folder / "study.json", R"({"format": "ayumi.study/1", "sweep": {
+    "settings": {"pattern": "stand.json"}, "cases": {"seed": [1, 2]}, "measure": ["check"]}})");
+  const Output out = s.sweep({"-o", "n.db", "--expect", "falls == 0"});
+  EXPECT_EQ(out.exit_code, 1) << out.out << out.err;
+  EXPECT_NE(out.out.find("not met: falls == 0 (falls = unknown)"), std::string::npos) << out.out;
+  EXPECT_EQ(s.sweep({"-o", "n.db", "--expect", "inconsistent == 0"}).exit_code, 0);
+}
+
+TEST(SweepCommand, ChecksUseTheFrictionOfTheCase) {
+  const Sweep s;
+  write(s.folder / "study.json", R"({"format": "ayumi.study/1", "sweep": {
+    "settings": {"pattern": "patterns/hoap1_walk.json", "world": "w"}, "measure": ["check"],
+    "cases": {"value.mu": [0.4, 0.8, 0.02]}, "worlds": {"w": {"friction": "${mu}"}}}})");
+  ASSERT_EQ(s.sweep({"-o", "f.db", "--csv", "f.csv"}).exit_code, 0);
+  const Table table(contents(s.folder / "f.csv"));
+  EXPECT_NEAR(table.number(0, "check_max_friction_ratio"),
+              2 * table.number(1, "check_max_friction_ratio"), 1e-9);
+  EXPECT_EQ(table.cell(1, "consistent"), "1");
+  EXPECT_EQ(table.cell(2, "consistent"), "0");
+}
+
 TEST(SweepCommand, JudgesExpectations) {
   const Sweep s;
   const Output met = s.sweep(
@@ -259,8 +321,14 @@ TEST(SweepCommand, OneClearLineForBadInput) {
   EXPECT_FALSE(fs::exists(s.folder / "y.db"));
   expect(s.sweep({"-o", "good.db", "--force", "--expect", "fals == 0"}), 2, "did you mean");
   EXPECT_TRUE(contents(s.folder / "good.db") == good);
-  for (const char* const part : {"-wal", "-shm"})
-    EXPECT_FALSE(fs::exists(s.folder / (std::string("good.db") + part)));
+  // Nor does a refused file of another version, which differs in the head of the database.
+  std::string later = good;
+  later.replace(60, 4, std::string("\0\0\0\2", 4));  // PRAGMA user_version
+  write(s.folder / "later.db", later);
+  expect(s.run({"sweep", "status", "later.db"}), 3, "the results have version 2 of the format");
+  for (const char* const file : {"good.db", "later.db"})
+    for (const char* const part : {"-wal", "-shm"})
+      EXPECT_FALSE(fs::exists(s.folder / (std::string(file) + part))) << file;
 }
 
 // The file may not grow over a limit, as on a full disk: what was committed stays.
@@ -293,7 +361,8 @@ TEST(SweepCommand, TwoWritersAreRefused) {
                              "kill %1; wait; exit $code";
   const Output second = run_program({"-c", script}, s.folder.path(), "/bin/bash");
   EXPECT_EQ(second.exit_code, 3) << second.err;
-  EXPECT_NE(second.err.find("t.db.lock"), std::string::npos) << second.err;
+  EXPECT_NE(second.err.find("t.db: another command is writing to this file"), std::string::npos)
+      << second.err;
 }
 
 TEST(SweepCommand, ThePageWorksInABrowser) {

@@ -30,7 +30,8 @@ bool is_file_of(int descriptor, const fs::path& path) {
 LockedFolder lock_folder(const fs::path& folder, const std::string& name, const std::string& busy) {
   // Chosen: another process may remove folder or file between two calls, but not a hundred times.
   constexpr int kTries = 100;
-  const std::string own = name == folder.string() ? "the folder " : "its lock " + folder.string() + " ";
+  const std::string own =
+      name == folder.string() ? "the folder " : "its lock " + folder.string() + " ";
   const auto stop = [&](const std::string& reason) {
     fail(ErrorCode::bad_file, name + ": " + (reason == busy ? "" : own) + reason);
   };

@@ -89,14 +89,18 @@ KnownResults run_cases(const UncertainTask& task, const CertifyOptions& options,
     for (long i = begin; i < end; ++i)
       if (i % options.shards == options.shard && !results[static_cast<size_t>(i)])
         wanted.push_back(i);
-    run_numbers(task, wanted, options, results, save, progress);
+    run_numbers(task, wanted, options, results, {}, progress);
     begin = end;
-    if (whole) continue;
-    const SequentialOutcome outcome = test.outcome(failures_in_order(results));
-    failures = outcome.failures;
-    if (!outcome.stopped) continue;
-    std::fill(results.begin() + outcome.runs, results.end(), std::nullopt);
-    break;
+    bool stopped = false;
+    if (!whole) {
+      const SequentialOutcome outcome = test.outcome(failures_in_order(results));
+      failures = outcome.failures;
+      stopped = outcome.stopped;
+      if (stopped) std::fill(results.begin() + outcome.runs, results.end(), std::nullopt);
+    }
+    // Only cases that the test uses are saved, so a program that is killed here leaves no others.
+    if (save && !wanted.empty()) save(results);
+    if (stopped) break;
   }
   return results;
 }
