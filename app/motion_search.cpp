@@ -7,9 +7,11 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/check/consistency.hpp"
+#include "ayumi/control/gain_design.hpp"
 #include "ayumi/limits/limit.hpp"
 #include "ayumi/plan/sample.hpp"
 #include "ayumi/task/task.hpp"
+#include "simulation.hpp"
 
 namespace ayumi::app {
 
@@ -18,6 +20,8 @@ namespace {
 // Most motions that are sampled, and most that are checked in full. Chosen: a sample of a walk of
 // 12 s at kCoarse takes 0.05 s and a full check 0.5 s.
 constexpr int kMostSampled = 45, kMostChecked = 8;
+// Most motions that are simulated. Chosen: a walk of 12 s takes 0.3 to 1 s.
+constexpr int kMostSimulated = 5;
 // Sample period of the first look [s]. Chosen: postures are judged, 45 of them in a swing of 0.45
 // s.
 constexpr double kCoarse = 0.01;
@@ -74,14 +78,30 @@ std::vector<std::vector<size_t>> nearest_first(const std::vector<Dial>& dials) {
 
 }  // namespace
 
+std::string end_in_simulation(const RobotModel& model, const Pattern& pattern) {
+  Task task = make_task(pattern, model, "", {});
+  const Judgement judged = judge(task);
+  // The profile that write_new_pattern() chooses.
+  if (pattern.profile.empty() && !judged.motion_need.sufficient.empty())
+    task.profile = judged.motion_need.sufficient.front();
+  const SimulateOptions options = simulate_options(task);
+  const CommandSample& first = task.series.samples.front();
+  const std::string unstable = instability(model, model.limits(task.profile), options.controller,
+                                           first.cog.z() - first.zmp.z(), task.series.dt);
+  if (!unstable.empty()) return unstable;
+  const SimulationLog log = simulate(task, options);
+  return log.result.outcome == Outcome::fell ? outcome_text(log) : "";
+}
+
 SearchResult search_motion(const RobotModel& model, const std::vector<Dial>& dials,
                            const std::function<Pattern(const std::vector<double>&)>& make,
-                           const Progress& progress) {
+                           const Progress& progress, bool simulated) {
   SearchResult result;
-  int checked = 0;
+  int checked = 0, runs = 0;
   // Places of the other dials where postures passed, but not speeds, torques or ZMP: another
   // posture does not mend that.
   std::set<std::vector<size_t>> hopeless;
+  std::vector<double> accepted;
   for (const std::vector<size_t>& places : nearest_first(dials)) {
     std::vector<size_t> others;
     for (size_t i = 0; i < dials.size(); ++i)
@@ -97,6 +117,14 @@ SearchResult search_motion(const RobotModel& model, const std::vector<Dial>& dia
       if (wrong.empty()) {
         ++checked;
         wrong = wrong_motion(model, pattern);
+        if (wrong.empty() && simulated) {
+          ++runs;
+          wrong = end_in_simulation(model, pattern);
+          if (!wrong.empty() && result.falls.empty()) {
+            result.falls = wrong;
+            accepted = values;
+          }
+        }
         if (!wrong.empty()) hopeless.insert(others);
       }
     } catch (const Error& error) {
@@ -113,9 +141,14 @@ SearchResult search_motion(const RobotModel& model, const std::vector<Dial>& dia
     if (wrong.empty()) {
       result.found = true;
       result.values = values;
-      break;
+      result.falls.clear();
+      return result;
     }
-    if (result.tried == kMostSampled || checked == kMostChecked) break;
+    if (result.tried == kMostSampled || checked == kMostChecked || runs == kMostSimulated) break;
+  }
+  if (!accepted.empty()) {
+    result.found = true;
+    result.values = accepted;
   }
   return result;
 }

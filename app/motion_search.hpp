@@ -24,15 +24,22 @@ struct SearchResult {
   int tried = 0;
   std::string limit;     ///< what is wrong with the default values; "" where nothing is
   bool refused = false;  ///< the robot cannot do the default values at all
+  std::string falls;     ///< how the motion found ends in a simulation; "" where the robot stands
 };
+
+/// How a motion ends in a simulation with the default controller, "dtad fell at 3.2 s ..."; ""
+/// where the robot stands at its end.
+std::string end_in_simulation(const RobotModel& model, const Pattern& pattern);
 
 /// Tries the values of the dials, those nearest to the defaults first, until the check accepts the
 /// motion for a profile of the robot. `make` returns the pattern for values of the dials; it may
 /// throw Error(bad_pattern) or Error(usage) for those that the robot cannot do. The number of
-/// trials is bounded, not their time, so that the same input gives the same result.
+/// trials is bounded, not their time, so that the same input gives the same result. `simulated`: of
+/// the motions that the check accepts, the first one in which the robot stands in a simulation is
+/// taken; where it falls in all that are simulated, the first one that the check accepts.
 SearchResult search_motion(const RobotModel& model, const std::vector<Dial>& dials,
                            const std::function<Pattern(const std::vector<double>&)>& make,
-                           const Progress& progress = {});
+                           const Progress& progress = {}, bool simulated = false);
 
 /// "--stride 0.02 m, --period 0.7 s": the values that are not the defaults.
 std::string changed_values(const std::vector<Dial>& dials, const SearchResult& result);

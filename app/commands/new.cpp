@@ -90,20 +90,27 @@ Dial height_dial(const RobotModel& model, double given) {
 
 // The values of the dials with which the robot can do the motion; the defaults where there are
 // none. Says what was changed, and what limits the robot.
-std::vector<double> values_that_pass(
-    const Context& context, const RobotModel& model, const std::vector<Dial>& dials,
-    const std::function<Pattern(const std::vector<double>&)>& make) {
+std::vector<double> values_that_pass(const Context& context, const RobotModel& model,
+                                     const std::vector<Dial>& dials,
+                                     const std::function<Pattern(const std::vector<double>&)>& make,
+                                     bool simulated = false) {
   std::vector<double> defaults;
   for (const Dial& each : dials) defaults.push_back(each.values.front());
   if (!model.has_soles()) return defaults;
-  const SearchResult result = search_motion(model, dials, make, context.progress());
+  const SearchResult result = search_motion(model, dials, make, context.progress(), simulated);
   if (result.limit.empty()) return defaults;
-  if (result.found)
+  const std::string changed = changed_values(dials, result);
+  if (!result.falls.empty())
+    context.print("the check accepts this motion" + (changed.empty() ? "" : " with " + changed) +
+                  ", but the robot falls in a simulation: " + result.falls +
+                  "; of other values, none was found with which it stands after " +
+                  std::to_string(result.tried) + " trials\n");
+  else if (result.found)
     context.print("the default values ask too much of " + model.name() + ": " + result.limit +
                   "\n"
                   "  after " +
-                  std::to_string(result.tried) +
-                  " trials, these values were found: " + changed_values(dials, result) + "\n");
+                  std::to_string(result.tried) + " trials, these values were found: " + changed +
+                  "\n");
   else if (result.tried > 1 && !result.refused)  // else the error says it
     context.print("none of " + std::to_string(result.tried) +
                   " combinations of height, length and time passes the check. The default values "
@@ -126,7 +133,7 @@ void fit_walk(const Context& context, const RobotModel& model, const NewOptions&
   const Dial height =
       lacking ? Dial{"--cog-height", "m", {w.cog_height}} : height_dial(model, w.cog_height);
   const std::vector<double> paces =
-      lacking ? std::vector{0.55, 0.34, 0.75} : std::vector{1.25, 1.6, 0.8, 2.2};
+      lacking ? std::vector{0.55, 0.34, 0.75, 0.42} : std::vector{1.25, 1.6, 0.8, 2.2};
   const std::vector<double> strides =
       lacking ? std::vector{0.5, 0.25} : std::vector{0.75, 0.5, 0.25};
   const std::vector<Dial> dials = {
@@ -140,9 +147,9 @@ void fit_walk(const Context& context, const RobotModel& model, const NewOptions&
     walk.zmp_inwards = values[3];
     return walk;
   };
-  w = with(values_that_pass(context, model, dials, [&](const std::vector<double>& values) {
-    return walk_pattern(model, with(values));
-  }));
+  w = with(values_that_pass(
+      context, model, dials,
+      [&](const std::vector<double>& values) { return walk_pattern(model, with(values)); }, true));
 }
 
 // Motions that a robot can do that cannot walk, as commands; "" where none was found.

@@ -247,10 +247,29 @@ TEST(PlantedMistakes, SoundPatternsHaveNone) {
   for (const Mistaken& mistaken : list()) {
     EXPECT_TRUE(
         find_explanations(mistaken.robot, mistaken.pattern, options_of(mistaken.pattern), {})
-            .empty())
+            .found.empty())
         << mistaken.name;
     EXPECT_TRUE(doubtful_values(mistaken.robot, mistaken.pattern).empty()) << mistaken.name;
   }
+}
+
+// A long walk with a foot that lands on the other one time and again has more to try than anyone
+// waits for: the search ends after a number of trials, and the last mistake says so.
+TEST(PlantedMistakes, TheSearchIsBounded) {
+  WalkParameters steps = walk_defaults(small());
+  steps.steps = 24;
+  Pattern pattern = walk_pattern(small(), steps);
+  for (size_t i = 3; i < pattern.phases.size(); i += 6)
+    if (auto& swing = pattern.phases[i].swing) swing->to.position.y() *= 0.4;
+  constexpr int kMost = 300;  // kMostTrials of check/mistake_search
+  const Explanations search = find_explanations(small(), pattern, options_of(pattern), {});
+  EXPECT_LE(search.trials, kMost);
+  EXPECT_FALSE(search.complete);
+  const std::vector<Mistake> mistakes = likely_mistakes(small(), pattern, options_of(pattern), {});
+  ASSERT_FALSE(mistakes.empty());
+  EXPECT_NE(mistakes.back().words.find(std::to_string(search.trials) + " changes"),
+            std::string::npos)
+      << mistakes.back().words;
 }
 
 // The pattern is consistent with its foot on the ground, but nobody means this.

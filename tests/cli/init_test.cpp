@@ -21,12 +21,27 @@ void expect_walks_in_three_commands(UrdfBiped kind) {
   ASSERT_EQ(made.exit_code, 0) << made.err;
   const Output check = ayumi(folder, {"check", "walk.json"});
   EXPECT_EQ(check.exit_code, 0) << check.out << made.out;
+  const Output run = ayumi(folder, {"simulate", "walk.json"});
+  EXPECT_EQ(run.exit_code, 0) << run.out << run.err << made.out;
 }
 
 TEST(Init, ThreeCommandsToAWalk) {
   expect_walks_in_three_commands({.name = "plain"});
   expect_walks_in_three_commands({.name = "turned", .facing = -std::numbers::pi / 2});
   expect_walks_in_three_commands({.name = "opposed", .opposed = true, .placeholders = true});
+}
+
+// Arms that hang beside the thighs at 0 are moved aside, so that the legs can walk.
+TEST(Init, ArmsAreClearOfTheLegs) {
+  Folder folder;
+  const Output init =
+      ayumi(folder, {"init", AYUMI_SOURCE_DIR "/robots/humanoid30/robot.urdf", "-o", "robot"});
+  ASSERT_EQ(init.exit_code, 0) << init.err;
+  EXPECT_NE(contents(folder / "robot/robot.json").find("the arms come too near to the legs"),
+            std::string::npos);
+  const Output made = ayumi(folder, {"new", "walk", "--robot", "robot", "-o", "walk.json"});
+  EXPECT_EQ(made.exit_code, 0) << made.err << made.out;
+  EXPECT_EQ(ayumi(folder, {"check", "walk.json"}).exit_code, 0) << made.out;
 }
 
 // Without the roll of the ankles the COG hardly goes aside: the walk becomes a shuffle, and what
@@ -39,6 +54,7 @@ TEST(Init, FiveJointLegsShuffle) {
     const Output made = ayumi(folder, {"new", kind, "--robot", "robot", "-o", kind + ".json"});
     ASSERT_EQ(made.exit_code, 0) << made.err;
     EXPECT_EQ(ayumi(folder, {"check", kind + ".json"}).exit_code, 0) << kind << made.out;
+    EXPECT_EQ(ayumi(folder, {"simulate", kind + ".json"}).exit_code, 0) << kind << made.out;
     const std::string cannot =
         "a leg has 5 joints, not six, so there are places at which it cannot put the sole level";
     const size_t said = made.out.find(cannot);

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "tests/support/random_pose.hpp"
 
 using namespace ayumi;
@@ -36,6 +38,38 @@ TEST(Distance, BoxesFaceToFace) {
   EXPECT_NEAR(clearance(a, A, b, B), 0.03, 1e-12);
   B.translation().x() = 0.14;
   EXPECT_NEAR(clearance(a, A, b, B), -0.01, 1e-9);
+}
+
+// Boxes that overlap with almost parallel faces: the depth in closed form, whatever rounding makes
+// of faces in one plane. The tilt of up to e moves corners by less than 3 e half edges.
+TEST(Distance, OverlapOfNearlyParallelBoxes) {
+  std::mt19937 generator(1);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const auto vector = [&] {
+    const double x = uniform(generator), y = uniform(generator), z = uniform(generator);
+    return Vector3d(x, y, z);
+  };
+  for (int i = 0; i < 40000; ++i) {
+    const Vector3d half_a = 0.1 * vector().cwiseAbs() + Vector3d::Constant(0.01);
+    const Vector3d half_b =
+        i % 3 == 0 ? half_a : Vector3d(0.1 * vector().cwiseAbs() + Vector3d::Constant(0.01));
+    const double e = std::pow(10.0, -4 - i % 12);
+    Isometry3d A = Isometry3d::Identity(), B = A;
+    B.translation() = 0.9 * vector().cwiseProduct(half_a + half_b);
+    if (i % 2) B.translation()[i % 3] = 0;
+    const double depth = (half_a + half_b - B.translation().cwiseAbs()).minCoeff();
+    const Vector3d tilt = e * vector();
+    B.linear() =
+        Eigen::Quaterniond(1, tilt.x(), tilt.y(), tilt.z()).normalized().toRotationMatrix();
+    const Vector3d turn = vector();
+    Isometry3d world = Isometry3d::Identity();
+    world.linear() = Eigen::Quaterniond(uniform(generator), turn.x(), turn.y(), turn.z())
+                         .normalized()
+                         .toRotationMatrix();
+    world.translation() = vector();
+    const Collider a(Box{2 * half_a}), b(Box{2 * half_b});
+    EXPECT_NEAR(clearance(a, world * A, b, world * B), -depth, 3 * e * 0.3 + 1e-9) << i;
+  }
 }
 
 // A sphere against a box: distance of a point to a box in closed form, minus the radius.

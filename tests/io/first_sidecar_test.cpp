@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <regex>
+
 #include "ayumi/base/error.hpp"
 #include "ayumi/dynamics/inverse_kinematics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
@@ -70,6 +72,67 @@ TEST(FirstSidecar, SolesAreNotWiderThanWhatTouches) {
                   1e-9);
     }
   }
+}
+
+// A foot that is not level where every joint is at 0, or at the limit nearest to 0, has the sole of
+// the same foot that is.
+TEST(FirstSidecar, SolesOfTiltedFeetAreThoseOfLevelOnes) {
+  const TemporaryFolder folder;
+  const RobotModel level(guess({.name = "level"}, folder).robot);
+  for (const double tilt : {-0.3, 0.087, 0.3}) {
+    std::string text = UrdfBiped{.name = "tilted"}.text();
+    const std::regex ankle("(joint name=\"._ankle_pitch\".*?lower=\")[^\"]*(\" upper=\")[^\"]*");
+    text = std::regex_replace(text, ankle,
+                              "$01" + std::to_string(std::min(2 * tilt, tilt)) + "$02" +
+                                  std::to_string(std::max(2 * tilt, tilt)));
+    const RobotModel tilted(
+        guess_robot(load_robot_description(folder.write("tilted.urdf", text).string(), {},
+                                           {.guess = false}))
+            .robot);
+    ASSERT_TRUE(tilted.has_soles());
+    for (const Side side : {Side::left, Side::right}) {
+      const Sole &a = level.sole(side), &b = tilted.sole(side);
+      EXPECT_LT((a.frame.translation() - b.frame.translation()).norm(), 1e-6) << tilt;
+      EXPECT_LT((a.frame.linear() - b.frame.linear()).norm(), 1e-6) << tilt;
+      ASSERT_EQ(a.polygon.size(), b.polygon.size());
+      for (size_t i = 0; i < a.polygon.size(); ++i)
+        EXPECT_LT((a.polygon[i] - b.polygon[i]).norm(), 1e-6) << tilt;
+    }
+  }
+}
+
+// A passive joint of 1 deg beside a motor with the same axis is the play of its gear; one across it
+// or of 20 deg is a joint. As an MJCF file gives them: passive joints have servos without gains.
+TEST(FirstSidecar, PlayOfGearsBecomesBacklash) {
+  const auto robot = [](double range, const Eigen::Vector3d& axis) {
+    RobotDescription made;
+    JointDescription motor, play;
+    motor.name = "motor";
+    motor.type = play.type = JointType::revolute;
+    motor.parent = "base";
+    motor.child = play.parent = "between";
+    motor.axis = Eigen::Vector3d::UnitZ();
+    motor.effort = 3;
+    play.name = "play";
+    play.child = "arm";
+    play.axis = axis;
+    play.has_limits = true;
+    play.lower = -range / 2;
+    play.upper = range / 2;
+    made.joints = {motor, play};
+    made.servos["motor"].kp = 10;
+    made.servos["play"].viscous = 0.01;
+    return made;
+  };
+  RobotDescription geared = robot(kRightAngle / 90, -Eigen::Vector3d::UnitZ());
+  EXPECT_EQ(hold_play_of_gears(geared), std::vector<std::string>{"play"});
+  EXPECT_EQ(geared.joints[1].type, JointType::fixed);
+  EXPECT_NEAR(geared.servos.at("motor").backlash, kRightAngle / 90, 1e-15);
+  EXPECT_FALSE(geared.servos.contains("play"));
+  RobotDescription across = robot(kRightAngle / 90, Eigen::Vector3d::UnitX());
+  EXPECT_TRUE(hold_play_of_gears(across).empty());
+  RobotDescription wide = robot(20 * kRightAngle / 90, Eigen::Vector3d::UnitZ());
+  EXPECT_TRUE(hold_play_of_gears(wide).empty());
 }
 
 TEST(FirstSidecar, HomeIsBalancedInsideTheLimits) {

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <regex>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
@@ -164,6 +165,12 @@ TEST(MotionFormats, JointsAreMappedByNameAndByOrderOnlyOnRequest) {
   EXPECT_NE(refusal_of(rows).find("20 joint columns without names; give --order"),
             std::string::npos)
       << refusal_of(rows);
+  // An order of 20 joints does not name 19 columns.
+  const std::string fewer = refusal_of(std::regex_replace(rows, std::regex(",[^,]*\n"), "\n"));
+  EXPECT_NE(fewer.find("19 joint columns without names, but 'hoap1' has 20 joints"),
+            std::string::npos)
+      << fewer;
+  EXPECT_EQ(fewer.find("--order"), std::string::npos) << fewer;
   ImportOptions options;
   options.by_order = true;
   EXPECT_NE(refusal_of(rows, "m.csv", options).find("give --rate HZ"), std::string::npos);

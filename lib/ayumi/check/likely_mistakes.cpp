@@ -355,13 +355,16 @@ std::vector<Mistake> doubtful_values(const RobotModel& model, const Pattern& pat
 
 std::vector<Mistake> likely_mistakes(const RobotModel& model, const Pattern& pattern,
                                      const CheckOptions& options, const Progress& progress) {
-  const std::vector<Mistake> impossible = impossible_values(model, pattern);
-  const std::vector<Explanation> explanations =
-      find_explanations(model, pattern, options, progress);
-  if (explanations.empty()) return impossible;
+  const Explanations search = find_explanations(model, pattern, options, progress);
   std::vector<Mistake> mistakes;
-  for (const Explanation& e : explanations)
+  for (const Explanation& e : search.found)
     mistakes.push_back({e.place, e.written + "; " + e.instead});
+  if (mistakes.empty()) mistakes = impossible_values(model, pattern);
+  if (search.complete) return mistakes;
+  const std::string changes =
+      std::to_string(search.trials) + " changes of the pattern that were tried";
+  if (mistakes.empty()) return {{"", "none was found in the " + changes}};
+  mistakes.back().words += "; there may be another cause, beyond the " + changes;
   return mistakes;
 }
 

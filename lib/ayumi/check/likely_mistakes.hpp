@@ -31,8 +31,8 @@ std::vector<Mistake> impossible_values(const RobotModel& model, const Pattern& p
 std::vector<Mistake> doubtful_values(const RobotModel& model, const Pattern& pattern);
 
 /// What, put right, would make the pattern consistent; where nothing does, its impossible values.
-/// Samples and checks the pattern some fifty times, which takes a few seconds; `progress` may stop
-/// it.
+/// Samples and checks the pattern some fifty times, which takes a few seconds, and at most 300
+/// times; the last mistake says so where this bound ended the search. `progress` may stop it.
 std::vector<Mistake> likely_mistakes(const RobotModel& model, const Pattern& pattern,
                                      const CheckOptions& options, const Progress& progress = {});
 

@@ -61,6 +61,10 @@ constexpr size_t kNamedTogether = 2;
 // Mistakes that are looked for one after the other in a pattern with several. Chosen: with more of
 // them, an author mends the first and asks again.
 constexpr int kRounds = 3;
+// Versions of the pattern that are sampled and checked in all rounds together. Chosen: the planted
+// mistakes of tests/check take 1 to 116; a trial of a walk takes 20 ms of processor time on a robot
+// of primitive shapes.
+constexpr int kMostTrials = 300;
 // Part of a swing that a missing double support takes. Chosen: that of the generated walks.
 constexpr double kDoubleSupport = 0.2;
 // A phase whose duration differs by less than this share from that of its like is as long as it was
@@ -150,22 +154,30 @@ class Trials {
     return outcome;
   }
 
-  Outcome after(const Pattern& pattern, const Mend& mend) const {
+  Outcome after(const Pattern& pattern, const Mend& mend) {
     return after(pattern, std::vector<Mend>{mend}).front();
   }
 
-  /// The outcomes in the same order.
-  std::vector<Outcome> after(const Pattern& pattern, const std::vector<Mend>& mends) const {
+  /// The outcomes in the same order. Those for which no trials are left are of no motion that can
+  /// be sampled.
+  std::vector<Outcome> after(const Pattern& pattern, const std::vector<Mend>& mends) {
     std::vector<Outcome> outcomes(mends.size());
-    for (size_t begin = 0; begin < mends.size(); begin += kTrialsBetweenReports) {
+    const size_t tried = std::min(mends.size(), static_cast<size_t>(kMostTrials - made_));
+    if (tried < mends.size()) ended_ = true;
+    made_ += static_cast<int>(tried);
+    for (size_t begin = 0; begin < tried; begin += kTrialsBetweenReports) {
       report(progress_, {"look for the cause", -1, ""});  // may stop the search
       std::atomic<bool> stop = false;
-      in_parallel(
-          std::min(kTrialsBetweenReports, mends.size() - begin), threads_, stop,
-          [&](size_t i) { outcomes[begin + i] = outcome_after(pattern, mends[begin + i]); });
+      in_parallel(std::min(kTrialsBetweenReports, tried - begin), threads_, stop, [&](size_t i) {
+        outcomes[begin + i] = outcome_after(pattern, mends[begin + i]);
+      });
     }
     return outcomes;
   }
+
+  /// Whether there was something left to try when no trials were left.
+  bool ended() const { return ended_; }
+  int made() const { return made_; }
 
  private:
   Outcome outcome_after(const Pattern& pattern, const Mend& mend) const {
@@ -183,6 +195,8 @@ class Trials {
   const Progress& progress_;
   int threads_ = 0;
   double dt_ = 0.001;
+  int made_ = 0;
+  bool ended_ = false;
 };
 
 std::string seconds(double t) { return text::brief(t, 5) + " s"; }
@@ -893,8 +907,7 @@ class Hypotheses {
 /// The search in one pattern.
 class Search {
  public:
-  Search(const Trials& trials, const RobotModel& model, const Pattern& pattern,
-         const Outcome& found)
+  Search(Trials& trials, const RobotModel& model, const Pattern& pattern, const Outcome& found)
       : trials_(trials),
         model_(model),
         pattern_(pattern),
@@ -1071,7 +1084,7 @@ class Search {
     return best;
   }
 
-  const Trials& trials_;
+  Trials& trials_;
   const RobotModel& model_;
   const Pattern& pattern_;
   const Outcome& found_;
@@ -1089,14 +1102,14 @@ std::string result_words(const Outcome& before, const Outcome& after) {
 
 }  // namespace
 
-std::vector<Explanation> find_explanations(const RobotModel& model, const Pattern& pattern,
-                                           const CheckOptions& options, const Progress& progress) {
-  if (pattern.table || pattern.phases.empty() || !model.has_soles()) return {};
-  const Trials trials(model, pattern, options, progress);
-  std::vector<Explanation> explanations;
+Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
+                               const CheckOptions& options, const Progress& progress) {
+  Explanations result;
+  if (pattern.table || pattern.phases.empty() || !model.has_soles()) return result;
+  Trials trials(model, pattern, options, progress);
   Pattern current = pattern;
   Outcome found = trials.of(current);
-  for (int round = 0; round < kRounds && !found.good(); ++round) {
+  for (int round = 0; round < kRounds && !found.good() && !trials.ended(); ++round) {
     Search search(trials, model, current, found);  // the corrections refer to this pattern
     std::vector<Candidate> best = search.best();
     if (best.empty()) break;
@@ -1104,7 +1117,7 @@ std::vector<Explanation> find_explanations(const RobotModel& model, const Patter
       c.hypothesis.says.instead += result_words(found, c.outcome);
       // The steps before this one are part of what is enough.
       if (round > 0) c.hypothesis.says.instead += " (together with the change before)";
-      explanations.push_back(c.hypothesis.says);
+      result.found.push_back(c.hypothesis.says);
     }
     Pattern mended = current;
     best.front().hypothesis.mend(mended);
@@ -1112,7 +1125,9 @@ std::vector<Explanation> find_explanations(const RobotModel& model, const Patter
     current = std::move(mended);
     found = left;
   }
-  return explanations;
+  result.trials = trials.made();
+  result.complete = found.good() || !trials.ended();
+  return result;
 }
 
 }  // namespace ayumi

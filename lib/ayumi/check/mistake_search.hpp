@@ -20,9 +20,17 @@ struct Explanation {
   std::string instead;  ///< what would do: "with 0.09 m, ... the pattern is consistent"
 };
 
+struct Explanations {
+  std::vector<Explanation> found;
+  int trials = 0;        ///< versions of the pattern that were sampled and checked
+  bool complete = true;  ///< false: more could have been tried when the bound on trials was
+                         ///< reached, and errors are left
+};
+
 /// Where one change is not enough, those of several steps, each with the errors that it leaves.
-/// Empty for a consistent pattern, and where no change that is tried helps. `progress` may stop it.
-std::vector<Explanation> find_explanations(const RobotModel& model, const Pattern& pattern,
-                                           const CheckOptions& options, const Progress& progress);
+/// Empty for a consistent pattern, and where no change that is tried helps. The number of trials is
+/// bounded, not their time, so that the same input gives the same result. `progress` may stop it.
+Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
+                               const CheckOptions& options, const Progress& progress);
 
 }  // namespace ayumi

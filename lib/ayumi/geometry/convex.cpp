@@ -227,24 +227,48 @@ class Polytope {
     return best;
   }
 
+  // Replaces the faces that the vertex sees by those between it and their rim. Where rounding makes
+  // faces of one plane visible here and hidden there, the rim is no simple loop, and the faces
+  // would multiply: then only those count that are seen from farther away. False: there is no such
+  // rim.
   bool replace_visible(int top) {
-    std::vector<std::pair<int, int>> horizon;
-    for (Face& face : faces_) {
-      if (face.dead || face.normal.dot(vertices_[top].d - vertices_[face.v[0]].d) <= 1e-13)
-        continue;
-      face.dead = true;
+    for (const double seen_from : {1e-13, 1e-11, 1e-9}) {  // [m]
+      const auto rim = rim_of_visible(top, seen_from);
+      if (rim.empty() || !is_simple(rim)) continue;
+      for (Face& face : faces_) face.dead = face.dead || sees(top, face, seen_from);
+      for (const auto& [a, b] : rim) faces_.push_back(made(a, b, top));
+      return true;
+    }
+    return false;
+  }
+
+  bool sees(int top, const Face& face, double from) const {
+    return face.normal.dot(vertices_[top].d - vertices_[face.v[0]].d) > from;
+  }
+
+  // The edges that the visible faces share with no other visible one.
+  std::vector<std::pair<int, int>> rim_of_visible(int top, double from) const {
+    std::vector<std::pair<int, int>> rim;
+    for (const Face& face : faces_) {
+      if (face.dead || !sees(top, face, from)) continue;
       for (int i = 0; i < 3; ++i) {
         const std::pair edge(face.v[i], face.v[(i + 1) % 3]);
-        const auto twin =
-            std::find(horizon.begin(), horizon.end(), std::pair(edge.second, edge.first));
-        if (twin != horizon.end())
-          horizon.erase(twin);
+        const auto twin = std::find(rim.begin(), rim.end(), std::pair(edge.second, edge.first));
+        if (twin != rim.end())
+          rim.erase(twin);
         else
-          horizon.push_back(edge);
+          rim.push_back(edge);
       }
     }
-    for (const auto& [a, b] : horizon) faces_.push_back(made(a, b, top));
-    return !horizon.empty();
+    return rim;
+  }
+
+  // Each vertex of the rim begins one edge, so that there are at most as many edges as vertices.
+  bool is_simple(const std::vector<std::pair<int, int>>& rim) const {
+    std::vector<char> begins(vertices_.size(), 0);
+    for (const auto& edge : rim)
+      if (begins[static_cast<size_t>(edge.first)]++) return false;
+    return true;
   }
 
   // A facet of D may consist of several coplanar triangles. The points are those of the triangle

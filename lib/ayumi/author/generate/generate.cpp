@@ -94,7 +94,9 @@ void check_parameters(const RobotModel& model, const WalkParameters& p) {
   if (p.rise != 0) check_stairs(model, p);
   require_range("walk", "steps", p.steps, 1, 10000, "");
   require_range("walk", "stride", p.stride, -0.6 * leg, 0.6 * leg, " m");
-  require_range("walk", "period", p.period, 0.2, 10, " s");
+  // Legs swing as pendulums do: a robot of a quarter of HOAP-1's size steps twice as fast.
+  const double fastest = 0.2 * std::min(1.0, std::sqrt(size_beside_hoap1(model)));
+  require_range("walk", "period", p.period, 0.01 * std::floor(100 * fastest), 10, " s");
   require_range("walk", "double_support", p.double_support, 0.05, 0.6, "");
   require_range("walk", "lift", p.lift, 0.01 * leg, 0.4 * leg, " m");
   require_range("walk", "side", p.side, -0.4 * leg, 0.4 * leg, " m");

@@ -21,6 +21,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/control/torque_feedforward.hpp"
+#include "ayumi/dynamics/inverse_kinematics.hpp"
 #include "ayumi/dynamics/zmp.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/model/gravity.hpp"
@@ -201,6 +202,8 @@ Dtad::Dtad(const RobotModel& model, const ActuatorLimits& limits, const DtadPara
   if (params.kind == ControllerKind::foot_guided)
     guide_.emplace(command_.series(), params.least_guide_time);
   if (plan().support == Support::right) anchor_ = Side::right;
+  // Where legs lack joints, the trunk leans as the COG needs it, and has no turn of its own left.
+  if (InverseKinematics(model, model.posture()).lacks_joints()) params_.momentum_gain = 0;
 }
 
 void Dtad::take_over(const Handover& handover) {

@@ -226,9 +226,14 @@ std::vector<std::string> column_names(const MotionFile& motion, const RobotModel
   }
   if (motion.joints.empty())
     fail(ErrorCode::bad_file,
-         file + ": the file has " + count + " without names; give --order if they are the " +
-             text::counted(own.size(), "joint") + " of '" + model.name() + "' in its order (" +
-             own.front() + ", ..., " + own.back() + "), or --joints A,B,... with their names");
+         file + ": the file has " + count + " without names" +
+             (own.size() == columns
+                  ? "; give --order if they are the " + text::counted(own.size(), "joint") +
+                        " of '" + model.name() + "' in its order (" + own.front() + ", ..., " +
+                        own.back() + "), or --joints A,B,... with their names"
+                  : ", but '" + model.name() + "' has " + text::counted(own.size(), "joint") +
+                        ", so that this may be a motion of another robot; --joints A,B,... names "
+                        "the columns"));
   return motion.joints;
 }
 

@@ -250,11 +250,12 @@ std::string joint_list(const std::vector<std::string>& joints) {
 }
 
 std::string servos_text(const RobotModel& model, const RobotGuess& guess) {
-  using Values = std::array<double, 5>;
+  using Values = std::array<double, 6>;
   std::vector<std::pair<Values, std::vector<std::string>>> groups;
   for (const Dof& dof : model.dofs()) {
     const ServoDescription& servo = model.description().servos.at(dof.name);
-    const Values values = {servo.kp, servo.kd, servo.rotor_inertia, servo.viscous, servo.coulomb};
+    const Values values = {servo.kp,      servo.kd,      servo.rotor_inertia,
+                           servo.viscous, servo.coulomb, servo.backlash};
     const auto same = std::find_if(groups.begin(), groups.end(),
                                    [&](const auto& group) { return group.first == values; });
     if (same == groups.end())
@@ -269,12 +270,13 @@ std::string servos_text(const RobotModel& model, const RobotGuess& guess) {
       ",  // time between two targets [s]; check the cycle time of the robot's bus\n" +
       "  \"servos\": [\n";
   for (const auto& group : groups) {
-    const auto& [kp, kd, rotor, viscous, coulomb] = group.first;
+    const auto& [kp, kd, rotor, viscous, coulomb, backlash] = group.first;
     text += "    { \"joints\": " + joint_list(group.second) +
             ",\n      \"kp\": " + text::exact(kp) + ", \"kd\": " + text::exact(kd) +
             ", \"rotor_inertia\": " + text::exact(rotor) +
             ", \"viscous\": " + text::exact(viscous) + ", \"coulomb\": " + text::exact(coulomb) +
-            " }" + (&group == &groups.back() ? "\n" : ",\n");
+            (backlash > 0 ? ", \"backlash\": " + rounded_text(backlash, 5) : "") + " }" +
+            (&group == &groups.back() ? "\n" : ",\n");
   }
   return text + "  ],\n";
 }
@@ -348,12 +350,22 @@ std::string packages_text(const RobotSearch& search, const std::filesystem::path
          "  \"package_path\": [" + text::join(folders, ", ") + "],\n";
 }
 
-std::string held_text(const std::vector<std::string>& held) {
+std::string held_text(const std::vector<std::string>& massless,
+                      const std::vector<std::string>& play) {
+  std::vector<std::string> held = massless;
+  held.insert(held.end(), play.begin(), play.end());
   if (held.empty()) return "";
-  return remark(
-             "Joints that are held at 0. Guess: their links have no mass. Check whether they "
-             "should move, and give their links a mass in \"links\".") +
-         "  \"locked_joints\": " + joint_list(held) + ",\n";
+  std::string text;
+  if (!massless.empty())
+    text += remark(
+        "Joints that are held at 0. Guess: their links have no mass. Check whether they should "
+        "move, and give their links a mass in \"links\".");
+  if (!play.empty())
+    text += remark("Joints that are held at 0: " + text::join(play, ", ") +
+                   ". Guess: they are passive, of a small range and beside a motor with the same "
+                   "axis, so they stand for the play of its gear, which is the \"backlash\" of the "
+                   "servo below. Check it by turning the joint while the motor holds.");
+  return text + "  \"locked_joints\": " + joint_list(held) + ",\n";
 }
 
 // ---- inertias
@@ -487,7 +499,8 @@ FirstSidecar first_sidecar(const std::string& robot, const std::filesystem::path
   namespace fs = std::filesystem;
   const fs::path urdf = fs::weakly_canonical(fs::absolute(stated.urdf_file));
   const std::string urdf_as_written = seen_from(folder, urdf);
-  const std::vector<std::string> held = hold_joints_without_mass(stated);
+  const std::vector<std::string> massless = hold_joints_without_mass(stated);
+  const std::vector<std::string> play = hold_play_of_gears(stated);
   RobotGuess guess = guess_robot(std::move(stated));
   const std::vector<std::string> boxes = take_inertias_of_shapes(guess.robot);
   const RobotModel model(guess.robot);
@@ -506,7 +519,7 @@ FirstSidecar first_sidecar(const std::string& robot, const std::filesystem::path
              "docs/formats.md explains the keys.") +
       "  \"format\": \"ayumi.robot/1\",\n  \"name\": " + json_text(model.name()) +
       ",\n  \"urdf\": " + json_text(urdf_as_written) + ",\n" + packages_text(search, folder) +
-      held_text(held) +
+      held_text(massless, play) +
       guessed(
           "Facing: axis of the URDF's root link along which the robot looks; the root link of "
           "this file is turned so that x is forward.",

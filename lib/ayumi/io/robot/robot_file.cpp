@@ -119,7 +119,10 @@ RobotDescription load_robot_description(const std::string& name_or_path, const R
     robot.assumptions.push_back("the " + std::string(kSidecarName) +
                                 " beside this file is not used; name the folder to use it");
   if (!options.guess) return robot;
-  if (!sidecar) hold_joints_without_mass(robot);
+  if (!sidecar) {
+    hold_joints_without_mass(robot);
+    hold_play_of_gears(robot);
+  }
   return guess_robot(std::move(robot)).robot;
 }
 

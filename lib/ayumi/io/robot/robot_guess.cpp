@@ -11,8 +11,10 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/dynamics/inverse_kinematics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/dynamics/self_collision.hpp"
 #include "ayumi/io/robot/facing.hpp"
 #include "ayumi/io/robot/mesh.hpp"
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/math/polygon.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/model/body_poses.hpp"
@@ -35,9 +37,9 @@ constexpr double kOneDegree = std::numbers::pi / 180;
 // rounding of meshes, below the rounded edges of feet. Half or twice: the sole of a foot with edges
 // of 5 mm radius changes by 1 mm.
 constexpr double kTouching = 0.001;
-// What is this near to the lowest point of a foot that is not level belongs to its underside [m].
-// Chosen: an eighth of the height of HOAP-1's ankle (37 mm).
-constexpr double kUnderside = 0.005;
+// Cosine of the largest angle by which an underside is turned to be level. Chosen: 45 deg, so that
+// the back of a heel is no sole.
+constexpr double kMostTilt = 0.7071;
 // Feet are at least this far apart [m]. Chosen: half of the distance of HOAP-1's feet (78 mm).
 constexpr double kApart = 0.02;
 // Difference of the heights of both feet, as a share of the robot's height. Chosen: below the
@@ -303,28 +305,48 @@ void find_facing(const RobotModel& model, RobotGuess& guess) {
 
 // ---- soles
 
-// Attitude in which the underside of a foot is level, by planes through what is near the ground.
-Eigen::Matrix3d levelled(const Points& points) {
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  for (int pass = 0; pass < 3; ++pass) {
-    Points turned = points;
-    for (Vector3d& point : turned) point = turn * point;
-    const double lowest = lowest_of(turned);
-    Eigen::Matrix3d square = Eigen::Matrix3d::Zero();
-    Vector3d right = Vector3d::Zero();
-    for (const Vector3d& point : turned) {
-      if (point.z() > lowest + kUnderside) continue;
-      const Vector3d row(point.x(), point.y(), 1);
-      square += row * row.transpose();
-      right += (point.z() - lowest) * row;
-    }
-    const Eigen::FullPivLU<Eigen::Matrix3d> solver(square);
-    if (solver.rank() < 3) return Eigen::Matrix3d::Identity();
-    const Vector3d plane = solver.solve(right);
-    const Vector3d normal = Vector3d(-plane.x(), -plane.y(), 1).normalized();
-    turn = rotation_between(normal, Vector3d::UnitZ()).toRotationMatrix() * turn;
+// Attitude that makes the side of the foot level on which it comes to rest under a load at this
+// place: the facet of the hull below it. A triangle around the place takes in the lowest point
+// below its plane, until none is left; the plane under the place only sinks.
+Eigen::Matrix3d settled(const Points& points, const Vector2d& load) {
+  // Corners of the first triangle [m] and rounding of the height over a plane [m]. Definition: far
+  // outside of any foot, and far below what a sole is measured by.
+  constexpr double kFar = 1e3, kRounding = 1e-9;
+  constexpr int kMostTurns = 1000;
+  std::array<Vector3d, 3> facet;
+  for (int i = 0; i < 3; ++i) {
+    const double at = 2 * std::numbers::pi * i / 3;
+    facet[i] = Vector3d(load.x() + kFar * elementary::cos(at),
+                        load.y() + kFar * elementary::sin(at), kFar);
   }
-  return turn;
+  const auto normal = [&] {
+    const Vector3d n = (facet[1] - facet[0]).cross(facet[2] - facet[0]);
+    return Vector3d(n.z() < 0 ? -n : n);
+  };
+  const auto is_left = [&](const Vector3d& from, const Vector3d& to) {
+    const Vector2d along = (to - from).head<2>(), there = load - from.head<2>();
+    return along.x() * there.y() - along.y() * there.x() >= 0;
+  };
+  for (int turn = 0; turn < kMostTurns; ++turn) {
+    const Vector3d up = normal();
+    if (!(up.z() > 0)) return Eigen::Matrix3d::Identity();
+    double deepest = -kRounding;
+    const Vector3d* lowest = nullptr;
+    for (const Vector3d& point : points)
+      if (const double above = up.dot(point - facet[0]) / up.z(); above < deepest) {
+        deepest = above;
+        lowest = &point;
+      }
+    if (!lowest) return rotation_between(up.normalized(), Vector3d::UnitZ()).toRotationMatrix();
+    const std::array<Vector3d, 3> before = facet;
+    for (int i = 0; i < 3; ++i) {  // counter-clockwise triangles; one of them holds the place
+      facet = before;
+      facet[i] = *lowest;
+      if (is_left(facet[0], facet[1]) && is_left(facet[1], facet[2]) && is_left(facet[2], facet[0]))
+        break;
+    }
+  }
+  return Eigen::Matrix3d::Identity();
 }
 
 // The corner whose removal takes the least area goes first; what is left lies inside.
@@ -347,17 +369,29 @@ SoleDescription sole_of(const RobotModel& model, const std::vector<Isometry3d>& 
                         const Foot& foot) {
   const auto link = std::find_if(model.links().begin(), model.links().end(),
                                  [&](const Link& each) { return each.body == foot.body; });
-  Points points = foot.points;
+  const Points& points = foot.points;
   const Vector3d ankle = poses[foot.body].translation();
-  Eigen::Matrix3d turn = levelled(points);
-  Points turned = points;
-  for (Vector3d& point : turned) point = turn * (point - ankle);
   Points level = points;
   for (Vector3d& point : level) point -= ankle;
-  // A foot that stands level is not turned by the unevenness of its mesh.
-  if (touching_area(level, lowest_of(level)) > 0.5 * touching_area(turned, lowest_of(turned))) {
-    turn.setIdentity();
-    turned = level;
+  // On the larger one of the sides on which the foot rests under its ankle or under its middle. A
+  // foot that stands level is not turned by the unevenness of its mesh.
+  Vector2d low = level[0].head<2>(), high = low;
+  for (const Vector3d& point : level) {
+    low = low.cwiseMin(point.head<2>());
+    high = high.cwiseMax(point.head<2>());
+  }
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  Points turned = level;
+  double most = 2 * touching_area(level, lowest_of(level));
+  for (const Vector2d& load : {Vector2d(Vector2d::Zero()), Vector2d(0.5 * (low + high))}) {
+    const Eigen::Matrix3d other = settled(level, load);
+    Points there = level;
+    for (Vector3d& point : there) point = other * point;
+    const double area = touching_area(there, lowest_of(there));
+    if (area <= most || other(2, 2) < kMostTilt) continue;
+    most = area;
+    turn = other;
+    turned = std::move(there);
   }
   const double lowest = lowest_of(turned);
   std::vector<Vector2d> touching;
@@ -465,12 +499,11 @@ bool within_limits(const RobotModel& model, const InverseKinematics& ik, const V
   return true;
 }
 
-// Knees bent and the COG over the middle of the soles; false: the legs reach no such posture.
-bool find_home(RobotGuess& guess) {
+// Knees bent and the COG over the middle of the soles, other joints as in `zero`; false: the legs
+// reach no such posture.
+bool balance(RobotGuess& guess, const VectorXd& zero) {
   RobotDescription& robot = guess.robot;
   const RobotModel model(robot);
-  if (!model.has_soles()) return false;
-  const VectorXd zero = zero_posture(model);
   try {
     const InverseKinematics ik(model, zero);
     RobotData data(model);
@@ -525,6 +558,164 @@ bool find_home(RobotGuess& guess) {
     if (error.code() != ErrorCode::bad_model) throw;
   }
   return false;
+}
+
+// The arms and the legs of a robot at home, for the distances between them.
+class ArmsBesideLegs {
+ public:
+  explicit ArmsBesideLegs(const RobotModel& model)
+      : model_(model), collisions_(model), data_(model), ik_(model, model.posture()) {
+    update_positions(model, model.rest_state(), data_);
+    RobotData& data = data_;
+    const double middle = 0.5 * (sole_pose(model, data, Side::left).translation().y() +
+                                 sole_pose(model, data, Side::right).translation().y());
+    const double apart = std::abs(sole_pose(model, data, Side::left).translation().y() - middle);
+    const auto bodies = static_cast<int>(model.bodies().size());
+    std::vector<char> carries_leg(model.bodies().size(), 0);
+    for (const Side side : {Side::left, Side::right})
+      for (int body = model.sole(side).body; body > 0; body = model.bodies()[body].parent)
+        ++carries_leg[static_cast<size_t>(body)];
+    std::vector<char> in_leg(model.bodies().size(), 0);
+    for (int body = 1; body < bodies; ++body) {  // parents first
+      const auto at = static_cast<size_t>(body);
+      in_leg[at] = carries_leg[at] == 1 || in_leg[static_cast<size_t>(model.bodies()[body].parent)];
+      const double beside = data.position[body].y() - middle;
+      if (in_leg[at])
+        legs_.push_back(body);
+      else if (carries_leg[at] == 0 && std::abs(beside) > kBesideTrunk * apart)
+        arms_[beside > 0 ? 0 : 1].push_back(body);
+    }
+    const double height = data.cog.z() - sole_pose(model, data, Side::left).translation().z();
+    wanted_ = kArmClearance * height;
+    postures_.push_back(model.posture());
+    PostureTarget lower;
+    lower.trunk = data.rotation[model.trunk_body()];
+    for (const Side side : {Side::left, Side::right})
+      lower.feet[static_cast<size_t>(side)] = sole_pose(model, data, side);
+    lower.cog = data.cog - Vector3d(0, 0, kLowered * height);
+    RobotState state = model.rest_state();
+    if (ik_.solve(lower, state, data).reached) postures_.push_back(state.theta);
+  }
+
+  double wanted() const { return wanted_; }
+  const std::vector<int>& bodies(int side) const { return arms_[side]; }
+
+  /// Least distance of the arm on this side from the legs, with joints of the arms moved [m].
+  double clearance(int side, const std::map<int, double>& moved) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const VectorXd& posture : postures_) {
+      RobotState state = model_.rest_state();
+      state.theta = posture;
+      for (const auto& [dof, angle] : moved) state.theta[dof] += angle;
+      update_positions(model_, state, data_);
+      for (const int arm : arms_[side])
+        for (const int leg : legs_)
+          if (!collisions_.shapes(arm).empty() && !collisions_.shapes(leg).empty())
+            least = std::min(least, collisions_.clearance({std::min(arm, leg), std::max(arm, leg)},
+                                                          data_, wanted_));
+    }
+    return least;
+  }
+
+  /// Whether the arm on this side is in the trunk, in the head or in the other arm.
+  bool meets_trunk(int side, const std::map<int, double>& moved) {
+    RobotState state = model_.rest_state();
+    for (const auto& [dof, angle] : moved) state.theta[dof] += angle;
+    update_positions(model_, state, data_);
+    const auto is_of = [](const std::vector<int>& bodies, int body) {
+      return std::find(bodies.begin(), bodies.end(), body) != bodies.end();
+    };
+    return std::any_of(collisions_.pairs().begin(), collisions_.pairs().end(), [&](const auto& p) {
+      return (is_of(arms_[side], p.a) || is_of(arms_[side], p.b)) && !is_of(legs_, p.a) &&
+             !is_of(legs_, p.b) && collisions_.clearance(p, data_, kClearOfTrunk) < kClearOfTrunk;
+    });
+  }
+
+ private:
+  // Least distance of a moved arm from the trunk [m]. Source: the clearance below which the check
+  // warns (limits/clearance).
+  static constexpr double kClearOfTrunk = 0.002;
+  // Distance of an arm from the middle, in half distances of the soles, above which it is not part
+  // of the trunk. Chosen: neck and waist are at 0, shoulders beside the hips or farther.
+  static constexpr double kBesideTrunk = 0.25;
+  // Distance of the arms from the legs, in COG heights. Chosen: 17 mm on a robot of HOAP-1's size,
+  // within which its legs sway aside and its knees come forward in a walk. With it, humanoid30's
+  // arms go out by 10 deg, and GR001's by 5 deg.
+  static constexpr double kArmClearance = 0.07;
+  // The lower posture in which the arms are to be clear of the legs too, in COG heights below home.
+  // Chosen: the depth of a squat, and of the heights among which a walk is looked for.
+  static constexpr double kLowered = 0.12;
+
+  const RobotModel& model_;
+  CollisionModel collisions_;
+  RobotData data_;
+  InverseKinematics ik_;
+  std::vector<VectorXd> postures_;
+  std::vector<int> legs_;
+  std::array<std::vector<int>, 2> arms_;  // left, right
+  double wanted_ = 0;
+};
+
+// Angles by which joints of the arms are moved, so that the arms stay clear of the legs: of one
+// joint where this is enough, the least angle that is.
+std::map<int, double> arms_aside(const RobotModel& model) {
+  // Angles that are tried, and joints that are moved. Chosen: arms beside the legs are clear of
+  // them with 10 to 25 deg of one shoulder joint.
+  constexpr double kStep = 5 * kOneDegree, kMost = 60 * kOneDegree;
+  constexpr int kJoints = 2;
+  // Of two joints that do the same, the first one is moved [m]. Definition: above rounding.
+  constexpr double kLeastGain = 1e-6;
+  ArmsBesideLegs robot(model);
+  std::map<int, double> moved;
+  for (const int side : {0, 1}) {
+    double best = robot.clearance(side, moved);
+    for (int joint = 0; joint < kJoints && best < robot.wanted(); ++joint) {
+      std::map<int, double> found = moved;
+      for (int step = 1; step * kStep <= kMost && best < robot.wanted(); ++step)
+        for (const int body : robot.bodies(side)) {
+          const int dof = model.bodies()[body].dof;
+          if (dof < 0 || model.dofs()[dof].prismatic || moved.contains(dof)) continue;
+          for (const double angle : {step * kStep, -step * kStep}) {
+            const double at = model.posture()[dof] + angle;
+            if (at < model.dofs()[dof].lower + kLimitRoom ||
+                at > model.dofs()[dof].upper - kLimitRoom)
+              continue;
+            std::map<int, double> trial = moved;
+            trial[dof] = angle;
+            const double there = robot.clearance(side, trial);
+            if (there <= best + kLeastGain || robot.meets_trunk(side, trial)) continue;
+            best = there;
+            found = trial;
+          }
+        }
+      if (found == moved) break;
+      moved = found;
+    }
+  }
+  return moved;
+}
+
+// A balanced posture whose arms are clear of the legs.
+bool find_home(RobotGuess& guess) {
+  const RobotModel model(guess.robot);
+  if (!model.has_soles()) return false;
+  VectorXd start = zero_posture(model);
+  if (!balance(guess, start)) return false;
+  const std::map<int, double> moved = arms_aside(RobotModel(guess.robot));
+  if (moved.empty()) return true;
+  RobotGuess with_arms = guess;
+  with_arms.robot.postures.erase("home");
+  with_arms.robot.assumptions.pop_back();  // the posture that was found first
+  std::vector<std::string> names;
+  for (const auto& [dof, angle] : moved) {
+    start[dof] += angle;
+    names.push_back(model.dofs()[dof].name + " by " + text::fixed(angle / kOneDegree, 0) + " deg");
+  }
+  if (!balance(with_arms, start)) return true;
+  guess = std::move(with_arms);
+  guess.home_reason.why +=
+      "; the arms come too near to the legs, so they are moved aside: " + text::join(names, ", ");
+  return true;
 }
 
 // ---- servos
@@ -654,6 +845,44 @@ std::vector<std::string> hold_joints_without_mass(RobotDescription& robot) {
     robot.assumptions.push_back(
         "joints that carry no mass are held at 0: " + text::join(held, ", ") +
         "; give their links a mass and an inertia to move them");
+  return held;
+}
+
+std::vector<std::string> hold_play_of_gears(RobotDescription& robot) {
+  // Largest range of a passive joint that is the play of a gear [rad]. Chosen: worn hobby servos
+  // have 2 deg; toes and springs move by 10 deg and more.
+  constexpr double kMostPlay = 4 * kOneDegree;
+  // Cosine of the angle between parallel axes. Definition: what six digits leave.
+  constexpr double kParallel = 1 - 1e-9;
+  const auto is_driven = [&](const JointDescription& joint) {
+    const auto servo = robot.servos.find(joint.name);
+    return servo != robot.servos.end() && (servo->second.kp > 0 || joint.effort > 0);
+  };
+  std::vector<std::string> held, driven;
+  for (JointDescription& play : robot.joints) {
+    if (play.type != JointType::revolute || !play.has_limits || !play.mimic.empty() ||
+        play.upper - play.lower > kMostPlay || !robot.servos.contains(play.name) || is_driven(play))
+      continue;
+    for (const JointDescription& motor : robot.joints) {
+      if (!is_driven(motor)) continue;
+      const bool above = motor.child == play.parent, below = motor.parent == play.child;
+      const JointDescription &first = above ? motor : play, &second = above ? play : motor;
+      if ((!above && !below) || std::abs(first.axis.normalized().dot(
+                                    second.origin.linear() * second.axis.normalized())) < kParallel)
+        continue;
+      robot.servos[motor.name].backlash = play.upper - play.lower;
+      robot.servos.erase(play.name);
+      play.type = JointType::fixed;
+      held.push_back(play.name);
+      driven.push_back(motor.name);
+      break;
+    }
+  }
+  if (!held.empty())
+    robot.assumptions.push_back(
+        "passive joints of a small range beside a motor with the same axis are the play of its "
+        "gear, so they are held at 0, and the servos of " +
+        text::join(driven, ", ") + " have this backlash");
   return held;
 }
 

@@ -48,6 +48,11 @@ RobotGuess guess_robot(RobotDescription robot);
 /// and `assumptions` says so. Returns their names.
 std::vector<std::string> hold_joints_without_mass(RobotDescription& robot);
 
+/// Passive joints of at most 4 deg beside a driven joint with the same axis model the play of its
+/// gear, as some MJCF files do: they become fixed at 0, the servo gets this backlash, and
+/// `assumptions` says so. Returns their names.
+std::vector<std::string> hold_play_of_gears(RobotDescription& robot);
+
 /// Limits that are placeholders. The same position limits on most joints, speeds above 60 rad/s,
 /// and efforts above five times m g z (mass, COG height) or the same on all joints.
 std::vector<PlaceholderLimits> placeholder_limits(const RobotModel& model);
