@@ -331,8 +331,8 @@ void certify_pattern(Context& context, CertifyCommand& options) {
 
 }  // namespace
 
-void add_certify(CLI::App& app, Context& context) {
-  CLI::App* command = app.add_subcommand(
+void add_certify(Command& app, Context& context) {
+  Command* command = app.add_subcommand(
       "certify", "bound the probability that the robot fails under declared uncertainty");
   command->footer(
       "Examples:\n  ayumi certify patterns/hoap1_walk.json --failure 0.01 --confidence 0.95\n"

@@ -315,9 +315,9 @@ void capture(const Context& context, const PostureCommand& options) {
 
 using Options = std::shared_ptr<PostureCommand>;
 
-CLI::App& add_kind(CLI::App& parent, const std::string& name, const std::string& what,
-                   const Options& options, const char* source = "ROBOT|PATTERN|LIBRARY") {
-  CLI::App* command = parent.add_subcommand(name, what);
+Command& add_kind(Command& parent, const std::string& name, const std::string& what,
+                  const Options& options, const char* source = "ROBOT|PATTERN|LIBRARY") {
+  Command* command = parent.add_subcommand(name, what);
   command->add_option("SOURCE", options->source, "Robot or file from which the posture is taken.")
       ->required()
       ->type_name(source);
@@ -327,11 +327,11 @@ CLI::App& add_kind(CLI::App& parent, const std::string& name, const std::string&
   return *command;
 }
 
-void add_name(CLI::App& command, const Options& options) {
+void add_name(Command& command, const Options& options) {
   command.add_option("POSTURE", options->name, "Name of the posture.")->required();
 }
 
-void add_library(CLI::App& command, const Options& options) {
+void add_library(Command& command, const Options& options) {
   command.add_option("--as", options->as, "Name of the new posture.")
       ->required()
       ->type_name("NAME");
@@ -346,8 +346,8 @@ void add_library(CLI::App& command, const Options& options) {
 
 }  // namespace
 
-void add_posture(CLI::App& app, Context& context) {
-  CLI::App* command = app.add_subcommand(
+void add_posture(Command& app, Context& context) {
+  Command* command = app.add_subcommand(
       "posture",
       "list, draw, mirror, adjust and capture named postures, and keep them in a library");
   command->require_subcommand(1);
@@ -361,7 +361,7 @@ void add_posture(CLI::App& app, Context& context) {
   const auto options = std::make_shared<PostureCommand>();
   add_kind(*command, "list", "print the postures with their angles", options)
       .callback([options, &context] { list(context, *options); });
-  CLI::App& drawn = add_kind(*command, "draw", "draw the robot in a posture", options);
+  Command& drawn = add_kind(*command, "draw", "draw the robot in a posture", options);
   add_name(drawn, options);
   drawn.add_option("-o,--out", options->out, "Picture to write (.png).")
       ->required()
@@ -369,11 +369,11 @@ void add_posture(CLI::App& app, Context& context) {
   drawn.add_option("--view", options->view, "View: " + text::join(view_names(), ", ") + ".")
       ->capture_default_str();
   drawn.callback([options, &context] { draw(context, *options); });
-  CLI::App& mirrored = add_kind(*command, "mirror", "exchange left and right", options);
+  Command& mirrored = add_kind(*command, "mirror", "exchange left and right", options);
   add_name(mirrored, options);
   add_library(mirrored, options);
   mirrored.callback([options, &context] { mirror(context, *options); });
-  CLI::App& adjusted = add_kind(*command, "adjust", "change single joints", options);
+  Command& adjusted = add_kind(*command, "adjust", "change single joints", options);
   add_name(adjusted, options);
   adjusted
       .add_option("--joint", options->joints,
@@ -383,8 +383,8 @@ void add_posture(CLI::App& app, Context& context) {
       ->allow_extra_args(false);
   add_library(adjusted, options);
   adjusted.callback([options, &context] { adjust(context, *options); });
-  CLI::App& captured = add_kind(*command, "capture", "take the posture of a motion at one time",
-                                options, "RUN|TABLE|PATTERN");
+  Command& captured = add_kind(*command, "capture", "take the posture of a motion at one time",
+                               options, "RUN|TABLE|PATTERN");
   captured.add_option("--at", options->at, "Time [s].")->required()->type_name("S");
   captured.add_option("--log", options->log, "Log of the run (default: closed_loop).")
       ->type_name("NAME");
