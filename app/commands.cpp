@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
@@ -84,19 +85,21 @@ void complain(const std::string& message) {
   std::fprintf(stderr, "ayumi: %s\n", text::printable(message).c_str());
 }
 
-void add_global_options(CLI::App& app, Context& context) {
+void add_global_options(CLI::App& app, Command& command_line, Context& context) {
   app.set_help_flag("-h,--help", "Print this page.");
   app.set_version_flag("--version",
                        std::string("ayumi ") + version() + " (" + library_versions() + ")",
                        "Print the versions of Ayumi and of its libraries.");
-  app.add_flag("--json", context.json, "Print one JSON object in place of text.");
-  app.add_flag("-q,--quiet", context.quiet, "Print no progress.");
-  app.add_flag("--force", context.force, "Overwrite existing results.");
-  app.add_option("--threads", context.threads,
-                 "Number of threads, 0 for all. Results do not depend on it.")
+  command_line.add_flag("--json", context.json, "Print one JSON object in place of text.");
+  command_line.add_flag("-q,--quiet", context.quiet, "Print no progress.");
+  command_line.add_flag("--force", context.force, "Overwrite existing results.");
+  command_line
+      .add_option("--threads", context.threads,
+                  "Number of threads, 0 for all. Results do not depend on it.")
       ->check(whole_number_within(0, 1024).description(""))
       ->type_name("N");
-  app.add_option("--seed", context.seed, "Seed of noise and random choices.")->type_name("N");
+  command_line.add_option("--seed", context.seed, "Seed of noise and random choices.")
+      ->type_name("N");
   app.add_option_function<std::string>(
          "--describe",
          [&app](const std::string& kind) {
@@ -107,13 +110,15 @@ void add_global_options(CLI::App& app, Context& context) {
       ->type_name("KIND")
       ->trigger_on_parse()
       ->group("");
-  app.add_option("--robot-path", context.robot_path,
-                 "Folder with robots, searched before the bundled ones.")
+  command_line
+      .add_option("--robot-path", context.robot_path,
+                  "Folder with robots, searched before the bundled ones.")
       ->type_name("DIR")
       ->allow_extra_args(false);
-  app.add_option("--package-path", context.package_path,
-                 "Folder in which Ayumi looks for the package NAME of package://NAME/... in robot "
-                 "files. The folder contains packages, or it is a package itself.")
+  command_line
+      .add_option("--package-path", context.package_path,
+                  "Folder in which Ayumi looks for the package NAME of package://NAME/... in robot "
+                  "files. The folder contains packages, or it is a package itself.")
       ->type_name("DIR")
       ->allow_extra_args(false);
 }
@@ -348,8 +353,9 @@ int parse_and_run(int argc, char** argv) {
   CLI::App app("", "ayumi");
   app.formatter(std::make_shared<HelpFormatter>());
   app.fallthrough();
-  add_global_options(app, context);
-  for (const AddCommand add : kCommands) add(app, context);
+  Command command_line(app);
+  add_global_options(app, command_line, context);
+  for (const AddCommand add : kCommands) add(command_line, context);
   if (argc == 1) {
     std::fputs(app.help().c_str(), stdout);
     return 2;

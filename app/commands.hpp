@@ -1,7 +1,6 @@
 #pragma once
 // The command line: one file per subcommand under commands/, listed once in commands.cpp.
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -10,6 +9,7 @@
 
 #include "ayumi/base/progress.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
+#include "options.hpp"
 
 namespace ayumi::app {
 
@@ -35,7 +35,7 @@ struct Context {
 };
 
 /// Each adds one subcommand to `app`. Callbacks throw ayumi::Error for bad input.
-using AddCommand = void (*)(CLI::App& app, Context& context);
+using AddCommand = void (*)(Command& app, Context& context);
 
 /// Where robots are looked for: --robot-path, then the bundled ones.
 RobotSearch robot_search(const Context& context);
@@ -47,7 +47,7 @@ std::filesystem::path data_folder(const std::string& name);
 int run(int argc, char** argv);
 
 // Each defines add_<name> in commands/<name>.cpp; the list is commands/list.def.
-#define AYUMI_COMMAND(name) void add_##name(CLI::App& app, Context& context);
+#define AYUMI_COMMAND(name) void add_##name(Command& app, Context& context);
 #include "commands/list.def"
 #undef AYUMI_COMMAND
 

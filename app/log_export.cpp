@@ -28,12 +28,11 @@ std::string extension_of(const std::string& format) {
   return format == "csv-log" ? ".csv" : "." + format;
 }
 
-void require_options(const LogExport& options, const CLI::App& command) {
+void require_options(const LogExport& options, const Command& command) {
   static const std::vector<std::string> known = {"input", "--format", "--out", "--log", "--robot"};
-  for (const CLI::Option* option : command.get_options()) {
-    const std::string name = option->get_single_name();
-    const std::string shown = option->get_positional() ? name : "--" + name;
-    if (option->count() > 0 && std::find(known.begin(), known.end(), shown) == known.end())
+  for (const Option& option : command.own_options()) {
+    const std::string shown = option.shown_name();
+    if (option.count() > 0 && std::find(known.begin(), known.end(), shown) == known.end())
       fail(ErrorCode::usage, shown + ": this option is for joint tables only, but --format " +
                                  options.format +
                                  " writes the log of a run; leave this option out");
@@ -111,7 +110,7 @@ bool is_log_format(const std::string& format) {
   return std::find(all.begin(), all.end(), format) != all.end();
 }
 
-void export_log(const LogExport& options, const CLI::App& command, Context& context) {
+void export_log(const LogExport& options, const Command& command, Context& context) {
   require_options(options, command);
   refuse_overwriting(context, options.output);
   const SimulationLog log = log_of(options);

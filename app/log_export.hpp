@@ -20,7 +20,7 @@ bool is_log_format(const std::string& format);
 /// Throws Error(usage) where `command` was given an option that is about joint tables, or the
 /// output has another extension than that of its format; Error(bad_file) for anything but a run or
 /// a log.
-void export_log(const LogExport& options, const CLI::App& command, Context& context);
+void export_log(const LogExport& options, const Command& command, Context& context);
 
 /// Throws Error(bad_file) where a joint table is asked for and `input` is a log file.
 void refuse_log_file(const std::string& input);

@@ -12,6 +12,6 @@ bool write_new_pattern(const Context& context, const RobotModel& model, Pattern 
                        const std::vector<std::string>& comments);
 
 /// The subcommand `jump` of `ayumi new`.
-void add_new_jump(CLI::App& command, Context& context);
+void add_new_jump(Command& command, Context& context);
 
 }  // namespace ayumi::app

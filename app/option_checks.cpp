@@ -1,5 +1,6 @@
 #include "option_checks.hpp"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -15,7 +16,7 @@ const std::string kOneOf = "one of|";
 
 }  // namespace
 
-CLI::Validator number_within(double least, double most) {
+ValueCheck number_within(double least, double most) {
   const auto plain = [](double x) {
     return std::abs(x) >= 1e3 ? text::fixed(x, 0) : text::brief(x);
   };
@@ -28,7 +29,7 @@ CLI::Validator number_within(double least, double most) {
   return {complaint, "in [" + least_text + " - " + most_text + "]"};
 }
 
-CLI::Validator whole_number_within(int least, int most) {
+ValueCheck whole_number_within(int least, int most) {
   const std::string least_text = std::to_string(least), most_text = std::to_string(most);
   const auto complaint = [=](const std::string& word) -> std::string {
     int value = 0;
@@ -39,7 +40,7 @@ CLI::Validator whole_number_within(int least, int most) {
   return {complaint, "INT in [" + least_text + " - " + most_text + "]"};
 }
 
-CLI::Validator one_of(const std::vector<std::string>& words) {
+ValueCheck one_of(const std::vector<std::string>& words) {
   const auto complaint = [words](const std::string& word) -> std::string {
     if (std::find(words.begin(), words.end(), word) != words.end()) return "";
     return "'" + word + "' is not one of " + text::join(words, ", ") +

@@ -1,18 +1,21 @@
 #pragma once
 // Checks of option values beyond those of CLI11.
 
-#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "options.hpp"
 
 namespace ayumi::app {
 
 /// A number from `least` to `most`. CLI::Range lets nan pass.
-CLI::Validator number_within(double least, double most);
+ValueCheck number_within(double least, double most);
 
 /// A whole number from `least` to `most`.
-CLI::Validator whole_number_within(int least, int most);
+ValueCheck whole_number_within(int least, int most);
 
 /// One of these words. CLI::IsMember answers in braces.
-CLI::Validator one_of(const std::vector<std::string>& words);
+ValueCheck one_of(const std::vector<std::string>& words);
 /// The words of the one_of() by which the option is checked; none: it has no such check.
 std::vector<std::string> choices_of(const CLI::Option& option);
 

@@ -14,7 +14,7 @@
 
 namespace ayumi::app {
 
-void add_pattern_options(CLI::App& command, PatternOptions& options) {
+void add_pattern_options(Command& command, PatternOptions& options) {
   command.add_option("--set", options.set, "Set a parameter that the pattern declares.")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);

@@ -17,7 +17,7 @@ struct PatternOptions {
   std::string profile;           ///< actuator profile; "" = the pattern's, then the robot's default
   std::string robot = {};        ///< in place of the pattern's; "" = the pattern's
 };
-void add_pattern_options(CLI::App& command, PatternOptions& options);
+void add_pattern_options(Command& command, PatternOptions& options);
 
 /// The bytes of a file; `-` is standard input. Throws Error(bad_file) for more than `most` bytes.
 std::string read_input(const std::filesystem::path& file, size_t most = size_t{1} << 30);

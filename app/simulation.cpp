@@ -15,7 +15,7 @@
 
 namespace ayumi::app {
 
-void add_simulation_options(CLI::App& command, SimulationChoice& choice) {
+void add_simulation_options(Command& command, SimulationChoice& choice) {
   command
       .add_option("--controller", choice.controller,
                   "Controller: none (open loop), dtad or viip; for comparison: preview, "
@@ -42,7 +42,7 @@ void add_simulation_options(CLI::App& command, SimulationChoice& choice) {
   add_plant_option(command, choice.plant);
 }
 
-void add_unstable_flag(CLI::App& command, bool& allowed) {
+void add_unstable_flag(Command& command, bool& allowed) {
   command.add_flag("--allow-unstable", allowed,
                    "Simulate even if the gains make the loop unstable, as a demonstration.");
 }
@@ -102,7 +102,7 @@ constexpr const char* kPlantHelp =
 
 }  // namespace
 
-void add_plant_option(CLI::App& command, std::string& plant) {
+void add_plant_option(Command& command, std::string& plant) {
   command.add_option("--plant", plant, kPlantHelp)->type_name("NAME");
 }
 

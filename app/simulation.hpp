@@ -18,17 +18,17 @@ struct SimulationChoice {
   int substeps = 1;                ///< of the integrator per servo period
   std::string plant = "ayumi";     ///< "ayumi" or "mujoco"
 };
-void add_simulation_options(CLI::App& command, SimulationChoice& choice);
+void add_simulation_options(Command& command, SimulationChoice& choice);
 
 /// --plant NAME.
-void add_plant_option(CLI::App& command, std::string& plant);
+void add_plant_option(Command& command, std::string& plant);
 /// Throws Error(usage) for a plant this program was built without.
 PlantKind plant_of(const std::string& name);
 /// The plants of this program.
 std::vector<std::string> built_plants();
 
 /// --allow-unstable.
-void add_unstable_flag(CLI::App& command, bool& allowed);
+void add_unstable_flag(Command& command, bool& allowed);
 /// Throws Error(bad_pattern) with the reason for DTAD gains that `ayumi gains` refuses.
 void refuse_unstable_gains(const Task& input, const ControllerSpec& spec, bool allowed);
 

@@ -60,8 +60,8 @@ void author(Context& context, const AuthorCommand& options) {
 
 }  // namespace
 
-void add_author(CLI::App& app, Context& context) {
-  CLI::App* command =
+void add_author(Command& app, Context& context) {
+  Command* command =
       app.add_subcommand("author", "show a pattern on a live page that follows and edits the file");
   command->footer(
       "Examples:\n  ayumi author walk.json\n  ayumi author walk.json --open\n"

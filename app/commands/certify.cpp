@@ -345,8 +345,8 @@ void certify_pattern(Context& context, CertifyCommand& options) {
 
 }  // namespace
 
-void add_certify(CLI::App& app, Context& context) {
-  CLI::App* command = app.add_subcommand(
+void add_certify(Command& app, Context& context) {
+  Command* command = app.add_subcommand(
       "certify",
       "show that the robot fails with at most a given probability, under declared uncertainty");
   command->footer(

@@ -374,8 +374,8 @@ void check(Context& context, const CheckCommand& options) {
 
 }  // namespace
 
-void add_check(CLI::App& app, Context& context) {
-  CLI::App* command = app.add_subcommand("check", "say whether a motion is physically consistent");
+void add_check(Command& app, Context& context) {
+  Command* command = app.add_subcommand("check", "say whether a motion is physically consistent");
   command->footer(
       "Examples:\n  ayumi check patterns/hoap1_walk.json\n"
       "  ayumi check walk.json --profile hoap1-strong --tolerance support_margin=0.01\n"

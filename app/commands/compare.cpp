@@ -200,8 +200,8 @@ void compare_run(const Context& context, const CompareCommand& options) {
 
 }  // namespace
 
-void add_compare(CLI::App& app, Context& context) {
-  CLI::App* command =
+void add_compare(Command& app, Context& context) {
+  Command* command =
       app.add_subcommand("compare", "compare recordings of the robot with a simulated run");
   command->footer(
       "Examples:\n  ayumi compare out/ encoders.csv\n"

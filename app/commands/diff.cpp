@@ -115,8 +115,8 @@ void diff(Context& context, const DiffCommand& options) {
 
 }  // namespace
 
-void add_diff(CLI::App& app, Context& context) {
-  CLI::App* command = app.add_subcommand("diff", "say how the motions of two patterns differ");
+void add_diff(Command& app, Context& context) {
+  Command* command = app.add_subcommand("diff", "say how the motions of two patterns differ");
   command->footer(
       "Examples:\n  ayumi diff walk.json repaired.json\n"
       "  ayumi diff walk.json repaired.json --plot moved.svg --json");

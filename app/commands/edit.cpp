@@ -496,7 +496,7 @@ void ramp(Context& context, const EditCommand& options) {
                Json{{"in_s", options.ramps.in}, {"out_s", options.ramps.out}});
 }
 
-void add_edit_options(CLI::App& command, EditCommand& options) {
+void add_edit_options(Command& command, EditCommand& options) {
   command.add_option("-o,--out", options.out, "Pattern file to write.")->required()->type_name("F");
   command
       .add_option("--tolerance", options.tolerances,
@@ -506,17 +506,17 @@ void add_edit_options(CLI::App& command, EditCommand& options) {
   add_pattern_options(command, options.input);
 }
 
-CLI::App& add_join_of(CLI::App& parent, const std::string& name, const std::string& what,
-                      EditCommand& options) {
-  CLI::App* command = parent.add_subcommand(name, what);
+Command& add_join_of(Command& parent, const std::string& name, const std::string& what,
+                     EditCommand& options) {
+  Command* command = parent.add_subcommand(name, what);
   command->add_option("PATTERN", options.patterns, "Pattern files, in their order.")->required();
   add_edit_options(*command, options);
   return *command;
 }
 
-CLI::App& add_edit_of(CLI::App& parent, const std::string& name, const std::string& what,
-                      EditCommand& options) {
-  CLI::App* command = parent.add_subcommand(name, what);
+Command& add_edit_of(Command& parent, const std::string& name, const std::string& what,
+                     EditCommand& options) {
+  Command* command = parent.add_subcommand(name, what);
   command->add_option("PATTERN", options.pattern, "Pattern file.")->required();
   add_edit_options(*command, options);
   return *command;
@@ -524,8 +524,8 @@ CLI::App& add_edit_of(CLI::App& parent, const std::string& name, const std::stri
 
 }  // namespace
 
-void add_edit(CLI::App& app, Context& context) {
-  CLI::App* command = app.add_subcommand(
+void add_edit(Command& app, Context& context) {
+  Command* command = app.add_subcommand(
       "edit",
       "change a whole pattern and check the result: bake, mirror, retime, concat, blend, "
       "ramp, loop, alternate, key");
@@ -550,16 +550,16 @@ void add_edit(CLI::App& app, Context& context) {
   add_edit_of(*command, "mirror", "exchange left and right", options).callback([&context] {
     mirror(context, options);
   });
-  const auto add_table_flag = [](CLI::App& of) {
+  const auto add_table_flag = [](Command& of) {
     of.add_flag("--table", options.as_table,
                 "Write the result as a table of samples, even if the keys of the patterns could be "
                 "kept.");
   };
-  CLI::App& concat_command =
+  Command& concat_command =
       add_join_of(*command, "concat", "play one pattern after the other, without a pause", options);
   add_table_flag(concat_command);
   concat_command.callback([&context] { join(context, options); });
-  CLI::App& blend_command =
+  Command& blend_command =
       add_join_of(*command, "blend",
                   "play one pattern after the other, with a transition between them", options);
   blend_command.add_option("--over", options.over, "Duration of the transition [s].")
@@ -568,7 +568,7 @@ void add_edit(CLI::App& app, Context& context) {
       ->type_name("S");
   add_table_flag(blend_command);
   blend_command.callback([&context] { join(context, options); });
-  CLI::App& ramp_command = add_edit_of(
+  Command& ramp_command = add_edit_of(
       *command, "ramp", "move from a posture to the motion, and back at its end", options);
   ramp_command
       .add_option("--in", options.ramps.in,
@@ -588,7 +588,7 @@ void add_edit(CLI::App& app, Context& context) {
       ->type_name("NAME")
       ->capture_default_str();
   ramp_command.callback([&context] { ramp(context, options); });
-  CLI::App& retime_command =
+  Command& retime_command =
       add_edit_of(*command, "retime", "play the same motion faster or more slowly", options);
   retime_command
       .add_option("--scale", options.scale, "Factor on the time: 0.8 is faster, 1.25 is slower.")
@@ -609,7 +609,7 @@ void add_edit(CLI::App& app, Context& context) {
   retime_command.add_flag("--keep-pauses", options.keep_pauses,
                           "With --local: spans in which nothing moves keep their length.");
   retime_command.callback([&context] { retime(context, options); });
-  CLI::App& loop_command =
+  Command& loop_command =
       add_edit_of(*command, "loop", "repeat a motion that ends as it begins", options);
   loop_command.add_option("--times", options.times, "How many times the motion is played.")
       ->check(whole_number_within(1, 1000))
@@ -629,7 +629,7 @@ void add_edit(CLI::App& app, Context& context) {
       "the walk.");
   add_table_flag(loop_command);
   loop_command.callback([&context] { loop(context, options); });
-  CLI::App& alternate_command =
+  Command& alternate_command =
       add_edit_of(*command, "alternate",
                   "play a step and its mirror image in turn, so that it becomes a walk", options);
   alternate_command.add_option("--times", options.times, "Number of steps in all.")
@@ -640,7 +640,7 @@ void add_edit(CLI::App& app, Context& context) {
       "--open", options.open_end,
       "Let the last step be as long as the others, so that the feet do not end side by side.");
   alternate_command.callback([&context] { alternate(context, options); });
-  CLI::App& key_command =
+  Command& key_command =
       add_edit_of(*command, "key", "copy, move or mirror a single keyframe", options);
   key_command.add_option("--at", options.key.at, "Time of the keyframe [s].")
       ->required()

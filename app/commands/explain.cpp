@@ -126,8 +126,8 @@ void explain(Context& context, const ExplainCommand& options) {
 
 }  // namespace
 
-void add_explain(CLI::App& app, Context& context) {
-  CLI::App* command = app.add_subcommand(
+void add_explain(Command& app, Context& context) {
+  Command* command = app.add_subcommand(
       "explain", "explain an equation of the paper in words, and with the numbers of a run");
   command->footer(
       "Examples:\n  ayumi explain 18\n"

@@ -638,9 +638,9 @@ void export_table(ExportOptions options, Context& context) {
 
 }  // namespace
 
-void add_export(CLI::App& app, Context& context) {
+void add_export(Command& app, Context& context) {
   auto options = std::make_shared<ExportOptions>();
-  CLI::App* command =
+  Command* command =
       app.add_subcommand("export", "write a joint table of a run or pattern for the robot");
   command
       ->add_option("input", options->input,
@@ -674,7 +674,7 @@ void add_export(CLI::App& app, Context& context) {
                    "Time for which the last posture is held [s] (default: 0.5; 0 for an imported "
                    "sequence whose motion is unchanged).")
       ->check(number_within(0.0, 60.0));
-  CLI::Option* interval =
+  Option* interval =
       command
           ->add_option(
               "--interval", options->interval,

@@ -135,8 +135,8 @@ void print_gains(Context& context, GainsCommand& options) {
 
 }  // namespace
 
-void add_gains(CLI::App& app, Context& context) {
-  CLI::App* command =
+void add_gains(Command& app, Context& context) {
+  Command* command =
       app.add_subcommand("gains", "compute gains of DTAD and say whether the whole loop is stable");
   command->footer(
       "Examples:\n"

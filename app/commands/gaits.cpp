@@ -319,8 +319,8 @@ void make_gaits(Context& context, GaitsCommand command) {
 
 }  // namespace
 
-void add_gaits(CLI::App& app, Context& context) {
-  CLI::App* command = app.add_subcommand(
+void add_gaits(Command& app, Context& context) {
+  Command* command = app.add_subcommand(
       "gaits", "make a library of certified walks over a grid of speeds and turning rates");
   command->footer(
       "Examples:\n  ayumi gaits hoap1 -o out/gaits\n"

@@ -1,3 +1,6 @@
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "commands.hpp"
@@ -7,7 +10,7 @@ namespace ayumi::app {
 namespace {
 
 // The names of what can stand after a command or a kind of it.
-std::vector<std::string> names_below(const CLI::App& level) {
+std::vector<std::string> subcommand_names(const CLI::App& level) {
   std::vector<std::string> names;
   for (const CLI::App* command : level.get_subcommands([](const CLI::App*) { return true; }))
     names.push_back(command->get_name());
@@ -19,7 +22,7 @@ void print_help(const CLI::App& app, const std::vector<std::string>& words) {
   const CLI::App* level = &app;
   std::string before = "ayumi";
   for (const std::string& word : words) {
-    const std::vector<std::string> names = names_below(*level);
+    const std::vector<std::string> names = subcommand_names(*level);
     if (std::find(names.begin(), names.end(), word) == names.end())
       fail(ErrorCode::usage,
            "help: " + before + " has no command '" + word + "'" + text::suggestion(word, names));
@@ -33,13 +36,13 @@ void print_help(const CLI::App& app, const std::vector<std::string>& words) {
 
 }  // namespace
 
-void add_help(CLI::App& app, Context&) {
-  CLI::App* command = app.add_subcommand("help", "print the help of a command");
+void add_help(Command& app, Context&) {
+  Command* command = app.add_subcommand("help", "print the help of a command");
   command->footer("Examples:\n  ayumi help check\n  ayumi help new walk");
   static std::vector<std::string> words;
   command->add_option("COMMAND", words,
                       "Name of a command, and of its subcommand if it has subcommands.");
-  command->callback([&app] { print_help(app, words); });
+  command->callback([&app] { print_help(app.cli11(), words); });
 }
 
 }  // namespace ayumi::app

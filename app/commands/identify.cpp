@@ -168,8 +168,8 @@ void identify_servos(const Context& context, const IdentifyCommand& options) {
 
 }  // namespace
 
-void add_identify(CLI::App& app, Context& context) {
-  CLI::App* command =
+void add_identify(Command& app, Context& context) {
+  Command* command =
       app.add_subcommand("identify", "find the servo constants of a robot from a recording");
   command->footer(
       "Examples:\n  ayumi identify hoap1 --command sent.csv --measured encoders.csv -o mine.json\n"

@@ -88,8 +88,8 @@ void import_motion(const Context& context, const ImportCommand& options) {
 
 }  // namespace
 
-void add_import(CLI::App& app, Context& context) {
-  CLI::App* command =
+void add_import(Command& app, Context& context) {
+  Command* command =
       app.add_subcommand("import", "read a motion of another program or robot as a pattern");
   command->footer(
       "Examples:\n  ayumi import walk.csv --robot hoap1 -o walk.json\n"

@@ -401,8 +401,8 @@ void inspect(const Context& context, const InspectOptions& options) {
 
 }  // namespace
 
-void add_inspect(CLI::App& app, Context& context) {
-  CLI::App* command = app.add_subcommand(
+void add_inspect(Command& app, Context& context) {
+  Command* command = app.add_subcommand(
       "inspect",
       "show everything that is known about a robot, and what is suspicious in its files");
   command->footer(

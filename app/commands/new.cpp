@@ -60,7 +60,7 @@ bool write_new(const Context& context, const RobotModel& model, Pattern pattern,
                            comments);
 }
 
-void add_common(CLI::App& command, NewOptions& options) {
+void add_common(Command& command, NewOptions& options) {
   command.add_option("--robot", options.robot, "Name of a bundled robot, folder, sidecar or URDF.")
       ->type_name("ROBOT")
       ->capture_default_str();
@@ -568,7 +568,7 @@ void new_excite(const Context& context, const NewOptions& options) {
 }
 
 // Options that several generators share.
-void add_scaled(CLI::App& command, const char* name, std::optional<double>& value,
+void add_scaled(Command& command, const char* name, std::optional<double>& value,
                 const std::string& text, double hoap1, const char* type) {
   command
       .add_option(
@@ -578,7 +578,7 @@ void add_scaled(CLI::App& command, const char* name, std::optional<double>& valu
       ->type_name(type);
 }
 
-void add_height(CLI::App& command, double& height) {
+void add_height(Command& command, double& height) {
   command
       .add_option("--cog-height", height,
                   "COG height [m]; 0 = the height in the home posture, or a lower one if the legs "
@@ -587,7 +587,7 @@ void add_height(CLI::App& command, double& height) {
       ->type_name("M");
 }
 
-void add_gait(CLI::App& command, NewOptions& options) {
+void add_gait(Command& command, NewOptions& options) {
   command
       .add_option("--steps", options.walk.steps,
                   "Number of steps. After them, one more step brings the feet together.")
@@ -614,7 +614,7 @@ void add_gait(CLI::App& command, NewOptions& options) {
       ->capture_default_str();
 }
 
-void add_walk(CLI::App& command, NewOptions& options) {
+void add_walk(Command& command, NewOptions& options) {
   command.footer(
       "Examples:\n  ayumi new walk --steps 10 --stride 0.025 --period 0.6 -o walk.json\n"
       "  ayumi new walk --rise 0.01 --steps 3 -o stairs.json");
@@ -638,7 +638,7 @@ void add_walk(CLI::App& command, NewOptions& options) {
       ->type_name("M");
 }
 
-void add_step(CLI::App& command, NewOptions& options) {
+void add_step(Command& command, NewOptions& options) {
   command.footer(
       "Examples:\n  ayumi new step -o in_place.json\n"
       "  ayumi new step --steps 1 --length 0.03 -o one_step.json");
@@ -650,7 +650,7 @@ void add_step(CLI::App& command, NewOptions& options) {
       ->type_name("M");
 }
 
-void add_sway(CLI::App& command, NewOptions& options) {
+void add_sway(Command& command, NewOptions& options) {
   command.footer("Examples:\n  ayumi new sway --side 0 --forward 0.015 --cycles 3 -o sway.json");
   add_common(command, options);
   add_scaled(command, "--side", options.side, "Largest displacement to either side [m]",
@@ -668,7 +668,7 @@ void add_sway(CLI::App& command, NewOptions& options) {
       ->type_name("N");
 }
 
-void add_viip(CLI::App& command, NewOptions& options) {
+void add_viip(Command& command, NewOptions& options) {
   command.footer(
       "Examples:\n  ayumi new viip --cog 0.02,0,0 -o shift.json\n"
       "  ayumi new viip --cog-velocity 0.03,0,0 --duration 1 -o moving.json\n"
@@ -707,7 +707,7 @@ void add_viip(CLI::App& command, NewOptions& options) {
       ->type_name("W");
 }
 
-void add_squat(CLI::App& command, NewOptions& options) {
+void add_squat(Command& command, NewOptions& options) {
   command.footer("Examples:\n  ayumi new squat --depth 0.04 --hold 1 --cycles 1 -o squat.json");
   add_common(command, options);
   add_scaled(command, "--depth", options.depth, "How far the COG goes down [m]",
@@ -722,13 +722,13 @@ void add_squat(CLI::App& command, NewOptions& options) {
       ->type_name("N");
 }
 
-void add_which(CLI::App& command, const char* name, const char* what, NewOptions& options) {
+void add_which(Command& command, const char* name, const char* what, NewOptions& options) {
   command.add_option(name, options.which, std::string(what) + ".")
       ->check(one_of({"left", "right"}))
       ->capture_default_str();
 }
 
-void add_seat(CLI::App& command, NewOptions& options) {
+void add_seat(Command& command, NewOptions& options) {
   add_common(command, options);
   add_scaled(command, "--depth", options.depth,
              "Distance of the COG between standing and sitting [m]", SeatParameters().depth, "M");
@@ -741,7 +741,7 @@ void add_seat(CLI::App& command, NewOptions& options) {
   add_height(command, options.seat.cog_height);
 }
 
-void add_bow(CLI::App& command, NewOptions& options) {
+void add_bow(Command& command, NewOptions& options) {
   command.footer("Examples:\n  ayumi new bow --angle 20 --hold 1 -o bow.json");
   add_common(command, options);
   command.add_option("--angle", options.angle_deg, "Lean of the trunk [deg] (default: 29).")
@@ -753,7 +753,7 @@ void add_bow(CLI::App& command, NewOptions& options) {
   add_height(command, options.bow.cog_height);
 }
 
-void add_wave(CLI::App& command, NewOptions& options) {
+void add_wave(Command& command, NewOptions& options) {
   command.footer("Examples:\n  ayumi new wave --hand left --cycles 5 -o wave.json");
   add_common(command, options);
   add_which(command, "--hand", "Hand that waves", options);
@@ -765,7 +765,7 @@ void add_wave(CLI::App& command, NewOptions& options) {
   add_height(command, options.wave.cog_height);
 }
 
-void add_kick(CLI::App& command, NewOptions& options) {
+void add_kick(Command& command, NewOptions& options) {
   command.footer("Examples:\n  ayumi new kick --foot left --length 0.05 -o kick.json");
   add_common(command, options);
   add_which(command, "--foot", "Foot that kicks", options);
@@ -778,7 +778,7 @@ void add_kick(CLI::App& command, NewOptions& options) {
   add_height(command, options.kick.cog_height);
 }
 
-void add_turn(CLI::App& command, NewOptions& options) {
+void add_turn(Command& command, NewOptions& options) {
   command.footer("Examples:\n  ayumi new turn --angle -90 -o turn_right.json");
   add_common(command, options);
   command.add_option("--angle", options.angle_deg, "Turn to the left [deg] (default: 90).")
@@ -794,21 +794,19 @@ void add_turn(CLI::App& command, NewOptions& options) {
 }
 
 // One line for each kind of motion.
-void list_kinds(const Context& context, const CLI::App& command) {
+void list_kinds(const Context& context, const Command& command) {
   size_t width = 0;
-  const auto kinds = command.get_subcommands([](const CLI::App*) { return true; });
-  for (const CLI::App* kind : kinds) width = std::max(width, kind->get_name().size());
-  for (const CLI::App* kind : kinds)
-    context.print(broken_at(kind->get_name() +
-                                std::string(width + 2 - kind->get_name().size(), ' ') +
-                                kind->get_description() + "\n",
+  const auto kinds = command.all_subcommands();
+  for (const auto& [name, what] : kinds) width = std::max(width, name.size());
+  for (const auto& [name, what] : kinds)
+    context.print(broken_at(name + std::string(width + 2 - name.size(), ' ') + what + "\n",
                             terminal_columns()));
 }
 
 }  // namespace
 
-void add_new(CLI::App& app, Context& context) {
-  CLI::App* command = app.add_subcommand(
+void add_new(Command& app, Context& context) {
+  Command* command = app.add_subcommand(
       "new",
       "write a pattern to edit: walk, step, march, turn, stand, sway, squat, sit, rise, bow, wave, "
       "kick, jump, viip, excite");
@@ -818,7 +816,7 @@ void add_new(CLI::App& app, Context& context) {
           "--list",
           [command, &context] {
             list_kinds(context, *command);
-            throw CLI::Success();
+            end_with_success();
           },
           "Print one line for each kind of motion.")
       ->trigger_on_parse();
@@ -835,51 +833,51 @@ void add_new(CLI::App& app, Context& context) {
   auto shared = std::make_shared<NewOptions>();
   NewOptions& options = *shared;
 
-  CLI::App* walk = command->add_subcommand("walk", "walk from rest to rest");
+  Command* walk = command->add_subcommand("walk", "walk from rest to rest");
   add_walk(*walk, options);
   walk->callback([shared, &context] { new_walk(context, *shared); });
-  CLI::App* step = command->add_subcommand("step", "step in place, or one step forward");
+  Command* step = command->add_subcommand("step", "step in place, or one step forward");
   add_step(*step, options);
   step->callback([shared, &context] { new_step(context, *shared); });
-  CLI::App* march = command->add_subcommand("march", "step in place with high steps");
+  Command* march = command->add_subcommand("march", "step in place with high steps");
   march->footer("Examples:\n  ayumi new march --steps 6 --lift 0.03 -o march.json");
   add_common(*march, options);
   add_gait(*march, options);
   march->callback([shared, &context] { new_march(context, *shared); });
-  CLI::App* turn = command->add_subcommand("turn", "turn in place by an angle");
+  Command* turn = command->add_subcommand("turn", "turn in place by an angle");
   add_turn(*turn, options);
   turn->callback([shared, &context] { new_turn(context, *shared); });
-  CLI::App* sway = command->add_subcommand("sway", "move the COG to and fro over both feet");
+  Command* sway = command->add_subcommand("sway", "move the COG to and fro over both feet");
   add_sway(*sway, options);
   sway->callback([shared, &context] { new_sway(context, *shared); });
-  CLI::App* squat = command->add_subcommand("squat", "move the COG down and up over both feet");
+  Command* squat = command->add_subcommand("squat", "move the COG down and up over both feet");
   add_squat(*squat, options);
   squat->callback([shared, &context] { new_squat(context, *shared); });
 
-  CLI::App* sit = command->add_subcommand("sit", "go down as onto a seat");
+  Command* sit = command->add_subcommand("sit", "go down as onto a seat");
   sit->footer("Examples:\n  ayumi new sit --depth 0.06 -o sit.json");
   add_seat(*sit, options);
   sit->callback([shared, &context] { new_seat(context, *shared, true); });
-  CLI::App* rise = command->add_subcommand("rise", "come up as from a seat");
+  Command* rise = command->add_subcommand("rise", "come up as from a seat");
   rise->footer("Examples:\n  ayumi new rise --depth 0.06 -o rise.json");
   add_seat(*rise, options);
   rise->callback([shared, &context] { new_seat(context, *shared, false); });
-  CLI::App* bow = command->add_subcommand("bow", "lean the trunk ahead and come back");
+  Command* bow = command->add_subcommand("bow", "lean the trunk ahead and come back");
   add_bow(*bow, options);
   bow->callback([shared, &context] { new_bow(context, *shared); });
-  CLI::App* wave = command->add_subcommand("wave", "wave a hand");
+  Command* wave = command->add_subcommand("wave", "wave a hand");
   add_wave(*wave, options);
   wave->callback([shared, &context] { new_wave(context, *shared); });
-  CLI::App* kick = command->add_subcommand("kick", "kick ahead with a foot");
+  Command* kick = command->add_subcommand("kick", "kick ahead with a foot");
   add_kick(*kick, options);
   kick->callback([shared, &context] { new_kick(context, *shared); });
 
-  CLI::App* viip = command->add_subcommand(
+  Command* viip = command->add_subcommand(
       "viip", "goals in place of keys: COG displacement or velocity, steps, a walk at a velocity");
   add_viip(*viip, options);
   viip->callback([shared, &context] { new_viip(context, *shared); });
   add_new_jump(*command, context);
-  CLI::App* stand = command->add_subcommand("stand", "stand on both feet");
+  Command* stand = command->add_subcommand("stand", "stand on both feet");
   stand->footer("Examples:\n  ayumi new stand --duration 4 -o stand.json");
   add_common(*stand, options);
   add_height(*stand, options.stand_height);
@@ -887,7 +885,7 @@ void add_new(CLI::App& app, Context& context) {
       ->capture_default_str()
       ->type_name("S");
   stand->callback([shared, &context] { new_stand(context, *shared); });
-  CLI::App* excite = command->add_subcommand(
+  Command* excite = command->add_subcommand(
       "excite", "slow sweeps, chirps and steps of every joint, for identify");
   excite->footer("Examples:\n  ayumi new excite hoap1 -o excite.json");
   add_common(*excite, options);

@@ -141,10 +141,10 @@ void new_jump(Context& context, JumpOptions options) {
 
 }  // namespace
 
-void add_new_jump(CLI::App& parent, Context& context) {
+void add_new_jump(Command& parent, Context& context) {
   auto shared = std::make_shared<JumpOptions>();
   JumpOptions& options = *shared;
-  CLI::App* command =
+  Command* command =
       parent.add_subcommand("jump", "jump: stoop, lift-off, flight, touchdown, settle");
   command->footer(
       "Examples:\n  ayumi new jump --height 0.02 -o jump.json\n"

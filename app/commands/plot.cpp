@@ -117,10 +117,9 @@ void plot(const PlotOptions& asked, Context& context) {
 
 }  // namespace
 
-void add_plot(CLI::App& app, Context& context) {
+void add_plot(Command& app, Context& context) {
   auto options = std::make_shared<PlotOptions>();
-  CLI::App* command =
-      app.add_subcommand("plot", "draw curves of COG, ZMP and ground force of runs");
+  Command* command = app.add_subcommand("plot", "draw curves of COG, ZMP and ground force of runs");
   command->add_option("run", options->inputs, "Run folders or log files.")
       ->required()
       ->type_name("RUN");

@@ -315,10 +315,10 @@ void capture(const Context& context, const PostureCommand& options) {
 
 using Options = std::shared_ptr<PostureCommand>;
 
-CLI::App& add_kind(CLI::App& parent, const std::string& name, const std::string& what,
+Command& add_kind(Command& parent, const std::string& name, const std::string& what,
                    const Options& options, const char* source = "ROBOT|PATTERN|LIBRARY",
                    const char* source_words = "Robot, pattern or library that has the posture.") {
-  CLI::App* command = parent.add_subcommand(name, what);
+  Command* command = parent.add_subcommand(name, what);
   command->add_option("SOURCE", options->source, source_words)->required()->type_name(source);
   command
       ->add_option("--robot", options->robot, "Robot to use in place of the one that SOURCE names.")
@@ -326,11 +326,11 @@ CLI::App& add_kind(CLI::App& parent, const std::string& name, const std::string&
   return *command;
 }
 
-void add_name(CLI::App& command, const Options& options) {
+void add_name(Command& command, const Options& options) {
   command.add_option("POSTURE", options->name, "Name of the posture.")->required();
 }
 
-void add_library(CLI::App& command, const Options& options,
+void add_library(Command& command, const Options& options,
                  const char* radians = "Use radians in place of degrees in a new library.") {
   command.add_option("--as", options->as, "Name of the new posture.")
       ->required()
@@ -345,8 +345,8 @@ void add_library(CLI::App& command, const Options& options,
 
 }  // namespace
 
-void add_posture(CLI::App& app, Context& context) {
-  CLI::App* command = app.add_subcommand(
+void add_posture(Command& app, Context& context) {
+  Command* command = app.add_subcommand(
       "posture",
       "list, draw, mirror, adjust and capture named postures, and keep them in a library");
   command->require_subcommand(1);
@@ -361,7 +361,7 @@ void add_posture(CLI::App& app, Context& context) {
   add_kind(*command, "list", "print the postures with their angles", options,
            "ROBOT|PATTERN|LIBRARY", "Robot, pattern or library whose postures are printed.")
       .callback([options, &context] { list(context, *options); });
-  CLI::App& drawn = add_kind(*command, "draw", "draw the robot in a posture", options);
+  Command& drawn = add_kind(*command, "draw", "draw the robot in a posture", options);
   add_name(drawn, options);
   drawn.add_option("-o,--out", options->out, "Picture to write (.png).")
       ->required()
@@ -369,11 +369,11 @@ void add_posture(CLI::App& app, Context& context) {
   drawn.add_option("--view", options->view, "View: " + text::join(view_names(), ", ") + ".")
       ->capture_default_str();
   drawn.callback([options, &context] { draw(context, *options); });
-  CLI::App& mirrored = add_kind(*command, "mirror", "exchange left and right", options);
+  Command& mirrored = add_kind(*command, "mirror", "exchange left and right", options);
   add_name(mirrored, options);
   add_library(mirrored, options);
   mirrored.callback([options, &context] { mirror(context, *options); });
-  CLI::App& adjusted = add_kind(*command, "adjust", "change single joints", options);
+  Command& adjusted = add_kind(*command, "adjust", "change single joints", options);
   add_name(adjusted, options);
   adjusted
       .add_option("--joint", options->joints,
@@ -384,7 +384,7 @@ void add_posture(CLI::App& app, Context& context) {
   add_library(adjusted, options,
               "Use radians in place of degrees for --joint and in a new library.");
   adjusted.callback([options, &context] { adjust(context, *options); });
-  CLI::App& captured =
+  Command& captured =
       add_kind(*command, "capture", "take the posture of a motion at one time", options,
                "RUN|TABLE|PATTERN", "Run, table or pattern with the motion.");
   captured.add_option("--at", options->at, "Time [s].")->required()->type_name("S");

@@ -239,7 +239,7 @@ void preview(PreviewOptions options, Context& context) {
     preview_one(options, context);
 }
 
-void add_picture_options(CLI::App& command, PreviewOptions& options) {
+void add_picture_options(Command& command, PreviewOptions& options) {
   ClipOptions& clip = options.clip;
   command
       .add_option(
@@ -297,9 +297,9 @@ void add_picture_options(CLI::App& command, PreviewOptions& options) {
 
 }  // namespace
 
-void add_preview(CLI::App& app, Context& context) {
+void add_preview(Command& app, Context& context) {
   auto options = std::make_shared<PreviewOptions>();
-  CLI::App* command =
+  Command* command =
       app.add_subcommand("preview", "draw a clip, picture or glTF file of a run or pattern");
   command
       ->add_option("run", options->inputs,

@@ -226,8 +226,8 @@ void find_limits(Context& context, const PushCommand& options) {
 
 }  // namespace
 
-void add_push(CLI::App& app, Context& context) {
-  CLI::App* command = app.add_subcommand(
+void add_push(Command& app, Context& context) {
+  Command* command = app.add_subcommand(
       "push", "find the largest push that the robot survives, by gait phase and direction");
   command->footer(
       "Examples:\n"

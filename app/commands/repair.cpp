@@ -409,8 +409,8 @@ void repair_pattern(Context& context, RepairCommand options) {
 
 }  // namespace
 
-void add_repair(CLI::App& app, Context& context) {
-  CLI::App* command = app.add_subcommand("repair", "find the nearest consistent pattern");
+void add_repair(Command& app, Context& context) {
+  Command* command = app.add_subcommand("repair", "find the nearest consistent pattern");
   command->footer(
       "Examples:\n  ayumi repair walk.json -o repaired.json\n"
       "  ayumi repair walk.json -o repaired.json --lock l_elbow --lock foot:left --lock 1.2..1.8\n"

@@ -255,8 +255,8 @@ void replay(Context& context, const ReplayCommand& options) {
 
 }  // namespace
 
-void add_replay(CLI::App& app, Context& context) {
-  CLI::App* command = app.add_subcommand(
+void add_replay(Command& app, Context& context) {
+  Command* command = app.add_subcommand(
       "replay", "play a table or sequence on the simulated robot as its servos would receive it");
   command->footer(
       "Examples:\n  ayumi replay walk_hoap.csv --robot hoap1\n"

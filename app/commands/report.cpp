@@ -58,9 +58,9 @@ void report_run(ReportCommand options, Context& context) {
 
 }  // namespace
 
-void add_report(CLI::App& app, Context& context) {
+void add_report(Command& app, Context& context) {
   auto options = std::make_shared<ReportCommand>();
-  CLI::App* command =
+  Command* command =
       app.add_subcommand("report", "write one HTML page of a run with verdict, replay and curves");
   command->add_option("run", options->input, "Folder that run or simulate wrote.")
       ->required()

@@ -27,8 +27,8 @@ void list_robots(const Context& context) {
 
 }  // namespace
 
-void add_robots(CLI::App& app, Context& context) {
-  CLI::App* command =
+void add_robots(Command& app, Context& context) {
+  Command* command =
       app.add_subcommand("robots", "list the bundled robots and those of --robot-path");
   command->footer("Examples:\n  ayumi robots\n  ayumi robots --robot-path ~/my_robots --json");
   command->callback([&context] { list_robots(context); });

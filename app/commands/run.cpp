@@ -381,8 +381,8 @@ void run_patterns(Context& context, const RunCommand& options) {
 
 }  // namespace
 
-void add_run(CLI::App& app, Context& context) {
-  CLI::App* command =
+void add_run(Command& app, Context& context) {
+  Command* command =
       app.add_subcommand("run", "do the whole job: check, simulate, export, draw and report");
   command->footer(
       "Examples:\n  ayumi run patterns/hoap1_walk.json -o out/\n"

@@ -119,8 +119,8 @@ void compare(Context& context) {
 
 }  // namespace
 
-void add_selftest(CLI::App& app, Context& context) {
-  CLI::App* command = app.add_subcommand(
+void add_selftest(Command& app, Context& context) {
+  Command* command = app.add_subcommand(
       "selftest", "compare the results of this machine with the published ones, bit for bit");
   command->footer("Examples:\n  ayumi selftest\n  ayumi selftest --json");
   command->callback([&context] { compare(context); });

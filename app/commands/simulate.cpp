@@ -101,8 +101,8 @@ void simulate_pattern(Context& context, const SimulateCommand& options) {
 
 }  // namespace
 
-void add_simulate(CLI::App& app, Context& context) {
-  CLI::App* command = app.add_subcommand(
+void add_simulate(Command& app, Context& context) {
+  Command* command = app.add_subcommand(
       "simulate", "simulate the robot with its controller and with disturbances");
   command->footer(
       "Examples:\n  ayumi simulate patterns/hoap1_walk.json -o out/walk\n"

@@ -295,8 +295,8 @@ void show_status(Context& context, const std::string& file) {
 
 }  // namespace
 
-void add_sweep(CLI::App& app, Context& context) {
-  CLI::App* command =
+void add_sweep(Command& app, Context& context) {
+  Command* command =
       app.add_subcommand("sweep", "run every case of a study: patterns, robots, gains, pushes");
   command->footer(
       "Examples:\n  ayumi sweep examples/sweep/friction.json -o out/results.db --page "
@@ -327,8 +327,8 @@ void add_sweep(CLI::App& app, Context& context) {
       ->check(one_of({"local", "slurm"}).description(""))
       ->type_name("NAME")
       ->capture_default_str();
-  std::vector<CLI::Option*> slurm_options;
-  const auto for_slurm = [&](CLI::Option* option, const std::string& type) {
+  std::vector<Option*> slurm_options;
+  const auto for_slurm = [&](Option* option, const std::string& type) {
     slurm_options.push_back(option->type_name(type)->group("With --engine slurm"));
   };
   SlurmOptions& slurm = options->slurm;
@@ -390,7 +390,7 @@ void add_sweep(CLI::App& app, Context& context) {
       ->type_name("N")
       ->capture_default_str();
 
-  CLI::App* merge = command->add_subcommand("merge", "merge the results of shards into one file");
+  Command* merge = command->add_subcommand("merge", "merge the results of shards into one file");
   auto merging = std::make_shared<MergeCommand>();
   merge->add_option("FILES", merging->files, "Results files of one study.")->required();
   merge
@@ -401,14 +401,14 @@ void add_sweep(CLI::App& app, Context& context) {
   merge->add_flag("--partial", merging->partial, "Merge even if cases are missing.");
   merge->callback([merging, &context] { merge_results(context, *merging); });
 
-  CLI::App* status = command->add_subcommand("status", "say how many cases of a sweep are done");
+  Command* status = command->add_subcommand("status", "say how many cases of a sweep are done");
   auto file = std::make_shared<std::string>();
   status->add_option("FILE", *file, "Results.")->required();
   status->callback([file, &context] { show_status(context, *file); });
 
   command->callback([command, options, slurm_options, &context] {
-    if (!command->get_subcommands().empty()) return;
-    for (const CLI::Option* option : slurm_options)
+    if (!command->given_subcommands().empty()) return;
+    for (const Option* option : slurm_options)
       if (option->count() > 0 && options->engine != "slurm")
         fail(ErrorCode::usage, option->get_name() +
                                    " works only together with --engine slurm; add --engine slurm, "

@@ -115,8 +115,8 @@ void tune(Context& context, TuneCommand& options) {
 
 }  // namespace
 
-void add_tune(CLI::App& app, Context& context) {
-  CLI::App* command =
+void add_tune(Command& app, Context& context) {
+  Command* command =
       app.add_subcommand("tune", "improve the gains of DTAD for a pattern by search");
   command->footer(
       "Examples:\n  ayumi tune patterns/hoap1_walk.json --profile hoap1-strong\n"
