@@ -33,25 +33,6 @@ std::string overview(const CLI::App& app) {
          "failed, 5 internal error, 130 stopped by Ctrl-C\n";
 }
 
-// Where the description in a line begins: behind the names, and two blanks or more. In a line
-// without names: where the line begins.
-size_t indent_of(const std::string& line) {
-  const size_t word = std::min(line.find_first_not_of(' '), line.size());
-  const size_t gap = line.rfind("  ");
-  if (gap != std::string::npos && gap > word) return line.find_first_not_of(' ', gap);
-  return word < line.size() && line[word] == '-' ? 6 : word;
-}
-
-// Where a line that is too long is broken: the end of its first part.
-size_t break_of(const std::string& line, size_t indent, size_t columns) {
-  const size_t blank = line.rfind(' ', columns), comma = line.rfind(',', columns - 1);
-  const bool at_blank = blank != std::string::npos && blank > indent;
-  const size_t next = at_blank ? std::min(line.find(' ', blank + 1), line.size()) - blank - 1 : 0;
-  if (at_blank && next <= columns - indent) return blank;
-  if (comma != std::string::npos && comma > indent) return comma + 1;
-  return at_blank ? blank : line.find(' ', columns);
-}
-
 }  // namespace
 
 std::string examples_of(const CLI::App& app) {
@@ -64,26 +45,6 @@ std::string examples_of(const CLI::App& app) {
   for (std::string line; std::getline(lines, line);)
     if (line.starts_with("  ") && line.find(call) != std::string::npos) own += "\n" + line;
   return own.empty() ? footer : "Examples:" + own;
-}
-
-std::string broken_at(const std::string& text, size_t columns) {
-  // Chosen: a description needs this much room beside the names [characters].
-  constexpr size_t kLeastRoom = 20;
-  if (columns == 0) return text;
-  std::string broken;
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line); broken += line + "\n") {
-    if (line.starts_with("  ayumi ")) continue;
-    const size_t indent =
-        std::min(indent_of(line), columns > kLeastRoom ? columns - kLeastRoom : 0);
-    while (line.size() > columns) {
-      const size_t end = break_of(line, indent, columns);
-      if (end == std::string::npos) break;
-      broken += line.substr(0, end) + "\n";
-      line = std::string(indent, ' ') + line.substr(line[end] == ' ' ? end + 1 : end);
-    }
-  }
-  return broken;
 }
 
 std::string HelpFormatter::make_help(const CLI::App* app, std::string name,

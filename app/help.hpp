@@ -10,11 +10,6 @@ namespace ayumi::app {
 /// the examples of its command that call the subcommand, or the whole footer where none does.
 std::string examples_of(const CLI::App& app);
 
-/// Text whose lines are at most `columns` long: longer ones are broken at blanks, and within words
-/// that fill more than a line after a comma. What follows is indented as the description in the
-/// line. Commands of examples stay whole, so that they can be pasted. 0 columns: no line is broken.
-std::string broken_at(const std::string& text, size_t columns);
-
 class HelpFormatter : public CLI::Formatter {
  public:
   std::string make_help(const CLI::App* app, std::string name,

@@ -22,6 +22,11 @@ std::string safe_for_terminal(const std::string& text);
 /// 0 where standard output is no terminal.
 size_t terminal_columns();
 
+/// Text whose lines are at most `columns` long: longer ones are broken at blanks, and within words
+/// that fill more than a line after a comma. What follows is indented as the description in the
+/// line. Commands of examples stay whole, so that they can be pasted. 0 columns: no line is broken.
+std::string broken_at(const std::string& text, size_t columns);
+
 /// Clears the screen and its history where standard output is a terminal.
 void clear_screen();
 

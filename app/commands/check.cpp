@@ -23,7 +23,6 @@
 #include "ayumi/task/plan_log.hpp"
 #include "ayumi/task/scenario_findings.hpp"
 #include "check_table.hpp"
-#include "help.hpp"
 #include "motion_words.hpp"
 #include "pattern_input.hpp"
 #include "signals.hpp"

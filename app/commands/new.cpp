@@ -18,7 +18,6 @@
 #include "ayumi/motion/pattern_context.hpp"
 #include "ayumi/plan/sample.hpp"
 #include "ayumi/task/task.hpp"
-#include "help.hpp"
 #include "motion_search.hpp"
 #include "new_pattern.hpp"
 #include "option_checks.hpp"

@@ -316,8 +316,8 @@ void capture(const Context& context, const PostureCommand& options) {
 using Options = std::shared_ptr<PostureCommand>;
 
 Command& add_kind(Command& parent, const std::string& name, const std::string& what,
-                   const Options& options, const char* source = "ROBOT|PATTERN|LIBRARY",
-                   const char* source_words = "Robot, pattern or library that has the posture.") {
+                  const Options& options, const char* source = "ROBOT|PATTERN|LIBRARY",
+                  const char* source_words = "Robot, pattern or library that has the posture.") {
   Command* command = parent.add_subcommand(name, what);
   command->add_option("SOURCE", options->source, source_words)->required()->type_name(source);
   command
