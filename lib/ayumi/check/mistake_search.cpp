@@ -61,10 +61,6 @@ constexpr size_t kNamedTogether = 2;
 // Mistakes that are looked for one after the other in a pattern with several. Chosen: with more of
 // them, an author mends the first and asks again.
 constexpr int kRounds = 3;
-// Versions of the pattern that are sampled and checked in all rounds together. Chosen: the planted
-// mistakes of tests/check take 1 to 116; a trial of a walk takes 20 ms of processor time on a robot
-// of primitive shapes.
-constexpr int kMostTrials = 300;
 // Part of a swing that a missing double support takes. Chosen: that of the generated walks.
 constexpr double kDoubleSupport = 0.2;
 // A phase whose duration differs by less than this share from that of its like is as long as it was
@@ -127,8 +123,8 @@ bool needs_servo_period(FindingKind kind) {
 class Trials {
  public:
   Trials(const RobotModel& model, const Pattern& pattern, const CheckOptions& options,
-         const Progress& progress)
-      : model_(model), options_(options), progress_(progress) {
+         const Progress& progress, int most)
+      : model_(model), options_(options), progress_(progress), most_(most) {
     options_.threads = 1;
     threads_ = options.threads;
     const double tick = model.description().servo_period;
@@ -162,7 +158,7 @@ class Trials {
   /// be sampled.
   std::vector<Outcome> after(const Pattern& pattern, const std::vector<Mend>& mends) {
     std::vector<Outcome> outcomes(mends.size());
-    const size_t tried = std::min(mends.size(), static_cast<size_t>(kMostTrials - made_));
+    const size_t tried = std::min(mends.size(), static_cast<size_t>(most_ - made_));
     if (tried < mends.size()) ended_ = true;
     made_ += static_cast<int>(tried);
     for (size_t begin = 0; begin < tried; begin += kTrialsBetweenReports) {
@@ -193,7 +189,7 @@ class Trials {
   const RobotModel& model_;
   CheckOptions options_;
   const Progress& progress_;
-  int threads_ = 0;
+  int threads_ = 0, most_ = 0;
   double dt_ = 0.001;
   int made_ = 0;
   bool ended_ = false;
@@ -1103,10 +1099,11 @@ std::string result_words(const Outcome& before, const Outcome& after) {
 }  // namespace
 
 Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
-                               const CheckOptions& options, const Progress& progress) {
+                               const CheckOptions& options, const Progress& progress,
+                               int most_trials) {
   Explanations result;
   if (pattern.table || pattern.phases.empty() || !model.has_soles()) return result;
-  Trials trials(model, pattern, options, progress);
+  Trials trials(model, pattern, options, progress, most_trials);
   Pattern current = pattern;
   Outcome found = trials.of(current);
   for (int round = 0; round < kRounds && !found.good() && !trials.ended(); ++round) {

@@ -20,6 +20,11 @@ struct Explanation {
   std::string instead;  ///< what would do: "with 0.09 m, ... the pattern is consistent"
 };
 
+/// Versions of the pattern that are sampled and checked in all rounds together. Chosen: the planted
+/// mistakes of tests/check take 1 to 116; a trial of a walk takes 20 ms of processor time on a
+/// robot of primitive shapes.
+inline constexpr int kMostTrials = 300;
+
 struct Explanations {
   std::vector<Explanation> found;
   int trials = 0;        ///< versions of the pattern that were sampled and checked
@@ -31,6 +36,7 @@ struct Explanations {
 /// Empty for a consistent pattern, and where no change that is tried helps. The number of trials is
 /// bounded, not their time, so that the same input gives the same result. `progress` may stop it.
 Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
-                               const CheckOptions& options, const Progress& progress);
+                               const CheckOptions& options, const Progress& progress,
+                               int most_trials = kMostTrials);
 
 }  // namespace ayumi
