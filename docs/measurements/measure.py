@@ -791,6 +791,43 @@ def repair_outcome():
     return lines
 
 
+# ---- Mistakes of authors ----
+
+
+def mistakes_table(planted):
+    """Whether the first message names each mistake, on each robot."""
+    import mistakes
+
+    mistakes.AYUMI = AYUMI
+    found = mistakes.outcomes(planted)
+    lines = head("mistake", "pattern", *[f"`{name}`" for name in mistakes.ROBOTS])
+    words = {"named": "yes", "not named": "**no**"}
+    for mistake, cells in found:
+        lines.append(row(mistake.name, mistake.kind,
+                         *[words.get(cells[name][0], cells[name][0]) for name in mistakes.ROBOTS]))
+    counts = []
+    for name in mistakes.ROBOTS:
+        results = [cells[name][0] for _, cells in found]
+        asked = sum(r in ("named", "not named", "no answer") for r in results)
+        counts.append(f"{results.count('named')} of {asked}")
+    lines.append(row("named", "", *counts))
+    return lines
+
+
+@table("mistakes/known")
+def mistakes_known():
+    import mistakes
+
+    return mistakes_table(mistakes.KNOWN)
+
+
+@table("mistakes/new")
+def mistakes_new():
+    import mistakes
+
+    return mistakes_table(mistakes.NEW)
+
+
 def commit():
     folder = pathlib.Path(AYUMI).resolve().parent
     return subprocess.run(["git", "rev-parse", "--short=7", "HEAD"], capture_output=True, text=True,

@@ -198,6 +198,9 @@ std::vector<Mistaken> list() {
             return;
           }
       });
+  add("a kick farther than the leg", tall(), kick_pattern(tall(), kick_defaults(tall())),
+      "/keyframes/4: the right foot's x is 0.72 m; with the decimal point one place further left",
+      [](Pattern& p) { p.keyframes[4].feet[1]->position.x() = 0.72; });
   add("a bow within 60 ms", small(), bow,
       "/keyframes/2: t is .*, so the segment before it lasts 0.06",
       [](Pattern& p) { p.keyframes[2].t = p.keyframes[1].t + 0.06; });

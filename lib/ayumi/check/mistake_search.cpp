@@ -46,6 +46,10 @@ constexpr double kGrossShare = 0.5;
 // Where less than this share of a value is possible, its sign is wrong rather than its size.
 // Chosen: what the tolerances of the check let pass.
 constexpr double kNoShare = 0.05;
+// A value that is farther than this from its neighbours is tried at a tenth. Chosen: half the
+// length of a leg, half a radian; no step or swing of a joint within one segment is usually as
+// long.
+constexpr double kGrossSuspicion = 0.5;
 // A small change is by less than this share of a value. Chosen: more than rounding, less than a
 // slip.
 constexpr double kSmallChange = 0.2;
@@ -964,6 +968,11 @@ class Search {
       if (without[i].errors > 0 && suspects[i].has_sign())
         signs.push_back(sign_of(suspects[i], ""));
     test(std::move(signs));
+    std::vector<Hypothesis> tenths;
+    for (size_t i = 0; i < suspects.size(); ++i)
+      if (without[i].errors > 0 && suspects[i].suspicion(model_) > kGrossSuspicion)
+        tenths.push_back(tenth_of(suspects[i]));
+    test(std::move(tenths));
     if (least == found_.errors) return;
     size_t looked_at = 0;
     for (size_t i = 0; i < suspects.size() && looked_at < kSuspects; ++i)
@@ -1037,6 +1046,16 @@ class Search {
     if (too_small && value.quantity == Quantity::angle && pattern_.degrees)
       add(180 / std::numbers::pi, "read in rad");
     test(std::move(slips));
+  }
+
+  // For a value whose neighbours leave no more room than it does itself.
+  Hypothesis tenth_of(const WrittenValue& value) const {
+    const double number = value.numbers.front().value;
+    return {Rank::slip,
+            {value.place, value.words + " is " + value.text(pattern_, number),
+             "with the decimal point one place further left, " +
+                 value.text(pattern_, 0.1 * number) + ","},
+            [value](Pattern& p) { value.scale(p, 0.1); }};
   }
 
   Hypothesis sign_of(const WrittenValue& value, const std::string& more,
