@@ -203,10 +203,10 @@ Json compare_with(Context& context, const CertifyCommand& options, const Study& 
   const std::string name = options.against.empty() ? options.against_controller : file;
   const std::string own = options.against.empty() ? law : options.pattern;
   context.print("  compared with " + name + " in the same " + text::counted(c.pairs, "case") +
-                ": " + std::to_string(c.both + c.only_first) + " failed with " + own + ", and " +
-                std::to_string(c.both + c.only_second) + " with " + name + "; of these, " +
-                std::to_string(c.only_first) + " failed only with " + own + ", and " +
-                std::to_string(c.only_second) + " only with " + name + "\n");
+                ": " + std::to_string(c.both + c.only_first) + " failed with " + own + " (" +
+                std::to_string(c.only_first) + " of them only with " + own + "), and " +
+                std::to_string(c.both + c.only_second) + " with " + name + " (" +
+                std::to_string(c.only_second) + " of them only with " + name + ")\n");
   context.print("  difference of the failure probabilities: " + in_percent(c.difference.low) +
                 " to " + in_percent(c.difference.high) + " with " + in_percent(pairs.confidence) +
                 " confidence; McNemar's exact test: p = " + text::brief(c.p_value, 3) + "\n");
@@ -381,9 +381,10 @@ void add_certify(Command& app, Context& context) {
       ->type_name("P")
       ->capture_default_str();
   command
-      ->add_option("--runs", certify.most,
-                   "Largest number of runs (default: 10 times the number that is needed for a "
-                   "certificate if the robot never fails).")
+      ->add_option(
+          "--runs", certify.most,
+          "Largest number of runs (default: 10 times as many as a certificate needs when no "
+          "run fails).")
       ->check(whole_number_within(1, 100000000).description(""))
       ->type_name("N");
   command->add_flag("--all", certify.all,

@@ -602,7 +602,7 @@ void add_edit(Command& app, Context& context) {
   retime_command
       .add_option("--margin", options.margin,
                   "With --local: a ZMP margin of this size is enough [m]. A smaller value allows a "
-                  "faster motion (default: 80 % of the margin at the fastest uniform pace or an "
+                  "faster motion (default: 80 % of the margin of the result without --local, or an "
                   "eighth of the width of the sole, whichever is larger).")
       ->check(number_within(0.0, 1.0))
       ->type_name("M");

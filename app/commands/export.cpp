@@ -644,7 +644,8 @@ void add_export(Command& app, Context& context) {
       app.add_subcommand("export", "write a joint table of a run or pattern for the robot");
   command
       ->add_option("input", options->input,
-                   "Run folder, pattern or reference table; with --sign-test a robot.")
+                   "Run folder, pattern, or reference table (such as reference.csv of a run); with "
+                   "--sign-test a robot.")
       ->type_name("RUN_OR_PATTERN");
   std::vector<std::string> formats = {"csv", "json", "hoap", "gltf"};
   const std::vector<std::string> motions = written_format_names();
@@ -711,10 +712,11 @@ void add_export(Command& app, Context& context) {
                     "Write the table even if it is unsafe or not meant for a robot. The head and "
                     "the name of the table then say so, for example walk.UNSAFE.csv.");
   command
-      ->add_option("--servo", options->servo,
-                   "Content of the targets: ideal (the joint angles), lead (default: the "
-                   "targets are ahead of the posture by the lag of the profile's servos) or "
-                   "lead+sag (like lead, and the targets also compensate for the sag under load).")
+      ->add_option(
+          "--servo", options->servo,
+          "Content of the targets: ideal (the joint angles), lead (the targets are ahead of "
+          "the posture by the lag of the profile's servos) or lead+sag (like lead, and "
+          "the targets also compensate for the sag under load) (default: lead).")
       ->check(one_of({"ideal", "lead", "lead+sag"}));
   command->footer(
       "Examples:\n"

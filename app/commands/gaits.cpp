@@ -327,8 +327,9 @@ void add_gaits(Command& app, Context& context) {
       "  ayumi gaits hoap1 -o out/gaits --forward -0.06:0.1:9 --sideways -0.024:0.024:5 --turn "
       "-16:16:5\n"
       "  ayumi gaits hoap1 -o out/gaits --forward 0,0.05 --sideways 0 --turn 0 --failure 0.01\n"
-      "An axis is a list (0,0.05) or FROM:TO:COUNT. Run again with the same options to go on. Exit "
-      "code 1: a cell is missing.");
+      "An axis is a list (0,0.05) or FROM:TO:COUNT. A cell of the library is one combination of "
+      "values of the axes. Run again with the same options to go on. Exit code 1: a cell has no "
+      "walk.");
   auto options = std::make_shared<GaitsCommand>();
   GaitOptions& gaits = options->options;
   command->add_option("ROBOT", options->robot, "Name of a bundled robot, folder, sidecar or URDF.")
@@ -372,9 +373,10 @@ void add_gaits(Command& app, Context& context) {
       ->type_name("P")
       ->capture_default_str();
   command
-      ->add_option("--runs", gaits.study.most,
-                   "Largest number of runs of a cell (default: 4 times the number that is needed "
-                   "for a certificate if the robot never fails).")
+      ->add_option(
+          "--runs", gaits.study.most,
+          "Largest number of runs for each walk (default: 4 times as many as a certificate "
+          "needs when no run fails).")
       ->check(whole_number_within(1, 100000000).description(""))
       ->type_name("N");
   command

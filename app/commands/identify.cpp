@@ -222,9 +222,9 @@ void add_identify(Command& app, Context& context) {
   command
       ->add_option("--longest-lag", options.longest_lag_ms,
                    "Largest time by which a servo may be behind its command [ms]. If the measured "
-                   "angles are later than this, the recording does not begin at the same time as "
-                   "the command, and is refused (default: 30 or twice the lag of the slowest servo "
-                   "of ROBOT, whichever is larger).")
+                   "angles are farther behind the command, Ayumi refuses the recording, because "
+                   "its start is then not the start of the command (default: 30 or twice the lag "
+                   "of the slowest servo of ROBOT, whichever is larger).")
       ->check(number_within(1.0, 500.0))
       ->type_name("MS");
   command->callback([&context] {

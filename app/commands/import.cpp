@@ -121,10 +121,11 @@ void add_import(Command& app, Context& context) {
       ->check(number_within(1.0, 1e5))
       ->type_name("HZ");
   command
-      ->add_option("--signs", signs,
-                   "Signs of angles in radians whose columns are in the order of the motor "
-                   "numbers: encoder = the encoders of the robot define the positive direction, "
-                   "joint = the file of the robot defines the positive direction.")
+      ->add_option(
+          "--signs", signs,
+          "Positive direction of the angles in a file in radians that has one column for each "
+          "motor, in the order of the motor numbers: encoder = the direction in which the "
+          "encoder counts up, joint = the positive direction in the robot's file.")
       ->check(one_of({"encoder", "joint"}))
       ->capture_default_str();
   command->add_flag("--order", options.how.reading.by_order,
@@ -166,9 +167,11 @@ void add_import(Command& app, Context& context) {
           "robot [multiple of the weight].")
       ->check(number_within(0.0, 2.0))
       ->capture_default_str();
-  command->add_flag("--commands", options.how.reading.commands,
-                    "The angles are servo targets, as export writes them: subtract the lead of the "
-                    "servos to get the joint angles. For reference tables this is always done.");
+  command->add_flag(
+      "--commands", options.how.reading.commands,
+      "The angles are servo targets, as export writes them: subtract the lead of the "
+      "servos to get the joint angles. This is always done for reference tables, that is, "
+      "for reference.csv of a run and for the csv and json tables of export.");
   command
       ->add_option("--smooth", options.how.reading.smooth,
                    "Largest change of an angle by smoothing [deg] (default: 0.1 for HOAP counts, 0 "

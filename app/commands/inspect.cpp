@@ -238,8 +238,9 @@ size_t name_width(const RobotModel& model) {
 std::string joint_lines(const RobotModel& model) {
   const size_t width = name_width(model);
   std::string text =
-      "Joints [deg, sliders mm]; servo kp [N m/rad], kd [N m s/rad]\n  " + padded("", width) +
-      "   lower   upper    home       kp       kd     rotor  weight  " + "device  counts/deg\n";
+      "Joints (angles in deg, sliding joints in mm); servo kp [N m/rad], kd [N m s/rad]\n  " +
+      padded("", width) + "   lower   upper    home       kp       kd     rotor  weight  " +
+      "device  counts/deg\n";
   for (int i = 0; i < model.dof_count(); ++i) {
     const Dof& dof = model.dofs()[i];
     const auto column = [&](const std::string& value, size_t columns) {
@@ -294,7 +295,7 @@ std::string coupling_lines(const RobotModel& model) {
   if (!shared.empty())
     text += "  both legs move with " + text::join(shared, ", ") +
             ": the legs cannot turn relative to each other, so the trunk turns and leans instead\n";
-  return text.empty() ? "" : "Coupled joints [rad, sliders m]\n" + text + "\n";
+  return text.empty() ? "" : "Coupled joints (angles in rad, sliding joints in m)\n" + text + "\n";
 }
 
 std::string sole_lines(const RobotModel& model) {

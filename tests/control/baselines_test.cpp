@@ -279,9 +279,11 @@ TEST(Baselines, RefuseGainsThatTheyDoNotHave) {
             std::string::npos);
   EXPECT_NE(message(ControllerKind::dtad, "effort", 1).find("dtad has no gain 'effort'"),
             std::string::npos);
-  EXPECT_NE(message(ControllerKind::preview, "effort", 0).find("effort must be from 1e-9 to 1"),
-            std::string::npos);
-  EXPECT_NE(message(ControllerKind::dcm_step, "slowest", 2).find("slowest must be from 0.1 to 1"),
+  EXPECT_NE(
+      message(ControllerKind::preview, "effort", 0).find("effort is 0; it must be from 1e-9 to 1"),
+      std::string::npos);
+  EXPECT_NE(message(ControllerKind::dcm_step, "slowest", 2)
+                .find("slowest is 2; it must be from 0.1 to 1"),
             std::string::npos);
   EXPECT_EQ(message(ControllerKind::dcm_step, "hurry", 2), "");
   EXPECT_EQ(message(ControllerKind::foot_guided, "soonest", 0.5), "");

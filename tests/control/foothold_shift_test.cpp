@@ -243,7 +243,8 @@ TEST(FootholdShift, TurningAndSideWalksWithoutAPushAreTheSame) {
 
 TEST(FootholdShift, GainsOutOfRangeAreRefused) {
   for (const auto& [gain, value, said] :
-       {std::tuple{"step", 1.5, "step must be from 0 to 1"}, {"hurry", 0.5, "at least 1"}}) {
+       {std::tuple{"step", 1.5, "step is 1.5; it must be from 0 to 1"},
+        {"hurry", 0.5, "at least 1"}}) {
     try {
       dtad_params(walk().model, {ControllerKind::dtad, {{gain, value}}});
       FAIL() << gain;

@@ -303,7 +303,9 @@ void describe(const SampleJob& job, const CogPlan& plan, const Worst& worst,
   if (flies(job)) {
     origin["cog_height"] += "; parabolas in flight";
     if (!job.tracks.torso)
-      origin["torso"] += ", turned around flights so that they have no angular momentum";
+      origin["torso"] +=
+          ", but turned before, in and after each flight, because the angular momentum in flight "
+          "is 0";
   }
   origin["feet"] = "phases and swings";
   origin["base"] = "solved from feet, torso and COG";

@@ -83,18 +83,18 @@ GainFields gain_fields(DtadParams& p) {
 void check_baseline(const DtadParams& p) {
   const auto need = [](bool holds, const char* name, double value, const char* what) {
     if (!holds)
-      fail(ErrorCode::usage, std::string("controller gains: ") + name + " must be " + what +
-                                 "; it is " + text::brief(value));
+      fail(ErrorCode::usage, std::string("controller gains: ") + name + " is " +
+                                 text::brief(value) + "; it must be " + what);
   };
   const auto positive = [&](const char* name, double value) {
     need(value > 0, name, value, "positive");
   };
   if (p.kind == ControllerKind::preview) {
     need(p.preview_effort >= 1e-9 && p.preview_effort <= 1, "effort", p.preview_effort,
-         "from 1e-9 to 1 (the cost of changing the jerk of the COG)");
+         "from 1e-9 to 1. It is the cost of changing the jerk of the COG");
     need(p.preview_horizon > 0 && p.preview_horizon <= 50, "horizon", p.preview_horizon,
-         "above 0 and at most 50 (the time for which the planned ZMP is known in advance, "
-         "multiplied by omega)");
+         "above 0 and at most 50. It is the time for which the planned ZMP is known in advance, "
+         "multiplied by omega");
   }
   if (p.kind == ControllerKind::foot_guided) positive("soonest", p.least_guide_time);
   if (p.kind == ControllerKind::dcm_step) {
@@ -103,7 +103,8 @@ void check_baseline(const DtadParams& p) {
     positive("offset", p.steps.offset);
     positive("zmp", p.steps.zmp);
     need(p.steps.slowest >= 0.1 && p.steps.slowest <= 1, "slowest", p.steps.slowest,
-         "from 0.1 to 1 (the controller may slow the pattern down to this share of its speed)");
+         "from 0.1 to 1. It is the share of its speed to which the controller may slow the pattern "
+         "down");
   }
 }
 
@@ -161,14 +162,13 @@ DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec) {
     fail(ErrorCode::usage, "controller gains: as_printed must be 0 or 1");
   if (p.step_share > 1)
     fail(ErrorCode::usage,
-         "controller gains: step must be from 0 to 1 (the part of an error that new footholds "
-         "absorb); it is " +
-             text::brief(p.step_share));
+         "controller gains: step is " + text::brief(p.step_share) +
+             "; it must be from 0 to 1. It is the part of an error that new footholds absorb");
   if (p.time_scale_limit < 1)
     fail(ErrorCode::usage,
-         "controller gains: hurry must be at least 1 (the largest factor on the speed of the "
-         "pattern); it is " +
-             text::brief(p.time_scale_limit));
+         "controller gains: hurry is " + text::brief(p.time_scale_limit) +
+             "; it must be at least 1. It is the largest factor by which the controller may speed "
+             "the pattern up");
   p.literal = spec.type.demonstration == Demonstration::literal;
   return p;
 }

@@ -291,8 +291,8 @@ std::vector<int> map_joints(const MotionFile& motion, const RobotModel& model,
          file + ": this is a motion of another robot: " +
              (matched.empty() ? "its joints " + shortened(unknown) + " are not joints of " + robot
                               : "of its " + text::counted(names.size(), "joint") + " only " +
-                                    shortened(matched) + " are joints of " + robot + ", but not " +
-                                    shortened(unknown)) +
+                                    shortened(matched) + " are joints of " + robot + ", and " +
+                                    shortened(unknown) + " are not") +
              "; the joints of " + robot + " are " + shortened(model.dof_names()) +
              "; \"aliases\" in the sidecar give them other names, and --joints A,B,... names the "
              "columns");

@@ -55,8 +55,8 @@ void read_parameters(const JsonNode& root, const std::map<std::string, double>& 
            place + " is not declared in the pattern" + text::suggestion(name, names) +
                (names.empty() ? "; it declares none" : "; declared: " + text::join(names, ", ")));
     if (!(std::abs(value) <= kLargestNumber))
-      fail(ErrorCode::usage,
-           place + ": " + text::exact(value) + " is not a number of at most 1e6 in size");
+      fail(ErrorCode::usage, place + ": " + text::exact(value) +
+                                 " is out of range; numbers must be from -1e6 to 1e6");
     scope.parameters[name] = value;
   }
 }

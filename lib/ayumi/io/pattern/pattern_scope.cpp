@@ -85,7 +85,7 @@ double plain_number(const JsonNode& node, PatternScope& scope) {
 double read_number(const JsonNode& node, PatternScope& scope) {
   const double value = plain_number(node, scope);
   if (std::abs(value) > kLargestNumber)
-    node.complain(text::exact(value) + " is too large; numbers may be at most 1e6 in size");
+    node.complain(text::exact(value) + " is out of range; numbers must be from -1e6 to 1e6");
   return value;
 }
 
