@@ -46,13 +46,13 @@ TEST(Distance, OverlapOfNearlyParallelBoxes) {
   std::mt19937 generator(1);
   std::uniform_real_distribution<double> uniform(-1, 1);
   const auto vector = [&] {
-    const double x = uniform(generator), y = uniform(generator), z = uniform(generator);
+    const double z = uniform(generator), y = uniform(generator), x = uniform(generator);
     return Vector3d(x, y, z);
   };
   for (int i = 0; i < 40000; ++i) {
     const Vector3d half_a = 0.1 * vector().cwiseAbs() + Vector3d::Constant(0.01);
-    const Vector3d half_b =
-        i % 3 == 0 ? half_a : Vector3d(0.1 * vector().cwiseAbs() + Vector3d::Constant(0.01));
+    const Vector3d drawn_b = 0.1 * vector().cwiseAbs() + Vector3d::Constant(0.01);
+    const Vector3d half_b = i % 3 == 0 ? half_a : drawn_b;
     const double e = std::pow(10.0, -4 - i % 12);
     Isometry3d A = Isometry3d::Identity(), B = A;
     B.translation() = 0.9 * vector().cwiseProduct(half_a + half_b);
