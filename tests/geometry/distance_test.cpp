@@ -51,8 +51,8 @@ TEST(Distance, OverlapOfNearlyParallelBoxes) {
   };
   for (int i = 0; i < 40000; ++i) {
     const Vector3d half_a = 0.1 * vector().cwiseAbs() + Vector3d::Constant(0.01);
-    const Vector3d drawn_b = 0.1 * vector().cwiseAbs() + Vector3d::Constant(0.01);
-    const Vector3d half_b = i % 3 == 0 ? half_a : drawn_b;
+    Vector3d half_b = 0.1 * vector().cwiseAbs() + Vector3d::Constant(0.01);
+    if (i % 3 == 0) half_b = half_a;
     const double e = std::pow(10.0, -4 - i % 12);
     Isometry3d A = Isometry3d::Identity(), B = A;
     B.translation() = 0.9 * vector().cwiseProduct(half_a + half_b);
@@ -62,10 +62,10 @@ TEST(Distance, OverlapOfNearlyParallelBoxes) {
     B.linear() =
         Eigen::Quaterniond(1, tilt.x(), tilt.y(), tilt.z()).normalized().toRotationMatrix();
     const Vector3d turn = vector();
+    const double w = uniform(generator);
     Isometry3d world = Isometry3d::Identity();
-    world.linear() = Eigen::Quaterniond(uniform(generator), turn.x(), turn.y(), turn.z())
-                         .normalized()
-                         .toRotationMatrix();
+    world.linear() =
+        Eigen::Quaterniond(w, turn.x(), turn.y(), turn.z()).normalized().toRotationMatrix();
     world.translation() = vector();
     const Collider a(Box{2 * half_a}), b(Box{2 * half_b});
     EXPECT_NEAR(clearance(a, world * A, b, world * B), -depth, 3 * e * 0.3 + 1e-9) << i;
