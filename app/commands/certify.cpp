@@ -330,11 +330,17 @@ void certify_pattern(Context& context, CertifyCommand& options) {
     json["comparison"] = compare_with(context, options, study, task, law, results);
   if (options.rare) json["rare_failures"] = rare_failures(context, options, task);
   if (!options.map.empty()) {
-    write_drawing(options.map,
-                  draw_influences(input.pattern.name + ", " + input.robot.name() + ", " + law +
-                                      ": " + counts_text(found),
-                                  influence),
-                  2);
+    // Of all runs, as the picture: with --all there are more than the test needs.
+    const auto is_known = [](const auto& r) { return r.has_value(); };
+    const auto has_failed = [](const auto& r) { return r && r->failed(); };
+    const std::string runs =
+        text::counted(std::count_if(results.begin(), results.end(), is_known), "run") + ", " +
+        std::to_string(std::count_if(results.begin(), results.end(), has_failed)) + " failed";
+    write_drawing(
+        options.map,
+        draw_influences(input.pattern.name + ", " + input.robot.name() + ", " + law + ": " + runs,
+                        influence),
+        2);
     context.print("  drawn in " + options.map + "\n");
   }
   for (const std::string& file : {options.out, options.table})

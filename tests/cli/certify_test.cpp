@@ -41,7 +41,11 @@ TEST(CertifyCommand, SameBytesForThreadsAndShards) {
   EXPECT_NE(one.out.find("not certified: "), std::string::npos) << one.out;
   EXPECT_NE(one.out.find("push: size"), std::string::npos);
   EXPECT_NE(one.out.find("3 distributions, of which 3 assumed"), std::string::npos) << one.out;
-  EXPECT_NE(contents(study.folder / "m.svg").find("<svg"), std::string::npos);
+  const std::string picture = contents(study.folder / "m.svg");
+  EXPECT_NE(picture.find("<svg"), std::string::npos);
+  EXPECT_NE(picture.find(": 40 runs, "), std::string::npos) << "of all runs, as its figures";
+  EXPECT_NE(one.out.find("  mass: "), std::string::npos) << one.out;
+  EXPECT_EQ(one.out.find("  push: time: "), std::string::npos) << "the time is always the same";
   EXPECT_EQ(study.certify({"-o", "two.json", "--threads", "2"}).exit_code, 1);
   const std::string whole = contents(study.folder / "one.json");
   EXPECT_EQ(whole, contents(study.folder / "two.json"));

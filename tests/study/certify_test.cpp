@@ -276,7 +276,7 @@ TEST(Certify, TheSizeOfThePushMattersMost) {
   PushedStudy study;
   const KnownResults results = run_cases(study.stand.task, study.options);
   const std::vector<ValueInfluence> found = influences(study.stand.task, study.options, results);
-  ASSERT_EQ(found.size(), 4u);
+  ASSERT_EQ(found.size(), 2u) << "time and link are always the same";
   EXPECT_EQ(found[0].name, "push: size");
   EXPECT_GT(found[0].correlation, 0.5);
   EXPECT_EQ(found[0].runs[0] + found[0].runs[1], 60);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <mutex>
 #include <numeric>
@@ -164,7 +165,13 @@ std::vector<ValueInfluence> influences(const UncertainTask& task, const CertifyO
       found[i].rate[half] =
           clopper_pearson(found[i].failures[half], found[i].runs[half], options.confidence);
   }
-  return found;
+  // A value that is the same in all runs, such as a stated size of a push, says nothing.
+  std::vector<ValueInfluence> varying;
+  for (size_t i = 0; i < found.size(); ++i)
+    if (std::adjacent_find(drawn[i].begin(), drawn[i].end(), std::not_equal_to<>()) !=
+        drawn[i].end())
+      varying.push_back(found[i]);
+  return varying;
 }
 
 std::vector<long> worst_cases(const KnownResults& results, size_t count) {

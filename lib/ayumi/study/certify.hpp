@@ -82,7 +82,7 @@ struct ValueInfluence {
   std::array<long, 2> failures = {0, 0}, runs = {0, 0};
   std::array<RateInterval, 2> rate;  ///< Clopper-Pearson
 };
-/// In the order of UncertainTask::values().
+/// In the order of UncertainTask::values(). Values that are the same in all runs are left out.
 std::vector<ValueInfluence> influences(const UncertainTask& task, const CertifyOptions& options,
                                        const KnownResults& results);
 
