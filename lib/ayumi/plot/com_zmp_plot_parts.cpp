@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/shortened_text.hpp"
 #include "ayumi/base/text.hpp"
 
 namespace ayumi::plot {
@@ -135,14 +136,8 @@ Drawing start_drawing(const std::vector<LociRun>& runs, const LociOptions& optio
   const double left = kLeft + wide > drawing.width - kRight ? 8.0 : kLeft;
   const double room = drawing.width - left - 8;
   const double size = std::clamp(16 * room / std::max(1.0, wide), 11.0, 16.0);
-  std::string shown = drawing.title;
-  if (text_width(shown, size, true) > room) {
-    while (!shown.empty() && text_width(shown + "…", size, true) > room) {
-      while ((static_cast<unsigned char>(shown.back()) & 0xC0) == 0x80) shown.pop_back();
-      shown.pop_back();
-    }
-    shown += "…";
-  }
+  const auto fits = [&](const std::string& text) { return text_width(text, size, true) <= room; };
+  const std::string shown = text::shortened(drawing.title, fits);
   drawing.items.push_back(
       DrawnText{.position = {left, 24}, .text = shown, .size = size, .bold = true});
   return drawing;

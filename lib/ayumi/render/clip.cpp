@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "ayumi/base/file.hpp"
+#include "ayumi/base/shortened_text.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/render/encoder.hpp"
 #include "ayumi/render/simplify.hpp"
@@ -433,15 +434,8 @@ double write_within(Image& image, double x, double y, std::string title, TextSty
   if (title.empty()) return 0;
   const double wide = drawn_width(title, style);
   if (wide > room) style.size *= std::clamp(room / wide, kSmallest, 1.0);
-  const std::string dots = "…";
-  if (drawn_width(title, style) > room) {
-    while (!title.empty() && drawn_width(title + dots, style) > room) {
-      while ((static_cast<unsigned char>(title.back()) & 0xC0) == 0x80) title.pop_back();
-      title.pop_back();
-    }
-    title += dots;
-  }
-  return draw_text(image, x, y, title, style);
+  const auto fits = [&](const std::string& text) { return drawn_width(text, style) <= room; };
+  return draw_text(image, x, y, text::shortened(title, fits), style);
 }
 
 }  // namespace
