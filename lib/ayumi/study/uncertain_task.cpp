@@ -11,6 +11,7 @@
 #include "ayumi/math/elementary.hpp"
 #include "ayumi/math/random.hpp"
 #include "ayumi/math/statistics.hpp"
+#include "ayumi/model/device_limits.hpp"
 #include "ayumi/sim/payload.hpp"
 #include "ayumi/sim/simulator.hpp"
 
@@ -69,14 +70,11 @@ double least_of(UncertainKind kind) {
   return info(kind).least;
 }
 
-/// Largest values, to catch a wrong unit. Definition: those that a sidecar may have.
-constexpr double kMostDelay = 0.1;  // [s]
-constexpr double kMostPlay = 0.2;   // [rad]
-constexpr double kMostLatency = 1;  // [s]
+/// The largest value that a quantity of this kind can have: that of a sidecar.
 double most_of(UncertainKind kind) {
-  if (kind == UncertainKind::servo_delay) return kMostDelay;
-  if (kind == UncertainKind::backlash) return kMostPlay;
-  if (kind == UncertainKind::sensor_latency) return kMostLatency;
+  if (kind == UncertainKind::servo_delay) return kMostServoDelay;
+  if (kind == UncertainKind::backlash) return kMostServoPlay;
+  if (kind == UncertainKind::sensor_latency) return kMostSensorLatency;
   return std::numeric_limits<double>::infinity();
 }
 

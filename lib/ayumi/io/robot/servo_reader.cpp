@@ -5,6 +5,7 @@
 
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/model/device_limits.hpp"
 
 namespace ayumi {
 
@@ -13,15 +14,12 @@ namespace {
 constexpr double kRadPerDegree = std::numbers::pi / 180;
 
 /// Limits of servo constants, to catch a wrong unit. Chosen: stiffness, inertia, torque and
-/// friction a hundred times those of a humanoid of 50 kg; a delay of 0.1 s, where hobby servos have
-/// 0.01 to 0.03 s; a backlash or dead band of 0.2 rad, where they have 0.01 rad; a zero offset of
-/// 0.5 rad, beyond which a horn is on another tooth of its shaft.
+/// friction a hundred times those of a humanoid of 50 kg; a zero offset of 0.5 rad, beyond which a
+/// horn is on another tooth of its shaft. Delay and play: model/device_limits.hpp.
 constexpr double kMostStiffness = 1e7;  // [N m/rad]
 constexpr double kMostDamping = 1e6;    // [N m s/rad]
 constexpr double kMostInertia = 1e3;    // [kg m^2]
 constexpr double kMostTorque = 1e5;     // [N m]
-constexpr double kMostDelay = 0.1;      // [s]
-constexpr double kMostPlay = 0.2;       // [rad]
 constexpr double kMostOffset = 0.5;     // [rad]
 constexpr double kMostRate = 1e4;       // [rad/s]
 /// Share of a gear's torque that its friction takes. Definition: at 1 the gear cannot turn.
@@ -37,11 +35,11 @@ constexpr Bounds kStiffness = {0, kMostStiffness, "N m/rad"};
 constexpr Bounds kDamping = {0, kMostDamping, "N m s/rad"};
 constexpr Bounds kInertia = {0, kMostInertia, "kg m^2"};
 constexpr Bounds kTorque = {0, kMostTorque, "N m"};
-constexpr Bounds kDelay = {0, kMostDelay, "s", "; state it in seconds: 3.7 ms is 0.0037"};
+constexpr Bounds kDelay = {0, kMostServoDelay, "s", "; state it in seconds: 3.7 ms is 0.0037"};
 constexpr Bounds kRate = {0, kMostRate, "rad/s"};
 constexpr Bounds kExponent = {0.1, 10, ""};
-constexpr Bounds kPlay = {0, kMostPlay, "rad", "; in degrees the key ends in _deg"};
-constexpr Bounds kPlayDeg = {0, kMostPlay / kRadPerDegree, "deg"};
+constexpr Bounds kPlay = {0, kMostServoPlay, "rad", "; in degrees the key ends in _deg"};
+constexpr Bounds kPlayDeg = {0, kMostServoPlay / kRadPerDegree, "deg"};
 constexpr Bounds kOffset = {
     -kMostOffset, kMostOffset, "rad",
     "; in degrees the key ends in _deg. For a larger offset, mount the horn in another position"};

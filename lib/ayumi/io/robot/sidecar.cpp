@@ -14,6 +14,7 @@
 #include "ayumi/io/robot/servo_reader.hpp"
 #include "ayumi/io/run/sha256.hpp"
 #include "ayumi/math/rotation.hpp"
+#include "ayumi/model/device_limits.hpp"
 #include "ayumi/model/validate.hpp"
 
 namespace ayumi {
@@ -301,12 +302,12 @@ void read_sensors(const JsonNode& node, SensorDescription& sensors) {
   if (const auto axes = node.find("gyro")) read_axes(*axes, sensors.gyro);
   if (const auto link = node.find("imu_link")) sensors.imu_link = link->string();
   if (const auto position = node.find("imu_position")) sensors.imu_position = position->vector3();
-  // Readings older than one second are of no use to a balance law; the bound is that of a scenario.
-  if (const auto latency = node.find("latency")) sensors.latency = latency->number_within(0, 1);
+  if (const auto latency = node.find("latency"))
+    sensors.latency = latency->number_within(0, kMostSensorLatency);
   for (const auto& [key, latency] : {std::pair("encoder_latency", &sensors.encoder_latency),
                                      std::pair("imu_latency", &sensors.imu_latency),
                                      std::pair("force_latency", &sensors.force_latency)})
-    if (const auto found = node.find(key)) *latency = found->number_within(0, 1);
+    if (const auto found = node.find(key)) *latency = found->number_within(0, kMostSensorLatency);
   if (const auto readings = node.find("force_readings")) {
     sensors.force_readings = readings->integer();
     if (sensors.force_readings < 1 || sensors.force_readings > kMostForceReadings)
