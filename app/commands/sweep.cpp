@@ -192,8 +192,7 @@ void run_sweep(Context& context, const SweepCommand& options) {
   note_work(cost.seconds, cost.useful);
   if (cost.cases > 0)
     context.print("  " + text::counted(cost.cases, "case") + " run; each took " +
-                  text::brief(cost.seconds / double(cost.cases), 3) +
-                  " s of computing time on one thread, " +
+                  text::brief(cost.seconds / double(cost.cases), 3) + " s of processor time, " +
                   text::fixed(100 * (1 - cost.useful / std::max(1e-9, cost.seconds)), 2) +
                   " % of it outside the simulation\n");
   conclude(context, *results, options.outputs, &runner,

@@ -1,12 +1,11 @@
 #include "sweep/case_runner.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <ctime>
 #include <set>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/processor_time.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/control/controller.hpp"
 #include "ayumi/control/gain_design.hpp"
@@ -39,23 +38,12 @@ constexpr size_t kKeptLaws = 16;
 /// Chosen: each may sample a motion, which takes some 10 ms; half of it finds fewer.
 constexpr long kMostTried = 20;
 
-using Clock = std::chrono::steady_clock;
-
-/// Adds the time of its life to a counter [ns].
+/// Adds the processor time that this thread uses in its life to a counter [ns].
 struct TimeSpent {
   std::atomic<long>& counter;
-  Clock::time_point begin = Clock::now();
-  ~TimeSpent() {
-    counter += std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - begin).count();
-  }
+  double begin = thread_seconds();
+  ~TimeSpent() { counter += std::lround(1e9 * (thread_seconds() - begin)); }
 };
-
-/// Processor time of this thread [s].
-double thread_seconds() {
-  timespec now = {};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
-}
 
 /// Ticks between two questions whether a simulation may go on. Chosen: some milliseconds of work.
 constexpr long kTicksBetweenReports = 100;
@@ -225,7 +213,7 @@ std::string CaseRunner::robot_name(const std::string& word) const {
 
 CaseRunner::CaseRunner(const Context& context, const SweepStudy& study)
     : context_(&context), study_(&study), columns_(result_columns(study.measures())) {
-  const Clock::time_point begin = Clock::now();
+  const double begin = thread_seconds();
   inputs_.push_back({"study", study.file().filename().string(), study.uncertainty().sha256});
   for (const std::string& word : study.words("pattern")) {
     Pattern pattern = read_given_pattern(pattern_file(word));
@@ -251,7 +239,7 @@ CaseRunner::CaseRunner(const Context& context, const SweepStudy& study)
     for (const auto& [word, pattern] : patterns_) add_robot(pattern.robot, robot_of(pattern));
   refuse_unused();
   refuse_unusable_uncertainty();
-  setup_seconds_ = std::chrono::duration<double>(Clock::now() - begin).count();
+  setup_seconds_ = thread_seconds() - begin;
 }
 
 void CaseRunner::refuse_unused() const {

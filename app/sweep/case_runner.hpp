@@ -65,11 +65,11 @@ class CaseRunner {
   /// The same simulation with its log, for a replay. `task` is what it was made of.
   SimulationLog simulate(long number, std::shared_ptr<const Task>& task) const;
 
-  /// Seconds that all threads spent in run(), and the share of them in which Ayumi simulated,
-  /// checked or repaired.
+  /// Processor time [s] that all threads used in run(), and the part of it with which Ayumi
+  /// simulated, checked or repaired.
   double seconds() const { return 1e-9 * static_cast<double>(nanoseconds_); }
   double useful_seconds() const { return 1e-9 * static_cast<double>(useful_); }
-  /// Seconds that reading the inputs took.
+  /// Processor time [s] that reading the inputs took.
   double setup_seconds() const { return setup_seconds_; }
 
  private:

@@ -41,7 +41,7 @@ struct SweepCounts {
   long failures() const { return falls + unsettled; }
 };
 
-/// Processor time behind rows.
+/// Processor time [s] behind rows.
 struct SweepWork {
   double seconds = 0;  ///< of all threads, reading of inputs and writing of rows included
   double useful = 0;   ///< of them simulating, checking and repairing

@@ -7,6 +7,7 @@
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/in_parallel.hpp"
+#include "ayumi/base/processor_time.hpp"
 
 namespace ayumi::app {
 
@@ -34,13 +35,13 @@ RunCost run_cases(const CaseRunner& runner, ResultsDatabase& results,
   const double before = runner.seconds(), useful = runner.useful_seconds();
   const auto commit = [&] {
     if (broken) return;
-    const Clock::time_point begin = Clock::now();
+    const double begin = thread_seconds();
     broken = true;
     results.add(waiting);
     broken = false;
     waiting.clear();
     committed = Clock::now();
-    writing += std::chrono::duration<double>(committed - begin).count();
+    writing += thread_seconds() - begin;
   };
   const auto state = [&](const std::string& more) {
     return ProgressEvent{

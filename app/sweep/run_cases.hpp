@@ -8,7 +8,7 @@ namespace ayumi::app {
 /// What a run took.
 struct RunCost {
   long cases = 0;
-  double seconds = 0;  ///< of all threads, rows written included
+  double seconds = 0;  ///< processor time of all threads, rows written included
   double useful = 0;   ///< of them simulating, checking and repairing
 };
 

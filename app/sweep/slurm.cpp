@@ -23,6 +23,7 @@
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
+#include "ayumi/base/processor_time.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/run/sha256.hpp"
 
@@ -520,7 +521,7 @@ class Engine {
   /// nothing; its task then counts as lost.
   void collect() {
     for (const fs::path& part : arrived(folder_)) {
-      const Clock::time_point begin = Clock::now();
+      const double begin = thread_seconds();
       long array = 0, task = 0;
       std::sscanf(part.filename().c_str(), "part-%ld-%ld.db", &array, &task);
       std::unique_ptr<ResultsDatabase> rows;
@@ -536,7 +537,7 @@ class Engine {
         results_.merge(part);
         rows->mark_done(done_);
         const SweepWork work = rows->work();
-        add_work({work.seconds + seconds_since(begin), work.useful});
+        add_work({work.seconds + thread_seconds() - begin, work.useful});
         rows.reset();
       }
       for (const char* rest : {"", "-wal", "-shm"}) {

@@ -7,6 +7,7 @@
 #include <ctime>
 #include <exception>
 
+#include "ayumi/base/processor_time.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/repair/nlp/banded_kkt_solver.hpp"
 
@@ -17,13 +18,6 @@ using Ipopt::Index;
 using Ipopt::Number;
 
 namespace {
-
-// Processor time of this thread [s]: other work of the machine is no work of the solver.
-double thread_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 VectorXd vector(const Number* values, Index n) { return Eigen::Map<const VectorXd>(values, n); }
 

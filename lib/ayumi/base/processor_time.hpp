@@ -1,0 +1,16 @@
+#pragma once
+// Measuring work.
+
+#include <ctime>
+
+namespace ayumi {
+
+/// Processor time that this thread has used [s]. Unlike the time of a clock on the wall, it does
+/// not grow while other programs have the processor.
+inline double thread_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+}  // namespace ayumi
