@@ -108,7 +108,7 @@ AuthorResult simulate_job(const OrderedJson& asked, const Context& context,
   const Task& task = motion.task;
   const std::string law = asked.value("law", "both");
   if (law != "none" && law != "closed" && law != "both")
-    fail(ErrorCode::usage, "law '" + law + "' is not one of none, closed, both");
+    fail(ErrorCode::usage, "law '" + law + "' is not one of 'none', 'closed' and 'both'");
   struct Run {
     const char* name;
     ControllerSpec spec;

@@ -202,11 +202,13 @@ Json compare_with(Context& context, const CertifyCommand& options, const Study& 
   const PairedComparison c = compare(a, b, pairs.confidence);
   const std::string name = options.against.empty() ? options.against_controller : file;
   const std::string own = options.against.empty() ? law : options.pattern;
-  context.print("  compared with " + name + " in the same " + text::counted(c.pairs, "case") +
-                ": " + std::to_string(c.both + c.only_first) + " failed with " + own + " (" +
-                std::to_string(c.only_first) + " of them only with " + own + "), and " +
-                std::to_string(c.both + c.only_second) + " with " + name + " (" +
-                std::to_string(c.only_second) + " of them only with " + name + ")\n");
+  const auto quoted = [](const std::string& word) { return "'" + word + "'"; };
+  context.print("  compared with " + quoted(name) + " in the same " +
+                text::counted(c.pairs, "case") + ": " + std::to_string(c.both + c.only_first) +
+                " failed with " + quoted(own) + " (" + std::to_string(c.only_first) +
+                " of them only with " + quoted(own) + "), and " +
+                std::to_string(c.both + c.only_second) + " with " + quoted(name) + " (" +
+                std::to_string(c.only_second) + " of them only with " + quoted(name) + ")\n");
   context.print("  difference of the failure probabilities: " + in_percent(c.difference.low) +
                 " to " + in_percent(c.difference.high) + " with " + in_percent(pairs.confidence) +
                 " confidence; McNemar's exact test: p = " + text::brief(c.p_value, 3) + "\n");

@@ -133,7 +133,7 @@ void add_diff(Command& app, Context& context) {
       ->allow_extra_args(false);
   command
       ->add_option("--safety", options.safety,
-                   "How much safety counts in comparison with a small change, as for repair "
+                   "Factor on the cost of missing safety, as for repair "
                    "(default: the factor in the pattern; 1 if the pattern has none).")
       ->check(number_within(0.0, 1e6))
       ->type_name("FACTOR");

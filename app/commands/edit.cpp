@@ -128,7 +128,7 @@ std::string in_words(double scale, const ConsistencyReport& before, const ForceR
   std::string out = "  the motion takes " + text::brief(scale) + " times its original time\n";
   if (pace)
     out += pace->bounded ? "  a faster pace fails: " + pace->limited_by + "\n"
-                         : "  the fastest pace that was tried also passes the check\n";
+                         : "  even the fastest pace that was tried passes the check\n";
   return out + "  ZMP margin " + mm(before.summary[FindingKind::support_margin]) + " mm before, " +
          mm(after.report.summary[FindingKind::support_margin]) + " mm after; f_z " +
          newtons(force_before) + " before, " + newtons(force) + " after\n";
@@ -185,7 +185,7 @@ void retime_locally(Context& context, const EditCommand& options, const Task& in
   if (!pace.found)
     fail(ErrorCode::solver,
          options.pattern +
-             ": the check fails for every timing along this path: " + pace.limited_by +
+             ": the check fails with every timing of this motion: " + pace.limited_by +
              (pace.by_posture ? ". Another timing cannot help, because a posture is wrong"
                               : ". More time alone is not enough") +
              ". Try repair");

@@ -146,7 +146,10 @@ void add_gains(Command& app, Context& context) {
       "Unstable gains are refused, with the reason. A gain that is not given has the value of the "
       "robot.");
   auto options = std::make_shared<GainsCommand>();
-  command->add_option("ROBOT", options->robot, "Name of a bundled robot, folder, sidecar or URDF.")
+  command
+      ->add_option(
+          "ROBOT", options->robot,
+          "Name of a bundled robot, folder, sidecar or robot file (URDF, MJCF, SDF, body, ztk).")
       ->required();
   command
       ->add_option("--poles", options->poles,

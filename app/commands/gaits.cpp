@@ -332,7 +332,10 @@ void add_gaits(Command& app, Context& context) {
       "walk.");
   auto options = std::make_shared<GaitsCommand>();
   GaitOptions& gaits = options->options;
-  command->add_option("ROBOT", options->robot, "Name of a bundled robot, folder, sidecar or URDF.")
+  command
+      ->add_option(
+          "ROBOT", options->robot,
+          "Name of a bundled robot, folder, sidecar or robot file (URDF, MJCF, SDF, body, ztk).")
       ->required();
   command->add_option("-o,--out", options->out, "Folder for the library.")
       ->type_name("DIR")
@@ -353,7 +356,9 @@ void add_gaits(Command& app, Context& context) {
                    "the check).")
       ->check(number_within(0.01, 5.0).description(""))
       ->type_name("M");
-  command->add_option("--rate", gaits.rate, "Rows per second of tables and archives.")
+  command
+      ->add_option("--rate", gaits.rate,
+                   "Rows per second of the joint tables and of the NumPy archives (.npz).")
       ->check(number_within(1.0, 10000.0).description(""))
       ->type_name("HZ")
       ->capture_default_str();

@@ -177,7 +177,10 @@ void add_identify(Command& app, Context& context) {
       "--per type --json");
   static IdentifyCommand options;
   static std::string unit = "rad";
-  command->add_option("ROBOT", options.robot, "Name of a bundled robot, folder, sidecar or URDF.")
+  command
+      ->add_option(
+          "ROBOT", options.robot,
+          "Name of a bundled robot, folder, sidecar or robot file (URDF, MJCF, SDF, body, ztk).")
       ->required();
   command
       ->add_option("--command", options.command,
@@ -207,8 +210,9 @@ void add_identify(Command& app, Context& context) {
       ->capture_default_str();
   command
       ->add_option("--stand", options.stand,
-                   "Support of the robot during the recording: feet (on level ground), or fixed (a "
-                   "fixture holds the root upright) (default: feet if the robot has soles).")
+                   "How the robot is held during the recording: auto (feet if the robot has soles, "
+                   "otherwise fixed), feet (it stands on level ground), or fixed (a fixture holds "
+                   "the root upright) (default: auto).")
       ->check(one_of({"auto", "feet", "fixed"}));
   command->add_option("--unit", unit, "Unit of the joint columns whose names do not state a unit.")
       ->check(one_of({"rad", "deg"}))
@@ -221,10 +225,10 @@ void add_identify(Command& app, Context& context) {
       ->type_name("HZ");
   command
       ->add_option("--longest-lag", options.longest_lag_ms,
-                   "Largest time by which a servo may be behind its command [ms]. If the measured "
-                   "angles are farther behind the command, Ayumi refuses the recording, because "
-                   "its start is then not the start of the command (default: 30 or twice the lag "
-                   "of the slowest servo of ROBOT, whichever is larger).")
+                   "Largest time by which a servo may be behind its command [ms]. If the lag is "
+                   "larger, Ayumi refuses the recording, because it probably does not begin at the "
+                   "same time as the command (default: 30 or twice the lag of the slowest servo of "
+                   "ROBOT, whichever is larger).")
       ->check(number_within(1.0, 500.0))
       ->type_name("MS");
   command->callback([&context] {

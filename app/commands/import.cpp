@@ -100,7 +100,10 @@ void add_import(Command& app, Context& context) {
   static ImportCommand options;
   static std::string unit = "rad", signs = "encoder";
   command->add_option("FILE", options.file, "Motion file; - is standard input.")->required();
-  command->add_option("--robot", options.robot, "Name of a bundled robot, folder, sidecar or URDF.")
+  command
+      ->add_option(
+          "--robot", options.robot,
+          "Name of a bundled robot, folder, sidecar or robot file (URDF, MJCF, SDF, body, ztk).")
       ->required()
       ->type_name("ROBOT");
   command
@@ -123,8 +126,8 @@ void add_import(Command& app, Context& context) {
   command
       ->add_option(
           "--signs", signs,
-          "Positive direction of the angles in a file in radians that has one column for each "
-          "motor, in the order of the motor numbers: encoder = the direction in which the "
+          "For a file in radians with one column for each motor, in the order of the motor "
+          "numbers: positive direction of its angles. encoder = the direction in which the "
           "encoder counts up, joint = the positive direction in the robot's file.")
       ->check(one_of({"encoder", "joint"}))
       ->capture_default_str();

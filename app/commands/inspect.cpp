@@ -238,7 +238,8 @@ size_t name_width(const RobotModel& model) {
 std::string joint_lines(const RobotModel& model) {
   const size_t width = name_width(model);
   std::string text =
-      "Joints (angles in deg, sliding joints in mm); servo kp [N m/rad], kd [N m s/rad]\n  " +
+      "Joints (angles in deg, sliding joints in mm); servo kp [N m/rad], kd [N m s/rad]; rotor "
+      "inertia [kg m^2]; weight of the joint in a repair\n  " +
       padded("", width) + "   lower   upper    home       kp       kd     rotor  weight  " +
       "device  counts/deg\n";
   for (int i = 0; i < model.dof_count(); ++i) {

@@ -60,7 +60,10 @@ bool write_new(const Context& context, const RobotModel& model, Pattern pattern,
 }
 
 void add_common(Command& command, NewOptions& options) {
-  command.add_option("--robot", options.robot, "Name of a bundled robot, folder, sidecar or URDF.")
+  command
+      .add_option(
+          "--robot", options.robot,
+          "Name of a bundled robot, folder, sidecar or robot file (URDF, MJCF, SDF, body, ztk).")
       ->type_name("ROBOT")
       ->capture_default_str();
   command.add_option("-o,--out", options.out, "Pattern file to write.")->type_name("F")->required();
@@ -101,9 +104,9 @@ std::vector<double> values_that_pass(const Context& context, const RobotModel& m
   const std::string changed = changed_values(dials, result);
   if (!result.falls.empty())
     context.print("the check accepts this motion" + (changed.empty() ? "" : " with " + changed) +
-                  ", but the robot falls in a simulation: " + result.falls +
-                  "; of other values, none was found with which it stands after " +
-                  std::to_string(result.tried) + " trials\n");
+                  ", but the robot falls in a simulation: " + result.falls + "; " +
+                  std::to_string(result.tried) +
+                  " trials found no other values with which it stands\n");
   else if (result.found)
     context.print("the default values ask too much of " + model.name() + ": " + result.limit +
                   "\n"
@@ -233,7 +236,7 @@ void new_step(const Context& context, NewOptions options) {
   write_new(
       context, model, walk_pattern(model, w), options,
       {std::to_string(w.steps) + (w.steps == 1 ? " step " : " steps ") + where +
-           ", and then the last foot is placed beside the other: period " + text::brief(w.period) +
+           ", and one more step that brings the feet together. Period " + text::brief(w.period) +
            " s, lift " + text::brief(w.lift) + " m",
        "For a longer step, change \"to\" of the swings. The COG is solved from the ZMP keys."});
 }
@@ -627,10 +630,11 @@ void add_walk(Command& command, NewOptions& options) {
       ->capture_default_str()
       ->type_name("DEG");
   command
-      .add_option("--rise", options.rise,
-                  "Height of a stair [m]. Each stride leads onto the next stair, and the other "
-                  "foot follows. "
-                  "The stairs are added to the world of the pattern.")
+      .add_option(
+          "--rise", options.rise,
+          "Height of a stair [m]. One step leads onto each stair, and the other foot "
+          "follows onto the same stair. --steps is then the number of stairs. The stairs are "
+          "added to the world of the pattern.")
       ->type_name("M");
   command.add_option("--side", options.walk.side, "Distance to the left per pair of steps [m].")
       ->capture_default_str()

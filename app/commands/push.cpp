@@ -235,7 +235,7 @@ void add_push(Command& app, Context& context) {
       "  ayumi push walk.json --profile hoap1-strong --controller dtad --controller dtad-literal\n"
       "  ayumi push walk.json --times 3.1 --times 3.4 --directions 4 --json\n"
       "Run again with the same -o to go on with a study. The scenario of the pattern is ignored, "
-      "and so are its lasting disturbances (payload, friction, latency, ...).");
+      "including lasting disturbances (payload, friction, latency, ...).");
   auto options = std::make_shared<PushCommand>();
   PushOptions& push = options->push;
   command->add_option("PATTERN", options->pattern, "Pattern file.")->required();

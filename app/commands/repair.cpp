@@ -449,7 +449,8 @@ void add_repair(Command& app, Context& context) {
                     "to the pattern.");
   command->add_flag("--from-scratch", options.from_scratch,
                     "Make a new motion from the phases, footholds, COG and ZMP of the pattern "
-                    "alone. It begins from the default posture, and is written as a dense table.");
+                    "alone. The search starts from the default posture, and the motion is written "
+                    "as a dense table.");
   command->add_flag("--keep-partial", options.repair.keep_partial,
                     "After Ctrl-C or a failure, write the motion with the smallest violation.");
   command

@@ -256,12 +256,14 @@ void MainJob::write_hoap(const Task& input, const SimulationLog& log) {
     text += ", reference_pushed.csv (with the reactions to the disturbances)";
   const bool encoders = input.robot.dofs().front().encoder.device > 0;
   const TableCaution& caution = folder_.reference_caution;
+  const std::string still =
+      std::string("\n            ") + (options_.light ? "" : "written, but ") + "not for a robot: ";
   if (!caution.unfit.empty()) {
-    text = "no table for a robot: " + caution.unfit + "\n            not for a robot: " + text;
+    text = "no table for a robot: " + caution.unfit + still + text;
   } else if (!caution.disturbances.empty()) {
     text =
         "no table for a robot, because the table of the pattern is from a run with disturbances (" +
-        caution.disturbances + ")\n            not for a robot: " + text;
+        caution.disturbances + ")" + still + text;
   } else if (encoders && safe.report.safe && !options_.light) {
     write_file(output_->file("hoap.csv"), hoap_csv(input.robot, safe.table, safety));
     note_file("hoap.csv");

@@ -339,8 +339,9 @@ void GaitMaker::change(const GaitCell& from, const GaitCell& to, GaitResult& res
   json["status"] = "stands";
   add_figures(walked, json);
   const std::string path = "transitions/" + from.name + "_to_" + to.name + ".json";
-  const std::string text = pattern_text(task.pattern, {"A walk of a library that changes from " +
-                                                       from.name + " to " + to.name + "."});
+  const std::string text = pattern_text(
+      task.pattern,
+      {"From a library of walks: a walk that changes from " + from.name + " to " + to.name + "."});
   result.files.emplace_back(path, text);
   json["pattern"] = path;
   json["pattern_sha256"] = sha256(text);

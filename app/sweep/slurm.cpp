@@ -182,9 +182,10 @@ State read_state(const fs::path& folder) {
     for (const SlurmJson& array : json.at("arrays"))
       state.arrays.push_back({array.at("number"), array.at("job")});
   } catch (const SlurmJson::exception&) {
-    fail(ErrorCode::bad_file, file.string() +
-                                  ": this is not the state of a sweep on Slurm; cancel "
-                                  "its jobs and remove the folder");
+    fail(ErrorCode::bad_file,
+         file.string() +
+             ": this file does not hold the state of a sweep on Slurm, so the sweep cannot go on; "
+             "cancel the jobs of the sweep that still run, and remove the folder");
   }
   return state;
 }

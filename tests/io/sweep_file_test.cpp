@@ -96,7 +96,7 @@ TEST(SweepFile, SaysWhatIsWrongAndWhere) {
   expect(pattern + R"("cases": {"controller": ["dtadd"]})", "dtad");
   expect(pattern + R"("cases": {"controller": {"from": 1, "to": 2, "count": 2}})", "has no range");
   expect(pattern + R"("cases": {"product": [{"seed": 1}, {"seed": 2}]})",
-         "two factors of the product set 'seed'");
+         "the setting 'seed' is in two factors of the product");
   expect(pattern + R"("cases": {"product": []})", "the product is empty");
   expect(pattern + R"("cases": {"world": ["ice"]})", "'ice' is not declared in \"worlds\"");
   expect(pattern + R"("cases": {"seed": 1}, "worlds": {"ice": {}})", "no case uses 'ice'");

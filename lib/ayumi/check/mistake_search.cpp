@@ -349,8 +349,8 @@ class Hypotheses {
          {"/keyframes",
           "the times of the keyframes do not fit those of the phases: " + std::to_string(now) +
               " of " + std::to_string(keys.size()) + " keyframes are at the end of a phase",
-          "with the times of all keyframes multiplied by " + text::brief(best) + ", where " +
-              std::to_string(most) + " are,"},
+          "with the times of all keyframes multiplied by " + text::brief(best) + " (then " +
+              std::to_string(most) + " keyframes are at the end of a phase)"},
          [best](Pattern& p) {
            for (Keyframe& key : p.keyframes) key.t *= best;
          }});

@@ -192,8 +192,8 @@ void require_answer(const RobotModel& model, const AngleTable& command, const An
   };
   std::vector<Index> dofs = moving_joints(command, measured);
   if (dofs.empty())
-    complain("no joint of this recording moves by " + text::brief(kMoves / kDegree) +
-             " deg in its command; record a motion");
+    complain("the command of this recording moves no joint by " + text::brief(kMoves / kDegree) +
+             " deg or more; record a motion");
   const double lasts = measured.duration(), asked = command.duration();
   if (lasts - asked > kLengthShare * asked + kLengthTime || asked - lasts > kShorter)
     complain("the recording lasts " + text::fixed(lasts, 3) + " s, but its command lasts " +
@@ -257,12 +257,11 @@ void require_loads(const SensorTable& loads, const AngleTable& measured, double 
              " s; the load cells are incomplete, have another rate (give --rate), or belong to "
              "another recording");
   if (agreement < kStandingShare)
-    fail(ErrorCode::bad_file,
-         file + ": while one foot stands, its load cells carry only " +
-             text::fixed(100 * agreement, 0) + " % of the weight (limit " +
-             text::fixed(100 * kStandingShare, 0) +
-             " %); the load cells are shifted, belong to another recording, or left and right are "
-             "exchanged");
+    fail(ErrorCode::bad_file, file + ": while one foot stands, its load cells carry only " +
+                                  text::fixed(100 * agreement, 0) + " % of the weight (limit " +
+                                  text::fixed(100 * kStandingShare, 0) +
+                                  " %); the readings of the load cells are shifted in time or "
+                                  "belong to another recording, or left and right are exchanged");
 }
 
 }  // namespace ayumi

@@ -142,11 +142,11 @@ Advice point_mass_advice(const JudgedMotion&, const FindingWindow& window) {
 }
 
 std::string cog_infeasibility(const Finding& f, double) {
-  return "the posture is " + in_mm(f.worst) + " from the trusted COG";
+  return "the COG of the posture is " + in_mm(f.worst) + " from the trusted COG";
 }
 
 std::string zmp_infeasibility(const Finding& f, double) {
-  return "the motion is " + in_mm(f.worst) + " from the trusted ZMP";
+  return "the ZMP of the motion is " + in_mm(f.worst) + " from the trusted ZMP";
 }
 
 }  // namespace

@@ -164,8 +164,8 @@ Advice table_position_advice(const JudgedMotion& motion, const FindingWindow& wi
 
 Advice rest_advice(const JudgedMotion& motion, const FindingWindow& window) {
   const Violation& v = window.worst;
-  return {refused_text(motion, v) + (window.first == 0 ? " begins" : " ends") +
-          " while it moves: " + motion.model.dofs()[v.item].name + " has to " +
+  return {refused_text(motion, v) + " moves at the " + (window.first == 0 ? "beginning" : "end") +
+          " of the table: " + motion.model.dofs()[v.item].name + " has to " +
           (window.first == 0 ? "start" : "stop") +
           " gently and at rest, for example with a segment of minimum_jerk"};
 }

@@ -78,7 +78,7 @@ std::string words_of(const OverlappingFeet& feet) {
          text::fixed(feet.begin, 2) + " to " + text::fixed(feet.end, 2) +
          " s: their soles overlap by " + text::fixed(1000 * feet.depth, 0) +
          " mm, and a repair does not move footholds; move the foothold of the " + came +
-         " foot, which is (" + text::fixed(feet.place.x(), 3) + ", " +
+         " foot, now at (" + text::fixed(feet.place.x(), 3) + ", " +
          text::fixed(feet.place.y(), 3) + ") m, away from " + "the " + stood + " foot";
 }
 

@@ -103,8 +103,8 @@ void check_baseline(const DtadParams& p) {
     positive("offset", p.steps.offset);
     positive("zmp", p.steps.zmp);
     need(p.steps.slowest >= 0.1 && p.steps.slowest <= 1, "slowest", p.steps.slowest,
-         "from 0.1 to 1. It is the share of its speed to which the controller may slow the pattern "
-         "down");
+         "from 0.1 to 1. The controller may slow the pattern down to this share of the pattern's "
+         "speed");
   }
 }
 

@@ -104,8 +104,8 @@ void apply_signs(const RobotModel& model, bool encoder_signs, Eigen::MatrixXd& t
   const std::vector<std::string> beyond = beyond_limits(model, theta);
   if (beyond.size() > beyond_limits(model, other).size())
     notes.push_back("with these signs, angles of " + text::join(beyond, ", ") +
-                    " exceed the position limits; with --signs " +
-                    (encoder_signs ? "joint" : "encoder") + " fewer joints exceed them");
+                    " exceed the position limits; with `--signs " +
+                    (encoder_signs ? "joint" : "encoder") + "`, fewer joints exceed them");
 }
 
 }  // namespace

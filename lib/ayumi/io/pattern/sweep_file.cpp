@@ -163,8 +163,9 @@ Part product_of(const JsonNode& node, std::vector<Part> parts) {
     names_of(part, theirs);
     for (const std::string& name : theirs)
       if (!names.insert(name).second)
-        node.complain("two factors of the product set '" + name +
-                      "'; a setting has one value in each case, so remove it from one factor");
+        node.complain("the setting '" + name +
+                      "' is in two factors of the product; a setting has one value in each case, "
+                      "so remove it from one factor");
     refuse_too_many(node, double(product.size) * double(part.size));
     product.size *= part.size;
   }

@@ -234,8 +234,8 @@ std::string aliases_text(const RobotModel& model) {
   const auto aliases = leg_aliases(model);
   if (aliases.empty()) return "";
   std::string text = remark(
-      "Aliases: other names of the joints in motion files. Guess: the joints of the legs by their "
-      "axes. Add the names that your motion files use.");
+      "Aliases: other names of the joints in motion files. Guess: the joints of the legs are "
+      "recognised by their axes. Add the names that your motion files use.");
   text += "  \"aliases\": {\n";
   size_t left = aliases.size();
   for (const auto& [alias, joint] : aliases)
@@ -465,9 +465,9 @@ std::vector<std::string> to_do_list(const RobotModel& model, const RobotGuess& g
         "Compare the outline of the soles with the real feet: " + sole_in_words(model, Side::left) +
         ", " + sole_in_words(model, Side::right) + ".");
     const InverseKinematics ik(model, model.posture());
-    items.push_back("Compare the legs with the robot, from the trunk down. Left: " +
-                    leg_in_words(model, Side::left) +
-                    ". Right: " + leg_in_words(model, Side::right) + ".");
+    items.push_back(
+        "Compare this order of the leg joints, from the trunk down, with the real robot. Left: " +
+        leg_in_words(model, Side::left) + ". Right: " + leg_in_words(model, Side::right) + ".");
     if (ik.lacks_joints())
       items.push_back(
           "Expect limits of the legs: each leg has fewer than six joints of its own, so at some "

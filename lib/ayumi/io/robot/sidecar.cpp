@@ -207,8 +207,8 @@ void read_columns(const JsonNode& node, SequenceLayout& layout) {
         "after 'interval' must come \"2\", the code of a row of targets, and then 'motors'");
   if (contains(layout.after, "*"))
     node.complain(
-        "'*' (any text) is possible only in layouts without 'interval', because Ayumi cannot write "
-        "it");
+        "'*' (any text) is possible only in layouts without 'interval', because Ayumi writes the "
+        "layouts with 'interval' and needs to know every text in them");
 }
 
 void read_layouts(const JsonNode& node, RobotDescription& robot) {
