@@ -55,7 +55,7 @@ std::string joint_words(const IdentifiedJoint& j) {
   words += ", offset from the command " + estimate_words(j.offset, kIdentifiedDegree, 3, "deg");
   if (j.has_sag)
     words += ", sag " + text::fixed(j.sag / kIdentifiedDegree, 3) + " deg between swing and stance";
-  words += "; the model misses the recording by " +
+  words += "; the model differs from the recording by " +
            text::fixed(j.mean_error / kIdentifiedDegree, 3) + " deg on average and by at most " +
            text::fixed(j.largest_error / kIdentifiedDegree, 3) + " deg at " +
            text::fixed(j.largest_at, 3) + " s\n";

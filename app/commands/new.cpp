@@ -106,7 +106,7 @@ std::vector<double> values_that_pass(const Context& context, const RobotModel& m
     context.print("the check accepts this motion" + (changed.empty() ? "" : " with " + changed) +
                   ", but the robot falls in a simulation: " + result.falls + "; " +
                   std::to_string(result.tried) +
-                  " trials found no other values with which it stands\n");
+                  " trials found no values that keep the robot standing\n");
   else if (result.found)
     context.print(
         "the default values ask too much of " + model.name() + ". First error: " + result.limit +
@@ -495,7 +495,7 @@ void new_viip(const Context& context, const NewOptions& options) {
        std::any_of(options.velocity.begin(), options.velocity.end(), moves)))
     fail(ErrorCode::usage,
          "viip: the last step brings the feet together, so one step cannot go forward; give "
-         "--steps 2");
+         "--steps 2 or more");
   Pattern pattern;
   pattern.robot = options.robot;
   pattern.controller.type = ControllerKind::viip;

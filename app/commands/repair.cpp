@@ -95,7 +95,7 @@ std::string steering_words(const RepairCommand& options, const Pattern& pattern)
   std::string out;
   std::vector<std::string> kept = file_locks(pattern.repair);
   kept.insert(kept.end(), options.locked.begin(), options.locked.end());
-  if (!kept.empty()) out += "  locked or kept: " + text::join(kept, ", ") + "\n";
+  if (!kept.empty()) out += "  locked: " + text::join(kept, ", ") + "\n";
   if (options.repair.trust != Trust::posture)
     out += std::string("  trusted quantity: ") + name_of(options.repair.trust) + "\n";
   return out;

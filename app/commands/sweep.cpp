@@ -193,10 +193,11 @@ void run_sweep(Context& context, const SweepCommand& options) {
   }
   note_work(cost.seconds, cost.useful);
   if (cost.cases > 0)
-    context.print("  " + text::counted(cost.cases, "case") + " run; each took " +
-                  text::brief(cost.seconds / double(cost.cases), 3) + " s of processor time, " +
+    context.print("  " + text::counted(cost.cases, "case") + (cost.cases == 1 ? " was" : " were") +
+                  " run; a case took " + text::brief(cost.seconds / double(cost.cases), 3) +
+                  " s of processor time on average, " +
                   text::fixed(100 * (1 - cost.useful / std::max(1e-9, cost.seconds)), 2) +
-                  " % of it outside the simulation\n");
+                  " % of this time outside the simulation\n");
   conclude(context, *results, options.outputs, &runner,
            {{"run_now", cost.cases}, {"seconds", cost.seconds}, {"useful_seconds", cost.useful}});
   results->close();

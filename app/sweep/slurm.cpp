@@ -466,7 +466,7 @@ class Engine {
       // answer.
       if (out_.empty() && (!submitted_ || seconds_since(*refused_since_) > kLongestSilence))
         fail(ErrorCode::bad_file, "--engine slurm: sbatch refused the job: " + why +
-                                      "; the rows that are done are kept in " +
+                                      "; the results so far are kept in " +
                                       results_.file().string());
       return;
     }
@@ -652,7 +652,7 @@ class Engine {
       } else if (seconds_since(answered_) > kLongestSilence) {
         fail(ErrorCode::bad_file,
              "--engine slurm: Slurm does not answer (" + trouble +
-                 "). The rows that arrived are kept. Run the same command again to go on");
+                 "). The results that arrived are kept. Run the same command again to go on");
       }
       if (out_.empty() && pending_.empty()) break;
       const std::vector<bool> missing = left();
