@@ -285,7 +285,7 @@ TEST(SweepCommand, OneClearLineForBadInput) {
   write(s.folder / "text.db", "no database");
   expect(s.sweep({"-o", "text.db"}), 3, "text.db");
   EXPECT_EQ(contents(s.folder / "text.db"), "no database");
-  expect(s.run({"sweep", "status", "none.db"}), 3, "there is no such file");
+  expect(s.run({"sweep", "status", "none.db"}), 3, "this file does not exist");
   expect(s.sweep({"-o", "x.db", "--shard", "3/2"}), 2, "1/4");
   expect(s.sweep({"-o", "no/such/folder/x.db"}), 3, "no/such/folder");
   EXPECT_FALSE(fs::exists(s.folder / "x.db"));
