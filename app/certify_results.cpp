@@ -64,10 +64,14 @@ std::string add_case_results(const std::filesystem::path& file, const Json& stud
   const auto refuse = [&](const std::string& why) {
     fail(ErrorCode::bad_file, file.string() + ": " + why);
   };
+  // A file that is merged must exist; any other one is the file of -o.
+  const std::string remedy =
+      must_exist ? "leave this file out of --merge, or run the shard of this file again"
+                 : "choose another name, or replace the file with --force";
   const std::string bytes = read_file(file);
   try {
     const Json json = Json::parse(bytes);
-    if (json.at("format") != kFormat) refuse("this is not a file of certify results");
+    if (json.at("format") != kFormat) refuse("this file does not hold results of ayumi certify");
     // The order of keys says nothing.
     const auto theirs = nlohmann::json::parse(json.at("study").dump());
     const auto ours = nlohmann::json::parse(study.dump());
@@ -75,30 +79,27 @@ std::string add_case_results(const std::filesystem::path& file, const Json& stud
       std::string key;
       for (const auto& [name, value] : ours.items())
         if (key.empty() && (!theirs.contains(name) || theirs.at(name) != value)) key = name;
-      refuse("this file holds the results of another study ('" + key +
-             "' differs); choose another name, or replace the file with --force");
+      refuse("this file holds the results of another study ('" + key + "' differs); " + remedy);
     }
     shard = json.value("shard", "");
     for (const Json& row : json.at("cases")) {
       const size_t number = row.at(0);
       if (number >= kMostCases)
-        refuse("case " + std::to_string(number) + ": there is no such case");
+        refuse("the number " + std::to_string(number) + " of a case is too large; the largest is " +
+               std::to_string(kMostCases - 1));
       if (number >= results.size()) results.resize(number + 1);
       const CaseResult result = case_of(Json(row.begin() + 1, row.end()));
       if (results[number] && !(*results[number] == result))
-        refuse("case " + std::to_string(number) +
-               ": its result differs from the result in another file of the same study; run the "
-               "study again with --force");
+        refuse("the result of case " + std::to_string(number) +
+               " differs from the result in another file of the same study; run the study again "
+               "with --force");
       results[number] = result;
     }
   } catch (const Json::exception&) {
-    refuse(
-        "this is not a file of certify results, or a part of the file is missing; choose another "
-        "name");
+    refuse("this file does not hold results of ayumi certify, or a part of the file is missing; " +
+           remedy);
   } catch (const std::out_of_range&) {
-    refuse(
-        "this file has an outcome that this version of Ayumi does not know; choose another name, "
-        "or replace the file with --force");
+    refuse("this file has an outcome that this version of Ayumi does not know; " + remedy);
   }
   return shard;
 }

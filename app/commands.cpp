@@ -95,7 +95,8 @@ void add_global_options(CLI::App& app, Command& command_line, Context& context) 
   command_line.add_flag("--force", context.force, "Overwrite existing results.");
   command_line
       .add_option("--threads", context.threads,
-                  "Number of threads, 0 for all. Results do not depend on it.")
+                  "Number of threads; 0 = one for each processor. The results do not depend on "
+                  "this number.")
       ->check(whole_number_within(0, 1024).description(""))
       ->type_name("N");
   command_line.add_option("--seed", context.seed, "Seed of noise and random choices.")
@@ -112,7 +113,7 @@ void add_global_options(CLI::App& app, Command& command_line, Context& context) 
       ->group("");
   command_line
       .add_option("--robot-path", context.robot_path,
-                  "Folder with robots, searched before the bundled ones.")
+                  "Folder with robots. Ayumi searches this folder before the bundled robots.")
       ->type_name("DIR")
       ->allow_extra_args(false);
   command_line
@@ -167,11 +168,12 @@ std::string option_message(const CLI::App& app, const CLI::ParseError& error) {
       if (!rest.starts_with("At least ") && !rest.starts_with("At Most ")) continue;
       const int least = option->get_items_expected_min(), most = option->get_items_expected_max();
       const int given = std::atoi(rest.c_str() + rest.rfind(' '));
-      return name + ": " + text::counted(given, "value") + " given, but " +
-             (least == most   ? std::to_string(most)
-              : given < least ? "at least " + std::to_string(least)
-                              : "at most " + std::to_string(most)) +
-             " expected" + help;
+      return name + ": " + text::counted(given, "value") + (given == 1 ? " is" : " are") +
+             " given, but " +
+             (least == most   ? std::to_string(most) + " needed"
+              : given < least ? "at least " + std::to_string(least) + " needed"
+                              : "at most " + std::to_string(most) + " allowed") +
+             help;
     }
   return words;
 }
@@ -242,17 +244,19 @@ int parse_and_run(CLI::App& app, Context& context, int argc, char** argv) {
   } catch (const Error& error) {
     return failed(context, error.what(), exit_code_of(error.code()));
   } catch (const std::bad_alloc&) {
-    return failed(context,
-                  "there is not enough memory for this; take a shorter motion, fewer samples or "
-                  "a machine with more memory",
-                  exit_code_of(ErrorCode::bad_file));
+    return failed(
+        context,
+        "there is not enough memory for this command; take a shorter motion, fewer samples or "
+        "a machine with more memory",
+        exit_code_of(ErrorCode::bad_file));
   } catch (const fs::filesystem_error& error) {
     return failed(context, error.path1().string() + ": " + error.code().message(),
                   exit_code_of(ErrorCode::bad_file));
   } catch (const std::system_error& error) {
     return failed(context,
                   std::string("the system refused a thread or another resource (") +
-                      error.code().message() + "); end other programs, or raise the limits",
+                      error.code().message() +
+                      "); end other programs, or raise the limits of the system (ulimit)",
                   exit_code_of(ErrorCode::bad_file));
   } catch (const std::exception& error) {
     return failed(context, std::string("internal error: ") + error.what(), 5);
@@ -313,12 +317,14 @@ void refuse_words(int argc, char** argv) {
     const std::string place = "argument " + std::to_string(i) +
                               (i > 1 ? ", after '" + std::string(argv[i - 1]) + "'" : "");
     if (word.empty() || (word.starts_with("-") && word.ends_with("=")))
-      fail(ErrorCode::usage, place + ": " + (word.empty() ? "" : "'" + word + "': ") +
-                                 "an empty text was given, but a value is needed");
+      fail(ErrorCode::usage, place + ": an empty text was given" +
+                                 (word.empty() ? "" : " in '" + word + "'") +
+                                 ", but a value is needed");
     if (!is_utf8(word))
-      fail(ErrorCode::usage,
-           place + ": '" + word +
-               "' is not UTF-8 text, so no result could name it; rename the file");
+      fail(ErrorCode::usage, place + ": '" + word +
+                                 "' is not UTF-8 text, so Ayumi cannot write this text into "
+                                 "results; give UTF-8 text, and "
+                                 "rename a file whose name is not UTF-8 text");
   }
 }
 

@@ -128,8 +128,8 @@ std::string manual(const CLI::App& app, const std::string& version) {
       ".SH NAME\nayumi \\- make motions of humanoid robots consistent, stable and safe\n"
       ".SH SYNOPSIS\n.B ayumi\n[\\fIOPTIONS\\fR] \\fICOMMAND\\fR [\\fIARGUMENTS\\fR]\n"
       ".SH DESCRIPTION\nAyumi reads a robot (URDF and sidecar) and a motion pattern, checks "
-      "whether "
-      "the motion is physically consistent, repairs it, simulates the robot with a balance "
+      "whether the motion is physically consistent, repairs the motion, simulates the robot with a "
+      "balance "
       "controller and disturbances, and writes joint tables for the robot.\n"
       ".SH OPTIONS\n";
   text += manual_options(app) + ".SH COMMANDS\n";
@@ -140,9 +140,9 @@ std::string manual(const CLI::App& app, const std::string& version) {
     if (!examples.empty()) text += ".PP\n.nf\n" + roff(examples) + "\n.fi\n";
   }
   return text +
-         ".SH EXIT STATUS\n0: the motion is good. 1: it is not. 2: wrong usage. 3: bad input. 4: "
-         "no "
-         "repair was found. 5: internal error. 130: stopped.\n";
+         ".SH EXIT STATUS\n0: done. 1: the verdict is negative. 2: wrong usage. 3: bad input. 4: "
+         "no solution was found, for example no repair. 5: internal error. 130: stopped by "
+         "Ctrl-C.\n";
 }
 
 // --- Completion ----------------------------------------------------------------------------------

@@ -132,9 +132,9 @@ void acceleration_lines(Writer& w, const RunInstant& i, int a) {
   const bool plan = dtad(i) && !literal(i);
   const double sum = law.motion[a] + law.pull[a] + law.short_term[a] + law.rocking[a];
   w.line(std::string(1, kAxis[a]) + ": " +
-         (previewed(i) && a < 2 ? "of the previewed COG "
-          : plan                ? "commanded "
-                                : "of the pendulum itself ") +
+         (previewed(i) && a < 2 ? "acceleration of the previewed COG "
+          : plan                ? "commanded acceleration "
+                                : "acceleration of the pendulum itself ") +
          fixed(w.part("law.motion", "m/s^2", law.motion, a), 3) + ", short term " +
          fixed(w.part("law.short_term", "m/s^2", law.short_term, a), 3) + ", pull to the " +
          (previewed(i) && a < 2 ? "previewed COG "
@@ -144,7 +144,8 @@ void acceleration_lines(Writer& w, const RunInstant& i, int a) {
          fixed(w.part("law.rocking", "m/s^2", law.rocking, a), 3) + "; together " +
          acceleration(sum));
   const double asked = w.part("ref.ddcog", "m/s^2", s.reference_ddcog, a);
-  if (std::abs(asked - sum) > 1e-9) w.line("   bounded to " + acceleration(asked));
+  if (std::abs(asked - sum) > 1e-9)
+    w.line("   this acceleration is bounded to " + acceleration(asked));
 }
 
 EquationNumbers pendulum_numbers(const RunInstant& i) {
@@ -157,9 +158,9 @@ EquationNumbers pendulum_numbers(const RunInstant& i) {
     const double x = w.part("measured.cog", "m", s.measured_cog, a);
     const double wanted = w.part("ref.zmp", "m", s.reference_zmp, a);
     const double real = w.part("law.filtered_zmp", "m", law.filtered_zmp, a);
-    w.line(std::string(1, kAxis[a]) + ": required " + fixed(w2, 1) + " /s2 x (" + mm(x) + " - " +
-           mm(wanted) + ") = " + acceleration(w2 * (x - wanted)) + "; the ground gives " +
-           fixed(w2, 1) + " x (" + mm(x) + " - " + mm(real) +
+    w.line(std::string(1, kAxis[a]) + ": required acceleration " + fixed(w2, 1) + " /s2 x (" +
+           mm(x) + " - " + mm(wanted) + ") = " + acceleration(w2 * (x - wanted)) +
+           "; the ground gives " + fixed(w2, 1) + " x (" + mm(x) + " - " + mm(real) +
            ") = " + acceleration(w2 * (x - real)));
     if (literal(i)) {
       w.part("law.motion", "m/s^2", law.motion, a, w2 * (x - wanted));
@@ -198,7 +199,7 @@ EquationNumbers omega_numbers(const RunInstant& i) {
   Writer w = begin(i);
   const S& s = w.now();
   if (!on_ground(s.law.stage)) {
-    w.line("no pendulum: w is not used");
+    w.line("there is no pendulum in flight or in open loop, so w is not used");
     return w.take();
   }
   const double f = w.scalar("ref.fz", "N", s.reference_fz);
@@ -215,7 +216,7 @@ EquationNumbers zmp_numbers(const RunInstant& i) {
   const S& s = w.now();
   const LawTerms& law = s.law;
   if (!on_ground(law.stage)) {
-    w.line("(18)(19) are not used in flight; the reference ZMP is that of the plan");
+    w.line("(18)(19) are not used in flight or in open loop; the reference ZMP is the planned ZMP");
     return w.take();
   }
   const double K = w.scalar("law.K", "1", law.K), D = w.scalar("law.D", "s", law.D);
@@ -242,9 +243,9 @@ EquationNumbers zmp_numbers(const RunInstant& i) {
       w.line(std::string(1, kAxis[a]) + ": " + mm(planned) + " - K x " + mm(e[a]) + " - D x " +
              fixed(1e3 * de[a], 1) + " mm/s = " + mm(wanted));
     } else {
-      w.line(std::string(1, kAxis[a]) + ": wanted by the measured state " +
-             mm(w.part("law.wanted_zmp", "m", law.wanted_zmp, a)) + ", of the reference pendulum " +
-             mm(planned));
+      w.line(std::string(1, kAxis[a]) + ": ZMP wanted by the measured state " +
+             mm(w.part("law.wanted_zmp", "m", law.wanted_zmp, a)) +
+             ", ZMP of the reference pendulum " + mm(planned));
     }
   }
   const Vector3d cut = s.reference_zmp - law.wanted_zmp;
@@ -254,10 +255,12 @@ EquationNumbers zmp_numbers(const RunInstant& i) {
                            : s.planned_contact[0]                       ? "the left foot"
                                                                         : "the right foot";
   if (cut.head<2>().norm() > 1e-12)
-    w.line("moved by " + mm(cut.head<2>().norm()) + " to the nearest point of the support of " +
-           feet + ": ref ZMP = " + mm(s.reference_zmp.x()) + ", " + mm(s.reference_zmp.y()));
+    w.line("the wanted ZMP is moved by " + mm(cut.head<2>().norm()) +
+           " to the nearest point of the support of " + feet +
+           ": ref ZMP = " + mm(s.reference_zmp.x()) + ", " + mm(s.reference_zmp.y()));
   else
-    w.line("inside the support of " + feet + ", so it is the ref ZMP");
+    w.line("the wanted ZMP is inside the support of " + feet +
+           ", so the ref ZMP is the same point");
   return w.take();
 }
 
@@ -405,20 +408,20 @@ const char* kLong =
     "replaced by the nearest point of the support, because the ground cannot push outside the "
     "feet.";
 const char* kResolve =
-    "There are many sets of joint rates with which the COG has its reference velocity while the "
-    "free foot and the trunk follow the plan. This equation selects the rates nearest to the "
-    "commanded ones, weighted with W. (v "
+    "There are many sets of joint rates that give the COG its reference velocity while the "
+    "free foot and the trunk follow the plan. This equation selects the set nearest to the "
+    "commanded rates, weighted with W. (v "
     "is u - J_U cmd dtheta; the paper prints the other sign.)";
 const char* kTask =
-    "There are many sets of joint rates with which the COG has its reference velocity while the "
-    "free foot and the trunk follow the plan. The one that is nearest to the commanded rates, "
-    "weighted with W, is wanted. J_U and u stack the two conditions; (23) is the solution.";
+    "There are many sets of joint rates that give the COG its reference velocity while the "
+    "free foot and the trunk follow the plan. This equation asks for the set that is nearest to "
+    "the commanded rates, weighted with W. J_U and u stack the two conditions; (23) is the "
+    "solution.";
 const char* kJump =
     "Height law of the variable impedant pendulum: a spring and a damper act between the COG and "
     "its reference height. The gains of (25) hold the height without overshoot. The gains of (26) "
-    "throw the robot z_H high from a stoop of depth z_d. The gains of (27) stop it within z_d "
-    "after "
-    "touchdown. The corrected (25) contains the mass: K_Dz^2 >= 4 m K_Pz.";
+    "throw the robot z_H high from a stoop of depth z_d. The gains of (27) stop the robot within "
+    "z_d after touchdown. The corrected (25) contains the mass: K_Dz^2 >= 4 m K_Pz.";
 const char* kSynergy =
     "This is (22)(23) without commanded rates: the whole body follows only the COG.";
 
@@ -458,8 +461,7 @@ const std::vector<Equation>& equations() {
         vertical_numbers);
     add(17, "w2 = f_z / (m (z_G - z_Z))",
         "w is the rate of the pendulum: a lower robot falls faster. Without a ground force, w has "
-        "no "
-        "meaning.",
+        "no meaning.",
         omega_numbers);
     add(18,
         "ref x_Z = cmd x_Z - K_x Delta x_G - D_x Delta dx_G, then the nearest point of the support",

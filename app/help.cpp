@@ -29,8 +29,8 @@ std::string overview(const CLI::App& app) {
     text += line + option->get_description() + "\n";
   }
   return text +
-         "\nExit code: 0 done, 1 the verdict is negative, 2 wrong usage, 3 bad input, 4 a solver "
-         "failed, 5 internal error, 130 stopped by Ctrl-C\n";
+         "\nExit code: 0 done, 1 the verdict is negative, 2 wrong usage, 3 bad input, 4 no "
+         "solution was found (for example no repair), 5 internal error, 130 stopped by Ctrl-C\n";
 }
 
 }  // namespace

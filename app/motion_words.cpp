@@ -29,7 +29,7 @@ std::string joint_words(const RobotModel& model, const JointChange& j) {
 
 std::string largest(const std::string& what, const LargestChange& change,
                     const std::string& amount) {
-  return what + " by up to " + amount + " at " + seconds(change.at);
+  return what + " changed by up to " + amount + " at " + seconds(change.at);
 }
 
 }  // namespace

@@ -206,7 +206,7 @@ bool passes_with(const Task& input, const Pattern& pattern, const CheckOptions& 
 
 bool stretched_passes(const Context& context, const Task& input, const CheckOptions& check,
                       const std::vector<std::pair<double, double>>& windows, double factor) {
-  report(context.progress(), {"slower", -1, "times " + text::brief(factor)});
+  report(context.progress(), {"slower", -1, text::brief(factor) + " times as long"});
   try {
     Pattern pattern = input.pattern;
     for (auto w = windows.rbegin(); w != windows.rend(); ++w)

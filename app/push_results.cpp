@@ -128,7 +128,7 @@ KnownCases read_results(const std::filesystem::path& file, const Json& study, si
   const std::string bytes = read_file(file);
   try {
     const Json json = Json::parse(bytes);
-    if (json.at("format") != kFormat) refuse("this is not a file of push results");
+    if (json.at("format") != kFormat) refuse("this file does not hold results of ayumi push");
     // The order of keys says nothing.
     if (nlohmann::json::parse(json.at("study").dump()) != nlohmann::json::parse(study.dump()))
       refuse("this file holds the results of a study with other settings");
@@ -139,9 +139,9 @@ KnownCases read_results(const std::filesystem::path& file, const Json& study, si
       known.at(entry.at("index")) = case_from(entry);
     }
   } catch (const Json::exception&) {
-    refuse("this is not a file of push results");
+    refuse("this file does not hold results of ayumi push");
   } catch (const std::out_of_range&) {
-    refuse("this file has a push that is not part of this study");
+    refuse("this file has a push that does not belong to this study");
   }
   return known;
 }

@@ -97,9 +97,10 @@ std::string sign_test_page(const RobotModel& model, const std::vector<SignTest>&
       model.name() +
       "</h1>\n<p>Hang the robot up so that its feet are free, and bring it to its home posture. "
       "Play one file at a time. The joint has to move from the pale posture to the posture in full "
-      "colour, and back. When it moves the other way, change the sign of "
-      "<code>counts_per_degree</code> of this joint in the sidecar. When another joint moves, "
-      "change its <code>device</code>. The pictures show the motion larger than it is.</p>\n";
+      "colour, and back. If the joint moves the other way, change the sign of its "
+      "<code>counts_per_degree</code> in the sidecar. If another joint moves, change the "
+      "<code>device</code> of the joint that should move. The pictures show the motion larger than "
+      "it is.</p>\n";
   for (const SignTest& test : tests) {
     const Dof& dof = model.dofs()[static_cast<size_t>(test.dof)];
     const std::string counts = counts_words(dof, test);

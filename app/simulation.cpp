@@ -17,10 +17,11 @@ namespace ayumi::app {
 
 void add_simulation_options(Command& command, SimulationChoice& choice) {
   command
-      .add_option("--controller", choice.controller,
-                  "Controller: none (open loop), dtad or viip; for comparison: preview, "
-                  "foot-guided or dcm-step; for demonstration: dtad-literal, viip-landings or "
-                  "viip-nofeedback (default: the controller of the pattern).")
+      .add_option(
+          "--controller", choice.controller,
+          "Controller: none (open loop), dtad or viip. For a comparison, choose preview, "
+          "foot-guided or dcm-step. For a demonstration, choose dtad-literal, viip-landings "
+          "or viip-nofeedback (default: the controller of the pattern).")
       ->type_name("NAME");
   command
       .add_option("--scenario", choice.scenario,
@@ -64,11 +65,12 @@ void note_missing_noise(const RobotModel& robot, bool noise) {
       sensors.gyro_noise > 0 || sensors.accelerometer_noise > 0 || sensors.force_noise > 0 ||
       sensors.force_resolution > 0 || sensors.encoder_quantisation)
     return;
-  std::fprintf(stderr,
-               "ayumi: --noise changes nothing: the files of %s state no noise, bias or latency of "
-               "sensors; state these under \"sensors\" in the sidecar of the robot (`ayumi init` "
-               "writes a first guess)\n",
-               text::printable(robot.name()).c_str());
+  std::fprintf(
+      stderr,
+      "ayumi: --noise changes nothing, because the files of %s state no noise, bias or latency of "
+      "sensors; state these under \"sensors\" in the sidecar of the robot (`ayumi init` "
+      "writes a first guess)\n",
+      text::printable(robot.name()).c_str());
 }
 
 ControllerSpec chosen_controller(const Task& input, const SimulationChoice& choice) {
@@ -96,7 +98,8 @@ constexpr const char* kPlantHelp = "Simulator: ayumi or mujoco (default: ayumi).
   "then configure and build again (cmake -S . -B build/release && cmake --build build/release)"
 constexpr const char* kHowToGetMujoco = AYUMI_HOW_TO_GET_MUJOCO;
 constexpr const char* kPlantHelp =
-    "Simulator: ayumi or mujoco (default: ayumi). At present, " AYUMI_HOW_TO_GET_MUJOCO;
+    "Simulator: ayumi or mujoco (default: ayumi). Only ayumi is available, "
+    "because " AYUMI_HOW_TO_GET_MUJOCO;
 #undef AYUMI_HOW_TO_GET_MUJOCO
 #endif
 

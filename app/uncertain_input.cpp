@@ -36,13 +36,15 @@ std::string fit_to_plant(Study& study, const std::string& plant, bool stated) {
     if (!unused(q)) continue;
     if (stated)
       fail(ErrorCode::bad_pattern,
-           q.place + ": this quantity has no effect: with --plant mujoco, the soles have the " +
+           q.place +
+               ": this quantity has no effect, because with --plant mujoco the soles have the " +
                "stiffness and the damping of MuJoCo's contacts; remove the quantity");
     names.push_back(q.name);
   }
   std::erase_if(all, unused);
   if (names.empty()) return "";
-  return "  not varied, because --plant mujoco does not use it: " + text::join(names, ", ") + "\n";
+  return "  these quantities are not varied, because --plant mujoco does not use them: " +
+         text::join(names, ", ") + "\n";
 }
 
 }  // namespace ayumi::app

@@ -59,7 +59,7 @@ AuthorResult check_job(const AuthorMotion& motion) {
   const Judgement& judgement = motion.judgement;
   OrderedJson lines = OrderedJson::array();
   const std::string& need = judgement.need().text;
-  if (!need.empty()) lines.push_back("The actuators: " + need);
+  if (!need.empty()) lines.push_back(need);
   for (const std::string& reason : export_refusals(motion.task, judgement))
     if (reason != judgement.reason()) lines.push_back("ayumi export refuses the table: " + reason);
   lines.push_back(counted_findings(judgement) + ", actuators " + motion.task.profile);
@@ -177,13 +177,13 @@ AuthorResult push_job(const Context& context, const AuthorMotion& motion,
     for (size_t k = 1; k < static_cast<size_t>(options.directions) && i + k < cases.size(); ++k)
       lowest = std::min(lowest, cases[i + k].limits.front().impulse);
     marks.push_back({{"time", one.phase.at},
-                     {"text", one.phase.name + ": survives " + text::fixed(lowest, 2) +
+                     {"text", one.phase.name + ": the robot survives " + text::fixed(lowest, 2) +
                                   " N s in every direction"}});
   }
   const std::string verdict =
       weakest ? "The robot survives " + text::fixed(least, 2) +
-                    " N s at every time and in every direction. It resists least to the push at " +
-                    text::fixed(weakest->phase.at, 2) + " s towards " +
+                    " N s at every time and in every direction. The smallest push limit is at " +
+                    text::fixed(weakest->phase.at, 2) + " s, for a push towards " +
                     text::fixed(weakest->direction * 180 / M_PI, 0) + " degrees."
               : "There was no push to try.";
   AuthorResult out = {result_json("push", verdict, weakest && least > 0, lines), {}};
@@ -203,8 +203,8 @@ Said run_command(const std::vector<std::string>& arguments, const fs::path& fold
   std::array<int, 2> out{}, err{};
   if (::pipe(out.data()) != 0 || ::pipe(err.data()) != 0)
     fail(ErrorCode::bad_file,
-         "the export cannot be started, because the system allows no more pipes: close other "
-         "programs, then try again");
+         "the export cannot be started, because the system allows no more pipes; close other "
+         "programs and try again");
   std::vector<char*> words;
   for (const std::string& word : arguments) words.push_back(const_cast<char*>(word.c_str()));
   words.push_back(nullptr);
@@ -212,8 +212,8 @@ Said run_command(const std::vector<std::string>& arguments, const fs::path& fold
   const pid_t child = ::fork();
   if (child < 0)
     fail(ErrorCode::bad_file,
-         "the export cannot be started, because the system allows no more processes: close other "
-         "programs, then try again");
+         "the export cannot be started, because the system allows no more processes; close other "
+         "programs and try again");
   if (child == 0) {
     ::dup2(out[1], STDOUT_FILENO);
     ::dup2(err[1], STDERR_FILENO);

@@ -102,10 +102,11 @@ class KeyEdits {
         ((i > 0 && outermost(pointer_of_keyframe(pattern, i - 1)) == outermost(next)) ||
          motion_.document.contains(OrderedJson::json_pointer(next + "/after")));
     if (inside)
-      fail(ErrorCode::usage, "at " + text::exact(t) +
-                                 " s the keyframes come from a repeated block, so no new keyframe "
-                                 "can be written there; choose the time of one of its keyframes, "
-                                 "or replace the block by the keyframes that it stands for");
+      fail(ErrorCode::usage,
+           "at " + text::exact(t) +
+               " s the keyframes come from a repeated block, so no new keyframe "
+               "can be written there; choose the time of a keyframe of the block, "
+               "or replace the block by single keyframes");
     return outermost(next);
   }
 
@@ -507,8 +508,8 @@ class Drag {
     out.row = row_of(motion_, tried);
     const double off = missed(tried).norm();
     if (message_.empty() && off > kWorthSaying)
-      message_ = "The " + handle_.label + " comes within " + text::fixed(1000 * off, 0) +
-                 " mm of the wanted place" + reason();
+      message_ = "The " + handle_.label + " stays " + text::fixed(1000 * off, 0) +
+                 " mm away from the wanted place" + reason();
     out.message = message_;
     return out;
   }
@@ -536,7 +537,7 @@ class Drag {
 
   std::string reason() const {
     if (handle_.kind == AuthorHandle::Kind::limb)
-      return ": its joints are at their limits, or the place is too far away.";
+      return ": the joints that move this point are at their limits, or the place is too far away.";
     if (handle_.kind == AuthorHandle::Kind::gaze) return ": the neck cannot turn farther.";
     if (handle_.kind == AuthorHandle::Kind::foot)
       return ": other keys of the pattern move this foot too.";
@@ -688,8 +689,8 @@ class Drag {
     }
     if (!has_zmp_keys(pattern)) {
       message_ =
-          "The COG follows the ZMP, and Ayumi moves the ZMP from foot to foot. Only the height of "
-          "the COG is written as a key. Give ZMP keys to move the COG to the side.";
+          "The COG follows the ZMP, and Ayumi moves the ZMP from foot to foot. So only the height "
+          "of the COG can be dragged here. To move the COG horizontally, write keys of the ZMP.";
       return keys.edits();
     }
     return led_cog(keys, level);

@@ -198,7 +198,7 @@ void serve_author(AuthorSession& session, const ServerOptions& options,
   if (!bound)
     fail(ErrorCode::bad_file, options.port > 0
                                   ? "port " + std::to_string(options.port) +
-                                        " is taken; choose another one, or leave --port out"
+                                        " is taken; choose another --port, or leave --port out"
                                   : std::string("no port is free on the loopback address"));
   const std::string token = secret();
   Router router(session, token, port);

@@ -350,13 +350,14 @@ AuthorAnswer AuthorSession::step(const OrderedJson& request, int by) {
     const Shown shown = view();
     const bool possible = by < 0 ? history_.undo_steps() > 0 : history_.redo_steps() > 0;
     if (request.at("hash") != shown->hash || !possible)
-      return refused(possible ? "the file has changed in the meantime; look at it, then try again"
-                     : by < 0 ? "there is nothing to undo"
-                              : "there is nothing to redo");
+      return refused(
+          possible ? "the file has changed in the meantime; look at the new text, then try again"
+          : by < 0 ? "there is nothing to undo"
+                   : "there is nothing to redo");
     const std::string text = history_.near(by);
     if (!replace_text(setting_.file, shown->text, text)) {
       refresh();
-      return refused("the file has changed in the meantime; look at it, then try again");
+      return refused("the file has changed in the meantime; look at the new text, then try again");
     }
     history_.step(by);
     refresh();
@@ -385,7 +386,8 @@ OrderedJson edits_json(const std::vector<PatternEdit>& edits) {
 AuthorAnswer AuthorSession::pose(const OrderedJson& request) {
   return answered([&]() -> AuthorAnswer {
     const Shown shown = view();
-    if (!shown->motion || shown->error) return refused("the pattern cannot be read at the moment");
+    if (!shown->motion || shown->error)
+      return refused("the text of the pattern has an error; correct it first");
     PoseWish wish;
     wish.time = request.at("time");
     if (request.contains("joints"))
@@ -417,7 +419,8 @@ AuthorAnswer AuthorSession::pose(const OrderedJson& request) {
 AuthorAnswer AuthorSession::posture(const OrderedJson& request) {
   return answered([&]() -> AuthorAnswer {
     const Shown shown = view();
-    if (!shown->motion || shown->error) return refused("the pattern cannot be read at the moment");
+    if (!shown->motion || shown->error)
+      return refused("the text of the pattern has an error; correct it first");
     return {200,
             {{"edits", edits_json(captured(*shown->motion, request.at("time"), request.at("name"),
                                            request.value("mirror", false)))}}};
@@ -427,7 +430,8 @@ AuthorAnswer AuthorSession::posture(const OrderedJson& request) {
 AuthorAnswer AuthorSession::mirror(const OrderedJson& request) {
   return answered([&]() -> AuthorAnswer {
     const Shown shown = view();
-    if (!shown->motion || shown->error) return refused("the pattern cannot be read at the moment");
+    if (!shown->motion || shown->error)
+      return refused("the text of the pattern has an error; correct it first");
     return {200, {{"edits", edits_json(mirrored_keyframe(*shown->motion, request.at("pointer")))}}};
   });
 }
@@ -442,7 +446,8 @@ AuthorAnswer AuthorSession::start_job(const OrderedJson& request) {
     if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
       return refused("there is no job '" + kind + "'");
     const Shown shown = view();
-    if (!shown->motion || shown->error) return refused("the pattern cannot be read at the moment");
+    if (!shown->motion || shown->error)
+      return refused("the text of the pattern has an error; correct it first");
     if (job_runs_) return refused("another job is running; wait for it or cancel it");
     if (worker_.joinable()) worker_.join();
     job_runs_ = true;
@@ -509,7 +514,7 @@ void AuthorSession::work(std::uint64_t id, std::string kind, OrderedJson options
 AuthorAnswer AuthorSession::cancel_job(const std::string& id) {
   const std::lock_guard lock(jobs_);
   if (!job_runs_ || id != std::to_string(job_))
-    return {404, {{"message", "this job does not run any more"}}};
+    return {404, {{"message", "this job has already ended"}}};
   job_stops_ = true;
   return {};
 }

@@ -124,8 +124,9 @@ void print_influences(const Context& context, std::vector<ValueInfluence> influe
                      return std::abs(a.correlation) > std::abs(b.correlation);
                    });
   context.print(
-      "  influence of each uncertain value: its rank correlation with how bad a run is, then the "
-      "failed runs with the value in the lower half and in the upper half of its range\n");
+      "  influence of each uncertain value. The first number is the rank correlation of the value "
+      "with how badly a run ends. Then follow the failed runs, first with the value in the lower "
+      "half of its range, then in the upper half.\n");
   for (size_t i = 0; i < std::min(influences.size(), kShownInfluences); ++i) {
     const ValueInfluence& each = influences[i];
     context.print("    " + text::fixed(each.correlation, 2) + "  " + each.name + ": " +
@@ -159,7 +160,8 @@ void print_sources(const Context& context, const Study& study) {
     for (const UncertainQuantity* q : {&push.size, &push.direction, &push.time, &push.link})
       count(*q);
   context.print("  uncertainty of " + study.file + ": " + text::counted(all, "distribution") +
-                ", of which " + std::to_string(assumed) + " assumed\n");
+                "; " + std::to_string(assumed) +
+                (assumed == 1 ? " of them is assumed\n" : " of them are assumed\n"));
 }
 
 /// The cases of the merged files. Every case that the verdict needs must be there.
@@ -209,9 +211,10 @@ Json compare_with(Context& context, const CertifyCommand& options, const Study& 
                 " of them only with " + quoted(own) + "), and " +
                 std::to_string(c.both + c.only_second) + " with " + quoted(name) + " (" +
                 std::to_string(c.only_second) + " of them only with " + quoted(name) + ")\n");
-  context.print("  difference of the failure probabilities: " + in_percent(c.difference.low) +
-                " to " + in_percent(c.difference.high) + " with " + in_percent(pairs.confidence) +
-                " confidence; McNemar's exact test: p = " + text::brief(c.p_value, 3) + "\n");
+  context.print("  failure probability with " + quoted(own) + " minus failure probability with " +
+                quoted(name) + ": " + in_percent(c.difference.low) + " to " +
+                in_percent(c.difference.high) + " with " + in_percent(pairs.confidence) +
+                " confidence; McNemar's exact test gives p = " + text::brief(c.p_value, 3) + "\n");
   return {{"with", name},
           {"pairs", c.pairs},
           {"both_failed", c.both},
@@ -234,10 +237,11 @@ Json rare_failures(Context& context, const CertifyCommand& options, const Uncert
       },
       kFailedSeverity, options.certify.confidence, subset, context.progress());
   if (r.reached)
-    context.print("  rare failures: probability " + text::brief(r.probability, 3) + ", about " +
-                  text::brief(r.interval.low, 2) + " to " + text::brief(r.interval.high, 2) +
-                  " (subset simulation, " + text::counted(r.levels.size(), "level") + ", " +
-                  text::counted(r.runs, "run") + "; the interval is approximate)\n");
+    context.print("  rare failures: the probability is " + text::brief(r.probability, 3) +
+                  ", between about " + text::brief(r.interval.low, 2) + " and " +
+                  text::brief(r.interval.high, 2) + " (subset simulation, " +
+                  text::counted(r.levels.size(), "level") + ", " + text::counted(r.runs, "run") +
+                  "; the interval is approximate)\n");
   else
     context.print("  rare failures: none found in " + text::counted(r.levels.size(), "level") +
                   "; the probability is about " + text::brief(r.probability, 2) + " or less\n");
@@ -262,9 +266,10 @@ void refuse_targets(const Context& context, const CertifyCommand& options) {
          "--shard needs -o, the file that receives the results of this shard; --merge puts such "
          "files together");
   if (options.rare && options.subset.runs % 10 != 0)
-    fail(ErrorCode::usage, "--rare-runs " + std::to_string(options.subset.runs) +
-                               ": it must be a multiple of 10, because a tenth of the runs of a "
-                               "level starts the chains of the next level");
+    fail(ErrorCode::usage,
+         "--rare-runs " + std::to_string(options.subset.runs) +
+             ": the number must be a multiple of 10, because a tenth of the runs of a "
+             "level starts the chains of the next level");
   if (options.certify.shards > 1 && !options.merge.empty())
     fail(ErrorCode::usage, "--shard and --merge cannot be given together; leave one of them out");
 }
@@ -356,7 +361,7 @@ void certify_pattern(Context& context, CertifyCommand& options) {
 void add_certify(Command& app, Context& context) {
   Command* command = app.add_subcommand(
       "certify",
-      "show that the robot fails with at most a given probability, under declared uncertainty");
+      "test whether the robot fails with at most a given probability, under declared uncertainty");
   command->footer(
       "Examples:\n  ayumi certify patterns/hoap1_walk.json --failure 0.01 --confidence 0.95\n"
       "  ayumi certify walk.json --study study.json -o out/cases.json --map out/matters.svg\n"

@@ -223,8 +223,8 @@ Checked checked_one(const Context& context, const CheckCommand& options, const s
       scenario_words(disturbed) + (need.text.empty() ? "" : "  " + need.text + "\n") +
       (own.empty()
            ? ""
-           : "  the robot's own motors: " + own +
-                 (has_encoders(input.robot) ? " (`export --format hoap` judges by this profile)"
+           : "  with the robot's own motors, " + own +
+                 (has_encoders(input.robot) ? " (`export --format hoap` judges by these motors)"
                                             : "") +
                  "\n") +
       refusal_words(input, judgement) +
@@ -325,7 +325,8 @@ void await_return(const std::string& file) {
 
 // Until Ctrl-C.
 void watch(Context& context, const CheckCommand& options) {
-  if (options.patterns.size() != 1) fail(ErrorCode::usage, "check --watch: name one PATTERN");
+  if (options.patterns.size() != 1)
+    fail(ErrorCode::usage, "check --watch: name exactly one PATTERN");
   const std::string& file = options.patterns.front();
   if (file == "-")
     fail(
@@ -351,7 +352,7 @@ void check(Context& context, const CheckCommand& options) {
   refuse_unknown_tolerances(options.tolerances);
   if (!options.plot.empty()) {
     if (options.patterns.size() != 1 || options.watch)
-      fail(ErrorCode::usage, "check --plot: name one PATTERN, and leave --watch out");
+      fail(ErrorCode::usage, "check --plot: name exactly one PATTERN, and leave --watch out");
     refuse_overwriting(context, options.plot);
   }
   if (options.watch) {

@@ -73,7 +73,9 @@ std::string curve_words(const ComparedCurve& curve, double unit, const std::stri
   std::string words = "  " + curve.name + ": " + text::brief(curve.mean / unit, 3) + name +
                       " on average, at most " + text::brief(curve.largest / unit, 3) + name +
                       " at " + text::fixed(curve.largest_at, 3) + " s";
-  if (curve.lag != 0) words += ", " + text::fixed(1000 * curve.lag, 1) + " ms behind";
+  if (curve.lag != 0)
+    words += ", the recording is " + text::fixed(1000 * std::abs(curve.lag), 1) +
+             (curve.lag > 0 ? " ms behind" : " ms ahead");
   if (curve.unit != "rad" && curve.correlation != 0)
     words += ", correlation " + text::fixed(curve.correlation, 3);
   return words + "\n";
@@ -103,31 +105,36 @@ double largest_landing(const Comparison& found) {
 }
 
 std::string comparison_words(const Comparison& found, const Recordings& recordings) {
-  std::string words = recordings.names + " begins " + text::fixed(found.shift, 4) +
-                      " s after the run begins. Both are compared from " +
-                      text::fixed(found.begin, 3) + " to " + text::fixed(found.end, 3) + " s\n";
+  std::string words =
+      recordings.names + ": the recording begins " + text::fixed(std::abs(found.shift), 4) + " s " +
+      (found.shift < 0 ? "before" : "after") +
+      " the beginning of the run. Both are compared from " + text::fixed(found.begin, 3) + " to " +
+      text::fixed(found.end, 3) + " s of the run\n";
   for (const std::string& note : found.notes) words += "  " + note + "\n";
   if (!found.joints.empty())
-    words += "joints: " + text::fixed(found.mean_joint() / kComparedDegree, 4) +
+    words += "differences of the joints: " + text::fixed(found.mean_joint() / kComparedDegree, 4) +
              " deg on average, at most " + text::fixed(found.largest_joint() / kComparedDegree, 3) +
              " deg\n";
   for (const ComparedCurve& joint : found.joints)
     words += joint.unit == "rad" ? curve_words(joint, kComparedDegree, " deg")
                                  : curve_words(joint, 1, " m");
-  if (!found.loads.empty()) words += "loads of the feet:\n";
+  if (!found.loads.empty()) words += "differences of the loads of the feet:\n";
   for (const ComparedCurve& load : found.loads)
     words += curve_words(load, 1, load.unit.empty() ? "" : " " + load.unit);
   if (!found.loads.empty()) {
     words += "landings: " + std::to_string(found.landings.size()) +
-             " in both the run and the recording, at most " +
+             " are in the run and in the recording, at most " +
              text::fixed(1000 * largest_landing(found), 0) + " ms apart; " +
-             std::to_string(found.unmatched_landings) + " in only one of the two\n";
-    for (const ComparedLanding& landing : found.landings)
+             std::to_string(found.unmatched_landings) + " are in only one of the two\n";
+    for (const ComparedLanding& landing : found.landings) {
+      const double later = landing.measured - landing.simulated;
       words += std::string("  ") + name_of(landing.foot) + " at " +
-               text::fixed(landing.simulated, 3) + " s, measured " +
-               text::fixed(1000 * (landing.measured - landing.simulated), 0) + " ms later\n";
+               text::fixed(landing.simulated, 3) + " s of the run, " +
+               text::fixed(1000 * std::abs(later), 0) + (later < 0 ? " ms earlier" : " ms later") +
+               " in the recording\n";
+    }
   }
-  if (!found.imu.empty()) words += "IMU:\n";
+  if (!found.imu.empty()) words += "differences of the IMU:\n";
   for (const ComparedCurve& curve : found.imu) words += curve_words(curve, 1, " " + curve.unit);
   return words;
 }
@@ -208,7 +215,8 @@ void add_compare(Command& app, Context& context) {
       "  ayumi compare out/ encoders.csv sensors.csv --window 9,17 --plot both.svg --json");
   static CompareCommand options;
   static std::string unit = "rad";
-  command->add_option("RUN", options.run, "Folder of run or simulate, or a log file.")->required();
+  command->add_option("RUN", options.run, "Folder that `run` or `simulate` wrote, or a log file.")
+      ->required();
   command
       ->add_option("MEASURED", options.measured,
                    "Recordings of joint angles (HOAP counts, or columns with names), of load cells "
@@ -221,8 +229,8 @@ void add_compare(Command& app, Context& context) {
       ->type_name("F");
   command
       ->add_option("--log", options.log,
-                   "Log of the run: open_loop, closed_loop, undisturbed (default: closed_loop if "
-                   "there is one).")
+                   "Log of the run: open_loop, closed_loop, undisturbed (default: closed_loop, or "
+                   "the only log of the run).")
       ->type_name("NAME");
   command->add_option("--robot", options.robot,
                       "Robot to use in place of the one that the run names.");

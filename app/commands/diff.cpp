@@ -87,8 +87,11 @@ void diff(Context& context, const DiffCommand& options) {
   else
     words += motion_words(a.robot, change, check_a, check_b) + cost_words(cost) + "\n";
   if (!same_length)
-    words += "  compared over the first " + text::fixed(change.compared, 3) + " s\n";
-  if (contacts >= 0) words += "  contacts differ from " + text::fixed(contacts, 3) + " s on\n";
+    words += "  the patterns differ in duration, so only the first " +
+             text::fixed(change.compared, 3) + " s are compared\n";
+  if (contacts >= 0)
+    words += "  the contacts of the feet differ for the first time at " + text::fixed(contacts, 3) +
+             " s\n";
   if (!options.plot.empty()) {
     plot_motions(a.robot, a.series, b.series,
                  {label_of(options.a) + " and " + label_of(options.b), a.profile,

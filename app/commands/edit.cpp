@@ -153,12 +153,14 @@ FastestPace limits_of(const Context& context, const EditCommand& options, const 
   FastestPace pace = fastest_pace(input.robot, input.pattern, retime, context.progress());
   if (pace.by_posture)
     fail(ErrorCode::solver,
-         options.pattern + ": the check fails at every pace: " + pace.limited_by +
-             ". Another pace cannot help, because a posture of the table is wrong. Try repair");
+         options.pattern + ": the check fails at every pace. First error: " + pace.limited_by +
+             ". Another pace cannot help, because a posture of the table is wrong. Try "
+             "`ayumi repair`");
   if (!pace.found)
     fail(ErrorCode::solver, options.pattern + ": no time scale up to " +
-                                text::brief(retime.slowest) + " passes the check: " +
-                                pace.limited_by + ". More time alone is not enough. Try repair");
+                                text::brief(retime.slowest) +
+                                " passes the check. First error: " + pace.limited_by +
+                                ". More time alone is not enough. Try `ayumi repair`");
   return pace;
 }
 
@@ -185,10 +187,10 @@ void retime_locally(Context& context, const EditCommand& options, const Task& in
   if (!pace.found)
     fail(ErrorCode::solver,
          options.pattern +
-             ": the check fails with every timing of this motion: " + pace.limited_by +
+             ": the check fails with every timing of this motion. First error: " + pace.limited_by +
              (pace.by_posture ? ". Another timing cannot help, because a posture is wrong"
                               : ". More time alone is not enough") +
-             ". Try repair");
+             ". Try `ayumi repair`");
   Result result;
   result.caution = input.caution;
   result.series = std::move(pace.series);
@@ -202,7 +204,7 @@ void retime_locally(Context& context, const EditCommand& options, const Task& in
   write_edited(
       context, options, pace.pattern, result,
       "  the motion takes " + text::brief(pace.scale) + " times its original time\n" +
-          "  limits, each with the share of the time in which it binds: " + in_words(pace.binding) +
+          "  share of the time in which each limit decides the pace: " + in_words(pace.binding) +
           "\n",
       Json{{"scale", pace.scale},
            {"path_scale", pace.path_scale},
@@ -472,10 +474,10 @@ void edit_key(Context& context, const EditCommand& options) {
   if (options.key_by != 0) key.to = key.at + options.key_by;
   if (!key.to && !key.mirror)
     fail(ErrorCode::usage,
-         "edit key: nothing is to be done with the keyframe. Move it with --to T or --by S, move a "
-         "copy with --copy, or exchange left and right with --mirror");
+         "edit key: no change of the keyframe is given. Move the keyframe with --to T or --by S, "
+         "move a copy of it with --copy, or exchange left and right with --mirror");
   if (key.copy && !key.to)
-    fail(ErrorCode::usage, "edit key: --copy needs the time of the copy: give --to T or --by S");
+    fail(ErrorCode::usage, "edit key: --copy needs the time of the copy; give --to T or --by S");
   const Task input = load(context, options);
   const Pattern edited = with_key_edited(input.robot, input.pattern, key);
   write_edited(context, options, edited, check_edited(context, options, input, edited), "",
@@ -598,7 +600,7 @@ void add_edit(Command& app, Context& context) {
                           "Find the smallest scale (the fastest motion) that passes the check.");
   retime_command.add_flag(
       "--local", options.local,
-      "With --to-limits: slow the motion down only at the times when a limit binds.");
+      "With --to-limits: slow the motion down only at the times at which a limit requires this.");
   retime_command
       .add_option("--margin", options.margin,
                   "With --local: a ZMP margin of this size is enough [m]. A smaller value allows a "
@@ -607,7 +609,7 @@ void add_edit(Command& app, Context& context) {
       ->check(number_within(0.0, 1.0))
       ->type_name("M");
   retime_command.add_flag("--keep-pauses", options.keep_pauses,
-                          "With --local: spans in which nothing moves keep their length.");
+                          "With --local: time spans in which nothing moves keep their duration.");
   retime_command.callback([&context] { retime(context, options); });
   Command& loop_command =
       add_edit_of(*command, "loop", "repeat a motion that ends as it begins", options);

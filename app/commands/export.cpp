@@ -180,7 +180,7 @@ void set_rate(const ExportOptions& options, Source& source) {
     fail(ErrorCode::bad_file, options.output + ": the table has a row every " + text::brief(ms) +
                                   " ms, but the layout '" + layout.name + "' of '" +
                                   source.model.name() + "' allows only " + text::join(known, ", ") +
-                                  " ms; choose one with --interval");
+                                  " ms; choose one of these with --interval");
 }
 
 Source source_of_table(const ExportOptions& options, const Context& context,
@@ -217,7 +217,9 @@ CautiousTable table_of_run(const ExportOptions& options, const RunFolder& run,
   const bool disturbed = !log.scenario.empty();
   if (options.pushed && !(run.light ? disturbed : run.pushed.has_value()))
     fail(ErrorCode::usage,
-         options.input + ": --pushed: the run has no disturbances; leave --pushed out");
+         options.input +
+             ": --pushed needs a run with disturbances, and this run has none; leave "
+             "--pushed out");
   if (run.light) return {made(log), disturbed ? run.pushed_caution : run.reference_caution};
   const bool pushed = options.pushed || !run.reference;
   const TableCaution& caution = !pushed      ? run.reference_caution
@@ -275,8 +277,8 @@ Source source_of(const ExportOptions& options, const Context& context) {
   verify_run_of(options.input);
   if (!options.servo.empty())
     fail(ErrorCode::usage, options.input +
-                               ": --servo: this table was already made for a servo; to choose "
-                               "another content, export the pattern or the run");
+                               ": --servo cannot change the content of a table that exists; to "
+                               "choose the content, export the pattern or the run");
   return source_of_table(options, context, read_reference(options.input),
                          read_table_caution(options.input));
 }
@@ -410,10 +412,10 @@ std::string in_words(const ExportOptions& options, const Source& source, const S
             " % of the limit (" + report.worst_joint + " at " +
             on_both_clocks(report.worst_at, report.ramp, report.ramp + report.motion) + ")";
   if (!report.margin_joint.empty())
-    text += "; " + report.margin_joint +
-            (report.min_limit_margin < 0 ? " goes " : " comes nearest to its position limit, to ") +
-            text::brief(std::abs(report.min_limit_margin) * 180 / EIGEN_PI, 3) + " deg" +
-            (report.min_limit_margin < 0 ? " beyond its position limit" : "");
+    text += (report.min_limit_margin < 0 ? "; the joint farthest beyond its position limit is "
+                                         : "; the joint nearest to its position limit is ") +
+            report.margin_joint + " (" +
+            text::brief(std::abs(report.min_limit_margin) * 180 / EIGEN_PI, 3) + " deg)";
   text += "\n";
   for (const SafetyViolation& violation : report.violations)
     text += "  unsafe: " + text_of(violation) + "\n";
@@ -435,8 +437,8 @@ std::string words_on_sequence(const Source& source, const SafeTable& safe) {
     text += "; --ramp S and --hold S add rows around them";
   text += "\n";
   if (file.general_commands > 0)
-    text += "  " + std::to_string(file.general_commands) +
-            " of these rows are commands to single devices. The robot will carry them out\n";
+    text += "  commands to single devices in these rows: " + std::to_string(file.general_commands) +
+            ". The robot will carry out these commands\n";
   const std::vector<SequenceLayout> layouts = sequence_layouts(source.model);
   if (file.layout.name != layouts.front().name)
     text += "  the columns of these rows follow the layout " + file.layout.name + "; --layout " +
@@ -589,9 +591,9 @@ void export_sign_test(const ExportOptions& options, Context& context) {
     for (const auto& [path, bytes] : files) refuse_overwriting(context, path);
   fs::create_directories(folder);
   for (const auto& [path, bytes] : files) write_file(path, bytes);
-  context.print(options.output + ": it holds one slow motion for each of " +
+  context.print(options.output + ": the folder holds one slow motion for each of " +
                 std::to_string(tests.size()) + " joints (" + options.format +
-                "), and sheet.html with their pictures\n" +
+                "), and sheet.html with a picture of each motion\n" +
                 "  Hang the robot up before you play the motions.\n");
   context.print_json(nlohmann::ordered_json{
       {"format", options.format},
@@ -624,14 +626,15 @@ void export_table(ExportOptions options, Context& context) {
                  : motion_format(options) ? ""
                                           : words_on_sequence(source, safe)));
   if (!safe.report.safe)
-    context.print("  judged by the profile " + options.safety.profile + "; " +
-                  (others.empty()
-                       ? "no other profile has motors that are strong enough"
-                       : "the motors of " + text::join(others, ", ") + " are strong enough") +
-                  "\n");
+    context.print(
+        "  the table is judged by the limits of the profile " + options.safety.profile + "; " +
+        (others.empty() ? "no other profile has motors that are strong enough"
+                        : "the motors of " + text::join(others, ", ") + " are strong enough") +
+        "\n");
   if (options.format == "hoap" && !knows_torque(source))
     context.print(
-        "  the torques are not checked, because a table has none; export the RUN to check them\n");
+        "  the torques are not checked, because a table contains no torques; export the RUN folder "
+        "to check the torques\n");
   context.print_json(as_json(options, source, safe, others, refused));
   context.exit_code = refused.empty() ? 0 : 1;
 }
@@ -715,8 +718,9 @@ void add_export(Command& app, Context& context) {
       ->add_option(
           "--servo", options->servo,
           "Content of the targets: ideal (the joint angles), lead (the targets are ahead of "
-          "the posture by the lag of the profile's servos) or lead+sag (like lead, and "
-          "the targets also compensate for the sag under load) (default: lead).")
+          "the posture by the lag of the profile's servos), or lead+sag (like lead, and "
+          "the targets also compensate for the sag under load). The default is lead for csv, json, "
+          "hoap and gltf, and ideal for the formats of other programs.")
       ->check(one_of({"ideal", "lead", "lead+sag"}));
   command->footer(
       "Examples:\n"

@@ -48,12 +48,12 @@ struct Stage {
   char mark;
   const char* words;
 };
-constexpr Stage kStages[] = {{"generate", 'g', "cannot be generated"},
-                             {"repair", 'r', "is inconsistent, and there is no repair"},
-                             {"loop", 'l', "does not close to a cycle"},
+constexpr Stage kStages[] = {{"generate", 'g', "the walk cannot be generated"},
+                             {"repair", 'r', "the walk is inconsistent, and no repair was found"},
+                             {"loop", 'l', "the walk does not close to a cycle"},
                              {"simulate", 's', "the simulated robot does not stand"},
-                             {"certify", 'c', "is not certified"},
-                             {"neighbour", 'n', "begins or ends at a missing cell"}};
+                             {"certify", 'c', "the walk is not certified"},
+                             {"neighbour", 'n', "the transition begins or ends at a missing cell"}};
 
 const Stage& stage_of(const Json& entry) {
   const std::string name = entry.at("stage");
@@ -214,7 +214,7 @@ std::string missing_words(const std::vector<Json>& entries, const char* noun,
     if (++shown > kShownMissing) break;
     text += "    " + name(entry) + ": " + entry.at("reason").get<std::string>() + "\n";
   }
-  if (shown > kShownMissing) text += "    index.json has the reasons for all cells\n";
+  if (shown > kShownMissing) text += "    index.json contains all the reasons\n";
   return text;
 }
 
@@ -328,8 +328,8 @@ void add_gaits(Command& app, Context& context) {
       "-16:16:5\n"
       "  ayumi gaits hoap1 -o out/gaits --forward 0,0.05 --sideways 0 --turn 0 --failure 0.01\n"
       "An axis is a list (0,0.05) or FROM:TO:COUNT. A cell of the library is one combination of "
-      "values of the axes. Run again with the same options to go on. Exit code 1: a cell has no "
-      "walk.");
+      "values of the axes. Run the command again with the same options to go on. Exit code 1: a "
+      "cell has no walk.");
   auto options = std::make_shared<GaitsCommand>();
   GaitOptions& gaits = options->options;
   command

@@ -41,7 +41,7 @@ void add_help(Command& app, Context&) {
   command->footer("Examples:\n  ayumi help check\n  ayumi help new walk");
   static std::vector<std::string> words;
   command->add_option("COMMAND", words,
-                      "Name of a command, and of its subcommand if it has subcommands.");
+                      "Name of a command, and of one of its subcommands if the command has any.");
   command->callback([&app] { print_help(app.cli11(), words); });
 }
 

@@ -40,8 +40,9 @@ std::string estimate_words(const ServoEstimate& e, double unit, int digits,
 std::string joint_words(const IdentifiedJoint& j) {
   std::string words = "  " + j.joint + ": ";
   if (!j.moved)
-    return words + "does not move; its angle is " +
-           text::fixed(j.offset.value / kIdentifiedDegree, 3) + " deg from its command\n";
+    return words +
+           "the command does not move this joint; the measured angle minus the command is " +
+           text::fixed(j.offset.value / kIdentifiedDegree, 3) + " deg\n";
   words += "delay " + estimate_words(j.delay, 1e-3, 2, "ms");
   if (j.kp.known)
     words += ", kp " + estimate_words(j.kp, 1, 0, "N m/rad");
@@ -53,8 +54,8 @@ std::string joint_words(const IdentifiedJoint& j) {
     words += ", backlash " + estimate_words(j.backlash, kIdentifiedDegree, 3, "deg");
   words += ", offset from the command " + estimate_words(j.offset, kIdentifiedDegree, 3, "deg");
   if (j.has_sag)
-    words += ", sag " + text::fixed(j.sag / kIdentifiedDegree, 3) + " deg from swing to stance";
-  words += "; the model misses the recording by " +
+    words += ", sag " + text::fixed(j.sag / kIdentifiedDegree, 3) + " deg between swing and stance";
+  words += "; the model differs from the recording by " +
            text::fixed(j.mean_error / kIdentifiedDegree, 3) + " deg on average and by at most " +
            text::fixed(j.largest_error / kIdentifiedDegree, 3) + " deg at " +
            text::fixed(j.largest_at, 3) + " s\n";
@@ -128,7 +129,7 @@ void identify_servos(const Context& context, const IdentifyCommand& options) {
   if (how.stand == RobotStand::feet && !model.has_soles())
     fail(ErrorCode::bad_model,
          options.robot +
-             ": the robot has no soles; add \"soles\" to its sidecar, or use --stand "
+             ": the robot has no soles; add \"soles\" to the sidecar, or use --stand "
              "fixed");
   how.longest_lag = 0.001 * options.longest_lag_ms;
   how.loads_place = options.loads;
@@ -146,8 +147,9 @@ void identify_servos(const Context& context, const IdentifyCommand& options) {
     advice = advice || !joint.confounded.empty();
   }
   if (advice)
-    words += "  `ayumi new excite --robot " + options.robot +
-             " -o excite.json` writes motions with which these constants can be distinguished\n";
+    words +=
+        "  to distinguish these constants, record the motions that `ayumi new excite --robot " +
+        options.robot + " -o excite.json` writes\n";
   if (!options.out.empty()) {
     write_file(options.out, sidecar_text(model, options, found));
     words += options.out + ": written\n";
@@ -196,12 +198,13 @@ void add_identify(Command& app, Context& context) {
       ->type_name("F");
   command
       ->add_option("--loads", options.loads,
-                   "Recording of the load cells of the feet: raw readings (the sidecar has their "
+                   "Recording of the load cells of the feet: raw readings (the sidecar has the "
                    "calibration), or a table with fz.left[N] and fz.right[N].")
       ->type_name("F");
   command
-      ->add_option("-o,--out", options.out,
-                   "Sidecar to write. It has ROBOT as its base, and adds the servo constants.")
+      ->add_option(
+          "-o,--out", options.out,
+          "Sidecar to write. The new sidecar has ROBOT as its base and adds the servo constants.")
       ->type_name("F");
   command
       ->add_option("--per", options.per,
@@ -226,9 +229,9 @@ void add_identify(Command& app, Context& context) {
   command
       ->add_option("--longest-lag", options.longest_lag_ms,
                    "Largest time by which a servo may be behind its command [ms]. If the lag is "
-                   "larger, Ayumi refuses the recording, because it probably does not begin at the "
-                   "same time as the command (default: 30 or twice the lag of the slowest servo of "
-                   "ROBOT, whichever is larger).")
+                   "larger, Ayumi refuses the recording, because the recording and the command "
+                   "probably do not begin at the same time (default: 30 or twice the lag of the "
+                   "slowest servo of ROBOT, whichever is larger).")
       ->check(number_within(1.0, 500.0))
       ->type_name("MS");
   command->callback([&context] {

@@ -108,14 +108,14 @@ void add_import(Command& app, Context& context) {
       ->type_name("ROBOT");
   command
       ->add_option("-o,--out", options.out,
-                   "Pattern file to write; its table is written beside it.")
+                   "Pattern file to write. The table of the pattern is written beside this file.")
       ->required()
       ->type_name("F");
   command
       ->add_option("--format", options.how.reading.format,
                    "Format of the file (default: recognized by its content).")
       ->check(one_of(read_format_names()));
-  command->add_option("--unit", unit, "Unit of angles where the file does not state it.")
+  command->add_option("--unit", unit, "Unit of the angles if the file states no unit.")
       ->check(one_of({"rad", "deg"}))
       ->capture_default_str();
   command

@@ -85,7 +85,7 @@ void init(const Context& context, const InitOptions& options) {
   context.print(at + "/robot.json: sidecar of " + sidecar.robot.name + ", " +
                 std::to_string(joints) + " joints, with the reason for each guess\n" + at +
                 "/robot.png: picture of the home posture with soles and joint axes\n" + at +
-                "/TODO.md: list of what you have to check:\n");
+                "/TODO.md: list of what you have to check\n");
   for (const std::string& item : sidecar.to_do) context.print("  - " + item + "\n");
   for (const std::string& note : picture.notes)
     context.print("  - note on the picture: " + note + "\n");
@@ -119,7 +119,9 @@ void add_init(Command& app, Context& context) {
           "URDF, MJCF, SDF, Choreonoid body or mi-lib ztk, or a folder with one such file.")
       ->required()
       ->type_name("FILE");
-  command->add_option("-o,--out", options->out, "Folder of the robot; it is created if needed.")
+  command
+      ->add_option("-o,--out", options->out,
+                   "Folder of the robot. Ayumi creates the folder if needed.")
       ->required()
       ->type_name("DIR");
   command->callback([&context, options] { init(context, *options); });

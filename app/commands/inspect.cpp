@@ -349,7 +349,7 @@ std::string sensor_lines(const RobotModel& model) {
        {std::pair(sensors.encoder_latency, "joint angles"), std::pair(sensors.imu_latency, "IMU"),
         std::pair(sensors.force_latency, "load cells")})
     if (latency)
-      text += ", of the " + std::string(what) + " " + text::brief(1000 * *latency) + " ms";
+      text += ", latency of the " + std::string(what) + " " + text::brief(1000 * *latency) + " ms";
   return text + ", servo period " + text::brief(1000 * model.description().servo_period) +
          " ms, joint angles " +
          (sensors.encoder_quantisation ? "rounded to counts" : "not rounded") + "\n";
@@ -417,7 +417,7 @@ void add_inspect(Command& app, Context& context) {
                    "Name of a bundled robot, folder, sidecar, URDF, MJCF, SDF, body or ztk file.")
       ->required()
       ->type_name("ROBOT");
-  command->add_option("--picture", options->picture, "Draw the home posture on the ground, .png.")
+  command->add_option("--picture", options->picture, "Draw the home posture on the ground (.png).")
       ->type_name("FILE");
   command->add_option("--view", options->view, "View: " + text::join(view_names(), ", ") + ".")
       ->capture_default_str();

@@ -106,17 +106,17 @@ std::vector<double> values_that_pass(const Context& context, const RobotModel& m
     context.print("the check accepts this motion" + (changed.empty() ? "" : " with " + changed) +
                   ", but the robot falls in a simulation: " + result.falls + "; " +
                   std::to_string(result.tried) +
-                  " trials found no other values with which it stands\n");
+                  " trials found no values that keep the robot standing\n");
   else if (result.found)
-    context.print("the default values ask too much of " + model.name() + ": " + result.limit +
-                  "\n"
-                  "  after " +
-                  std::to_string(result.tried) + " trials, these values were found: " + changed +
-                  "\n");
+    context.print(
+        "the default values ask too much of " + model.name() + ". First error: " + result.limit +
+        "\n"
+        "  after " +
+        std::to_string(result.tried) + " trials, these values were found: " + changed + "\n");
   else if (result.tried > 1 && !result.refused)  // else the error says it
     context.print("none of " + std::to_string(result.tried) +
-                  " combinations of height, length and time passes the check. The default values "
-                  "fail because of: " +
+                  " combinations of height, length and time passes the check. First error with the "
+                  "default values: " +
                   result.limit + "\n");
   return result.values;
 }
@@ -189,7 +189,8 @@ std::string what_it_can_do(const RobotModel& model, const std::string& robot) {
     }
   return commands.empty()
              ? ""
-             : "; no walk was found, but the robot can do " + text::join(commands, ", ");
+             : "; no walk was found, but these commands make motions that the robot can do: " +
+                   text::join(commands, ", ");
 }
 
 void new_walk(const Context& context, NewOptions options) {
@@ -209,7 +210,8 @@ void new_walk(const Context& context, NewOptions options) {
       "Walk of " + std::to_string(w.steps) + " steps: stride " + text::brief(w.stride) +
           " m, period " + text::brief(w.period) + " s, double support " +
           text::brief(100 * w.double_support) + " %, lift " + text::brief(w.lift) + " m",
-      "The COG is left out: it is solved from the ZMP keys for the whole robot."};
+      "The pattern has no keys of the COG. Ayumi computes the COG from the ZMP keys for the whole "
+      "robot."};
   try {
     if (write_new(context, model, walk_pattern(model, w), options, comments)) return;
   } catch (const Error& error) {
@@ -291,7 +293,7 @@ void new_squat(const Context& context, NewOptions options) {
   }));
   write_new(context, model, squat_pattern(model, p), options,
             {"Squats " + std::to_string(p.cycles) + " times by " + text::brief(p.depth) +
-                 " m: COG height keys.",
+                 " m. The keys give the COG height.",
              "The horizontal position of the COG is solved so that the ZMP stays in the middle of "
              "the feet."});
 }
@@ -341,8 +343,7 @@ void new_bow(const Context& context, NewOptions options) {
   const Pattern pattern = make(values_that_pass(context, model, dials, make));
   write_new(context, model, pattern, options,
             {"Bows by " + text::brief(p.angle / degree) +
-                 " deg: keys of the trunk and of the COG "
-                 "height.",
+                 " deg. The keys give the attitude of the trunk and the COG height.",
              "The horizontal position of the COG is solved so that the ZMP stays in the middle of "
              "the feet."});
 }
@@ -363,7 +364,7 @@ void new_wave(const Context& context, NewOptions options) {
   const Pattern pattern = make(values_that_pass(context, model, dials, make));
   write_new(context, model, pattern, options,
             {"Waves the " + options.which + " hand " + std::to_string(p.cycles) +
-                 " times: keys of the joints of the arm.",
+                 " times. The keys give the joints of the arm.",
              "The COG is solved so that the ZMP stays in the middle of the feet."});
 }
 
@@ -413,10 +414,12 @@ void new_turn(const Context& context, NewOptions options) {
   w.turn = angle / w.steps * std::numbers::pi / 180;
   // The foot on the side to which the robot turns goes first, away from the other one.
   w.first_swing = angle > 0 ? Side::left : Side::right;
-  write_new(context, model, walk_pattern(model, w), options,
-            {"Turns by " + text::brief(angle) + " deg in place, in " + std::to_string(w.steps) +
-                 " steps and one that brings the feet together.",
-             "The COG is left out: it is solved from the ZMP keys for the whole robot."});
+  write_new(
+      context, model, walk_pattern(model, w), options,
+      {"Turns by " + text::brief(angle) + " deg in place, in " + std::to_string(w.steps) +
+           " steps and one more step that brings the feet together.",
+       "The pattern has no keys of the COG. Ayumi computes the COG from the ZMP keys for the whole "
+       "robot."});
 }
 
 void new_march(const Context& context, NewOptions options) {
@@ -430,10 +433,12 @@ void new_march(const Context& context, NewOptions options) {
   w.first_swing = options.first == "left" ? Side::left : Side::right;
   options.stride = 0;
   fit_walk(context, model, options, w);
-  write_new(context, model, walk_pattern(model, w), options,
-            {"Marches in place: " + std::to_string(w.steps) + " steps, lift " +
-                 text::brief(w.lift) + " m, period " + text::brief(w.period) + " s.",
-             "The COG is left out: it is solved from the ZMP keys for the whole robot."});
+  write_new(
+      context, model, walk_pattern(model, w), options,
+      {"Marches in place with " + std::to_string(w.steps) + " steps. Lift " + text::brief(w.lift) +
+           " m, period " + text::brief(w.period) + " s.",
+       "The pattern has no keys of the COG. Ayumi computes the COG from the ZMP keys for the whole "
+       "robot."});
 }
 
 // Time of standing before a goal of VIIP [s]. Chosen: 3/omega of HOAP-1.
@@ -490,7 +495,7 @@ void new_viip(const Context& context, const NewOptions& options) {
        std::any_of(options.velocity.begin(), options.velocity.end(), moves)))
     fail(ErrorCode::usage,
          "viip: the last step brings the feet together, so one step cannot go forward; give "
-         "--steps 2");
+         "--steps 2 or more");
   Pattern pattern;
   pattern.robot = options.robot;
   pattern.controller.type = ControllerKind::viip;
@@ -518,22 +523,21 @@ void new_viip(const Context& context, const NewOptions& options) {
     pattern.phases.pop_back();
     const double omega = std::sqrt(kGravity / default_cog_height(model, pattern));
     phase(stepping_time(viip_params(model, pattern.controller), omega, goal.steps) + 0.05, goal);
-    comments = {
-        std::to_string(goal.steps) +
-            " steps, the last of which brings the feet together; VIIP chooses the footholds.",
-        "The duration of the phase is the time of all steps, from standing to standing."};
+    comments = {std::to_string(goal.steps) +
+                    " steps. The last step brings the feet together. VIIP chooses the footholds.",
+                "The duration of the phase is the time of all steps, from standing to standing."};
   } else if (!options.cog_velocity.empty()) {
     const std::vector<double>& v = options.cog_velocity;
     phase(options.moving, CogVelocityGoal{{v[0], v[1], v[2]}});
     phase(kDisplaced, CogVelocityGoal{});
     phase(kDisplaced, CogGoal{});
     comments = {
-        "The robot stands on both feet; the COG moves at a velocity, stops, and goes back."};
+        "The robot stands on both feet. The COG moves at a velocity, stops, and goes back."};
   } else {
     const Eigen::Vector3d displacement(options.cog[0], options.cog[1], options.cog[2]);
     phase(kDisplaced, CogGoal{displacement});
     phase(kDisplaced, CogGoal{});
-    comments = {"The robot stands on both feet; the COG moves by a displacement, and back."};
+    comments = {"The robot stands on both feet. The COG moves by a displacement, and goes back."};
   }
   const CommandSeries series = sample_at_servo_period(model, pattern);
   require_reachable_goals(model, series, pattern.controller);
@@ -548,10 +552,11 @@ void new_stand(const Context& context, const NewOptions& options) {
     return stand_pattern(model, options.duration, values[0]);
   };
   const Pattern pattern = make(values_that_pass(context, model, dials, make));
-  write_new(context, model, pattern, options,
-            {pattern.cog_height == 0
-                 ? "Standing on both feet in the home posture."
-                 : "Standing on both feet, lower than in the home posture, with bent knees."});
+  write_new(
+      context, model, pattern, options,
+      {pattern.cog_height == 0
+           ? "The robot stands on both feet in the home posture."
+           : "The robot stands on both feet with bent knees, lower than in the home posture."});
 }
 
 // Amplitudes shrink until the check finds the pattern consistent.
@@ -649,7 +654,7 @@ void add_step(Command& command, NewOptions& options) {
   add_gait(command, options);
   command
       .add_option("--length", options.stride,
-                  "Length of a step forward [m] (default: steps in place).")
+                  "Length of a step forward [m] (default: the robot steps in place).")
       ->type_name("M");
 }
 

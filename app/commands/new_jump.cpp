@@ -93,12 +93,13 @@ JumpParameters highest_jump(const RobotModel& model, JumpParameters p, const std
 
 std::vector<std::string> comments_of(const JumpParameters& p) {
   const std::string way = p.forward == 0 ? "in place" : text::brief(p.forward) + " m forward each";
-  return {"Jumps " + std::to_string(p.times) + (p.times == 1 ? " time " : " times ") + way +
-              ": the COG rises " + text::brief(p.height) + " m above " + text::brief(p.cog_height) +
-              " m and stoops " + text::brief(p.stoop) + " m before and after.",
-          "Keys: stand, stoop, lift-off, touchdown, stoop, stand. In the flight (support none) the "
-          "COG follows the",
-          "parabola through the keys at its two ends; a longer flight is a higher jump."};
+  return {
+      "Jumps " + std::to_string(p.times) + (p.times == 1 ? " time " : " times ") + way +
+          ". The COG rises " + text::brief(p.height) + " m above " + text::brief(p.cog_height) +
+          " m and stoops " + text::brief(p.stoop) + " m before and after.",
+      "Keys: stand, stoop, lift-off, touchdown, stoop, stand. In the flight (support none) the "
+      "COG follows the",
+      "parabola through the keys at both ends of the flight. A longer flight is a higher jump."};
 }
 
 void new_jump(Context& context, JumpOptions options) {
@@ -128,11 +129,12 @@ void new_jump(Context& context, JumpOptions options) {
     options.profile = choose_profile(model, p, !options.stoop);
     jump_pattern(model, p);  // values out of range are refused first
     if (options.profile.empty())
-      context.print("no actuator profile of " + model.name() + " is strong enough for a jump of " +
-                    text::brief(p.height) + " m with a stoop of " + text::brief(p.stoop) +
-                    " m and a COG height (ref z_G) of " + text::brief(p.cog_height) +
-                    " m: choose a lower --height, another --stoop or --cog-height; `ayumi check` "
-                    "names the limits that the jump exceeds\n");
+      context.print(
+          "no actuator profile of " + model.name() + " is strong enough for a jump of " +
+          text::brief(p.height) + " m with a stoop of " + text::brief(p.stoop) +
+          " m and a COG height (ref z_G) of " + text::brief(p.cog_height) +
+          " m. Choose a lower --height, another --stoop or another --cog-height. `ayumi check` "
+          "names the limits that the jump exceeds\n");
   }
   Pattern pattern = jump_pattern(model, p);
   pattern.profile = options.profile;

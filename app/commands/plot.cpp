@@ -93,7 +93,8 @@ void plot(const PlotOptions& asked, Context& context) {
   for (const LabelledLog& entry : logs) runs.push_back({entry.label, &entry.log});
   if (runs.empty())
     fail(ErrorCode::usage,
-         "plot: the run has no simulation log, so there is nothing to draw; simulate it again");
+         "plot: the run has no simulation log, so there is nothing to draw; simulate the pattern "
+         "again");
   std::vector<std::string> series;
   if (options.top) {
     write_support_plot(robot_of_log(context, options.robot, logs.back().log, logs.back().label),

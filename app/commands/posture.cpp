@@ -271,7 +271,8 @@ size_t row_at(const PostureCommand& options, double dt, size_t rows) {
   const double end = dt * static_cast<double>(rows - 1);
   if (!(options.at >= 0 && options.at <= end + dt / 2))
     fail(ErrorCode::usage, "--at " + text::brief(options.at) + ": " + options.source +
-                               " lasts from 0 to " + text::fixed(end, 3) + " s");
+                               " lasts from 0 to " + text::fixed(end, 3) +
+                               " s; give a time within this range");
   return std::min(rows - 1, static_cast<size_t>(std::lround(options.at / dt)));
 }
 

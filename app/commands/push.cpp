@@ -151,7 +151,7 @@ std::string table(const std::vector<PushCase>& cases, const PushOptions& push,
   }
   for (const std::string& line : push_summary_lines(cases, push, series)) out += line + "\n";
   return out +
-         "B = largest push that a point mass could absorb; + = the robot survives also the largest "
+         "B = largest push that a point mass could absorb; + = the robot survived even the largest "
          "push that was tried\n"
          "J/m = speed that the push gives to the COG, in m/s; J/mv = this speed divided by v = "
          "sqrt(g z), where z is the height of the COG above the ZMP\n";

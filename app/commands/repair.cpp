@@ -95,7 +95,7 @@ std::string steering_words(const RepairCommand& options, const Pattern& pattern)
   std::string out;
   std::vector<std::string> kept = file_locks(pattern.repair);
   kept.insert(kept.end(), options.locked.begin(), options.locked.end());
-  if (!kept.empty()) out += "  locked or kept: " + text::join(kept, ", ") + "\n";
+  if (!kept.empty()) out += "  locked: " + text::join(kept, ", ") + "\n";
   if (options.repair.trust != Trust::posture)
     out += std::string("  trusted quantity: ") + name_of(options.repair.trust) + "\n";
   return out;
@@ -149,8 +149,9 @@ std::string in_words(const PassingPace& pace) {
     std::vector<std::string> windows;
     for (const auto& [begin, end] : pace.windows)
       windows.push_back(text::fixed(begin, 3) + "-" + text::fixed(end, 3) + " s");
-    out += "  the pattern passes the check without a repair if " + text::join(windows, ", ") +
-           " last " + text::exact(pace.factor) + " times as long\n";
+    out += std::string("  the pattern passes the check without a repair if ") +
+           (windows.size() == 1 ? "this time window lasts " : "each of these time windows lasts ") +
+           text::exact(pace.factor) + " times as long: " + text::join(windows, ", ") + "\n";
   }
   if (pace.tried > 0 && pace.factor == 0 && pace.whole == 0)
     out +=
@@ -282,7 +283,10 @@ class StruggleTeller {
   // Chosen: a line of a terminal or two.
   static constexpr size_t kMostNamed = 3;
 
-  void note(const ConsistencyReport& check) { left_ = remaining_errors(check); }
+  void note(const ConsistencyReport& check) {
+    left_ = remaining_errors(check);
+    checked_ = true;
+  }
 
   Progress around(Progress progress) {
     return [this, progress = std::move(progress)](const ProgressEvent& event) {
@@ -292,7 +296,8 @@ class StruggleTeller {
   }
 
   void say_what_is_left() const {
-    say("the repair was stopped. These errors are left: " + words());
+    say("the repair was stopped." +
+        left_words("The motion already passes the check, but a smaller change may be enough"));
   }
 
  private:
@@ -304,13 +309,19 @@ class StruggleTeller {
       return;
     told_stage_ = stage;
     told_ = now;
-    say(stage + " takes a while. It still has to remove: " + words() + ". Ctrl-C stops the repair");
+    say(stage + " takes a while." +
+        left_words(
+            "The motion already passes the check, and the search looks for a smaller change") +
+        " Ctrl-C stops the repair");
+  }
+
+  // What the last check has found; "" before the first check. `nothing`: where no error is left.
+  std::string left_words(const std::string& nothing) const {
+    if (!checked_) return "";
+    return " " + (left_.empty() ? nothing : "These errors are left: " + words()) + ".";
   }
 
   std::string words() const {
-    if (left_.empty())
-      return "nothing, because the motion already passes the check. The search now looks for a "
-             "smaller change";
     const size_t named = std::min(left_.size(), kMostNamed);
     std::string out = text::join({left_.begin(), left_.begin() + static_cast<long>(named)}, "; ");
     if (left_.size() > named)
@@ -324,6 +335,7 @@ class StruggleTeller {
   }
 
   std::vector<std::string> left_;
+  bool checked_ = false;
   std::string told_stage_;
   Clock::time_point told_ = Clock::now();
 };
@@ -351,7 +363,7 @@ RepairResult repair_telling(const Task& input, const RepairOptions& wishes, bool
 void repair_pattern(Context& context, RepairCommand options) {
   if (options.pattern == "-")
     fail(ErrorCode::usage,
-         "repair adds a correction to the text of the pattern, so it needs a file: name the file "
+         "repair adds a correction to the text of the pattern, so it needs a file; name the file "
          "of the pattern in place of -");
   refuse_overwriting(context, options.out);
   if (!options.plot.empty()) refuse_overwriting(context, options.plot);
@@ -458,9 +470,11 @@ void add_repair(Command& app, Context& context) {
                    "Draw joints, COG and ZMP before and after the repair (.svg or .png).")
       ->type_name("F");
   command
-      ->add_option("--margin", options.margin,
-                   "Wanted distance from the ZMP to the edge of the support [m]. It is used where "
-                   "the original motion has less (default: 0.9 x inner radius of the sole).")
+      ->add_option(
+          "--margin", options.margin,
+          "Wanted distance from the ZMP to the edge of the support [m]. The repair uses this "
+          "distance where the distance in the original motion is smaller (default: 0.9 x "
+          "inner radius of the sole).")
       ->check(number_within(0.0, 0.1))
       ->type_name("M");
   command

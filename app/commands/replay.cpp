@@ -153,9 +153,9 @@ std::string in_degrees(double angle, int digits = 3) {
 }
 
 std::string text_of(const Clamp& clamp) {
-  return clamp.kind + " of " + clamp.joint + " by up to " + in_degrees(clamp.change) + " at " +
-         text::fixed(clamp.t, 3) + " s (" + std::to_string(clamp.rows) +
-         (clamp.rows == 1 ? " tick)" : " ticks)");
+  return clamp.joint + " by up to " + in_degrees(clamp.change) + " at " + text::fixed(clamp.t, 3) +
+         " s (limit of the " + (clamp.kind == "range" ? "counts of 16 bits" : clamp.kind) + ", " +
+         std::to_string(clamp.rows) + (clamp.rows == 1 ? " tick)" : " ticks)");
 }
 
 Json json_of(const Clamp& clamp) {
@@ -209,9 +209,9 @@ void replay(Context& context, const ReplayCommand& options) {
                       "), profile " + safety.profile + "\n";
   if (board.clamps.empty()) words += "  the motor boards send every row to the motors unchanged\n";
   for (size_t i = 0; i < std::min<size_t>(board.clamps.size(), 5); ++i)
-    words += "  clamped: " + text_of(board.clamps[i]) + "\n";
+    words += "  the motor boards change the target of " + text_of(board.clamps[i]) + "\n";
   if (board.clamps.size() > 5)
-    words += "  and " + text::counted(board.clamps.size() - 5, "smaller clamp") + "\n";
+    words += "  and they make " + text::counted(board.clamps.size() - 5, "smaller change") + "\n";
   Json clamps = Json::array();
   for (const Clamp& clamp : board.clamps) clamps.push_back(json_of(clamp));
 

@@ -181,7 +181,9 @@ void MainJob::repair_pattern(Task& input, bool goals_reachable) {
   RepairOptions options = preferred_options(input.pattern);
   options.check = check_options(input);
   const RepairResult result = repair_task(input, options, context_.progress());
-  say("repair", std::string(name_of(result.status)) + ": " + std::to_string(result.iterations) +
+  say("repair", (result.status == RepairStatus::not_converged ? std::string("no repair was found")
+                                                              : name_of(result.status)) +
+                    ": " + std::to_string(result.iterations) +
                     " iterations, joints moved by at most " +
                     text::fixed(result.max_joint_change * 180 / EIGEN_PI, 2) + " deg, COG by " +
                     text::fixed(1e3 * result.max_cog_change, 1) + " mm");
@@ -257,7 +259,7 @@ void MainJob::write_hoap(const Task& input, const SimulationLog& log) {
   const bool encoders = input.robot.dofs().front().encoder.device > 0;
   const TableCaution& caution = folder_.reference_caution;
   const std::string still =
-      std::string("\n            ") + (options_.light ? "" : "written, but ") + "not for a robot: ";
+      std::string("\n            ") + (options_.light ? "" : "written, but not for a robot: ");
   if (!caution.unfit.empty()) {
     text = "no table for a robot: " + caution.unfit + still + text;
   } else if (!caution.disturbances.empty()) {
@@ -270,7 +272,8 @@ void MainJob::write_hoap(const Task& input, const SimulationLog& log) {
     text += ", hoap.csv (" + std::to_string(safe.table.rows.size()) + " rows, largest step " +
             text::fixed(100 * safe.report.max_step_ratio, 0) + " % of the limit)";
   } else if (encoders && !safe.report.safe) {
-    text += "; hoap.csv is not written, because the table is unsafe: " +
+    text += (options_.light ? "; the table for the robot is unsafe: "
+                            : "; hoap.csv is not written, because the table is unsafe: ") +
             text_of(safe.report.violations.front());
   }
   say("export", text);

@@ -106,9 +106,9 @@ void compare(Context& context) {
   table += different == 0
                ? "All results are the same as the published ones, bit for bit.\n"
                : text::counted(different, "result") + (different == 1 ? " differs" : " differ") +
-                     " from what was published. If the tests pass on this machine, its verdicts "
-                     "are still right, "
-                     "but the tables that it writes differ in some bytes from the published ones. "
+                     " from what was published. If the tests pass on this machine, the verdicts of "
+                     "this program are still right, but its tables differ in some bytes from "
+                     "the published tables. "
                      "Possible causes: the robot or the patterns belong to another version, or the "
                      "compiler or a library rounds differently. Please report this difference "
                      "together with the output of `ayumi --version`.\n";

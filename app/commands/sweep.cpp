@@ -82,7 +82,7 @@ void conclude(Context& context, const ResultsDatabase& results, const SweepOutpu
   bool all = true;
   for (const Expectation& e : expectations) {
     if (!e.met || !outputs.expect.empty())
-      context.print("  " + std::string(e.met ? "met" : "not met") + ": " + e.text +
+      context.print("  expectation " + std::string(e.met ? "met" : "not met") + ": " + e.text +
                     (e.met ? "" : " (" + e.found + ")") + "\n");
     all = all && e.met;
   }
@@ -145,10 +145,12 @@ std::vector<bool> asked_cases(const SweepCommand& options, const Shard& shard, l
 
 void run_sweep(Context& context, const SweepCommand& options) {
   if (options.study.empty())
-    fail(ErrorCode::usage, "the argument STUDY is missing: a study file, merge or status");
+    fail(ErrorCode::usage,
+         "the argument STUDY is missing; give a study file, or one of the subcommands merge and "
+         "status");
   if (options.out.empty())
     fail(ErrorCode::usage,
-         "the option --out is missing: the file of the results, for example "
+         "the option --out is missing; name the file of the results, for example "
          "results.db");
   const Shard shard = read_shard(options.shard);
   refuse_bad_names(context, options.outputs);
@@ -191,10 +193,11 @@ void run_sweep(Context& context, const SweepCommand& options) {
   }
   note_work(cost.seconds, cost.useful);
   if (cost.cases > 0)
-    context.print("  " + text::counted(cost.cases, "case") + " run; each took " +
-                  text::brief(cost.seconds / double(cost.cases), 3) + " s of processor time, " +
+    context.print("  " + text::counted(cost.cases, "case") + (cost.cases == 1 ? " was" : " were") +
+                  " run; a case took " + text::brief(cost.seconds / double(cost.cases), 3) +
+                  " s of processor time on average, " +
                   text::fixed(100 * (1 - cost.useful / std::max(1e-9, cost.seconds)), 2) +
-                  " % of it outside the simulation\n");
+                  " % of this time outside the simulation\n");
   conclude(context, *results, options.outputs, &runner,
            {{"run_now", cost.cases}, {"seconds", cost.seconds}, {"useful_seconds", cost.useful}});
   results->close();
@@ -263,7 +266,9 @@ std::string slurm_words(const SlurmStatus& slurm) {
                       std::to_string(slurm.waiting) + " waiting" +
                       (slurm.waiting > 0 && slurm.running == 0 ? " (" + slurm.reason + ")" : "");
   if (slurm.arrived > 0)
-    words += ", " + std::to_string(slurm.arrived) + " ended, with rows that are not collected yet";
+    words += ", " + text::counted(slurm.arrived, "task") +
+             (slurm.arrived == 1 ? " ended, but its rows are not collected yet"
+                                 : " ended, but their rows are not collected yet");
   return words + "\n";
 }
 
@@ -307,7 +312,8 @@ void add_sweep(Command& app, Context& context) {
       "expectation is not met, or a case could not be run.");
   auto options = std::make_shared<SweepCommand>();
   command->add_option("STUDY", options->study, "Study file with a \"sweep\".");
-  command->add_option("-o,--out", options->out, "Results, an SQLite file.")->type_name("F.db");
+  command->add_option("-o,--out", options->out, "File for the results (SQLite).")
+      ->type_name("F.db");
   command
       ->add_option("--shard", options->shard, "Run only one shard of the cases, for example 1/4.")
       ->type_name("I/N");
@@ -402,7 +408,7 @@ void add_sweep(Command& app, Context& context) {
 
   Command* status = command->add_subcommand("status", "say how many cases of a sweep are done");
   auto file = std::make_shared<std::string>();
-  status->add_option("FILE", *file, "Results.")->required();
+  status->add_option("FILE", *file, "File of the results.")->required();
   status->callback([file, &context] { show_status(context, *file); });
 
   command->callback([command, options, slurm_options, &context] {

@@ -105,8 +105,8 @@ GaitMaker::GaitMaker(RobotModel model, const GaitOptions& options)
     : model_(std::move(model)), options_(options) {
   if (!model_.has_soles())
     fail(ErrorCode::bad_model, model_.name() +
-                                   ": the robot has no soles, so it cannot walk; name "
-                                   "them under \"soles\" of its sidecar");
+                                   ": the robot has no soles, so it cannot walk; describe "
+                                   "the soles under \"soles\" in the sidecar");
   profile_ = model_.limits(options_.profile).name;
   controller_ = Pattern().controller;
   if (!options_.controller.empty()) controller_ = {controller_type(options_.controller), {}};
@@ -190,8 +190,8 @@ GaitMaker::Made GaitMaker::made(Pattern pattern, const Progress& progress) const
   wishes.check = check_options(task);
   const RepairResult repaired = repair_task(task, wishes, progress);
   if (repaired.status != RepairStatus::repaired) {
-    std::string reason = judged.reason() + "; the repair ends with " + name_of(repaired.status);
-    if (!repaired.reasons.empty()) reason += ": " + repaired.reasons.front();
+    std::string reason = judged.reason() + "; no repair was found";
+    if (!repaired.reasons.empty()) reason += ", because " + repaired.reasons.front();
     throw Missing{"repair", reason};
   }
   task.pattern.correction = repaired.correction;

@@ -82,7 +82,7 @@ LibraryFolder::LibraryFolder(const fs::path& folder, const Json& asked, bool rep
     fail(ErrorCode::bad_file,
          target_.string() +
              ": this folder holds an unfinished library that was begun with other options; give "
-             "the same options to go on, or --force to begin again, or choose another folder");
+             "those options to go on, give --force to begin again, or choose another folder");
   }
   // The same question goes on also with --force, unless it was finished and delivered before.
   if (is_there(staging_ / kAsked) && read_file(staging_ / kAsked) == text) return;

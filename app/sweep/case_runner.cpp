@@ -132,8 +132,8 @@ struct CaseRunner::Watch {
     return !progress || progress(event);
   }
   std::string reason() const {
-    return exceeded + ": not finished within " + text::brief(limit) +
-           " s of processor time; a larger --case-limit allows more";
+    return "the stage '" + exceeded + "' did not end within " + text::brief(limit) +
+           " s of processor time; a larger --case-limit allows more time";
   }
 };
 

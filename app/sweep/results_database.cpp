@@ -152,7 +152,9 @@ void ResultsDatabase::complain(const std::string& doing) const {
         "kept. Make room "
         "and run the same command again to go on";
   else if (code == SQLITE_NOTADB || code == SQLITE_CORRUPT)
-    why = "this is not a file of sweep results, or the file is damaged; choose another name";
+    why =
+        "this file does not hold results of ayumi sweep, or the file is damaged; choose another "
+        "name";
   else if (code == SQLITE_BUSY)
     why = "another program is writing to this file; wait until that program has ended";
   fail(ErrorCode::bad_file, file_.string() + ": " + doing + ": " + why);
@@ -172,7 +174,8 @@ void ResultsDatabase::open(int flags) {
 
 ResultsDatabase::ResultsDatabase(const fs::path& file, Mode mode) : file_(file) {
   if (!fs::exists(file))
-    fail(ErrorCode::bad_file, file.string() + ": there is no such file of sweep results");
+    fail(ErrorCode::bad_file,
+         file.string() + ": this file does not exist; name a file that ayumi sweep wrote");
   if (!fs::is_regular_file(fs::symlink_status(file)))
     fail(ErrorCode::bad_file, file.string() + ": this is not a regular file");
   // Also for reading: the last one who could write removes the files that SQLite keeps beside a
@@ -287,7 +290,7 @@ void ResultsDatabase::read_head() {
   };
   if (single("PRAGMA application_id") != kApplication)
     fail(ErrorCode::bad_file,
-         file_.string() + ": this is not a file of sweep results; choose another name");
+         file_.string() + ": this file does not hold results of ayumi sweep; choose another name");
   const long format = single("PRAGMA user_version");
   if (format != kFormat)
     fail(ErrorCode::bad_file, file_.string() + ": the results have version " +
@@ -321,10 +324,10 @@ void ResultsDatabase::read_head() {
   });
 }
 
-void ResultsDatabase::require_study(const SweepHead& asked) const {
+void ResultsDatabase::require_study(const SweepHead& asked, const std::string& remedy) const {
   std::string differs;
   if (head_.version != asked.version)
-    differs = "the results are from version " + head_.version + " of Ayumi, and this is version " +
+    differs = "the results are from version " + head_.version + " of Ayumi, not from version " +
               asked.version;
   else if (head_.seed != asked.seed)
     differs = "the results were made with --seed " + head_.seed;
@@ -337,14 +340,13 @@ void ResultsDatabase::require_study(const SweepHead& asked) const {
           });
       if (!same && differs.empty())
         differs = "the " + input.kind + (input.kind == "study" ? "" : " '" + input.name + "'") +
-                  " has changed since";
+                  " is different";
     }
   if (differs.empty() && head_.fingerprint() != asked.fingerprint())
-    differs = "the inputs have changed";
+    differs = "the inputs are different";
   if (!differs.empty())
     fail(ErrorCode::bad_file, file_.string() + ": this file holds the results of another study (" +
-                                  differs +
-                                  "); choose another name, or give --force to begin again");
+                                  differs + "); " + remedy);
 }
 
 std::vector<std::string> ResultsDatabase::shards() const {
@@ -443,8 +445,9 @@ long ResultsDatabase::merge(const fs::path& other) {
   {
     const ResultsDatabase theirs(other, Mode::read);
     if (theirs.head().fingerprint() != head_.fingerprint()) {
-      theirs.require_study(head_);
-      fail(ErrorCode::bad_file, other.string() + ": this file holds the results of another study");
+      theirs.require_study(head_, "leave this file out");
+      fail(ErrorCode::bad_file,
+           other.string() + ": this file holds the results of another study; leave this file out");
     }
   }
   execute("ATTACH DATABASE " + sql_text(other.string()) + " AS theirs");
@@ -468,9 +471,10 @@ long ResultsDatabase::merge(const fs::path& other) {
                           text::join(unequal, " OR ") + ") ORDER BY 1 LIMIT 1");
   if (!different.good()) complain("the files cannot be compared");
   if (different.step())
-    fail(ErrorCode::bad_file, other.string() + ": case " + std::to_string(different.integer(0)) +
-                                  " has another result than in " + file_.string() +
-                                  "; nothing of this file was merged");
+    fail(ErrorCode::bad_file, other.string() + ": the result of case " +
+                                  std::to_string(different.integer(0)) + " differs from that in " +
+                                  file_.string() + "; nothing of " + other.string() +
+                                  " was merged");
   if (!different.done()) complain("the files cannot be compared");
   different.reset();
   execute(

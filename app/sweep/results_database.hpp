@@ -61,8 +61,11 @@ class ResultsDatabase {
 
   const std::filesystem::path& file() const { return file_; }
   const SweepHead& head() const { return head_; }
-  /// Throws Error(bad_file), naming what differs, unless the results belong to this study.
-  void require_study(const SweepHead& head) const;
+  /// Throws Error(bad_file), naming what differs and what to do, unless the results belong to this
+  /// study.
+  void require_study(
+      const SweepHead& head,
+      const std::string& remedy = "choose another name, or give --force to begin again") const;
 
   /// The shards that were run into this file: "1/4"; empty: of the whole study.
   std::vector<std::string> shards() const;

@@ -381,9 +381,9 @@ class Engine {
     const auto first = std::find(lost.begin(), lost.end(), true);
     if (first != lost.end())
       fail(ErrorCode::bad_file,
-           "--engine slurm: " +
+           "--engine slurm: the tasks of " +
                text::counted(static_cast<long>(std::count(first, lost.end(), true)), "case") +
-               " (the first is " + std::to_string(first - lost.begin()) + ") were lost " +
+               " (the first is case " + std::to_string(first - lost.begin()) + ") were lost " +
                text::counted(static_cast<long>(options_.attempts), "time") +
                (why_lost_.empty() ? "" : " (" + why_lost_ + ")") +
                "; all other results are kept. The output of the tasks is in " + folder_.string() +
@@ -435,7 +435,8 @@ class Engine {
                         limit > 0 ? std::min(limit, options_.task_seconds) : options_.task_seconds);
     context_.print("  pilot run: " + text::brief(pilot.useful / each, 3) +
                    " s of simulation for a case, " + text::brief(setup, 3) +
-                   " s for the start of a task; tasks of " + text::counted(chunk_, "case") + "\n");
+                   " s for the start of a task; each task gets " + text::counted(chunk_, "case") +
+                   "\n");
   }
 
   /// Submits what is pending. What Slurm refuses is tried in smaller arrays; what it refuses then
@@ -465,7 +466,7 @@ class Engine {
       // answer.
       if (out_.empty() && (!submitted_ || seconds_since(*refused_since_) > kLongestSilence))
         fail(ErrorCode::bad_file, "--engine slurm: sbatch refused the job: " + why +
-                                      "; the rows that are done are kept in " +
+                                      "; the results so far are kept in " +
                                       results_.file().string());
       return;
     }
@@ -612,8 +613,8 @@ class Engine {
   /// Cases of lost tasks become pending tasks.
   void take_lost() {
     if (lost_ == 0) return;
-    context_.print("  " + text::counted(lost_, "case") + " of lost tasks are submitted again (" +
-                   why_lost_ + ")\n");
+    context_.print("  " + text::counted(lost_, "case") + " of lost tasks " +
+                   (lost_ == 1 ? "is" : "are") + " submitted again (" + why_lost_ + ")\n");
     for (CaseRanges& task : tasks_of(again_, chunk_ > 0 ? chunk_ : kMostCasesOfTask))
       pending_.push_back(std::move(task));
     again_.clear();
@@ -651,7 +652,7 @@ class Engine {
       } else if (seconds_since(answered_) > kLongestSilence) {
         fail(ErrorCode::bad_file,
              "--engine slurm: Slurm does not answer (" + trouble +
-                 "). The rows that arrived are kept. Run the same command again to go on");
+                 "). The results that arrived are kept. Run the same command again to go on");
       }
       if (out_.empty() && pending_.empty()) break;
       const std::vector<bool> missing = left();

@@ -400,7 +400,7 @@ TEST_F(AuthorServer, SaysWhatCannotBeReached) {
   const Server server(file);
   const auto far = server.post("pose", {{"time", 2.4}, {"drag", "left_hand"}, {"to", {3, 0, 0}}});
   ASSERT_EQ(far.first, 200);
-  EXPECT_NE(far.second["message"].get<std::string>().find("mm of the wanted place"),
+  EXPECT_NE(far.second["message"].get<std::string>().find(" mm away from the wanted place"),
             std::string::npos);
   const auto foot =
       server.post("pose", {{"time", 2.4}, {"drag", "left_foot"}, {"to", {0.5, 0, 0}}});

@@ -23,10 +23,11 @@ TEST(NewWalk, StairsAreWrittenForTheProfileThatClimbsThem) {
   // It passes with the motors it asks for, and a table for the robot as it is would be refused.
   const Output check = run_program({"check", "-q", "w.json"}, folder.path());
   EXPECT_EQ(check.exit_code, 0);
-  EXPECT_NE(check.out.find("the robot's own motors: profile hoap1 is too weak: the motion needs "),
-            std::string::npos)
+  EXPECT_NE(
+      check.out.find("with the robot's own motors, profile hoap1 is too weak: the motion needs "),
+      std::string::npos)
       << check.out;
-  EXPECT_NE(check.out.find("(`export --format hoap` judges by this profile)"), std::string::npos);
+  EXPECT_NE(check.out.find("(`export --format hoap` judges by these motors)"), std::string::npos);
 }
 
 TEST(NewWalk, OnTheLevelItIsTheRobotsOwn) {

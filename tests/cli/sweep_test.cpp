@@ -186,7 +186,7 @@ TEST(SweepCommand, MergeNamesTheFilesThatDiffer) {
   write(s.folder / "b.db", other);
   const Output merged = s.run({"sweep", "merge", "a.db", "b.db", "-o", "m.db"});
   EXPECT_EQ(merged.exit_code, 3);
-  EXPECT_NE(merged.err.find(" has another result than in m.db; nothing of this file"),
+  EXPECT_NE(merged.err.find(" differs from that in m.db; nothing of b.db was merged"),
             std::string::npos)
       << merged.err;
   EXPECT_FALSE(fs::exists(s.folder / "m.db"));
@@ -285,7 +285,7 @@ TEST(SweepCommand, OneClearLineForBadInput) {
   write(s.folder / "text.db", "no database");
   expect(s.sweep({"-o", "text.db"}), 3, "text.db");
   EXPECT_EQ(contents(s.folder / "text.db"), "no database");
-  expect(s.run({"sweep", "status", "none.db"}), 3, "there is no such file");
+  expect(s.run({"sweep", "status", "none.db"}), 3, "this file does not exist");
   expect(s.sweep({"-o", "x.db", "--shard", "3/2"}), 2, "1/4");
   expect(s.sweep({"-o", "no/such/folder/x.db"}), 3, "no/such/folder");
   EXPECT_FALSE(fs::exists(s.folder / "x.db"));
@@ -313,7 +313,7 @@ TEST(SweepCommand, OneClearLineForBadInput) {
   expect(s.sweep({"-o", "x.db"}), 3, "no robot of the study has the profile 'hoap9'");
   EXPECT_FALSE(fs::exists(s.folder / "x.db"));
   s.write_study(R"({"value.impulse": 0.1})");
-  expect(s.sweep({"-o", "good.db"}), 3, "another study (the study has changed since)");
+  expect(s.sweep({"-o", "good.db"}), 3, "another study (the study is different)");
   ASSERT_EQ(s.sweep({"-o", "other.db"}).exit_code, 0);
   expect(s.run({"sweep", "merge", "good.db", "other.db"}), 3, "other.db: this file holds");
   // A wrong expectation makes no file and takes the place of none, and readers leave none.
@@ -419,9 +419,10 @@ TEST(SweepCommand, ALimitOfTimeOfOneCase) {
   const Output limited = s.sweep({"-o", "l.db", "--case-limit", "0.4", "--threads", "1"});
   EXPECT_EQ(limited.exit_code, 1) << limited.err;
   EXPECT_NE(limited.out.find("1 stand"), std::string::npos) << limited.out;
-  EXPECT_NE(limited.out.find("case 1 could not be run: simulate: not finished within 0.4 s of "
-                             "processor time; a larger --case-limit allows more"),
-            std::string::npos)
+  EXPECT_NE(
+      limited.out.find("case 1 could not be run: the stage 'simulate' did not end within 0.4 s "
+                       "of processor time; a larger --case-limit allows more time"),
+      std::string::npos)
       << limited.out;
 }
 
@@ -478,7 +479,8 @@ TEST(SweepOnSlurm, LostTasksAreSubmittedAgainUpToALimit) {
   write(slurm.s.folder / "drop", "1 2\n2 1\n");
   const Output lost = slurm.slurm("-o b.db --chunk 5 --attempts 2");
   EXPECT_EQ(lost.exit_code, 3) << lost.out;
-  EXPECT_NE(lost.err.find("5 cases (the first is 5) were lost 2 times"), std::string::npos)
+  EXPECT_NE(lost.err.find("the tasks of 5 cases (the first is case 5) were lost 2 times"),
+            std::string::npos)
       << lost.err;
   EXPECT_EQ(lost.err.find('\n'), lost.err.size() - 1) << lost.err;
   const Output status = slurm.s.run({"sweep", "status", "b.db", "--json"});
