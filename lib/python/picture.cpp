@@ -137,7 +137,7 @@ void bind_picture(py::module_& m) {
         return to_svg(draw_loci(runs_of(logs), options));
       },
       py::arg("robot"), py::arg("logs"), py::kw_only(), py::arg("title") = "",
-      "The same as the text of an SVG file.");
+      "The same plot as loci(), as the text of an SVG file.");
   m.def(
       "support_plot",
       [](const RobotModel& robot, const Logs& logs, const std::string& title, double scale) {

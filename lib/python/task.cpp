@@ -53,8 +53,9 @@ void bind_check(py::module_& m) {
       .def_property_readonly("consistent", &Judgement::good,
                              "Whether motion and goals keep every limit.")
       .def("__bool__", &Judgement::good)
-      .def_property_readonly("reason", &Judgement::reason,
-                             "Why it is inconsistent, in one line; '' when it is not.")
+      .def_property_readonly(
+          "reason", &Judgement::reason,
+          "Why the pattern is inconsistent, in one line; '' when it is consistent.")
       .def_property_readonly(
           "findings", [](const Judgement& j) { return j.report.findings; },
           "The findings, errors first.")
@@ -86,7 +87,8 @@ void bind_check(py::module_& m) {
         return judge(*task.task, options);
       },
       py::arg("task"), py::kw_only(), py::arg("tolerances") = std::map<std::string, double>(),
-      "The verdict on a pattern. `tolerances` by kind of finding, over those of the pattern.");
+      "The verdict on a pattern. `tolerances`: values by kind of finding, in place of those of the "
+      "pattern.");
 }
 
 Trust trust_of(const std::string& name) {

@@ -88,7 +88,7 @@ DtadParams gains_from_poles(std::complex<double> p1, std::complex<double> p2, Dt
   if (std::abs(sum.imag()) > 1e-9 || std::abs(product.imag()) > 1e-9)
     fail(ErrorCode::usage, "poles: give two real poles or a conjugate pair");
   if (p1.real() >= 0 || p2.real() >= 0)
-    fail(ErrorCode::usage, "poles: " + text::brief(std::max(p1.real(), p2.real())) +
+    fail(ErrorCode::usage, "poles: the real part " + text::brief(std::max(p1.real(), p2.real())) +
                                " is not below 0, so the COG would never come back");
   params.k = 1 + product.real();  // ddx = w2 (x - K x - D dx)
   params.d = -sum.real();

@@ -174,7 +174,7 @@ class Doctor {
       if (gyration > size_)
         warn("link", link.name,
              "its inertia is that of a body larger than the robot; is this a placeholder?",
-             millimetres(gyration) + " radius", gyration);
+             millimetres(gyration) + " radius of gyration", gyration);
       return;
     }
     if (gyration > reach)
@@ -185,7 +185,7 @@ class Doctor {
            gyration / std::max(reach, 1e-9));
     if (box.diagonal().norm() > 5 * size_)
       warn("link", link.name,
-           "its shape is far larger than the robot; is the mesh in millimetres? set its scale",
+           "its shape is far larger than the robot; if the mesh is in millimetres, set its scale",
            millimetres(box.diagonal().norm()), box.diagonal().norm());
     const double outside = box.exteriorDistance(link.inertia.com);
     if (outside > kOutside * box.diagonal().norm())
@@ -400,9 +400,9 @@ class Doctor {
     const double step = up.dot(soles[1].translation() - soles[0].translation());
     if (tilt > kDegree || std::abs(step) > 0.001)
       warn("posture", "home",
-           "the soles are not on one plane: tilted by " + text::fixed(tilt / kDegree, 1) +
-               " deg, apart in height by " + millimetres(std::abs(step)) +
-               "; correct the ankle angles");
+           "the soles are not on one plane: the angle between them is " +
+               text::fixed(tilt / kDegree, 1) + " deg, and their heights differ by " +
+               millimetres(std::abs(step)) + "; correct the ankle angles");
     const double lean = elementary::acos(std::clamp(up.z(), -1.0, 1.0));
     if (lean > 5 * kDegree)
       warn("posture", "home",
@@ -428,7 +428,7 @@ class Doctor {
     if (margin < 0)
       warn("posture", "home",
            "the COG lies " + millimetres(-margin) +
-               " outside the soles: the robot falls; shift it over the feet");
+               " outside the soles, so the robot falls; shift the COG over the feet");
   }
 
   const RobotModel& model_;

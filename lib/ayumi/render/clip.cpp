@@ -105,7 +105,8 @@ std::vector<BodySurface> drawn_surface(const RobotModel& model, const ClipOption
         "between joints where a link has none");
   if (cell > 0)
     notes.push_back("the robot has " + std::to_string(before) + " triangles; it is drawn with " +
-                    std::to_string(triangle_count(surface)) + ", points moved by at most " +
+                    std::to_string(triangle_count(surface)) +
+                    ", whose points are moved by at most " +
                     text::brief(1e3 * std::sqrt(3.0) * cell, 2) + " mm");
   return surface;
 }

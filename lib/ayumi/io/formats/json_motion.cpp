@@ -41,7 +41,7 @@ std::vector<std::vector<double>> frames_of(const MotionInput& source, const Json
   for (const JsonNode& frame : root.at("Frames").items()) {
     rows.push_back(frame.numbers());
     if (rows.back().size() < least || rows.back().size() != rows.front().size())
-      frame.complain(text::counted(rows.back().size(), "value") + " in the frame; " +
+      frame.complain("the frame has " + text::counted(rows.back().size(), "value") + ", but " +
                      (rows.size() > 1 ? std::to_string(rows.front().size())
                                       : "at least " + std::to_string(least)) +
                      " are needed");

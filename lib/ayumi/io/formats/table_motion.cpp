@@ -145,7 +145,8 @@ MotionFile read_number_motion(const MotionInput& source, NumberTable table) {
   const bool timed = table.find("t[s]") >= 0;
   if (!timed && !(source.options.rate > 0))
     refuse_table(file,
-                 "no time column (t[s], t, time); give --rate HZ when the rows are evenly spaced");
+                 "the table has no time column (t[s], t or time); give --rate HZ if the rows are "
+                 "evenly spaced");
   if (!timed) {  // layout_of needs the column
     table.columns.emplace_back("t[s]");
     table.values.conservativeResize(Eigen::NoChange, table.values.cols() + 1);

@@ -48,8 +48,8 @@ MotionFile read_transposed_csv(const MotionInput& source) {
       continue;
     }
     if (row.size() != motion.times.size())
-      source.refuse(line, text::counted(row.size(), "value") + " of '" +
-                              std::string(cells[0].substr(0, 48)) + "', but the first row has " +
+      source.refuse(line, "the row of '" + std::string(cells[0].substr(0, 48)) + "' has " +
+                              text::counted(row.size(), "value") + ", but the first row has " +
                               text::counted(motion.times.size(), "time"));
     motion.joints.emplace_back(cells[0]);
     joints.push_back(std::move(row));

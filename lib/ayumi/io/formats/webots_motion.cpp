@@ -87,7 +87,8 @@ MotionFile read_webots_motion(const MotionInput& source) {
     if (text.empty()) break;
     const std::vector<std::string_view> row = split(text, separator);
     if (row.size() != before + head.size() + after)
-      source.refuse(line, text::counted(row.size(), "cell") + " in the row, but the head needs " +
+      source.refuse(line, "the row has " + text::counted(row.size(), "cell") +
+                              ", but the head row needs " +
                               std::to_string(before + head.size() + after) + " (" +
                               text::counted(head.size(), "joint") + ")");
     if (durations) {
@@ -123,8 +124,8 @@ MotionFile read_webots_motion(const MotionInput& source) {
   if (durations) {
     motion.keys = true;
     motion.notes.push_back(
-        "the last cell of a row is the time in which its pose is reached; the motion begins at the "
-        "first pose");
+        "the last cell of a row is the time from the pose before to the pose of this row; the "
+        "motion begins at the first pose");
   }
   return motion;
 }

@@ -151,8 +151,7 @@ class SdfReader {
       if (each != best) others.push_back(xml_attribute(each, "name", "a model without name"));
     if (!others.empty())
       robot_.assumptions.push_back(
-          "of several models, the one with the most joints was read; left "
-          "out: " +
+          "of several models, the one with the most joints was read; these are left out: " +
           text::join(others, ", "));
     return best;
   }
