@@ -68,7 +68,8 @@ void bind_picture(py::module_& m) {
       py::arg("task"),
       "The motion as it is planned, in the shape of a run, without a simulation: posture, COG, "
       "ZMP, forces on the feet, and the motor torques that the full model needs. Pictures and "
-      "plots show it like a run; `outcome`, `hash` and `events` say nothing of it.");
+      "plots show it like a run; `outcome`, `hash` and `events` have no meaning for such a "
+      "motion.");
   m.def(
       "robot_picture",
       [](const RobotModel& robot, const std::string& posture,

@@ -195,7 +195,7 @@ void bind_identify(py::module_& m) {
          const std::optional<Path>& loads, bool per_type, const std::string& stand, double rate,
          bool degrees, double longest_lag, int threads, py::object progress) {
         if (stand != "auto" && stand != "feet" && stand != "fixed")
-          fail(ErrorCode::usage, "stand '" + stand + "': one of auto, feet and fixed");
+          fail(ErrorCode::usage, "stand '" + stand + "' is not one of auto, feet and fixed");
         if (stand == "feet" && !robot.has_soles())
           fail(ErrorCode::bad_model,
                robot.name() +

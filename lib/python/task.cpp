@@ -41,9 +41,9 @@ void bind_check(py::module_& m) {
       .def_readonly("at", &Finding::at, "Time of the worst sample [s].")
       .def_readonly("worst", &Finding::worst, "Value at this time, in `unit`.")
       .def_readonly("limit", &Finding::limit, "The limit, in `unit`.")
-      .def_readonly("unit", &Finding::unit, "Unit of both.")
+      .def_readonly("unit", &Finding::unit, "Unit of `worst` and `limit`.")
       .def_readonly("where", &Finding::where, "Joint, foot, axis, support or bodies.")
-      .def_readonly("hint", &Finding::hint, "What to do about it.")
+      .def_readonly("hint", &Finding::hint, "What to do about the finding.")
       .def("__repr__", [](const Finding& f) {
         return std::string("<") + name_of(f.severity) + " " + name_of(f.kind) + " at " +
                std::to_string(f.at) + " s, " + f.where + ">";
@@ -116,8 +116,8 @@ void bind_repair(py::module_& m) {
           },
           "Whether the motion of `task` is consistent.")
       .def_readonly("task", &PyRepair::task,
-                    "The task with the correction in its pattern; without one where the repair "
-                    "found none.")
+                    "The task with the correction in its pattern; without a correction if the "
+                    "repair found none.")
       .def_property_readonly(
           "max_joint_change", [](const PyRepair& r) { return r.result.max_joint_change; },
           "Largest change of a joint [rad].")

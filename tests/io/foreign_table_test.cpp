@@ -26,7 +26,7 @@ std::string refusal(const std::string& text, ImportOptions options = {}) {
     EXPECT_EQ(error.code(), ErrorCode::bad_file);
     const std::string message = error.what();  // how the format was recognized stands at the end
     return message.substr(0,
-                          message.find(" (read as table with a head row, because its first row"));
+                          message.find(" (read as table with a head row, because the first row"));
   }
   return "read";
 }

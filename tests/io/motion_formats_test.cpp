@@ -120,7 +120,7 @@ std::string told(const std::string& message) {
 TEST(MotionFormats, MistakesNameFileLineAndFormat) {
   const std::string head = "#WEBOTS_MOTION,V1.0,l_knee,r_knee\n";
   const std::string webots =
-      " (read as Webots .motion, because its first line begins with #WEBOTS_MOTION";
+      " (read as Webots .motion, because the first line begins with #WEBOTS_MOTION";
   EXPECT_EQ(told(refusal_of(head + "00:00:000,a,0,0\n00:00:040,b,0\n")),
             "m.dat:3: the row has 3 cells, but the head row needs 4 (2 joints)" + webots);
   EXPECT_EQ(told(refusal_of(head + "00:00:000,a,0,0\n00:00:040,b,0")),
@@ -133,11 +133,10 @@ TEST(MotionFormats, MistakesNameFileLineAndFormat) {
             "m.dat:1: version 'V3.0' is unknown; Ayumi reads V1.0 and V1.1" + webots);
   EXPECT_EQ(told(refusal_of("time,0,1\nl_knee,0,1\nr_knee,0\n")),
             "m.dat:3: 1 value of 'r_knee', but the first row has 2 times (read as CSV with a row "
-            "for each joint, because its first row is times, so each further row is a joint");
-  EXPECT_EQ(
-      told(refusal_of("0.02 3 ( 1 2 )\n")),
-      "m.dat:1: the brackets hold 2 values, but n is 3 (read as mi-lib .zvs, because its rows "
-      "have the form `dt n ( values )`");
+            "for each joint, because the first row has times, so each further row is a joint");
+  EXPECT_EQ(told(refusal_of("0.02 3 ( 1 2 )\n")),
+            "m.dat:1: the brackets hold 2 values, but n is 3 (read as mi-lib .zvs, because the "
+            "rows have the form `dt n ( values )`");
   const ImportOptions stated{.format = "webots"};
   EXPECT_EQ(
       refusal_of("#WEBOTS_MOTION,V3.0,l_knee\n", "m.dat", stated),

@@ -224,8 +224,8 @@ inline const std::vector<Broken>& mistakes() {
       {"scenario", R"([{"type": "friction", "at": 1, "friction": -0.1}])",
        "/scenario/0/friction: -0.1 is too small"},
       {"scenario", R"([{"type": "friction", "at": 1, "mass": 1}])",
-       "/scenario/0/mass: a disturbance of type \"friction\" does not have this key; it has "
-       "friction, "
+       "/scenario/0/mass: a disturbance of type \"friction\" does not have this key; its keys "
+       "are friction, "
        "besides \"at\" and \"duration\""},
       {"scenario", R"([{"type": "floor", "at": 1, "duration": 0, "pitch": 3}])",
        "/scenario/0/duration: a motion of the floor needs a duration"},

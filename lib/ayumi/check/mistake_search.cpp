@@ -571,7 +571,8 @@ class Hypotheses {
            {phase_place(i),
             "the robot stands on the " + foot + " foot, but " + text::join(places, " and ") +
                 (places.size() > 1 ? " put" : " puts") + " the ZMP " + at,
-            "with \"zmp\": \"" + foot + "\" there"},
+            "with \"zmp\": \"" + foot +
+                (places.size() > 1 ? "\" in these keyframes" : "\" in this keyframe")},
            [wrong, meant](Pattern& p) {
              for (const size_t k : wrong) p.keyframes[k].zmp->place = meant;
            }});

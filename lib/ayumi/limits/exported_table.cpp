@@ -147,7 +147,8 @@ Advice step_advice(const JudgedMotion& motion, const FindingWindow& window) {
   return {refused_text(motion, v) + " moves " +
               text::fixed(100 * (std::abs(v.value / v.limit) - 1), 1) + " % further in " +
               text::brief(1e3 * motion.series.dt, 3) + " ms than the motor can follow: move " +
-              motion.model.dofs()[v.item].name + " more slowly, or accelerate it more gently here",
+              motion.model.dofs()[v.item].name +
+              " more slowly, or accelerate this joint more gently here",
           kOrRepair};
 }
 

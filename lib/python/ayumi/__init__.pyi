@@ -163,7 +163,7 @@ class Finding:
 
     @property
     def unit(self) -> str:
-        """Unit of both."""
+        """Unit of `worst` and `limit`."""
 
     @property
     def where(self) -> str:
@@ -171,7 +171,7 @@ class Finding:
 
     @property
     def hint(self) -> str:
-        """What to do about it."""
+        """What to do about the finding."""
 
 class GainStudy:
     """Gains of DTAD and what follows from them."""
@@ -584,7 +584,7 @@ class Repair:
 
     @property
     def task(self) -> Task:
-        """The task with the correction in its pattern; without one where the repair found none."""
+        """The task with the correction in its pattern; without a correction if the repair found none."""
 
     @property
     def max_joint_change(self) -> float:
@@ -1073,7 +1073,7 @@ def picture(robot: Robot, log: Log, *, at: float = 0.0, width: int = 1280, heigh
     """The run at the time `at` [s] as the bytes of a PNG file. `view`: 'front', 'side', 'iso', 'back', 'top', 'ortho-side' or 'ortho-front'; `width` and `height` in pixels."""
 
 def plan(task: Task) -> Log:
-    """The motion as it is planned, in the shape of a run, without a simulation: posture, COG, ZMP, forces on the feet, and the motor torques that the full model needs. Pictures and plots show it like a run; `outcome`, `hash` and `events` say nothing of it."""
+    """The motion as it is planned, in the shape of a run, without a simulation: posture, COG, ZMP, forces on the feet, and the motor torques that the full model needs. Pictures and plots show it like a run; `outcome`, `hash` and `events` have no meaning for such a motion."""
 
 def push(task: Task, *, controllers: list[str] = [], gains: dict[str, float] = {}, times: list[float] = [], directions: int = 8, step: float = 0.06, cap: float = 2.4, replicas: int = 2, duration: float = 0.02, seed: int = 1, threads: int = 0, progress: Optional[Callable[[str, float, str], Any]] = None) -> PushStudy:
     """The largest push that the robot survives, by phase of the gait and direction, in open loop and with each controller (the controller of the pattern when none is named). `times` [s] in place of the default phases; `step`: resolution of the search, and `cap`: largest push tried, both as multiples of the capture bound; `replicas`: number of small variations of every push, all of which the robot must survive; `duration` of a push [s]; `threads`: 0 for all; the results do not depend on this number."""

@@ -217,7 +217,7 @@ Pattern joined(const RobotModel& model, const MotionPart& first, const MotionPar
   if (std::abs(a.dt - b.dt) > 1e-12)
     fail(ErrorCode::usage, "motions with sampling steps of " + text::exact(a.dt) + " and " +
                                text::exact(b.dt) +
-                               " s cannot be joined; sample both with the same step");
+                               " s cannot be joined; sample both motions with the same step");
   require_stand(first.pattern, a.samples.back(), "end");
   require_stand(second.pattern, b.samples.front(), "start");
   const Feet last = soles_of(model, a.samples.back().state);

@@ -238,7 +238,7 @@ std::string recognize_body_motion(const MotionInput& source) {
   const bool body = head.find("BodyMotion") != std::string::npos;
   return body && (head.find("components") != std::string::npos ||
                   head.find("CompositeSeq") != std::string::npos)
-             ? "it says that its content is a BodyMotion"
+             ? "the file says that its content is a BodyMotion"
              : "";
 }
 

@@ -80,7 +80,7 @@ std::string recognize_hrpsys(const MotionInput& source) {
       return "";
     if (line.find(',') != std::string_view::npos)
       return line.find(", ") == std::string_view::npos
-                 ? "its rows are numbers with decimal commas, with blanks between them"
+                 ? "the rows are numbers with decimal commas, with blanks between them"
                  : "";
     double time = 0;
     std::from_chars(line.data(), line.data() + line.size(), time);
@@ -88,7 +88,7 @@ std::string recognize_hrpsys(const MotionInput& source) {
     before = time;
     ++rows;
   }
-  return "its rows are numbers with blanks between them, and the first number increases like a "
+  return "the rows are numbers with blanks between them, and the first number increases like a "
          "time";
 }
 
@@ -153,7 +153,7 @@ MotionFile read_hrpsys(const MotionInput& source) {
           off < kNearGround
               ? "the ZMP is relative to the waist, as the format defines it"
               : "the ZMP, read relative to the waist, is up to " + text::brief(1000 * off) +
-                    " mm away from the ground; the file may hold it in another frame");
+                    " mm away from the ground; the file may state the ZMP in another frame");
     }
   }
   if (const auto torque = rows_beside(source, ".torque", rows)) {

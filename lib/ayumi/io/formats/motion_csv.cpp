@@ -41,8 +41,8 @@ std::string recognize_motion_csv(const MotionInput& source) {
   if (lengths.empty()) return "";
   for (const double length : lengths)
     if (!(std::abs(length - 1) < kUnitQuaternion)) return "";
-  return "rows of " + std::to_string(columns) +
-         " numbers without a head row, and columns 4 to 7 are a unit quaternion";
+  return "the rows have " + std::to_string(columns) +
+         " numbers, there is no head row, and columns 4 to 7 are a unit quaternion";
 }
 
 MotionFile read_motion_csv(const MotionInput& source) {

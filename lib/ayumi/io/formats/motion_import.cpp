@@ -451,7 +451,7 @@ std::vector<double> times_of(const MotionFile& motion, const ImportOptions& opti
   if (options.rate > 0)
     notes.push_back("--rate is not used, because the file states the times of its rows");
   if (times[0] != 0)
-    notes.push_back("the pattern begins at the first row; its time in the file is " +
+    notes.push_back("the pattern begins at the first row, which the file has at " +
                     text::brief(times[0]) + " s");
   for (size_t k = 1; k < rows; ++k)
     if (!(times[k] > times[k - 1]))

@@ -53,7 +53,7 @@ int position_at(const std::string& bytes, size_t step, size_t servo) {
 
 std::string recognize_op3_action(const MotionInput& source) {
   return source.bytes.size() == kPages * kPageBytes && source.bytes.find('\0') != std::string::npos
-             ? "it has 256 pages of 512 bytes"
+             ? "the file has 256 pages of 512 bytes"
              : "";
 }
 

@@ -442,10 +442,11 @@ class PoseSequenceReader {
       notes_.push_back(
           "the file places the feet, so the " + text::counted(legs_, "leg joint") +
           " follow from the feet, the trunk and the " +
-          (zmp_leads_     ? "ZMP"
-           : zmp_follows_ ? "ZMP. The file does not state the ZMP of its steps, so it is under the "
-                            "middle of the standing foot, and the base link sways accordingly"
-                          : "COG; the COG follows from the places of the base link") +
+          (zmp_leads_ ? "ZMP"
+           : zmp_follows_
+               ? "ZMP. The file does not state the ZMP of its steps, so Ayumi puts the ZMP under "
+                 "the middle of the standing foot, and the base link sways accordingly"
+               : "COG; the COG follows from the places of the base link") +
           (zmp_keys() == 1 && !zmp_follows_ ? "; the single ZMP key is left out" : ""));
     else
       notes_.push_back(
@@ -478,7 +479,8 @@ class PoseSequenceReader {
 
 std::string recognize_pose_sequence(const MotionInput& source) {
   const std::string head = source.bytes.substr(0, 4000);
-  return head.find("type: PoseSeq") != std::string::npos ? "it says that its type is PoseSeq" : "";
+  return head.find("type: PoseSeq") != std::string::npos ? "the file says that its type is PoseSeq"
+                                                         : "";
 }
 
 Pattern read_pose_sequence(const MotionInput& source, std::vector<std::string>& notes) {

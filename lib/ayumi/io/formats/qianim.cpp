@@ -64,7 +64,7 @@ std::string recognize_qianim(const MotionInput& source) {
   const size_t first = source.bytes.find_first_not_of(" \t\r\n");
   return first != std::string::npos && source.bytes[first] == '<' &&
                  source.bytes.find("<ActuatorCurve") != std::string::npos
-             ? "it is XML with ActuatorCurve"
+             ? "the file is XML with ActuatorCurve"
              : "";
 }
 

@@ -185,7 +185,7 @@ std::string recognize_csv_table(const MotionInput& source) {
                            "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
                            "0123456789_.-[]()") == std::string_view::npos;
     return letter && cells && line.find(": ") == std::string_view::npos && line.back() != ':'
-               ? "its first row names columns"
+               ? "the first row names columns"
                : "";
   }
   return "";
@@ -200,7 +200,7 @@ std::string recognize_json_table(const MotionInput& source) {
   const size_t first = source.bytes.find_first_not_of(" \t\r\n");
   const bool object = first != std::string::npos && source.bytes[first] == '{';
   return object && source.bytes.find("\"columns\"") != std::string::npos
-             ? "it is JSON with \"columns\""
+             ? "the file is JSON with \"columns\""
              : "";
 }
 

@@ -22,7 +22,7 @@ std::string recognize_transposed_csv(const MotionInput& source) {
   std::string_view rest = source.bytes;
   const std::vector<std::string_view> head = cells_of(take_line(rest));
   const bool times = head.size() > 1 && (head[0] == "time" || head[0] == "t") && is_number(head[1]);
-  return times ? "its first row is times, so each further row is a joint" : "";
+  return times ? "the first row has times, so each further row is a joint" : "";
 }
 
 MotionFile read_transposed_csv(const MotionInput& source) {

@@ -41,7 +41,7 @@ double time_of(const MotionInput& source, std::string_view cell, size_t line) {
 
 std::string recognize_webots_motion(const MotionInput& source) {
   return source.bytes.starts_with(kMagic) && recognize_webots_durations(source).empty()
-             ? "its first line begins with #WEBOTS_MOTION"
+             ? "the first line begins with #WEBOTS_MOTION"
              : "";
 }
 
@@ -49,7 +49,7 @@ std::string recognize_webots_durations(const MotionInput& source) {
   std::string_view rest = source.bytes;
   const std::vector<std::string_view> head = split(take_line(rest), ',');
   return head[0] == kMagic && head.size() == 2 && take_line(rest).find('%') != std::string::npos
-             ? "its first line is #WEBOTS_MOTION with a version, and its second line has names "
+             ? "the first line is #WEBOTS_MOTION with a version, and the second line has names "
                "that contain %"
              : "";
 }

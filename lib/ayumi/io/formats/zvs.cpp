@@ -35,7 +35,7 @@ std::string recognize_zvs(const MotionInput& source) {
   if (open == std::string_view::npos ||
       line.find_first_not_of("0123456789.eE+-/ \t(), \r") != std::string_view::npos)
     return "";
-  return tokens_of(line.substr(0, open)).size() == 2 ? "its rows have the form `dt n ( values )`"
+  return tokens_of(line.substr(0, open)).size() == 2 ? "the rows have the form `dt n ( values )`"
                                                      : "";
 }
 

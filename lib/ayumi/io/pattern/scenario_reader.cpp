@@ -264,8 +264,9 @@ const DisturbanceFormat& read_format(const JsonNode& node) {
   for (const auto& [key, value] : node.members())
     if (key != "type" && key != "at" && key != "duration" &&
         std::find(format.keys.begin(), format.keys.end(), key) == format.keys.end())
-      value.complain("a disturbance of type \"" + type + "\" does not have this key; it has " +
-                     text::join(format.keys, ", ") + ", besides \"at\" and \"duration\"");
+      value.complain("a disturbance of type \"" + type +
+                     "\" does not have this key; its keys are " + text::join(format.keys, ", ") +
+                     ", besides \"at\" and \"duration\"");
   return format;
 }
 

@@ -715,8 +715,8 @@ bool find_home(RobotGuess& guess) {
   }
   if (!balance(with_arms, start)) return true;
   guess = std::move(with_arms);
-  guess.home_reason.why +=
-      "; the arms come too near to the legs, so they are moved aside: " + text::join(names, ", ");
+  guess.home_reason.why += "; the arms come too near to the legs, so the arms are moved aside: " +
+                           text::join(names, ", ");
   return true;
 }
 
@@ -800,7 +800,7 @@ void find_servos(RobotGuess& guess) {
   }
   guess.servo_reason = {
       "kp is the effort limit of the joint divided by " + text::brief(kFullEffortError) +
-          " rad; for legs it is at least " + text::brief(kLegStiffness) +
+          " rad; for legs kp is at least " + text::brief(kLegStiffness) +
           " m g z = " + text::brief(kLegStiffness * weight * z, 3) +
           " N m/rad (weight times COG height), so that the legs hold the robot; kd = " +
           text::brief(kDampingTime * std::sqrt(z / kGravity), 2) + " s times kp" +

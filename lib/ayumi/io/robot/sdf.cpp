@@ -142,7 +142,7 @@ class SdfReader {
            model = model->NextSiblingElement("model"))
         models.push_back(model);
     }
-    if (models.empty()) complain(root, "there is no <model> in it");
+    if (models.empty()) complain(root, "the file has no <model>");
     const auto* best =
         *std::max_element(models.begin(), models.end(),
                           [](const auto* a, const auto* b) { return size_of(a) < size_of(b); });
