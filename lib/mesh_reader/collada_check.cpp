@@ -145,7 +145,7 @@ class ColladaCheck {
     if (reached > size->second)
       throw Refusal("an accessor reaches number " + std::to_string(reached) + " of '" +
                     accessor.source.substr(0, 40) + "', which has " + std::to_string(size->second) +
-                    "; export it again");
+                    "; export the mesh again");
   }
 
   std::string_view text_;

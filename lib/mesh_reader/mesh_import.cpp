@@ -106,7 +106,7 @@ class Collector {
     }
     total_ += part.triangles.size();
     if (total_ > kMostMeshTriangles)
-      throw Refusal("more than " + std::to_string(kMostMeshTriangles) +
+      throw Refusal("the mesh has more than " + std::to_string(kMostMeshTriangles) +
                     " triangles; simplify the mesh");
   }
 
@@ -196,10 +196,10 @@ TriangleMesh import_mesh(const std::string& name, const std::string& bytes,
     reason = error.what();
   }
   if (!scene || !scene->mRootNode)
-    throw Refusal("cannot be read as a mesh (" + reason +
-                  "); export it again as STL, OBJ, COLLADA or glTF");
+    throw Refusal("the file cannot be read as a mesh (" + reason +
+                  "); export the mesh again as STL, OBJ, COLLADA or glTF");
   TriangleMesh mesh = Collector(*scene, extension, scale).collect();
-  if (mesh.parts.empty()) throw Refusal("the mesh has no triangle; export it again");
+  if (mesh.parts.empty()) throw Refusal("the mesh has no triangle; export the mesh again");
   return mesh;
 }
 

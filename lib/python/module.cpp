@@ -72,8 +72,8 @@ void bind_errors(py::module_& m) {
   error.attr("__doc__") =
       "What is wrong with a call, a file, a robot or a pattern. `code` is one of 'usage', "
       "'bad_file', 'bad_model', 'bad_pattern', 'solver' and 'internal'; `place` is the file and "
-      "the "
-      "place in it, '' where there is none. An inconsistent pattern, a fall and a solver that did "
+      "the place in this file, '' where there is none. An inconsistent pattern, a fall and a "
+      "solver that did "
       "not converge are results, not errors.";
   error.attr("code") = "";
   error.attr("place") = "";

@@ -68,7 +68,8 @@ void bind_picture(py::module_& m) {
       py::arg("task"),
       "The motion as it is planned, in the shape of a run, without a simulation: posture, COG, "
       "ZMP, forces on the feet, and the motor torques that the full model needs. Pictures and "
-      "plots show it like a run; `outcome`, `hash` and `events` say nothing of it.");
+      "plots show it like a run; `outcome`, `hash` and `events` have no meaning for such a "
+      "motion.");
   m.def(
       "robot_picture",
       [](const RobotModel& robot, const std::string& posture,
@@ -137,7 +138,7 @@ void bind_picture(py::module_& m) {
         return to_svg(draw_loci(runs_of(logs), options));
       },
       py::arg("robot"), py::arg("logs"), py::kw_only(), py::arg("title") = "",
-      "The same as the text of an SVG file.");
+      "The same plot as loci(), as the text of an SVG file.");
   m.def(
       "support_plot",
       [](const RobotModel& robot, const Logs& logs, const std::string& title, double scale) {

@@ -38,8 +38,9 @@ void bind_import(py::module_& m) {
       .def_readonly("reason", &ImportedPattern::reason,
                     "Why the content is of this format; '' where the caller stated it.")
       .def_readonly("rows", &ImportedPattern::rows, "Data rows, or key poses, of the file.")
-      .def_readonly("contacts", &ImportedPattern::contacts,
-                    "Feet on the ground by time of begin; none for a file of key poses.")
+      .def_readonly(
+          "contacts", &ImportedPattern::contacts,
+          "Contacts of the feet, in the order of their beginning; none for a file of key poses.")
       .def_readonly("notes", &ImportedPattern::filled,
                     "What was assumed, left out or changed, one sentence each.")
       .def(
@@ -86,8 +87,9 @@ void bind_import(py::module_& m) {
       py::arg("ramp") = 0.0, py::arg("contact_height") = py::none(),
       py::arg("contact_speed") = py::none(), py::arg("contact_load") = py::none(),
       "Reads a motion of another program or robot, as `ayumi import` does. The format follows from "
-      "the content unless `format` names one of motion_formats(). `rate` [1/s] is that of rows "
-      "without times; `degrees`: angles of a file that does not state their unit are in degrees; "
+      "the content unless `format` names one of motion_formats(). `rate` [1/s]: rows per second, "
+      "if the rows have no times; `degrees`: angles of a file that does not state their unit are "
+      "in degrees; "
       "`order`: the columns are the joints of the robot in its order, `joints`: their names; "
       "`motion`: name or number, of a file with several; `commands`: the angles are servo targets; "
       "`smooth`: largest change for smoothing [deg]; `ground`: the soles that carry are put on the "
@@ -140,16 +142,18 @@ void bind_identify(py::module_& m) {
       .def_readonly("lower", &ServoEstimate::lower, "Lower end of the interval.")
       .def_readonly("upper", &ServoEstimate::upper, "Upper end; inf where there is none.")
       .def_readonly("known", &ServoEstimate::known,
-                    "Whether the recording determines it to better than half its value.")
+                    "Whether the recording determines the value to better than half of it.")
       .def("__repr__", [](const ServoEstimate& e) {
         return "<" + text::brief(e.value) + " (" + text::brief(e.lower) + ".." +
                text::brief(e.upper) + ")>";
       });
   py::class_<IdentifiedJoint>(m, "IdentifiedJoint", "The servo constants of one joint.")
       .def_readonly("joint", &IdentifiedJoint::joint, "Name of the joint.")
-      .def_readonly("type", &IdentifiedJoint::type, "Its motor type, named by the first joint.")
-      .def_readonly("moved", &IdentifiedJoint::moved,
-                    "False: only the mean distance from the command is known.")
+      .def_readonly("type", &IdentifiedJoint::type,
+                    "Motor type of the joint, named after the first joint of the type.")
+      .def_readonly(
+          "moved", &IdentifiedJoint::moved,
+          "Whether the joint moved. If not, only its mean distance from the command is known.")
       .def_readonly("delay", &IdentifiedJoint::delay, "Transport delay [s].")
       .def_readonly("kp", &IdentifiedJoint::kp, "Stiffness [N m/rad].")
       .def_readonly("damping", &IdentifiedJoint::damping, "kd + viscous friction [N m s/rad].")
@@ -159,23 +163,23 @@ void bind_identify(py::module_& m) {
       .def_readonly("offset", &IdentifiedJoint::offset,
                     "Mean distance of the unloaded joint from its command [rad].")
       .def_readonly("lag", &IdentifiedJoint::lag,
-                    "By which the angle is behind a slow command [s].")
+                    "Time by which the angle is behind a slow command [s].")
       .def_readonly("mean_error", &IdentifiedJoint::mean_error,
-                    "Mean of what the constants leave over [rad].")
+                    "Mean error of the angle that remains with these constants [rad].")
       .def_readonly("largest_error", &IdentifiedJoint::largest_error,
-                    "Largest of what they leave over [rad].")
+                    "Largest error of the angle that remains with these constants [rad].")
       .def_readonly("confounded", &IdentifiedJoint::confounded,
                     "What cannot be told apart in this recording, in words.");
   py::class_<PyIdentification>(m, "Identification", "Servo constants of a robot from a recording.")
       .def_property_readonly(
           "joints", [](const PyIdentification& i) { return i.found.joints; },
-          "In the order of the robot; those that the recording has.")
+          "The joints that the recording has, in the order of the robot.")
       .def_property_readonly(
           "seconds", [](const PyIdentification& i) { return i.found.seconds; },
           "Length of the recording [s].")
       .def_property_readonly(
           "caution", [](const PyIdentification& i) { return i.found.caution; },
-          "That the recording may be shifted; '' where it is not.")
+          "A warning if the recording may be shifted in time; '' otherwise.")
       .def(
           "sidecar",
           [](const PyIdentification& i, const std::string& base, const std::string& name) {
@@ -191,7 +195,7 @@ void bind_identify(py::module_& m) {
          const std::optional<Path>& loads, bool per_type, const std::string& stand, double rate,
          bool degrees, double longest_lag, int threads, py::object progress) {
         if (stand != "auto" && stand != "feet" && stand != "fixed")
-          fail(ErrorCode::usage, "stand '" + stand + "': one of auto, feet and fixed");
+          fail(ErrorCode::usage, "stand '" + stand + "' is not one of auto, feet and fixed");
         if (stand == "feet" && !robot.has_soles())
           fail(ErrorCode::bad_model,
                robot.name() +

@@ -354,11 +354,13 @@ void bind_simulation(py::module_& m) {
       py::arg("noise") = false, py::arg("true_state") = false, py::arg("substeps") = 1,
       py::arg("seed") = 1, py::arg("plant") = "ayumi", py::arg("targets") = py::none(),
       py::arg("allow_unstable") = false, py::arg("progress") = py::none(),
-      "The closed loop of plant, sensors and controller. `controller` is a name of controllers(), "
-      "None the pattern's; `gains` by name. `scenario`: False for no disturbances, or a pattern "
+      "The closed loop of plant, sensors and controller. `controller`: a name of controllers(), or "
+      "None for the controller of the pattern; `gains`: values by name. `scenario`: False for no "
+      "disturbances, or a pattern "
       "file whose scenario replaces that of the pattern. `noise`: sensors with noise, bias and "
-      "latency. `true_state`: the controller gets the true state. `substeps` of the integrator per "
-      "tick. `plant`: 'ayumi', 'mujoco', or a function (robot, profile, world) that returns an "
+      "latency. `true_state`: the controller gets the true state. `substeps`: steps of the "
+      "integrator per tick. `plant`: 'ayumi', 'mujoco', or a function (robot, profile, world) that "
+      "returns an "
       "object with `state`, `set_state(state)` and `step(targets, input, dt)`, as Plant has them. "
       "`targets`: a function (t, estimate, plan, targets) that returns the servo targets [rad, m], "
       "shape (dof,), in place of those of the controller; with controller='none' it is the whole "

@@ -90,7 +90,7 @@ void bind_push(py::module_& m) {
           [](const PyPushStudy& s) {
             return push_summary_lines(s.cases, s.options, s.task->task->series);
           },
-          "One line for each law walking, and one for each law standing.")
+          "For each law, one line for pushes while walking, and one for pushes while standing.")
       .def(
           "picture",
           [](const PyPushStudy& s, double scale) {
@@ -148,11 +148,12 @@ void bind_push(py::module_& m) {
       py::arg("duration") = PushOptions().duration, py::arg("seed") = 1, py::arg("threads") = 0,
       py::arg("progress") = py::none(),
       "The largest push that the robot survives, by phase of the gait and direction, in open loop "
-      "and with each controller (the pattern's when none is named). `times` [s] in place of the "
+      "and with each controller (the controller of the pattern when none is named). `times` [s] in "
+      "place of the "
       "default phases; `step`: resolution of the search, and `cap`: largest push tried, both as "
       "multiples of the capture bound; `replicas`: number of small variations of every push, all "
       "of which the robot must survive; `duration` of a push [s]; "
-      "`threads`: 0 for all, results do not depend on it.");
+      "`threads`: 0 for all; the results do not depend on this number.");
 }
 
 void bind_gains(py::module_& m) {
@@ -170,7 +171,7 @@ void bind_gains(py::module_& m) {
           "Whether the linear loop on one foot is stable.")
       .def_property_readonly(
           "poles", [](const GainStudy& s) { return s.weakest.analysis.poles; },
-          "Its poles [1/s], the slowest decay first.")
+          "Poles of this loop [1/s], the slowest decay first.")
       .def_property_readonly(
           "decay", [](const GainStudy& s) { return s.weakest.analysis.decay; },
           "Decay rate of the slowest mode [1/s]; negative when the mode grows.")
@@ -184,7 +185,8 @@ void bind_gains(py::module_& m) {
               list.append(py::make_tuple(r.support, r.direction, r.dcm, r.impulse));
             return list;
           },
-          "(support, direction, error of the DCM that needs no step [m], its impulse [N s]).");
+          "(support, direction, largest error of the DCM that needs no step [m], impulse of this "
+          "error [N s]).");
   m.def(
       "gains",
       [](const RobotModel& robot, const std::optional<std::array<std::complex<double>, 2>>& poles,
@@ -200,7 +202,7 @@ void bind_gains(py::module_& m) {
       py::arg("latency") = py::none(),
       "Gains of DTAD: two `poles` of the COG [1/s], the share of a ZMP error that is absorbed at "
       "once, times [s] of the return to the command, of the filter of the ZMP and of a lasting "
-      "offset; `set` gives gains by name, `latency` [s] that of the sensors.");
+      "offset; `set` gives gains by name, and `latency` [s] is the latency of the sensors.");
 
   py::class_<TuneFigures>(m, "TuneFigures", "The objective of tune() and its parts.")
       .def_readonly("objective", &TuneFigures::objective, "Dimensionless, smaller is better.")
@@ -244,14 +246,15 @@ void bind_gains(py::module_& m) {
       py::arg("rounds") = TuneOptions().rounds, py::arg("seed") = 1, py::arg("threads") = 0,
       py::arg("progress") = py::none(),
       "Searches for better gains of DTAD. `start`: gains to begin with; `times` of the pushes [s]; "
-      "`level` of a push in capture bounds; `gains`: names of those that are changed.");
+      "`level` of a push in capture bounds; `gains`: names of the gains that are changed.");
 }
 
 void bind_local_pace(py::module_& m) {
   py::class_<LocalPace>(m, "LocalPace", "The result of fastest_local_pace().")
       .def_readonly("found", &LocalPace::found, "Whether a course of time passes the check.")
       .def_readonly("pattern", &LocalPace::pattern, "The motion in this course, as a table.")
-      .def_readonly("scale", &LocalPace::scale, "Duration divided by that of the given pattern.")
+      .def_readonly("scale", &LocalPace::scale,
+                    "Duration divided by the duration of the given pattern.")
       .def_readonly("path_scale", &LocalPace::path_scale,
                     "The same for the fastest uniform pace, whose postures the motion has.")
       .def_property_readonly(
@@ -262,12 +265,12 @@ void bind_local_pace(py::module_& m) {
               list.append(py::make_tuple(limit.limit, limit.share));
             return list;
           },
-          "(limit, share of the duration for which it binds), the longest first; '' where none "
-          "does, 'pace' for the largest pace, 'pause' for pauses that are kept.")
+          "(limit, share of the duration for which it binds), the longest first; '' where no limit "
+          "binds, 'pace' for the largest pace, 'pause' for pauses that are kept.")
       .def_readonly("rounds", &LocalPace::rounds, "Number of courses of time that were checked.")
       .def_readonly("limited_by", &LocalPace::limited_by, "Why no course of time passes, in words.")
       .def_readonly("by_posture", &LocalPace::by_posture,
-                    "None passes because of a posture, which no course of time changes.");
+                    "Whether no course of time passes because a posture itself violates a limit.");
   m.def(
       "fastest_local_pace",
       [](const PyTask& given, const std::string& table, std::optional<double> margin,
@@ -285,8 +288,9 @@ void bind_local_pace(py::module_& m) {
       py::arg("task"), py::kw_only(), py::arg("table") = "retimed.csv",
       py::arg("margin") = py::none(), py::arg("keep_pauses") = false,
       py::arg("progress") = py::none(),
-      "The fastest course of time along the motion: it slows only where a limit binds. The result "
-      "names its table `table`; the ZMP keeps at most `margin` [m] from the edge of the support; "
+      "The fastest course of time along the motion: the motion slows down only where a limit "
+      "binds. The result names its table `table`; the ZMP keeps at most `margin` [m] from the edge "
+      "of the support; "
       "with `keep_pauses`, spans in which nothing moves keep their length.");
 }
 

@@ -115,7 +115,7 @@ void bind_table(py::module_& m) {
         return as_table(std::move(made), caution, prismatic);
       },
       py::arg("task"), py::arg("log") = py::none(), py::kw_only(), py::arg("content") = "lead",
-      "The table of a run, or without a log of the pattern itself. `content`: 'ideal' (the "
+      "The table of a run, or of the pattern itself if no log is given. `content`: 'ideal' (the "
       "posture), 'lead' (ahead of the posture by the lag of the servos) or 'lead+sag'.");
   m.def(
       "make_safe",

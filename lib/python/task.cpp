@@ -41,9 +41,9 @@ void bind_check(py::module_& m) {
       .def_readonly("at", &Finding::at, "Time of the worst sample [s].")
       .def_readonly("worst", &Finding::worst, "Value at this time, in `unit`.")
       .def_readonly("limit", &Finding::limit, "The limit, in `unit`.")
-      .def_readonly("unit", &Finding::unit, "Unit of both.")
+      .def_readonly("unit", &Finding::unit, "Unit of `worst` and `limit`.")
       .def_readonly("where", &Finding::where, "Joint, foot, axis, support or bodies.")
-      .def_readonly("hint", &Finding::hint, "What to do about it.")
+      .def_readonly("hint", &Finding::hint, "What to do about the finding.")
       .def("__repr__", [](const Finding& f) {
         return std::string("<") + name_of(f.severity) + " " + name_of(f.kind) + " at " +
                std::to_string(f.at) + " s, " + f.where + ">";
@@ -53,8 +53,9 @@ void bind_check(py::module_& m) {
       .def_property_readonly("consistent", &Judgement::good,
                              "Whether motion and goals keep every limit.")
       .def("__bool__", &Judgement::good)
-      .def_property_readonly("reason", &Judgement::reason,
-                             "Why it is inconsistent, in one line; '' when it is not.")
+      .def_property_readonly(
+          "reason", &Judgement::reason,
+          "Why the pattern is inconsistent, in one line; '' when it is consistent.")
       .def_property_readonly(
           "findings", [](const Judgement& j) { return j.report.findings; },
           "The findings, errors first.")
@@ -86,7 +87,8 @@ void bind_check(py::module_& m) {
         return judge(*task.task, options);
       },
       py::arg("task"), py::kw_only(), py::arg("tolerances") = std::map<std::string, double>(),
-      "The verdict on a pattern. `tolerances` by kind of finding, over those of the pattern.");
+      "The verdict on a pattern. `tolerances`: values by kind of finding, in place of those of the "
+      "pattern.");
 }
 
 Trust trust_of(const std::string& name) {
@@ -114,8 +116,8 @@ void bind_repair(py::module_& m) {
           },
           "Whether the motion of `task` is consistent.")
       .def_readonly("task", &PyRepair::task,
-                    "The task with the correction in its pattern; without one where the repair "
-                    "found none.")
+                    "The task with the correction in its pattern; without a correction if the "
+                    "repair found none.")
       .def_property_readonly(
           "max_joint_change", [](const PyRepair& r) { return r.result.max_joint_change; },
           "Largest change of a joint [rad].")

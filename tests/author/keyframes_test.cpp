@@ -55,7 +55,7 @@ TEST(KeyEdit, CopiesMovesAndMirrors) {
   EXPECT_EQ(moved.keyframes[1].joints, p.keyframes[1].joints);
   EXPECT_NE(
       error_message([&] { with_key_edited(hoap1(), p, {.at = 0.5, .to = 1}); }, ErrorCode::usage)
-          .find("there is no keyframe at 0.5 s; their times are 0, 0.8, 1.2, 1.6 s"),
+          .find("there is no keyframe at 0.5 s; the times of the keyframes are 0, 0.8, 1.2, 1.6 s"),
       std::string::npos);
   EXPECT_NE(
       error_message([&] { with_key_edited(hoap1(), p, {.at = 0.8, .to = 2.5}); }, ErrorCode::usage)
@@ -75,7 +75,7 @@ TEST(KeyEdit, ComesToNoTimeInsideAViipPhase) {
     EXPECT_NE(
         error_message([&] { with_key_edited(hoap1(), p, {.at = 0.5, .to = 1.5, .copy = copy}); },
                       ErrorCode::usage)
-            .find("phases/1: the keyframe would come to 1.5 s, inside the VIIP phase from 1 to "
+            .find("phases/1: the keyframe would be at 1.5 s, inside the VIIP phase from 1 to "
                   "2 s"),
         std::string::npos);
   for (const double t : {1.0, 2.0, 2.5})

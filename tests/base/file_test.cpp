@@ -56,7 +56,7 @@ TEST(ReadFile, OpensRegularFilesOnlyAndNeverWaits) {
   const fs::path file = folder.write("a.txt", "12345");
   EXPECT_EQ(read_file(file, 5), "12345");
   EXPECT_EQ(error(file, 4),
-            file.string() + ": 5 bytes are too many; Ayumi reads at most 4 bytes of this file");
+            file.string() + ": the file has 5 bytes; a file of this kind may have at most 4");
   EXPECT_EQ(read_file(folder.write("empty.txt", "")), "");
   EXPECT_FALSE(read_file("/proc/self/status").empty()) << "a file that states no size";
   EXPECT_EQ(error("/proc/self/maps", 64).find("/proc/self/maps: "), 0u);

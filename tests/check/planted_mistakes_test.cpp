@@ -173,7 +173,7 @@ std::vector<Mistaken> list() {
                 key.zmp->place == ZmpKey::Place::left ? ZmpKey::Place::right : ZmpKey::Place::left;
       });
   add("no ZMP key under a foot", small(), steps,
-      "/phases/1: the robot stands on the left foot, .*at \"center\"; so it is in 4 phases",
+      "/phases/1: the robot stands on the left foot, .*at \"center\"; this is so in 4 phases",
       [](Pattern& p) {
         for (Keyframe& key : p.keyframes)
           if (key.zmp) key.zmp->place = ZmpKey::Place::center;
@@ -205,7 +205,7 @@ std::vector<Mistaken> list() {
       "/keyframes/2: t is .*, so the segment before it lasts 0.06",
       [](Pattern& p) { p.keyframes[2].t = p.keyframes[1].t + 0.06; });
   add("a swing too short, and all after it", tall(), strides,
-      "/phases/3: the phase ends .*everything after it later", [](Pattern& p) {
+      "/phases/3: the phase ends .*all times after this phase .* later", [](Pattern& p) {
         const double until = p.phases[3].until, cut = until - p.phases[2].until - 0.1;
         for (size_t i = 3; i < p.phases.size(); ++i) p.phases[i].until -= cut;
         for (Keyframe& key : p.keyframes)

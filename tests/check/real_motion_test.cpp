@@ -329,10 +329,11 @@ TEST(HoapImport, AnglesAreSmoothedAsFarAsIsSaid) {
 
 TEST(HoapImport, MistakesNameTheLine) {
   const std::string good = row(1, 20, 0, ",R,R,R") + "\n";
-  EXPECT_NE(message(good + row(1, 20, 0, ",R,R") + "\n").find("seq.csv:2: 24 columns"),
+  EXPECT_NE(message(good + row(1, 20, 0, ",R,R") + "\n").find("seq.csv:2: the row has 24 columns"),
             std::string::npos);
-  EXPECT_NE(message(good + row(1, 20, 40000, ",R,R,R") + "\n").find("'40000' is not a count"),
-            std::string::npos);
+  EXPECT_NE(
+      message(good + row(1, 20, 40000, ",R,R,R") + "\n").find("'40000' is not a whole number"),
+      std::string::npos);
   EXPECT_NE(message(good + good + "0,2,1\n").find("seq.csv:3: '0' is not an interval"),
             std::string::npos);
   std::string waist;

@@ -132,7 +132,7 @@ std::vector<Broken> broken_robots() {
       sidecar("urdf_missing", "robot.urdf", "gone.urdf", "gone.urdf"),
       sidecar("sole_of_33_corners",
               "[[-0.042, -0.0315], [0.056, -0.0315], [0.056, 0.0315], [-0.042, 0.0315]]",
-              outline_of(33), "33 corners, more than the 32"),
+              outline_of(33), "33 corners, but at most 32"),
       sidecar("unknown_key", "\"joint_order\"", "\"joint_ordr\"", "did you mean 'joint_order'?"),
       sidecar("wrong_foot_name", "\"l_foot\"", "\"l_foott\"", "did you mean 'l_foot'?"),
       sidecar("unknown_joint", "\"r_hip_pitch\": -17.258", "\"r_hip_ptch\": -17.258",

@@ -423,7 +423,7 @@ TEST_F(CheckRepair, WishesOfTheFile) {
   }
   for (const auto& [wishes, message] : std::vector<std::pair<std::string, std::string>>{
            {R"({"lock": {"joints": ["l_kne"]}})", "repair/lock/joints/0: the robot 'hoap1'"},
-           {R"({"lock": {"windows": [[90, 91]]}})", "after the motion's end at"},
+           {R"({"lock": {"windows": [[90, 91]]}})", "after the end of the motion at"},
            {R"({"lock": {"keyframes": [21]}})",
             "21 is not the number of a keyframe; keyframes are numbered from 0 to 20"},
            {R"({"weights": {"l_kne": 2}})", "repair/weights/l_kne: the robot"}}) {

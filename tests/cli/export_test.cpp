@@ -167,7 +167,8 @@ TEST_F(Export, BrokenPatternsAreOneLineAndExit3) {
     std::string from, to, complaint;
   };
   for (const Case& each : std::vector<Case>{
-           {"\"deg\"", "\"grad\"", "/units/angle: 'grad' is not one of deg, rad"},
+           {"\"deg\"", "\"grad\"",
+            "/units/angle: 'grad' is not allowed; the allowed values are deg, rad"},
            {"1.5", "0",
             "/keyframes/1/t: this keyframe is at 0 s, but the keyframe before it is at 0 s; give a "
             "later time"},

@@ -89,7 +89,7 @@ TEST_F(Replay, BadTablesLeaveNothing) {
   const std::vector<std::pair<std::string, std::string>> cases = {
       {good.substr(0, good.size() / 2 - 20), "columns, but the rows before have 25"},
       {"", "ayumi"},
-      {"1,2,nan" + good.substr(5), "is not a count of 16 bits"},
+      {"1,2,nan" + good.substr(5), "is not a whole number from -32768 to 32767"},
       {"t[s],no_joint[rad]\n0,0\n1,0\n", "no_joint"}};
   for (const auto& [bytes, words] : cases) {
     write(folder / "bad.csv", bytes);

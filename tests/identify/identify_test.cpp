@@ -125,11 +125,9 @@ TEST(Identify, SaysThatTheRecordingMayBeShifted) {
   constexpr Eigen::Index kLate = 15;
   motion.measured.theta.topRows(kLate).setConstant(old(0, 0));
   motion.measured.theta.bottomRows(old.rows() - kLate) = old.topRows(old.rows() - kLate);
-  EXPECT_NE(
-      identify(model, motion, held_root(), "m.csv")
-          .caution.find("ms is the lag of the servos in the robot's file: make sure that both "
-                        "files begin at the same time"),
-      std::string::npos);
+  EXPECT_NE(identify(model, motion, held_root(), "m.csv")
+                .caution.find("ms: make sure that both files begin at the same time"),
+            std::string::npos);
   IdentifyOptions strict = held_root();
   strict.longest_lag = 0.01;
   EXPECT_THROW(identify(model, motion, strict, "m.csv"), Error);
@@ -165,11 +163,11 @@ TEST(RecordingChecks, OneLineForARecordingThatIsNotTheAnswer) {
   said(answer_error([](RecordedMotion& m) { m.measured.theta.conservativeResize(3000, 1); }),
        "m.csv: the recording lasts 2.999 s, but its command lasts 6.000 s");
   said(answer_error(late_by(800)),
-       "ms behind their command, and a servo is at most 30 ms behind (--longest-lag); the "
+       "ms behind their command, but a servo is at most 30 ms behind (--longest-lag); the "
        "recording is shifted");
   // 50 ms are no lag of a servo either.
   said(answer_error(late_by(50)),
-       "ms behind their command, and a servo is at most 30 ms behind (--longest-lag); the "
+       "ms behind their command, but a servo is at most 30 ms behind (--longest-lag); the "
        "recording is shifted");
   said(answer_error([](RecordedMotion& m) { m.measured.theta.conservativeResize(5901, 1); }),
        "m.csv: the recording lasts 5.900 s, but its command lasts 6.000 s");

@@ -168,8 +168,8 @@ TEST(BrokenRobot, WrongTrees) {
   EXPECT_EQ(urdf_error(urdf(kBody + joint("x", "l_foot", "trunk"))),
             "r.urdf: link trunk: the joints form a loop, so no link is the root; remove one joint");
   EXPECT_EQ(urdf_error(urdf(kBody + joint("x", "l_foot", "r_foot"))),
-            "r.urdf: link r_foot: has two parents, by the joints r_hip and x; closed chains are "
-            "not supported, remove one joint");
+            "r.urdf: link r_foot: the joints r_hip and x both lead to this link, but closed chains "
+            "are not supported; remove one of these joints");
   EXPECT_EQ(urdf_error(urdf(kBody + link("other"))),
             "r.urdf: there are several root links: trunk, other; add joints so that only one root "
             "link remains");

@@ -26,7 +26,7 @@ std::string refusal(const std::string& text, ImportOptions options = {}) {
     EXPECT_EQ(error.code(), ErrorCode::bad_file);
     const std::string message = error.what();  // how the format was recognized stands at the end
     return message.substr(0,
-                          message.find(" (read as table with a head row, because its first row"));
+                          message.find(" (read as table with a head row, because the first row"));
   }
   return "read";
 }
@@ -102,14 +102,14 @@ TEST(ForeignTable, MistakesAreOneLine) {
             "--unit deg if the angles are in degrees");
   EXPECT_EQ(refusal("\xFF\xFEt\0,\0"), "a.csv:1: this is UTF-16 text; save it as UTF-8");
   EXPECT_EQ(refusal("t l_elbow r_knee\n0 0 0\n1 0 0\n"),
-            "a.csv: only blanks stand between the columns; put commas, semicolons or tabs there");
+            "a.csv: only blanks separate the columns; use commas, semicolons or tabs");
   EXPECT_EQ(refusal("t,l_elbow\n0,0\n0.2,0\n0.1,0\n"),
             "a.csv: data row 3: time 0.1 s does not come after 0.2 s of the row before; times must "
             "increase");
   EXPECT_EQ(refusal("t;l_elbow\n0;0\n0,1;nan\n"),
             "a.csv:3: column 'l_elbow': 'nan' is not a finite number");
   EXPECT_EQ(refusal("t;l_elbow\n0;0\n0,1;0;0\n"),
-            "a.csv:3: 3 values in the row, but the head row names 2 columns");
+            "a.csv:3: the row has 3 values, but the head row names 2 columns");
   EXPECT_NE(refusal("t,l_elbow[turns]\n0,0\n1,0\n").find("unknown column 'l_elbow[turns]'"),
             std::string::npos);
 }

@@ -90,19 +90,21 @@ TEST(Hoap, IntervalsThatChangeAreInterpolated) {
 
 TEST(Hoap, SaysWhatIsWrong) {
   EXPECT_EQ(hoap_error(""), "s.csv: no row with targets for the motors");
-  EXPECT_NE(
-      hoap_error("1,2,0,0,R,R,R\n").find("s.csv:1: 7 columns; sequences of this robot have 8"),
-      std::string::npos);
+  EXPECT_NE(hoap_error("1,2,0,0,R,R,R\n")
+                .find("s.csv:1: the row has 7 columns, but sequences of this robot have 8"),
+            std::string::npos);
   EXPECT_NE(hoap_error("1,4,0,0,0,R,R,R\n").find("expected an interval, then the code 2"),
             std::string::npos);
-  EXPECT_NE(hoap_error("1,2,0,0,1.5,R,R,R\n").find("column 5: '1.5' is not a count of 16 bits"),
+  EXPECT_NE(hoap_error("1,2,0,0,1.5,R,R,R\n")
+                .find("column 5: '1.5' is not a whole number from -32768 to 32767"),
             std::string::npos);
   EXPECT_NE(hoap_error("1,2,0,0,nan,R,R,R\n").find("column 5: 'nan'"), std::string::npos);
-  EXPECT_NE(hoap_error("1,2,0,40000,0,R,R,R\n").find("column 4: '40000' is not a count"),
+  EXPECT_NE(hoap_error("1,2,0,40000,0,R,R,R\n").find("column 4: '40000' is not a whole number"),
             std::string::npos);
   EXPECT_NE(hoap_error("0,2,0,0,0,R,R,R\n").find("'0' is not an interval"), std::string::npos);
   // Cut in half in its second row.
-  EXPECT_NE(hoap_error("1,2,0,0,0,R,R,R\n1,2,0,0,\n").find("s.csv:2: 5 columns, but the rows"),
+  EXPECT_NE(hoap_error("1,2,0,0,0,R,R,R\n1,2,0,0,\n")
+                .find("s.csv:2: the row has 5 columns, but the rows"),
             std::string::npos);
 }
 
@@ -213,8 +215,9 @@ TEST(Hoap, ZerosAreNoRecordingAndJumpsAreNamed) {
     jump += (k < 5 ? "2,2,0" : "2,2,200") + tail;
   }
   const std::string error = test::error_message([&] { read_motion_rows(zeros, "z.csv", hoap1()); });
-  EXPECT_TRUE(error.starts_with(
-      "z.csv: every value of every motor is 0; nothing was recorded here (read as HOAP sequence, "))
+  EXPECT_TRUE(
+      error.starts_with("z.csv: every value of every motor is 0, so nothing was recorded; record "
+                        "again (read as HOAP sequence, "))
       << error;
   const ImportedMotion motion = read_motion_rows(jump, "j.csv", hoap1());
   ASSERT_FALSE(motion.filled.empty());

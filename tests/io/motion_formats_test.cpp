@@ -120,11 +120,11 @@ std::string told(const std::string& message) {
 TEST(MotionFormats, MistakesNameFileLineAndFormat) {
   const std::string head = "#WEBOTS_MOTION,V1.0,l_knee,r_knee\n";
   const std::string webots =
-      " (read as Webots .motion, because its first line begins with #WEBOTS_MOTION";
+      " (read as Webots .motion, because the first line begins with #WEBOTS_MOTION";
   EXPECT_EQ(told(refusal_of(head + "00:00:000,a,0,0\n00:00:040,b,0\n")),
-            "m.dat:3: 3 cells in the row, but the head needs 4 (2 joints)" + webots);
+            "m.dat:3: the row has 3 cells, but the head row needs 4 (2 joints)" + webots);
   EXPECT_EQ(told(refusal_of(head + "00:00:000,a,0,0\n00:00:040,b,0")),
-            "m.dat:3: 3 cells in the row, but the head needs 4 (2 joints); the file may be "
+            "m.dat:3: the row has 3 cells, but the head row needs 4 (2 joints); the file may be "
             "truncated" +
                 webots);
   EXPECT_EQ(told(refusal_of(head + "00:00:000,a,0,nan\n")),
@@ -133,10 +133,10 @@ TEST(MotionFormats, MistakesNameFileLineAndFormat) {
             "m.dat:1: version 'V3.0' is unknown; Ayumi reads V1.0 and V1.1" + webots);
   EXPECT_EQ(told(refusal_of("time,0,1\nl_knee,0,1\nr_knee,0\n")),
             "m.dat:3: 1 value of 'r_knee', but the first row has 2 times (read as CSV with a row "
-            "for each joint, because its first row is times, so each further row is a joint");
+            "for each joint, because the first row has times, so each further row is a joint");
   EXPECT_EQ(told(refusal_of("0.02 3 ( 1 2 )\n")),
-            "m.dat:1: 2 values in the brackets, but n is 3 (read as mi-lib .zvs, because its rows "
-            "have the form `dt n ( values )`");
+            "m.dat:1: the brackets hold 2 values, but n is 3 (read as mi-lib .zvs, because the "
+            "rows have the form `dt n ( values )`");
   const ImportOptions stated{.format = "webots"};
   EXPECT_EQ(
       refusal_of("#WEBOTS_MOTION,V3.0,l_knee\n", "m.dat", stated),
@@ -184,8 +184,8 @@ TEST(MotionFormats, JointsAreMappedByNameAndByOrderOnlyOnRequest) {
   const ImportedMotion some = read_motion_rows(webots, "m.motion", hoap1());
   std::string said;
   for (const std::string& line : some.filled) said += line + "\n";
-  EXPECT_NE(said.find("unknown joints, left out: HeadYaw\n"), std::string::npos) << said;
-  EXPECT_NE(said.find("missing joints, which keep their angles of the home posture: "),
+  EXPECT_NE(said.find("unknown joints are left out: HeadYaw\n"), std::string::npos) << said;
+  EXPECT_NE(said.find("joints that the file does not have keep their angles of the home posture: "),
             std::string::npos);
   const std::string other = "#WEBOTS_MOTION,V1.0,l_knee,A,B,C\n0,p,0,0,0,0\n40,p,0,0,0,0\n";
   EXPECT_NE(refusal_of(other).find("of its 4 joints only l_knee are joints of"), std::string::npos)

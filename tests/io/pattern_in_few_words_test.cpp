@@ -94,7 +94,7 @@ TEST(PatternInFewWords, DurationsAddUp) {
             std::string::npos);
   EXPECT_NE(said(R"("phases": [{"until": 2, "support": "both"}, {"duration": 3599, "support":
       "both"}])")
-                .find("it ends at 3601 s; the longest pattern is 3600 s"),
+                .find("this time is 3601 s from the beginning; the longest pattern is 3600 s"),
             std::string::npos);
 }
 
@@ -149,7 +149,8 @@ TEST(PatternInFewWords, MistakesInBlocksAreNamed) {
   EXPECT_NE(block(R"("repeat": 3, "count": "i", "phases": [{"until": "2 - ${i}",
                      "support": "both"}])")
                 .find("this phase begins at 2 s and ends at 1 s; give a later time; if 1 s are "
-                      "counted from there, write \"duration\" in place of \"until\" (round 2 of "
+                      "counted from the beginning of the phase, write \"duration\" in place of "
+                      "\"until\" (round 2 of "
                       "3)"),
             std::string::npos);
   // A count is known in its block only.

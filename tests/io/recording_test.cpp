@@ -55,7 +55,7 @@ TEST(Recording, WhatIsNoRecordingGetsOneLine) {
             "m.csv:2: this line ends with CR LF, but the lines before it end with LF; the file may "
             "consist of parts of two files. Use one kind of line end");
   EXPECT_EQ(recording_error(a + "\n" + b.substr(0, 20) + "\n"),
-            "m.csv:2: 9 columns, but the rows before have 22");
+            "m.csv:2: the row has 9 columns, but the rows before have 22");
   EXPECT_EQ(recording_error(a + "\nnan" + b.substr(1) + "\n"),
             "m.csv:2: column 1: 'nan' is not a finite number");
   EXPECT_EQ(recording_error(a + "\n" + counts_row(2090 - 65536) + "\n"),
@@ -63,7 +63,8 @@ TEST(Recording, WhatIsNoRecordingGetsOneLine) {
             "deg in this time. Samples are missing, or the 16-bit counter has overflowed: record "
             "again, or add or subtract 65536 counts from this row on");
   EXPECT_EQ(recording_error("0,0,0,0,0,0\n0,0,0,0,0,0\n"),
-            "m.csv:1: 6 columns, but the robot 'hoap1' needs 20; is this a recording of another "
+            "m.csv:1: the row has 6 columns, but the robot 'hoap1' needs 20; is this a recording "
+            "of another "
             "robot?");
   EXPECT_EQ(recording_error(a + ",7\n" + b + ",7\n"),
             "m.csv:1: column 23 is 7, but the robot 'hoap1' has 20 devices; is this a recording of "

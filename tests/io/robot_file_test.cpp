@@ -233,7 +233,8 @@ TEST(Sidecar, StatesLoadCellsAndTheLatencyOfEachSensor) {
     load(R"({"force_cells": {"left": [{}, {}, {}]}})");
     FAIL() << "three cells on four corners";
   } catch (const Error& e) {
-    EXPECT_NE(std::string(e.what()).find("/sensors/force_cells/left: 3 cells, but the sole has 4"),
+    EXPECT_NE(std::string(e.what()).find(
+                  "/sensors/force_cells/left: there are 3 cells, but the sole has 4"),
               std::string::npos)
         << e.what();
   }

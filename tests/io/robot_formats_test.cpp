@@ -28,7 +28,7 @@ bool has_mujoco() {
   try {
     parse_robot("<mujoco><worldbody><body/></worldbody></mujoco>", "m.xml", {});
   } catch (const Error& error) {
-    return std::string(error.what()).find("built without it") == std::string::npos;
+    return std::string(error.what()).find("built without MuJoCo") == std::string::npos;
   }
   return true;
 }
@@ -210,13 +210,14 @@ parent: base
   EXPECT_EQ(refusal("COM: { 0, 0, -0.1 }", "COM: { 0, 0, nan }"),
             "legs.ztk:50: COM: 'nan' is not a finite number");
   EXPECT_EQ(refusal("COM: { 0, 0, -0.1 }", "COM: { 0, -0.1 }"),
-            "legs.ztk:50: COM: 3 numbers needed, found 2");
+            "legs.ztk:50: COM: 3 numbers are needed, found 2");
   EXPECT_NE(refusal("jointtype: revolute", "jointtype: hooke").find("'hooke' is not supported"),
             std::string::npos);
   EXPECT_NE(refusal("face: 0 1 2", "face: 0 1 7")
                 .find("corner 7 does not exist; the shape has 3 corners"),
             std::string::npos);
-  EXPECT_NE(refusal(" 1, 0, 0, 0.2", " 2, 0, 0, 0.2").find("are no rotation"), std::string::npos);
+  EXPECT_NE(refusal(" 1, 0, 0, 0.2", " 2, 0, 0, 0.2").find("are not a rotation"),
+            std::string::npos);
   EXPECT_NE(refusal("parent: base", "parent: bas").find("bas"), std::string::npos);
 }
 

@@ -215,7 +215,7 @@ TEST(SimulationLogFile, OnlyFiniteNumbersAreRead) {
     log.samples[7].zmp.x() = value;
     for (const std::string& bytes : {log_bytes(log), plain_log_bytes(log)})
       EXPECT_EQ(parse_message(bytes),
-                "x.bin: damaged: row 7, column 'zmp.x[m]' is not a finite number");
+                "x.bin: the file is damaged: row 7, column 'zmp.x[m]' is not a finite number");
   }
 }
 
@@ -241,10 +241,10 @@ TEST(SimulationLogFile, BrokenFilesGetOneClearMessage) {
   std::string other = good;
   other[8] = 9;
   EXPECT_NE(parse_message(other).find("log version 9 cannot be read"), std::string::npos);
-  EXPECT_NE(parse_message(good.substr(0, 40)).find("truncated: the header is cut off"),
+  EXPECT_NE(parse_message(good.substr(0, 40)).find("truncated: the header is incomplete"),
             std::string::npos);
   EXPECT_NE(parse_message(good.substr(0, good.size() - 1)).find("truncated"), std::string::npos);
-  EXPECT_NE(parse_message(good + "x").find("damaged: 1 bytes after"), std::string::npos);
+  EXPECT_NE(parse_message(good + "x").find("damaged: there are 1 bytes after"), std::string::npos);
   // Any flipped byte of the header, its checksum or the samples is seen, or changes nothing that is
   // read: zstd has codes that say the same. (What stands before them is the magic word, the version
   // and a length.)
@@ -263,7 +263,7 @@ TEST(SimulationLogFile, BrokenFilesGetOneClearMessage) {
 TEST(SimulationLogFile, BrokenFilesOfVersionOneGetOneClearMessage) {
   const std::string good = plain_log_bytes(random_log(5));
   EXPECT_EQ(parse_message(good), "no error");
-  EXPECT_NE(parse_message(good.substr(0, 40)).find("truncated: the header is cut off"),
+  EXPECT_NE(parse_message(good.substr(0, 40)).find("truncated: the header is incomplete"),
             std::string::npos);
   EXPECT_NE(parse_message(good.substr(0, good.size() - 1)).find("truncated: "), std::string::npos);
   EXPECT_NE(parse_message(good + "x").find("damaged: "), std::string::npos);

@@ -122,10 +122,13 @@ TEST(SampleCompression, DamageGetsOneMessage) {
   };
   EXPECT_EQ(message(good, 2, 300), "no error");
   EXPECT_EQ(message(good.substr(0, good.size() / 2), 2, 300),
-            "x.bin: truncated or damaged: the samples (zstd) are incomplete");
-  EXPECT_EQ(message("", 2, 300), "x.bin: truncated or damaged: the samples (zstd) are incomplete");
-  EXPECT_EQ(message(good + "abc", 2, 300), "x.bin: damaged: 3 bytes after the samples");
-  EXPECT_EQ(message(good, 2, 301), "x.bin: damaged: the samples are not 301 rows of 2 columns");
+            "x.bin: the file is truncated or damaged, because the samples (zstd) are incomplete");
+  EXPECT_EQ(message("", 2, 300),
+            "x.bin: the file is truncated or damaged, because the samples (zstd) are incomplete");
+  EXPECT_EQ(message(good + "abc", 2, 300),
+            "x.bin: the file is damaged: there are 3 bytes after the samples");
+  EXPECT_EQ(message(good, 2, 301),
+            "x.bin: the file is damaged: the samples are not 301 rows of 2 columns");
   // Any flipped bit is seen: by zstd, or by the checksum of what it decompresses.
   for (size_t at = 0; at < good.size(); ++at) {
     std::string flipped = good;

@@ -243,13 +243,14 @@ TEST(ServoReader, SaysWhatAServoCannotBe) {
             at + "/delay: 1 s is too large; the largest allowed value is 0.1 s; state it in "
                  "seconds: 3.7 ms is 0.0037");
   EXPECT_EQ(group_error(R"("backlash": 1)"),
-            at + "/backlash: 1 rad is too large; the largest allowed value is 0.2 rad; in degrees "
-                 "the key ends in _deg");
+            at + "/backlash: 1 rad is too large; the largest allowed value is 0.2 rad; for "
+                 "degrees, use the key that ends in _deg");
   EXPECT_EQ(group_error(R"("backlash_deg": 57.3)"),
             at + "/backlash_deg: 57.3 deg is too large; the largest allowed value is 11.46 deg");
   EXPECT_EQ(group_error(R"("offset": -2)"),
-            at + "/offset: -2 rad is too small; the smallest allowed value is -0.5 rad; in degrees "
-                 "the key ends in _deg. For a larger offset, mount the horn in another position");
+            at + "/offset: -2 rad is too small; the smallest allowed value is -0.5 rad; for "
+                 "degrees, use the key that ends in _deg. For a larger offset, mount the horn in "
+                 "another position");
   EXPECT_EQ(group_error(R"("stribeck_exponent": 0)"),
             at + "/stribeck_exponent: 0 is too small; the smallest allowed value is 0.1");
   EXPECT_EQ(group_error(R"("load_friction": {"motor": 2})"),
@@ -269,16 +270,18 @@ TEST(ServoReader, SaysWhichKeysDoNotGoTogether) {
   EXPECT_EQ(group_error(R"("dely": 0.004)"), at + "/dely: unknown key; did you mean 'delay'?");
   EXPECT_EQ(group_error(R"("load_friction": {"moter": 0.1})"),
             at + "/load_friction/moter: unknown key; did you mean 'motor'?");
-  EXPECT_EQ(group_error(R"("kp": 3, "position_gain": 2, "speed_gain": 1)"),
-            at + ": it has both 'kp' and 'position_gain', which state the same thing; keep one");
-  EXPECT_EQ(group_error(R"("offset": 0, "offset_deg": 0)"),
-            at + ": it has both 'offset' and 'offset_deg', which state the same thing; keep one");
+  EXPECT_EQ(
+      group_error(R"("kp": 3, "position_gain": 2, "speed_gain": 1)"),
+      at + ": the group has both 'kp' and 'position_gain', which state the same thing; keep one");
+  EXPECT_EQ(
+      group_error(R"("offset": 0, "offset_deg": 0)"),
+      at + ": the group has both 'offset' and 'offset_deg', which state the same thing; keep one");
   EXPECT_EQ(group_error(R"("stribeck_torque": 0.1)"),
-            at + ": joint r_knee: stribeck_torque needs a stribeck_rate above 0, the rate at which "
-                 "it fades");
+            at + ": joint r_knee: stribeck_torque needs a stribeck_rate above 0, the joint rate at "
+                 "which this friction fades");
   EXPECT_EQ(group_error(R"("load_friction": {"motor_stribeck": 0.1})"),
             at + ": joint r_knee: the load friction at rest needs a stribeck_rate above 0, the "
-                 "rate at which it fades");
+                 "joint rate at which this friction fades");
   EXPECT_EQ(group_error(R"("quantized": true)"),
             "robot.json: /servos: the servo of l_knee is quantized, but 'encoders' gives no "
             "counts_per_degree for it");

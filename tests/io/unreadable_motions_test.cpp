@@ -160,8 +160,10 @@ TEST_P(UnreadableMotions, AreRefusedInOneLineOrReadAsTheyWere) {
     return good.substr(0, begin) + word + good.substr(end);
   };
   const std::string latin = outcome_of(format(), with("0.1\xE9")).message;
-  EXPECT_NE(latin.find("the byte 0xe9 is no UTF-8 text (perhaps Latin-1); save the file as UTF-8"),
-            std::string::npos)
+  EXPECT_NE(
+      latin.find(
+          "the byte 0xe9 is not UTF-8 text (the file may be Latin-1); save the file as UTF-8"),
+      std::string::npos)
       << latin;
   for (const char* word : {"nan", "1e999", "abc", ""})
     expect_one_line(outcome_of(format(), with(word)).message, word);

@@ -57,7 +57,7 @@ TEST(Diagnose, NamesImplausibleInertias) {
                        }),
                        "link l_shank", "exceeds the sum of the other two"));
   EXPECT_TRUE(mentions(findings([](auto& r) { link(r, "torso").inertia.com.z() = -0.2; }),
-                       "link torso", "outside its shape"));
+                       "link torso", "outside the shape"));
   EXPECT_TRUE(mentions(findings([](auto& r) {
                          const Eigen::Matrix3d same = link(r, "l_foot").inertia.about_com;
                          for (const char* name : {"l_shank", "r_foot", "r_shank"})
@@ -65,7 +65,7 @@ TEST(Diagnose, NamesImplausibleInertias) {
                        }),
                        "links r_shank, r_foot, l_shank, l_foot", "the same inertia tensor"));
   EXPECT_TRUE(mentions(findings([](auto& r) { link(r, "l_foot").inertia.mass = 10; }),
-                       "link l_foot", "heavier than lead"));
+                       "link l_foot", "above that of lead"));
 }
 
 TEST(Diagnose, NamesAsymmetry) {

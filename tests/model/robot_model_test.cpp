@@ -206,8 +206,8 @@ TEST(RobotModel, NamesWhatIsWrongInTheUrdf) {
             "biped.urdf: there are several root links: trunk, stray; add joints so that only one "
             "root link remains");
   EXPECT_EQ(error_of([](auto& r) { r.joints.push_back(hinge("x", "r_shank", "l_shank")); }),
-            "biped.urdf: link l_shank: has two parents, by the joints l_knee and x; closed chains "
-            "are not supported, remove one joint");
+            "biped.urdf: link l_shank: the joints l_knee and x both lead to this link, but closed "
+            "chains are not supported; remove one of these joints");
   EXPECT_EQ(error_of([](auto& r) { r.joints.push_back(hinge("x", "r_shank", "trunk")); }),
             "biped.urdf: link cap: the joints form a loop, so no link is the root; remove one "
             "joint");
@@ -264,8 +264,8 @@ TEST(RobotModel, NamesWhatIsWrongInTheSidecar) {
       "robot.json: /soles: both feet are on one body; name two foot links");
   EXPECT_NE(
       error_of([](auto& r) { std::swap(r.soles["left"].polygon[1], r.soles["left"].polygon[3]); })
-          .find("robot.json: /soles/left/polygon/1: the polygon is not convex and "
-                "counter-clockwise here"),
+          .find("robot.json: /soles/left/polygon/1: at this corner, the polygon is not "
+                "convex or not counter-clockwise"),
       std::string::npos);
   EXPECT_EQ(error_of([](auto& r) {
               r.postures["home"] = {{"l_kne", 0.1}};

@@ -80,7 +80,7 @@ TEST(SampleErrors, TimesOutOfOrder) {
 
 TEST(SampleErrors, KeysBeyondTheEnd) {
   expect_words(message_of([](Pattern& p) { p.keyframes.back().t = 99; }),
-               {"/keyframes/", "99 s", "beyond the end of the last phase"});
+               {"/keyframes/", "99 s", "after the end of the last phase"});
 }
 
 TEST(SampleErrors, NotANumber) {

@@ -94,7 +94,7 @@ TEST_F(Batch, NothingHalfIsLeftBehind) {
   fails({"preview", "run", "-o", "nowhere/a.mp4", "--size", "64x36"}, 3, "nowhere");
   fails({"preview", "run", "-o", "nowhere/a.png", "--size", "64x36"}, 3, "nowhere");
   fails({"preview", "run", "-o", "/dev/full/a.mp4", "--size", "64x36"}, 3, "/dev/full");
-  fails({"preview", "run", "-o", "a.avi", "--size", "64x36"}, 2, "is not one of .mp4");
+  fails({"preview", "run", "-o", "a.avi", "--size", "64x36"}, 2, "is not possible; give .mp4");
   fails({"preview", "run", "-o", "a.mp4", "--ghost", "nobody"}, 3, "nobody");
   fails({"preview", "run", "-o", "a.mp4", "--hide", "heet"}, 2, "did you mean 'heat'");
   EXPECT_EQ(folder.files(), files);

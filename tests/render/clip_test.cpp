@@ -189,8 +189,9 @@ TEST_F(Clip, ThePushStaysVisibleForAWhile) {
 TEST_F(Clip, ErrorsSayWhatIsWrongAndLeaveNothing) {
   EXPECT_NE(message_of(folder / "missing" / "a.mp4", ErrorCode::bad_file).find("does not exist"),
             std::string::npos);
-  EXPECT_NE(message_of(folder / "a.avi", ErrorCode::usage).find("'.avi' is not one of .mp4"),
-            std::string::npos);
+  EXPECT_NE(
+      message_of(folder / "a.avi", ErrorCode::usage).find("'.avi' is not possible; give .mp4"),
+      std::string::npos);
   options.encoder = "no-such-encoder";
   EXPECT_NE(message_of(folder / "a.mp4", ErrorCode::bad_file).find("install ffmpeg"),
             std::string::npos);

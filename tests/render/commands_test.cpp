@@ -67,7 +67,7 @@ TEST_F(Commands, MistakesAreNamed) {
   } cases[] = {{{"preview", "run", "-o", "a.mp4", "--size", "0x0"}, 2, "0x0"},
                {{"preview", "run", "-o", "a.mp4", "--size", "big"}, 2, "WIDTHxHEIGHT"},
                {{"preview", "run", "-o", "a.mp4", "--size", "101x50"}, 2, "even width"},
-               {{"preview", "run", "-o", "a.avi"}, 2, "'.avi' is not one of"},
+               {{"preview", "run", "-o", "a.avi"}, 2, "'.avi' is not possible"},
                {{"preview", "run", "-o", "a.png", "--view", "font"}, 2, "did you mean 'front'?"},
                {{"preview", "run", "-o", "a.png", "--hide", "zpm"}, 2, "did you mean 'zmp'?"},
                {{"preview", "run", "-o", "a.png", "--at", "9"}, 2, "outside the run (0 to 0.2 s)"},

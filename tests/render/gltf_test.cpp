@@ -116,7 +116,7 @@ TEST(Gltf, AMotionOfAnotherRobotIsRefused) {
     glb_bytes(model, {motion});
     FAIL();
   } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("has 3 joints, the robot box_robot has 5"),
+    EXPECT_NE(std::string(error.what()).find("has 3 joints, but the robot box_robot has 5"),
               std::string::npos)
         << error.what();
   }

@@ -34,7 +34,8 @@ TEST_F(ReportCommand, TakesPushThresholds) {
   EXPECT_NE(html.find("Push thresholds"), std::string::npos);
   EXPECT_NE(html.find("<td class=\"number\">0.80</td>"), std::string::npos);
   EXPECT_EQ(html.find("replay-config"), std::string::npos);
-  EXPECT_NE(html.find("there is no replay, because it was not wanted"), std::string::npos);
+  EXPECT_NE(html.find("there is no replay, because the report was made with --no-replay"),
+            std::string::npos);
   write(folder / "run" / "push.json", R"({"format": "ayumi.run/1"})");
   const Output other = ayumi({"report", "run", "-o", "s.html"});
   EXPECT_EQ(other.exit_code, 3);

@@ -173,7 +173,7 @@ TEST(UncertainTask, RefusesWhatNothingUsesAndWhatNoRobotCanHave) {
   EXPECT_EQ(message(R"("quantities": [{"what": "mass", "on": "l_fot", "uniform": [1, 1],
                        "source": "t"}])"),
             "study.json: /uncertainty/quantities/0: this quantity has no effect: hoap1 has no link "
-            "with a mass 'l_fot'; did you mean 'l_foot'?");
+            "'l_fot' with a mass; did you mean 'l_foot'?");
   EXPECT_EQ(message(R"("factors": [{"name": "heat", "source": "t"}])"),
             "study.json: /uncertainty/factors/0: no quantity uses the factor 'heat'; name it in a "
             "quantity, or leave it out");

@@ -37,8 +37,8 @@ std::string read_file(const fs::path& path, size_t max_bytes) {
   if (!S_ISREG(about.st_mode))
     refuse("this is a device or a named pipe, but a regular file is needed");
   const auto too_large = [&](size_t size) {
-    refuse(std::to_string(size) + " bytes are too many; Ayumi reads at most " +
-           std::to_string(max_bytes) + " bytes of this file");
+    refuse("the file has " + std::to_string(size) +
+           " bytes; a file of this kind may have at most " + std::to_string(max_bytes));
   };
   const auto size = static_cast<size_t>(about.st_size);
   if (size > max_bytes) too_large(size);

@@ -31,7 +31,7 @@ LockedFolder lock_folder(const fs::path& folder, const std::string& name, const 
   // Chosen: another process may remove folder or file between two calls, but not a hundred times.
   constexpr int kTries = 100;
   const std::string own =
-      name == folder.string() ? "the folder " : "its lock " + folder.string() + " ";
+      name == folder.string() ? "the folder " : "the lock folder " + folder.string() + " ";
   const auto stop = [&](const std::string& reason) {
     fail(ErrorCode::bad_file, name + ": " + (reason == busy ? "" : own) + reason);
   };

@@ -47,7 +47,8 @@ ActuatorNeed need_of(const RobotModel& model, const CommandSeries& series,
               text::join(parts, ", ") + "; " +
               (need.sufficient.empty()
                    ? "no other profile is strong enough"
-                   : text::join(need.sufficient, ", ") +
+                   : (need.sufficient.size() > 1 ? "the profiles " : "the profile ") +
+                         text::join(need.sufficient, ", ") +
                          (need.sufficient.size() > 1 ? " are strong enough" : " is strong enough"));
   return need;
 }

@@ -153,7 +153,7 @@ ConsistencyReport check_consistency(const RobotModel& model, const CommandSeries
   if (series.samples.empty())
     fail(ErrorCode::bad_pattern,
          "the motion has no samples, so there is nothing to check; sample a pattern first");
-  if (!(series.dt > 0)) fail(ErrorCode::usage, "the time step of the motion is not above 0 s");
+  if (!(series.dt > 0)) fail(ErrorCode::usage, "the time step of the motion must be above 0 s");
   JudgedMotion motion(model, series, options);
   judge(motion, options.threads);
   return report_of(motion);

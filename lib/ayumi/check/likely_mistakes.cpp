@@ -127,7 +127,7 @@ class Suspicions {
       }
     if (count >= kManyAngles && 2 * whole < count)
       said_.push_back({"/units",
-                       "all joint angles are less than 2 pi deg; if the angles are in radians, "
+                       "all joint angles are below 2 pi = 6.28 deg; if the angles are in radians, "
                        "write \"units\": {\"angle\": \"rad\"}"});
   }
 
@@ -361,10 +361,10 @@ std::vector<Mistake> likely_mistakes(const RobotModel& model, const Pattern& pat
     mistakes.push_back({e.place, e.written + "; " + e.instead});
   if (mistakes.empty()) mistakes = impossible_values(model, pattern);
   if (search.complete) return mistakes;
-  const std::string changes =
-      std::to_string(search.trials) + " changes of the pattern that were tried";
-  if (mistakes.empty()) return {{"", "none was found in the " + changes}};
-  mistakes.back().words += "; there may be another cause, beyond the " + changes;
+  const std::string changes = std::to_string(search.trials) +
+                              " trial changes of the pattern, after which the search stopped";
+  if (mistakes.empty()) return {{"", "none was found by " + changes}};
+  mistakes.back().words += "; there may be another cause that was not found by " + changes;
   return mistakes;
 }
 

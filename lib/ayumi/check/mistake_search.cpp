@@ -452,15 +452,17 @@ class Hypotheses {
                           {phase_place(i), lasts, "with an end at " + seconds(t)},
                           [i, t](Pattern& p) { p.phases[i].until = t; }});
       if (!usual) continue;
-      made.push_back({Rank::slip,
-                      {phase_place(i), lasts,
-                       "with a duration of " + seconds(*usual) + " and everything after it " +
-                           (*usual > until - begin ? "later" : "earlier")},
-                      [i, until, later = *usual - (until - begin)](Pattern& p) {
-                        for (size_t k = i; k < p.phases.size(); ++k) p.phases[k].until += later;
-                        for (Keyframe& key : p.keyframes)
-                          if (key.t >= until - 1e-9) key.t += later;
-                      }});
+      made.push_back(
+          {Rank::slip,
+           {phase_place(i), lasts,
+            "with a duration of " + seconds(*usual) + ", and all times after this phase " +
+                seconds(std::abs(*usual - (until - begin))) +
+                (*usual > until - begin ? " later," : " earlier,")},
+           [i, until, later = *usual - (until - begin)](Pattern& p) {
+             for (size_t k = i; k < p.phases.size(); ++k) p.phases[k].until += later;
+             for (Keyframe& key : p.keyframes)
+               if (key.t >= until - 1e-9) key.t += later;
+           }});
     }
   }
 
@@ -508,8 +510,8 @@ class Hypotheses {
                      std::string("the robot stands on the ") + name_of(stance_of(first.support)) +
                          " foot, but " + key_place(wrong_zmp_keys(phases.front()).front()) +
                          " puts the ZMP " + zmp_words(wrong_zmp_keys(phases.front()).front()) +
-                         "; so it is in " + std::to_string(phases.size()) + " phases",
-                     "with the ZMP under the foot that carries the robot in each of them"},
+                         "; this is so in " + std::to_string(phases.size()) + " phases",
+                     "with the ZMP under the foot that carries the robot in each of these phases"},
                     [meant](Pattern& p) {
                       for (const auto& [k, place] : meant) p.keyframes[k].zmp->place = place;
                     }});
@@ -569,7 +571,8 @@ class Hypotheses {
            {phase_place(i),
             "the robot stands on the " + foot + " foot, but " + text::join(places, " and ") +
                 (places.size() > 1 ? " put" : " puts") + " the ZMP " + at,
-            "with \"zmp\": \"" + foot + "\" there"},
+            "with \"zmp\": \"" + foot +
+                (places.size() > 1 ? "\" in these keyframes" : "\" in this keyframe")},
            [wrong, meant](Pattern& p) {
              for (const size_t k : wrong) p.keyframes[k].zmp->place = meant;
            }});
@@ -628,8 +631,9 @@ class Hypotheses {
               std::string("the ") + name_of(side) + " foot is at (" +
                   text::brief(foot.position.x()) + ", " + text::brief(foot.position.y()) + ", " +
                   text::brief(foot.position.z()) + ") m; lengths are in metres",
-              std::string("read in ") + unit + ", as (" + text::brief(meant.x()) + ", " +
-                  text::brief(meant.y()) + ", " + text::brief(meant.z()) + ") m,"},
+              std::string("with these numbers read in ") + unit + ", which gives (" +
+                  text::brief(meant.x()) + ", " + text::brief(meant.y()) + ", " +
+                  text::brief(meant.z()) + ") m,"},
              [in, factor = factor](Pattern& p) { in(p).position *= factor; }});
       }
     };
@@ -660,8 +664,8 @@ class Hypotheses {
            {key_place(key),
             "the ZMP is at (" + text::brief(zmp->point.x()) + ", " + text::brief(zmp->point.y()) +
                 ") m; lengths are in metres",
-            std::string("read in ") + unit + ", as (" + text::brief(meant.x()) + ", " +
-                text::brief(meant.y()) + ") m,"},
+            std::string("with these numbers read in ") + unit + ", which gives (" +
+                text::brief(meant.x()) + ", " + text::brief(meant.y()) + ") m,"},
            [key, factor = factor](Pattern& p) { p.keyframes[key].zmp->point *= factor; }});
     }
   }
@@ -788,17 +792,18 @@ class Hypotheses {
           until = key.t;
           break;
         }
-      made.push_back({Rank::missing,
-                      {phase_place(i),
-                       std::string("the robot passes from the ") + name_of(before.support) +
-                           " foot to the " + name_of(phase.support) +
-                           " foot at once; a phase with support \"both\" may be missing before it",
-                       "with such a phase until " + seconds(until)},
-                      [i, until](Pattern& p) {
-                        Phase both;
-                        both.until = until;
-                        p.phases.insert(p.phases.begin() + static_cast<long>(i), both);
-                      }});
+      made.push_back(
+          {Rank::missing,
+           {phase_place(i),
+            std::string("the robot passes from the ") + name_of(before.support) + " foot to the " +
+                name_of(phase.support) +
+                " foot at once; a phase with support \"both\" may be missing before this phase",
+            "with such a phase until " + seconds(until)},
+           [i, until](Pattern& p) {
+             Phase both;
+             both.until = until;
+             p.phases.insert(p.phases.begin() + static_cast<long>(i), both);
+           }});
     }
   }
 
@@ -1036,15 +1041,15 @@ class Search {
     // The least change first.
     if (too_large) add(0.1, "with the decimal point one place further left");
     if (too_large && value.quantity == Quantity::angle && !pattern_.degrees)
-      add(std::numbers::pi / 180, "read in deg");
+      add(std::numbers::pi / 180, "with the number read in deg");
     if (too_large && value.quantity == Quantity::length) {
-      add(1e-2, "read in cm");
-      add(1e-3, "read in mm");
+      add(1e-2, "with the number read in cm");
+      add(1e-3, "with the number read in mm");
     }
-    if (too_small && value.quantity == Quantity::force) add(kGravity, "read in kg");
+    if (too_small && value.quantity == Quantity::force) add(kGravity, "with the number read in kg");
     if (too_small) add(10, "with the decimal point one place further right");
     if (too_small && value.quantity == Quantity::angle && pattern_.degrees)
-      add(180 / std::numbers::pi, "read in rad");
+      add(180 / std::numbers::pi, "with the number read in rad");
     test(std::move(slips));
   }
 
@@ -1132,7 +1137,7 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
     for (Candidate& c : best) {
       c.hypothesis.says.instead += result_words(found, c.outcome);
       // The steps before this one are part of what is enough.
-      if (round > 0) c.hypothesis.says.instead += " (together with the change before)";
+      if (round > 0) c.hypothesis.says.instead += " (together with the change named before)";
       result.found.push_back(c.hypothesis.says);
     }
     Pattern mended = current;

@@ -88,7 +88,7 @@ DtadParams gains_from_poles(std::complex<double> p1, std::complex<double> p2, Dt
   if (std::abs(sum.imag()) > 1e-9 || std::abs(product.imag()) > 1e-9)
     fail(ErrorCode::usage, "poles: give two real poles or a conjugate pair");
   if (p1.real() >= 0 || p2.real() >= 0)
-    fail(ErrorCode::usage, "poles: " + text::brief(std::max(p1.real(), p2.real())) +
+    fail(ErrorCode::usage, "poles: the real part " + text::brief(std::max(p1.real(), p2.real())) +
                                " is not below 0, so the COG would never come back");
   params.k = 1 + product.real();  // ddx = w2 (x - K x - D dx)
   params.d = -sum.real();
@@ -167,10 +167,10 @@ std::string growth(const std::vector<LoopModel>& loops, const DtadParams& params
   const double low = largest_stable_ka(loops, params, params.zmp_gain);
   return "controller gains: the loop is unstable with ka = " + text::brief(params.zmp_gain) +
          ", tau_z = " + text::brief(params.zmp_filter) + " and sensors and servos that are " +
-         text::brief(1e3 * loop.delay) + " ms late (" + loop.name + ": the robot oscillates at " +
-         text::fixed(weakest.analysis.frequency, 1) +
-         " Hz, and an error grows by the factor e in " +
-         text::brief(-1 / weakest.analysis.decay, 2) + " s); " +
+         text::brief(1e3 * loop.delay) + " ms late. The robot oscillates at " +
+         text::fixed(weakest.analysis.frequency, 1) + " Hz (" + loop.name +
+         "), and an error grows by the factor e in " + text::brief(-1 / weakest.analysis.decay, 2) +
+         " s; " +
          (low > 1e-6
               ? "choose ka below " + text::fixed(low, 2) + ", for which the loop is stable"
               : std::string(

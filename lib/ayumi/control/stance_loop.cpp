@@ -243,9 +243,9 @@ std::vector<LoopModel> stance_loops(const RobotModel& model, const ActuatorLimit
       const ServoDescription& servo = actuators.servo[static_cast<size_t>(j)];
       servo_delay = std::max(servo_delay, servo.delay);
       if (servo.kp <= 0)
-        fail(ErrorCode::bad_model, model.name() + ": joint " +
-                                       model.dofs()[static_cast<size_t>(j)].name +
-                                       " has no servo (kp); give it one in the sidecar");
+        fail(ErrorCode::bad_model,
+             model.name() + ": joint " + model.dofs()[static_cast<size_t>(j)].name +
+                 " needs a servo with kp above 0; state kp of this joint in the sidecar");
     }
   like.delay = model.description().sensors.oldest(tick) + servo_delay;
   std::vector<LoopModel> loops;

@@ -151,8 +151,8 @@ std::string obstacle(const RobotModel& model, const CommandSample& held, const V
            " mm inside";
   const Attempt attempt = lead_to(model, held, goal);
   if (attempt.miss < kGoalReached) return {};
-  return "the legs can bring the COG only to " + text::fixed(1e3 * attempt.miss, 1) +
-         " mm from the commanded place" +
+  return "the legs bring the COG no closer than " + text::fixed(1e3 * attempt.miss, 1) +
+         " mm to the commanded place" +
          (attempt.joint.empty() ? "" : ", because " + attempt.joint + " is at its limit there");
 }
 

@@ -230,8 +230,8 @@ Comparison compare(const RobotModel& model, const SimulationLog& log,
         options.shift ? *options.shift : -time_shift(model, simulated, *measured, kReach);
     if (std::abs(measured->dt - log.dt) > 1e-6)
       result.notes.push_back("the recording has " + text::brief(1 / measured->dt) +
-                             " rows per second, the run " + text::brief(1 / log.dt) +
-                             ": both are compared at the slower rate");
+                             " rows per second and the run " + text::brief(1 / log.dt) +
+                             "; both are compared at the slower rate");
   } else {
     result.shift = options.shift.value_or(0);
     if (!options.shift)
@@ -247,14 +247,16 @@ Comparison compare(const RobotModel& model, const SimulationLog& log,
   const double fell = log.result.fell_at;
   if (fell >= 0 && fell < result.end) {
     result.notes.push_back("the simulated robot fell at " + text::fixed(fell, 3) +
-                           " s: what comes later is not compared");
+                           " s; later times are not compared");
     result.end = fell;
   }
   if (result.end - result.begin < 10 * interval)
     fail(ErrorCode::bad_file,
          file + ": the recording lasts from " + text::fixed(result.shift, 3) + " to " +
              text::fixed(result.shift + lasts, 3) + " s of the run, which lasts " +
-             text::fixed(simulated.duration(), 3) + " s; they have no time in common");
+             text::fixed(simulated.duration(), 3) + " s. The time to compare is " +
+             text::fixed(std::max(0.0, result.end - result.begin), 3) + " s, but at least " +
+             text::fixed(10 * interval, 3) + " s are needed");
   for (Index k = 0;; ++k) {
     const double t = result.begin + interval * static_cast<double>(k);
     if (t > result.end) break;
@@ -273,7 +275,7 @@ Comparison compare(const RobotModel& model, const SimulationLog& log,
       if (!lost.empty()) result.notes.push_back("the recording: " + lost);
     }
     if (const std::string wrong = loads_rows_complaint(sensors, *measured); !wrong.empty())
-      result.notes.push_back("the recording of sensors " + wrong);
+      result.notes.push_back("sensors: " + wrong);
     std::string missing;
     for (int j = 0; j < model.dof_count(); ++j) {
       const std::string& name = model.dofs()[static_cast<size_t>(j)].name;
@@ -285,7 +287,7 @@ Comparison compare(const RobotModel& model, const SimulationLog& log,
           curve_of(name, model.dofs()[static_cast<size_t>(j)].prismatic ? "m" : "rad",
                    measured->theta.col(j), measured->dt, simulated.theta.col(j), log.dt, result));
     }
-    if (!missing.empty()) result.notes.push_back("the recording does not have " + missing);
+    if (!missing.empty()) result.notes.push_back("the recording has no angles of " + missing);
   }
   if (sensors.foot_load.rows() > 0 && model.has_soles()) compare_loads(log, sensors, result);
   if (sensors.acceleration.rows() > 0 || sensors.gyro.rows() > 0)

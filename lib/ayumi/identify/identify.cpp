@@ -477,9 +477,10 @@ std::string late_answer(const RobotModel& model, const std::vector<IdentifiedJoi
   std::sort(lags.begin(), lags.end());
   const auto& [beyond, lag] = lags[lags.size() / 2];
   if (beyond < kLikelyShift) return "";
-  return "the angles are " + text::fixed(1000 * lag, 0) + " ms behind their command, and " +
+  return "the angles are " + text::fixed(1000 * lag, 0) +
+         " ms behind their command, but the servos in the robot's file have a lag of " +
          text::fixed(1000 * (lag - beyond), 0) +
-         " ms is the lag of the servos in the robot's file: make sure that both files begin at the "
+         " ms: make sure that both files begin at the "
          "same time";
 }
 

@@ -151,7 +151,9 @@ std::string wrong_sign_or_unit(const Relation& r) {
   if (std::abs(factor * kDegree - 1) < 0.2 || std::abs(factor / kDegree - 1) < 0.2)
     return times + "one of the two files is in degrees (--unit deg)";
   if (factor > kScale || factor < 1 / kScale)
-    return times + "is this the recording of another robot, or are its counts per degree wrong?";
+    return times +
+           "is this the recording of another robot, or are the counts per degree of this joint "
+           "wrong?";
   return "";
 }
 
@@ -174,11 +176,11 @@ std::vector<std::string> motion_complaints(const RobotModel& model, const AngleT
     else if (wrong.empty() && r.away > kAway &&
              std::abs(r.away - kCounterRange * measured.resolution[j]) < kAway)
       wrong = "is " + text::brief(r.away / kDegree, 3) +
-              " deg away from its command, which is 65536 counts: the 16-bit counter of its "
+              " deg (65536 counts) away from its command: the 16-bit counter of its "
               "encoder has overflowed; add or subtract 65536 counts in these rows, or record again";
     else if (wrong.empty() && r.away > kAway)
       wrong = "is " + text::brief(r.away / kDegree, 3) +
-              " deg away from its command in the mean; is this the recording of another robot?";
+              " deg away from its command on average; is this the recording of another robot?";
     if (!wrong.empty())
       complaints.push_back(model.dofs()[static_cast<size_t>(j)].name + " " + wrong);
   }
@@ -216,10 +218,11 @@ void require_answer(const RobotModel& model, const AngleTable& command, const An
     if (distance(command, measured, few, shift, kShiftStep) < kShiftGain * near)
       complain("the angles are " + text::fixed(1000 * std::abs(shift), 0) + " ms " +
                (shift > 0 ? "behind" : "ahead of") + " their command" +
-               (shift > 0 ? ", and a servo is at most " + text::fixed(1000 * longest_lag, 0) +
+               (shift > 0 ? ", but a servo is at most " + text::fixed(1000 * longest_lag, 0) +
                                 " ms behind (--longest-lag)"
                           : "") +
-               "; the recording is shifted, so let both begin at the same time");
+               "; the recording is shifted, so let the recording and the command begin at the same "
+               "time");
   }
   const double behind = std::clamp(shift, 0.0, longest_lag);
   if (const LostRows lost = lost_rows(command, measured, dofs, behind); lost.found)
@@ -251,17 +254,18 @@ void require_loads(const SensorTable& loads, const AngleTable& measured, double 
     fail(ErrorCode::bad_file, file + ": " + wrong);
   const double lasts = loads.dt * static_cast<double>(loads.foot_load.rows() - 1);
   if (std::abs(lasts - measured.duration()) > kLengthTime)
-    fail(ErrorCode::bad_file,
-         file + ": the recording lasts " + text::fixed(lasts, 3) +
-             " s, but the measured angles last " + text::fixed(measured.duration(), 3) +
-             " s; the load cells are incomplete, have another rate (give --rate), or belong to "
-             "another recording");
+    fail(ErrorCode::bad_file, file + ": the recording lasts " + text::fixed(lasts, 3) +
+                                  " s, but the measured angles last " +
+                                  text::fixed(measured.duration(), 3) +
+                                  " s; the file of the load cells is incomplete, has another rate "
+                                  "(give --rate), or belongs to another recording");
   if (agreement < kStandingShare)
-    fail(ErrorCode::bad_file, file + ": while one foot stands, its load cells carry only " +
-                                  text::fixed(100 * agreement, 0) + " % of the weight (limit " +
-                                  text::fixed(100 * kStandingShare, 0) +
-                                  " %); the readings of the load cells are shifted in time or "
-                                  "belong to another recording, or left and right are exchanged");
+    fail(ErrorCode::bad_file,
+         file + ": while one foot stands, its load cells carry only " +
+             text::fixed(100 * agreement, 0) + " % of the weight (at least " +
+             text::fixed(100 * kStandingShare, 0) +
+             " % are expected); the readings of the load cells are shifted in time or "
+             "belong to another recording, or left and right are exchanged");
 }
 
 }  // namespace ayumi

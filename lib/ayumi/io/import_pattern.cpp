@@ -33,9 +33,9 @@ void add_ramps(double seconds, const RobotModel& model, ImportedMotion& imported
         "the ZMP and the vertical force of the file are left out, because a ramp changes them");
   imported.motion = with_ramps(model, std::move(imported.motion), seconds);
   imported.sequence.clear();  // its rows are no longer those of the motion
-  imported.filled.push_back("the motion " + ends + " slowly (--ramp): it takes " +
-                            text::brief(seconds) +
-                            " s between rest and the recorded speed, along the recorded path");
+  imported.filled.push_back(
+      "the motion " + ends + " slowly: with --ramp, " + text::brief(seconds) +
+      " s pass between rest and the recorded speed, and the path stays as recorded");
 }
 
 ImportedPattern of_keys(ImportedKeys keys, const PatternImport& options) {

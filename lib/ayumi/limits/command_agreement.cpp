@@ -203,7 +203,8 @@ const Limit& command_agreement_limit() {
             .tolerance = kPointMassTolerance,
             .meaning =
                 "distance between the ZMP of the point-mass model (14)(15) and the commanded ZMP. "
-                "It shows how well this model describes the motion, and it is never an error",
+                "This distance shows how well the point-mass model describes the motion; it is "
+                "never an error",
             .figure = {.key = "max_point_mass_gap_m",
                        .label = "largest ZMP error of the point-mass model",
                        .unit = "mm",

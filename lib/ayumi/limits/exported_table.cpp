@@ -134,10 +134,11 @@ const char* rest_unit(const JudgedMotion& motion, const Violation& v) {
   return joint_unit(motion, v, "rad/s", "m/s");
 }
 
-/// "`export` refuses the table: the servo target of l_knee, which leads the posture by 3.6 ms,"
+/// "`export` refuses the table, because the servo target of l_knee, which leads the posture by ..."
 std::string refused_text(const JudgedMotion& motion, const Violation& v) {
   const double lag = velocity_lead(motion.limits)[v.item];
-  return "`export` refuses the table: the servo target of " + motion.model.dofs()[v.item].name +
+  return "`export` refuses the table, because the servo target of " +
+         motion.model.dofs()[v.item].name +
          (lag > 0 ? ", which leads the posture by " + text::brief(1e3 * lag, 3) + " ms," : "");
 }
 
@@ -146,7 +147,8 @@ Advice step_advice(const JudgedMotion& motion, const FindingWindow& window) {
   return {refused_text(motion, v) + " moves " +
               text::fixed(100 * (std::abs(v.value / v.limit) - 1), 1) + " % further in " +
               text::brief(1e3 * motion.series.dt, 3) + " ms than the motor can follow: move " +
-              motion.model.dofs()[v.item].name + " more slowly, or accelerate it more gently here",
+              motion.model.dofs()[v.item].name +
+              " more slowly, or accelerate this joint more gently here",
           kOrRepair};
 }
 
@@ -177,58 +179,60 @@ std::string step_infeasibility(const Finding& f, double violation) {
 
 std::string table_position_infeasibility(const Finding& f, double) {
   return "the servo target of " + f.where + " reaches " + text::brief(f.worst, 6) + " " + f.unit +
-         ", and `export` accepts " + text::brief(f.limit, 6);
+         ", but `export` accepts only " + text::brief(f.limit, 6) + " " + f.unit;
 }
 
 std::string rest_infeasibility(const Finding& f, double) {
   return "the servo target of " + f.where + " has " + text::brief(f.worst, 3) + " " + f.unit +
-         " at an end of the motion, and `export` accepts " + text::brief(f.limit, 3);
+         " at an end of the motion, but `export` accepts at most " + text::brief(f.limit, 3) + " " +
+         f.unit;
 }
 
 }  // namespace
 
 const Limit& exported_table_limit() {
   static const Limit limit = {
-      .findings = {{.kind = FindingKind::table_step,
-                    .limit_class = LimitClass::rate,
-                    .unit = "1",
-                    .tolerance = kExport.step_share,
-                    .meaning = "step of the servo target from row to row of the table, divided by "
-                               "the step that `export` accepts; only a smaller tolerance has an "
-                               "effect",
-                    .figure = {.key = "max_table_step_ratio",
-                               .label = "largest step of the exported table",
-                               .unit = "% of the step that `export` accepts",
-                               .scale = 100,
-                               .line = 22},
-                    .repair = {.is_of_one_joint = true},
-                    .finding_unit = table_unit,
-                    .place = joint_place,
-                    .advice = step_advice,
-                    .infeasibility = step_infeasibility,
-                    .holds_at = step_holds},
-                   {.kind = FindingKind::table_position,
-                    .limit_class = LimitClass::rate,
-                    .unit = "rad",
-                    .tolerance = kExport.beyond_range,
-                    .meaning = "servo target beyond the range of the joint, which `export` "
-                               "refuses; only a smaller tolerance has an effect",
-                    .repair = {.is_of_one_joint = true},
-                    .finding_unit = table_unit,
-                    .place = joint_place,
-                    .advice = table_position_advice,
-                    .infeasibility = table_position_infeasibility},
-                   {.kind = FindingKind::table_rest,
-                    .limit_class = LimitClass::rate,
-                    .unit = "rad/s",
-                    .tolerance = kExport.rest_speed,
-                    .meaning = "speed of the servo target at the ends of the table, which has to "
-                               "begin and end at rest; only a smaller tolerance has an effect",
-                    .repair = {.is_of_one_joint = true},
-                    .finding_unit = rest_unit,
-                    .place = joint_place,
-                    .advice = rest_advice,
-                    .infeasibility = rest_infeasibility}},
+      .findings =
+          {{.kind = FindingKind::table_step,
+            .limit_class = LimitClass::rate,
+            .unit = "1",
+            .tolerance = kExport.step_share,
+            .meaning =
+                "step of the servo target from row to row of the table, divided by "
+                "the step that `export` accepts; a tolerance above the default has no effect",
+            .figure = {.key = "max_table_step_ratio",
+                       .label = "largest step of the exported table",
+                       .unit = "% of the step that `export` accepts",
+                       .scale = 100,
+                       .line = 22},
+            .repair = {.is_of_one_joint = true},
+            .finding_unit = table_unit,
+            .place = joint_place,
+            .advice = step_advice,
+            .infeasibility = step_infeasibility,
+            .holds_at = step_holds},
+           {.kind = FindingKind::table_position,
+            .limit_class = LimitClass::rate,
+            .unit = "rad",
+            .tolerance = kExport.beyond_range,
+            .meaning = "servo target beyond the range of the joint, which `export` "
+                       "refuses; a tolerance above the default has no effect",
+            .repair = {.is_of_one_joint = true},
+            .finding_unit = table_unit,
+            .place = joint_place,
+            .advice = table_position_advice,
+            .infeasibility = table_position_infeasibility},
+           {.kind = FindingKind::table_rest,
+            .limit_class = LimitClass::rate,
+            .unit = "rad/s",
+            .tolerance = kExport.rest_speed,
+            .meaning = "speed of the servo target at the ends of the table, which has to "
+                       "begin and end at rest; a tolerance above the default has no effect",
+            .repair = {.is_of_one_joint = true},
+            .finding_unit = rest_unit,
+            .place = joint_place,
+            .advice = rest_advice,
+            .infeasibility = rest_infeasibility}},
       .look_ahead = make_table,
       .judge_motion = judge_table,
       .place_rows = place_table_rows};

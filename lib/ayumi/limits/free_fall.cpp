@@ -105,8 +105,7 @@ Advice free_fall_advice(const JudgedMotion& motion, const FindingWindow& window)
     return "the COG leaps by " + in_mm(window.worst.value * dt * dt) +
            " where the flight begins or ends, and no force can do this: make the COG keys "
            "continuous there";
-  return "the COG must fall freely for the " + text::fixed((window.last - window.first) * dt, 3) +
-         " s of flight: remove the COG keys inside the flight";
+  return "the COG must fall freely during the whole flight: remove the COG keys inside the flight";
 }
 
 std::string free_fall_infeasibility(const Finding&, double) {

@@ -71,7 +71,7 @@ Advice heat_advice(const JudgedMotion& motion, const FindingWindow& window) {
   const Violation& v = window.worst;
   const std::string unit = std::string(" ") + heat_unit(motion, v);
   return motion.model.dofs()[v.item].name + " needs " + text::brief(v.value, 3) + unit +
-         " on average; its motor bears " + text::brief(v.limit, 3) + unit +
+         " on average, but its motor bears only " + text::brief(v.limit, 3) + unit +
          " without a time limit: add a rest, or shorten the lever of the weight, for example by "
          "straightening the leg";
 }
@@ -90,8 +90,8 @@ const Limit& heat_limit() {
                     .unit = "1",
                     .tolerance = kWholeContinuousTorque,
                     .meaning = "root mean square of the motor torque in the thermal window of the "
-                               "motor, as a share of its continuous limit; it gives only a warning "
-                               "if the motion is shorter than the window",
+                               "motor, as a share of the continuous limit; the finding is only a "
+                               "warning if the motion is shorter than the window",
                     .figure = {.key = "max_continuous_torque_ratio",
                                .label = "largest continuous torque",
                                .unit = "% of the limit",

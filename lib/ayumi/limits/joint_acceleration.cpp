@@ -60,8 +60,8 @@ const Limit& joint_acceleration_limit() {
                     .limit_class = LimitClass::rate,
                     .unit = "rad/s^2",
                     .tolerance = kRoughAcceleration,
-                    .meaning = "acceleration of a joint; it gives only a warning, because it shows "
-                               "that a motion is rough",
+                    .meaning = "acceleration of a joint; the finding is only a warning, because it "
+                               "shows that a motion is rough",
                     .figure = {.key = "max_joint_acceleration_rad_s2",
                                .label = "largest joint acceleration",
                                .unit = "rad/s^2",

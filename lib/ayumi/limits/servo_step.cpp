@@ -76,8 +76,8 @@ const Limit& servo_step_limit() {
             .tolerance = kWholeStep,
             .meaning =
                 "change of the joint angle in one servo period, divided by the change that the "
-                "speed limit allows; it is reported only where the planned speed is within its "
-                "limit",
+                "speed limit allows; the step is reported only where the planned speed is within "
+                "its limit",
             .figure = {.key = "max_servo_step_ratio",
                        .label = "largest step in a servo period",
                        .unit = "% of what the speed limit allows",

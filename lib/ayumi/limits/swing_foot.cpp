@@ -279,19 +279,18 @@ Eigen::Matrix<double, 5, 1> landing_offset(const RobotModel& model, Side side,
 
 const Limit& swing_foot_limit() {
   static const Limit limit = {
-      .findings =
-          {{.kind = FindingKind::landing_speed,
-            .limit_class = LimitClass::rate,
-            .unit = "m/s",
-            .tolerance = kLandingTolerance,
-            .meaning =
-                "speed of a sole towards the ground when the sole lands; it gives only a warning",
-            .figure = {.key = "max_landing_speed_m_s",
-                       .label = "largest speed of a landing sole",
-                       .unit = "m/s",
-                       .line = 16},
-            .place = foot_place,
-            .advice = landing_advice}},
+      .findings = {{.kind = FindingKind::landing_speed,
+                    .limit_class = LimitClass::rate,
+                    .unit = "m/s",
+                    .tolerance = kLandingTolerance,
+                    .meaning = "speed of a sole towards the ground when the sole lands; the "
+                               "finding is only a warning",
+                    .figure = {.key = "max_landing_speed_m_s",
+                               .label = "largest speed of a landing sole",
+                               .unit = "m/s",
+                               .line = 16},
+                    .place = foot_place,
+                    .advice = landing_advice}},
       .judge_motion = judge_landings,
       .place_rows = place_swing_rows};
   return limit;

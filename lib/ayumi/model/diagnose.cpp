@@ -150,11 +150,11 @@ class Doctor {
     const Eigen::Vector3d principal = symmetric_eigenvalues(link.inertia.about_com);
     if (principal.maxCoeff() <= 0)
       warn("link", link.name,
-           "its inertia tensor is zero; give the tensor that follows from its shape and mass");
+           "the inertia tensor is zero; give the tensor that follows from shape and mass");
     else if (principal[2] > 1.01 * (principal[0] + principal[1]))
       warn("link", link.name,
-           "its largest principal moment exceeds the sum of the other two, which no body can have; "
-           "check the tensor and its frame",
+           "the largest principal moment exceeds the sum of the other two, which no body can have; "
+           "check the tensor and the frame",
            text::brief(principal[2]) + " and " + text::brief(principal[0] + principal[1]) +
                " kg m^2",
            principal[2] / (principal[0] + principal[1]));
@@ -173,30 +173,31 @@ class Doctor {
     if (box.isEmpty()) {
       if (gyration > size_)
         warn("link", link.name,
-             "its inertia is that of a body larger than the robot; is this a placeholder?",
-             millimetres(gyration) + " radius", gyration);
+             "the inertia is that of a body larger than the robot; is this a placeholder?",
+             millimetres(gyration) + " radius of gyration", gyration);
       return;
     }
     if (gyration > reach)
       warn("link", link.name,
-           "its inertia is that of a body larger than its shape; is this a placeholder?",
-           millimetres(gyration) + " radius of gyration, but its shape reaches only " +
-               millimetres(reach) + " from its centre of mass",
+           "the inertia is that of a body larger than the shape; is this a placeholder?",
+           millimetres(gyration) + " radius of gyration, but the shape reaches only " +
+               millimetres(reach) + " from the centre of mass",
            gyration / std::max(reach, 1e-9));
     if (box.diagonal().norm() > 5 * size_)
       warn("link", link.name,
-           "its shape is far larger than the robot; is the mesh in millimetres? set its scale",
+           "the shape is far larger than the robot; if the mesh is in millimetres, set the scale "
+           "of the mesh",
            millimetres(box.diagonal().norm()), box.diagonal().norm());
     const double outside = box.exteriorDistance(link.inertia.com);
     if (outside > kOutside * box.diagonal().norm())
       warn("link", link.name,
-           "its centre of mass lies outside its shape; check the frame of the inertia",
+           "the centre of mass lies outside the shape; check the frame of the inertia",
            "by " + millimetres(outside) + ", and the shape measures " +
                millimetres(box.diagonal().norm()),
            outside / box.diagonal().norm());
     const double density = link.inertia.mass / std::max(box.volume(), 1e-12);
     if (density > kDensest)
-      warn("link", link.name, "it is heavier than lead; check the mass or the shape",
+      warn("link", link.name, "the density is above that of lead; check the mass or the shape",
            text::brief(link.inertia.mass) + " kg in a box of " +
                millimetres(box.diagonal().norm()) + " diagonal",
            density);
@@ -242,9 +243,9 @@ class Doctor {
     if (!dof.limited)
       suspect("no position limits are stated; add them");
     else if (dof.upper - dof.lower < 1e-6)
-      suspect("its lower and upper limit are equal; make it a fixed joint");
+      suspect("the lower and the upper limit are equal; make the joint fixed");
     else if (!dof.prismatic && dof.upper - dof.lower > 4 * std::numbers::pi)
-      suspect("its range is more than two turns; is this a placeholder?");
+      suspect("the range is more than two turns; is this a placeholder?");
     if (std::isinf(limits.speed[index]))
       suspect("no speed limit is stated");
     else if (!dof.prismatic && limits.speed[index] > kFastest)
@@ -400,9 +401,9 @@ class Doctor {
     const double step = up.dot(soles[1].translation() - soles[0].translation());
     if (tilt > kDegree || std::abs(step) > 0.001)
       warn("posture", "home",
-           "the soles are not on one plane: tilted by " + text::fixed(tilt / kDegree, 1) +
-               " deg, apart in height by " + millimetres(std::abs(step)) +
-               "; correct the ankle angles");
+           "the soles are not on one plane: the angle between them is " +
+               text::fixed(tilt / kDegree, 1) + " deg, and their heights differ by " +
+               millimetres(std::abs(step)) + "; correct the ankle angles");
     const double lean = elementary::acos(std::clamp(up.z(), -1.0, 1.0));
     if (lean > 5 * kDegree)
       warn("posture", "home",
@@ -428,7 +429,7 @@ class Doctor {
     if (margin < 0)
       warn("posture", "home",
            "the COG lies " + millimetres(-margin) +
-               " outside the soles: the robot falls; shift it over the feet");
+               " outside the soles, so the robot falls; shift the COG over the feet");
   }
 
   const RobotModel& model_;

@@ -62,7 +62,7 @@ void validate_joint_numbers(const RobotDescription& robot, const JointDescriptio
   if (!joint.origin.matrix().allFinite() || !joint.axis.allFinite() ||
       !std::isfinite(joint.lower + joint.upper + joint.velocity + joint.effort + joint.damping +
                      joint.friction + joint.mimic_multiplier + joint.mimic_offset))
-    complain_urdf(robot, where + "holds a number that is not finite; correct it");
+    complain_urdf(robot, where + "a number of this joint is not finite; correct it");
   if (joint.origin.translation().cwiseAbs().maxCoeff() > kLargestLength)
     complain_urdf(robot, where + "its origin lies farther than " + text::exact(kLargestLength) +
                              " m from its parent; URDF lengths are in metres");
@@ -87,15 +87,17 @@ void validate_mimic(const RobotDescription& robot, const JointDescription& joint
   for (size_t steps = 0; !driver->mimic.empty(); ++steps) {
     const auto next = find(driver->mimic);
     if (next == robot.joints.end())
-      complain_urdf(robot, where + "mimics the joint '" + driver->mimic +
+      complain_urdf(robot, where + "this joint mimics the joint '" + driver->mimic +
                                "', which does not exist" +
                                text::suggestion(driver->mimic, joint_names(robot)));
     driver = &*next;
     if (steps > robot.joints.size())
-      complain_urdf(robot, where + "mimics itself through other joints; break the circle");
+      complain_urdf(robot,
+                    where + "this joint mimics itself through other joints; break the circle");
   }
   if (driver->type == JointType::fixed || driver->type == JointType::floating)
-    complain_urdf(robot, where + "mimics the joint '" + driver->name + "', which does not move");
+    complain_urdf(
+        robot, where + "this joint mimics the joint '" + driver->name + "', which does not move");
 }
 
 }  // namespace
@@ -139,9 +141,10 @@ int find_root_link(const RobotDescription& robot) {
   for (const JointDescription& joint : robot.joints) {
     const auto [other, fresh] = parent_joint.emplace(joint.child, joint.name);
     if (!fresh)
-      complain_urdf(robot, "link " + joint.child + ": has two parents, by the joints " +
-                               other->second + " and " + joint.name +
-                               "; closed chains are not supported, remove one joint");
+      complain_urdf(robot, "link " + joint.child + ": the joints " + other->second + " and " +
+                               joint.name +
+                               " both lead to this link, but closed chains are not supported; "
+                               "remove one of these joints");
     children.emplace(joint.parent, joint.child);
   }
   std::vector<std::string> roots;
@@ -163,10 +166,11 @@ int find_root_link(const RobotDescription& robot) {
   }
   for (const LinkDescription& link : robot.links)
     if (!reached.contains(link.name))
-      complain_urdf(robot,
-                    "link " + link.name +
-                        ": belongs to a loop of joints that is not connected to the root link " +
-                        roots[0] + "; remove one joint of the loop");
+      complain_urdf(
+          robot,
+          "link " + link.name +
+              ": this link belongs to a loop of joints that is not connected to the root link " +
+              roots[0] + "; remove one joint of the loop");
   const auto root =
       std::find_if(robot.links.begin(), robot.links.end(),
                    [&](const LinkDescription& link) { return link.name == roots[0]; });
@@ -247,17 +251,18 @@ void validate_sole(const RobotDescription& robot, const std::string& side,
       "seen from above";
   if (corners.size() < 3) complain_sidecar(robot, pointer + "/polygon: too few corners" + remedy);
   if (corners.size() > kMostSoleCorners)
-    complain_sidecar(robot, pointer + "/polygon: " + std::to_string(corners.size()) +
-                                " corners, more than the " + std::to_string(kMostSoleCorners) +
-                                " that a sole may have; leave out corners between which the "
+    complain_sidecar(robot, pointer + "/polygon: the sole has " + std::to_string(corners.size()) +
+                                " corners, but at most " + std::to_string(kMostSoleCorners) +
+                                " are possible; leave out corners between which the "
                                 "outline is almost straight");
   for (size_t i = 0; i < corners.size(); ++i) {
     const Eigen::Vector2d along = corners[(i + 1) % corners.size()] - corners[i];
     const Eigen::Vector2d next = corners[(i + 2) % corners.size()] - corners[i];
     if (!(along.x() * next.y() - along.y() * next.x() > 0))
-      complain_sidecar(robot, pointer + "/polygon/" + std::to_string((i + 1) % corners.size()) +
-                                  ": the polygon is not convex and counter-clockwise here" +
-                                  remedy);
+      complain_sidecar(robot,
+                       pointer + "/polygon/" + std::to_string((i + 1) % corners.size()) +
+                           ": at this corner, the polygon is not convex or not counter-clockwise" +
+                           remedy);
   }
   if (!(sole.stiffness >= 0) || !(sole.damping_time >= 0))
     complain_sidecar(robot, pointer + ": stiffness and damping_time cannot be negative");
@@ -270,8 +275,8 @@ void validate_force_cells(const RobotDescription& robot) {
     if (sole == robot.soles.end()) complain_sidecar(robot, where + "the robot has no such sole");
     const size_t corners = sole->second.polygon.size();
     if (cells.size() != 1 && cells.size() != corners)
-      complain_sidecar(robot, where + std::to_string(cells.size()) + " cells, but the sole has " +
-                                  std::to_string(corners) +
+      complain_sidecar(robot, where + "there are " + std::to_string(cells.size()) +
+                                  " cells, but the sole has " + std::to_string(corners) +
                                   " corners; give one cell for each corner, or one for all");
   }
 }
@@ -317,9 +322,10 @@ void validate_sidecar(const RobotDescription& robot, const std::vector<std::stri
     known_link(robot, "/collision_ignore/" + std::to_string(i) + "/0", a);
     known_link(robot, "/collision_ignore/" + std::to_string(i) + "/1", b);
   }
-  if (!(robot.servo_period > 0)) complain_sidecar(robot, "/servo_period: must be above 0 s");
+  if (!(robot.servo_period > 0))
+    complain_sidecar(robot, "/servo_period: the value must be above 0 s");
   if (!(robot.soft_limit_margin >= 0))
-    complain_sidecar(robot, "/soft_limit_margin: cannot be negative");
+    complain_sidecar(robot, "/soft_limit_margin: the value cannot be negative");
 }
 
 }  // namespace ayumi

@@ -63,9 +63,9 @@ void rotate_base(const Vector3d& r, const Vector3d& dr, const Vector3d& ddr,
 void require_track(const CorrectionTrack& track) {
   const auto columns = static_cast<Eigen::Index>(6 + track.joints.size());
   if (track.coefficients.cols() != columns)
-    fail(ErrorCode::bad_pattern, "correction: " + std::to_string(track.coefficients.cols()) +
-                                     " columns, but base and joints need " +
-                                     std::to_string(columns));
+    fail(ErrorCode::bad_pattern,
+         "correction: there are " + std::to_string(track.coefficients.cols()) +
+             " columns, but base and joints need " + std::to_string(columns));
   if (!(track.spacing > 0) || !track.coefficients.allFinite() || !std::isfinite(track.begin))
     fail(ErrorCode::bad_pattern,
          "correction: the spacing must be above 0 and every coefficient a finite number");

@@ -16,9 +16,10 @@ void require_repair_preferences(const RobotModel& model, const Pattern& pattern)
   const double end = pattern.duration();
   for (size_t i = 0; i < preferences.windows.size(); ++i)
     if (preferences.windows[i].first > end)
-      fail(ErrorCode::bad_pattern, in_file(pattern, "repair/lock/windows/" + std::to_string(i)) +
-                                       ": begins at " + text::exact(preferences.windows[i].first) +
-                                       " s, after the motion's end at " + text::exact(end) + " s");
+      fail(ErrorCode::bad_pattern,
+           in_file(pattern, "repair/lock/windows/" + std::to_string(i)) +
+               ": this window begins at " + text::exact(preferences.windows[i].first) +
+               " s, after the end of the motion at " + text::exact(end) + " s");
 }
 
 RepairPreferences without_keyframes(const Pattern& pattern) {

@@ -114,8 +114,8 @@ void FootPlan::read_phases(const Pattern& pattern) {
     const std::string place = pointer_of_phase(pattern, i).substr(1);
     if (!(phase.until > begin) || !std::isfinite(phase.until))
       complain(pattern, place,
-               "it begins at " + text::exact(begin) + " s and ends at " + text::exact(phase.until) +
-                   " s; give a later \"until\"");
+               "the phase begins at " + text::exact(begin) + " s and ends at " +
+                   text::exact(phase.until) + " s; give a later \"until\"");
     if (phase.swing) {
       Swing& swing = *phase.swing;
       if (supports(phase.support, swing.foot))
@@ -195,8 +195,8 @@ void FootPlan::read_foot_keys(const Pattern& pattern, Side side) {
       if (!pose(side, first + length * step / 8).isApprox(pose(side, first), 1e-9))
         complain(pattern, pointer_of_phase(pattern, i).substr(1),
                  std::string("the keys of the ") + name_of(side) +
-                     " foot move it while it carries the robot; move it in a phase where it is "
-                     "free");
+                     " foot move this foot while it carries the robot; move the foot in a phase in "
+                     "which it does not carry the robot");
   }
 }
 

@@ -39,7 +39,7 @@ void refuse_flight(const SampleJob& job) {
       fail(ErrorCode::bad_pattern,
            place_of_phase(job.pattern, i) +
                ": in a flight phase (support none) no foot holds the base, and joint keys alone do "
-               "not determine its place; give a table with base columns");
+               "not determine the place of the base; give a table with base columns");
 }
 
 void anchor_samples(const SampleJob& job, CommandSeries& series) {

@@ -563,8 +563,9 @@ void LinkPlan::complain(const Group& group, double t, const std::vector<Aim>& ai
     remedy = "give a point nearer to straight ahead, or turn the torso";
   } else if (missing > 0) {
     what = "the " + target.name + " is out of reach by " + millimetres(missing);
-    remedy = "it reaches only " + numbers(in_trunk ? Vector3d(trunk.inverse() * end) : end, 4) +
-             in_frame + "; move the target, or move or tilt the trunk";
+    remedy = "the " + target.name + " reaches only " +
+             numbers(in_trunk ? Vector3d(trunk.inverse() * end) : end, 4) + in_frame +
+             "; move the target, or move or tilt the trunk";
   } else {
     what = "the " + target.name + " is at its place but points " + degrees(angle) +
            " away from its direction (allowed " + degrees(kAligned) + ")";

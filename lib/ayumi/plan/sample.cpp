@@ -25,10 +25,10 @@ int sample_count(const Pattern& pattern, double duration, double dt) {
     fail(ErrorCode::usage, "sampling step " + text::exact(dt) + " s must be above 0");
   const double steps = std::ceil(duration / dt - 1e-6);
   if (steps < 5 || steps > kMostSamples)
-    fail(ErrorCode::bad_pattern,
-         in_file(pattern, "phases") + ": " + text::exact(duration) + " s at a step of " +
-             text::exact(dt) +
-             " s gives fewer than 5 or more than 4e6 samples; choose another step");
+    fail(ErrorCode::bad_pattern, in_file(pattern, "phases") + ": " + text::exact(duration) +
+                                     " s at a step of " + text::exact(dt) + " s give " +
+                                     text::brief(steps) +
+                                     " steps, but only 5 to 4e6 are possible; choose another step");
   return static_cast<int>(steps) + 1;
 }
 
@@ -102,10 +102,9 @@ CommandSeries sample_plan(const RobotModel& model, const Pattern& pattern,
                           const SampleOptions& options, const Progress& progress) {
   require_soles(model);
   if (has_viip_phases(pattern))
-    fail(ErrorCode::bad_pattern,
-         in_file(pattern, "phases") +
-             ": VIIP moves the robot in a phase, so that there is no plan of its feet; leave the "
-             "VIIP phases out");
+    fail(ErrorCode::bad_pattern, in_file(pattern, "phases") +
+                                     ": the feet have no plan in a phase with a VIIP goal, because "
+                                     "VIIP chooses the footholds; leave these phases out");
   Pattern plan = pattern;
   plan.full_model = false;
   return sample_keys(model, plan, options, progress, Posture::carried);

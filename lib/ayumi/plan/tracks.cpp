@@ -91,10 +91,11 @@ void KeyReader::read_joints(const Keyframe& key, Interpolation interpolation) {
 void KeyReader::read(const Keyframe& key) {
   const Interpolation interpolation = key.interpolation.value_or(pattern.interpolation);
   if (!std::isfinite(key.t) || key.t < 0)
-    complain(key, "time " + text::exact(key.t) + " s; key times are 0 or later");
+    complain(key, "the key is at " + text::exact(key.t) + " s, but key times begin at 0 s");
   if (key.t > feet.duration() + kSameTime)
-    complain(key, "time " + text::exact(key.t) + " s lies beyond the end of the last phase, " +
-                      text::exact(feet.duration()) + " s; move the key or add a phase");
+    complain(key, "the key is at " + text::exact(key.t) +
+                      " s, after the end of the last phase at " + text::exact(feet.duration()) +
+                      " s; move the key or add a phase");
   read_joints(key, interpolation);
   const Vector3d middle = feet.support_center(0);
   if (key.zmp) {

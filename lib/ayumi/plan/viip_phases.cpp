@@ -33,7 +33,7 @@ std::vector<Cut> cuts_of(const Pattern& pattern) {
   for (size_t i = 0; i < pattern.phases.size(); ++i) {
     const Phase& phase = pattern.phases[i];
     if (!(phase.until > begin))
-      fail(ErrorCode::bad_pattern, place_of_phase(pattern, i) + ": it begins at " +
+      fail(ErrorCode::bad_pattern, place_of_phase(pattern, i) + ": the phase begins at " +
                                        text::exact(begin) + " s and ends at " +
                                        text::exact(phase.until) + " s; give a later \"until\"");
     if (phase.viip) {

@@ -102,10 +102,11 @@ std::vector<BodySurface> drawn_surface(const RobotModel& model, const ClipOption
   if (!has_visuals(model))
     notes.push_back(
         "the robot has no visual meshes: it is drawn with its collision shapes, and with sticks "
-        "between joints where a link has none");
+        "between joints where a link has no collision shape");
   if (cell > 0)
     notes.push_back("the robot has " + std::to_string(before) + " triangles; it is drawn with " +
-                    std::to_string(triangle_count(surface)) + ", points moved by at most " +
+                    std::to_string(triangle_count(surface)) +
+                    ", whose points are moved by at most " +
                     text::brief(1e3 * std::sqrt(3.0) * cell, 2) + " mm");
   return surface;
 }

@@ -44,8 +44,8 @@ Arguments format_arguments(const std::filesystem::path& path, int width, int hei
   const std::string extension = path.extension().string();
   const bool even = width % 2 == 0 && height % 2 == 0;
   if (is_video(path) && !even)
-    fail(ErrorCode::usage, path.string() + ": size " + std::to_string(width) + "x" +
-                               std::to_string(height) + ": " + extension +
+    fail(ErrorCode::usage, path.string() + ": the size is " + std::to_string(width) + "x" +
+                               std::to_string(height) + ", but " + extension +
                                " needs an even width and height");
   Arguments arguments;
   if (extension == ".mp4") {
@@ -64,10 +64,9 @@ Arguments format_arguments(const std::filesystem::path& path, int width, int hei
             "split[a][b];[a]palettegen=stats_mode=single[p];"
             "[b][p]paletteuse=new=1:dither=bayer:bayer_scale=4"};
   } else {
-    fail(ErrorCode::usage,
-         path.string() + ": the format '" + extension +
-             "' is not one of .mp4, .webm, .gif, .apng, .png, .glb, or a folder for PNG "
-             "frames");
+    fail(ErrorCode::usage, path.string() + ": the format '" + extension +
+                               "' is not possible; give .mp4, .webm, .gif, .apng, .png or .glb, or "
+                               "a folder for PNG frames");
   }
   arguments.insert(arguments.end(), kVideoColor.begin(), kVideoColor.end());
   return arguments;

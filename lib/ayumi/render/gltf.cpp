@@ -200,12 +200,12 @@ void check(const RobotModel& model, const Motion& motion) {
   if (motion.times.empty() || motion.theta.cols() != count ||
       motion.base.size() != motion.times.size())
     fail(ErrorCode::usage,
-         "the motion " + motion.name + " needs one posture for each time, and at least one");
+         "the motion " + motion.name + " needs at least one time, and one posture for each time");
   if (motion.theta.rows() != model.dof_count())
     fail(ErrorCode::usage, "the motion " + motion.name + " has " +
-                               std::to_string(motion.theta.rows()) + " joints, the robot " +
+                               std::to_string(motion.theta.rows()) + " joints, but the robot " +
                                model.name() + " has " + std::to_string(model.dof_count()) +
-                               ": the motion is not one of this robot");
+                               ": this is a motion of another robot");
 }
 
 }  // namespace

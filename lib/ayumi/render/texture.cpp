@@ -157,7 +157,7 @@ std::string texture_bytes(const std::string& file, std::vector<std::string>& not
       notes.push_back("texture " + file + ": there is no such file; the surface is drawn white");
       return "";
     }
-    notes.push_back("texture " + file + ": taken from " + other.filename().string() +
+    notes.push_back("texture " + file + ": the picture is taken from " + other.filename().string() +
                     ", whose name differs in upper and lower case");
     path = other;
   }
@@ -183,7 +183,7 @@ Texture read_texture(const std::string& file, std::vector<std::string>& notes) {
   if (!texture) {
     const bool embedded = file.starts_with(kEmbedded);
     notes.push_back("texture " + (embedded ? "inside a mesh file" : file) +
-                    ": this file cannot be read as PNG or JPEG; the surface is drawn white");
+                    ": the picture cannot be read as PNG or JPEG; the surface is drawn white");
     return {};
   }
   while (std::max(texture->width, texture->height) > kLargestTexture) *texture = halved(*texture);

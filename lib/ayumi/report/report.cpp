@@ -226,7 +226,8 @@ std::vector<std::string> caps_of(const Plan& plan, const ReportOptions& options,
   if (!no_replay.empty()) caps.push_back(no_replay);
   if (plan.with_replay && triangles > plan.replay.triangles)
     caps.push_back("the robot has " + std::to_string(triangles) +
-                   " triangles, the replay shows at most " + std::to_string(plan.replay.triangles));
+                   " triangles, but the replay shows at most " +
+                   std::to_string(plan.replay.triangles));
   if (plan.with_replay)
     caps.push_back("the replay has " + text::brief(plan.replay.rate) +
                    " postures per second and interpolates between them");
@@ -261,7 +262,7 @@ Report make_report(const RobotModel& model, const ReportInput& as_logged,
   const std::string no_replay =
       plan.with_replay ? ""
       : !options.replay
-          ? "there is no replay, because it was not wanted"
+          ? "there is no replay, because the report was made with --no-replay"
           : "there is no replay, because the program was built without npm and three.js";
   plan.replay.rate = std::min(options.rate, kMostKeys / std::max(1e-9, last));
   plan.replay.triangles = options.max_triangles;

@@ -264,7 +264,8 @@ std::string comparison_section(const ReportInput& input) {
   constexpr double kDegree = M_PI / 180;
   Table rows = {
       "Differences between the recording and the run. The recording begins " +
-          text::fixed(found.shift, 3) + " s after the run.",
+          text::fixed(std::abs(found.shift), 3) + (found.shift < 0 ? " s before" : " s after") +
+          " the beginning of the run.",
       {"curve", "mean", "largest", "at [s]", "delay of the recording [ms]", "correlation"},
       {}};
   for (const auto* curves : {&found.joints, &found.loads, &found.imu})

@@ -60,10 +60,10 @@ double shape_factor(const Push& push, long i, long n) {
 double level(const Push& push, const Disturbance& d, double time) {
   const double value = push.kind == PushKind::impulse ? push.magnitude / time : push.magnitude;
   if (!(std::abs(value) < kLargestNumber))
-    fail(ErrorCode::bad_pattern, "scenario: the push at " + text::brief(d.at) + " s has the size " +
-                                     text::brief(value) +
-                                     " N (or N m), but must be below 1e6; give the push a smaller "
-                                     "magnitude, or an impulse a longer duration");
+    fail(ErrorCode::bad_pattern,
+         "scenario: the push at " + text::brief(d.at) + " s has the size " + text::brief(value) +
+             " N (or N m), but the size must be below 1e6; give the push a smaller "
+             "magnitude, or an impulse a longer duration");
   return value;
 }
 

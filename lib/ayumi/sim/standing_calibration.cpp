@@ -155,11 +155,11 @@ std::vector<std::string> StandingCalibration::lines() const {
   for (int j = 0; j < model_->dof_count(); ++j) {
     const double degrees = offsets_[j] * 180 / M_PI;
     if (std::abs(offsets_[j]) >= kReported)
-      lines.push_back("the encoder of " + model_->dofs()[j].name + " reads " +
-                      text::fixed(std::abs(degrees), 2) + " deg too " +
-                      (degrees > 0 ? "much" : "little") +
-                      (found() ? ": estimated while standing, and taken into account"
-                               : ", or the ground slopes: the readings are taken as they are"));
+      lines.push_back(
+          "the encoder of " + model_->dofs()[j].name + " reads " +
+          text::fixed(std::abs(degrees), 2) + " deg too " + (degrees > 0 ? "much" : "little") +
+          (found() ? "; this was estimated while the robot stood, and is taken into account"
+                   : ", or the ground slopes; the readings are used without a correction"));
   }
   return lines;
 }

@@ -51,7 +51,7 @@ void check_world(const RobotModel& model, const World& world) {
     fail(ErrorCode::bad_pattern, model.name() + ": the world's " + what);
   };
   if (!sound_friction(world.friction))
-    complain("friction is " + text::brief(world.friction) + "; it has to be 0 or more");
+    complain("friction is " + text::brief(world.friction) + "; the friction must be 0 or more");
   if (!sound(world.slope) || !sound(world.height)) complain("slope or height is not a number");
   for (size_t i = 0; i < world.blocks.size(); ++i)
     if (!sound(world.blocks[i]))

@@ -218,9 +218,8 @@ class LocalSearch {
       if (found.x.empty()) {
         const std::string broken = limits_->broken_at(found.stuck);
         const double at = given_time(points[static_cast<size_t>(found.stuck)].at);
-        result_.limited_by = "at " + text::fixed(at, 3) +
-                             " s, the limits cannot all be kept at any pace" +
-                             (broken.empty() ? "" : "; even a robot at rest violates: " + broken);
+        result_.limited_by = "at " + text::fixed(at, 3) + " s, no pace keeps all limits" +
+                             (broken.empty() ? "" : "; even a robot at rest violates " + broken);
         return std::nullopt;
       }
       timing_.x = std::move(found.x);

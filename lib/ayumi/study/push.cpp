@@ -242,8 +242,9 @@ void check_options(const PushOptions& options, const CommandSeries& series) {
   for (const PushPhase& phase : options.phases)
     if (!phase.standing && !(phase.at >= options.time_spread + series.dt &&
                              phase.at + options.duration <= series.duration()))
-      refuse("time " + text::brief(phase.at) + " s is outside the pattern (0 to " +
-             text::brief(series.duration()) + " s)");
+      refuse("a push at " + text::brief(phase.at) + " s is not possible; give a time from " +
+             text::brief(options.time_spread + series.dt) + " to " +
+             text::brief(series.duration() - options.duration) + " s");
 }
 
 /// Data that the jobs of a study share.

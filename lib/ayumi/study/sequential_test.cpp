@@ -63,7 +63,7 @@ SequentialTest::SequentialTest(double failure, double confidence, long most)
   if (most < first)
     fail(ErrorCode::usage, std::to_string(most) + " runs cannot show a failure probability of " +
                                text::brief(failure) + " with a confidence of " +
-                               text::brief(confidence) + ", even without a failure; give " +
+                               text::brief(confidence) + ", even if no run fails; give " +
                                std::to_string(first) + " or more");
   // More failures than this cannot be certified in `most` runs: the mean number at p0 is larger.
   const auto widest = static_cast<size_t>(static_cast<double>(most) * failure) + 1;

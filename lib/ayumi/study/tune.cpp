@@ -173,8 +173,9 @@ void check(const TuneOptions& options, const CommandSeries& series, const Gains&
   for (const PushPhase& phase : options.phases)
     if (!phase.standing &&
         !(phase.at >= kBranchLead && phase.at + options.duration <= series.duration()))
-      refuse("time " + text::brief(phase.at) + " s is outside the pattern (0 to " +
-             text::brief(series.duration()) + " s)");
+      refuse("a push at " + text::brief(phase.at) + " s is not possible; give a time from " +
+             text::brief(kBranchLead) + " to " + text::brief(series.duration() - options.duration) +
+             " s");
 }
 
 /// The value with four digits, as a person writes it into a file.

@@ -190,8 +190,12 @@ void UncertainTask::add_quantity(const UncertainQuantity& q) {
   }
   if (found.empty())
     refuse(q.place, "this quantity has no effect: " + model_->name() +
-                        (target == Target::link ? " has no link with a mass" : " has no servo") +
-                        " '" + q.on + "'" + text::suggestion(q.on, names));
+                        (target == Target::link ? " has no link" : " has no joint") +
+                        (q.on.empty() ? "" : " '" + q.on + "'") +
+                        (q.kind == UncertainKind::payload ? ""
+                         : target == Target::link         ? " with a mass"
+                                                          : " with a servo") +
+                        text::suggestion(q.on, names));
   if (!q.each) return add_value(q.name, q, found, -1);
   for (const int i : found) {
     const size_t k = static_cast<size_t>(i);

@@ -174,8 +174,7 @@ std::vector<std::string> unfit_reasons(const Judgement& judgement, const Simulat
 
 std::string refusal_of_goals() {
   return "the pattern has VIIP goals, so its joint angles are known only after a simulation; run "
-         "it "
-         "(ayumi run), then export the RUN";
+         "the pattern (ayumi run), then export the RUN";
 }
 
 std::string refusal_of_disturbances(const std::string& disturbances) {

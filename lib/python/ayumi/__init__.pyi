@@ -78,7 +78,7 @@ class Contact:
         """Heading of the sole [rad]."""
 
 class Error(Exception):
-    """What is wrong with a call, a file, a robot or a pattern. `code` is one of 'usage', 'bad_file', 'bad_model', 'bad_pattern', 'solver' and 'internal'; `place` is the file and the place in it, '' where there is none. An inconsistent pattern, a fall and a solver that did not converge are results, not errors."""
+    """What is wrong with a call, a file, a robot or a pattern. `code` is one of 'usage', 'bad_file', 'bad_model', 'bad_pattern', 'solver' and 'internal'; `place` is the file and the place in this file, '' where there is none. An inconsistent pattern, a fall and a solver that did not converge are results, not errors."""
 
     code: str
 
@@ -163,7 +163,7 @@ class Finding:
 
     @property
     def unit(self) -> str:
-        """Unit of both."""
+        """Unit of `worst` and `limit`."""
 
     @property
     def where(self) -> str:
@@ -171,7 +171,7 @@ class Finding:
 
     @property
     def hint(self) -> str:
-        """What to do about it."""
+        """What to do about the finding."""
 
 class GainStudy:
     """Gains of DTAD and what follows from them."""
@@ -190,7 +190,7 @@ class GainStudy:
 
     @property
     def poles(self) -> list[complex]:
-        """Its poles [1/s], the slowest decay first."""
+        """Poles of this loop [1/s], the slowest decay first."""
 
     @property
     def decay(self) -> float:
@@ -202,14 +202,14 @@ class GainStudy:
 
     @property
     def reaches(self) -> list:
-        """(support, direction, error of the DCM that needs no step [m], its impulse [N s])."""
+        """(support, direction, largest error of the DCM that needs no step [m], impulse of this error [N s])."""
 
 class Identification:
     """Servo constants of a robot from a recording."""
 
     @property
     def joints(self) -> list[IdentifiedJoint]:
-        """In the order of the robot; those that the recording has."""
+        """The joints that the recording has, in the order of the robot."""
 
     @property
     def seconds(self) -> float:
@@ -217,7 +217,7 @@ class Identification:
 
     @property
     def caution(self) -> str:
-        """That the recording may be shifted; '' where it is not."""
+        """A warning if the recording may be shifted in time; '' otherwise."""
 
     def sidecar(self, base: str, name: str = 'identified') -> str:
         """The text of a sidecar with these servos. `base` is the name or path of the robot, as the sidecar names it; `name` is added to the name of the robot."""
@@ -231,11 +231,11 @@ class IdentifiedJoint:
 
     @property
     def type(self) -> str:
-        """Its motor type, named by the first joint."""
+        """Motor type of the joint, named after the first joint of the type."""
 
     @property
     def moved(self) -> bool:
-        """False: only the mean distance from the command is known."""
+        """Whether the joint moved. If not, only its mean distance from the command is known."""
 
     @property
     def delay(self) -> ServoEstimate:
@@ -267,15 +267,15 @@ class IdentifiedJoint:
 
     @property
     def lag(self) -> float:
-        """By which the angle is behind a slow command [s]."""
+        """Time by which the angle is behind a slow command [s]."""
 
     @property
     def mean_error(self) -> float:
-        """Mean of what the constants leave over [rad]."""
+        """Mean error of the angle that remains with these constants [rad]."""
 
     @property
     def largest_error(self) -> float:
-        """Largest of what they leave over [rad]."""
+        """Largest error of the angle that remains with these constants [rad]."""
 
     @property
     def confounded(self) -> list[str]:
@@ -302,7 +302,7 @@ class Import:
 
     @property
     def contacts(self) -> list[Contact]:
-        """Feet on the ground by time of begin; none for a file of key poses."""
+        """Contacts of the feet, in the order of their beginning; none for a file of key poses."""
 
     @property
     def notes(self) -> list[str]:
@@ -327,7 +327,7 @@ class LocalPace:
 
     @property
     def scale(self) -> float:
-        """Duration divided by that of the given pattern."""
+        """Duration divided by the duration of the given pattern."""
 
     @property
     def path_scale(self) -> float:
@@ -335,7 +335,7 @@ class LocalPace:
 
     @property
     def binding(self) -> list:
-        """(limit, share of the duration for which it binds), the longest first; '' where none does, 'pace' for the largest pace, 'pause' for pauses that are kept."""
+        """(limit, share of the duration for which it binds), the longest first; '' where no limit binds, 'pace' for the largest pace, 'pause' for pauses that are kept."""
 
     @property
     def rounds(self) -> int:
@@ -347,7 +347,7 @@ class LocalPace:
 
     @property
     def by_posture(self) -> bool:
-        """None passes because of a posture, which no course of time changes."""
+        """Whether no course of time passes because a posture itself violates a limit."""
 
 class Log:
     """A run with one sample per tick. log['cog'] is an array, log.units('cog') has its units. docs/formats.md describes the quantities."""
@@ -566,7 +566,7 @@ class PushStudy:
 
     @property
     def summary(self) -> list[str]:
-        """One line for each law walking, and one for each law standing."""
+        """For each law, one line for pushes while walking, and one for pushes while standing."""
 
     def picture(self, scale: float = 1.5) -> bytes:
         """The limits from above as the bytes of a PNG file."""
@@ -584,7 +584,7 @@ class Repair:
 
     @property
     def task(self) -> Task:
-        """The task with the correction in its pattern; without one where the repair found none."""
+        """The task with the correction in its pattern; without a correction if the repair found none."""
 
     @property
     def max_joint_change(self) -> float:
@@ -774,7 +774,7 @@ class ServoEstimate:
 
     @property
     def known(self) -> bool:
-        """Whether the recording determines it to better than half its value."""
+        """Whether the recording determines the value to better than half of it."""
 
 class SoleForce:
     """Ground force at one vertex of a sole."""
@@ -965,7 +965,7 @@ class Verdict:
 
     @property
     def reason(self) -> str:
-        """Why it is inconsistent, in one line; '' when it is not."""
+        """Why the pattern is inconsistent, in one line; '' when it is consistent."""
 
     @property
     def findings(self) -> list[Finding]:
@@ -1019,7 +1019,7 @@ class Wrench:
         """World [N m], shape (3,)."""
 
 def check(task: Task, *, tolerances: dict[str, float] = {}) -> Verdict:
-    """The verdict on a pattern. `tolerances` by kind of finding, over those of the pattern."""
+    """The verdict on a pattern. `tolerances`: values by kind of finding, in place of those of the pattern."""
 
 def controllers() -> list[str]:
     """Names of the control laws."""
@@ -1028,19 +1028,19 @@ def data_folder(name: str) -> Path:
     """Folder of the bundled data: 'robots', 'patterns' or 'examples'."""
 
 def fastest_local_pace(task: Task, *, table: str = 'retimed.csv', margin: Optional[float] = None, keep_pauses: bool = False, progress: Optional[Callable[[str, float, str], Any]] = None) -> LocalPace:
-    """The fastest course of time along the motion: it slows only where a limit binds. The result names its table `table`; the ZMP keeps at most `margin` [m] from the edge of the support; with `keep_pauses`, spans in which nothing moves keep their length."""
+    """The fastest course of time along the motion: the motion slows down only where a limit binds. The result names its table `table`; the ZMP keeps at most `margin` [m] from the edge of the support; with `keep_pauses`, spans in which nothing moves keep their length."""
 
 def fastest_pace(task: Task, *, resolution: float = 0.002, progress: Optional[Callable[[str, float, str], Any]] = None) -> Pace:
     """The fastest uniform time scaling of the pattern that passes the check."""
 
 def gains(robot: Robot, *, poles: Optional[list[complex[2]]] = None, absorb: Optional[float] = None, return_time: Optional[float] = None, zmp_filter: Optional[float] = None, forget: Optional[float] = None, set: dict[str, float] = {}, latency: Optional[float] = None) -> GainStudy:
-    """Gains of DTAD: two `poles` of the COG [1/s], the share of a ZMP error that is absorbed at once, times [s] of the return to the command, of the filter of the ZMP and of a lasting offset; `set` gives gains by name, `latency` [s] that of the sensors."""
+    """Gains of DTAD: two `poles` of the COG [1/s], the share of a ZMP error that is absorbed at once, times [s] of the return to the command, of the filter of the ZMP and of a lasting offset; `set` gives gains by name, and `latency` [s] is the latency of the sensors."""
 
 def identify(robot: Robot, command: Union[Union[str, PathLike[str]], tuple[float, numpy.ndarray]], measured: Union[Union[str, PathLike[str]], tuple[float, numpy.ndarray]], *, loads: Optional[Union[str, PathLike[str]]] = None, per_type: bool = False, stand: str = 'auto', rate: float = 0.0, degrees: bool = False, longest_lag: float = 0.0, threads: int = 0, progress: Optional[Callable[[str, float, str], Any]] = None) -> Identification:
     """The servo constants with which the simulated servos come nearest to what was measured. `command` and `measured` are files, or (dt, angles) with the time between two rows [s] and an array of angles [rad, m], shape (n, dof). `loads` is a file of load cells; `per_type`: one set for all joints of one motor type; `stand`: 'feet', 'fixed' (the root is held upright) or 'auto'; `rate` [1/s] and `degrees` are of files that do not state them; `longest_lag` [s]: an answer that comes later is refused (0: 30 ms, or twice the lag of the slowest servo)."""
 
 def import_motion(path: Union[str, PathLike[str]], robot: Robot, *, format: str = '', rate: float = 0.0, degrees: bool = False, order: bool = False, joints: list[str] = [], motion: str = '', commands: bool = False, smooth: Optional[float] = None, ground: bool = False, ramp: float = 0.0, contact_height: Optional[float] = None, contact_speed: Optional[float] = None, contact_load: Optional[float] = None) -> Import:
-    """Reads a motion of another program or robot, as `ayumi import` does. The format follows from the content unless `format` names one of motion_formats(). `rate` [1/s] is that of rows without times; `degrees`: angles of a file that does not state their unit are in degrees; `order`: the columns are the joints of the robot in its order, `joints`: their names; `motion`: name or number, of a file with several; `commands`: the angles are servo targets; `smooth`: largest change for smoothing [deg]; `ground`: the soles that carry are put on the ground; `ramp`: time from rest to the speed of a recording that was cut [s]. A sole carries the robot when it is at most `contact_height` [m] above the lowest one, slower than `contact_speed` [m/s], and the motion of the COG needs `contact_load` times the weight."""
+    """Reads a motion of another program or robot, as `ayumi import` does. The format follows from the content unless `format` names one of motion_formats(). `rate` [1/s]: rows per second, if the rows have no times; `degrees`: angles of a file that does not state their unit are in degrees; `order`: the columns are the joints of the robot in its order, `joints`: their names; `motion`: name or number, of a file with several; `commands`: the angles are servo targets; `smooth`: largest change for smoothing [deg]; `ground`: the soles that carry are put on the ground; `ramp`: time from rest to the speed of a recording that was cut [s]. A sole carries the robot when it is at most `contact_height` [m] above the lowest one, slower than `contact_speed` [m/s], and the motion of the COG needs `contact_load` times the weight."""
 
 def jump_pattern(robot: Robot, *, height: Optional[float] = None, stoop: Optional[float] = None, cog_height: Optional[float] = None, forward: Optional[float] = None, times: Optional[int] = None) -> Pattern:
     """Stoop, lift-off, flight, touchdown and settling; all lengths in m."""
@@ -1055,7 +1055,7 @@ def loci(robot: Robot, logs: dict[str, Log], *, title: str = '', scale: float = 
     """COG, ZMP and vertical force of runs against time as the bytes of a PNG file. `logs`: runs by the label that the legend has."""
 
 def loci_svg(robot: Robot, logs: dict[str, Log], *, title: str = '') -> str:
-    """The same as the text of an SVG file."""
+    """The same plot as loci(), as the text of an SVG file."""
 
 def make_safe(task: Task, table: Table, log: Log = None, *, ramp: float = 2.0, hold: float = 0.5, start: str = 'home') -> SafeTable:
     """Adds an approach of `ramp` s from the posture `start` before a table and a hold of `hold` s after it, and judges what the servos would receive; with a log, also the torques of that run."""
@@ -1073,10 +1073,10 @@ def picture(robot: Robot, log: Log, *, at: float = 0.0, width: int = 1280, heigh
     """The run at the time `at` [s] as the bytes of a PNG file. `view`: 'front', 'side', 'iso', 'back', 'top', 'ortho-side' or 'ortho-front'; `width` and `height` in pixels."""
 
 def plan(task: Task) -> Log:
-    """The motion as it is planned, in the shape of a run, without a simulation: posture, COG, ZMP, forces on the feet, and the motor torques that the full model needs. Pictures and plots show it like a run; `outcome`, `hash` and `events` say nothing of it."""
+    """The motion as it is planned, in the shape of a run, without a simulation: posture, COG, ZMP, forces on the feet, and the motor torques that the full model needs. Pictures and plots show it like a run; `outcome`, `hash` and `events` have no meaning for such a motion."""
 
 def push(task: Task, *, controllers: list[str] = [], gains: dict[str, float] = {}, times: list[float] = [], directions: int = 8, step: float = 0.06, cap: float = 2.4, replicas: int = 2, duration: float = 0.02, seed: int = 1, threads: int = 0, progress: Optional[Callable[[str, float, str], Any]] = None) -> PushStudy:
-    """The largest push that the robot survives, by phase of the gait and direction, in open loop and with each controller (the pattern's when none is named). `times` [s] in place of the default phases; `step`: resolution of the search, and `cap`: largest push tried, both as multiples of the capture bound; `replicas`: number of small variations of every push, all of which the robot must survive; `duration` of a push [s]; `threads`: 0 for all, results do not depend on it."""
+    """The largest push that the robot survives, by phase of the gait and direction, in open loop and with each controller (the controller of the pattern when none is named). `times` [s] in place of the default phases; `step`: resolution of the search, and `cap`: largest push tried, both as multiples of the capture bound; `replicas`: number of small variations of every push, all of which the robot must survive; `duration` of a push [s]; `threads`: 0 for all; the results do not depend on this number."""
 
 def read_log(path: Union[str, PathLike[str]], name: str = '') -> Log:
     """The log of a file or of the folder that `ayumi run` wrote: 'open_loop', 'closed_loop' (the default) or 'undisturbed'."""
@@ -1103,7 +1103,7 @@ def sample(pattern: Pattern, robot: Robot, *, profile: str = '', progress: Optio
     """Samples a pattern for a robot that was loaded."""
 
 def simulate(task: Task, *, controller: Optional[str] = None, gains: dict[str, float] = {}, scenario: Optional[Union[bool, Union[str, PathLike[str]]]] = None, noise: bool = False, true_state: bool = False, substeps: int = 1, seed: int = 1, plant: Union[str, Callable[..., Any]] = 'ayumi', targets: Optional[Callable[..., Any]] = None, allow_unstable: bool = False, progress: Optional[Callable[[str, float, str], Any]] = None) -> Log:
-    """The closed loop of plant, sensors and controller. `controller` is a name of controllers(), None the pattern's; `gains` by name. `scenario`: False for no disturbances, or a pattern file whose scenario replaces that of the pattern. `noise`: sensors with noise, bias and latency. `true_state`: the controller gets the true state. `substeps` of the integrator per tick. `plant`: 'ayumi', 'mujoco', or a function (robot, profile, world) that returns an object with `state`, `set_state(state)` and `step(targets, input, dt)`, as Plant has them. `targets`: a function (t, estimate, plan, targets) that returns the servo targets [rad, m], shape (dof,), in place of those of the controller; with controller='none' it is the whole controller. A plant or a controller in Python is called in every tick and slows the run several times. `progress`: a function (stage, fraction, detail); the run stops when it returns False."""
+    """The closed loop of plant, sensors and controller. `controller`: a name of controllers(), or None for the controller of the pattern; `gains`: values by name. `scenario`: False for no disturbances, or a pattern file whose scenario replaces that of the pattern. `noise`: sensors with noise, bias and latency. `true_state`: the controller gets the true state. `substeps`: steps of the integrator per tick. `plant`: 'ayumi', 'mujoco', or a function (robot, profile, world) that returns an object with `state`, `set_state(state)` and `step(targets, input, dt)`, as Plant has them. `targets`: a function (t, estimate, plan, targets) that returns the servo targets [rad, m], shape (dof,), in place of those of the controller; with controller='none' it is the whole controller. A plant or a controller in Python is called in every tick and slows the run several times. `progress`: a function (stage, fraction, detail); the run stops when it returns False."""
 
 def squat_pattern(robot: Robot, *, depth: Optional[float] = None, period: Optional[float] = None, hold: Optional[float] = None, cycles: Optional[int] = None) -> Pattern:
     """The COG moves down by `depth` m and up again; `hold` s at the lowest point."""
@@ -1121,10 +1121,10 @@ def sway_pattern(robot: Robot, *, side: Optional[float] = None, forward: Optiona
     """The COG moves to and fro over both feet by `side` and `forward` m, one cycle in `period` s."""
 
 def table(task: Task, log: Log = None, *, content: str = 'lead') -> Table:
-    """The table of a run, or without a log of the pattern itself. `content`: 'ideal' (the posture), 'lead' (ahead of the posture by the lag of the servos) or 'lead+sag'."""
+    """The table of a run, or of the pattern itself if no log is given. `content`: 'ideal' (the posture), 'lead' (ahead of the posture by the lag of the servos) or 'lead+sag'."""
 
 def tune(task: Task, *, start: dict[str, float] = {}, times: list[float] = [], directions: int = 4, level: float = 0.9, gains: Optional[list[str]] = None, rounds: int = 3, seed: int = 1, threads: int = 0, progress: Optional[Callable[[str, float, str], Any]] = None) -> Tuning:
-    """Searches for better gains of DTAD. `start`: gains to begin with; `times` of the pushes [s]; `level` of a push in capture bounds; `gains`: names of those that are changed."""
+    """Searches for better gains of DTAD. `start`: gains to begin with; `times` of the pushes [s]; `level` of a push in capture bounds; `gains`: names of the gains that are changed."""
 
 def walk_pattern(robot: Robot, *, steps: Optional[int] = None, stride: Optional[float] = None, period: Optional[float] = None, double_support: Optional[float] = None, lift: Optional[float] = None, cog_height: Optional[float] = None, turn: Optional[float] = None, side: Optional[float] = None, rise: Optional[float] = None) -> Pattern:
     """A walk from rest to rest. stride, lift, cog_height, side and rise (of a stair) in m, period in s, double_support as a share of the period, turn in rad per step, left positive. Arguments that are not given follow from the size of the robot."""

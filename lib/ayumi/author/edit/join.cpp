@@ -62,9 +62,10 @@ Isometry3d stand(const Feet& feet) {
 
 void require_stand(const Pattern& pattern, const CommandSample& sample, const char* when) {
   if (sample.support != Support::both)
-    fail(ErrorCode::bad_pattern, in_file(pattern, std::string(when)) +
-                                     ": only a motion with both feet on the ground here can be "
-                                     "joined to another motion; let both feet stand here");
+    fail(ErrorCode::bad_pattern,
+         in_file(pattern, std::string(when)) +
+             ": a foot is in the air here, and motions can be joined only where both feet stand on "
+             "the ground; let both feet stand here");
 }
 
 RobotState moved(const Isometry3d& shift, const RobotState& state) {
@@ -175,13 +176,15 @@ double angle_between(const Matrix3d& a, const Matrix3d& b) {
 void require_same_stand(const Pattern& second, const Feet& last, const Feet& first) {
   for (size_t i = 0; i < 2; ++i) {
     const double distance = (last[i].translation() - first[i].translation()).norm();
-    if (distance < kSamePlace && angle_between(last[i].linear(), first[i].linear()) < kSameAngle)
-      continue;
+    const double turn = angle_between(last[i].linear(), first[i].linear());
+    if (distance < kSamePlace && turn < kSameAngle) continue;
     fail(ErrorCode::bad_pattern,
-         in_file(second, "start") + ": its feet stand " + text::fixed(1000 * distance, 1) +
-             " mm from where the feet are at the end of the first motion; limit " +
-             text::fixed(1000 * kSamePlace, 1) +
-             " mm; let the first motion end in the stance in which the second begins");
+         in_file(second, "start") + ": the " + (i == 0 ? "left" : "right") + " foot is " +
+             text::fixed(1000 * distance, 1) + " mm and " + text::fixed(turn * 180 / M_PI, 1) +
+             " deg away from its place at the end of the first motion (limits " +
+             text::fixed(1000 * kSamePlace, 1) + " mm and " +
+             text::fixed(kSameAngle * 180 / M_PI, 1) +
+             " deg); let the first motion end in the stance in which the second begins");
   }
 }
 
@@ -192,18 +195,18 @@ void require_same_posture(const RobotModel& model, const Pattern& second, const 
   const double distance = (last.base.position - first.base.position).norm();
   const double turn = elementary::angle_between(last.base.attitude, first.base.attitude);
   if (distance > kSameBase || turn > kSameJoint)
-    fail(ErrorCode::bad_pattern, in_file(second, "start") + ": the base begins " +
+    fail(ErrorCode::bad_pattern, in_file(second, "start") + ": the base is " +
                                      text::fixed(1000 * distance, 2) + " mm and " +
                                      text::fixed(turn * 180 / M_PI, 2) +
-                                     " deg away from where it is at the end of the first motion; "
-                                     "join them with `ayumi edit blend --over S`");
+                                     " deg away from its place at the end of the first motion; "
+                                     "join the motions with `ayumi edit blend --over S`");
   if (most < kSameJoint) return;
   fail(ErrorCode::bad_pattern,
        in_file(second, "start") + ": " + model.dofs()[worst].name + " is " +
            text::fixed(most * 180 / M_PI, 2) +
            " deg away from its angle at the end of the first motion; limit " +
            text::fixed(kSameJoint * 180 / M_PI, 2) +
-           " deg; join them with `ayumi edit blend --over S`");
+           " deg; join the motions with `ayumi edit blend --over S`");
 }
 
 }  // namespace
@@ -214,7 +217,7 @@ Pattern joined(const RobotModel& model, const MotionPart& first, const MotionPar
   if (std::abs(a.dt - b.dt) > 1e-12)
     fail(ErrorCode::usage, "motions with sampling steps of " + text::exact(a.dt) + " and " +
                                text::exact(b.dt) +
-                               " s cannot be joined; sample both with the same step");
+                               " s cannot be joined; sample both motions with the same step");
   require_stand(first.pattern, a.samples.back(), "end");
   require_stand(second.pattern, b.samples.front(), "start");
   const Feet last = soles_of(model, a.samples.back().state);
@@ -327,7 +330,7 @@ void require_keys(const KeyedTracks& part) {
                                      ", so the motion cannot be joined to another one by keys");
   };
   if (part.tracks.joint_driven)
-    stop("keyframes", part.tracks.driver + " determine the joints of the legs");
+    stop("keyframes", "the joints of the legs follow " + part.tracks.driver);
   for (const Keyframe& key : pattern.keyframes)
     if (key.feet[0] || key.feet[1]) stop(key.place, "a foot has keys");
   for (const auto& [link, led] : part.hands)

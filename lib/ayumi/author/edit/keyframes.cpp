@@ -52,7 +52,7 @@ Pattern with_key_edited(const RobotModel& model, const Pattern& pattern, const K
     std::vector<std::string> times;
     for (const Keyframe& key : pattern.keyframes) times.push_back(text::exact(key.t));
     fail(ErrorCode::usage, in_file(pattern, "keyframes") + ": there is no keyframe at " +
-                               text::exact(edit.at) + " s; their times are " +
+                               text::exact(edit.at) + " s; the times of the keyframes are " +
                                text::join(times, ", ") + " s");
   }
   Keyframe key = *found;
@@ -71,17 +71,17 @@ Pattern with_key_edited(const RobotModel& model, const Pattern& pattern, const K
   if (edit.to) {
     const double end = pattern.phases.empty() ? pattern.duration() : pattern.phases.back().until;
     if (!(*edit.to >= 0 && *edit.to <= end))
-      fail(ErrorCode::usage, in_file(pattern, "keyframes") + ": the keyframe would come to " +
-                                 text::exact(*edit.to) + " s; the motion lasts from 0 to " +
+      fail(ErrorCode::usage, in_file(pattern, "keyframes") + ": the keyframe would be at " +
+                                 text::exact(*edit.to) + " s, but the motion lasts from 0 to " +
                                  text::exact(end) + " s");
     double begin = 0;
     for (size_t i = 0; i < pattern.phases.size(); begin = pattern.phases[i++].until)
       if (pattern.phases[i].viip && *edit.to > begin && *edit.to < pattern.phases[i].until)
-        fail(ErrorCode::usage, place_of_phase(pattern, i) + ": the keyframe would come to " +
-                                   text::exact(*edit.to) + " s, inside the VIIP phase from " +
-                                   text::exact(begin) + " to " +
-                                   text::exact(pattern.phases[i].until) +
-                                   " s, in which goals replace keys; choose a time outside it");
+        fail(ErrorCode::usage,
+             place_of_phase(pattern, i) + ": the keyframe would be at " + text::exact(*edit.to) +
+                 " s, inside the VIIP phase from " + text::exact(begin) + " to " +
+                 text::exact(pattern.phases[i].until) +
+                 " s, in which goals replace keys; choose a time outside this phase");
     if (!edit.copy) result.keyframes.erase(found);
     key.t = *edit.to;
     key.pointer.clear();

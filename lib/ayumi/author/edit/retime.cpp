@@ -49,10 +49,11 @@ Pattern retimed(const RobotModel& model, const Pattern& pattern, double scale) {
 Pattern stretched(const RobotModel& model, const Pattern& pattern, double begin, double end,
                   double factor) {
   if (!(factor >= 0.01 && factor <= 100) || !(begin < end))
-    fail(ErrorCode::usage, "the part from " + text::exact(begin) + " to " + text::exact(end) +
-                               " s cannot be stretched by the factor " + text::exact(factor) +
-                               "; it must end after it begins, and the factor must be from 0.01 "
-                               "to 100");
+    fail(ErrorCode::usage,
+         "the part from " + text::exact(begin) + " to " + text::exact(end) +
+             " s cannot be stretched by the factor " + text::exact(factor) +
+             "; the part must end after it begins, and the factor must be from 0.01 "
+             "to 100");
   refuse_viip_phases(pattern, "stretched");
   if (pattern.table || pattern.correction)
     fail(ErrorCode::bad_pattern, pattern.file +

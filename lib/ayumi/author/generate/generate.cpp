@@ -64,8 +64,8 @@ void check_stairs(const RobotModel& model, const WalkParameters& p) {
   if (p.stride < sole.front + sole.back + 2 * kStairClearance)
     fail(ErrorCode::usage, "walk: stride " + text::exact(p.stride) +
                                " m is too short for stairs, because a stair must hold the whole "
-                               "sole of " +
-                               text::brief(sole.front + sole.back) + " m; give at least " +
+                               "sole, which is " +
+                               text::brief(sole.front + sole.back) + " m long; give at least " +
                                text::brief(sole.front + sole.back + 2 * kStairClearance) + " m");
 }
 
@@ -250,7 +250,7 @@ Pattern walk_in_parts(const RobotModel& model, const std::vector<WalkParameters>
     if (p.cog_height != first.cog_height)
       fail(ErrorCode::usage, "walk: the COG height must be the same in all parts");
     if (p.rise != 0 && parts.size() > 1)
-      fail(ErrorCode::usage, "walk: stairs (rise) cannot be one of several parts");
+      fail(ErrorCode::usage, "walk: a walk of several parts cannot climb stairs (rise)");
   }
   Pattern pattern;
   for (const WalkParameters& p : parts)

@@ -91,9 +91,10 @@ void check_baseline(const DtadParams& p) {
   };
   if (p.kind == ControllerKind::preview) {
     need(p.preview_effort >= 1e-9 && p.preview_effort <= 1, "effort", p.preview_effort,
-         "from 1e-9 to 1. It is the cost of changing the jerk of the COG");
+         "from 1e-9 to 1. This gain is the cost of changing the jerk of the COG");
     need(p.preview_horizon > 0 && p.preview_horizon <= 50, "horizon", p.preview_horizon,
-         "above 0 and at most 50. It is the time for which the planned ZMP is known in advance, "
+         "above 0 and at most 50. This gain is the time for which the planned ZMP is known in "
+         "advance, "
          "multiplied by omega");
   }
   if (p.kind == ControllerKind::foot_guided) positive("soonest", p.least_guide_time);
@@ -161,14 +162,14 @@ DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec) {
   if (p.as_printed != 0 && p.as_printed != 1)
     fail(ErrorCode::usage, "controller gains: as_printed must be 0 or 1");
   if (p.step_share > 1)
-    fail(ErrorCode::usage,
-         "controller gains: step is " + text::brief(p.step_share) +
-             "; it must be from 0 to 1. It is the part of an error that new footholds absorb");
+    fail(ErrorCode::usage, "controller gains: step is " + text::brief(p.step_share) +
+                               "; it must be from 0 to 1. This gain is the part of an error that "
+                               "new footholds absorb");
   if (p.time_scale_limit < 1)
-    fail(ErrorCode::usage,
-         "controller gains: hurry is " + text::brief(p.time_scale_limit) +
-             "; it must be at least 1. It is the largest factor by which the controller may speed "
-             "the pattern up");
+    fail(ErrorCode::usage, "controller gains: hurry is " + text::brief(p.time_scale_limit) +
+                               "; it must be at least 1. This gain is the largest factor by which "
+                               "the controller may speed "
+                               "the pattern up");
   p.literal = spec.type.demonstration == Demonstration::literal;
   return p;
 }

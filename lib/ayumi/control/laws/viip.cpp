@@ -157,8 +157,8 @@ ViipParams viip_params(const RobotModel& model, const ControllerSpec& spec) {
       fail(ErrorCode::usage, std::string("controller gains: ") + name + " must be positive");
   if (p.height_damping < 1 - 1e-9)
     fail(ErrorCode::usage, "controller gains: with dz = " + text::brief(p.height_damping) +
-                               " the COG height overshoots; dz must be at least 1 (equation (25): "
-                               "K_Dz^2 >= 4 m K_Pz)");
+                               " the COG height overshoots; dz must be at least 1, because "
+                               "equation (25) needs K_Dz^2 >= 4 m K_Pz");
   if (p.recovery > 1)
     fail(ErrorCode::usage,
          "controller gains: hold is " + text::brief(p.recovery) + "; it must be from 0 to 1");

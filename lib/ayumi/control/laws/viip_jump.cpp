@@ -185,10 +185,11 @@ ViipJump::ViipJump(const RobotModel& model, const ActuatorLimits& limits, const 
                                      text::brief(goal.stoop) + " m and times " +
                                      std::to_string(goal.times) + " must be above 0");
   if (goal.stoop > 0.5 * height_ || goal.height > 2 * height_)
-    fail(ErrorCode::bad_pattern, "jump: a stoop of " + text::brief(goal.stoop) +
-                                     " m or a height of " + text::brief(goal.height) +
-                                     " m is too large for a COG at " + text::brief(height_) +
-                                     " m; the limits are 0.5 and 2 times this height");
+    fail(ErrorCode::bad_pattern,
+         "jump: the stoop is " + text::brief(goal.stoop) + " m and the height " +
+             text::brief(goal.height) + " m; with the COG at " + text::brief(height_) +
+             " m, the stoop must be at most " + text::brief(0.5 * height_) +
+             " m and the height at most " + text::brief(2 * height_) + " m");
   if (goal.release == JumpGoal::Release::spring && goal.height <= 0.5 * goal.stoop)
     fail(ErrorCode::bad_pattern,
          "jump: with the release 'spring' the stoop must be less than twice the height of " +

@@ -109,9 +109,9 @@ class BodyMotionReader {
       if (timed_) rows.back().erase(rows.back().begin());
       const size_t needed = width > 0 ? width : rows.front().size();
       if (rows.back().size() != needed)
-        source_.refuse(line_of(frame), text::counted(rows.back().size(), "value") +
-                                           " in the frame, but " + std::to_string(needed) +
-                                           " are needed");
+        source_.refuse(line_of(frame), "the frame has " +
+                                           text::counted(rows.back().size(), "value") + ", but " +
+                                           std::to_string(needed) + " are needed");
     }
     if (rows.empty())
       source_.refuse(
@@ -119,7 +119,7 @@ class BodyMotionReader {
           "the sequence has no frame, so there is no motion to read; write the file again");
     if (rows_ == 0) rows_ = rows.size();
     if (rows.size() != rows_)
-      source_.refuse(line_of(frames), text::counted(rows.size(), "frame") +
+      source_.refuse(line_of(frames), "the sequence has " + text::counted(rows.size(), "frame") +
                                           ", but another sequence has " + std::to_string(rows_));
     return rows;
   }
@@ -167,8 +167,8 @@ class BodyMotionReader {
     for (size_t k = 0; k < rows.size(); ++k) {
       const std::vector<double>& row = rows[k];
       if (row.size() != width)
-        source_.refuse(line_of(frames.items[k]), text::counted(row.size(), "value") +
-                                                     " of a link's position, but " +
+        source_.refuse(line_of(frames.items[k]), "the position of a link has " +
+                                                     text::counted(row.size(), "value") + ", but " +
                                                      std::to_string(width) + " are needed");
       BasePose base;
       base.position = {row[0], row[1], row[2]};
@@ -238,7 +238,7 @@ std::string recognize_body_motion(const MotionInput& source) {
   const bool body = head.find("BodyMotion") != std::string::npos;
   return body && (head.find("components") != std::string::npos ||
                   head.find("CompositeSeq") != std::string::npos)
-             ? "it says that its content is a BodyMotion"
+             ? "the file says that its content is a BodyMotion"
              : "";
 }
 

@@ -73,7 +73,7 @@ class Reader {
       if (!line.empty()) read(line);
     }
     if (result_.rows.empty())
-      fail(ErrorCode::bad_file, file_ + ": no row with targets for the motors");
+      fail(ErrorCode::bad_file, file_ + ": the file has no row with targets for the motors");
     if (bare_) set_bare_times();
     set_tick();
     return std::move(result_);
@@ -116,7 +116,7 @@ class Reader {
   void find_layout(size_t columns, bool with_interval) {
     if (!result_.rows.empty()) {
       if (columns != result_.layout.columns())
-        stop(std::to_string(columns) + " columns, but the rows before have " +
+        stop("the row has " + std::to_string(columns) + " columns, but the rows before have " +
              std::to_string(result_.layout.columns()));
       return;
     }
@@ -125,10 +125,10 @@ class Reader {
         result_.layout = layout;
         return;
       }
-    stop(std::to_string(columns) + " columns; " +
+    stop("the row has " + std::to_string(columns) + " columns, but " +
          (with_interval ? "sequences" : "rows without an interval") + " of this robot have " +
          list_of(layouts_, with_interval) +
-         " (\"layouts\" of its sidecar); if this file is of another robot, name that robot");
+         "; see \"layouts\" in the sidecar. If this file is of another robot, name that robot");
   }
 
   void read_targets(const std::vector<std::string_view>& cells, std::string_view line) {
@@ -141,7 +141,7 @@ class Reader {
       const auto count = any_number(cell);
       if (!count || !is_whole(cell) || *count < -32768 || *count > 32767)
         stop("column " + std::to_string(begin + m + 1) + ": '" + std::string(cell.substr(0, 24)) +
-             "' is not a count of 16 bits");
+             "' is not a whole number from -32768 to 32767");
       row.values.push_back(*count);
     }
     size_t at = 0;  // behind the comma after the last motor
@@ -161,7 +161,7 @@ class Reader {
       const auto value = any_number(cell);
       if (!value || std::abs(*value) > 32768)
         stop("column " + std::to_string(begin + m + 1) + ": '" + std::string(cell.substr(0, 24)) +
-             "' is neither a count of 16 bits nor an angle");
+             "' is neither a count from -32768 to 32767 nor an angle");
       fraction_ = fraction_ || *value != std::round(*value);
       row.values.push_back(*value);
     }
@@ -180,7 +180,7 @@ class Reader {
       fail(ErrorCode::bad_file, file_ + ": the file has " + std::to_string(columns) +
                                     " columns in " + (fraction_ ? "radians" : "counts") +
                                     " and no interval column, and this robot has no such layout; "
-                                    "add it to \"layouts\" in "
+                                    "add this layout to \"layouts\" in "
                                     "the sidecar");
     result_.layout = *found;
     const int interval = given_ > 0                    ? given_
@@ -293,7 +293,7 @@ SequenceLayout written_layout(const RobotModel& model, const std::string& name) 
                                    text::join(names, ", "));
   fail(ErrorCode::bad_model, "robot '" + model.name() +
                                  "' has no layout with an interval, so no sequence can be written "
-                                 "for it; give one in \"layouts\" of its sidecar");
+                                 "for this robot; add such a layout to \"layouts\" in the sidecar");
 }
 
 HoapFile parse_hoap(const std::string& bytes, const std::string& file, const RobotModel& model,

@@ -29,9 +29,10 @@ void refuse_lost_motion(const HoapFile& sequence, int device, const RobotModel& 
   const std::string unit = sequence.layout.radians ? " rad" : " counts";
   const std::string name = "device " + std::to_string(device);
   if (high - low > (sequence.layout.radians ? kTremblingAngle : kTremblingCounts))
-    fail(ErrorCode::bad_file, file + ": " + name + " moves from " + text::brief(low) + " to " +
-                                  text::brief(high) + unit + ", but no joint of '" + model.name() +
-                                  "' has this device; add it to \"encoders\" in the sidecar");
+    fail(ErrorCode::bad_file,
+         file + ": " + name + " moves from " + text::brief(low) + " to " + text::brief(high) +
+             unit + ", but no joint of '" + model.name() +
+             "' has this device; add the device to \"encoders\" in the sidecar");
   filled.push_back(name + " is not on this robot and is ignored; its target is always " +
                    text::brief(low) + unit);
 }
@@ -42,7 +43,7 @@ void refuse_zeros(const HoapFile& sequence, const std::string& file) {
       if (value != 0) return;
   if (sequence.rows.size() > 1)
     fail(ErrorCode::bad_file,
-         file + ": every value of every motor is 0; nothing was recorded here");
+         file + ": every value of every motor is 0, so nothing was recorded; record again");
 }
 
 // A step that no motor board passes on: the file has a jump, or rows are missing.
@@ -99,7 +100,8 @@ void apply_signs(const RobotModel& model, bool encoder_signs, Eigen::MatrixXd& t
                     " were negated (--signs joint takes all angles as they are)");
   else
     notes.push_back(
-        "angles in radians have the signs of the joints: none was negated (--signs encoder applies "
+        "angles in radians have the signs of the joints, so no angle was negated (--signs encoder "
+        "applies "
         "the signs of the encoders)");
   const std::vector<std::string> beyond = beyond_limits(model, theta);
   if (beyond.size() > beyond_limits(model, other).size())
@@ -119,7 +121,7 @@ std::string recognize_hoap_motion(const MotionInput& source) {
       std::string_view(source.bytes).substr(first, source.bytes.find('\n', first) - first);
   if (line.find_first_of(",;\t") == std::string_view::npos) return "";
   return looks_like_hoap(plain_table_text(source.bytes, source.file), source.model)
-             ? "its first row has the columns of a sequence of this robot"
+             ? "the first row has the columns of a sequence of this robot"
              : "";
 }
 
@@ -137,9 +139,10 @@ MotionFile read_hoap_motion(const MotionInput& source) {
   } else {
     const double rate = source.options.rate;
     if (rate > 0) dt = 1 / rate;
-    motion.notes.push_back(std::string(sequence.layout.radians ? "angles in radians" : "counts") +
-                           " without intervals: " + text::brief(1000 * dt) + " ms from row to row" +
-                           (rate > 0 ? "" : " (--rate HZ changes this)"));
+    motion.notes.push_back(
+        std::string("the rows of ") + (sequence.layout.radians ? "angles in radians" : "counts") +
+        " have no intervals; one row every " + text::brief(1000 * dt) + " ms" +
+        (rate > 0 ? ", as --rate says" : " is assumed (--rate HZ changes this)"));
   }
   motion.rate = 1 / dt;
   if (!sequence.even)

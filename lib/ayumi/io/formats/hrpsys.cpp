@@ -26,8 +26,8 @@ std::optional<NumberRows> rows_beside(const MotionInput& source, const std::stri
   const MotionInput other{*bytes, name, source.model, source.options};
   NumberRows table = number_rows(other, other.bytes, blanks());
   if (table.rows.size() != rows)
-    other.refuse(0, std::to_string(table.rows.size()) + " rows, but the file of angles has " +
-                        std::to_string(rows));
+    other.refuse(0, "this file has " + std::to_string(table.rows.size()) +
+                        " rows, but the file of angles has " + std::to_string(rows));
   return table;
 }
 
@@ -38,7 +38,7 @@ void require_width(const MotionInput& source, const NumberRows& table, const std
     if (width == one) return;
   const std::string name = fs::path(source.file).replace_extension(extension).string();
   MotionInput{"", name, source.model, source.options}.refuse(
-      table.lines.front(), std::to_string(width) + " values after the time; " +
+      table.lines.front(), "the row has " + std::to_string(width) + " values after the time, but " +
                                std::to_string(allowed.front()) + " are needed");
 }
 
@@ -80,7 +80,7 @@ std::string recognize_hrpsys(const MotionInput& source) {
       return "";
     if (line.find(',') != std::string_view::npos)
       return line.find(", ") == std::string_view::npos
-                 ? "its rows are numbers with decimal commas, with blanks between them"
+                 ? "the rows are numbers with decimal commas, with blanks between them"
                  : "";
     double time = 0;
     std::from_chars(line.data(), line.data() + line.size(), time);
@@ -88,7 +88,7 @@ std::string recognize_hrpsys(const MotionInput& source) {
     before = time;
     ++rows;
   }
-  return "its rows are numbers with blanks between them, and the first number increases like a "
+  return "the rows are numbers with blanks between them, and the first number increases like a "
          "time";
 }
 
@@ -99,7 +99,7 @@ MotionFile read_hrpsys(const MotionInput& source) {
       source.refuse(0, "this file has no joint angles; name the .pos file beside it");
   const NumberRows table = number_rows(source, source.bytes, blanks());
   const size_t rows = table.rows.size(), width = table.rows.front().size();
-  if (width < 2) source.refuse(table.lines.front(), "there is a time and no angle");
+  if (width < 2) source.refuse(table.lines.front(), "the row has a time, but no angle");
   MotionFile motion;
   motion.values.resize(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(width - 1));
   for (size_t k = 0; k < rows; ++k) {
@@ -153,12 +153,12 @@ MotionFile read_hrpsys(const MotionInput& source) {
           off < kNearGround
               ? "the ZMP is relative to the waist, as the format defines it"
               : "the ZMP, read relative to the waist, is up to " + text::brief(1000 * off) +
-                    " mm away from the ground; the file may hold it in another frame");
+                    " mm away from the ground; the file may state the ZMP in another frame");
     }
   }
   if (const auto torque = rows_beside(source, ".torque", rows)) {
     require_width(source, *torque, ".torque", {width - 1});
-    motion.notes.push_back("the torques of .torque are left out; a pattern has none");
+    motion.notes.push_back("the torques of .torque are left out, because a pattern has no torques");
   }
   return motion;
 }

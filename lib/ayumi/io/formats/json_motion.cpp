@@ -41,7 +41,7 @@ std::vector<std::vector<double>> frames_of(const MotionInput& source, const Json
   for (const JsonNode& frame : root.at("Frames").items()) {
     rows.push_back(frame.numbers());
     if (rows.back().size() < least || rows.back().size() != rows.front().size())
-      frame.complain(text::counted(rows.back().size(), "value") + " in the frame; " +
+      frame.complain("the frame has " + text::counted(rows.back().size(), "value") + ", but " +
                      (rows.size() > 1 ? std::to_string(rows.front().size())
                                       : "at least " + std::to_string(least)) +
                      " are needed");
@@ -99,7 +99,7 @@ std::string quoted_list(const std::vector<std::string>& names) {
 
 std::string recognize_poppy_move(const MotionInput& source) {
   return is_object(source) && has_key(source, "framerate") && has_key(source, "positions")
-             ? "it is JSON with \"framerate\" and \"positions\""
+             ? "the file is JSON with \"framerate\" and \"positions\""
              : "";
 }
 
@@ -159,7 +159,7 @@ std::vector<WrittenFile> write_poppy_move(const RobotModel&, const MotionFile& m
 
 std::string recognize_deep_mimic(const MotionInput& source) {
   return is_object(source) && has_key(source, "Frames") && !has_key(source, "Frame_offset")
-             ? "it is JSON with \"Frames\""
+             ? "the file is JSON with \"Frames\""
              : "";
 }
 
@@ -221,7 +221,7 @@ std::vector<WrittenFile> write_deep_mimic(const RobotModel&, const MotionFile& m
 
 std::string recognize_open_duck(const MotionInput& source) {
   return is_object(source) && has_key(source, "Frames") && has_key(source, "Frame_offset")
-             ? "it is JSON with \"Frames\" and \"Frame_offset\""
+             ? "the file is JSON with \"Frames\" and \"Frame_offset\""
              : "";
 }
 

@@ -41,17 +41,17 @@ std::string recognize_motion_csv(const MotionInput& source) {
   if (lengths.empty()) return "";
   for (const double length : lengths)
     if (!(std::abs(length - 1) < kUnitQuaternion)) return "";
-  return "rows of " + std::to_string(columns) +
-         " numbers without a head row, and columns 4 to 7 are a unit quaternion";
+  return "the rows have " + std::to_string(columns) +
+         " numbers, there is no head row, and columns 4 to 7 are a unit quaternion";
 }
 
 MotionFile read_motion_csv(const MotionInput& source) {
   const NumberRows table = number_rows(source, source.bytes, ",");
   const size_t width = table.rows.front().size();
   if (width <= kRootColumns)
-    source.refuse(
-        table.lines.front(),
-        std::to_string(width) + " values in the row; 7 of the root and the joints are needed");
+    source.refuse(table.lines.front(),
+                  "the row has " + std::to_string(width) +
+                      " values, but 7 values of the root and the angles of the joints are needed");
   MotionFile motion;
   motion.values.resize(static_cast<Eigen::Index>(table.rows.size()),
                        static_cast<Eigen::Index>(width - kRootColumns));

@@ -87,8 +87,8 @@ NumberRows number_rows(const MotionInput& source, std::string_view text,
       row.push_back(source.number(cell, line, "value " + std::to_string(row.size() + 1)));
     }
     if (!result.rows.empty() && row.size() != result.rows.front().size())
-      source.refuse(line, text::counted(row.size(), "value") +
-                              " in the row, but the first row has " +
+      source.refuse(line, "the row has " + text::counted(row.size(), "value") +
+                              ", but the first row has " +
                               std::to_string(result.rows.front().size()));
     result.rows.push_back(std::move(row));
     result.lines.push_back(line);

@@ -66,9 +66,9 @@ void refuse_other_encodings(const MotionInput& source) {
   if (at == std::string::npos) return;
   char byte[8];
   std::snprintf(byte, sizeof byte, "0x%02x", static_cast<unsigned char>(text[at]));
-  source.refuse(line_at(text, at), "the byte " + std::string(byte) +
-                                       " is no UTF-8 text (perhaps Latin-1); save the file as "
-                                       "UTF-8");
+  source.refuse(line_at(text, at),
+                "the byte " + std::string(byte) +
+                    " is not UTF-8 text (the file may be Latin-1); save the file as UTF-8");
 }
 
 // ---- Size, before a reader takes memory for it
@@ -86,8 +86,8 @@ constexpr int kDeepestElement = 200;
 void refuse_too_many(const MotionInput& source, const std::string& text) {
   const size_t lines = static_cast<size_t>(std::count(text.begin(), text.end(), '\n'));
   if (lines > kMostRows)
-    source.refuse(0, std::to_string(lines) + " lines; at most " + std::to_string(kMostRows) +
-                         " rows are read; cut the file or leave out rows");
+    source.refuse(0, "the file has " + std::to_string(lines) + " lines, but import reads at most " +
+                         std::to_string(kMostRows) + " rows; cut the file or leave out rows");
   const bool xml = text.find_first_not_of(" \t\r\n") == text.find('<');
   size_t values = 0, lists = 0, begin = 0;
   int depth = 0;
@@ -103,10 +103,11 @@ void refuse_too_many(const MotionInput& source, const std::string& text) {
       begin = i;
     }
     const auto refuse = [&](const std::string& what, size_t most) {
-      source.refuse(line_at(text, i), "more than " + std::to_string(most) + " " + what +
+      source.refuse(line_at(text, i), "there are more than " + std::to_string(most) + " " + what +
                                           "; cut the file or leave out rows");
     };
-    if (lists > kMostLists) refuse("lists or elements, too many for a motion", kMostLists);
+    if (lists > kMostLists)
+      refuse("lists or elements, which are too many for a motion", kMostLists);
     if (values > kMostInRow) refuse("values in one row", kMostInRow);
     if (depth > kDeepestElement) refuse("elements inside each other", kDeepestElement);
     if (i - begin > kLongestValue) refuse("characters in one value", kLongestValue);
@@ -187,12 +188,14 @@ MotionFile read_file_of(const std::string& bytes, const std::string& file, const
   MotionInput source{{}, file, model, options};
   const MotionFormat* const format = &format_of(bytes, source, result);
   if (!format->read)
-    source.refuse(0, "the file holds key poses in place of rows; import makes a pattern of it");
+    source.refuse(0,
+                  "the file holds key poses and no rows; make a pattern of it with `ayumi import`");
   MotionFile motion = format->read(source);
   if (format->name == "hoap" && !motion.sequence.empty()) motion.sequence = bytes;
   if (static_cast<size_t>(motion.rows()) > kMostRows)
-    source.refuse(0, std::to_string(motion.rows()) + " rows are too many; Ayumi reads at most " +
-                         std::to_string(kMostRows) + "; cut the file or leave out rows");
+    source.refuse(0, "the file has " + std::to_string(motion.rows()) +
+                         " rows, but import reads at most " + std::to_string(kMostRows) +
+                         "; cut the file or leave out rows");
   if (!options.motion.empty() && !motion.chosen)
     motion.notes.push_back("--motion is not used, because the file has one motion");
   if (!format->binary && may_be_cut(source.bytes))
@@ -221,16 +224,17 @@ std::vector<std::string> column_names(const MotionFile& motion, const RobotModel
       fail(ErrorCode::bad_file, file + ": the file has " + count + ", but '" + model.name() +
                                     "' has " + text::counted(own.size(), "joint") +
                                     "; --joints A,B,... names the columns");
-    notes.push_back("joints: mapped by order, as --order asks: " + shortened(own));
+    notes.push_back("the columns are the joints in the order of the robot, as --order says: " +
+                    shortened(own));
     return own;
   }
   if (motion.joints.empty())
     fail(ErrorCode::bad_file,
          file + ": the file has " + count + " without names" +
              (own.size() == columns
-                  ? "; give --order if they are the " + text::counted(own.size(), "joint") +
-                        " of '" + model.name() + "' in its order (" + own.front() + ", ..., " +
-                        own.back() + "), or --joints A,B,... with their names"
+                  ? "; give --order if the columns are the " + text::counted(own.size(), "joint") +
+                        " of '" + model.name() + "' in the order of the robot (" + own.front() +
+                        ", ..., " + own.back() + "), or name the columns with --joints A,B,..."
                   : ", but '" + model.name() + "' has " + text::counted(own.size(), "joint") +
                         ", so that this may be a motion of another robot; --joints A,B,... names "
                         "the columns"));
@@ -277,7 +281,8 @@ std::vector<int> map_joints(const MotionFile& motion, const RobotModel& model,
     int& column = columns[static_cast<size_t>(dof)];
     if (column >= 0)
       fail(ErrorCode::bad_file, file + ": the columns '" + names[static_cast<size_t>(column)] +
-                                    "' and '" + names[i] + "' are the same joint");
+                                    "' and '" + names[i] +
+                                    "' are the same joint; remove one of them");
     const auto at = static_cast<Eigen::Index>(i);
     if (motion.values.col(at).array().isNaN().all()) continue;  // never set
     column = static_cast<int>(i);
@@ -294,19 +299,19 @@ std::vector<int> map_joints(const MotionFile& motion, const RobotModel& model,
                                     shortened(matched) + " are joints of " + robot + ", and " +
                                     shortened(unknown) + " are not") +
              "; the joints of " + robot + " are " + shortened(model.dof_names()) +
-             "; \"aliases\" in the sidecar give them other names, and --joints A,B,... names the "
-             "columns");
+             "; \"aliases\" in the sidecar give the joints other names, and --joints A,B,... names "
+             "the columns");
   for (int dof = 0; dof < model.dof_count(); ++dof)
     if (columns[static_cast<size_t>(dof)] < 0)
       missing.push_back(model.dofs()[static_cast<size_t>(dof)].name);
   if (!unknown.empty())
-    notes.push_back("unknown joints, left out: " + shortened(unknown) +
+    notes.push_back("unknown joints are left out: " + shortened(unknown) +
                     (unknown.size() == 1 ? text::suggestion(unknown[0], missing) : ""));
   if (!extra.empty())
-    notes.push_back("extra joints, which do not move independently on this robot, left out: " +
+    notes.push_back("joints that do not move independently on this robot are left out: " +
                     shortened(extra));
   if (!missing.empty())
-    notes.push_back("missing joints, which keep their angles of the home posture: " +
+    notes.push_back("joints that the file does not have keep their angles of the home posture: " +
                     shortened(missing));
   return columns;
 }
@@ -438,15 +443,15 @@ std::vector<double> times_of(const MotionFile& motion, const ImportOptions& opti
       fail(ErrorCode::bad_file,
            file +
                ": this format does not state how many rows a second has; give --rate HZ (LAFAN1 "
-               "for Unitree G1 has 30 rows per second). A rate that is twice too high makes all "
-               "speeds twice and all accelerations four times too high");
+               "for Unitree G1 has 30 rows per second). If the rate is twice the true rate, all "
+               "speeds are 2 times and all accelerations 4 times too high");
     for (size_t k = 0; k < rows; ++k) times.push_back(static_cast<double>(k) / rate);
     return times;
   }
   if (options.rate > 0)
     notes.push_back("--rate is not used, because the file states the times of its rows");
   if (times[0] != 0)
-    notes.push_back("the pattern begins at the first row; its time in the file is " +
+    notes.push_back("the pattern begins at the first row, which the file has at " +
                     text::brief(times[0]) + " s");
   for (size_t k = 1; k < rows; ++k)
     if (!(times[k] > times[k - 1]))
@@ -651,9 +656,9 @@ void read_rows(const std::string& bytes, const std::string& file, const RobotMod
   constexpr int kLeastRows = 6;  // Derived: accelerations take five (motion/differentiate.hpp)
   if (!result.sequence.empty()) hold_last_row(kLeastRows, result);
   if (result.motion.theta.rows() < kLeastRows)
-    fail(ErrorCode::bad_file, file + ": " + std::to_string(result.motion.theta.rows()) +
-                                  " rows of motion; at least " + std::to_string(kLeastRows) +
-                                  " are needed");
+    fail(ErrorCode::bad_file,
+         file + ": the motion has " + std::to_string(result.motion.theta.rows()) +
+             " rows, but at least " + std::to_string(kLeastRows) + " are needed");
 }
 
 // Calls `read`; an Error about the file then says what the file was taken for.

@@ -237,7 +237,7 @@ std::map<std::string, NpyArray> read_npz(const std::string& bytes, const std::st
   zip_t* const archive = zip_open_from_source(source, ZIP_RDONLY, &error);
   if (!archive) {
     zip_source_free(source);
-    fail(ErrorCode::bad_file, file + ": the archive cannot be opened; it may be truncated");
+    fail(ErrorCode::bad_file, file + ": the archive cannot be opened; the file may be truncated");
   }
   std::map<std::string, NpyArray> arrays;
   std::string refused;

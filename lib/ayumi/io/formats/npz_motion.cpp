@@ -125,9 +125,9 @@ auto rate_at(size_t k, size_t rows, double rate, const Difference& difference) {
 std::string recognize_tracking_npz(const MotionInput& source) {
   if (!is_archive(source)) return "";
   if (has_array(source, "joint_pos") && has_array(source, "body_pos_w"))
-    return "it is a NumPy archive with joint_pos and body_pos_w";
+    return "the file is a NumPy archive with joint_pos and body_pos_w";
   if (has_array(source, "dof_positions") && has_array(source, "body_positions"))
-    return "it is a NumPy archive with dof_positions and body_positions";
+    return "the file is a NumPy archive with dof_positions and body_positions";
   return "";
 }
 
@@ -224,7 +224,7 @@ std::string tracking_npz_within(const RobotModel& model, const MotionFile& motio
 
 std::string recognize_gmr_npz(const MotionInput& source) {
   return is_archive(source) && has_array(source, "root_pos") && has_array(source, "dof_pos")
-             ? "it is a NumPy archive with root_pos and dof_pos"
+             ? "the file is a NumPy archive with root_pos and dof_pos"
              : "";
 }
 

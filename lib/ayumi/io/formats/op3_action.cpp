@@ -53,7 +53,7 @@ int position_at(const std::string& bytes, size_t step, size_t servo) {
 
 std::string recognize_op3_action(const MotionInput& source) {
   return source.bytes.size() == kPages * kPageBytes && source.bytes.find('\0') != std::string::npos
-             ? "it has 256 pages of 512 bytes"
+             ? "the file has 256 pages of 512 bytes"
              : "";
 }
 
@@ -158,9 +158,9 @@ std::vector<WrittenFile> write_op3_action(const RobotModel& model, const MotionF
          "rows are " +
              text::brief(1000 / motion.rate) + " ms apart; choose --interval 8, 16, 40 or 80");
   if (rows > (kPages - 1) * kSteps)
-    fail(ErrorCode::bad_file, std::to_string(rows) + " rows, but an action file has at most " +
-                                  std::to_string((kPages - 1) * kSteps) +
-                                  " steps; choose a longer --interval");
+    fail(ErrorCode::bad_file,
+         "the motion has " + std::to_string(rows) + " rows, but an action file has at most " +
+             std::to_string((kPages - 1) * kSteps) + " steps; choose a longer --interval");
   std::vector<size_t> servo;
   for (const std::string& joint : motion.joints) {
     const int device = model.dofs()[static_cast<size_t>(model.find_dof(joint))].encoder.device;
@@ -201,8 +201,9 @@ std::vector<WrittenFile> write_op3_action(const RobotModel& model, const MotionF
             motion.values(static_cast<Eigen::Index>(first + s), static_cast<Eigen::Index>(j));
         const long value = std::lround(angle / kCount) + kZero;
         if (value < 0 || value > 4095)
-          fail(ErrorCode::bad_file, motion.joints[j] + ": " + text::brief(angle) +
-                                        " rad is outside the 4096 counts of a servo");
+          fail(ErrorCode::bad_file,
+               motion.joints[j] + ": " + text::brief(angle) +
+                   " rad is outside the 4096 counts of a servo (-pi to pi rad)");
         set(step + 2 * servo[j], static_cast<size_t>(value));
         set(step + 2 * servo[j] + 1, static_cast<size_t>(value) >> 8);
       }

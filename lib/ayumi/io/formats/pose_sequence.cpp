@@ -45,14 +45,15 @@ class PoseSequenceReader {
 
   Pattern whole() {
     if (!model_.has_soles())
-      fail(ErrorCode::bad_model,
-           model_.name() + ": the robot has no soles; name both in its sidecar");
+      fail(ErrorCode::bad_model, model_.name() +
+                                     ": the robot has no soles; add the left and the right sole to "
+                                     "\"soles\" in its sidecar");
     const YamlNode root = parse_yaml(source_.bytes, source_.file);
     const YamlNode* refs = root.find("refs");
     if (!refs || !refs->is_list()) refuse(root, "`refs`, the list of key poses, is missing");
     if (refs->items.size() > kMostKeys)
-      refuse(*refs, std::to_string(refs->items.size()) + " key poses; at most " +
-                        std::to_string(kMostKeys) + " are read");
+      refuse(*refs, "the file has " + std::to_string(refs->items.size()) +
+                        " key poses, but import reads at most " + std::to_string(kMostKeys));
     for (const YamlNode& ref : refs->items) read_key(ref);
     if (keys_.size() < 2) refuse(root, "a motion needs two key poses or more");
     map_ids(root);
@@ -74,7 +75,8 @@ class PoseSequenceReader {
     if (!node.is_list() || !node.items.empty())
       refuse(node, std::string(key) + ": a list of finite numbers is needed");
     if (count > 0 && node.numbers.size() != count)
-      refuse(node, std::string(key) + ": " + text::counted(count, "number") + " needed, found " +
+      refuse(node, std::string(key) + ": " + text::counted(count, "number") +
+                       (count == 1 ? " is" : " are") + " needed, found " +
                        std::to_string(node.numbers.size()));
     return node.numbers;
   }
@@ -94,8 +96,10 @@ class PoseSequenceReader {
     PoseKey key;
     key.time = number(*time, "time");
     if (!(key.time >= 0) || (!keys_.empty() && !(key.time > keys_.back().time)))
-      refuse(*time, "time " + text::brief(key.time) +
-                        " s does not come after that of the key before; times must increase");
+      refuse(
+          *time,
+          "time " + text::brief(key.time) +
+              " s is not possible: times must begin at 0 s or later, and increase from key to key");
     if (const YamlNode* most = ref.find("maxTransitionTime", "max_transition_time"))
       key.transition = std::max(number(*most, "maxTransitionTime"), 0.0);
     const YamlNode *ids = pose->find("joints"), *angles = pose->find("q", "displacements");
@@ -103,7 +107,8 @@ class PoseSequenceReader {
       key.angles = numbers(*angles, "q", 0);
       for (const double id : numbers(*ids, "joints", key.angles.size())) {
         if (!(id >= 0 && id < 1e4) || id != std::floor(id))
-          refuse(*ids, "joints: " + text::brief(id) + " is no joint id");
+          refuse(*ids, "joints: " + text::brief(id) +
+                           " is not a joint id (a whole number from 0 to 9999)");
         key.joints.push_back(static_cast<int>(id));
       }
     }
@@ -154,19 +159,21 @@ class PoseSequenceReader {
     const std::vector<std::string>& given = source_.options.joints;
     if (given.empty() && !source_.options.by_order && most >= 0)
       refuse(root, "the file names its joints by numbers up to " + std::to_string(most) +
-                       "; give --order if they count the " + text::counted(own.size(), "joint") +
-                       " of '" + model_.name() + "' from 0 (" + own.front() + ", ..., " +
-                       own.back() + "), or --joints A,B,... with their names");
+                       "; give --order if these numbers count the " +
+                       text::counted(own.size(), "joint") + " of '" + model_.name() + "' from 0 (" +
+                       own.front() + ", ..., " + own.back() +
+                       "), or name the joints with --joints A,B,...");
     names_ = given.empty() ? own : given;
     if (most >= static_cast<int>(names_.size()))
       refuse(root, "the file has the joint " + std::to_string(most) + ", but there are " +
-                       text::counted(names_.size(), "joint") + " (from 0)");
+                       text::counted(names_.size(), "joint") + " (numbered from 0)");
     for (const std::string& name : names_)
       if (find_joint(model_, name) < 0)
         refuse(root, "'" + name + "' is no joint of '" + model_.name() + "'" +
                          text::suggestion(name, own));
     if (given.empty() && most >= 0)
-      notes_.push_back("joints: mapped by order, as --order asks: " + text::join(own, ", "));
+      notes_.push_back("the numbers are the joints in the order of the robot, as --order says: " +
+                       text::join(own, ", "));
   }
 
   bool places_feet() const {
@@ -435,10 +442,11 @@ class PoseSequenceReader {
       notes_.push_back(
           "the file places the feet, so the " + text::counted(legs_, "leg joint") +
           " follow from the feet, the trunk and the " +
-          (zmp_leads_     ? "ZMP"
-           : zmp_follows_ ? "ZMP. The file does not state the ZMP of its steps, so it is under the "
-                            "middle of the standing foot, and the base link sways accordingly"
-                          : "COG; the COG follows from the places of the base link") +
+          (zmp_leads_ ? "ZMP"
+           : zmp_follows_
+               ? "ZMP. The file does not state the ZMP of its steps, so Ayumi puts the ZMP under "
+                 "the middle of the standing foot, and the base link sways accordingly"
+               : "COG; the COG follows from the places of the base link") +
           (zmp_keys() == 1 && !zmp_follows_ ? "; the single ZMP key is left out" : ""));
     else
       notes_.push_back(
@@ -446,13 +454,13 @@ class PoseSequenceReader {
           "both feet are on the ground" +
           std::string(zmp_keys() > 0 ? "; its ZMP is left out" : ""));
     if (out_of_reach_ > 0)
-      notes_.push_back("places of the base link that the legs do not reach, left out: " +
+      notes_.push_back("places of the base link that the legs do not reach are left out: " +
                        std::to_string(out_of_reach_));
     if (!left_out_.empty())
-      notes_.push_back("places of links left out: " +
+      notes_.push_back("the places of these links are left out: " +
                        text::join({left_out_.begin(), left_out_.end()}, ", "));
     if (!other_.empty())
-      notes_.push_back("keys of other kinds left out: " +
+      notes_.push_back("keys of these types are left out: " +
                        text::join({other_.begin(), other_.end()}, ", "));
   }
 
@@ -471,7 +479,8 @@ class PoseSequenceReader {
 
 std::string recognize_pose_sequence(const MotionInput& source) {
   const std::string head = source.bytes.substr(0, 4000);
-  return head.find("type: PoseSeq") != std::string::npos ? "it says that its type is PoseSeq" : "";
+  return head.find("type: PoseSeq") != std::string::npos ? "the file says that its type is PoseSeq"
+                                                         : "";
 }
 
 Pattern read_pose_sequence(const MotionInput& source, std::vector<std::string>& notes) {

@@ -64,7 +64,7 @@ std::string recognize_qianim(const MotionInput& source) {
   const size_t first = source.bytes.find_first_not_of(" \t\r\n");
   return first != std::string::npos && source.bytes[first] == '<' &&
                  source.bytes.find("<ActuatorCurve") != std::string::npos
-             ? "it is XML with ActuatorCurve"
+             ? "the file is XML with ActuatorCurve"
              : "";
 }
 
@@ -107,7 +107,7 @@ std::vector<WrittenFile> write_qianim(const RobotModel&, const MotionFile& motio
   if (std::abs(motion.rate - static_cast<double>(rate)) > 1e-6 * motion.rate)
     fail(ErrorCode::bad_file,
          "a .qianim has a whole number of frames per second, but the motion has " +
-             text::brief(motion.rate, 8) + "; choose one with --rate");
+             text::brief(motion.rate, 8) + "; choose a whole number with --rate");
   std::string text =
       "<?xml version=\"1.0\" encoding=\"UTF-8\" ?>\n"
       "<Animation xmlns:editor=\"http://www.ald.softbankrobotics.com/animation/editor\" "

@@ -181,7 +181,7 @@ const YamlNode* motions_of(const YamlNode& root) {
 std::string recognize_ros_trajectory(const MotionInput& source) {
   const bool names = source.bytes.find("joint_names:") != std::string::npos;
   return names && source.bytes.find("time_from_start") != std::string::npos
-             ? "it has joint_names and points with time_from_start"
+             ? "the file has joint_names and points with time_from_start"
              : "";
 }
 
@@ -220,7 +220,7 @@ std::vector<WrittenFile> write_ros_trajectory(const RobotModel&, const MotionFil
 std::string recognize_play_motion(const MotionInput& source) {
   const bool times = source.bytes.find("times_from_start") != std::string::npos;
   return times && source.bytes.find("motions:") != std::string::npos
-             ? "it has motions with times_from_start"
+             ? "the file has motions with times_from_start"
              : "";
 }
 

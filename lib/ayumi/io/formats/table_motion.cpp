@@ -145,7 +145,8 @@ MotionFile read_number_motion(const MotionInput& source, NumberTable table) {
   const bool timed = table.find("t[s]") >= 0;
   if (!timed && !(source.options.rate > 0))
     refuse_table(file,
-                 "no time column (t[s], t, time); give --rate HZ when the rows are evenly spaced");
+                 "the table has no time column (t[s], t or time); give --rate HZ if the rows are "
+                 "evenly spaced");
   if (!timed) {  // layout_of needs the column
     table.columns.emplace_back("t[s]");
     table.values.conservativeResize(Eigen::NoChange, table.values.cols() + 1);
@@ -184,7 +185,7 @@ std::string recognize_csv_table(const MotionInput& source) {
                            "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
                            "0123456789_.-[]()") == std::string_view::npos;
     return letter && cells && line.find(": ") == std::string_view::npos && line.back() != ':'
-               ? "its first row names columns"
+               ? "the first row names columns"
                : "";
   }
   return "";
@@ -199,7 +200,7 @@ std::string recognize_json_table(const MotionInput& source) {
   const size_t first = source.bytes.find_first_not_of(" \t\r\n");
   const bool object = first != std::string::npos && source.bytes[first] == '{';
   return object && source.bytes.find("\"columns\"") != std::string::npos
-             ? "it is JSON with \"columns\""
+             ? "the file is JSON with \"columns\""
              : "";
 }
 

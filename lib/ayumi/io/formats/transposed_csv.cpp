@@ -22,7 +22,7 @@ std::string recognize_transposed_csv(const MotionInput& source) {
   std::string_view rest = source.bytes;
   const std::vector<std::string_view> head = cells_of(take_line(rest));
   const bool times = head.size() > 1 && (head[0] == "time" || head[0] == "t") && is_number(head[1]);
-  return times ? "its first row is times, so each further row is a joint" : "";
+  return times ? "the first row has times, so each further row is a joint" : "";
 }
 
 MotionFile read_transposed_csv(const MotionInput& source) {
@@ -48,8 +48,8 @@ MotionFile read_transposed_csv(const MotionInput& source) {
       continue;
     }
     if (row.size() != motion.times.size())
-      source.refuse(line, text::counted(row.size(), "value") + " of '" +
-                              std::string(cells[0].substr(0, 48)) + "', but the first row has " +
+      source.refuse(line, "the row of '" + std::string(cells[0].substr(0, 48)) + "' has " +
+                              text::counted(row.size(), "value") + ", but the first row has " +
                               text::counted(motion.times.size(), "time"));
     motion.joints.emplace_back(cells[0]);
     joints.push_back(std::move(row));

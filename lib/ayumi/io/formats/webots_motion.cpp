@@ -41,7 +41,7 @@ double time_of(const MotionInput& source, std::string_view cell, size_t line) {
 
 std::string recognize_webots_motion(const MotionInput& source) {
   return source.bytes.starts_with(kMagic) && recognize_webots_durations(source).empty()
-             ? "its first line begins with #WEBOTS_MOTION"
+             ? "the first line begins with #WEBOTS_MOTION"
              : "";
 }
 
@@ -49,7 +49,7 @@ std::string recognize_webots_durations(const MotionInput& source) {
   std::string_view rest = source.bytes;
   const std::vector<std::string_view> head = split(take_line(rest), ',');
   return head[0] == kMagic && head.size() == 2 && take_line(rest).find('%') != std::string::npos
-             ? "its first line is #WEBOTS_MOTION with a version, and its second line has names "
+             ? "the first line is #WEBOTS_MOTION with a version, and the second line has names "
                "that contain %"
              : "";
 }
@@ -87,7 +87,8 @@ MotionFile read_webots_motion(const MotionInput& source) {
     if (text.empty()) break;
     const std::vector<std::string_view> row = split(text, separator);
     if (row.size() != before + head.size() + after)
-      source.refuse(line, text::counted(row.size(), "cell") + " in the row, but the head needs " +
+      source.refuse(line, "the row has " + text::counted(row.size(), "cell") +
+                              ", but the head row needs " +
                               std::to_string(before + head.size() + after) + " (" +
                               text::counted(head.size(), "joint") + ")");
     if (durations) {
@@ -123,8 +124,8 @@ MotionFile read_webots_motion(const MotionInput& source) {
   if (durations) {
     motion.keys = true;
     motion.notes.push_back(
-        "the last cell of a row is the time in which its pose is reached; the motion begins at the "
-        "first pose");
+        "the last cell of a row is the time from the pose before to the pose of this row; the "
+        "motion begins at the first pose");
   }
   return motion;
 }

@@ -35,7 +35,7 @@ std::string recognize_zvs(const MotionInput& source) {
   if (open == std::string_view::npos ||
       line.find_first_not_of("0123456789.eE+-/ \t(), \r") != std::string_view::npos)
     return "";
-  return tokens_of(line.substr(0, open)).size() == 2 ? "its rows have the form `dt n ( values )`"
+  return tokens_of(line.substr(0, open)).size() == 2 ? "the rows have the form `dt n ( values )`"
                                                      : "";
 }
 
@@ -49,16 +49,16 @@ MotionFile read_zvs(const MotionInput& source) {
     const std::string_view text = take_line(rest);
     if (text.empty()) continue;
     const std::vector<std::string_view> tokens = tokens_of(text);
-    if (tokens.size() < 3) source.refuse(line, "`dt n ( values )` is needed");
+    if (tokens.size() < 3) source.refuse(line, "the row must have the form `dt n ( values )`");
     const double dt = source.number(tokens[0], line, "dt");
     const double count =
         source.number(tokens[1].substr(0, tokens[1].find('/')), line, "number of values");
     if (count != static_cast<double>(tokens.size() - 2))
-      source.refuse(line, text::counted(tokens.size() - 2, "value") +
-                              " in the brackets, but n is " + text::brief(count));
+      source.refuse(line, "the brackets hold " + text::counted(tokens.size() - 2, "value") +
+                              ", but n is " + text::brief(count));
     if (width > 0 && tokens.size() - 2 != width)
-      source.refuse(line, text::counted(tokens.size() - 2, "value") +
-                              " in the row, but the first row has " + std::to_string(width));
+      source.refuse(line, "the row has " + text::counted(tokens.size() - 2, "value") +
+                              ", but the first row has " + std::to_string(width));
     width = tokens.size() - 2;
     if (!(dt > 0)) source.refuse(line, "dt " + text::brief(dt) + " s is not above 0");
     motion.times.push_back(now);

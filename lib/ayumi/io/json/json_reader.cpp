@@ -294,7 +294,7 @@ std::string JsonNode::one_of(const std::vector<std::string>& allowed) const {
     complain("'" + value + "'" +
              (allowed.size() == 1
                   ? " is not allowed; the only allowed value is '" + allowed.front() + "'"
-                  : " is not one of " + text::join(allowed, ", ")) +
+                  : " is not allowed; the allowed values are " + text::join(allowed, ", ")) +
              (allowed.size() == 1 ? "" : text::suggestion(value, allowed)));
   return value;
 }

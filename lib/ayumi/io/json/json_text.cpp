@@ -131,7 +131,8 @@ Found follow(const JsonTree& root, const std::string& pointer) {
 Found require_value(const JsonTree& root, const std::string& pointer) {
   const Found found = follow(root, pointer);
   if (!found.exact)
-    fail(ErrorCode::usage, "the pattern has no value " + pointer + "; it may have changed");
+    fail(ErrorCode::usage,
+         "the pattern has no value " + pointer + "; the pattern may have changed");
   return found;
 }
 

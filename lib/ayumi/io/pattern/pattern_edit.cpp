@@ -133,7 +133,8 @@ std::string insert(const std::string& text, const Json& document, const PatternE
   const Place place = split(edit.pointer);
   if (!find_value(text, place.around)) {
     if (place.name != "-")
-      fail(ErrorCode::usage, "the pattern has no list " + place.around + "; it may have changed");
+      fail(ErrorCode::usage,
+           "the pattern has no list " + place.around + "; the pattern may have changed");
     return set(text, document,
                {PatternEdit::Kind::set, place.around, "[" + spaced_in_order(edit.value) + "]"});
   }

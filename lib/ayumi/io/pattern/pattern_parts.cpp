@@ -35,7 +35,8 @@ double read_moment(const JsonNode& node, const char* absolute, const char* relat
   if (node.has(absolute)) return read_time(node.at(absolute), scope);
   const double time = before + read_time(node.at(relative), scope);
   if (time > kLongestPattern)
-    node.at(relative).complain("it ends at " + text::exact(time) + " s; the longest pattern is " +
+    node.at(relative).complain("this time is " + text::exact(time) +
+                               " s from the beginning; the longest pattern is " +
                                text::exact(kLongestPattern) + " s");
   return std::round(kTimeSteps * time) / kTimeSteps;
 }

@@ -51,9 +51,10 @@ void read_parameters(const JsonNode& root, const std::map<std::string, double>& 
   for (const auto& [name, value] : set) {
     const std::string place = root.file() + ": parameter '" + name + "'";
     if (!scope.parameters.contains(name))
-      fail(ErrorCode::usage,
-           place + " is not declared in the pattern" + text::suggestion(name, names) +
-               (names.empty() ? "; it declares none" : "; declared: " + text::join(names, ", ")));
+      fail(ErrorCode::usage, place + " is not declared in the pattern" +
+                                 text::suggestion(name, names) +
+                                 (names.empty() ? "; the pattern declares no parameters"
+                                                : "; declared: " + text::join(names, ", ")));
     if (!(std::abs(value) <= kLargestNumber))
       fail(ErrorCode::usage, place + ": " + text::exact(value) +
                                  " is out of range; numbers must be from -1e6 to 1e6");
@@ -222,8 +223,9 @@ std::string meant_time(double before, double previous, const std::string& place_
 std::string meant_span(const JsonNode& node, const std::string& absolute,
                        const std::string& relative, double value) {
   if (!node.has(absolute) || !(value > 0)) return "";
-  return "; if " + text::exact(value) + " s are counted from there, write \"" + relative +
-         "\" in place of \"" + absolute + "\"";
+  return "; if " + text::exact(value) + " s are counted from the " +
+         (relative == "duration" ? "beginning of the phase" : "keyframe before") + ", write \"" +
+         relative + "\" in place of \"" + absolute + "\"";
 }
 
 void read_phases(const JsonNode& root, PatternScope& scope, Pattern& pattern) {

@@ -86,8 +86,8 @@ HeightField read_field(const JsonNode& node, PatternScope& scope) {
       field.heights.resize(static_cast<Eigen::Index>(rows.size()),
                            static_cast<Eigen::Index>(row.size()));
     if (static_cast<Eigen::Index>(row.size()) != field.heights.cols())
-      rows[i].complain(std::to_string(row.size()) + " heights, but the first row has " +
-                       std::to_string(field.heights.cols()));
+      rows[i].complain("this row has " + std::to_string(row.size()) +
+                       " heights, but the first row has " + std::to_string(field.heights.cols()));
     for (size_t j = 0; j < row.size(); ++j) {
       if (std::abs(row[j]) > kHighest) rows[i].complain("a height must be at most 10 m");
       field.heights(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = row[j];
@@ -135,7 +135,7 @@ What read_push(const JsonNode& node, PatternScope& scope) {
   if (const auto frame = node.find("frame"))
     push.frame = frame->one_of({"world", "link"}) == "world" ? PushFrame::world : PushFrame::link;
   if (push.frame == PushFrame::link && push.on == "cog")
-    node.at("frame").complain("\"link\" needs a link: set \"on\" to a link name");
+    node.at("frame").complain("the frame \"link\" needs a link: set \"on\" to a link name");
   push.direction = read_vector3(node.at("direction"), scope);
   const double length = push.direction.norm();
   if (!(length > 1e-9))
@@ -264,8 +264,9 @@ const DisturbanceFormat& read_format(const JsonNode& node) {
   for (const auto& [key, value] : node.members())
     if (key != "type" && key != "at" && key != "duration" &&
         std::find(format.keys.begin(), format.keys.end(), key) == format.keys.end())
-      value.complain("a disturbance of type \"" + type + "\" does not have this key; it has " +
-                     text::join(format.keys, ", ") + ", besides \"at\" and \"duration\"");
+      value.complain("a disturbance of type \"" + type +
+                     "\" does not have this key; its keys are " + text::join(format.keys, ", ") +
+                     ", besides \"at\" and \"duration\"");
   return format;
 }
 

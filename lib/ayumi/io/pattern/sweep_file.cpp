@@ -335,7 +335,7 @@ SweepStudy::SweepStudy(const std::string& text, const std::filesystem::path& pat
   document->radians_per_unit = scope.radians_per_unit;
   const auto found = root.find("sweep");
   if (!found)
-    root.complain("the study has no \"sweep\"; it says which cases are run and what is measured");
+    root.complain("the key \"sweep\" is missing; it says which cases are run and what is measured");
   const JsonNode& sweep = *found;
   sweep.expect_object();
   sweep.only_keys({"settings", "cases", "worlds", "disturbances", "measure", "thresholds"});

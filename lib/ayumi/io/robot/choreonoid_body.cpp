@@ -291,8 +291,8 @@ class BodyReader {
   void read_element(const YAML::Node& node, const std::string& type, const Isometry3d& above,
                     Use use, int depth, LinkDescription& link) {
     if (++elements_ > kMostBodyElements)
-      complain(node,
-               "more than " + std::to_string(kMostBodyElements) + " elements; simplify the body");
+      complain(node, "the body has more than " + std::to_string(kMostBodyElements) +
+                         " elements; simplify the body");
     if (!node.IsMap()) return;
     const Isometry3d at = above * pose(node);
     if (type == "RigidBody") add_mass(node, at, link);

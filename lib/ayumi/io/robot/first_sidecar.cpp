@@ -288,18 +288,17 @@ std::string profiles_text(const RobotModel& model, const RobotGuess& guess) {
     if (std::isfinite(limits.speed[i]) || std::isfinite(limits.peak_torque[i]))
       groups[{limits.speed[i], limits.peak_torque[i]}].push_back(model.dofs()[i].name);
   std::string text = remark(
-      "Motors: speed [rad/s] and peak torque [N m] at the joint, from the robot's file. The "
-      "continuous "
-      "torque, which the motor bears without a time limit, is not in it: add "
+      "Motors: speed [rad/s] and peak torque [N m] at the joint, from the robot's file. This file "
+      "does not state the continuous torque, which the motor bears without a time limit: add "
       "\"continuous_torque\" to each group.");
   for (const PlaceholderLimits& each : guess.placeholders)
     text +=
-        remark("Placeholder: the URDF states the " + each.what + " of " + each.value + " on " +
+        remark("Placeholder: the URDF states the " + each.what + " of " + each.value + " for " +
                text::counted(each.joints.size(), "joint") +
                (each.joints.size() <= 3 ? " (" + text::join(each.joints, ", ") + ")" : "") +
-               " only because the format requires a number. " +
-               (each.what == "position limits" ? "State the true ones in \"position_limits_deg\"."
-                                               : "Replace them by those of the motor."));
+               ", probably because the format requires some number. " +
+               (each.what == "position limits" ? "State the true limits in \"position_limits_deg\"."
+                                               : "Replace these limits by those of the motor."));
   if (groups.empty()) return text;
   text += "  \"profiles\": [\n    {\n      \"name\": \"urdf\",\n      \"limits\": [\n";
   size_t left = groups.size();
@@ -358,13 +357,14 @@ std::string held_text(const std::vector<std::string>& massless,
   std::string text;
   if (!massless.empty())
     text += remark(
-        "Joints that are held at 0. Guess: their links have no mass. Check whether they should "
-        "move, and give their links a mass in \"links\".");
+        "Joints that are held at 0. Guess: they do not move, because their links have no mass. "
+        "Check whether they should move; if so, give their links a mass in \"links\".");
   if (!play.empty())
-    text += remark("Joints that are held at 0: " + text::join(play, ", ") +
-                   ". Guess: they are passive, of a small range and beside a motor with the same "
-                   "axis, so they stand for the play of its gear, which is the \"backlash\" of the "
-                   "servo below. Check it by turning the joint while the motor holds.");
+    text += remark(
+        "Joints that are held at 0: " + text::join(play, ", ") +
+        ". Guess: each of these joints is passive, has a small range, and has the same axis as a "
+        "motor beside it, so it stands for the play of the gear of this motor. This play is the "
+        "\"backlash\" of the servo below. Check it by turning the joint while the motor holds.");
   return text + "  \"locked_joints\": " + joint_list(held) + ",\n";
 }
 
@@ -435,9 +435,9 @@ std::string inertias_text(const RobotDescription& robot, const std::vector<std::
   if (changed.empty()) return "";
   std::string text = remark(
       "Inertias [kg m^2]: xx, xy, xz, yy, yz, zz about the centre of mass. The robot's file states "
-      "placeholders here: inertias of bodies larger than these links, or of no body at all. Guess: "
-      "boxes with the extent of the links' shapes, and the masses of the file. Check them, or "
-      "state those of the CAD model.");
+      "placeholders here: inertias of bodies larger than these links, or inertias that no body can "
+      "have. Guess: inertias of boxes with the extent of the links' shapes and the masses of the "
+      "file. Check these values, or state those of the CAD model.");
   text += "  \"links\": {\n";
   for (const LinkDescription& link : robot.links) {
     if (std::find(changed.begin(), changed.end(), link.name) == changed.end()) continue;
@@ -511,22 +511,23 @@ FirstSidecar first_sidecar(const std::string& robot, const std::filesystem::path
         "Replace the inertia of " + text::counted(boxes.size(), "link") + " (" +
         text::join({boxes.begin(), boxes.begin() + std::min<long>(3, std::ssize(boxes))}, ", ") +
         (boxes.size() > 3 ? ", ..." : "") +
-        "): the file states placeholders, and boxes stand in their place.");
-  result.text =
-      "{\n" +
-      remark("The first sidecar of " + model.name() +
-             ", written by ayumi init. All values under \"Guess\" are to be checked; "
-             "docs/formats.md explains the keys.") +
-      "  \"format\": \"ayumi.robot/1\",\n  \"name\": " + json_text(model.name()) +
-      ",\n  \"urdf\": " + json_text(urdf_as_written) + ",\n" + packages_text(search, folder) +
-      held_text(massless, play) +
-      guessed(
-          "Facing: axis of the URDF's root link along which the robot looks; the root link of "
-          "this file is turned so that x is forward.",
-          guess.facing_reason) +
-      "  \"facing\": " + json_text(guess.facing) + ",\n" + inertias_text(guess.robot, boxes) +
-      trunk_text(model) + soles_text(model, guess) + home_text(model, guess) + aliases_text(model) +
-      servos_text(model, guess) + profiles_text(model, guess) + sensors_text(model) + "}\n";
+        "): the robot's file states placeholders, and this sidecar has the inertias of boxes in "
+        "their place.");
+  result.text = "{\n" +
+                remark("The first sidecar of " + model.name() +
+                       ", written by ayumi init. All values under \"Guess\" are to be checked; "
+                       "docs/formats.md explains the keys.") +
+                "  \"format\": \"ayumi.robot/1\",\n  \"name\": " + json_text(model.name()) +
+                ",\n  \"urdf\": " + json_text(urdf_as_written) + ",\n" +
+                packages_text(search, folder) + held_text(massless, play) +
+                guessed(
+                    "Facing: the axis of the URDF's root link along which the robot looks. Ayumi "
+                    "turns the root link so that x is forward.",
+                    guess.facing_reason) +
+                "  \"facing\": " + json_text(guess.facing) + ",\n" +
+                inertias_text(guess.robot, boxes) + trunk_text(model) + soles_text(model, guess) +
+                home_text(model, guess) + aliases_text(model) + servos_text(model, guess) +
+                profiles_text(model, guess) + sensors_text(model) + "}\n";
   result.robot = guess.robot;
   return result;
 }

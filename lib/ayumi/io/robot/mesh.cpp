@@ -40,7 +40,7 @@ constexpr bool kReaderErrors = true;  // where the sanitizer reports
 constexpr bool kReaderErrors = false;
 #endif
 
-const char* const kRemedy = "; export it again as STL, OBJ, COLLADA or glTF";
+const char* const kRemedy = "; export the mesh again as STL, OBJ, COLLADA or glTF";
 
 std::string lower_extension(const fs::path& path) {
   std::string extension = path.extension().string();

@@ -48,14 +48,14 @@ class MeshDecoder {
 
   template <typename Item>
   void take(Item* items, size_t count) {
-    if (count > left_.size() / sizeof(Item)) complain("it ends too early");
+    if (count > left_.size() / sizeof(Item)) complain("the data end too early");
     if (count > 0) std::memcpy(static_cast<void*>(items), left_.data(), count * sizeof(Item));
     left_.remove_prefix(count * sizeof(Item));
   }
 
   template <typename Item>
   void take(std::vector<Item>& items, size_t count) {
-    if (count > left_.size() / sizeof(Item)) complain("it ends too early");
+    if (count > left_.size() / sizeof(Item)) complain("the data end too early");
     items.resize(count);
     take(items.data(), count);
   }
@@ -68,7 +68,7 @@ class MeshDecoder {
     take(part.normals, head.vertices);
     take(part.uvs, head.uvs);
     take(part.triangles, head.triangles);
-    if (head.texture > left_.size()) complain("it ends too early");
+    if (head.texture > left_.size()) complain("the data end too early");
     part.texture_file = left_.substr(0, head.texture);
     left_.remove_prefix(head.texture);
     part.has_color = head.has_color != 0;

@@ -139,8 +139,9 @@ std::vector<std::string> MeshPlaces::notes() const {
         text::join(missing_, ", ") +
         "; add the files or correct the names; --package-path names the folder with the packages");
   if (!renamed_.empty())
-    notes.push_back("meshes whose names differ by capitals were taken: " +
-                    text::join(renamed_, ", ") + "; correct the names in the robot's file");
+    notes.push_back(
+        "these mesh files were taken, although their names differ in upper and lower case: " +
+        text::join(renamed_, ", ") + "; correct the names in the robot's file");
   return notes;
 }
 

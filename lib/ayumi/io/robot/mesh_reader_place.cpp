@@ -74,7 +74,7 @@ fs::path find_mesh_reader() {
     searched.push_back(place.string());
   }
   fail(ErrorCode::bad_file, "the program " + std::string(kReaderName) +
-                                ", which reads meshes, is not there; looked for " +
+                                ", which reads meshes, was not found; Ayumi looked for " +
                                 text::join(searched, ", ") +
                                 "; install Ayumi as a whole, or set the environment variable " +
                                 kReaderVariable + " to the path of the program");

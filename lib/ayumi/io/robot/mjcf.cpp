@@ -515,7 +515,7 @@ class MjcfReader {
       robot_.assumptions.push_back("joints without an actuator are passive: " +
                                    text::join(passive, ", "));
     if (!without_force.empty())
-      robot_.assumptions.push_back("actuators without a limit of their force: " +
+      robot_.assumptions.push_back("these actuators have no limit of their force: " +
                                    text::join(without_force, ", "));
   }
 
@@ -567,11 +567,11 @@ namespace ayumi {
 
 RobotDescription parse_mjcf(const std::string&, const std::filesystem::path& path,
                             const std::vector<std::filesystem::path>&) {
-  fail(ErrorCode::bad_file,
-       path.string() +
-           ": this is an MJCF model, which Ayumi reads through MuJoCo, and this program was built "
-           "without it. To get it: sudo apt-get install libmujoco-dev, then configure and build "
-           "again; or convert the model to URDF");
+  fail(ErrorCode::bad_file, path.string() +
+                                ": this is an MJCF model, which Ayumi reads through MuJoCo, but "
+                                "this program was built without MuJoCo. To get MuJoCo: sudo "
+                                "apt-get install libmujoco-dev, then configure and build "
+                                "again; or convert the model to URDF");
 }
 
 }  // namespace ayumi

@@ -87,7 +87,7 @@ class Cleaner {
     read_actuators(root);
     keep_known(root);
     for (auto& [what, count] : unknown_)
-      text_.notes.push_back("this MuJoCo does not know " + what + " (" +
+      text_.notes.push_back("this version of MuJoCo does not know " + what + " (" +
                             text::counted(count, "place") + "), which is left out");
     TiXmlPrinter printer;
     document.Accept(&printer);
@@ -101,9 +101,9 @@ class Cleaner {
     for (TiXmlElement* child = parent->FirstChildElement(); child;) {
       TiXmlElement* const next = child->NextSiblingElement();
       if (++elements_ > kMostMjcfElements)
-        complain_xml(
-            file.string(), child,
-            "more than " + std::to_string(kMostMjcfElements) + " elements; simplify the model");
+        complain_xml(file.string(), child,
+                     "the model has more than " + std::to_string(kMostMjcfElements) +
+                         " elements; simplify the model");
       if (child->ValueStr() == "include") {
         const char* name = child->Attribute("file");
         if (!name) complain_xml(file.string(), child, "<include> has no attribute 'file'");
@@ -352,7 +352,7 @@ class Cleaner {
     if (others > 0)
       text_.notes.push_back(
           text::counted(others, "actuator") +
-          " of tendons, sites or bodies left out, because only servos of joints are simulated");
+          " of tendons, sites or bodies are left out, because only servos of joints are simulated");
   }
 
   static bool carries_bodies(const TiXmlElement* element) {
@@ -382,7 +382,7 @@ class Cleaner {
         if (carries_bodies(child))
           complain_xml(
               path_.string(), child,
-              "this MuJoCo does not know <" + child->ValueStr() +
+              "this version of MuJoCo does not know <" + child->ValueStr() +
                   ">, which contains bodies of the robot; move these bodies out of this element");
         ++unknown_["<" + child->ValueStr() + ">"];
         element->RemoveChild(child);

@@ -106,7 +106,7 @@ std::vector<RobotEntry> find_robots(const RobotSearch& search) {
 RobotDescription load_robot_description(const std::string& name_or_path, const RobotSearch& search,
                                         const LoadOptions& options) {
   if (name_or_path.empty())
-    fail(ErrorCode::bad_file, "robot '': a name, folder, sidecar or URDF is needed");
+    fail(ErrorCode::bad_file, "robot '': a name, folder, sidecar or robot file is needed");
   const fs::path file = find_file(name_or_path, search);
   const std::string bytes = read_file(file);
   const bool sidecar = robot_format(bytes, file) == RobotFormat::sidecar;
@@ -117,7 +117,7 @@ RobotDescription load_robot_description(const std::string& name_or_path, const R
   std::error_code ignored;
   if (!sidecar && fs::is_regular_file(file.parent_path() / kSidecarName, ignored))
     robot.assumptions.push_back("the " + std::string(kSidecarName) +
-                                " beside this file is not used; name the folder to use it");
+                                " beside this file is not used; to use both, name the folder");
   if (!options.guess) return robot;
   if (!sidecar) {
     hold_joints_without_mass(robot);

@@ -426,7 +426,7 @@ void find_soles(RobotGuess& guess) {
   const std::vector<Isometry3d> poses = body_poses(model, zero_posture(model));
   std::vector<Foot> feet = find_feet(model, poses);
   if (feet.empty()) {
-    robot.assumptions.push_back("no feet were recognised: the robot has no soles");
+    robot.assumptions.push_back("no feet were recognised, so the robot has no soles");
     return;
   }
   if (poses[feet[0].body].translation().y() < poses[feet[1].body].translation().y())
@@ -439,7 +439,7 @@ void find_soles(RobotGuess& guess) {
         extent(sole).maxCoeff() > kLargestSole) {
       robot.assumptions.push_back(
           "the " + name + " foot " + sole.link +
-          " has no flat underside with every joint at 0: the robot has no soles");
+          " has no flat underside with every joint at 0, so the robot has no soles");
       return;
     }
     soles[name] = sole;
@@ -454,10 +454,10 @@ void find_soles(RobotGuess& guess) {
   const bool collisions = std::any_of(
       model.links().begin(), model.links().end(),
       [&](const Link& link) { return link.body == feet[0].body && !link.collisions.empty(); });
-  guess.sole_reason = {"hull of everything of the foot's " +
+  guess.sole_reason = {"the outline is the hull of all points of the foot's " +
                            std::string(collisions ? "collision shapes" : "visual shapes") +
-                           " that is at most 1 mm above the ground; the outline has at most " +
-                           std::to_string(kMostCorners) + " corners and lies inside this hull",
+                           " that are at most 1 mm above the ground, reduced to at most " +
+                           std::to_string(kMostCorners) + " corners inside this hull",
                        "that this is the outline of the part of the foot that touches the ground; "
                        "when in doubt, make "
                        "the outline smaller"};
@@ -546,11 +546,13 @@ bool balance(RobotGuess& guess, const VectorXd& zero) {
                          ik.positive_bends_forward(Side::left) == (home.theta[knee] > zero[knee]) ||
                          reach < 0.99 * straight;
       guess.home_reason = {
-          "found by balancing: level soles, legs of " + text::fixed(100 * share, 1) +
-              " % of their straight length, COG " + text::fixed(1e3 * target.cog.z(), 0) +
-              " mm high over the middle of the soles, every joint inside its limits" +
-              (human ? ", knees that bend forward like a human's"
-                     : "; the limits leave the knees no room to come forward, so they go back"),
+          "the robot was balanced: the soles are level, the legs have " +
+              text::fixed(100 * share, 1) + " % of their straight length, the COG is " +
+              text::fixed(1e3 * target.cog.z(), 0) +
+              " mm high over the middle of the soles, and every joint is inside its limits" +
+              (knee < 0 ? ""
+               : human  ? "; the knees bend forward like a human's"
+                       : "; the limits leave the knees no room to bend forward, so they bend back"),
           "that the robot stands like this, and that the arms are clear of the body"};
       return true;
     }
@@ -713,8 +715,8 @@ bool find_home(RobotGuess& guess) {
   }
   if (!balance(with_arms, start)) return true;
   guess = std::move(with_arms);
-  guess.home_reason.why +=
-      "; the arms come too near to the legs, so they are moved aside: " + text::join(names, ", ");
+  guess.home_reason.why += "; the arms come too near to the legs, so the arms are moved aside: " +
+                           text::join(names, ", ");
   return true;
 }
 
@@ -792,13 +794,13 @@ void find_servos(RobotGuess& guess) {
   }
   robot.servos_inferred = inferred > 0;
   if (inferred == 0) {
-    guess.servo_reason = {"the actuators of the robot's file state them",
+    guess.servo_reason = {"the actuators in the robot's file state these constants",
                           "that the robot's own servos have these gains"};
     return;
   }
   guess.servo_reason = {
       "kp is the effort limit of the joint divided by " + text::brief(kFullEffortError) +
-          " rad; for legs it is at least " + text::brief(kLegStiffness) +
+          " rad; for legs kp is at least " + text::brief(kLegStiffness) +
           " m g z = " + text::brief(kLegStiffness * weight * z, 3) +
           " N m/rad (weight times COG height), so that the legs hold the robot; kd = " +
           text::brief(kDampingTime * std::sqrt(z / kGravity), 2) + " s times kp" +
@@ -880,8 +882,8 @@ std::vector<std::string> hold_play_of_gears(RobotDescription& robot) {
   }
   if (!held.empty())
     robot.assumptions.push_back(
-        "passive joints of a small range beside a motor with the same axis are the play of its "
-        "gear, so they are held at 0, and the servos of " +
+        "passive joints with a small range and the axis of a motor beside them stand for the play "
+        "of the gear of this motor, so these joints are held at 0, and the servos of " +
         text::join(driven, ", ") + " have this backlash");
   return held;
 }
@@ -1001,7 +1003,7 @@ RobotGuess guess_robot(RobotDescription robot) {
   for (const PlaceholderLimits& each : guess.placeholders)
     files.assumptions.push_back(each.what + " of " + each.value + " on " +
                                 std::to_string(each.joints.size()) +
-                                " joints are taken for placeholders");
+                                " joints are probably placeholders");
   if (files.profiles.empty())
     files.assumptions.push_back(
         "actuator limits: velocity and effort of the URDF; a value of 0 means that there is no "

@@ -142,7 +142,7 @@ class SdfReader {
            model = model->NextSiblingElement("model"))
         models.push_back(model);
     }
-    if (models.empty()) complain(root, "there is no <model> in it");
+    if (models.empty()) complain(root, "the file has no <model>");
     const auto* best =
         *std::max_element(models.begin(), models.end(),
                           [](const auto* a, const auto* b) { return size_of(a) < size_of(b); });
@@ -151,8 +151,7 @@ class SdfReader {
       if (each != best) others.push_back(xml_attribute(each, "name", "a model without name"));
     if (!others.empty())
       robot_.assumptions.push_back(
-          "of several models, the one with the most joints was read; left "
-          "out: " +
+          "of several models, the one with the most joints was read; these are left out: " +
           text::join(others, ", "));
     return best;
   }

@@ -38,11 +38,11 @@ constexpr Bounds kTorque = {0, kMostTorque, "N m"};
 constexpr Bounds kDelay = {0, kMostServoDelay, "s", "; state it in seconds: 3.7 ms is 0.0037"};
 constexpr Bounds kRate = {0, kMostRate, "rad/s"};
 constexpr Bounds kExponent = {0.1, 10, ""};
-constexpr Bounds kPlay = {0, kMostServoPlay, "rad", "; in degrees the key ends in _deg"};
+constexpr Bounds kPlay = {0, kMostServoPlay, "rad", "; for degrees, use the key that ends in _deg"};
 constexpr Bounds kPlayDeg = {0, kMostServoPlay / kRadPerDegree, "deg"};
-constexpr Bounds kOffset = {
-    -kMostOffset, kMostOffset, "rad",
-    "; in degrees the key ends in _deg. For a larger offset, mount the horn in another position"};
+constexpr Bounds kOffset = {-kMostOffset, kMostOffset, "rad",
+                            "; for degrees, use the key that ends in _deg. For a larger offset, "
+                            "mount the horn in another position"};
 constexpr Bounds kOffsetDeg = {-kMostOffset / kRadPerDegree, kMostOffset / kRadPerDegree, "deg",
                                "; for a larger offset, mount the horn in another position"};
 constexpr Bounds kPositionGain = {0, 1e5, "1/s"};
@@ -220,7 +220,7 @@ void read_speed_loop(const JsonNode& group, ServoDescription& servo) {
 /// Keys that state the same thing in two ways.
 void refuse_both(const JsonNode& group, const char* one, const char* other) {
   if (group.has(one) && group.has(other))
-    group.complain("it has both '" + std::string(one) + "' and '" + other +
+    group.complain("the group has both '" + std::string(one) + "' and '" + other +
                    "', which state the same thing; keep one");
 }
 
@@ -249,13 +249,14 @@ void check_group(const JsonNode& group) {
 void check_servo(const JsonNode& group, const std::string& joint, const ServoDescription& servo) {
   if (servo.stribeck_torque > 0 && servo.stribeck_rate <= 0)
     group.complain("joint " + joint +
-                   ": stribeck_torque needs a stribeck_rate above 0, the rate at which it fades");
+                   ": stribeck_torque needs a stribeck_rate above 0, the joint rate at which this "
+                   "friction fades");
   if (servo.stribeck_rate <= 0 &&
       (servo.load.motor_stribeck > 0 || servo.load.external_stribeck > 0 ||
        servo.load.motor_quadratic > 0 || servo.load.external_quadratic > 0))
     group.complain("joint " + joint +
-                   ": the load friction at rest needs a stribeck_rate above 0, the rate at which "
-                   "it fades");
+                   ": the load friction at rest needs a stribeck_rate above 0, the joint rate at "
+                   "which this friction fades");
   if (servo.speed_command_limit > 0 && servo.kd <= 0)
     group.complain("joint " + joint +
                    ": speed_command_limit needs an inner speed loop; state position_gain and "

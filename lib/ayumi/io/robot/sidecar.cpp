@@ -223,7 +223,8 @@ void read_layouts(const JsonNode& node, RobotDescription& robot) {
     read_columns(item.at("columns"), layout);
     layout.motors = item.at("motors").integer();
     if (layout.motors < 1 || layout.motors > kMostMotors)
-      item.at("motors").complain(std::to_string(layout.motors) + " motors; expected 1 to " +
+      item.at("motors").complain(std::to_string(layout.motors) +
+                                 " motors are not possible; expected 1 to " +
                                  std::to_string(kMostMotors));
     if (const auto unit = item.find("unit"))
       layout.radians = unit->one_of({"counts", "rad"}) == "rad";
@@ -312,7 +313,7 @@ void read_sensors(const JsonNode& node, SensorDescription& sensors) {
     sensors.force_readings = readings->integer();
     if (sensors.force_readings < 1 || sensors.force_readings > kMostForceReadings)
       readings->complain("a mean of " + std::to_string(sensors.force_readings) +
-                         " readings; expected 1 (each reading as it is) to " +
+                         " readings is not possible; expected 1 (every reading by itself) to " +
                          std::to_string(kMostForceReadings));
   }
   if (const auto cells = node.find("force_cells")) read_force_cells(*cells, sensors.force_cells);

@@ -283,8 +283,8 @@ UrdfText check_urdf(const std::string& bytes, const std::string& file) {
   for (auto* each = root->FirstChildElement(); each; each = each->NextSiblingElement()) {
     if (each->ValueStr() == "link") checker.link(each, tree, text);
     if (tree.links.size() > kMostLinks)
-      checker.complain(each,
-                       "more than " + std::to_string(kMostLinks) + " links; simplify the robot");
+      checker.complain(each, "the robot has more than " + std::to_string(kMostLinks) +
+                                 " links; simplify the robot");
     if (each->ValueStr() == "joint") checker.joint(each, tree, text);
     if (each->ValueStr() == "material") checker.numbers(each, "material: ");
   }

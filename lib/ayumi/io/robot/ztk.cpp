@@ -107,8 +107,8 @@ class ZtkReader {
       const size_t colon = text.find(':');
       if (colon != std::string_view::npos && std::isalpha(static_cast<unsigned char>(text[0]))) {
         if (++fields > kMostZtkFields)
-          complain(line,
-                   "more than " + std::to_string(kMostZtkFields) + " fields; simplify the shapes");
+          complain(line, "the file has more than " + std::to_string(kMostZtkFields) +
+                             " fields; simplify the shapes");
         all.push_back({std::string(trimmed(text.substr(0, colon))),
                        std::string(trimmed(text.substr(colon + 1))), line});
       } else if (all.empty()) {
@@ -138,7 +138,8 @@ class ZtkReader {
       values.push_back(value);
     }
     if (values.size() != count)
-      complain(field.line, field.key + ": " + text::counted(count, "number") + " needed, found " +
+      complain(field.line, field.key + ": " + text::counted(count, "number") +
+                               (count == 1 ? " is" : " are") + " needed, found " +
                                std::to_string(values.size()));
     return values;
   }
@@ -286,7 +287,7 @@ class ZtkReader {
     const size_t index = std::string("xyz").find(axis.empty() ? '?' : axis[0]);
     const auto found = shapes_.find(of);
     if (found == shapes_.end() || index == std::string::npos)
-      complain(section.line, "mirror needs an earlier shape and x, y or z");
+      complain(section.line, "`mirror` needs the name of an earlier shape, and the axis x, y or z");
     PlacedShape copy = found->second;
     copy.name = placed.name;
     if (placed.has_color) copy.color = placed.color, copy.has_color = true;
@@ -346,7 +347,7 @@ class ZtkReader {
       const Eigen::Matrix3d turn = joint.origin.linear();
       if (!((turn.transpose() * turn - Eigen::Matrix3d::Identity()).norm() < kRotation) ||
           turn.determinant() < 0)
-        complain(frame->line, "the first three columns of `frame` are no rotation");
+        complain(frame->line, "the first three columns of `frame` are not a rotation");
       joint.origin.linear() = Eigen::Quaterniond(turn).normalized().toRotationMatrix();
     }
     const Field* const type =

@@ -27,7 +27,7 @@ void require_robot(const RobotModel& model, const SimulationLog& log, const std:
   if (log.samples.empty()) fail(ErrorCode::bad_file, file + ": the log has no samples");
   if (log.joints != model.dof_names())
     fail(ErrorCode::bad_file, file + ": the log has the joints " + text::join(log.joints, ", ") +
-                                  ", robot '" + model.name() + "' has " +
+                                  ", but robot '" + model.name() + "' has " +
                                   text::join(model.dof_names(), ", ") +
                                   "; name the robot of the run with --robot");
   RobotData data(model);
@@ -35,8 +35,8 @@ void require_robot(const RobotModel& model, const SimulationLog& log, const std:
   if (!((data.cog - log.samples.front().cog).norm() < kSameRobot))
     fail(ErrorCode::bad_file,
          file + ": the COG of robot '" + model.name() +
-             "' differs from the COG in the log at the same posture; this is another "
-             "robot, or it has changed: run the pattern again");
+             "' differs from the COG in the log at the same posture; this is another robot, or the "
+             "robot has changed since the run; run the pattern again");
 }
 
 // A joint vector is listed for revolute joints; a prismatic joint has another unit.

@@ -303,12 +303,14 @@ std::string decompress_samples(std::string_view bytes, size_t columns, size_t ro
                                const std::string& file) {
   const size_t whole = ZSTD_findFrameCompressedSize(bytes.data(), bytes.size());
   if (ZSTD_isError(whole) != 0)
-    fail(ErrorCode::bad_file, file + ": truncated or damaged: the samples (zstd) are incomplete");
-  if (whole != bytes.size())
     fail(ErrorCode::bad_file,
-         file + ": damaged: " + std::to_string(bytes.size() - whole) + " bytes after the samples");
+         file + ": the file is truncated or damaged, because the samples (zstd) are incomplete");
+  if (whole != bytes.size())
+    fail(ErrorCode::bad_file, file + ": the file is damaged: there are " +
+                                  std::to_string(bytes.size() - whole) +
+                                  " bytes after the samples");
   const auto stop = [&](const std::string& what) {
-    fail(ErrorCode::bad_file, file + ": damaged: " + what);
+    fail(ErrorCode::bad_file, file + ": the file is damaged: " + what);
   };
   const std::string size =
       std::to_string(rows) + " rows of " + std::to_string(columns) + " columns";

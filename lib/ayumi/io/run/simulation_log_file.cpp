@@ -185,7 +185,7 @@ void require_finite(std::string_view values, const std::vector<std::string>& col
     double value = 0;
     std::memcpy(&value, values.data() + i * sizeof value, sizeof value);
     if (!std::isfinite(value))
-      stop("damaged: row " + std::to_string(i / columns.size()) + ", column '" +
+      stop("the file is damaged: row " + std::to_string(i / columns.size()) + ", column '" +
            columns[i % columns.size()] + "' is not a finite number");
   }
 }
@@ -248,10 +248,10 @@ SimulationLog parse_log(const std::string& bytes, const std::string& file) {
   const size_t begin = kPrefix + (is_compressed ? kChecksum : 0);
   const size_t length = word_at(bytes, 12);
   if (bytes.size() < begin || length > bytes.size() - begin)
-    stop("truncated: the header is cut off");
+    stop("the file is truncated: the header is incomplete");
   const std::string text = bytes.substr(begin, length);
   if (is_compressed && word_at(bytes, kPrefix) != crc32_of(text))
-    stop("damaged: the checksum of the header is wrong");
+    stop("the file is damaged: the checksum of the header is wrong");
   const std::string place = file + " (header)";
   const Json document = parse_json(text, place, ErrorCode::bad_file);
   const JsonNode header = root_of(document, place, ErrorCode::bad_file);
@@ -273,7 +273,8 @@ SimulationLog parse_log(const std::string& bytes, const std::string& file) {
     values = decompressed;
   }
   if (rows * row_bytes != values.size())
-    stop((rows * row_bytes > values.size() ? "truncated: " : "damaged: ") +
+    stop(std::string("the file is ") +
+         (rows * row_bytes > values.size() ? "truncated" : "damaged") + ": it has " +
          std::to_string(values.size()) + " bytes of samples, but the header announces " +
          std::to_string(rows) + " rows of " + std::to_string(row_bytes) + " bytes");
   require_finite(values, columns, stop);

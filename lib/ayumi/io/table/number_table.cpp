@@ -28,7 +28,7 @@ class CsvParser {
 
   NumberTable whole() {
     if (rest_.find('\0') != std::string_view::npos)
-      fail(ErrorCode::bad_file, file_ + ": is a binary file, but a CSV table is needed");
+      fail(ErrorCode::bad_file, file_ + ": this is a binary file, but a CSV table is needed");
     for (std::string_view line; next(line);) {
       if (line.empty()) continue;
       if (line.front() == '#') {
@@ -100,8 +100,8 @@ class CsvParser {
   }
 
   std::string width_message(std::string_view line) const {
-    return text::counted(std::count(line.begin(), line.end(), ',') + 1, "value") +
-           " in the row, but the head row names " + text::counted(table_.columns.size(), "column");
+    return "the row has " + text::counted(std::count(line.begin(), line.end(), ',') + 1, "value") +
+           ", but the head row names " + text::counted(table_.columns.size(), "column");
   }
 
   std::string_view rest_;

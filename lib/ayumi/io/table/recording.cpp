@@ -122,8 +122,8 @@ BareRows sequence_rows(std::string_view rest, const std::string& file, size_t de
     if (cells[1] == "2") {
       if (columns != 0 && cells.size() != columns)
         complain(file, line,
-                 std::to_string(cells.size()) + " columns, but the rows before have " +
-                     std::to_string(columns));
+                 "the row has " + std::to_string(cells.size()) +
+                     " columns, but the rows before have " + std::to_string(columns));
       columns = cells.size();
       if (columns < 2 + devices)
         complain(file, line,
@@ -165,11 +165,11 @@ BareRows bare_rows(const std::string& bytes, const std::string& file, size_t nee
     if (columns == 0) columns = cells.size();
     if (cells.size() != columns)
       complain(file, line,
-               std::to_string(cells.size()) + " columns, but the rows before have " +
-                   std::to_string(columns));
+               "the row has " + std::to_string(cells.size()) +
+                   " columns, but the rows before have " + std::to_string(columns));
     if (columns < needed)
       complain(file, line,
-               std::to_string(columns) + " columns, but " + what + " needs " +
+               "the row has " + std::to_string(columns) + " columns, but " + what + " needs " +
                    std::to_string(needed) + "; is this a recording of another robot?");
     result.rows.push_back(numbers_of(cells, 0, columns, file, line));
     result.lines.push_back(line);
@@ -460,10 +460,10 @@ SensorTable named_sensors(const std::string& bytes, const std::string& file,
   result.acceleration = named_axes(table, "acc", "m/s^2");
   result.gyro = named_axes(table, "gyro", "rad/s");
   if (result.foot_load.size() == 0 && result.acceleration.size() == 0 && result.gyro.size() == 0)
-    complain(
-        file,
-        "no column is a sensor; known are fz.left[N] with fz.right[N], acc.x[m/s^2] with y and "
-        "z, gyro.x[rad/s] with y and z");
+    complain(file,
+             "no column has the name of a sensor; the names are fz.left[N] and fz.right[N], "
+             "acc.x[m/s^2], acc.y[m/s^2] and acc.z[m/s^2], and gyro.x[rad/s], gyro.y[rad/s] and "
+             "gyro.z[rad/s]");
   return result;
 }
 

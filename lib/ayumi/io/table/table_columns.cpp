@@ -80,9 +80,8 @@ NumberTable parse_json_table(const std::string& bytes, const std::string& file) 
   for (size_t r = 0; r < rows.size(); ++r) {
     rows[r].expect_array();
     if (rows[r].size() != table.columns.size())
-      rows[r].complain(text::counted(rows[r].size(), "value") +
-                       " in the row, but \"columns\" names " +
-                       std::to_string(table.columns.size()));
+      rows[r].complain("the row has " + text::counted(rows[r].size(), "value") +
+                       ", but \"columns\" names " + std::to_string(table.columns.size()));
     for (Eigen::Index c = 0; c < width; ++c) {
       const Json& cell = rows[r].value()[static_cast<size_t>(c)];
       if (!cell.is_number()) rows[r].items()[static_cast<size_t>(c)].number();
@@ -139,9 +138,9 @@ double tick_of(const NumberTable& table, const TableLayout& layout, const std::s
       stop(file, "row " + std::to_string(k + 1) + ": time " + text::exact(t[k]) +
                      " s does not come after " + text::exact(t[k - 1]) + " s");
     if (std::abs(t[k] - static_cast<double>(k) * dt) > 1e-6 + 1e-4 * dt)
-      stop(file, "row " + std::to_string(k + 1) + ": time " + text::exact(t[k]) + " s, expected " +
+      stop(file, "row " + std::to_string(k + 1) + ": time " + text::exact(t[k]) + " s, but " +
                      text::exact(static_cast<double>(k) * dt) +
-                     " s (rows start at 0 and are evenly spaced)");
+                     " s is expected, because the rows start at 0 s and are evenly spaced");
   }
   return dt;
 }

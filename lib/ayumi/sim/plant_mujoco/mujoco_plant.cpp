@@ -274,8 +274,8 @@ MujocoPlant::MujocoPlant(const RobotModel& model, const ActuatorLimits& limits, 
   for (const Dof& dof : model.dofs())
     if (const auto j = static_cast<size_t>(&dof - model.dofs().data());
         limits.servo[j].kp <= 0 && !limits.has_servo[j])
-      fail(ErrorCode::bad_model,
-           model.name() + ": joint " + dof.name + " has no servo (kp); give it one in the sidecar");
+      fail(ErrorCode::bad_model, model.name() + ": joint " + dof.name +
+                                     " has no servo; state kp of this joint in the sidecar");
   for (int j = 0; j < model.dof_count(); ++j)
     if (const ServoDescription& servo = limits.servo[static_cast<size_t>(j)];
         mujoco_has_gear(servo) && servo.rotor_inertia <= 0)
