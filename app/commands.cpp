@@ -385,7 +385,7 @@ int parse_and_run(int argc, char** argv) {
 
 int run(int argc, char** argv) {
   fill_closed_streams();
-  watch_for_stop();
+  watch_for_signals();
   // Libraries take memory also while they clean up after an error, where no exception may leave.
   std::set_terminate([] {
     try {

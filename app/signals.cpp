@@ -33,7 +33,7 @@ void on_impatience(int) {
 
 }  // namespace
 
-void watch_for_stop() {
+void watch_for_signals() {
   sigevent event = {};
   event.sigev_notify = SIGEV_SIGNAL;
   event.sigev_signo = SIGALRM;
@@ -41,6 +41,7 @@ void watch_for_stop() {
   has_timer = timer_create(CLOCK_MONOTONIC, &event, &impatience) == 0;
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 bool stop_requested() { return stop_signal != 0; }

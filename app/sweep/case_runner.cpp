@@ -211,6 +211,11 @@ std::string CaseRunner::robot_name(const std::string& word) const {
                                                                               : word;
 }
 
+std::string CaseRunner::robot_of_case(const Settings& settings, const Pattern& pattern) const {
+  const std::string word = word_of(settings, "robot");
+  return word.empty() ? robot_of(pattern) : robot_name(word);
+}
+
 CaseRunner::CaseRunner(const Context& context, const SweepStudy& study)
     : context_(&context), study_(&study), columns_(result_columns(study.measures())) {
   const double begin = thread_seconds();
@@ -279,9 +284,9 @@ void CaseRunner::refuse_unused_gain(const std::string& gain, const std::string& 
     const Settings settings = study_->settings(i);
     if (!settings.contains(gain) || !settings.contains("pattern")) continue;
     const Pattern& pattern = patterns_.at(word_of(settings, "pattern"));
-    std::string law = word_of(settings, "controller"), robot = word_of(settings, "robot");
+    std::string law = word_of(settings, "controller");
     if (law.empty()) law = name_of(pattern.controller.type);
-    robot = robot.empty() ? robot_of(pattern) : robot_name(robot);
+    const std::string robot = robot_of_case(settings, pattern);
     const auto model = robots_.find(robot);
     if (model == robots_.end() || !tried.emplace(law, robot).second) continue;
     try {
@@ -349,8 +354,7 @@ std::shared_ptr<CaseRunner::Prepared> CaseRunner::prepared(const Settings& setti
                                          "pattern in the case or in /sweep/settings");
       Pattern pattern =
           set.empty() ? patterns_.at(word) : read_given_pattern(pattern_file(word), set);
-      const std::string robot = word_of(settings, "robot");
-      const std::string name = robot.empty() ? robot_of(pattern) : robot_name(robot);
+      const std::string name = robot_of_case(settings, pattern);
       const auto model = robots_.find(name);
       Task task = load_task(
           std::move(pattern),
@@ -617,6 +621,12 @@ CaseRow CaseRunner::run(long number, const Progress& progress) const {
   }
   row.figures.resize(columns_.size());
   return row;
+}
+
+RobotModel CaseRunner::robot_to_draw(long number) const {
+  const Settings settings = study_->settings(number);
+  const Pattern& pattern = patterns_.at(word_of(settings, "pattern"));
+  return load_robot(robot_of_case(settings, pattern), robot_search(*context_), {.meshes = true});
 }
 
 SimulationLog CaseRunner::simulate(long number, std::shared_ptr<const Task>& task) const {

@@ -65,6 +65,9 @@ class CaseRunner {
   /// The same simulation with its log, for a replay. `task` is what it was made of.
   SimulationLog simulate(long number, std::shared_ptr<const Task>& task) const;
 
+  /// The robot of a case with everything that only pictures need. Throws as load_robot().
+  RobotModel robot_to_draw(long number) const;
+
   /// Processor time [s] that all threads used in run(), and the part of it with which Ayumi
   /// simulated, checked or repaired.
   double seconds() const { return 1e-9 * static_cast<double>(nanoseconds_); }
@@ -84,6 +87,8 @@ class CaseRunner {
   void make_case(long number, const Settings& settings, OneCase& made) const;
   std::filesystem::path pattern_file(const std::string& word) const;
   std::string robot_name(const std::string& word) const;
+  /// The robot of a case that has this pattern.
+  std::string robot_of_case(const Settings& settings, const Pattern& pattern) const;
   void refuse_unused() const;
   void refuse_unused_gain(const std::string& gain, const std::string& pointer) const;
   void refuse_unusable_uncertainty() const;

@@ -22,7 +22,7 @@ namespace {
 constexpr long kShownValues = 24;
 /// Intervals of a setting with more values. Chosen: with 100 cases each has about 12.
 constexpr int kIntervals = 8;
-/// Maps on one page. Chosen: all pairs of five settings.
+/// Maps on one page. Chosen: all pairs of five settings. Of more pairs, those with the most cells.
 constexpr size_t kMostMaps = 10;
 /// Rows of the table of the worst cases, and of the cases that could not be run. Chosen: more are
 /// in the database.
@@ -227,23 +227,28 @@ std::string maps_section(const ResultsDatabase& results, const std::vector<Group
     quantities.push_back({"Inconsistent, %", "consistent = 0", 100});
   if (has_column(head, "push_worst_B"))
     quantities.push_back({"Largest push in the worst direction, B", "push_worst_B", 1});
-  std::string out;
-  size_t maps = 0;
+  std::vector<std::pair<const Grouping*, const Grouping*>> pairs;
   for (size_t i = 0; i < usable.size(); ++i)
-    for (size_t j = i + 1; j < usable.size(); ++j) {
-      if (maps++ >= kMostMaps) continue;
-      std::string pair;
-      for (const Quantity& q : quantities)
-        pair += map_table(results, *usable[j], *usable[i], q.what, q.expression, q.scale);
-      if (!pair.empty())
-        out += "<h3>" + html::escaped(usable[i]->axis) + " (down) and " +
-               html::escaped(usable[j]->axis) + " (across)</h3>\n<div class=\"pair\">" + pair +
-               "</div>\n";
-    }
+    for (size_t j = i + 1; j < usable.size(); ++j) pairs.emplace_back(usable[i], usable[j]);
+  std::stable_sort(pairs.begin(), pairs.end(), [](const auto& a, const auto& b) {
+    return a.first->order.size() * a.second->order.size() >
+           b.first->order.size() * b.second->order.size();
+  });
+  std::string out;
+  for (size_t i = 0; i < std::min(pairs.size(), kMostMaps); ++i) {
+    const Grouping &down = *pairs[i].first, &across = *pairs[i].second;
+    std::string maps;
+    for (const Quantity& q : quantities)
+      maps += map_table(results, across, down, q.what, q.expression, q.scale);
+    if (!maps.empty())
+      out += "<h3>" + html::escaped(down.axis) + " (down) and " + html::escaped(across.axis) +
+             " (across)</h3>\n<div class=\"pair\">" + maps + "</div>\n";
+  }
   if (out.empty()) return "";
-  if (maps > kMostMaps)
-    out += "<p class=\"soft\">" + std::to_string(maps - kMostMaps) +
-           " more pairs of settings are not drawn.</p>\n";
+  if (pairs.size() > kMostMaps)
+    out += "<p class=\"soft\">The maps show the " + std::to_string(kMostMaps) +
+           " pairs of settings with the most values. " +
+           std::to_string(pairs.size() - kMostMaps) + " more pairs are not drawn.</p>\n";
   return html::section("maps", "Maps of two settings", out);
 }
 
@@ -279,7 +284,8 @@ std::string replay_of(const CaseRunner& runner, const Json& row) {
   input.title = title;
   const bool open = log.controller && log.controller->kind == ControllerKind::none;
   input.runs = {{open ? "open loop" : "closed loop", &log}};
-  const Report report = make_report(task->robot, input, {.max_bytes = kReplayBytes});
+  const Report report =
+      make_report(runner.robot_to_draw(number), input, {.max_bytes = kReplayBytes});
   std::string words = "Case " + std::to_string(number) + ": " + cell_text(row.at("outcome"));
   for (const std::string& axis : runner.study().axes())
     if (row.contains(axis)) words += ", " + html::escaped(axis) + " " + cell_text(row.at(axis));

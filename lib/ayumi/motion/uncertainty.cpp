@@ -15,12 +15,14 @@ double quantile(const Distribution& d, double u) {
     case Distribution::Kind::normal:
       return d.mean + d.deviation * normal_quantile(u);
     case Distribution::Kind::truncated: {
-      const double low = normal_probability((d.low - d.mean) / d.deviation);
-      const double high = normal_probability((d.high - d.mean) / d.deviation);
+      // Probabilities near 0 are exact and those near 1 are not, so a range above the mean is drawn
+      // by its mirror image.
+      const double side = d.low > d.mean ? -1 : 1;
+      const double low = normal_probability(side * (d.low - d.mean) / d.deviation);
+      const double high = normal_probability(side * (d.high - d.mean) / d.deviation);
       const double p = low + u * (high - low);
-      if (!(p > 0)) return d.low;
-      if (!(p < 1)) return d.high;
-      return std::clamp(d.mean + d.deviation * normal_quantile(p), d.low, d.high);
+      if (!(p > 0 && p < 1)) return side * (p - 0.5) < 0 ? d.low : d.high;
+      return std::clamp(d.mean + side * d.deviation * normal_quantile(p), d.low, d.high);
     }
     case Distribution::Kind::choice: {
       const auto weight = [&](size_t i) { return d.weights.empty() ? 1.0 : d.weights[i]; };

@@ -443,9 +443,10 @@ void draw_panel(Drawing& drawing, const Axes& axes, const PanelPlan& panel,
     const LineStyle style = run_style(i, runs.size());
     draw_line(drawing, axes, series(*runs[i].log, panel.run, axes.x), style);
     const double fell_at = runs[i].log->result.fell_at;
-    if (has_fallen(*runs[i].log) && fell_at >= axes.x.low && fell_at <= axes.x.high)
-      draw_cross(drawing, axes, {fell_at, panel.run(sample_at(*runs[i].log, fell_at))},
-                 style.color);
+    if (!has_fallen(*runs[i].log) || fell_at < axes.x.low || fell_at > axes.x.high) continue;
+    const double value = panel.run(sample_at(*runs[i].log, fell_at));
+    // Where no foot carries the robot at the fall, there is no ZMP to mark.
+    if (std::isfinite(value)) draw_cross(drawing, axes, {fell_at, value}, style.color);
   }
   draw_line(drawing, axes, series(last, panel.command, axes.x), kCommandStyle);
   if (panel.peaks) draw_peaks(drawing, axes, panel, runs);

@@ -13,6 +13,10 @@ namespace ayumi {
 
 namespace {
 
+/// Largest distance of a range from the mean of its normal distribution [standard deviations].
+/// Reason: beyond 37, the probability exp(-37^2/2) of the range cannot be told from 0.
+constexpr double kFarthestRange = 30;
+
 constexpr const char* kSpreads[] = {"uniform", "normal", "truncated", "choice"};
 
 std::string place_of(const JsonNode& node) { return node.file() + ": " + node.pointer(); }
@@ -85,6 +89,13 @@ Distribution read_distribution(const JsonNode& node, bool angle, PatternScope& s
     values.complain("the range is empty: " + text::brief(d.low) + " is above " +
                     text::brief(d.high));
   if (normal && !(d.deviation > 0)) values.complain("the standard deviation must be above 0");
+  const double away = std::max(d.low - d.mean, d.mean - d.high) / d.deviation;
+  if (d.kind == Distribution::Kind::truncated && away > kFarthestRange)
+    values.complain("the range is " + text::brief(away) +
+                    " standard deviations away from the mean (limit " +
+                    text::brief(kFarthestRange) +
+                    "), where the normal distribution has hardly any numbers; use \"uniform\", or "
+                    "correct the mean or the range");
   return d;
 }
 
