@@ -142,7 +142,7 @@ TEST(WalkPattern, NamesTheParameterOutOfRange) {
   EXPECT_NE(with([](auto& p) { p.double_support = 0; }).find("double_support"), std::string::npos);
   EXPECT_NE(with([](auto& p) { p.lift = 0; }).find("lift"), std::string::npos);
   EXPECT_NE(with([](auto& p) { p.rise = 0.01; }).find("too short for stairs"), std::string::npos);
-  EXPECT_NE(with([](auto& p) { p.rise = 0.01, p.turn = 0.1; }).find("climbed straight ahead"),
+  EXPECT_NE(with([](auto& p) { p.rise = 0.01, p.turn = 0.1; }).find("not possible with stairs"),
             std::string::npos);
   EXPECT_NE(with([](auto& p) { p.turn = 1; }).find("turn"), std::string::npos);
   EXPECT_NE(with([](auto& p) { p.side = -1; }).find("side"), std::string::npos);

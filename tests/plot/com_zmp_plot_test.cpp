@@ -352,7 +352,7 @@ std::string message_of(const std::vector<LociRun>& runs, const LociOptions& opti
 
 TEST(Loci, ErrorsSayWhatIsWrong) {
   const TwoRuns runs;
-  EXPECT_EQ(message_of({}, {}), "plot: no run to draw");
+  EXPECT_EQ(message_of({}, {}), "plot: there is no run to draw");
   EXPECT_NE(message_of(std::vector<LociRun>(7, {"a", &runs.standing}), {}).find("at most 6"),
             std::string::npos);
   EXPECT_EQ(message_of(runs.both(), {.begin = 3}),

@@ -85,7 +85,7 @@ std::array<Isometry3d, 2> start_feet(const RobotModel& model, const Pattern& pat
   for (const Side side : kSides) {
     const auto& foot = given[index(side)];
     if (!foot) continue;
-    if (!finite(*foot)) complain(pattern, "start", "a foothold is not a finite number");
+    if (!finite(*foot)) complain(pattern, "start", "a number of the foothold is not finite");
     const int here = index(side), there = index(other(side));
     if (!given[there]) feet[there] = pose_of(*foot) * feet[here].inverse() * feet[there];
     feet[here] = pose_of(*foot);
@@ -168,7 +168,7 @@ void FootPlan::read_foot_keys(const Pattern& pattern, Side side) {
       throw PlacedError(ErrorCode::bad_pattern, key.place + ": " + message,
                         {pattern.file, pointer_of_keyframe(pattern, i) + "/feet"});
     };
-    if (!finite(*foot)) stop("a foot pose is not a finite number");
+    if (!finite(*foot)) stop("a number of the pose of the foot is not finite");
     if (!moves_[index(side)].empty())
       stop(std::string("the ") + name_of(side) +
            " foot has keys and also swings in the phases; keep one of them");

@@ -134,14 +134,15 @@ CommandSeries with_viip_phases(const RobotModel& model, const Pattern& pattern,
     const CommandSample& rests = cut.samples[static_cast<size_t>(std::max(0l, at - 1))];
     if (from.support != Support::both && rests.support != Support::both)
       fail(ErrorCode::bad_pattern,
-           place + "the phase begins on one foot; put a phase with support \"both\" before it");
+           place +
+               "the phase begins on one foot; put a phase with support \"both\" before this phase");
     const double z = from.cog.z() - from.zmp.z();
     const double limit = kAtRest * std::sqrt(kGravity * z);
     if (from.dcog.norm() > limit)
       fail(ErrorCode::bad_pattern, place + "the phase begins while the COG moves at " +
-                                       text::fixed(from.dcog.norm(), 3) + " m/s, limit " +
+                                       text::fixed(from.dcog.norm(), 3) + " m/s (limit " +
                                        text::fixed(limit, 3) +
-                                       " m/s; let the motion before it come to rest");
+                                       " m/s); let the motion before the phase come to rest");
     const ViipSpan span{static_cast<long>(series.samples.size()), tick(each.end),
                         *pattern.phases[each.phase].viip};
     CommandSample rest = held(model, from);

@@ -36,7 +36,7 @@ LineStyle run_style(size_t index, size_t count) {
 bool has_fallen(const SimulationLog& log) { return log.result.outcome == Outcome::fell; }
 
 Interval time_range(const std::vector<LociRun>& runs, const LociOptions& options) {
-  if (runs.empty()) fail(ErrorCode::usage, "plot: no run to draw");
+  if (runs.empty()) fail(ErrorCode::usage, "plot: there is no run to draw");
   if (runs.size() > kMostRuns)
     fail(ErrorCode::usage, "plot: " + std::to_string(runs.size()) + " runs are too many; at most " +
                                std::to_string(kMostRuns) + " can be told apart in one plot");

@@ -75,7 +75,8 @@ SubsetResult subset_simulation(size_t dimension,
       static_cast<size_t>(std::lround(options.share * static_cast<double>(options.runs)));
   const auto length = static_cast<size_t>(std::lround(1 / options.share));
   if (options.runs < 1 || kept * length != static_cast<size_t>(options.runs))
-    fail(ErrorCode::usage, "the runs of a level must be a multiple of " + std::to_string(length));
+    fail(ErrorCode::usage,
+         "the number of runs of a level must be a multiple of " + std::to_string(length));
   std::vector<Sample> samples(static_cast<size_t>(options.runs));
   std::atomic<bool> stop = false;
   std::mutex mutex;

@@ -58,8 +58,7 @@ SoleLength sole_length(const RobotModel& model) {
 void check_stairs(const RobotModel& model, const WalkParameters& p) {
   const SoleLength sole = sole_length(model);
   if (p.turn != 0 || p.side != 0)
-    fail(ErrorCode::usage,
-         "walk: stairs (rise) are climbed straight ahead; leave turn and side out");
+    fail(ErrorCode::usage, "walk: turn and side are not possible with stairs (rise)");
   require_range("walk", "rise", p.rise, 0, 0.15 * leg_length(model), " m");
   if (p.stride < sole.front + sole.back + 2 * kStairClearance)
     fail(ErrorCode::usage, "walk: stride " + text::exact(p.stride) +

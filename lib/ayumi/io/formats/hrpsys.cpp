@@ -34,12 +34,15 @@ std::optional<NumberRows> rows_beside(const MotionInput& source, const std::stri
 void require_width(const MotionInput& source, const NumberRows& table, const std::string& extension,
                    const std::vector<size_t>& allowed) {
   const size_t width = table.rows.front().size() - 1;
-  for (const size_t one : allowed)
+  std::vector<std::string> counts;
+  for (const size_t one : allowed) {
     if (width == one) return;
+    counts.push_back(std::to_string(one));
+  }
   const std::string name = fs::path(source.file).replace_extension(extension).string();
   MotionInput{"", name, source.model, source.options}.refuse(
       table.lines.front(), "the row has " + std::to_string(width) + " values after the time, but " +
-                               std::to_string(allowed.front()) + " are needed");
+                               text::join(counts, " or ") + " are needed");
 }
 
 Eigen::Vector3d vector_at(const std::vector<double>& row, size_t at) {

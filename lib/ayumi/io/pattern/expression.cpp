@@ -163,7 +163,7 @@ class Parser {
     std::vector<std::string> names = {"pi"};
     for (const auto& entry : functions()) names.push_back(entry.first);
     return "unknown name '" + name + "'" + text::suggestion(name, names) +
-           "; write a parameter as ${" + name + "}; known are " + text::join(names, ", ");
+           "; write a parameter as ${" + name + "}; the known names are " + text::join(names, ", ");
   }
 
   std::string unknown(const std::string& name) const {

@@ -182,8 +182,10 @@ class BodyReader {
         {"fixed", JointType::fixed},         {"free", JointType::floating}};
     const auto known = types.find(type);
     if (known == types.end())
-      complain(node, "link " + link + ": the joint type '" + type +
-                         "' is not supported; known: revolute, prismatic, fixed, free");
+      complain(
+          node,
+          "link " + link + ": the joint type '" + type +
+              "' is not supported; the supported types are revolute, prismatic, fixed and free");
     joint.type = known->second;
     joint.axis = Vector3d::UnitZ();  // the format's default
     if (const YAML::Node axis = member(node, "joint_axis", "jointAxis")) joint.axis = axis_of(axis);

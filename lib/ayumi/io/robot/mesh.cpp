@@ -175,8 +175,8 @@ class MeshReader {
   std::string receive_bytes(std::uint64_t size, std::uint64_t most) {
     if (size > most)
       throw ReaderLost{"the mesh reader answers with " + std::to_string(size) +
-                       " bytes, more than the " + std::to_string(most) +
-                       " that are accepted; simplify the mesh"};
+                       " bytes, but at most " + std::to_string(most) +
+                       " are accepted; simplify the mesh"};
     std::string bytes;
     while (bytes.size() < size) {
       const size_t got = bytes.size();

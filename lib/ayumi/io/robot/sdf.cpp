@@ -355,7 +355,8 @@ class SdfReader {
                                                    "universal", "revolute2",  "fixed"};
     if (std::find(known.begin(), known.end(), type) == known.end())
       complain(source.element, "joint " + source.name + ": the type '" + type +
-                                   "' is not supported; known: " + text::join(known, ", "));
+                                   "' is not supported; the supported types are " +
+                                   text::join(known, ", "));
     const std::string parent = link_of(source.parent, source.element);
     const std::string child = link_of(source.child, source.element);
     const Isometry3d at = resolved(source.name, source.element);

@@ -236,7 +236,8 @@ void read_layouts(const JsonNode& node, RobotDescription& robot) {
         layout.intervals_ms.push_back(interval.integer());
         if (layout.intervals_ms.back() < 1 || layout.intervals_ms.back() > kLongestInterval)
           interval.complain("an interval of " + std::to_string(layout.intervals_ms.back()) +
-                            " ms; expected 1 to " + std::to_string(kLongestInterval));
+                            " ms is not possible; expected 1 to " +
+                            std::to_string(kLongestInterval));
       }
     robot.layouts.push_back(layout);
   }

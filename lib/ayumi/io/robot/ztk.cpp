@@ -359,8 +359,10 @@ class ZtkReader {
                                                            {"float", JointType::floating}};
     const auto known = types.find(kind);
     if (known == types.end())
-      complain(type->line, "link " + link + ": the joint type '" + kind +
-                               "' is not supported; known: fixed, revolute, prismatic, float");
+      complain(
+          type->line,
+          "link " + link + ": the joint type '" + kind +
+              "' is not supported; the supported types are fixed, revolute, prismatic and float");
     joint.type = known->second;
     if (joint.type == JointType::revolute || joint.type == JointType::prismatic) {
       const double unit = joint.type == JointType::revolute ? kZtkDegree : 1;
