@@ -6,7 +6,8 @@ namespace ayumi::app {
 constexpr int kStoppedExitCode = 130;
 
 /// From now on Ctrl-C (and SIGTERM) asks for a stop instead of ending the process. The process ends
-/// with the second one, or where its work has not stopped within 0.7 s. A limit on the size of files
+/// with the second one, or where its work has not stopped within 0.7 s. A limit on the size of
+/// files
 /// (`ulimit -f`) does not end the process either: writing fails there as on a full disk.
 void watch_for_signals();
 

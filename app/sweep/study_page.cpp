@@ -247,8 +247,8 @@ std::string maps_section(const ResultsDatabase& results, const std::vector<Group
   if (out.empty()) return "";
   if (pairs.size() > kMostMaps)
     out += "<p class=\"soft\">The maps show the " + std::to_string(kMostMaps) +
-           " pairs of settings with the most values. " +
-           std::to_string(pairs.size() - kMostMaps) + " more pairs are not drawn.</p>\n";
+           " pairs of settings with the most values. " + std::to_string(pairs.size() - kMostMaps) +
+           " more pairs are not drawn.</p>\n";
   return html::section("maps", "Maps of two settings", out);
 }
 

@@ -55,6 +55,14 @@ try {
     const ready = await until(() => tab.inFrame("iframe",
       "return document.documentElement.dataset.replay"), 30);
     expect(ready === "ready" || ready === "none", "the replay says " + ready);
+    const triangles = await tab.inFrame("iframe", `
+      const bytes = Uint8Array.from(atob(document.getElementById("replay-model").textContent.trim()),
+        (letter) => letter.charCodeAt(0));
+      const length = new DataView(bytes.buffer).getUint32(12, true);
+      const model = JSON.parse(new TextDecoder().decode(bytes.subarray(20, 20 + length)));
+      return (model.meshes || []).flatMap((mesh) => mesh.primitives)
+        .reduce((sum, part) => sum + model.accessors[part.indices].count / 3, 0)`);
+    expect(triangles > 1000, "the robot of the replay has " + triangles + " triangles");
     const errors = (await tab.log("browser")).filter((entry) => entry.level === "SEVERE");
     expect(errors.length === 0, "messages: " + JSON.stringify(errors));
     await tab.end();

@@ -91,6 +91,31 @@ TEST(StudyFile, SaysWhatIsWrongAndWhere) {
             std::string::npos);
 }
 
+// The part of a normal distribution above its mean is the mirror image of that below, far away
+// from the mean too, where it is close to an exponential distribution.
+TEST(StudyFile, TruncatedTailsAreMirrorImages) {
+  for (const double far : {0.0, 3.0, 9.0, 20.0, 29.0}) {
+    Distribution above = {.kind = Distribution::Kind::truncated,
+                          .low = 1 + 0.01 * far,
+                          .high = 1 + 0.01 * far + 0.1,
+                          .mean = 1,
+                          .deviation = 0.01};
+    Distribution below = above;
+    below.low = 2 - above.high;
+    below.high = 2 - above.low;
+    for (const double u : {1e-6, 0.1, 0.5, 0.9, 0.999})
+      EXPECT_NEAR(quantile(above, u) - 1, 1 - quantile(below, 1 - u), 1e-12) << far << " " << u;
+    // P(z > a + x) / P(z > a) is close to exp(-a x).
+    if (far > 5)
+      EXPECT_NEAR((quantile(above, 0.5) - above.low) / 0.01, std::log(2) / far, 0.02 / far);
+  }
+  const std::string refused = complaint(
+      quantity_with(R"("what": "mass", "truncated": [1, 0.01, 1.5, 1.6], "source": "t")"));
+  EXPECT_NE(refused.find("the range is 50 standard deviations away from the mean (limit 30)"),
+            std::string::npos)
+      << refused;
+}
+
 TEST(StudyFile, APatternKeepsItsUncertainty) {
   const std::string uncertainty = R"(, "uncertainty": {
     "factors": [{"name": "heat", "source": "motor test"}],

@@ -118,6 +118,18 @@ TEST(Loci, AFallenRunIsCutOffAndItIsSaid) {
     EXPECT_EQ(text.find("edge of the axes"), std::string::npos) << "no curve ends there";
 }
 
+// No foot carries a robot that falls in the air, so that it has no ZMP then.
+TEST(Loci, AFallInTheAirHasNoMarkOfTheZmp) {
+  TwoRuns runs;
+  for (size_t k = 0; k < runs.falling.samples.size(); ++k)
+    if (runs.falling.samples[k].t > 0.55) runs.falling.samples[k].zmp.setConstant(NAN);
+  const Drawing drawing = draw_loci({{"open loop", &runs.falling}}, {});
+  for (const auto& item : drawing.items)
+    if (const auto* path = std::get_if<DrawnPath>(&item)) {
+      for (const Eigen::Vector2d& p : path->points) EXPECT_TRUE(p.allFinite());
+    }
+}
+
 // Nothing stands and the margin has no command: its range is what it was before the fall, and not
 // a metre.
 TEST(Loci, TheMarginOfAFallenRunIsThatBeforeItsFall) {
