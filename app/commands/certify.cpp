@@ -148,20 +148,27 @@ void print_worst(const Context& context, const KnownResults& results,
   }
 }
 
-void print_sources(const Context& context, const Study& study) {
-  size_t assumed = 0, all = 0;
-  const auto count = [&](const UncertainQuantity& q) {
-    if (q.source.empty()) return;
-    ++all;
-    assumed += is_assumed(q.source);
+/// Says where the numbers of the uncertainty come from; the same as JSON.
+Json print_sources(const Context& context, const Study& study) {
+  Json all = Json::array();
+  std::vector<std::string> assumed;
+  const auto add = [&](const UncertainQuantity& q) {
+    if (q.source.empty()) return;  // a number that is not drawn
+    all.push_back({{"name", q.name}, {"source", q.source}, {"assumed", is_assumed(q.source)}});
+    if (is_assumed(q.source)) assumed.push_back(q.name);
   };
-  for (const UncertainQuantity& q : study.uncertainty.quantities) count(q);
+  for (const UncertainQuantity& q : study.uncertainty.quantities) add(q);
   for (const UncertainPush& push : study.uncertainty.pushes)
     for (const UncertainQuantity* q : {&push.size, &push.direction, &push.time, &push.link})
-      count(*q);
-  context.print("  uncertainty of " + study.file + ": " + text::counted(all, "distribution") +
-                "; " + std::to_string(assumed) +
-                (assumed == 1 ? " of them is assumed\n" : " of them are assumed\n"));
+      add(*q);
+  context.print("  uncertainty of " + study.file + ": " +
+                text::counted(all.size(), "distribution") + "; " +
+                (assumed.empty() ? "none of them is assumed"
+                                 : std::to_string(assumed.size()) + " of them " +
+                                       (assumed.size() == 1 ? "is" : "are") +
+                                       " assumed: " + text::join(assumed, ", ")) +
+                "\n");
+  return {{"file", study.file}, {"distributions", all}};
 }
 
 /// The cases of the merged files. Every case that the verdict needs must be there.
@@ -186,14 +193,22 @@ KnownResults merged(const CertifyCommand& options, const Json& study) {
   return results;
 }
 
+/// `input`, `law`: the motion that is certified, and the name of its controller.
 Json compare_with(Context& context, const CertifyCommand& options, const Study& study,
-                  const UncertainTask& first, const std::string& law, const KnownResults& known) {
+                  const Task& input, const UncertainTask& first, const std::string& law,
+                  const KnownResults& known) {
   SimulationChoice choice = options.choice;
   if (!options.against_controller.empty()) choice.controller = options.against_controller;
   const std::string file = options.against.empty() ? options.pattern : options.against;
   const Task other = load_pattern(context, file, options.input);
-  const UncertainTask second(other.robot, other.series, study.uncertainty,
-                             simulation_options(context, other, choice));
+  if (other.robot.description().sha256 != input.robot.description().sha256)
+    fail(ErrorCode::bad_pattern,
+         "--against: " + file + " is for the robot " + other.robot.name() + ", but " +
+             options.pattern + " is for the robot " + input.robot.name() +
+             "; the cases of the comparison must draw the same robot, so give a pattern for " +
+             input.robot.name());
+  const SimulateOptions second_loop = simulation_options(context, other, choice);
+  const UncertainTask second(other.robot, other.series, study.uncertainty, second_loop);
   CertifyOptions pairs = options.certify;
   pairs.all = true;
   if (pairs.most == 0) pairs.most = failure_free_runs(pairs.failure, pairs.confidence);
@@ -202,8 +217,13 @@ Json compare_with(Context& context, const CertifyCommand& options, const Study& 
   const KnownResults a = run_cases(first, pairs, start, {}, context.progress());
   const KnownResults b = run_cases(second, pairs, {}, {}, context.progress());
   const PairedComparison c = compare(a, b, pairs.confidence);
-  const std::string name = options.against.empty() ? options.against_controller : file;
-  const std::string own = options.against.empty() ? law : options.pattern;
+  const std::string other_law = name_of(second_loop.controller.type);
+  std::string name = other_law, own = law;
+  if (!options.against.empty()) {
+    const bool laws = other_law != law;
+    name = file + (laws ? ", " + other_law : "");
+    own = options.pattern + (laws ? ", " + law : "");
+  }
   const auto quoted = [](const std::string& word) { return "'" + word + "'"; };
   context.print("  compared with " + quoted(name) + " in the same " +
                 text::counted(c.pairs, "case") + ": " + std::to_string(c.both + c.only_first) +
@@ -325,16 +345,17 @@ void certify_pattern(Context& context, CertifyCommand& options) {
   const std::string law = name_of(simulate.controller.type);
   context.print(options.pattern + ", " + input.robot.name() + ", " + law + "\n");
   print_certificate(context, found, results, options.certify);
-  print_sources(context, study);
+  const Json sources = print_sources(context, study);
   context.print(left_out);
   if (!influence.empty()) print_influences(context, influence);
   print_worst(context, results, worst);
   Json json = {{"study", asked},
                {"certificate", certificate_json(found, options.certify)},
+               {"uncertainty", sources},
                {"influences", influences_json(influence)},
                {"worst_cases", worst_cases_json(task, context.seed, results, worst)}};
   if (!options.against.empty() || !options.against_controller.empty())
-    json["comparison"] = compare_with(context, options, study, task, law, results);
+    json["comparison"] = compare_with(context, options, study, input, task, law, results);
   if (options.rare) json["rare_failures"] = rare_failures(context, options, task);
   if (!options.map.empty()) {
     // Of all runs, as the picture: with --all there are more than the test needs.

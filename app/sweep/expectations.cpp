@@ -80,6 +80,23 @@ Json cases_json(const ResultsDatabase& results, const std::string& view, int cou
   return list;
 }
 
+/// Number, settings and outcome of a case.
+std::string case_in_words(const SweepHead& head, const Json& row) {
+  std::string words = "case " + std::to_string(row.at("case").get<long>());
+  for (const std::string& axis : head.axes)
+    if (row.contains(axis)) {
+      const Json& value = row.at(axis);
+      words += ", " + axis + " " +
+               (value.is_string() ? value.get<std::string>() : text::brief(value.get<double>(), 6));
+    }
+  const bool broken = row.contains("error");
+  if (broken || row.contains("outcome"))
+    words += ": " + row.at(broken ? "error" : "outcome").get<std::string>();
+  if (!broken && row.contains("fell_at_s"))
+    words += " at " + text::fixed(row.at("fell_at_s").get<double>(), 2) + " s";
+  return words;
+}
+
 }  // namespace
 
 std::vector<Expectation> judge_expectations(const ResultsDatabase& results,
@@ -102,8 +119,9 @@ std::vector<Expectation> judge_expectations(const ResultsDatabase& results,
       const std::string why = error.what();
       const size_t column = why.rfind(": ");
       if (why.starts_with("no such column"))
-        hint = text::suggestion(why.substr(column + 2), names) + "; known names are " +
-               text::join(names, ", ");
+        hint =
+            text::suggestion(why.substr(column + 2), names) +
+            "; the names are the columns of the view \"summary\" (docs/formats.md, Sweep results)";
       fail(ErrorCode::usage, "--expect '" + text + "': " + why + hint);
     }
     expectation.met = !value.empty() && !value[0][0].empty() && std::atof(value[0][0].c_str()) != 0;
@@ -194,7 +212,7 @@ std::string junit_text(const ResultsDatabase& results,
     }
     text += "><failure message=\"" + escaped(e.found) + "\">";
     for (const Json& row : cases_json(results, "failed", kListed))
-      text += escaped(row.dump(-1, ' ', false, Json::error_handler_t::replace)) + "\n";
+      text += escaped(case_in_words(results.head(), row)) + "\n";
     text += "</failure></testcase>\n";
   }
   return text + "</testsuite>\n</testsuites>\n";

@@ -770,12 +770,16 @@ double slurm_seconds(const std::string& time) {
 
 void require_slurm() {
   const CommandResult found = run_command({"sbatch", "--version"});
-  if (found.exit_code != 0)
-    fail(ErrorCode::bad_file,
-         "--engine slurm: the program sbatch cannot be started (" +
-             (found.err.empty() ? "exit code " + std::to_string(found.exit_code)
-                                : one_line(found.err)) +
-             "); install slurm-client on this machine, or leave --engine out");
+  if (found.exit_code == 0) return;
+  if (found.exit_code < 0)
+    fail(ErrorCode::bad_file, "--engine slurm: the program sbatch cannot be started (" + found.err +
+                                  "); install slurm-client on this machine, or leave --engine out");
+  fail(ErrorCode::bad_file,
+       "--engine slurm: sbatch fails on this machine (" +
+           (found.err.empty() ? "exit code " + std::to_string(found.exit_code)
+                              : one_line(found.err)) +
+           "); correct the configuration of Slurm (slurm.conf, or the variable SLURM_CONF), or "
+           "leave --engine out");
 }
 
 RunCost run_on_slurm(const Context& context, const CaseRunner& runner, ResultsDatabase& results,

@@ -150,6 +150,17 @@ TEST(CertifyCommand, ComparesLawsAndRefusesBadInput) {
   EXPECT_NE(compared.out.find("compared with 'none' in the same 40 cases"), std::string::npos)
       << compared.out << compared.err;
   EXPECT_NE(compared.out.find("McNemar's exact test"), std::string::npos);
+  const Output both =
+      study.certify({"--against", "stand.json", "--against-controller", "none", "--json"});
+  EXPECT_NE(both.out.find("\"with\": \"stand.json, none\""), std::string::npos) << both.out;
+  EXPECT_NE(both.out.find("\"assumed\": true"), std::string::npos) << both.out;
+  ASSERT_EQ(study.run({"new", "stand", "--robot", "humanoid30", "-o", "other.json"}).exit_code, 0);
+  const Output other = study.certify({"--against", "other.json"});
+  EXPECT_EQ(other.exit_code, 3);
+  EXPECT_NE(other.err.find("--against: other.json is for the robot humanoid30, but stand.json is "
+                           "for the robot hoap1"),
+            std::string::npos)
+      << other.err;
   EXPECT_EQ(study.certify({"--shard", "3/2", "-o", "x.json"}).exit_code, 2);
   EXPECT_EQ(study.run({"simulate", "stand.json", "--study", "study.json"}).exit_code, 2);
   write(study.folder / "bad.json", R"({"format": "ayumi.study/1", "uncertainty": {"quantities": [
