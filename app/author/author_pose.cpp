@@ -224,13 +224,17 @@ void drag_trunk(const AuthorMotion& motion, double time, const AuthorHandle& han
   if (std::abs(along) > kStill) drag_height(motion, time, along, keys);
 }
 
+// The value of a number or expression of the text.
+double written_value(const AuthorMotion& motion, const std::string& pointer) {
+  return value_in_text(motion.document.dump(), pointer, motion.task.pattern.parameters);
+}
+
 // A number or expression of the text that becomes higher by `change`; 0 where it is missing.
 void shift_value(const AuthorMotion& motion, const std::string& pointer, double change,
                  std::vector<PatternEdit>& edits) {
   if (std::abs(change) < kStill) return;
   const OrderedJson::json_pointer at(pointer);
-  const double now =
-      motion.document.contains(at) ? value_in_text(motion.document.dump(), pointer) : 0;
+  const double now = motion.document.contains(at) ? written_value(motion, pointer) : 0;
   edits.push_back({PatternEdit::Kind::set, pointer, OrderedJson(metres(now + change)).dump()});
 }
 
@@ -281,11 +285,10 @@ size_t phase_at(const Pattern& pattern, double time) {
 // Numbers of a place, each for itself, so that what does not move stays as it is written.
 void set_place(const AuthorMotion& motion, const std::string& pointer, const Vector3d& place,
                std::vector<PatternEdit>& edits) {
-  const std::string text = motion.document.dump();
   for (int i = 0; i < 3; ++i) {
     const std::string number = pointer + "/" + std::to_string(i);
     const double value = metres(place[i]);
-    if (std::abs(value_in_text(text, number) - value) >= kStill)
+    if (std::abs(written_value(motion, number) - value) >= kStill)
       edits.push_back({PatternEdit::Kind::set, number, OrderedJson(value).dump()});
   }
 }
@@ -403,7 +406,8 @@ struct Tried {
 Tried sampled_with(const AuthorMotion& motion, const std::string& text,
                    const AuthorSetting& setting, const std::vector<PatternEdit>& edits,
                    double time) {
-  const Pattern pattern = pattern_of_text(edited_text(text, edits), setting.file, setting.set);
+  const Pattern pattern =
+      pattern_of_text(edited_text(text, edits, setting.set), setting.file, setting.set);
   const double dt =
       std::max(motion.task.series.dt, std::min(kDragTick, motion.task.series.duration() / 50));
   return {sample(motion.task.robot, pattern, {.dt = dt}), time};
@@ -741,11 +745,10 @@ std::vector<PatternEdit> moved_target(const AuthorMotion& motion, const PoseWish
     if (target.pointer != wish.target || std::abs(target.time - wish.time) > kSameTime) continue;
     const OrderedJson& written = motion.document.at(OrderedJson::json_pointer(target.pointer));
     const OrderedJson& place = written.is_array() ? written : written.at("position");
-    const std::string text = motion.document.dump();
     const std::string pointer = target.pointer + (written.is_array() ? "" : "/position");
     Vector3d now;
     for (size_t i = 0; i < 3; ++i)
-      now[static_cast<Eigen::Index>(i)] = value_in_text(text, pointer + "/" + std::to_string(i));
+      now[static_cast<Eigen::Index>(i)] = written_value(motion, pointer + "/" + std::to_string(i));
     std::vector<PatternEdit> edits;
     if (place.size() == 3)
       set_place(motion, pointer, now + target.axes.transpose() * (wish.to - target.place), edits);

@@ -334,10 +334,11 @@ AuthorAnswer AuthorSession::edit(const OrderedJson& request) {
       for (int i = 0; i <= history_.undo_steps(); ++i)
         if (sha256(history_.near(-i)) == seen_hash) base = history_.near(-i);
       return conflict(*shown, request.contains("text") ? request["text"].get<std::string>()
-                                                       : edited_text(base, edits));
+                                                       : edited_text(base, edits, setting_.set));
     }
-    const std::string text = request.contains("text") ? request["text"].get<std::string>()
-                                                      : edited_text(shown->text, edits);
+    const std::string text = request.contains("text")
+                                 ? request["text"].get<std::string>()
+                                 : edited_text(shown->text, edits, setting_.set);
     if (!shown->error) refuse_keys_in_goals(text, setting_);
     return write(shown->text, text);
   });

@@ -241,6 +241,42 @@ TEST_F(AuthorServer, WritesEditsIntoTheTextAndTakesThemBack) {
   EXPECT_EQ(contents(file), replaced("\"t\": 0.71", "\"t\": 0.75"));
 }
 
+// What the page shows is computed with the parameters of the command line, and so is what it
+// writes.
+TEST_F(AuthorServer, EditsExpressionsWithTheParametersOfTheCommand) {
+  const std::string text = R"({
+  "format": "ayumi.pattern/1", "robot": "hoap1", "units": { "angle": "deg" },
+  "parameters": { "down": 1.2, "side": 0.045 },
+  "phases": [
+    { "until": 1.4, "support": "both" },
+    { "until": 1.9, "support": "right", "swing": { "foot": "left", "to": [0, "${side}"] } },
+    { "until": 4, "support": "both" }
+  ],
+  "keyframes": [
+    { "t": 0.4, "zmp": "center" }, { "t": "${down}", "zmp": "right" }, { "t": 1.9, "zmp": "right" },
+    { "t": 2.8, "zmp": "center" }
+  ]
+})";
+  save(text);
+  const Server server(file, {"--set", "down=1.1", "--set", "side=0.05"});
+  ASSERT_TRUE(server.state()["error"].is_null()) << server.state()["error"];
+  ASSERT_EQ(server.state()["keyframes"][1]["time"], 1.1);
+  const auto with = [&](const std::string& what, const std::string& by) {
+    std::string changed = text;
+    return changed.replace(changed.find(what), what.size(), by);
+  };
+  ASSERT_EQ(server.edit({{{"kind", "set"}, {"pointer", "/keyframes/1/t"}, {"value", 1.13}}}).first,
+            200);
+  EXPECT_EQ(contents(file), with("\"${down}\"", "\"${down} + 0.03\""));
+  EXPECT_NEAR(server.state()["keyframes"][1]["time"].get<double>(), 1.13, 1e-9);
+  ASSERT_EQ(server.post("undo", {{"hash", server.state()["hash"]}}).first, 200);
+  const auto [status, answer] =
+      server.post("pose", {{"time", 2.2}, {"drag", "left_foot"}, {"to", {0.0, 0.053, 0.0}}});
+  ASSERT_EQ(status, 200) << answer;
+  ASSERT_EQ(server.edit(answer["edits"]).first, 200);
+  EXPECT_EQ(contents(file), with("\"${side}\"", "\"${side} + 0.003\""));
+}
+
 TEST_F(AuthorServer, NeverOverwritesAChangeOnDisk) {
   const Server server(file);
   const OrderedJson seen = server.state()["hash"];

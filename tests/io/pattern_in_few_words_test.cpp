@@ -244,5 +244,23 @@ TEST(PatternInFewWords, ValuesInBlocksAreEdited) {
   EXPECT_THROW(value_in_text(text, "/phases/0/count/0"), std::exception);
 }
 
+// A parameter that is set from outside has that value when an expression is shifted.
+TEST(PatternInFewWords, ExpressionsAreEditedWithTheParametersThatAreSet) {
+  const std::string text = R"({ "parameters": { "w": 0.04, "t": 1 }, "x": "2*${w}", "y": "${t}" })";
+  EXPECT_DOUBLE_EQ(value_in_text(text, "/x", {{"w", 0.05}}), 0.1);
+  EXPECT_EQ(
+      edited_text(text,
+                  {{PatternEdit::Kind::set, "/x", "0.12"}, {PatternEdit::Kind::set, "/y", "0.9"}},
+                  {{"w", 0.05}}),
+      R"({ "parameters": { "w": 0.04, "t": 1 }, "x": "2*${w} + 0.02", "y": "${t} - 0.1" })");
+}
+
+TEST(PatternInFewWords, ShiftedExpressionsKeepTheSpacesOfTheirAuthor) {
+  EXPECT_EQ(shifted_expression("${t}+0.7", 0.013), "${t}+0.713");
+  EXPECT_EQ(shifted_expression("${t}  -  0.1", 0.3), "${t}  +  0.2");
+  EXPECT_EQ(shifted_expression("${t}+0.7", -0.7), "${t}");
+  EXPECT_EQ(shifted_expression("${t}", -0.1), "${t} - 0.1");
+}
+
 }  // namespace
 }  // namespace ayumi::test

@@ -65,6 +65,34 @@ TEST(PushMap, SaysWhatItShows) {
     }
 }
 
+// The dot of a largest value lies on the outer ring, beside the name of its direction.
+TEST(PushMap, NamesOfDirectionsStandBesideTheDots) {
+  PushMap map = four_directions();
+  map.phases[0].curves[1] = {{5, 5, 5, 5}, {false, false, false, false}};
+  const Drawing drawing = draw_push_map(map);
+  const std::vector<DrawnPath> dots = paths(drawing, 1.2);
+  ASSERT_FALSE(dots.empty());
+  for (const auto& item : drawing.items) {
+    const auto* text = std::get_if<DrawnText>(&item);
+    if (!text || (text->text != "forward" && text->text != "back" && text->text != "left" &&
+                  text->text != "right"))
+      continue;
+    const double wide = text_width(text->text, text->size), x = text->position.x();
+    const double left = text->anchor == TextAnchor::left    ? x
+                        : text->anchor == TextAnchor::right ? x - wide
+                                                            : x - wide / 2;
+    // Letters reach three quarters of their size above the base line and a quarter below it.
+    const double top = text->position.y() - 0.75 * text->size,
+                 bottom = text->position.y() + 0.25 * text->size;
+    for (const DrawnPath& dot : dots)
+      for (const Eigen::Vector2d& p : dot.points) {
+        const double across = std::max({left - p.x(), p.x() - left - wide, 0.0});
+        const double along = std::max({top - p.y(), p.y() - bottom, 0.0});
+        EXPECT_GT(std::hypot(across, along), 2) << text->text;  // [pixel]
+      }
+  }
+}
+
 TEST(PushMap, LongRemarksFit) {
   PushMap map = four_directions();
   map.remarks.push_back(std::string(200, 'x'));

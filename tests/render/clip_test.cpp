@@ -95,7 +95,7 @@ TEST_F(Clip, AFolderOfFramesHoldsExactTimes) {
   ClipRenderer renderer(model, log, options);
   for (int k = 0; k < 4; ++k)
     EXPECT_EQ(read_file(folder / "frames" / ("frame_0000" + std::to_string(k) + ".png")),
-              encode_png(renderer.frame(0.25 + k * 0.25)))
+              encode_png(renderer.clip_frame(0.25 + k * 0.25)))
         << k;
   EXPECT_NE(message_of(folder / "frames", ErrorCode::bad_file).find("already exists"),
             std::string::npos);
@@ -184,6 +184,29 @@ TEST_F(Clip, ThePushStaysVisibleForAWhile) {
   EXPECT_GT(pink(renderer.frame(0.300)), 100);
   EXPECT_GT(pink(renderer.frame(0.700)), 60) << "0.4 s after its start";
   EXPECT_EQ(pink(renderer.frame(0.901)), 0);
+}
+
+// The legend of a picture names a push where the picture shows one, that of a clip where one of its
+// pictures does.
+TEST_F(Clip, TheLegendNamesAPushWhereOneIsShown) {
+  ClipOptions without_pushes = options;
+  without_pushes.overlay.push = false;
+  ClipRenderer with(model, log, options), without(model, log, without_pushes);
+  EXPECT_EQ(with.frame(0.1).rgb, without.frame(0.1).rgb) << "before the push";
+  EXPECT_NE(with.clip_frame(0.1).rgb, without.clip_frame(0.1).rgb);
+  const auto legend = [&](ClipRenderer& renderer) {
+    Image line{640, 30, std::vector<std::uint8_t>(3 * 640 * 30, 255)};
+    renderer.write_legend(&line, 640, 0, 12);
+    return line.rgb;
+  };
+  for (const double t : {0.1, 0.4}) {
+    with.frame_robot({0.0, t});
+    without.frame_robot({0.0, t});
+    EXPECT_EQ(legend(with) == legend(without), t < 0.3) << t;
+  }
+  options.begin = without_pushes.begin = 0.95;  // it has faded
+  EXPECT_EQ(ClipRenderer(model, log, options).clip_frame(1).rgb,
+            ClipRenderer(model, log, without_pushes).clip_frame(1).rgb);
 }
 
 TEST_F(Clip, ErrorsSayWhatIsWrongAndLeaveNothing) {

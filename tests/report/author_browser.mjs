@@ -96,6 +96,13 @@ async function dragsInTime(tab) {
   expect(await tab.run("return window.ayumiAuthor.page.time") === 2, "a drag does not move the cursor");
   expect(data().keyframes[1].t > before.keyframes[1].t + 0.1, "a dragged key: " + data().keyframes[1].t);
   await tab.after(() => tab.click("#undo"));
+  // What is written as an expression stays one.
+  const words = { ...before, parameters: { lift_off: before.keyframes[1].t }, keyframes: structuredClone(before.keyframes) };
+  words.keyframes[1].t = "${lift_off}";
+  await tab.after(() => save(JSON.stringify(words, null, 1)));
+  await tab.after(() => tab.drag(key, [40, 0]));
+  expect(/^\$\{lift_off\} \+ 0\.\d+$/.test(data().keyframes[1].t), "a dragged expression: " + data().keyframes[1].t);
+  await tab.after(() => save(JSON.stringify(before, null, 1)));
   const grip = await tab.box('[data-id="/phases/0/until"]');
   await tab.after(() => tab.drag([grip[0], grip[1]], [-30, 0]));
   const now = data();

@@ -72,7 +72,9 @@ test("a phase's end takes the keys that stand at it along, as far as their order
     { kind: "set", pointer: "/phases/0/until", value: 1.25 }, { kind: "set", pointer: "/keyframes/2/t", value: 1.25 }]);
   assert.deepEqual(edits.movePhase(state, 0, 1.25, false).length, 1);
   assert.deepEqual(edits.movePhase(state, 0, 0.6, true).length, 1, "a key does not pass the one before it");
-  assert.deepEqual(edits.movePhase(state, 1, 1.7, true), [], "a time that is an expression stays");
+  assert.deepEqual(edits.movePhase(state, 1, 1.7, true), [
+    { kind: "set", pointer: "/phases/1/until", value: 1.7 }, { kind: "set", pointer: "/keyframes/3/t", value: 1.7 }],
+  "an expression moves, too; the server adds to it");
   assert.deepEqual(edits.movePhase(state, 0, 1.1002, true), [], "nothing is written for nothing");
 });
 
@@ -97,6 +99,14 @@ test("a target goes into the hands of the keyframe of its time, or into a new ke
   assert.deepEqual(edits.putTarget(state.keyframes, 1.3, hand, [0.1, 0.2, 0.3])[0].value,
     { t: 1.3, hands: { left: [0.1, 0.2, 0.3] } });
   assert.deepEqual(edits.putTarget(state.keyframes, 1.3, { name: "gaze", gaze: true }, [1, 0, 1])[0].value, { t: 1.3, gaze: [1, 0, 1] });
+});
+
+test("the COG height alone, and a swing", () => {
+  assert.deepEqual(edits.putPart(state.keyframes, 1.1002, "cog", "height", 0.23),
+    [{ kind: "set", pointer: "/keyframes/2/cog/height", value: 0.23 }]);
+  assert.deepEqual(edits.putPart(state.keyframes, 1.3, "cog", "height", 0.23)[0].value, { t: 1.3, cog: { height: 0.23 } });
+  assert.deepEqual(edits.addSwing({ pointer: "/phases/3" }, "left"), [
+    { kind: "set", pointer: "/phases/3/swing", value: { foot: "left", step: { forward: 0, side: 0, turn: 0 } } }]);
 });
 
 test("a removed key takes its keyframe only where nothing else is in it", () => {

@@ -20,6 +20,10 @@ constexpr double kPhaseName = 26, kRemark = 20;  // heights of lines of text [pi
 constexpr size_t kColumns = 3, kMostLaws = 4;    // of panels; as many laws as colours
 constexpr int kCircleSteps = 72;                 // corners of a ring, one every 5 degrees
 
+constexpr double kDot = 2.6, kDotLine = 1.2;  // radius and line of a value's dot [pixel]
+// Between the largest ring and the name of a direction: a dot on the ring does not touch it.
+constexpr double kNameGap = kDot + kDotLine / 2 + 4;
+
 const Vector4f kMapGrid = {0.86f, 0.87f, 0.89f, 1}, kQuiet = {0.42f, 0.44f, 0.48f, 1};
 const Vector4f kBound = {0.35f, 0.37f, 0.42f, 1}, kBoundFill = {0.35f, 0.37f, 0.42f, 0.08f};
 const Vector4f kOpen = {0.86f, 0.45f, 0.10f, 1};
@@ -78,10 +82,10 @@ void draw_grid(Drawing& drawing, const Panel& panel, const PushMapPhase& phase,
                                       .anchor = anchor,
                                       .color = kQuiet});
   };
-  name({0, -kRadius - 6}, "forward", TextAnchor::center);
-  name({0, kRadius + 14}, "back", TextAnchor::center);
-  name({-kRadius - 4, 3}, "left", TextAnchor::right);
-  name({kRadius + 4, 3}, "right", TextAnchor::left);
+  name({0, -kRadius - kNameGap}, "forward", TextAnchor::center);
+  name({0, kRadius + kNameGap + 8}, "back", TextAnchor::center);
+  name({-kRadius - kNameGap, 3}, "left", TextAnchor::right);
+  name({kRadius + kNameGap, 3}, "right", TextAnchor::left);
 }
 
 void draw_curve(Drawing& drawing, const Panel& panel, const std::vector<double>& direction,
@@ -94,9 +98,9 @@ void draw_curve(Drawing& drawing, const Panel& panel, const std::vector<double>&
     path.points.push_back(panel.at(direction[i], curve.impulse[i]));
   drawing.items.push_back(path);
   for (size_t i = 0; i < direction.size(); ++i) {
-    DrawnPath dot = circle(path.points[i], 2.6, 12);
+    DrawnPath dot = circle(path.points[i], kDot, 12);
     dot.stroke = color;
-    dot.width = 1.2;
+    dot.width = kDotLine;
     dot.fill = i < curve.capped.size() && curve.capped[i] ? Vector4f(1, 1, 1, 1) : color;
     drawing.items.push_back(dot);
   }

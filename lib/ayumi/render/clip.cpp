@@ -165,7 +165,7 @@ class FrameQueue {
           notes_ = renderer->notes();
         }
         for (int k = w; k < count; k += workers)
-          if (!put(slot, renderer->frame(time(k)))) return;
+          if (!put(slot, renderer->clip_frame(time(k)))) return;
       } catch (...) {
         const std::lock_guard lock(mutex_);
         slot.error = std::current_exception();
@@ -346,6 +346,16 @@ Scene ClipRenderer::scene_at(double t, Overlay& overlay) const {
 }
 
 Image ClipRenderer::frame(double t) {
+  shown_ = {{t, t}};
+  return drawn(t);
+}
+
+Image ClipRenderer::clip_frame(double t) {
+  shown_ = {{options_.begin, options_.end < 0 ? duration(log_) : options_.end}};
+  return drawn(t);
+}
+
+Image ClipRenderer::drawn(double t) {
   Overlay overlay;
   const Scene scene = scene_at(t, overlay);
   Image image = finished(scene, overlay, t);
@@ -371,6 +381,8 @@ void ClipRenderer::frame_robot(const std::vector<double>& times) {
   // How much of a picture the robot takes, which leaves room for the line of text.
   constexpr double kShare = 0.88;
   framing_.reset();
+  shown_.clear();
+  for (const double t : times) shown_.emplace_back(t, t);
   std::vector<Vector3d> offsets;
   Camera camera;
   for (const double t : times) {
@@ -389,6 +401,7 @@ void ClipRenderer::frame_robot(const std::vector<double>& times) {
 
 Image ClipRenderer::exposures(const std::vector<double>& times) {
   if (times.empty()) fail(ErrorCode::usage, "a picture needs at least one time");
+  shown_ = {{times.back(), times.back()}};
   Overlay overlay;
   Scene scene = scene_at(times.back(), overlay);
   scene.exposures.clear();
@@ -478,13 +491,16 @@ double ClipRenderer::write_legend(Image* image, int width, double top, double si
   using namespace overlay_color;
   const OverlayOptions& on = options_.overlay;
   const bool ghost = options_.ghost.command || options_.ghost.log;
+  const bool pushed = std::any_of(shown_.begin(), shown_.end(), [&](const auto& span) {
+    return shows_push(pushes_, span.first, span.second, on);
+  });
   const std::array<Entry, 9> entries = {
       {{on.cog, "● COG", kCog},
        {on.zmp, "● ZMP", kZmp},
        {on.reference_zmp, "○ ref ZMP", kReferenceZmp},
        {on.support, "▭ support", kSupport},
        {on.forces, "↑ foot force", kForce},
-       {on.push && !pushes_.empty(), "→ push", kPush},
+       {on.push && pushed, "→ push", kPush},
        {on.heat, "■ joint near a limit of angle, speed or torque", heat_color(0)},
        {on.heat, "■ joint at its limit", heat_color(1)},
        {ghost, "▒ " + (options_.ghost.command ? "command" : options_.ghost.name),

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ayumi/base/progress.hpp"
@@ -54,13 +55,16 @@ class ClipRenderer {
   /// or a log of another robot.
   ClipRenderer(const RobotModel& model, const SimulationLog& log, const ClipOptions& options);
   Image frame(double t);
+  /// The same as a part of the clip, the legend of which is that of all its pictures.
+  Image clip_frame(double t);
   /// One of several on a sheet: time and event are written in a corner, and nothing else.
   Image tile(double t);
   /// From now on pictures are framed alike, so that the robot at these instants fills them.
   void frame_robot(const std::vector<double>& times);
   /// A sheet's lines: title, controller and verdict; the marks with their meanings, over as many
   /// lines as they need. `size` of the letters [pixel]; (left, top) to the right edge. They return
-  /// the height they take [pixel]; nothing is drawn without an image.
+  /// the height they take [pixel]; nothing is drawn without an image. A push is among the marks
+  /// where the picture, the framed ones or the whole clip show one.
   double write_title(Image& image, double top, double size, double t) const;
   double write_legend(Image* image, int width, double top, double size) const;
   /// Several instants in one picture: the last in full, the others lighter the earlier they are.
@@ -77,7 +81,8 @@ class ClipRenderer {
   double height_;                                      ///< of the robot [m]
   std::vector<std::vector<Eigen::Vector3d>> outline_;  ///< farthest points of each body, its frame
   std::optional<Framing> framing_;
-  double verdict_at_;  ///< [s]
+  std::vector<std::pair<double, double>> shown_;  ///< times that the legend is about [s]
+  double verdict_at_;                             ///< [s]
   std::vector<RisingBump> bumps_;
   Renderer renderer_;
   CameraPath path_;
@@ -85,6 +90,7 @@ class ClipRenderer {
   Scene scene_at(double t, Overlay& overlay) const;
   void add_ghost(double t, Scene& scene) const;
   Image finished(const Scene& scene, const Overlay& overlay, double t);
+  Image drawn(double t);
   void write_caption(Image& image, double t) const;
   void write_scale(Image& image, const Camera& camera, double t) const;
 };

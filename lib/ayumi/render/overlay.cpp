@@ -100,11 +100,15 @@ void add_forces(Triangles& target, const SimulationSample& sample, double weight
   }
 }
 
+double shown_until(const PushRecord& push, const OverlayOptions& options) {
+  return std::max(push.end, push.begin + options.push_hold);
+}
+
 void add_pushes(Overlay& overlay, const std::vector<PushRecord>& pushed, double t,
                 const SimulationSample& sample, const OverlayOptions& options, double size) {
   for (const PushRecord& push : pushed) {
-    const double last = std::max(push.end, push.begin + options.push_hold);
-    if (t < push.begin - 1e-9 || t >= last) continue;
+    if (!shows_push({push}, t, t, options)) continue;
+    const double last = shown_until(push, options);
     const double fade_from = std::max(push.end, push.begin + 0.6 * options.push_hold);
     const double opacity = t <= fade_from ? 1.0 : (last - t) / (last - fade_from);
     const Vector3d direction = (push.impulse.norm() > 0 ? push.impulse : push.peak).normalized();
@@ -210,6 +214,13 @@ std::vector<float> joint_heat(const RobotModel& model, const std::string& profil
     heat.push_back(static_cast<float>(std::clamp(3 * use - 2, 0.0, 1.0)));
   }
   return heat;
+}
+
+bool shows_push(const std::vector<PushRecord>& pushed, double begin, double end,
+                const OverlayOptions& options) {
+  return std::any_of(pushed.begin(), pushed.end(), [&](const PushRecord& push) {
+    return end >= push.begin - 1e-9 && begin < shown_until(push, options);
+  });
 }
 
 Overlay make_overlay(const RobotModel& model, const SimulationLog& log,

@@ -67,6 +67,10 @@ std::vector<Eigen::Vector3d> support_corners(
 std::vector<float> joint_heat(const RobotModel& model, const std::string& profile,
                               const SimulationSample& sample);
 
+/// Whether a push is shown at some time from `begin` to `end`.
+bool shows_push(const std::vector<PushRecord>& pushed, double begin, double end,
+                const OverlayOptions& options);
+
 /// Overlay of the log at time t. `pushed` are the log's pushes(); `sample` and `poses` those of t;
 /// `height` of the robot [m] scales the marks.
 Overlay make_overlay(const RobotModel& model, const SimulationLog& log,

@@ -27,13 +27,15 @@ std::string number_text(double value) {
   return text::exact(std::stod(text::fixed(value, 6)) + 0.0);
 }
 
-// The parameters that an expression at this place may name. The count of a block around it is 0, as
-// in its first round.
-std::map<std::string, double> parameters_at(const Json& document, const std::string& pointer) {
-  std::map<std::string, double> parameters;
+using Parameters = std::map<std::string, double>;
+
+// The parameters that an expression at this place may name, with the values that are set from
+// outside. The count of a block around it is 0, as in its first round.
+Parameters parameters_at(const Json& document, const std::string& pointer, const Parameters& set) {
+  Parameters parameters = set;
   if (document.is_object() && document.contains("parameters"))
     for (const auto& [name, value] : document["parameters"].items())
-      if (value.is_number()) parameters[name] = value;
+      if (value.is_number()) parameters.try_emplace(name, value.get<double>());
   for (Json::json_pointer at(pointer); !at.empty(); at = at.parent_pointer())
     if (document.contains(at) && document[at].is_object() && document[at].contains("count") &&
         document[at]["count"].is_string())
@@ -56,14 +58,14 @@ std::string unescaped(const std::string& token) { return Json::json_pointer("/" 
 
 // The text of a number that replaces the value `before`.
 std::string replacing(const Json& document, const std::string& pointer, const Json& before,
-                      const Json& wanted) {
+                      const Json& wanted, const Parameters& parameters) {
   if (!wanted.is_number()) return wanted.dump();
   const double value = wanted.get<double>();
   if (!before.is_string() || !is_expression(before.get<std::string>())) return number_text(value);
   const std::string expression = before;
   try {
-    const double now =
-        evaluate_expression(expression, parameters_at(document, pointer), "the pattern");
+    const double now = evaluate_expression(expression, parameters_at(document, pointer, parameters),
+                                           "the pattern");
     return Json(shifted_expression(expression, value - now)).dump();
   } catch (const Error&) {  // an expression without a value: the number mends it
     return number_text(value);
@@ -97,16 +99,17 @@ std::string spaced_in_order(const std::string& value) {
   return members.empty() ? "{}" : "{ " + text::join(members, ", ") + " }";
 }
 
-std::string set(const std::string& text, const Json& document, const PatternEdit& edit) {
+std::string set(const std::string& text, const Json& document, const PatternEdit& edit,
+                const Parameters& parameters) {
   if (const auto at = find_value(text, edit.pointer)) {
     const Json before =
         Json::parse(text.substr(at->begin, at->end - at->begin), nullptr, true, true);
     const Json wanted = Json::parse(edit.value);
     if (before == wanted) return text;
     const bool plain = wanted.is_primitive();
-    return with_value(
-        text, edit.pointer,
-        plain ? replacing(document, edit.pointer, before, wanted) : spaced_in_order(edit.value));
+    return with_value(text, edit.pointer,
+                      plain ? replacing(document, edit.pointer, before, wanted, parameters)
+                            : spaced_in_order(edit.value));
   }
   // The innermost object that is there gets what is missing, as one member.
   Place place = split(edit.pointer);
@@ -136,19 +139,20 @@ std::string insert(const std::string& text, const Json& document, const PatternE
       fail(ErrorCode::usage,
            "the pattern has no list " + place.around + "; the pattern may have changed");
     return set(text, document,
-               {PatternEdit::Kind::set, place.around, "[" + spaced_in_order(edit.value) + "]"});
+               {PatternEdit::Kind::set, place.around, "[" + spaced_in_order(edit.value) + "]"}, {});
   }
   const Json list = document.at(Json::json_pointer(place.around));
   return with_item(text, place.around, item_index(edit, list.size()), spaced_in_order(edit.value));
 }
 
-std::string applied(const std::string& text, const PatternEdit& edit) {
+std::string applied(const std::string& text, const PatternEdit& edit,
+                    const Parameters& parameters) {
   const Json document = parse_json(text, "the pattern", ErrorCode::bad_pattern);
   if (edit.kind == PatternEdit::Kind::remove) return without_value(text, edit.pointer);
   if (!Json::accept(edit.value))
     fail(ErrorCode::bad_pattern, edit.pointer + ": '" + edit.value + "' is not a value");
   if (edit.kind == PatternEdit::Kind::insert) return insert(text, document, edit);
-  return set(text, document, edit);
+  return set(text, document, edit, parameters);
 }
 
 // Whether an edit moves the items behind it.
@@ -194,7 +198,7 @@ std::string shifted_expression(const std::string& expression, double change) {
     if (depth == 0 && i > 0 && !exponent && (c == '+' || c == '-')) sign = i;
   }
   double number = 0;
-  std::string head = expression;
+  std::string head = expression, spaces = " ", spaces_after = " ";
   if (sign != std::string::npos) {
     size_t begin = sign + 1;
     while (begin < expression.size() && expression[begin] == ' ') ++begin;
@@ -206,29 +210,33 @@ std::string shifted_expression(const std::string& expression, double change) {
     if (read.ec == std::errc() && read.ptr == end && binary && expression[begin] != '-') {
       if (expression[sign] == '-') number = -number;
       head = expression.substr(0, before + 1);
+      spaces = expression.substr(before + 1, sign - before - 1);  // as the author writes them
+      spaces_after = expression.substr(sign + 1, begin - sign - 1);
     } else {
       number = 0;
     }
   }
   const double sum = rounded(number + step);
   if (sum == 0) return head;
-  return head + (sum < 0 ? " - " : " + ") + number_text(std::abs(sum));
+  return head + spaces + (sum < 0 ? "-" : "+") + spaces_after + number_text(std::abs(sum));
 }
 
-double value_in_text(const std::string& text, const std::string& pointer) {
+double value_in_text(const std::string& text, const std::string& pointer,
+                     const std::map<std::string, double>& set) {
   const Json document = parse_json(text, "the pattern", ErrorCode::bad_pattern);
   const Json::json_pointer at(pointer);
   const Json value = document.contains(at) ? document[at] : Json();
   if (value.is_number()) return value.get<double>();
   if (!value.is_string()) fail(ErrorCode::usage, "'" + pointer + "' is not the place of a number");
-  return evaluate_expression(value.get<std::string>(), parameters_at(document, pointer),
+  return evaluate_expression(value.get<std::string>(), parameters_at(document, pointer, set),
                              "the pattern: " + pointer);
 }
 
-std::string edited_text(const std::string& text, const std::vector<PatternEdit>& edits) {
+std::string edited_text(const std::string& text, const std::vector<PatternEdit>& edits,
+                        const std::map<std::string, double>& set) {
   const Json document = parse_json(text, "the pattern", ErrorCode::bad_pattern);
   std::string now = text;
-  for (const PatternEdit& edit : in_working_order(document, edits)) now = applied(now, edit);
+  for (const PatternEdit& edit : in_working_order(document, edits)) now = applied(now, edit, set);
   return now;
 }
 

@@ -3,6 +3,7 @@
 // other byte stays. A number that the author wrote as an expression stays an expression: what is
 // added to it is written behind it, as in "${lift_off} + 0.02".
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -20,14 +21,17 @@ struct PatternEdit {
 };
 
 /// The text after the edits. The pointers of all edits refer to the text before the first one;
-/// items that are inserted at the same index stand in the order of the edits. Throws Error(usage)
-/// for a place that is not there, and Error(bad_pattern) for a value that is not JSON and where the
-/// text is not JSON.
-std::string edited_text(const std::string& text, const std::vector<PatternEdit>& edits);
+/// items that are inserted at the same index stand in the order of the edits. An expression gets
+/// its new value with the parameters that are `set` from outside, and with the text's for all
+/// others. Throws Error(usage) for a place that is not there, and Error(bad_pattern) for a value
+/// that is not JSON and where the text is not JSON.
+std::string edited_text(const std::string& text, const std::vector<PatternEdit>& edits,
+                        const std::map<std::string, double>& set = {});
 
 /// Value of the number or expression at a place of the text; the counts of blocks that repeat are
 /// those of their first round. Throws Error(usage) for a place without one.
-double value_in_text(const std::string& text, const std::string& pointer);
+double value_in_text(const std::string& text, const std::string& pointer,
+                     const std::map<std::string, double>& set = {});
 
 /// The expression whose value is higher by `change`, a multiple of 1e-6: a number that is added to
 /// or subtracted from the whole at its end is changed, else one is appended.

@@ -12,8 +12,8 @@ export function written(words) {
   return text !== "" && Number.isFinite(Number(text)) ? Number(text) : text;
 }
 
-/// A time that is an expression, or that stands in a block that repeats, is the author's to change.
-export const canDrag = (value, thing = {}) => typeof value === "number" && !thing.repeated;
+/// A time in a block that repeats stands for several times, so it is the author's to change. To an expression the server adds.
+export const canDrag = (value, thing = {}) => ["number", "string"].includes(typeof value) && !thing.repeated;
 
 /// The value that makes the time of a key or the end of a phase `time`: some count from the one before.
 const timeValue = (time, base) => roundedTime(time - (base || 0));
@@ -65,12 +65,17 @@ export function putKey(keyframes, time, name, value) {
   return [added, ...follow(next, roundedTime(time))];
 }
 
+/// One part of a track, as the angle of one joint, in the keyframe at this time, or in a new one.
+export function putPart(keyframes, time, name, part, value) {
+  const there = keyframes.find((frame) => sameTime(frame.time, time));
+  return there ? [{ kind: "set", pointer: `${there.pointer}/${name}/${part}`, value }]
+    : putKey(keyframes, time, name, { [part]: value });
+}
+
 /// A place of a hand or of the gaze in the keyframe at this time.
 export function putTarget(keyframes, time, handle, place) {
   if (handle.gaze) return putKey(keyframes, time, "gaze", place);
-  const there = keyframes.find((frame) => sameTime(frame.time, time));
-  return there ? [{ kind: "set", pointer: `${there.pointer}/hands/${handle.link}`, value: place }]
-    : putKey(keyframes, time, "hands", { [handle.link]: place });
+  return putPart(keyframes, time, "hands", handle.link, place);
 }
 
 /// The item of the pattern's list that holds a keyframe: itself, or a block that repeats.
@@ -119,6 +124,11 @@ export function splitPhase(phase, time) {
   const rest = phase.until_pointer.endsWith("/duration")
     ? [{ kind: "set", pointer: phase.until_pointer, value: roundedTime(phase.until - time) }] : [];
   return [{ kind: "insert", pointer: phase.pointer, value: { until: roundedTime(time), support: phase.support } }, ...rest];
+}
+
+/// A swing that lands beside the other foot.
+export function addSwing(phase, foot) {
+  return [{ kind: "set", pointer: phase.pointer + "/swing", value: { foot, step: { forward: 0, side: 0, turn: 0 } } }];
 }
 
 /// A phase behind the last one, as long as it takes to look at.

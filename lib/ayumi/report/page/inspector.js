@@ -1,14 +1,14 @@
 // What is selected on the timeline, with its values to be typed; and new keys at the cursor.
 
 import { byId, element, seconds } from "./dom.js";
-import { appendPhase, putKey, putTarget, removeKey, splitPhase, valueFromRow, written } from "./edits.js";
+import { addSwing, appendPhase, putKey, putPart, putTarget, removeKey, splitPhase, valueFromRow, written } from "./edits.js";
 import { nameOfTrack } from "./timeline.js";
 
 /// Unit of a value by the names that lead to it.
 export function unitOf(path, angle) {
   const name = path.at(-1), track = path[0];
   if (["t", "after", "at", "until", "duration"].includes(name)) return "s";
-  if (["x", "y", "z", "height", "lift", "radius"].includes(name)) return "m";
+  if (["x", "y", "z", "height", "lift", "radius", "forward", "side", "up"].includes(name)) return "m";
   if (["roll", "pitch", "yaw", "turn"].includes(name) || track === "joints" || track === "joint" ||
     (track === "posture" && path.length > 1)) return angle;
   if (track === "zmp" || track === "cog" || name === "to" || path.includes("to") || track === "position" || track === "point")
@@ -20,6 +20,7 @@ export function unitOf(path, angle) {
 const places = ["forward", "left", "up", "yaw"];
 const millimetre = (value) => Number(value.toFixed(4));
 const words = { to: "lands", joint: "angle", zmp: "ZMP", cog: "COG", fz: "force", t: "time", x: "forward", y: "left" };
+const zmpWords = { left: "Put it under the left foot", center: "Put it in the middle", right: "Put it under the right foot" };
 const wholes = ["cog", "torso", "feet", "posture", "swing"];
 
 /// What a value is called, by the names that lead to it.
@@ -114,6 +115,8 @@ export class Inspector {
       ...this.inputs(key.time_pointer, key.time_value, [key.time_pointer.split("/").at(-1)]),
       ...this.inputs(key.pointer, key.value, path, choices),
       others.length ? element("p", { class: "soft" }, `This keyframe also has keys of: ${others.join(", ")}. All keys of a keyframe move together.`) : null,
+      ...key.track.name === "zmp" && !named ? ["left", "center", "right"].map((place) =>
+        this.button(() => [{ kind: "set", pointer: key.pointer, value: place }], zmpWords[place])) : [],
       key.track.name === "zmp" && named && this.page.can("edit") ? element("button", { type: "button",
         title: "Write the point [x, y] in place of the name", onclick: () => this.page.edit([{ kind: "set", pointer: key.pointer,
           value: valueFromRow("zmp", this.page.row(), this.page.motion.columns, state.angle_unit) }]) }, "Write the point as numbers") : null,
@@ -149,9 +152,18 @@ export class Inspector {
       ...phase.support ? this.inputs(phase.pointer + "/support", phase.support, ["support"],
         { support: ["both", "left", "right", "none"] }) : [],
       ...phase.swing ? this.inputs(phase.pointer + "/swing", phase.swing, ["swing"], { foot: ["left", "right"] }) : [],
+      ...this.swingButtons(phase),
       this.splitter = this.button(() => splitPhase(phase, this.page.time), "Cut at the cursor"),
       index === state.phases.length - 1 ? this.button(() => appendPhase(state.phases), "Add a phase after this one") : null,
       state.phases.length > 1 ? this.button(() => [{ kind: "remove", pointer: phase.pointer }], "Remove this phase") : null].filter(Boolean);
+  }
+
+  /// On one foot, the other one may swing; where it lands is then typed, or dragged in the picture.
+  swingButtons(phase) {
+    const pointer = phase.pointer + "/swing";
+    if (phase.swing) return [this.button(() => [{ kind: "remove", pointer }], "Remove its swing")];
+    const foot = { left: "right", right: "left" }[phase.support];
+    return foot ? [this.button(() => addSwing(phase, foot), `Let the ${foot} foot swing`)] : [];
   }
 
   disturbance(one) {
@@ -163,7 +175,7 @@ export class Inspector {
   offerTracks(state) {
     const select = byId("key-track"), chosen = select.value;
     const targets = state.handles.filter((one) => one.link || one.gaze);
-    const known = [["zmp", "ZMP"], ["cog", "COG"], ["fz", "vertical force"], ["torso", "trunk"]];
+    const known = [["zmp", "ZMP"], ["cog", "COG"], ["cog height", "COG height"], ["fz", "vertical force"], ["torso", "trunk"]];
     select.replaceChildren(...known.map(([value, label]) => element("option", { value }, label)),
       ...targets.length ? [element("optgroup", { label: "Hands and gaze" }, ...targets.map((one) =>
         element("option", { value: "target " + one.name }, one.label)))] : [],
@@ -178,12 +190,13 @@ export class Inspector {
       const place = this.page.handles.placeOf(handle, this.page.row()).toArray().map(millimetre);
       return void this.page.edit(putTarget(state.keyframes, this.page.time, handle, place));
     }
+    if (track === "cog height")
+      return void this.page.edit(putPart(state.keyframes, this.page.time, "cog", "height",
+        valueFromRow("cog", this.page.row(), this.page.motion.columns).height));
     const value = valueFromRow(track, this.page.row(), this.page.motion.columns, state.angle_unit);
     const whole = ["zmp", "cog", "fz", "torso"].includes(track);
-    const there = state.keyframes.find((frame) => Math.abs(frame.time - this.page.time) < 5e-4);
     this.page.edit(whole ? putKey(state.keyframes, this.page.time, track, value)
-      : there ? [{ kind: "set", pointer: `${there.pointer}/joints/${track}`, value }]
-        : putKey(state.keyframes, this.page.time, "joints", { [track]: value }));
+      : putPart(state.keyframes, this.page.time, "joints", track, value));
   }
 
   moved() {

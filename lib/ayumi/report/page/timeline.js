@@ -104,7 +104,7 @@ export class Timeline {
       const mark = element("button", { type: "button", class: "key", style: this.place(key.time),
         "data-id": key.pointer, "data-time": key.time_pointer,
         title: `${name} ${valueWords(key.value)} at ${seconds(key.time)}` +
-          (canDrag(key.time_value, key) ? "" : ` (written as ${key.time_value})`),
+          (typeof key.time_value === "string" ? ` (written as ${key.time_value})` : ""),
         "aria-label": `${name} key at ${seconds(key.time)}: ${valueWords(key.value)}`,
         "aria-pressed": String(this.page.isSelected(thing)),
         onclick: () => this.page.select(thing, key.time) });
