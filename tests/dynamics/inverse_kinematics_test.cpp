@@ -208,6 +208,32 @@ TEST(InverseKinematics, LimitsTellTheKneeOfABird) {
   EXPECT_LT(InverseKinematics(model, model.posture()).start()[model.find_dof("l_knee")], -0.1);
 }
 
+// Where hips or ankles leave the knees little room to come forward, and more to go back, they go
+// back: so built is Open Duck Mini.
+TEST(InverseKinematics, HipsTellTheKneeOfABird) {
+  for (const std::string limited : {"hip_pitch", "ankle_pitch"}) {
+    RobotDescription robot = test::biped_description();
+    for (JointDescription& joint : robot.joints) {
+      if (joint.name.ends_with("knee")) joint.lower = -(joint.upper = 1.57);
+      if (joint.name.ends_with(limited)) {
+        joint.lower =
+            -0.5;  // less than half of a crouch, to the side of the knee that comes forward
+        joint.upper = 1.2;
+      }
+    }
+    robot.postures["home"] = {};
+    robot.postures["squat"] = {};
+    const RobotModel model(robot);
+    const int knee = model.find_dof("l_knee");
+    EXPECT_LT(InverseKinematics(model, model.posture()).start()[knee], -0.1) << limited;
+    // With room to both sides, it comes forward.
+    for (JointDescription& joint : robot.joints)
+      if (joint.name.ends_with(limited)) joint.lower = -0.7;
+    const RobotModel free(robot);
+    EXPECT_GT(InverseKinematics(free, free.posture()).start()[knee], 0.1) << limited;
+  }
+}
+
 // Redundant legs stay inside the position limits on their way to the target.
 TEST(InverseKinematics, SevenJointLegsRespectLimits) {
   RobotDescription robot = test::biped_description();

@@ -65,6 +65,11 @@ constexpr double kAcross = 0.7;
 // stays nearly straight, and its robot is built to bend the other way.
 constexpr double kStartBend = 0.3, kKneeRoom = 0.15;
 
+// Bend of a knee that a walk with bent legs needs [rad]. Chosen: 50 degrees for standing and 20 for
+// the foot that is lifted. Half: Open Duck Mini stands with its hips at their limits and cannot
+// lift a foot; twice: only placeholders of limits leave so much room.
+constexpr double kCrouchBend = 1.2;
+
 // Sine of the knee's angle up to which a leg counts as straight. Chosen: 1 degree.
 constexpr double kStraightSine = 0.02;
 
@@ -228,10 +233,25 @@ void InverseKinematics::bend_straight_legs(RobotData& data) {
                                   : std::abs(knee_bend(data, side)) < kStraightSine;
     if (!straight) continue;
     double way = knees_[s] >= 0 ? forward_[s] : 1.0;
-    const auto room = [&](double w) {
-      return w > 0 ? dof.upper - start_[knee] : start_[knee] - dof.lower;
+    const auto room_of = [&](int joint, double w) {
+      const Dof& moved = model_->dofs()[joint];
+      return w > 0 ? moved.upper - start_[joint] : start_[joint] - moved.lower;
     };
-    if (room(way) < kKneeRoom && room(-way) > room(way)) way = -way;
+    // The hip and the ankle turn back by half the bend of the knee each.
+    const Vector3d across = data.rotation[model_->trunk_body()].col(1);
+    const auto room = [&](double w) {
+      double least = room_of(knee, w);
+      if (knees_[s] < 0) return least;
+      const double turn = forward_[s] * w;  // of the shank about the axis to the left
+      for (const int body : {knee_hips_[s], knee_feet_[s]}) {
+        const double own = model_->bodies()[body].ratio * data.axis[body].dot(across);
+        least = std::min(least, 2 * room_of(model_->bodies()[body].dof, own > 0 ? -turn : turn));
+      }
+      return least;
+    };
+    if (room_of(knee, way) < kKneeRoom ? room_of(knee, -way) > room_of(knee, way)
+                                       : room(way) < kCrouchBend && room(-way) >= kCrouchBend)
+      way = -way;
     start_[knee] += way * kStartBend;
   }
   state.theta = start_;

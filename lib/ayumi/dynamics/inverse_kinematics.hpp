@@ -35,8 +35,9 @@ inline constexpr double kLackingTolerance = 1.5e-3;
 class InverseKinematics {
  public:
   /// `reference` is a posture whose legs bend the right way. The knee of a straight leg bends as a
-  /// human knee does, so that it comes forward, where its limits leave room for it; else it bends
-  /// the other way. Throws Error(bad_model) for a robot without soles or with a foot as root.
+  /// human knee does, so that it comes forward, where the limits of the leg leave room for it; else
+  /// it bends the other way. Throws Error(bad_model) for a robot without soles or with a foot as
+  /// root.
   InverseKinematics(const RobotModel& model, const Eigen::VectorXd& reference);
 
   /// Joints that are solved: those of one leg only. A waist above which both legs hang is not.

@@ -550,7 +550,8 @@ bool balance(RobotGuess& guess, const VectorXd& zero) {
               " % of their straight length, COG " + text::fixed(1e3 * target.cog.z(), 0) +
               " mm high over the middle of the soles, every joint inside its limits" +
               (human ? ", knees that bend forward like a human's"
-                     : "; the limits leave the knees no room to come forward, so they go back"),
+                     : "; the limits leave the knees too little room to come forward, so they go "
+                       "back"),
           "that the robot stands like this, and that the arms are clear of the body"};
       return true;
     }
