@@ -177,6 +177,37 @@ TEST(InverseKinematics, FiveJointLegsLean) {
   }
 }
 
+// A sole that swings carries nothing, so that it yields, and the one that carries keeps its place.
+TEST(InverseKinematics, FiveJointLegsLetTheSwingingFootYield) {
+  RobotDescription robot = test::biped_description();
+  for (JointDescription& joint : robot.joints)
+    if (joint.name.ends_with("ankle_roll")) joint.type = JointType::fixed;
+  const RobotModel model(robot);
+  const InverseKinematics ik(model, model.posture());
+  RobotData data(model);
+  RobotState state = model.rest_state();
+  update_positions(model, state, data);
+  PostureTarget target;
+  for (const Side side : kSides) target.feet[static_cast<int>(side)] = sole_pose(model, data, side);
+  target.feet[1].translation().z() += 0.02;
+  double before = 1;  // miss of the left sole
+  for (const double hold : {1.0, 0.25, 0.0}) {
+    target.cog = data.cog + Eigen::Vector3d(0, 0.024, 0);
+    target.hold = {1, hold};
+    RobotState solved = state;
+    RobotData there(model);
+    const PostureSolution solution = ik.solve(target, solved, there);
+    // Held alike, each misses its place by more than a sole that carries may.
+    EXPECT_EQ(solution.reached, hold < 1)
+        << hold << " " << solution.miss[0] << " " << solution.miss[1];
+    EXPECT_LT(solution.miss[0], before) << hold;
+    EXPECT_LE(solution.miss[1], kSwingingTolerance) << hold;
+    before = solution.miss[0];
+    EXPECT_LT((there.cog - target.cog).norm(), 1e-5);
+  }
+  EXPECT_LT(before, 1e-4);
+}
+
 // Both knees come forward, whatever the signs of their axes, where the limits do not tell.
 TEST(InverseKinematics, StraightKneesComeForwardByGeometry) {
   RobotDescription robot = test::biped_description();
@@ -206,6 +237,32 @@ TEST(InverseKinematics, LimitsTellTheKneeOfABird) {
   robot.postures["squat"] = {};
   const RobotModel model(robot);
   EXPECT_LT(InverseKinematics(model, model.posture()).start()[model.find_dof("l_knee")], -0.1);
+}
+
+// Where hips or ankles leave the knees little room to come forward, and more to go back, they go
+// back: so built is Open Duck Mini.
+TEST(InverseKinematics, HipsTellTheKneeOfABird) {
+  for (const std::string limited : {"hip_pitch", "ankle_pitch"}) {
+    RobotDescription robot = test::biped_description();
+    for (JointDescription& joint : robot.joints) {
+      if (joint.name.ends_with("knee")) joint.lower = -(joint.upper = 1.57);
+      if (joint.name.ends_with(limited)) {
+        joint.lower =
+            -0.5;  // less than half of a crouch, to the side of the knee that comes forward
+        joint.upper = 1.2;
+      }
+    }
+    robot.postures["home"] = {};
+    robot.postures["squat"] = {};
+    const RobotModel model(robot);
+    const int knee = model.find_dof("l_knee");
+    EXPECT_LT(InverseKinematics(model, model.posture()).start()[knee], -0.1) << limited;
+    // With room to both sides, it comes forward.
+    for (JointDescription& joint : robot.joints)
+      if (joint.name.ends_with(limited)) joint.lower = -0.7;
+    const RobotModel free(robot);
+    EXPECT_GT(InverseKinematics(free, free.posture()).start()[knee], 0.1) << limited;
+  }
 }
 
 // Redundant legs stay inside the position limits on their way to the target.

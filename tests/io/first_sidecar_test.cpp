@@ -8,6 +8,7 @@
 #include "ayumi/dynamics/inverse_kinematics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/io/robot/robot_guess.hpp"
+#include "ayumi/math/polygon.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/urdf_biped.hpp"
 
@@ -237,6 +238,27 @@ TEST(FirstSidecar, ReadsBackAsItWasGuessed) {
          {"Facing", "Trunk", "Soles", "Softness", "Home posture", "Servos", "Motors", "Sensors"})
       EXPECT_NE(sidecar.text.find(std::string("// ") + word), std::string::npos) << word;
     EXPECT_GE(sidecar.to_do.size(), 6u);
+  }
+}
+
+// Rounding to tenths of a millimetre leaves the outline of round edges convex, inside the true one.
+TEST(FirstSidecar, SolesOfCylindersStayConvex) {
+  const TemporaryFolder folder;
+  for (const double width : {0.03, 0.0401, 0.0532, 0.0707}) {
+    const UrdfBiped kind{.rollers = true, .foot_width = width};
+    const std::string urdf = folder.write("robot.urdf", kind.text()).string();
+    const FirstSidecar sidecar = first_sidecar(urdf, folder.path() / "robot");
+    const RobotModel bare(load_robot_description(urdf)),
+        stated(load_robot_description(folder.write("robot/robot.json", sidecar.text)));
+    for (const Side side : {Side::left, Side::right}) {
+      const ConvexPolygon whole(bare.sole(side).polygon);
+      double length = 0;
+      for (const Eigen::Vector2d& corner : stated.sole(side).polygon) {
+        EXPECT_GT(whole.margin(corner), -1e-7) << width;
+        length = std::max(length, std::abs(corner.x()));
+      }
+      EXPECT_NEAR(length, 0.08, 2e-4) << width;
+    }
   }
 }
 

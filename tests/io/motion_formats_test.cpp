@@ -243,6 +243,23 @@ TEST(MotionFormats, KeysAreMet) {
   EXPECT_LE(knee.maxCoeff(), 1 + 1e-12);
 }
 
+// A row of words below the joints, as soccerbot's files have it, is no joint. A word among numbers
+// is a mistake.
+TEST(MotionFormats, RowsOfWordsAreNoJoints) {
+  const std::string keys = "time,0.5,1.5,2\nl_knee,0,1,1\nr_knee,0,0.5,1\n";
+  const ImportedMotion read =
+      read_motion_rows(keys + "comment,stance,x,step, to balance\n", "k.csv", hoap1());
+  EXPECT_EQ(read.motion.theta, read_motion_rows(keys, "k.csv", hoap1()).motion.theta);
+  const auto is_note = [](const std::string& line) {
+    return line.find("row 'comment' (line 4) has words and no numbers") != std::string::npos;
+  };
+  EXPECT_EQ(std::count_if(read.filled.begin(), read.filled.end(), is_note), 1);
+  EXPECT_NE(refusal_of(keys + "l_elbow,0,x,0\n", "k.csv").find("k.csv:4: value 2: 'x'"),
+            std::string::npos);
+  EXPECT_NE(refusal_of(keys + "l_elbow,a,b,c\n", "k.csv").find("k.csv:4: value 1: 'a'"),
+            std::string::npos);
+}
+
 // The robot stands in its home posture, with the soles `height` [m] over the ground in each row.
 RawMotion standing(const std::vector<double>& height, double dt) {
   const RobotModel& model = hoap1();

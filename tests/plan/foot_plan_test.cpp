@@ -32,6 +32,20 @@ TEST(FootPlan, StartsUnderTheDefaultPosture) {
   EXPECT_LT((plan.support_center(0) - Vector3d(0.01, 0, 0)).norm(), 1e-12);
 }
 
+// A foot is held where it carries, and least in the middle of the other foot's single support.
+TEST(FootPlan, HoldsWhatCarries) {
+  const FootPlan plan(test::biped(), one_step());
+  const auto hold = [&](double t) { return plan.hold(Side::right, t); };
+  for (const double t : {0.0, 0.999, 1.0, 1.5, 1.7}) EXPECT_EQ(hold(t), 1) << t;
+  EXPECT_NEAR(hold(1.25), 0, 1e-12);
+  EXPECT_EQ(plan.hold(Side::left, 1.25), 1);
+  const double h = 1e-4;
+  for (const double t : {1.0, 1.5}) {
+    EXPECT_LT(std::abs(hold(t + h) - hold(t - h)) / (2 * h), 1e-4);
+    EXPECT_LT(std::abs(hold(t + h) - 2 * hold(t) + hold(t - h)) / (h * h), 0.1);
+  }
+}
+
 TEST(FootPlan, OneGivenFootPlacesTheOther) {
   Pattern pattern = one_step();
   Foothold left;

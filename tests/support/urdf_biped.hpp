@@ -22,6 +22,7 @@ struct UrdfBiped {
   bool coupled_hips = false;  ///< one skew joint moves both hips
   bool placeholders = false;  ///< +-162 deg, 100 rad/s, 1000 N m on every joint
   bool spheres = false;       ///< feet touch with four spheres of 5 mm radius
+  bool rollers = false;       ///< feet touch with two cylinders that lie along them
   std::string left = "l_", right = "r_";
   double hip = 0.05, thigh = 0.12, shank = 0.12, ankle = 0.04, foot_length = 0.13,
          foot_width = 0.07;    ///< [m]
@@ -128,6 +129,13 @@ struct UrdfBiped {
             contacts += "<collision><origin xyz=\"" +
                         place(x * foot_length, across * foot_width, 0.005 / size - ankle) +
                         "\"/><geometry><sphere radius=\"0.005\"/></geometry></collision>";
+      if (rollers)
+        for (const double across : {-0.4, 0.4})
+          contacts += "<collision><origin xyz=\"" +
+                      place(ahead, across * foot_width, 0.005 - ankle) + "\" rpy=\"0 1.5707963 " +
+                      text::brief(facing, 9) + "\"/><geometry><cylinder radius=\"" +
+                      exact(0.005 * size) + "\" length=\"" + exact(foot_length * size) +
+                      "\"/></geometry></collision>";
       link(side + "foot", 0.25, ahead, 0, -ankle + 0.0125, foot_length, foot_width, 0.025, true,
            contacts);
       if (ankle_roll)

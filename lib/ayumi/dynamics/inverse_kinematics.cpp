@@ -54,6 +54,10 @@ constexpr double kCogWeight = 100;
 // weakly that a smaller weight lets them wander.
 constexpr double kRollWeight = 1e-3, kTrunkWeight = 3e-2;
 
+// Weight of a sole in the middle of its swing against one that carries, where legs lack joints.
+// Chosen: the sole that carries then takes a hundredth of what both miss together.
+constexpr double kSwingingWeight = 0.1;
+
 // Step of a joint with which a solution that leaves a residual ends [rad]. Chosen: angles are then
 // continuous in time to what rates at 1 kHz need.
 constexpr double kLastStep = 1e-10;
@@ -64,6 +68,11 @@ constexpr double kAcross = 0.7;
 // Room that a knee needs on its human side [rad]. Chosen: half of kStartBend; a knee with less
 // stays nearly straight, and its robot is built to bend the other way.
 constexpr double kStartBend = 0.3, kKneeRoom = 0.15;
+
+// Bend of a knee that a walk with bent legs needs [rad]. Chosen: 50 degrees for standing and 20 for
+// the foot that is lifted. Half: Open Duck Mini stands with its hips at their limits and cannot
+// lift a foot; twice: only placeholders of limits leave so much room.
+constexpr double kCrouchBend = 1.2;
 
 // Sine of the knee's angle up to which a leg counts as straight. Chosen: 1 degree.
 constexpr double kStraightSine = 0.02;
@@ -228,10 +237,25 @@ void InverseKinematics::bend_straight_legs(RobotData& data) {
                                   : std::abs(knee_bend(data, side)) < kStraightSine;
     if (!straight) continue;
     double way = knees_[s] >= 0 ? forward_[s] : 1.0;
-    const auto room = [&](double w) {
-      return w > 0 ? dof.upper - start_[knee] : start_[knee] - dof.lower;
+    const auto room_of = [&](int joint, double w) {
+      const Dof& moved = model_->dofs()[joint];
+      return w > 0 ? moved.upper - start_[joint] : start_[joint] - moved.lower;
     };
-    if (room(way) < kKneeRoom && room(-way) > room(way)) way = -way;
+    // The hip and the ankle turn back by half the bend of the knee each.
+    const Vector3d across = data.rotation[model_->trunk_body()].col(1);
+    const auto room = [&](double w) {
+      double least = room_of(knee, w);
+      if (knees_[s] < 0) return least;
+      const double turn = forward_[s] * w;  // of the shank about the axis to the left
+      for (const int body : {knee_hips_[s], knee_feet_[s]}) {
+        const double own = model_->bodies()[body].ratio * data.axis[body].dot(across);
+        least = std::min(least, 2 * room_of(model_->bodies()[body].dof, own > 0 ? -turn : turn));
+      }
+      return least;
+    };
+    if (room_of(knee, way) < kKneeRoom ? room_of(knee, -way) > room_of(knee, way)
+                                       : room(way) < kCrouchBend && room(-way) >= kCrouchBend)
+      way = -way;
     start_[knee] += way * kStartBend;
   }
   state.theta = start_;
@@ -407,10 +431,10 @@ bool InverseKinematics::newton(const PostureTarget& target, RobotState& state, R
 
 // Levenberg-Marquardt on all residuals, the COG weighted, inside the position limits: a joint at
 // its limit stays there while the step would take it beyond. Where legs lack joints, the attitude
-// of the base is solved too, with a small weight on the trunk's. Returns the largest residual of
-// soles and COG.
-double InverseKinematics::damped(const PostureTarget& target, RobotState& state,
-                                 RobotData& data) const {
+// of the base is solved too, with a small weight on the trunk's, and a sole that swings has a
+// smaller weight than one that carries.
+void InverseKinematics::damped(const PostureTarget& target, RobotState& state,
+                               RobotData& data) const {
   std::vector<int> joints = legs_[0];
   joints.insert(joints.end(), legs_[1].begin(), legs_[1].end());
   joints.insert(joints.end(), coupled_.begin(), coupled_.end());
@@ -424,9 +448,13 @@ double InverseKinematics::damped(const PostureTarget& target, RobotState& state,
       theta[dof] = std::clamp(theta[dof], model_->dofs()[dof].lower, model_->dofs()[dof].upper);
   };
   limit(state.theta);
+  const auto weight = [&](int s) {
+    return lacking_ ? kSwingingWeight + (1 - kSwingingWeight) * target.hold[s] : 1.0;
+  };
+  const std::array<double, 2> firm = {weight(0), weight(1)};
   const auto stack = [&](const Residual& e) {
     VectorXd r(rows);
-    r.head<15>() << e.foot[0], e.foot[1], kCogWeight * e.cog;
+    r.head<15>() << firm[0] * e.foot[0], firm[1] * e.foot[1], kCogWeight * e.cog;
     if (lacking_) r.tail<3>() = trunk * e.trunk;
     return r;
   };
@@ -436,8 +464,8 @@ double InverseKinematics::damped(const PostureTarget& target, RobotState& state,
        ++iteration) {
     MatrixXd J = MatrixXd::Zero(rows, base + n);
     for (int s = 0; s < 2; ++s) {
-      J.block<3, 3>(6 * s, 0).setIdentity();
-      J.block(6 * s, base, 6, n) = leg_jacobian(data, kSides[s], joints);
+      J.block<3, 3>(6 * s, 0) = firm[s] * Eigen::Matrix3d::Identity();
+      J.block(6 * s, base, 6, n) = firm[s] * leg_jacobian(data, kSides[s], joints);
     }
     J.block<3, 3>(12, 0) = kCogWeight * Eigen::Matrix3d::Identity();
     const MatrixXd C = cog_jacobian_floating(*model_, data);
@@ -446,8 +474,8 @@ double InverseKinematics::damped(const PostureTarget& target, RobotState& state,
     if (lacking_) {
       for (int s = 0; s < 2; ++s) {
         const Vector3d sole = sole_pose(*model_, data, kSides[s]).translation();
-        J.block<3, 3>(6 * s, 3) = -skew(sole - data.base_position);
-        J.block<3, 3>(6 * s + 3, 3).setIdentity();
+        J.block<3, 3>(6 * s, 3) = -firm[s] * skew(sole - data.base_position);
+        J.block<3, 3>(6 * s + 3, 3) = firm[s] * Eigen::Matrix3d::Identity();
       }
       J.block<3, 3>(12, 3) = -kCogWeight * skew(data.cog - data.base_position);
       // d log(A exp(-d)) = -(1 + [e]/2 + [e]^2/12 + ...) d at e = log A
@@ -492,12 +520,14 @@ double InverseKinematics::damped(const PostureTarget& target, RobotState& state,
       if (lambda > 1e6) break;
     }
   }
-  return e.largest();
 }
 
 PostureSolution InverseKinematics::solve(const PostureTarget& target, RobotState& state,
                                          RobotData& data) const {
   PostureSolution solution;
+  const auto tolerance = [&](double hold) {
+    return lacking_ ? lacking_tolerance(hold) : kAcceptedResidual;
+  };
   // A leaning trunk is kept as the initial guess.
   if (!lacking_ || residual(target, state, data).trunk.norm() > kLargestJointStep)
     set_attitude(target, state, data);
@@ -509,14 +539,20 @@ PostureSolution InverseKinematics::solve(const PostureTarget& target, RobotState
         if (solved_[dof]) state.theta[dof] = start_[dof];
       state.base.position = target.cog - (data.cog - data.base_position);
     }
-    solution.reached =
-        damped(target, state, data) <= (lacking_ ? kLackingTolerance : kAcceptedResidual);
+    damped(target, state, data);
     const Residual e = residual(target, state, data);
     solution.error = e.largest();
     solution.lean = e.trunk.norm();
-    const double miss[2] = {e.foot[0].head<3>().norm(), e.foot[1].head<3>().norm()};
-    solution.foot = miss[0] >= miss[1] ? Side::left : Side::right;
-    solution.missing = std::max(miss[0], miss[1]);
+    solution.reached = e.cog.cwiseAbs().maxCoeff() <= tolerance(1);
+    std::array<double, 2> share;  // of what is allowed
+    for (int s = 0; s < 2; ++s) {
+      const double allowed = tolerance(target.hold[s]);
+      solution.reached = solution.reached && e.foot[s].cwiseAbs().maxCoeff() <= allowed;
+      solution.miss[s] = e.foot[s].head<3>().norm();
+      share[s] = solution.miss[s] / allowed;
+    }
+    solution.foot = share[0] >= share[1] ? Side::left : Side::right;
+    solution.missing = solution.miss[static_cast<int>(solution.foot)];
     for (const int dof : legs_[static_cast<int>(solution.foot)]) {
       const Dof& joint = model_->dofs()[dof];
       if (state.theta[dof] <= joint.lower || state.theta[dof] >= joint.upper)

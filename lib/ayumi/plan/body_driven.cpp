@@ -61,7 +61,7 @@ namespace {
                             ": t = " + text::fixed(t, 3) + " s: the " + name_of(solution.foot);
   if (job.ik.lacks_joints() && !solution.knee_flipped)
     throw in_phase(where + " foot is out of reach by " + millimetres(solution.missing) +
-                   " (allowed: " + millimetres(kLackingTolerance) +
+                   " (allowed: " + millimetres(lacking_tolerance(job.feet.hold(solution.foot, t))) +
                    ", because a leg has fewer than six joints). With level soles, such legs cannot "
                    "move the COG farther to the side. Make the COG sway less (shorten "
                    "the step period, or move the ZMP towards the other foot with new walk "
@@ -98,6 +98,7 @@ PostureSolution solve_posture(const SampleJob& job, double t, const Eigen::Matri
   target.trunk = trunk;
   target.cog = sample.cog;
   target.feet = sample.feet;
+  target.hold = {job.feet.hold(Side::left, t), job.feet.hold(Side::right, t)};
   const auto legs = [&] {
     const PostureSolution solution = job.ik.solve(target, sample.state, data);
     if (!solution.reached || solution.knee_flipped) complain_reach(job, t, sample, solution);
@@ -190,12 +191,14 @@ constexpr double kNotedLean = 1e-3, kNotedMiss = 1e-5;
 
 // Largest figures of a motion.
 struct Worst {
-  double miss = 0;  // of a sole, by legs that lack joints [m]
-  double lean = 0;  // of the trunk, by legs that lack joints [rad]
-  double zmp = 0;   // error of the full model in the solved axes [m]
+  double miss = 0;   // of a sole that carries, by legs that lack joints [m]
+  double swing = 0;  // the same of a sole that swings [m]
+  double lean = 0;   // of the trunk, by legs that lack joints [rad]
+  double zmp = 0;    // error of the full model in the solved axes [m]
 
   void include(const Worst& other) {
     miss = std::max(miss, other.miss);
+    swing = std::max(swing, other.swing);
     lean = std::max(lean, other.lean);
     zmp = std::max(zmp, other.zmp);
   }
@@ -227,7 +230,11 @@ Worst solve_block(const SampleJob& job, const CogPlan& plan, int first, int end,
     put_plan(job, t, sample);
     const PostureSolution solution =
         solve_posture(job, t, plan.turned(t, trunk_attitude(job, t, sample.feet)), sample, data);
-    worst.include({.miss = solution.missing, .lean = solution.lean});
+    worst.include({.lean = solution.lean});
+    for (const Side side : {Side::left, Side::right}) {
+      double& miss = job.feet.hold(side, t) < 1 ? worst.swing : worst.miss;
+      miss = std::max(miss, solution.miss[index(side)]);
+    }
     postures.add(posture_of(sample));
   }
   return worst;
@@ -309,7 +316,8 @@ void describe(const SampleJob& job, const CogPlan& plan, const Worst& worst,
   }
   origin["feet"] = "phases and swings";
   origin["base"] = "solved from feet, torso and COG";
-  if (job.ik.lacks_joints() && (worst.lean > kNotedLean || worst.miss > kNotedMiss)) {
+  if (job.ik.lacks_joints() &&
+      (worst.lean > kNotedLean || std::max(worst.miss, worst.swing) > kNotedMiss)) {
     const size_t joints = std::min(job.ik.leg(Side::left).size(), job.ik.leg(Side::right).size());
     origin["legs"] =
         "a leg has " + std::to_string(joints) +
@@ -317,8 +325,11 @@ void describe(const SampleJob& job, const CogPlan& plan, const Worst& worst,
                                   : " joints of its own and one that moves both legs, not six,") +
         " so there are places at which it cannot put the sole level: the trunk leans by up to " +
         text::fixed(worst.lean * 180 / std::numbers::pi, 1) +
-        " deg, and soles miss their places by up to " + millimetres(worst.miss) + " (allowed " +
-        millimetres(kLackingTolerance) + ")";
+        " deg, and soles that carry miss their places by up to " + millimetres(worst.miss) +
+        " (allowed " + millimetres(kLackingTolerance) + ")";
+    if (worst.swing > kNotedMiss)
+      origin["legs"] += ", soles that swing by up to " + millimetres(worst.swing) + " (allowed " +
+                        millimetres(kSwingingTolerance) + " in the middle of a swing)";
   }
   origin["joints"] = "legs by inverse kinematics, others from keys and default posture";
 }

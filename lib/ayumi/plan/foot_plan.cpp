@@ -252,6 +252,16 @@ double FootPlan::flight_lift(Side side, double t) const {
   return 0.5 * kGravity * after * left * smooth_step(after / ramp) * smooth_step(left / ramp);
 }
 
+double FootPlan::hold(Side side, double t) const {
+  const Support alone = on(other(side));
+  int first = phase(t), last = first;
+  if (phases_[first].support != alone) return 1;
+  while (first > 0 && phases_[first - 1].support == alone) --first;
+  while (last + 1 < static_cast<int>(phases_.size()) && phases_[last + 1].support == alone) ++last;
+  const double from = begin(first), length = phases_[last].until - from;
+  return 1 - lift_profile(std::clamp((t - from) / length, 0.0, 1.0));
+}
+
 double FootPlan::ground(double t) const {
   double sum = 0;
   for (const Side side : kSides)

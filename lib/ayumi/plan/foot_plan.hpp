@@ -44,6 +44,11 @@ class FootPlan {
     return {pose(Side::left, t), pose(Side::right, t)};
   }
 
+  /// How firmly a foot keeps its place: 1 where it carries and in flights; while the other foot
+  /// alone carries, down to 0 in the middle of this time and back, with two derivatives that are
+  /// zero at both ends.
+  double hold(Side side, double t) const;
+
   /// Mean height of both soles without lifts, which is the ground under the robot [m].
   double ground(double t) const;
 

@@ -1,5 +1,7 @@
 #include "ayumi/io/formats/transposed_csv.hpp"
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 
 #include "ayumi/base/counted.hpp"
@@ -14,6 +16,19 @@ bool is_number(std::string_view cell) {
   double value = 0;
   const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
   return !cell.empty() && error == std::errc() && end == cell.data() + cell.size();
+}
+
+// Rows of words, such as comments on the key postures, have no number at all.
+bool has_words_only(const std::vector<std::string_view>& cells) {
+  bool words = false;
+  for (size_t i = 1; i < cells.size(); ++i) {
+    if (is_number(cells[i])) return false;
+    words = words || std::any_of(cells[i].begin(), cells[i].end(), [](char c) {
+              return std::isalpha(static_cast<unsigned char>(c)) ||
+                     static_cast<unsigned char>(c) >= 0x80;
+            });
+  }
+  return words;
 }
 
 }  // namespace
@@ -33,6 +48,13 @@ MotionFile read_transposed_csv(const MotionInput& source) {
     const std::string_view text = take_line(rest);
     if (text.empty() || text.front() == '#') continue;
     const std::vector<std::string_view> cells = cells_of(text);
+    if (!motion.times.empty() && has_words_only(cells) &&
+        find_joint(source.model, std::string(cells[0])) < 0) {
+      motion.notes.push_back("row '" + std::string(cells[0].substr(0, 48)) + "' (line " +
+                             std::to_string(line) +
+                             ") has words and no numbers, so that it is left out");
+      continue;
+    }
     std::vector<double> row;
     for (size_t i = 1; i < cells.size(); ++i)
       row.push_back(source.number(cells[i], line, "value " + std::to_string(i)));

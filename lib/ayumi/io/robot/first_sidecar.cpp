@@ -64,27 +64,40 @@ std::string guessed(const std::string& what, const GuessReason& reason) {
          (reason.check.empty() ? "" : remark("Check " + reason.check + "."));
 }
 
-// Towards the middle, so that a rounded sole is not wider than the true one.
-Vector2d rounded_inwards(const Vector2d& corner, const Vector2d& middle) {
-  Vector2d rounded;
-  for (int i = 0; i < 2; ++i) {
-    const double tenths = corner[i] * 1e4;  // of millimetres
-    rounded[i] =
-        1e-4 * (corner[i] > middle[i] ? std::floor(tenths + 1e-4) : std::ceil(tenths - 1e-4));
+// The corners in whole tenths of a millimetre, towards the middle, so that a rounded sole is not
+// wider than the true one. Rounding moves a corner between two others onto their line or inside it,
+// as corners of rounded edges are; such corners are left out.
+std::vector<Vector2d> rounded_inwards(const std::vector<Vector2d>& corners) {
+  Vector2d middle = Vector2d::Zero();
+  for (const Vector2d& corner : corners) middle += corner / static_cast<double>(corners.size());
+  std::vector<Vector2d> rounded;
+  for (const Vector2d& corner : corners) {
+    Vector2d tenths = corner * 1e4;
+    for (int i = 0; i < 2; ++i)
+      tenths[i] =
+          corner[i] > middle[i] ? std::floor(tenths[i] + 1e-4) : std::ceil(tenths[i] - 1e-4);
+    rounded.push_back(tenths);
+  }
+  for (size_t i = 0; i < rounded.size() && rounded.size() > 3;) {
+    const size_t n = rounded.size();
+    const Vector2d in = rounded[i] - rounded[(i + n - 1) % n],
+                   out = rounded[(i + 1) % n] - rounded[i];
+    if (in.x() * out.y() - in.y() * out.x() > 0) {
+      ++i;
+      continue;
+    }
+    rounded.erase(rounded.begin() + static_cast<std::ptrdiff_t>(i));
+    i = 0;
   }
   return rounded;
 }
 
 std::string sole_text(const SoleDescription& sole, const RobotModel& model, Side side) {
   const Vector3d at = sole.frame.translation(), rpy = matrix_to_rpy(sole.frame.linear());
-  Vector2d middle = Vector2d::Zero();
-  for (const Vector2d& corner : sole.polygon)
-    middle += corner / static_cast<double>(sole.polygon.size());
   std::vector<std::string> corners;
-  for (const Vector2d& corner : sole.polygon) {
-    const Vector2d p = rounded_inwards(corner, middle);
-    corners.push_back("[" + rounded_text(p.x(), 4) + ", " + rounded_text(p.y(), 4) + "]");
-  }
+  for (const Vector2d& p : rounded_inwards(sole.polygon))
+    corners.push_back("[" + rounded_text(1e-4 * p.x(), 4) + ", " + rounded_text(1e-4 * p.y(), 4) +
+                      "]");
   std::string text = "    " + json_text(name_of(side)) +
                      ": {\n      \"link\": " + json_text(sole.link) + ",\n      \"origin\": [" +
                      rounded_text(at.x(), 6) + ", " + rounded_text(at.y(), 6) + ", " +

@@ -552,7 +552,8 @@ bool balance(RobotGuess& guess, const VectorXd& zero) {
               " mm high over the middle of the soles, and every joint is inside its limits" +
               (knee < 0 ? ""
                : human  ? "; the knees bend forward like a human's"
-                       : "; the limits leave the knees no room to bend forward, so they bend back"),
+                        : "; the limits leave the knees too little room to bend forward, so they "
+                          "bend back"),
           "that the robot stands like this, and that the arms are clear of the body"};
       return true;
     }
