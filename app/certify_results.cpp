@@ -10,7 +10,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-constexpr const char* kFormat = "ayumi.certify/1";
+constexpr const char* kCertifyFormat = "ayumi.certify/1";
 /// Largest number of cases in a file. Definition: that of `certify --runs`.
 constexpr size_t kMostCases = 100000000;
 
@@ -39,7 +39,7 @@ Json bound_json(double value) { return std::isfinite(value) ? Json(value) : Json
 
 std::string case_results_text(const Json& study, const std::string& shard,
                               const KnownResults& results) {
-  Json head = {{"format", kFormat}, {"study", study}};
+  Json head = {{"format", kCertifyFormat}, {"study", study}};
   if (!shard.empty()) head["shard"] = shard;
   head["columns"] = {"case",        "outcome",      "fell_at_s",
                      "cog_error_m", "torque_ratio", "foot_tilt_rad"};
@@ -67,7 +67,7 @@ std::string add_case_results(const std::filesystem::path& file, const Json& stud
   const std::string bytes = read_file(file);
   try {
     const Json json = Json::parse(bytes);
-    if (json.at("format") != kFormat) refuse("this is not a file of certify results");
+    if (json.at("format") != kCertifyFormat) refuse("this is not a file of certify results");
     // The order of keys says nothing.
     const auto theirs = nlohmann::json::parse(json.at("study").dump());
     const auto ours = nlohmann::json::parse(study.dump());

@@ -14,12 +14,7 @@ namespace ayumi::app {
 
 namespace {
 
-std::string padded(std::string text, size_t width) {
-  text.resize(std::max(text.size(), width), ' ');
-  return text;
-}
-
-std::string mm(double metres) { return text::fixed(1000 * metres, 1) + " mm"; }
+std::string mm_text(double metres) { return text::fixed(1000 * metres, 1) + " mm"; }
 
 std::string seconds(const Finding& f) {
   if (f.begin == f.end) return "at " + text::fixed(f.at, 3) + " s";
@@ -27,7 +22,7 @@ std::string seconds(const Finding& f) {
          text::fixed(f.at, 3) + " s";
 }
 
-std::string percent(double ratio) { return text::fixed(100 * ratio, 0) + " %"; }
+std::string whole_percent(double ratio) { return text::fixed(100 * ratio, 0) + " %"; }
 
 std::string severity_word(Severity severity) {
   const std::string word = padded(name_of(severity), 8);
@@ -95,27 +90,28 @@ std::string check_table(const ConsistencyReport& report, const RobotModel& model
     return " (" + (p.where.empty() ? "" : p.where + " ") + "at " + text::fixed(p.at, 2) + " s)";
   };
   const double margin = at(FindingKind::support_margin);
-  out += "  ZMP " + mm(std::abs(margin)) + (margin < 0 ? " outside" : " inside") + " the support" +
-         place(FindingKind::support_margin) + "; the posture differs from the keys by " +
-         mm(at(FindingKind::cog_residual)) + " in COG, " + mm(at(FindingKind::zmp_residual)) +
-         " in ZMP and " + text::fixed(at(FindingKind::fz_residual), 2) +
-         " N in force; the ZMP of the point-mass model is " + mm(at(FindingKind::point_mass_gap)) +
-         " from the command\n";
+  out += "  ZMP " + mm_text(std::abs(margin)) + (margin < 0 ? " outside" : " inside") +
+         " the support" + place(FindingKind::support_margin) +
+         "; the posture differs from the keys by " + mm_text(at(FindingKind::cog_residual)) +
+         " in COG, " + mm_text(at(FindingKind::zmp_residual)) + " in ZMP and " +
+         text::fixed(at(FindingKind::fz_residual), 2) +
+         " N in force; the ZMP of the point-mass model is " +
+         mm_text(at(FindingKind::point_mass_gap)) + " from the command\n";
   std::vector<std::string> shares;
   for (const FindingSpec* spec : summary_figures())
     if (spec->figure.share_name)
-      shares.push_back(std::string(spec->figure.share_name) + " " + percent(at(spec->kind)) +
+      shares.push_back(std::string(spec->figure.share_name) + " " + whole_percent(at(spec->kind)) +
                        place(spec->kind));
   out += "  share of the limits: " + text::join(shares, ", ") + "\n";
-  out += "  feet: slip " + mm(at(FindingKind::foot_slip)) + ", sink " +
-         mm(at(FindingKind::foot_penetration)) + ", gap while standing " +
-         mm(at(FindingKind::foot_float)) + "; ";
+  out += "  feet: slip " + mm_text(at(FindingKind::foot_slip)) + ", sink " +
+         mm_text(at(FindingKind::foot_penetration)) + ", gap while standing " +
+         mm_text(at(FindingKind::foot_float)) + "; ";
   const std::vector<std::string> bare = bodies_without_collision_shapes(model);
   const double apart = at(FindingKind::self_collision);
   if (std::isnan(apart))
     out += "self-collisions are not checked, because the legs have no collision shapes";
   else
-    out += "nearest bodies " + mm(apart) + " apart" + place(FindingKind::self_collision);
+    out += "nearest bodies " + mm_text(apart) + " apart" + place(FindingKind::self_collision);
   if (!std::isnan(apart) && !bare.empty())
     out += "; self-collisions of " + text::join(bare, ", ") +
            " are not checked, because these bodies have no collision shapes";

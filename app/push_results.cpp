@@ -9,7 +9,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-constexpr const char* kFormat = "ayumi.push/1";
+constexpr const char* kPushFormat = "ayumi.push/1";
 
 Json limit_json(const PushLimit& limit) {
   return {{"impulse_Ns", limit.impulse},
@@ -114,7 +114,7 @@ std::string results_text(const Json& study, const KnownCases& cases) {
     entry.update(case_json(*cases[i]));
     list.push_back(entry);
   }
-  const Json file = {{"format", kFormat}, {"study", study}, {"cases", list}};
+  const Json file = {{"format", kPushFormat}, {"study", study}, {"cases", list}};
   return file.dump(1) + "\n";
 }
 
@@ -128,7 +128,7 @@ KnownCases read_results(const std::filesystem::path& file, const Json& study, si
   const std::string bytes = read_file(file);
   try {
     const Json json = Json::parse(bytes);
-    if (json.at("format") != kFormat) refuse("this is not a file of push results");
+    if (json.at("format") != kPushFormat) refuse("this is not a file of push results");
     // The order of keys says nothing.
     if (nlohmann::json::parse(json.at("study").dump()) != nlohmann::json::parse(study.dump()))
       refuse("this file holds the results of a study with other settings");

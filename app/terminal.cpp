@@ -111,6 +111,11 @@ std::string broken_at(const std::string& text, size_t columns) {
   return broken;
 }
 
+std::string padded(std::string text, size_t width) {
+  text.resize(std::max(text.size(), width), ' ');
+  return text;
+}
+
 void clear_screen() {
   if (is_terminal()) std::fputs("\x1b[H\x1b[2J\x1b[3J", stdout);
 }

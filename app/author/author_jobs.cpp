@@ -27,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Lines of a text, without the spaces that begin them.
-OrderedJson lines_of(const std::string& text) {
+OrderedJson json_lines_of(const std::string& text) {
   OrderedJson lines = OrderedJson::array();
   for (size_t begin = 0; begin < text.size();) {
     const size_t end = std::min(text.find('\n', begin), text.size());
@@ -63,7 +63,8 @@ AuthorResult check_job(const AuthorMotion& motion) {
   for (const std::string& reason : export_refusals(motion.task, judgement))
     if (reason != judgement.reason()) lines.push_back("ayumi export refuses the table: " + reason);
   lines.push_back(counted_findings(judgement) + ", actuators " + motion.task.profile);
-  for (const auto& line : lines_of(origin_words(motion.task.series.origin))) lines.push_back(line);
+  for (const auto& line : json_lines_of(origin_words(motion.task.series.origin)))
+    lines.push_back(line);
   return {result_json("check", judgement.good() ? "The pattern is consistent." : judgement.reason(),
                       judgement.good(), lines),
           {}};
@@ -80,7 +81,8 @@ AuthorResult repair_job(const AuthorMotion& motion, const std::string& text,
                         OrderedJson::array()),
             {}};
   const bool repaired = result.status == RepairStatus::repaired;
-  OrderedJson lines = lines_of(motion_words(task.robot, result.moved, result.before, result.check));
+  OrderedJson lines =
+      json_lines_of(motion_words(task.robot, result.moved, result.before, result.check));
   for (const std::string& reason : result.reasons) lines.push_back("Because " + reason);
   AuthorResult out = {
       result_json("repair",

@@ -27,7 +27,7 @@ constexpr int kListeners = 24, kThreads = 32;
 // Largest request [bytes]. Source: docs/formats.md, the largest pattern.
 constexpr size_t kLargestRequest = size_t{64} << 20;
 // How long a client may take to send the next bytes of its request [s].
-constexpr time_t kPatience = 2;
+constexpr time_t kRequestPatience = 2;
 // How long requests may still run when the server ends. Chosen: below the second in which Ctrl-C
 // has to end the program.
 constexpr auto kGrace = 600ms;
@@ -176,8 +176,8 @@ void set_limits(httplib::Server& server) {
   });
   server.set_keep_alive_max_count(1);
   server.set_payload_max_length(kLargestRequest);
-  server.set_read_timeout(kPatience);
-  server.set_write_timeout(kPatience);
+  server.set_read_timeout(kRequestPatience);
+  server.set_write_timeout(kRequestPatience);
   server.set_default_headers({{"Cache-Control", "no-store"},
                               {"X-Content-Type-Options", "nosniff"},
                               {"X-Frame-Options", "DENY"},

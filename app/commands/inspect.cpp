@@ -15,6 +15,7 @@
 #include "ayumi/render/clip.hpp"
 #include "pattern_input.hpp"
 #include "robot_picture.hpp"
+#include "terminal.hpp"
 
 namespace ayumi::app {
 
@@ -210,11 +211,6 @@ OrderedJson inspection_json(const RobotModel& model, const Stance& stance,
           {"warnings", notes},
           {"assumptions", files.assumptions},
           {"sha256", files.sha256}};
-}
-
-std::string padded(std::string text, size_t width) {
-  text.resize(std::max(text.size(), width), ' ');
-  return text;
 }
 
 std::string right_aligned(const std::string& text, size_t width) {

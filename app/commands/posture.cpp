@@ -39,7 +39,7 @@ struct PostureCommand {
 // ---- where postures come from
 
 /// What a robot, a pattern or a library offers.
-struct Source {
+struct PostureSource {
   std::map<std::string, Angles> postures;
   std::string robot;  ///< the robot that the source names; "" where it names none
 };
@@ -66,12 +66,12 @@ std::map<std::string, Angles> whole_postures(const RobotModel& model) {
   return postures;
 }
 
-Source source_of(const Context& context, const PostureCommand& options) {
+PostureSource source_of(const Context& context, const PostureCommand& options) {
   const fs::path file = options.source;
   std::error_code ignored;
   const bool is_json = file.extension() == ".json" && fs::is_regular_file(file, ignored);
   const std::string format = is_json ? format_of(read_file(file)) : "";
-  Source source;
+  PostureSource source;
   if (format == "ayumi.postures/1") {
     const PostureLibrary library = read_posture_library(file);
     return {library.postures, library.robot};
@@ -86,7 +86,7 @@ Source source_of(const Context& context, const PostureCommand& options) {
   return {whole_postures(load_robot(options.source, robot_search(context))), options.source};
 }
 
-const Angles& posture_of(const Source& source, const PostureCommand& options) {
+const Angles& posture_of(const PostureSource& source, const PostureCommand& options) {
   const auto found = source.postures.find(options.name);
   if (found != source.postures.end()) return found->second;
   std::vector<std::string> names;
@@ -203,7 +203,7 @@ void save(const Context& context, const PostureCommand& options, const RobotMode
 // ---- the kinds of the command
 
 void list(const Context& context, const PostureCommand& options) {
-  const Source source = source_of(context, options);
+  const PostureSource source = source_of(context, options);
   std::optional<RobotModel> model;
   try {  // a library may name a robot that is not here, or none
     model = robot_of_source(context, options, source.robot);
@@ -225,7 +225,7 @@ void draw(const Context& context, const PostureCommand& options) {
     fail(ErrorCode::usage,
          "-o " + options.out + ": the picture needs a file name that ends in .png");
   refuse_overwriting(context, options.out);
-  const Source source = source_of(context, options);
+  const PostureSource source = source_of(context, options);
   const Angles& angles = posture_of(source, options);
   const RobotModel model = robot_of_source(context, options, source.robot);
   const Eigen::VectorXd theta = theta_of(model, angles, options.source + ": " + options.name);
@@ -237,7 +237,7 @@ void draw(const Context& context, const PostureCommand& options) {
 }
 
 void mirror(const Context& context, const PostureCommand& options) {
-  const Source source = source_of(context, options);
+  const PostureSource source = source_of(context, options);
   const Angles& angles = posture_of(source, options);
   const RobotModel model = robot_of_source(context, options, source.robot);
   const MirrorMap map = mirror_map(model);
@@ -250,7 +250,7 @@ void mirror(const Context& context, const PostureCommand& options) {
 }
 
 void adjust(const Context& context, const PostureCommand& options) {
-  const Source source = source_of(context, options);
+  const PostureSource source = source_of(context, options);
   Angles angles = posture_of(source, options);
   const RobotModel model = robot_of_source(context, options, source.robot);
   for (const auto& [joint, value] : read_pairs(options.joints, "--joint")) {

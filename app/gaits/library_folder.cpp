@@ -18,7 +18,7 @@ constexpr const char* kAsked = "asked.json";
 constexpr const char* kDelivering = "delivering.json";
 /// What a library has at the top of its folder beside the index.
 constexpr const char* kTop[] = {"patterns", "walks", "cycles", "transitions", "map.svg", "map.png"};
-constexpr const char* kFormat = "ayumi.gaits/1";
+constexpr const char* kGaitsFormat = "ayumi.gaits/1";
 
 bool is_there(const fs::path& path) {
   std::error_code ignored;
@@ -32,7 +32,7 @@ std::vector<std::string> files_of_library(const fs::path& folder) {
   std::vector<std::string> files = {kIndex};
   try {
     const Json json = Json::parse(read_file(index));
-    if (json.at("format") != kFormat) throw std::out_of_range("format");
+    if (json.at("format") != kGaitsFormat) throw std::out_of_range("format");
     for (const Json& each : json.at("files")) {
       const fs::path path = fs::path(each.get<std::string>()).lexically_normal();
       if (path.is_absolute() || path.empty() || *path.begin() == "..")

@@ -25,7 +25,7 @@ namespace {
 constexpr int kApplication = 0x4159554d;
 /// Version of the tables. Definition: another number with every change that an older program cannot
 /// read.
-constexpr int kFormat = 1;
+constexpr int kDatabaseFormat = 1;
 /// How long a reader waits for a writer [ms]. Chosen: a commit takes some ms.
 constexpr int kLockPatience = 10000;
 
@@ -216,7 +216,7 @@ void ResultsDatabase::make_tables() {
   std::string sql =
       "BEGIN IMMEDIATE;"
       "PRAGMA application_id = " +
-      std::to_string(kApplication) + "; PRAGMA user_version = " + std::to_string(kFormat) +
+      std::to_string(kApplication) + "; PRAGMA user_version = " + std::to_string(kDatabaseFormat) +
       "; CREATE TABLE about (key TEXT PRIMARY KEY, value TEXT) WITHOUT ROWID;"
       "CREATE TABLE inputs (place INTEGER PRIMARY KEY, kind TEXT, name TEXT, sha256 TEXT);"
       "CREATE TABLE axes (place INTEGER PRIMARY KEY, name TEXT, type TEXT);"
@@ -289,10 +289,10 @@ void ResultsDatabase::read_head() {
     fail(ErrorCode::bad_file,
          file_.string() + ": this is not a file of sweep results; choose another name");
   const long format = single("PRAGMA user_version");
-  if (format != kFormat)
+  if (format != kDatabaseFormat)
     fail(ErrorCode::bad_file, file_.string() + ": the results have version " +
                                   std::to_string(format) + " of the format, but this program has " +
-                                  std::to_string(kFormat) +
+                                  std::to_string(kDatabaseFormat) +
                                   "; use the version of Ayumi that wrote the results");
   const auto rows = [&](const std::string& sql, const auto& take) {
     Statement statement(database_, sql);

@@ -71,7 +71,7 @@ std::vector<std::string> texts() {
   return all;
 }
 
-Document parsed(const std::string& text) { return Document::parse(text, nullptr, true, true); }
+Document document_of(const std::string& text) { return Document::parse(text, nullptr, true, true); }
 
 std::vector<std::string> pointers(const Document& value, const std::string& at = "") {
   std::vector<std::string> all;
@@ -88,7 +88,7 @@ TEST(PatternEdit, ThereAreTwentyTexts) { EXPECT_GE(texts().size(), 20u); }
 
 TEST(PatternEdit, ASetValueIsTheOnlyChange) {
   for (const std::string& text : texts()) {
-    const Document before = parsed(text);
+    const Document before = document_of(text);
     for (const std::string& pointer : pointers(before)) {
       const Document::json_pointer at(pointer);
       const Document& value = before.at(at);
@@ -106,14 +106,14 @@ TEST(PatternEdit, ASetValueIsTheOnlyChange) {
       if (value.is_string() && !words) continue;  // the next test
       Document expected = before;
       expected.at(at) = wanted;
-      EXPECT_EQ(parsed(after), expected) << pointer;
+      EXPECT_EQ(document_of(after), expected) << pointer;
     }
   }
 }
 
 TEST(PatternEdit, AnExpressionStaysAnExpression) {
   const auto edited = [](const std::string& pointer, const std::string& value) {
-    return parsed(edited_text(kAuthored, {{Kind::set, pointer, value}}))
+    return document_of(edited_text(kAuthored, {{Kind::set, pointer, value}}))
         .at(Document::json_pointer(pointer))
         .get<std::string>();
   };
@@ -127,7 +127,7 @@ TEST(PatternEdit, AnExpressionStaysAnExpression) {
 
 TEST(PatternEdit, WhatIsInsertedAndRemovedAgainLeavesTheBytesThatWereThere) {
   for (const std::string& text : texts()) {
-    const Document before = parsed(text);
+    const Document before = document_of(text);
     for (const std::string list : {"/keyframes", "/phases", "/scenario"}) {
       const Document::json_pointer at(list);
       if (!before.contains(at)) continue;
@@ -137,8 +137,8 @@ TEST(PatternEdit, WhatIsInsertedAndRemovedAgainLeavesTheBytesThatWereThere) {
         const std::string value = R"({"t":1.5,"zmp":[0.01,-0.02]})";
         const std::string after = edited_text(text, {{Kind::insert, pointer, value}});
         Document expected = before;
-        expected.at(at).insert(expected.at(at).begin() + static_cast<long>(i), parsed(value));
-        EXPECT_EQ(parsed(after), expected) << pointer;
+        expected.at(at).insert(expected.at(at).begin() + static_cast<long>(i), document_of(value));
+        EXPECT_EQ(document_of(after), expected) << pointer;
         EXPECT_EQ(edited_text(after, {{Kind::remove, pointer, ""}}), text) << pointer;
       }
     }
@@ -147,13 +147,13 @@ TEST(PatternEdit, WhatIsInsertedAndRemovedAgainLeavesTheBytesThatWereThere) {
 
 TEST(PatternEdit, AMissingMemberIsAddedWithTheObjectsAroundItAndRemovedAgain) {
   for (const std::string& text : texts()) {
-    const Document before = parsed(text);
+    const Document before = document_of(text);
     if (before.contains("start") || before.contains("postures")) continue;
     for (const std::string pointer : {"/start/left", "/postures/a~1b"}) {
       const std::string after = edited_text(text, {{Kind::set, pointer, "[0.5, 1]"}});
       Document expected = before;
       expected[Document::json_pointer(pointer)] = {0.5, 1};
-      EXPECT_EQ(parsed(after), expected) << pointer;
+      EXPECT_EQ(document_of(after), expected) << pointer;
       const std::string around = pointer.substr(0, pointer.find('/', 1));
       EXPECT_EQ(edited_text(after, {{Kind::remove, around, ""}}), text);
     }
@@ -162,7 +162,7 @@ TEST(PatternEdit, AMissingMemberIsAddedWithTheObjectsAroundItAndRemovedAgain) {
 
 TEST(PatternEdit, EveryValueCanBeRemoved) {
   for (const std::string& text : texts()) {
-    const Document before = parsed(text);
+    const Document before = document_of(text);
     for (const std::string& pointer : pointers(before)) {
       const Document::json_pointer at(pointer);
       Document expected = before;
@@ -173,7 +173,7 @@ TEST(PatternEdit, EveryValueCanBeRemoved) {
         around.erase(at.back());
       const std::string after = edited_text(text, {{Kind::remove, pointer, ""}});
       ASSERT_TRUE(Document::accept(after, true)) << pointer << "\n" << after;
-      EXPECT_EQ(parsed(after), expected) << pointer;
+      EXPECT_EQ(document_of(after), expected) << pointer;
       EXPECT_LT(after.size(), text.size());
     }
   }

@@ -44,22 +44,22 @@ std::string said(const std::string& rest) {
   return "no error";
 }
 
-double value(const std::string& text) { return evaluate_expression(text, {{"x", 0.3}}, "here"); }
+double value_of(const std::string& text) { return evaluate_expression(text, {{"x", 0.3}}, "here"); }
 
 TEST(PatternInFewWords, ExpressionsKnowFunctions) {
-  EXPECT_DOUBLE_EQ(value("pi"), std::numbers::pi);
-  EXPECT_DOUBLE_EQ(value("2*sin(pi/6) + ${x}"), 2 * std::sin(std::numbers::pi / 6) + 0.3);
-  EXPECT_DOUBLE_EQ(value("cos(${x})"), std::cos(0.3));
-  EXPECT_DOUBLE_EQ(value("-sqrt( 2 )"), -std::sqrt(2));
-  EXPECT_DOUBLE_EQ(value("atan2(-1, ${x} - 1)"), std::atan2(-1, 0.3 - 1));
-  EXPECT_DOUBLE_EQ(value("max(min(${x}, 0.2), abs(-0.1))"), 0.2);
+  EXPECT_DOUBLE_EQ(value_of("pi"), std::numbers::pi);
+  EXPECT_DOUBLE_EQ(value_of("2*sin(pi/6) + ${x}"), 2 * std::sin(std::numbers::pi / 6) + 0.3);
+  EXPECT_DOUBLE_EQ(value_of("cos(${x})"), std::cos(0.3));
+  EXPECT_DOUBLE_EQ(value_of("-sqrt( 2 )"), -std::sqrt(2));
+  EXPECT_DOUBLE_EQ(value_of("atan2(-1, ${x} - 1)"), std::atan2(-1, 0.3 - 1));
+  EXPECT_DOUBLE_EQ(value_of("max(min(${x}, 0.2), abs(-0.1))"), 0.2);
   EXPECT_TRUE(is_expression("pi/2"));
   EXPECT_TRUE(is_expression("1+sin(0)"));
   for (const char* const words : {"0.04 m", "pike", "sine", "sin", "left", "tip"})
     EXPECT_FALSE(is_expression(words)) << words;
   const auto fails = [](const std::string& text) -> std::string {
     try {
-      value(text);
+      value_of(text);
     } catch (const Error& error) {
       return error.what();
     }

@@ -30,7 +30,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text;
 }
 
-const std::string kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+const std::string kTriangleText = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
 std::string with_mesh(const std::string& file, const std::string& kind = "visual") {
   const std::string biped = test::UrdfBiped{}.text();
@@ -127,7 +127,7 @@ TEST(RobotVariants, PackagesLieElsewhere) {
   folder.write("one/legs_bringup/urdf/r.urdf", with_mesh(name));
   EXPECT_EQ(meshes("one/legs_bringup/urdf/r.urdf"), 0u);
   folder.write("one/legs_description-main/package.xml", package);  // beside, under another name
-  folder.write("one/legs_description-main/meshes/a.obj", kTriangle);
+  folder.write("one/legs_description-main/meshes/a.obj", kTriangleText);
   EXPECT_EQ(meshes("one/legs_bringup/urdf/r.urdf"), 1u);
   folder.write("two/r.urdf", with_mesh(name));
   EXPECT_EQ(meshes("two/r.urdf"), 0u);
@@ -138,7 +138,7 @@ TEST(RobotVariants, PackagesLieElsewhere) {
       "{\"format\": \"ayumi.robot/1\", \"urdf\": \"r.urdf\", \"package_path\": [\"../one\"]}");
   EXPECT_EQ(meshes("two/robot.json"), 1u);
   folder.write("three/copy/urdf/r.urdf", with_mesh(name));  // the package's folder was renamed
-  folder.write("three/copy/meshes/a.obj", kTriangle);
+  folder.write("three/copy/meshes/a.obj", kTriangleText);
   EXPECT_EQ(meshes("three/copy/urdf/r.urdf"), 1u);
 }
 
@@ -152,7 +152,7 @@ TEST(RobotVariants, AllMissingMeshesAreListedAtOnceAndLeftOut) {
                "<visual><geometry><mesh filename=\"package://nowhere_else/a.stl\"/>"
                "</geometry></visual><visual><geometry><mesh filename=\"Meshes/Part.obj\"/>"
                "</geometry></visual><collision>"));
-  folder.write("meshes/part.OBJ", kTriangle);
+  folder.write("meshes/part.OBJ", kTriangleText);
   const RobotDescription robot = load_robot_description(file.string(), {}, {.meshes = true});
   EXPECT_TRUE(says(robot, "gone.stl of link ")) << robot.assumptions.front();
   EXPECT_TRUE(says(robot, "package://nowhere_else/a.stl of link "));

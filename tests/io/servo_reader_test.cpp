@@ -19,7 +19,7 @@ using test::TemporaryFolder;
 constexpr double kDegrees = std::numbers::pi / 180;
 
 /// A sidecar over the small biped.
-std::string sidecar(const std::string& servos, const std::string& more = "") {
+std::string servo_sidecar(const std::string& servos, const std::string& more = "") {
   return R"({"format": "ayumi.robot/1", "urdf": ")" AYUMI_SOURCE_DIR
          R"(/examples/biped/biped.urdf", "servos": [{"joints": ["*"], "kp": 100, "kd": 2}, )" +
          servos + "]" + more + "}";
@@ -34,7 +34,7 @@ ServoDescription knee(const RobotModel& robot, const std::string& profile = "") 
 }
 ServoDescription knee_of(const std::string& keys) {
   const TemporaryFolder folder;
-  return knee(robot_of(folder, sidecar("{\"joints\": [\"*_knee\"], " + keys + "}")));
+  return knee(robot_of(folder, servo_sidecar("{\"joints\": [\"*_knee\"], " + keys + "}")));
 }
 
 /// The message without the folder.
@@ -53,7 +53,7 @@ std::string error_of(const TemporaryFolder& folder, const std::string& text) {
 }
 std::string group_error(const std::string& keys) {
   const TemporaryFolder folder;
-  return error_of(folder, sidecar("{\"joints\": [\"*_knee\"], " + keys + "}"));
+  return error_of(folder, servo_sidecar("{\"joints\": [\"*_knee\"], " + keys + "}"));
 }
 
 /// Numbers as a fit writes them, for a model of BAM; what its model does not have is there too.
@@ -114,8 +114,8 @@ TEST(ServoReader, ReadsEveryKeyInItsUnit) {
   EXPECT_EQ(gain.kp, 1.5 * 20 / 3);
   EXPECT_EQ(gain.kd, 1.5 * 1.5 / 3);
   const TemporaryFolder folder;
-  EXPECT_TRUE(knee(robot_of(folder, sidecar(R"({"joints": ["*_knee"], "quantized": true})",
-                                            R"(, "encoders": {
+  EXPECT_TRUE(knee(robot_of(folder, servo_sidecar(R"({"joints": ["*_knee"], "quantized": true})",
+                                                  R"(, "encoders": {
       "l_knee": {"device": 1, "counts_per_degree": 20},
       "r_knee": {"device": 2, "counts_per_degree": 20}})")))
                   .quantized);
@@ -124,7 +124,7 @@ TEST(ServoReader, ReadsEveryKeyInItsUnit) {
 TEST(ServoReader, ServosOfAProfileGoOverThoseOfTheRobot) {
   const TemporaryFolder folder;
   const RobotModel robot =
-      robot_of(folder, sidecar(R"({"joints": ["*_knee"], "delay": 0.004})", R"(, "profiles": [
+      robot_of(folder, servo_sidecar(R"({"joints": ["*_knee"], "delay": 0.004})", R"(, "profiles": [
       {"name": "plain", "limits": []},
       {"name": "soft", "limits": [], "servos": [{"joints": ["*_knee"], "kp": 50}]}])"));
   EXPECT_EQ(knee(robot).kp, 100);
@@ -140,7 +140,7 @@ TEST_P(BamFile, GivesWhatItsModelHas) {
   const int m = GetParam();
   const TemporaryFolder folder;
   folder.write("motor.json", bam_numbers("m" + std::to_string(m)).dump());
-  const RobotModel robot = robot_of(folder, sidecar(kBamGroup));
+  const RobotModel robot = robot_of(folder, servo_sidecar(kBamGroup));
   ServoDescription expected{.kp = 1.6 * 12 / 2.1, .kd = 1.6 * 1.6 / 2.1};
   expected.rotor_inertia = 0.012;
   expected.viscous = 0.072;
@@ -165,7 +165,8 @@ TEST_P(BamFile, GivesWhatItsModelHas) {
   nlohmann::json other = bam_numbers("m" + std::to_string(m));
   other["kt"] = 1.7;
   folder.write("motor.json", other.dump());
-  EXPECT_NE(robot_of(folder, sidecar(kBamGroup)).description().sha256, robot.description().sha256);
+  EXPECT_NE(robot_of(folder, servo_sidecar(kBamGroup)).description().sha256,
+            robot.description().sha256);
 }
 
 TEST_P(BamFile, NamesTheNumberThatIsMissing) {
@@ -186,7 +187,7 @@ TEST_P(BamFile, NamesTheNumberThatIsMissing) {
     nlohmann::json numbers = bam_numbers("m" + std::to_string(m));
     numbers.erase(key);
     folder.write("motor.json", numbers.dump());
-    const std::string message = error_of(folder, sidecar(kBamGroup));
+    const std::string message = error_of(folder, servo_sidecar(kBamGroup));
     EXPECT_TRUE(message.starts_with("motor.json: ")) << message;
     EXPECT_NE(message.find("'" + key + "'"), std::string::npos) << message;
   }
@@ -198,7 +199,7 @@ TEST(ServoReader, AKeyBesideABamFileGoesOverIt) {
   const TemporaryFolder folder;
   folder.write("motor.json", bam_numbers("m1").dump());
   const ServoDescription servo = knee(robot_of(
-      folder, sidecar(R"({"joints": ["*_knee"], "bam": "motor.json", "delay": 0.01, "kp": 30,
+      folder, servo_sidecar(R"({"joints": ["*_knee"], "bam": "motor.json", "delay": 0.01, "kp": 30,
                           "kd": 1, "motor": {"voltage": 6}})")));
   EXPECT_EQ(servo.delay, 0.01);
   EXPECT_EQ(servo.kp, 30);
@@ -214,9 +215,10 @@ TEST(ServoReader, ABamFileStandsBesideTheFileThatNamesIt) {
   nlohmann::json own = bam_numbers("m1");
   own["armature"] = 0.02;
   folder.write("motor.json", own.dump());
-  folder.write("type/robot.json",
-               sidecar(kBamGroup, R"(, "profiles": [{"name": "a", "limits": [], "servos": [)" +
-                                      kBamGroup + "]}]"));
+  folder.write(
+      "type/robot.json",
+      servo_sidecar(kBamGroup, R"(, "profiles": [{"name": "a", "limits": [], "servos": [)" +
+                                   kBamGroup + "]}]"));
   const auto unit = [&](const std::string& more) {
     return robot_of(folder, R"({"format": "ayumi.robot/1", "base": "type")" + more + "}");
   };
@@ -297,7 +299,7 @@ TEST(ServoReader, SaysWhatIsWrongWithABamFile) {
     nlohmann::json numbers = bam_numbers("m6");
     numbers[key] = value;
     folder.write("motor.json", numbers.dump());
-    return error_of(folder, sidecar(kBamGroup));
+    return error_of(folder, servo_sidecar(kBamGroup));
   };
   EXPECT_NE(error("model", "m7").find("m7"), std::string::npos);
   EXPECT_EQ(error("friction_base", -0.1),
@@ -308,14 +310,14 @@ TEST(ServoReader, SaysWhatIsWrongWithABamFile) {
             "state it in seconds: 3.7 ms is 0.0037");
   EXPECT_EQ(error("R", 0), "motor.json: /R: this value must be above 0");
   EXPECT_EQ(error("kt", "high"), "motor.json: /kt: expected a number, found a string");
-  EXPECT_EQ(error_of(folder, sidecar(R"({"joints": ["*_knee"], "bam": "motor.json"})")),
+  EXPECT_EQ(error_of(folder, servo_sidecar(R"({"joints": ["*_knee"], "bam": "motor.json"})")),
             "motor.json: /kt: expected a number, found a string");
   folder.write("motor.json", bam_numbers("m6").dump());
-  EXPECT_EQ(error_of(folder, sidecar(R"({"joints": ["*_knee"], "bam": "motor.json"})")),
+  EXPECT_EQ(error_of(folder, servo_sidecar(R"({"joints": ["*_knee"], "bam": "motor.json"})")),
             "robot.json: /servos/1: a group with 'bam' needs 'motor' with the voltage [V] and the "
             "gain [V/rad]");
   folder.write("motor.json", "{");
-  EXPECT_TRUE(error_of(folder, sidecar(kBamGroup)).starts_with("motor.json:1:"));
+  EXPECT_TRUE(error_of(folder, servo_sidecar(kBamGroup)).starts_with("motor.json:1:"));
 }
 
 }  // namespace

@@ -93,7 +93,7 @@ void expect_same(const Outcome& outcome, const ImportedMotion& whole, const std:
   EXPECT_EQ(outcome.motion.motion.dt, whole.motion.dt) << what;
 }
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
+std::string text_with(std::string text, const std::string& from, const std::string& to) {
   for (size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
     text.replace(at, from.size(), to);
   return text;
@@ -146,8 +146,8 @@ TEST_P(UnreadableMotions, AreRefusedInOneLineOrReadAsTheyWere) {
   expect_one_line(outcome_of(format(), mixed).message, "binary inside");
   if (format().binary) return;
 
-  expect_same(outcome_of(format(), replaced(good, "\n", "\r\n")), whole.motion, "CR LF");
-  expect_same(outcome_of(format(), replaced(good, "\n", "\r")), whole.motion, "CR");
+  expect_same(outcome_of(format(), text_with(good, "\n", "\r\n")), whole.motion, "CR LF");
+  expect_same(outcome_of(format(), text_with(good, "\n", "\r")), whole.motion, "CR");
   expect_same(outcome_of(format(), "\xEF\xBB\xBF" + good), whole.motion, "byte order mark");
   for (const bool little : {true, false}) {
     const std::string wide = utf16(good, little), mark = little ? "\xFF\xFE" : "\xFE\xFF";
@@ -226,7 +226,7 @@ TEST(UnreadableMotion, OtherVersionsAreRefused) {
     const MotionFormat& format = *find_motion_format(name);
     const std::string good = file_of(format, hoap1(), moving(hoap1(), 40, 100));
     EXPECT_NE(good.find(from), std::string::npos) << name;
-    return outcome_of(format, replaced(good, from, to)).message;
+    return outcome_of(format, text_with(good, from, to)).message;
   };
   EXPECT_NE(refused("csv", "ayumi.reference/1", "ayumi.reference/9")
                 .find("reads ayumi.reference/1 and ayumi.motion/1"),

@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-const Pattern& short_walk() {
+const Pattern& trial_walk() {
   static const Pattern pattern = [] {
     Pattern walk = walk_pattern(hoap1(), {.steps = 3, .stride = 0.033, .lift = 0.017});
     walk.robot = "hoap1";
@@ -61,7 +61,7 @@ CorrectionTrack laid_on(const CorrectionTrack& a, const CorrectionTrack& b) {
 
 class LeastChange : public testing::Test {
  protected:
-  Pattern pattern = short_walk();
+  Pattern pattern = trial_walk();
   DenseTable& table = *pattern.table;
   RepairOptions options;
   int others = 0;

@@ -13,7 +13,7 @@
 namespace ayumi {
 namespace {
 
-constexpr double kPushed = 1.6;  // [s]
+constexpr double kPushTime = 1.6;  // [s]
 
 /// A short walk under a law, recorded at every tick, and a copy just before the push.
 struct RecordedWalk {
@@ -30,17 +30,17 @@ struct RecordedWalk {
     unpushed.emplace(world);
     while (run.advance(1)) {
       unpushed->record(run);
-      if (run.tick() == std::lround(kPushed / series.dt) - 1) before = run;
+      if (run.tick() == std::lround(kPushTime / series.dt) - 1) before = run;
     }
     EXPECT_EQ(run.result().outcome, Outcome::stands);
   }
 
   /// Along +y, in capture bounds.
   Simulator pushed(double level) const {
-    const long k = std::lround(kPushed / series.dt);
+    const long k = std::lround(kPushTime / series.dt);
     const double bound = capture_bound(capture_region(model, series, k), {0, 1});
     Simulator run = *before;
-    run.set_scenario({{.at = kPushed,
+    run.set_scenario({{.at = kPushTime,
                        .duration = 0.02,
                        .what = Push{.magnitude = level * bound, .direction = {0, 1, 0}}}});
     return run;
@@ -49,7 +49,7 @@ struct RecordedWalk {
   /// When the run is in the set for the first time after the push; none: never.
   std::optional<double> returns(Simulator& run) const {
     while (run.advance(1) && !run.fell())
-      if (run.time() > kPushed + 0.02 && unpushed->contains(run)) return run.time();
+      if (run.time() > kPushTime + 0.02 && unpushed->contains(run)) return run.time();
     return std::nullopt;
   }
 };
@@ -71,7 +71,7 @@ TEST(RecordedRun, ContainsARunThatHasRecoveredAndThenStands) {
     EXPECT_FALSE(walk.unpushed->contains(run));
     const std::optional<double> at = walk.returns(run);
     ASSERT_TRUE(at);
-    EXPECT_LT(*at, kPushed + 1.0);
+    EXPECT_LT(*at, kPushTime + 1.0);
     while (run.advance(100)) {
     }
     EXPECT_EQ(run.result().outcome, Outcome::stands);

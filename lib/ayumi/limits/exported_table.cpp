@@ -141,7 +141,7 @@ std::string refused_text(const JudgedMotion& motion, const Violation& v) {
          (lag > 0 ? ", which leads the posture by " + text::brief(1e3 * lag, 3) + " ms," : "");
 }
 
-Advice step_advice(const JudgedMotion& motion, const FindingWindow& window) {
+Advice target_step_advice(const JudgedMotion& motion, const FindingWindow& window) {
   const Violation& v = window.worst;
   return {refused_text(motion, v) + " moves " +
               text::fixed(100 * (std::abs(v.value / v.limit) - 1), 1) + " % further in " +
@@ -170,7 +170,7 @@ Advice rest_advice(const JudgedMotion& motion, const FindingWindow& window) {
           " gently and at rest, for example with a segment of minimum_jerk"};
 }
 
-std::string step_infeasibility(const Finding& f, double violation) {
+std::string target_step_infeasibility(const Finding& f, double violation) {
   return "the servo target of " + f.where + " changes by " + ratio_text(violation) +
          " times the step that `export` accepts";
 }
@@ -204,8 +204,8 @@ const Limit& exported_table_limit() {
                     .repair = {.is_of_one_joint = true},
                     .finding_unit = table_unit,
                     .place = joint_place,
-                    .advice = step_advice,
-                    .infeasibility = step_infeasibility,
+                    .advice = target_step_advice,
+                    .infeasibility = target_step_infeasibility,
                     .holds_at = step_holds},
                    {.kind = FindingKind::table_position,
                     .limit_class = LimitClass::rate,

@@ -33,17 +33,17 @@ double counts_per_radian(const Dof& dof) {
   return dof.encoder.device > 0 ? dof.encoder.counts_per_degree * kDegreesPerRadian : 0;
 }
 
-struct Range {
+struct TargetRange {
   double lower = -kInfinity, upper = kInfinity;
 };
 
-Range soft_limits(const RobotModel& model, const Dof& dof) {
+TargetRange soft_limits(const RobotModel& model, const Dof& dof) {
   const double margin = model.description().soft_limit_margin;
-  return dof.limited ? Range{dof.lower + margin, dof.upper - margin} : Range{};
+  return dof.limited ? TargetRange{dof.lower + margin, dof.upper - margin} : TargetRange{};
 }
 
-Range count_limits(const RobotModel& model, const Dof& dof) {
-  const Range soft = soft_limits(model, dof);
+TargetRange count_limits(const RobotModel& model, const Dof& dof) {
+  const TargetRange soft = soft_limits(model, dof);
   const double scale = counts_per_radian(dof);
   const double a = soft.lower * scale, b = soft.upper * scale;
   return {std::ceil(std::min(a, b) - kCountSlack), std::floor(std::max(a, b) + kCountSlack)};
@@ -70,7 +70,7 @@ std::vector<Eigen::Index> columns_of(const RobotModel& model, const ReferenceTra
 
 // The whole number nearest to x inside `range` and within `step` of `previous`, among its two
 // neighbours; the nearest when neither will do.
-int nearest_count(double x, const Range& range, double previous, double step) {
+int nearest_count(double x, const TargetRange& range, double previous, double step) {
   const double nearest = std::round(x);
   const double neighbour = nearest > x ? nearest - 1 : nearest + 1;
   for (const double candidate : {nearest, neighbour})
@@ -149,7 +149,7 @@ class JointJudge {
 
  private:
   const Dof& dof_;
-  Range soft_;
+  TargetRange soft_;
   double scale_;   // counts per rad, 0 without encoder
   double beyond_;  // [rad]
   double share_;   // of step_
@@ -305,7 +305,7 @@ Eigen::MatrixXi encoder_counts(const RobotModel& model, const ReferenceTrajector
     const Dof& joint = model.dofs()[static_cast<size_t>(dof)];
     const double scale = counts_per_radian(joint);
     if (scale == 0) continue;
-    const Range range = count_limits(model, joint);
+    const TargetRange range = count_limits(model, joint);
     for (Eigen::Index k = 0; k < counts.rows(); ++k) {
       const double x =
           table.rows[static_cast<size_t>(k)].theta[columns[static_cast<size_t>(dof)]] * scale;

@@ -45,7 +45,7 @@ constexpr double kSearchSpacing = 0.02;
 constexpr double kPaceAccuracy = 0.02;
 constexpr double kPaceSpare = 1.01;
 // Factor between paces where the ZMP leaves the support, which no row foretells. Chosen.
-constexpr double kSlowerStep = 1.25;
+constexpr double kSlowerPace = 1.25;
 // Paces that are tried. Chosen: more than the search needs from one end of its range to the other.
 constexpr int kMostPaces = 25;
 // Factor by which the path is slower where the limits stand against each other, and how often.
@@ -186,7 +186,7 @@ class LocalSearch {
         scale = std::max(scale / pace->pace, options_.fastest);
       } else {
         fails = scale;
-        scale *= foretold && pace->pace < 1 ? (1 + kPaceAccuracy / 2) / pace->pace : kSlowerStep;
+        scale *= foretold && pace->pace < 1 ? (1 + kPaceAccuracy / 2) / pace->pace : kSlowerPace;
       }
       if (keeps == 0 || fails == 0) continue;
       if (keeps < fails * (1 + kPaceAccuracy)) break;

@@ -9,14 +9,14 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/io/degrees.hpp"
 #include "ayumi/io/table/comma_cells.hpp"
 
 namespace ayumi {
 
 namespace {
 
-constexpr double kRadiansPerDegree = EIGEN_PI / 180;  // Definition
-constexpr int kLongestInterval = 60000;               // Definition: a minute [ms]
+constexpr int kLongestInterval = 60000;  // Definition: a minute [ms]
 
 std::optional<double> any_number(std::string_view cell) {
   double value = 0;

@@ -7,6 +7,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/io/degrees.hpp"
 #include "ayumi/io/table/comma_cells.hpp"
 #include "ayumi/io/table/csv_dialect.hpp"
 #include "ayumi/io/table/table_columns.hpp"
@@ -14,8 +15,6 @@
 namespace ayumi {
 
 namespace {
-
-constexpr double kRadiansPerDegree = EIGEN_PI / 180;
 
 [[noreturn]] void refuse_table(const std::string& file, const std::string& reason) {
   fail(ErrorCode::bad_file, file + ": " + reason);

@@ -11,7 +11,7 @@ namespace ayumi {
 
 namespace {
 
-constexpr std::string_view kMagic = "#WEBOTS_MOTION";
+constexpr std::string_view kWebotsMagic = "#WEBOTS_MOTION";
 constexpr double kMillisecond = 1e-3;
 
 std::vector<std::string_view> split(std::string_view line, char separator) {
@@ -40,7 +40,7 @@ double time_of(const MotionInput& source, std::string_view cell, size_t line) {
 }  // namespace
 
 std::string recognize_webots_motion(const MotionInput& source) {
-  return source.bytes.starts_with(kMagic) && recognize_webots_durations(source).empty()
+  return source.bytes.starts_with(kWebotsMagic) && recognize_webots_durations(source).empty()
              ? "its first line begins with #WEBOTS_MOTION"
              : "";
 }
@@ -48,7 +48,8 @@ std::string recognize_webots_motion(const MotionInput& source) {
 std::string recognize_webots_durations(const MotionInput& source) {
   std::string_view rest = source.bytes;
   const std::vector<std::string_view> head = split(take_line(rest), ',');
-  return head[0] == kMagic && head.size() == 2 && take_line(rest).find('%') != std::string::npos
+  return head[0] == kWebotsMagic && head.size() == 2 &&
+                 take_line(rest).find('%') != std::string::npos
              ? "its first line is #WEBOTS_MOTION with a version, and its second line has names "
                "that contain %"
              : "";
@@ -130,7 +131,7 @@ MotionFile read_webots_motion(const MotionInput& source) {
 }
 
 std::vector<WrittenFile> write_webots_durations(const RobotModel&, const MotionFile& motion) {
-  std::string text = std::string(kMagic) + ",V1.1\n" + text::join(motion.joints, "%") + "\n";
+  std::string text = std::string(kWebotsMagic) + ",V1.1\n" + text::join(motion.joints, "%") + "\n";
   for (Eigen::Index k = 0; k < motion.rows(); ++k) {
     text += "play";
     for (const double value : motion.values.row(k)) text += "%" + text::exact(value);
@@ -143,7 +144,7 @@ std::vector<WrittenFile> write_webots_durations(const RobotModel&, const MotionF
 }
 
 std::vector<WrittenFile> write_webots_motion(const RobotModel&, const MotionFile& motion) {
-  std::string text = std::string(kMagic) + ",V1.0," + text::join(motion.joints, ",") + "\n";
+  std::string text = std::string(kWebotsMagic) + ",V1.0," + text::join(motion.joints, ",") + "\n";
   for (Eigen::Index k = 0; k < motion.rows(); ++k) {
     const long ms = std::lround(motion.times[static_cast<size_t>(k)] / kMillisecond);
     char time[32];

@@ -5,12 +5,12 @@
 #include <optional>
 #include <set>
 
+#include "ayumi/io/degrees.hpp"
 #include "ayumi/io/json/json_reader.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
 
 namespace ayumi {
 
-inline constexpr double kRadiansPerDegree = EIGEN_PI / 180;
 /// Largest number. Source: docs/formats.md; anything beyond is a mistake.
 inline constexpr double kLargestNumber = 1e6;
 /// Longest pattern [s]. Source: docs/formats.md.

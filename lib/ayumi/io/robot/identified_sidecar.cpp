@@ -10,7 +10,7 @@ namespace ayumi {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 // Digits that the interval of a value leaves, one more.
 double sidecar_number(double value) { return std::stod(text::brief(value, 5)); }
@@ -23,9 +23,9 @@ constexpr double kWritableOffset = 0.5;
 // its own. A delay that stands for the damping too is written as damping, because a servo without
 // any would let the joint oscillate. The offset is the joint's own: where it stands, beside its
 // command, without load.
-Json servo_group(const IdentifiedJoint& joint, const IdentifiedJoint& source,
-                 const ServoDescription& own) {
-  Json group = {{"joints", {joint.joint}}};
+OrderedJson servo_group(const IdentifiedJoint& joint, const IdentifiedJoint& source,
+                        const ServoDescription& own) {
+  OrderedJson group = {{"joints", {joint.joint}}};
   if (std::abs(joint.offset.value) <= kWritableOffset)
     group["offset"] = sidecar_number(joint.offset.value);
   if (!source.moved) return group;
@@ -60,7 +60,7 @@ bool profile_has_servos(const RobotModel& model) {
 
 std::string identified_sidecar(const RobotModel& model, const Identification& found,
                                const IdentifiedNames& names) {
-  Json groups = Json::array();
+  OrderedJson groups = OrderedJson::array();
   std::map<std::string, const IdentifiedJoint*> of_type;
   for (const IdentifiedJoint& joint : found.joints) {
     const IdentifiedJoint*& best = of_type[joint.type];
@@ -75,7 +75,7 @@ std::string identified_sidecar(const RobotModel& model, const Identification& fo
     const auto dof = static_cast<size_t>(model.find_dof(joint.joint));
     groups.push_back(servo_group(joint, source, model.limits().servo[dof]));
   }
-  Json json = {
+  OrderedJson json = {
       {"format", "ayumi.robot/1"},
       {"base", names.base},
       {"name", model.name() + " (" + names.name + ")"},

@@ -36,7 +36,7 @@ const std::set<std::string> kOnlyLooks = {"light", "camera", "texture", "skin", 
 const std::set<std::string> kReadHere = {"actuatorfrcrange", "actuatorfrclimited", "dampratio",
                                          "kv", "inheritrange"};
 // Attributes that hold words, and so no mjcf_numbers.
-const std::set<std::string> kWords = {
+const std::set<std::string> kMjcfWords = {
     "name",  "class", "childclass", "mesh", "material", "texture", "joint",  "type",  "file",
     "angle", "model", "site",       "body", "body1",    "body2",   "joint1", "joint2"};
 
@@ -137,7 +137,7 @@ class Cleaner {
   // MuJoCo takes "nan" and the beginning of "1.5x".
   void check_numbers(const TiXmlElement* element) const {
     for (const TiXmlAttribute* each = element->FirstAttribute(); each; each = each->Next()) {
-      if (kWords.contains(each->Name())) continue;
+      if (kMjcfWords.contains(each->Name())) continue;
       const std::string text = each->Value();
       const bool numeric = !text.empty() &&
                            text.find_first_not_of("0123456789+-.eE, \t\r\n") == std::string::npos &&

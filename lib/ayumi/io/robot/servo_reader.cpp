@@ -1,17 +1,15 @@
 #include "ayumi/io/robot/servo_reader.hpp"
 
 #include <array>
-#include <numbers>
 
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/io/degrees.hpp"
 #include "ayumi/model/device_limits.hpp"
 
 namespace ayumi {
 
 namespace {
-
-constexpr double kRadPerDegree = std::numbers::pi / 180;
 
 /// Limits of servo constants, to catch a wrong unit. Chosen: stiffness, inertia, torque and
 /// friction a hundred times those of a humanoid of 50 kg; a zero offset of 0.5 rad, beyond which a
@@ -39,12 +37,12 @@ constexpr Bounds kDelay = {0, kMostServoDelay, "s", "; state it in seconds: 3.7 
 constexpr Bounds kRate = {0, kMostRate, "rad/s"};
 constexpr Bounds kExponent = {0.1, 10, ""};
 constexpr Bounds kPlay = {0, kMostServoPlay, "rad", "; in degrees the key ends in _deg"};
-constexpr Bounds kPlayDeg = {0, kMostServoPlay / kRadPerDegree, "deg"};
+constexpr Bounds kPlayDeg = {0, kMostServoPlay / kRadiansPerDegree, "deg"};
 constexpr Bounds kOffset = {
     -kMostOffset, kMostOffset, "rad",
     "; in degrees the key ends in _deg. For a larger offset, mount the horn in another position"};
-constexpr Bounds kOffsetDeg = {-kMostOffset / kRadPerDegree, kMostOffset / kRadPerDegree, "deg",
-                               "; for a larger offset, mount the horn in another position"};
+constexpr Bounds kOffsetDeg = {-kMostOffset / kRadiansPerDegree, kMostOffset / kRadiansPerDegree,
+                               "deg", "; for a larger offset, mount the horn in another position"};
 constexpr Bounds kPositionGain = {0, 1e5, "1/s"};
 constexpr Bounds kTorqueConstant = {0, kMostTorque, "N m/A"};
 constexpr Bounds kResistance = {0, 1e6, "ohm"};
@@ -83,24 +81,25 @@ struct Field {
 
 using S = ServoDescription;
 const std::vector<Field>& fields() {
-  static const std::vector<Field> all = {{"kp", &S::kp, kStiffness},
-                                         {"kd", &S::kd, kDamping},
-                                         {"rotor_inertia", &S::rotor_inertia, kInertia},
-                                         {"viscous", &S::viscous, kDamping},
-                                         {"coulomb", &S::coulomb, kTorque},
-                                         {"delay", &S::delay, kDelay},
-                                         {"speed_command_limit", &S::speed_command_limit, kRate},
-                                         {"stribeck_torque", &S::stribeck_torque, kTorque},
-                                         {"stribeck_rate", &S::stribeck_rate, kRate},
-                                         {"stribeck_exponent", &S::stribeck_exponent, kExponent},
-                                         {"backlash", &S::backlash, kPlay},
-                                         {"backlash_deg", &S::backlash, kPlayDeg, kRadPerDegree},
-                                         {"gear_stiffness", &S::gear_stiffness, kStiffness},
-                                         {"gear_damping", &S::gear_damping, kDamping},
-                                         {"dead_band", &S::dead_band, kPlay},
-                                         {"dead_band_deg", &S::dead_band, kPlayDeg, kRadPerDegree},
-                                         {"offset", &S::offset, kOffset},
-                                         {"offset_deg", &S::offset, kOffsetDeg, kRadPerDegree}};
+  static const std::vector<Field> all = {
+      {"kp", &S::kp, kStiffness},
+      {"kd", &S::kd, kDamping},
+      {"rotor_inertia", &S::rotor_inertia, kInertia},
+      {"viscous", &S::viscous, kDamping},
+      {"coulomb", &S::coulomb, kTorque},
+      {"delay", &S::delay, kDelay},
+      {"speed_command_limit", &S::speed_command_limit, kRate},
+      {"stribeck_torque", &S::stribeck_torque, kTorque},
+      {"stribeck_rate", &S::stribeck_rate, kRate},
+      {"stribeck_exponent", &S::stribeck_exponent, kExponent},
+      {"backlash", &S::backlash, kPlay},
+      {"backlash_deg", &S::backlash, kPlayDeg, kRadiansPerDegree},
+      {"gear_stiffness", &S::gear_stiffness, kStiffness},
+      {"gear_damping", &S::gear_damping, kDamping},
+      {"dead_band", &S::dead_band, kPlay},
+      {"dead_band_deg", &S::dead_band, kPlayDeg, kRadiansPerDegree},
+      {"offset", &S::offset, kOffset},
+      {"offset_deg", &S::offset, kOffsetDeg, kRadiansPerDegree}};
   return all;
 }
 

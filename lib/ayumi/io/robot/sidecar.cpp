@@ -45,7 +45,7 @@ std::vector<std::string> moving_joints(const RobotDescription& robot) {
   return names;
 }
 
-bool contains(const std::vector<std::string>& names, const std::string& name) {
+bool is_among(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
@@ -112,7 +112,7 @@ std::map<std::string, ServoDescription> read_servos(
     RobotDescription& robot, std::string& files) {
   ServoGroups groups;
   for (const JointDescription& joint : robot.joints) {
-    if (!contains(moving_joints(robot), joint.name)) continue;
+    if (!is_among(moving_joints(robot), joint.name)) continue;
     const auto known = before.find(joint.name);
     if (known != before.end()) groups.stated[joint.name] = true;
     groups.servos[joint.name] = known != before.end() ? known->second
@@ -173,10 +173,10 @@ void read_encoders(const JsonNode& node, RobotDescription& robot) {
 void read_aliases(const JsonNode& node, RobotDescription& robot) {
   const std::vector<std::string> names = moving_joints(robot);
   for (const auto& [alias, joint] : node.members()) {
-    if (!contains(names, joint.string()))
+    if (!is_among(names, joint.string()))
       joint.complain("'" + joint.string() + "' is not a moving joint of the robot" +
                      text::suggestion(joint.string(), names));
-    if (contains(names, alias))
+    if (is_among(names, alias))
       joint.complain("'" + alias + "' is itself a joint of the robot; remove this alias");
     robot.aliases[alias] = joint.string();
   }
@@ -205,7 +205,7 @@ void read_columns(const JsonNode& node, SequenceLayout& layout) {
   if (layout.before.size() != 2 || layout.before[1] != "2")
     node.complain(
         "after 'interval' must come \"2\", the code of a row of targets, and then 'motors'");
-  if (contains(layout.after, "*"))
+  if (is_among(layout.after, "*"))
     node.complain(
         "'*' (any text) is possible only in layouts without 'interval', because Ayumi cannot write "
         "it");
@@ -385,7 +385,7 @@ void read_position_limits(const JsonNode& node, RobotDescription& robot) {
     const auto joint =
         std::find_if(robot.joints.begin(), robot.joints.end(),
                      [&name = name](const JointDescription& each) { return each.name == name; });
-    if (joint == robot.joints.end() || !contains(moving_joints(robot), name))
+    if (joint == robot.joints.end() || !is_among(moving_joints(robot), name))
       entry.complain("'" + name + "' is not a moving joint of the robot" +
                      text::suggestion(name, moving_joints(robot)));
     const Eigen::Vector2d limits = kDegree * entry.vector2();

@@ -12,7 +12,7 @@ namespace ayumi {
 namespace {
 
 // Nested elements. Chosen: a URDF needs five, and the stack holds far more.
-constexpr int kDeepestNesting = 200;
+constexpr int kDeepestXml = 200;
 
 // Attributes of an element. Chosen: URDF knows at most eight; TinyXML compares all of an element
 // with each other.
@@ -27,10 +27,10 @@ void refuse_deep_nesting(const std::string& bytes, const std::string& file,
     if (bytes[i] == '<' && bytes[i + 1] != '/' && bytes[i + 1] != '!' && bytes[i + 1] != '?')
       ++depth;
     if (bytes[i] == '/' && bytes[i + 1] == '>') --depth;
-    if (depth > kDeepestNesting)
+    if (depth > kDeepestXml)
       fail(ErrorCode::bad_file, file + ": elements are nested more than " +
-                                    std::to_string(kDeepestNesting) +
-                                    " levels deep, too deep for " + kind);
+                                    std::to_string(kDeepestXml) + " levels deep, too deep for " +
+                                    kind);
   }
 }
 

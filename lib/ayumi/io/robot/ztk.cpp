@@ -39,18 +39,18 @@ Eigen::Matrix3d turn_of_z(const Vector3d& direction) {
   return Eigen::Matrix3d::Identity() + cross + cross * cross / (1 + d.z());
 }
 
-struct Field {
+struct ZtkField {
   std::string key;
   std::string value;  // up to the next key
   size_t line = 0;
 };
 struct Section {
   std::string tag;  // "roki::link"
-  std::vector<Field> fields;
+  std::vector<ZtkField> fields;
   size_t line = 0;
 
-  const Field* find(std::string_view key) const {
-    for (const Field& field : fields)
+  const ZtkField* find(std::string_view key) const {
+    for (const ZtkField& field : fields)
       if (field.key == key) return &field;
     return nullptr;
   }
@@ -103,7 +103,7 @@ class ZtkReader {
         continue;
       }
       if (sections_.empty()) complain(line, "a tag such as [roki::chain] is needed first");
-      std::vector<Field>& all = sections_.back().fields;
+      std::vector<ZtkField>& all = sections_.back().fields;
       const size_t colon = text.find(':');
       if (colon != std::string_view::npos && std::isalpha(static_cast<unsigned char>(text[0]))) {
         if (++fields > kMostZtkFields)
@@ -119,7 +119,7 @@ class ZtkReader {
     }
   }
 
-  std::vector<double> numbers(const Field& field, size_t count) const {
+  std::vector<double> numbers(const ZtkField& field, size_t count) const {
     std::vector<double> values;
     std::string_view rest = field.value;
     constexpr std::string_view between = " \t,{}()";
@@ -144,24 +144,24 @@ class ZtkReader {
   }
 
   double number_or(const Section& section, std::string_view key, double other) const {
-    const Field* const field = section.find(key);
+    const ZtkField* const field = section.find(key);
     return field ? numbers(*field, 1)[0] : other;
   }
 
-  Vector3d vector(const Field& field) const {
+  Vector3d vector(const ZtkField& field) const {
     const std::vector<double> v = numbers(field, 3);
     return {v[0], v[1], v[2]};
   }
 
   std::string name_of(const Section& section) const {
-    const Field* const name = section.find("name");
+    const ZtkField* const name = section.find("name");
     if (!name || name->value.empty()) complain(section.line, "[" + section.tag + "] has no name");
     return name->value;
   }
 
   void read_optic(const Section& section) {
     Eigen::Vector4f color(0.8f, 0.8f, 0.8f, 1);
-    if (const Field* diffuse = section.find("diffuse"))
+    if (const ZtkField* diffuse = section.find("diffuse"))
       color.head<3>() = vector(*diffuse).cast<float>();
     color[3] = static_cast<float>(number_or(section, "alpha", 1));
     colors_[name_of(section)] = color;
@@ -179,25 +179,25 @@ class ZtkReader {
   void read_shape(const Section& section) {
     PlacedShape placed;
     placed.name = name_of(section);
-    if (const Field* optic = section.find("optic"))
+    if (const ZtkField* optic = section.find("optic"))
       if (const auto color = colors_.find(optic->value); color != colors_.end()) {
         placed.color = color->second;
         placed.has_color = true;
       }
-    if (const Field* mirror = section.find("mirror")) {
+    if (const ZtkField* mirror = section.find("mirror")) {
       read_mirrored(section, *mirror, placed);
       return;
     }
-    const Field* const kind = section.find("type");
+    const ZtkField* const kind = section.find("type");
     const std::string type = kind ? kind->value : "";
-    const Field* const center = section.find("center");
+    const ZtkField* const center = section.find("center");
     if (center && type != "cylinder" && type != "capsule")
       placed.pose.translation() = vector(*center);
     if (type == "box") {
       Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
       const char* const names[] = {"ax", "ay", "az"};
       for (int i = 0; i < 3; ++i)
-        if (const Field* axis = section.find(names[i])) axes.col(i) = vector(*axis).normalized();
+        if (const ZtkField* axis = section.find(names[i])) axes.col(i) = vector(*axis).normalized();
       placed.pose.linear() = axes;
       placed.shape = Box{
           {positive(section, "depth"), positive(section, "width"), positive(section, "height")}};
@@ -215,7 +215,7 @@ class ZtkReader {
   }
 
   double positive(const Section& section, const char* key) const {
-    const Field* const field = section.find(key);
+    const ZtkField* const field = section.find(key);
     if (!field) complain(section.line, "the shape has no " + std::string(key));
     const double value = numbers(*field, 1)[0];
     if (!(value > 0)) complain(field->line, std::string(key) + " must be above 0");
@@ -225,7 +225,7 @@ class ZtkReader {
   // Between the centres of both ends.
   void read_round(const Section& section, bool cylinder, PlacedShape& placed) const {
     std::vector<Vector3d> ends;
-    for (const Field& field : section.fields)
+    for (const ZtkField& field : section.fields)
       if (field.key == "center") ends.push_back(vector(field));
     if (ends.size() != 2 || !((ends[1] - ends[0]).norm() > 0))
       complain(section.line, "two different centers are needed, those of both ends");
@@ -241,7 +241,7 @@ class ZtkReader {
   TriangleMesh polyhedron(const Section& section) const {
     std::vector<Vector3d> corners;
     MeshPart part;
-    for (const Field& field : section.fields) {
+    for (const ZtkField& field : section.fields) {
       if (field.key == "vert") {
         const std::vector<double> v = numbers(field, 4);
         if (v[0] != static_cast<double>(corners.size()))
@@ -277,7 +277,7 @@ class ZtkReader {
   }
 
   // "mirror: left_foot y": that shape with its y turned round.
-  void read_mirrored(const Section& section, const Field& mirror, PlacedShape placed) {
+  void read_mirrored(const Section& section, const ZtkField& mirror, PlacedShape placed) {
     const size_t blank = mirror.value.find(' ');
     const std::string of = mirror.value.substr(0, blank);
     const std::string_view axis = blank == std::string::npos
@@ -309,15 +309,15 @@ class ZtkReader {
     LinkDescription link;
     link.name = name_of(section);
     link.inertia.mass = number_or(section, "mass", 0);
-    if (const Field* com = section.find("COM")) link.inertia.com = vector(*com);
-    if (const Field* tensor = section.find("inertia")) {
+    if (const ZtkField* com = section.find("COM")) link.inertia.com = vector(*com);
+    if (const ZtkField* tensor = section.find("inertia")) {
       const std::vector<double> v = numbers(*tensor, 9);
       for (int i = 0; i < 9; ++i) link.inertia.about_com(i / 3, i % 3) = v[static_cast<size_t>(i)];
       link.inertia.about_com =
           (0.5 * (link.inertia.about_com + link.inertia.about_com.transpose())).eval();
     }
     link.has_inertial = link.inertia.mass != 0;
-    for (const Field& field : section.fields) {
+    for (const ZtkField& field : section.fields) {
       if (field.key != "shape") continue;
       const auto shape = shapes_.find(field.value);
       if (shape != shapes_.end()) {
@@ -325,7 +325,8 @@ class ZtkReader {
         link.collisions.push_back(shape->second);
       }
     }
-    if (const Field* parent = section.find("parent")) read_joint(section, link.name, parent->value);
+    if (const ZtkField* parent = section.find("parent"))
+      read_joint(section, link.name, parent->value);
     robot_.links.push_back(std::move(link));
   }
 
@@ -335,7 +336,7 @@ class ZtkReader {
     joint.parent = parent;
     joint.child = link;
     joint.axis = Vector3d::UnitZ();
-    if (const Field* frame = section.find("frame")) {
+    if (const ZtkField* frame = section.find("frame")) {
       const std::vector<double> v = numbers(*frame, 12);
       for (int i = 0; i < 3; ++i) {
         for (int j = 0; j < 3; ++j) joint.origin.linear()(i, j) = v[static_cast<size_t>(4 * i + j)];
@@ -349,7 +350,7 @@ class ZtkReader {
         complain(frame->line, "the first three columns of `frame` are no rotation");
       joint.origin.linear() = Eigen::Quaterniond(turn).normalized().toRotationMatrix();
     }
-    const Field* const type =
+    const ZtkField* const type =
         section.find("jointtype") ? section.find("jointtype") : section.find("joint");
     const std::string kind = type ? type->value : "fixed";
     static const std::map<std::string, JointType> types = {{"fixed", JointType::fixed},
@@ -372,7 +373,7 @@ class ZtkReader {
       }
       joint.damping = number_or(section, "viscosity", 0);
       joint.friction = number_or(section, "coulomb", 0);
-      if (const Field* motor = section.find("motor"))
+      if (const ZtkField* motor = section.find("motor"))
         if (const auto effort = efforts_.find(motor->value); effort != efforts_.end())
           joint.effort = effort->second;
       robot_.joint_order.push_back(joint.name);

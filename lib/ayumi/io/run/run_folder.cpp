@@ -23,7 +23,7 @@ constexpr const char* kPushedFile = "reference_pushed.csv";
 constexpr const char* kLightKey = "light";
 constexpr const char* kSealKey = "contents_sha256";
 // [bytes] Chosen: a log of half an hour at 1 kHz has less.
-constexpr size_t kLargestFile = size_t{4} << 30;
+constexpr size_t kLargestRunFile = size_t{4} << 30;
 
 void make_folder(const fs::path& folder) {
   std::error_code error;
@@ -84,7 +84,7 @@ std::string sealed(const std::string& object) {
 }
 
 std::string checked_bytes(const fs::path& folder, const JsonNode& files, const std::string& name) {
-  const std::string bytes = read_file(folder / name, kLargestFile);
+  const std::string bytes = read_file(folder / name, kLargestRunFile);
   const auto recorded = files.find(name);
   if (recorded && recorded->string() != sha256(bytes)) complain_of_change(folder / name);
   return bytes;
@@ -152,7 +152,7 @@ void write_run(const fs::path& folder, const RunFolder& run) {
     write(kReferenceFile, reference_csv(*run.reference, run.reference_caution));
   if (run.pushed && !run.light) write(kPushedFile, reference_csv(*run.pushed, run.pushed_caution));
   for (const std::string& name : run.files)
-    hashes[name] = sha256(read_file(folder / name, kLargestFile));
+    hashes[name] = sha256(read_file(folder / name, kLargestRunFile));
   write_file(folder / kRunFile, sealed(summary_of(run, hashes).dump(2)));
 }
 
@@ -167,7 +167,7 @@ std::vector<std::string> run_file_names(const fs::path& folder) {
 bool is_file_of_run(const fs::path& folder, const fs::path& file) {
   const RunFile run(folder);
   const auto recorded = run.root().at("files").find(file.filename().string());
-  return recorded && recorded->string() == sha256(read_file(file, kLargestFile));
+  return recorded && recorded->string() == sha256(read_file(file, kLargestRunFile));
 }
 
 void verify_run(const fs::path& folder) {

@@ -9,6 +9,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/io/degrees.hpp"
 #include "ayumi/io/table/comma_cells.hpp"
 #include "ayumi/io/table/csv_dialect.hpp"
 #include "ayumi/io/table/table_columns.hpp"
@@ -20,8 +21,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-constexpr double kRadPerDegree = M_PI / 180;
 
 // Speed of a joint, in its motor's limit, above which a step between two rows is no motion. Chosen:
 // commands may step, and measured angles then move at most twice as fast as the motor's limit.
@@ -211,9 +210,9 @@ void require_motion(const AngleTable& table, const std::vector<size_t>& lines,
       if (std::abs(theta[k] - theta[k - 1]) > limit)
         complain(file, lines[static_cast<size_t>(k)],
                  dof.name + " jumps by " +
-                     text::brief(std::abs(theta[k] - theta[k - 1]) / kRadPerDegree, 3) +
+                     text::brief(std::abs(theta[k] - theta[k - 1]) / kRadiansPerDegree, 3) +
                      " deg from the row before, but a motor moves at most " +
-                     text::brief(limit / kRadPerDegree, 3) +
+                     text::brief(limit / kRadiansPerDegree, 3) +
                      " deg in this time. Samples are missing, or the 16-bit counter has "
                      "overflowed: record again, or add or subtract 65536 counts from this row on");
     require_less_than_a_turn(table, j, model, file);
@@ -241,10 +240,10 @@ AngleTable angles_of(const BareRows& bare, const RobotModel& model, const std::s
     const size_t column = first + static_cast<size_t>(encoder.device) - 1;
     used[column] = 1;
     table.has[static_cast<size_t>(j)] = 1;
-    table.resolution[j] = kRadPerDegree / std::abs(encoder.counts_per_degree);
+    table.resolution[j] = kRadiansPerDegree / std::abs(encoder.counts_per_degree);
     for (size_t k = 0; k < bare.rows.size(); ++k)
       table.theta(static_cast<Index>(k), j) =
-          bare.rows[k][column] * kRadPerDegree / encoder.counts_per_degree;
+          bare.rows[k][column] * kRadiansPerDegree / encoder.counts_per_degree;
   }
   require_motion(table, bare.lines, model, file);
   return table;
@@ -329,11 +328,11 @@ JointColumn joint_column(const std::string& column, const RobotModel& model, boo
   const Dof& dof = model.dofs()[static_cast<size_t>(result.dof)];
   if (unit.empty()) unit = dof.prismatic ? "m" : degrees ? "deg" : "rad";
   if (unit == "deg" && !dof.prismatic) {
-    result.factor = kRadPerDegree;
+    result.factor = kRadiansPerDegree;
   } else if (unit == "counts" || unit == "pulses") {
     if (dof.encoder.device < 1)
       complain(file, "column '" + column + "': the joint has no encoder in the sidecar");
-    result.factor = kRadPerDegree / dof.encoder.counts_per_degree;
+    result.factor = kRadiansPerDegree / dof.encoder.counts_per_degree;
     result.counts = true;
   } else if (unit != (dof.prismatic ? "m" : "rad")) {
     complain(file, "column '" + column + "': the unit '" + unit + "' is not rad, deg or counts");
