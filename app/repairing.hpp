@@ -1,20 +1,14 @@
 #pragma once
-// Repairs of a task with all that its verdict counts, and their files and words: locks as the user
-// writes them, and a repaired pattern with what it names.
+// Files and words of repairs: locks as the user writes them, and a repaired pattern with what it
+// names.
 
 #include <string>
 #include <vector>
 
-#include "ayumi/repair/repair_pattern.hpp"
+#include "ayumi/repair/task/repair_task.hpp"
 #include "pattern_input.hpp"
 
 namespace ayumi::app {
-
-/// repair() of the motion of a task, which has to bear the payloads of its scenario, as the verdict
-/// of judge() demands. Where the nearest motion of the robot alone does not bear them, the nearest
-/// one of the robot that carries all of them all the time is tried. Throws as repair().
-RepairResult repair_task(const Task& task, const RepairOptions& options,
-                         const Progress& progress = {});
 
 /// Locks in words: a joint ("l_elbow"), a foot ("foot:left"), a keyframe ("keyframe:3", counted
 /// from 0 as in messages) or a time window ("1.2..1.8"). Throws Error(usage) for anything else.

@@ -4,7 +4,7 @@
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/io/run/results_json.hpp"
 #include "ayumi/io/task_file.hpp"
-#include "ayumi/repair/repair_pattern.hpp"
+#include "ayumi/repair/task/repair_task.hpp"
 #include "bindings.hpp"
 
 namespace ayumi::python {
@@ -163,7 +163,7 @@ void bind_repair(py::module_& m) {
         options.max_iterations = max_iterations.value_or(options.max_iterations);
         return Watch(std::move(progress)).run([&](const Progress& watched) {
           auto made = std::make_shared<PyRepair>();
-          made->result = repair(task.robot, task.pattern, task.series, options, watched);
+          made->result = repair_task(task, options, watched);
           Task repaired = task;
           if (made->result.status == RepairStatus::repaired) {
             repaired.pattern.correction = made->result.correction;
@@ -179,7 +179,8 @@ void bind_repair(py::module_& m) {
       py::arg("weights") = std::map<std::string, double>(), py::arg("trust") = py::none(),
       py::arg("safety") = py::none(), py::arg("zmp_margin") = py::none(),
       py::arg("max_iterations") = py::none(), py::arg("progress") = py::none(),
-      "The nearest consistent motion. Locked joints, feet ('left', 'right') and windows (begin, "
+      "The nearest consistent motion, which bears the payloads of the scenario. Locked joints, "
+      "feet ('left', 'right') and windows (begin, "
       "end) [s] do not move; `weights` are factors on the cost of a joint; `trust` is 'posture', "
       "'cog' or 'zmp'; `zmp_margin` [m] is the wanted distance of the ZMP from the edge. An "
       "argument that is not given has the value in the pattern.");

@@ -43,6 +43,7 @@ inline const std::map<std::string, Room>& rooms() {
       {"identify", {9, {"study"}, {"repair"}, false}},
       {"task", {9, {}, {"repair"}, false}},
       {"sim/plant_mujoco", {9, {}, {"check", "limits", "control", "repair"}, false}},
+      {"repair/task", {10, {}, {}, false}},
       {"io", {10, {}, {}, true}},
       {"render", {10, {}, {}, true}},
       {"plot", {10, {"render"}, {}, true}},

@@ -246,6 +246,52 @@ TEST(PlantedMistakes, TwoAreNamedInTurn) {
       << found;
 }
 
+// Two mistakes of one joint: the speed at the beginning counts as a consequence of the angle, so
+// neither change leaves fewer errors.
+TEST(PlantedMistakes, TwoOfOneJointAreNamedInTurn) {
+  Pattern pattern = squat_pattern(small(), squat_defaults(small()));
+  pattern.keyframes.clear();
+  for (const auto& [t, angle] : {std::pair(0.1, 0.0), {1.5, 60.0}, {3.0, -25.0}}) {
+    Keyframe key;
+    key.t = t;
+    key.joints["l_elbow"] = angle * kDegree;
+    pattern.keyframes.push_back(key);
+  }
+  std::string found;
+  for (const Mistake& mistake : likely_mistakes(small(), pattern, options_of(pattern)))
+    found += mistake.text() + "\n";
+  EXPECT_NE(found.find("/keyframes/1: l_elbow is "), std::string::npos) << found;
+  EXPECT_NE(found.find("/keyframes/0: l_elbow is 0 "), std::string::npos) << found;
+  EXPECT_NE(found.find("the pattern is consistent (together"), std::string::npos) << found;
+}
+
+// Where neither trial leaves fewer errors, the weight that is not shifted is named all the same.
+TEST(PlantedMistakes, AWeightThatIsNotShiftedIsNamed) {
+  Pattern pattern = kick_pattern(small(), kick_defaults(small()));
+  for (Keyframe& key : pattern.keyframes)
+    if (key.zmp) key.zmp->place = ZmpKey::Place::center;
+  std::string found;
+  for (const Mistake& mistake : impossible_values(small(), pattern)) found += mistake.text() + "\n";
+  EXPECT_TRUE(std::regex_search(found, std::regex("the robot stands on the left foot, but .* put "
+                                                  "the ZMP at \"center\", between both feet")))
+      << found;
+}
+
+// A motion that is too fast at the servo's period alone, where the table for the robot is judged.
+TEST(PlantedMistakes, WhatOnlyTheTableShowsIsNamed) {
+  Pattern pattern = squat_pattern(small(), squat_defaults(small()));
+  pattern.keyframes.clear();
+  for (const auto& [t, angle] : {std::pair(0.2, 10.0), {0.5, 0.0}, {0.8, 10.0}}) {
+    Keyframe key;
+    key.t = t;
+    key.joints["l_shoulder_roll"] = angle * kDegree;
+    pattern.keyframes.push_back(key);
+  }
+  const std::vector<Mistake> found = likely_mistakes(small(), pattern, options_of(pattern));
+  ASSERT_FALSE(found.empty()) << "the servo target leads beyond the range";
+  EXPECT_EQ(found.front().place, "/keyframes/1");
+}
+
 TEST(PlantedMistakes, SoundPatternsHaveNone) {
   for (const Mistaken& mistaken : list()) {
     EXPECT_TRUE(

@@ -76,6 +76,16 @@ class Values(unittest.TestCase):
         again = ayumi.sample(ayumi.parse_pattern(found.task.pattern.text()), robot)
         np.testing.assert_allclose(again.series["theta"], found.task.series["theta"], atol=1e-12)
 
+    def test_a_repair_has_to_bear_the_payloads(self):
+        words = {"format": "ayumi.pattern/1", "robot": "hoap1",
+                 "phases": [{"until": 2, "support": "both"}],
+                 "keyframes": [{"t": 0, "zmp": "center"}],
+                 "scenario": [{"type": "payload", "at": 0.5, "on": "r_forearm", "mass": 60}]}
+        robot = ayumi.load_robot("hoap1", meshes=False)
+        found = ayumi.repair(ayumi.sample(ayumi.parse_pattern(json.dumps(words)), robot))
+        self.assertFalse(found.ok, "the robot alone stands, but not with 60 kg")
+        self.assertTrue(any("60 kg" in reason for reason in found.reasons), found.reasons)
+
     def test_the_fastest_pace_passes_and_is_bounded(self):
         robot = ayumi.load_robot("hoap1", meshes=False)
         task = ayumi.sample(ayumi.squat_pattern(robot, cycles=1), robot)

@@ -254,14 +254,18 @@ class Suspicions {
         if (pattern_.keyframes[k].t >= middle && !after) after = k;
       }
       const auto is_wrong = [&](std::optional<size_t> k) {
-        return k && pattern_.keyframes[*k].zmp->place == wrong;
+        return k && (pattern_.keyframes[*k].zmp->place == wrong ||
+                     pattern_.keyframes[*k].zmp->place == ZmpKey::Place::center);
       };
       if (!is_wrong(before) || !is_wrong(after)) continue;
       const bool left = support == Support::left;
-      found.push_back(
-          {phase_place(i), std::string("the robot stands on the ") + (left ? "left" : "right") +
-                               " foot, but " + key_place(*before) + " and " + key_place(*after) +
-                               " put the ZMP under the " + (left ? "right" : "left") + " foot"});
+      const bool under = pattern_.keyframes[*before].zmp->place == wrong;
+      found.push_back({phase_place(i),
+                       std::string("the robot stands on the ") + (left ? "left" : "right") +
+                           " foot, but " + key_place(*before) + " and " + key_place(*after) +
+                           " put the ZMP " +
+                           (under ? std::string("under the ") + (left ? "right" : "left") + " foot"
+                                  : std::string("at \"center\", between both feet"))});
     }
     say(found);
   }

@@ -20,6 +20,7 @@
 #include "ayumi/check/written_values.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/motion/pattern_context.hpp"
+#include "ayumi/plan/folded_legs.hpp"
 #include "ayumi/plan/foot_plan.hpp"
 #include "ayumi/plan/sample.hpp"
 
@@ -92,7 +93,10 @@ struct Window {
 
 struct Outcome {
   int errors = kUnsampled;
+  int findings = kUnsampled;         ///< these errors, and what follows from them
   std::vector<Window> windows = {};  ///< of the errors that follow from no other one [s]
+
+  bool table_alone = false;  ///< a quick trial has none of these errors
 
   bool good() const { return errors == 0; }
   bool touches(double begin, double end) const {
@@ -116,14 +120,15 @@ struct Candidate {
   Outcome outcome;
 };
 
-// Findings about the table at the servo's own period, which a trial does not have.
+// Findings about the table at the servo's own period, which a quick trial does not have.
 bool needs_servo_period(FindingKind kind) {
   return kind == FindingKind::table_step || kind == FindingKind::table_position ||
          kind == FindingKind::table_rest || kind == FindingKind::servo_step ||
          kind == FindingKind::motor_acceleration;
 }
 
-/// Samples and checks versions of a pattern.
+/// Samples and checks versions of a pattern: quickly, without the findings that need the servo's
+/// period, or exactly.
 class Trials {
  public:
   Trials(const RobotModel& model, const Pattern& pattern, const CheckOptions& options,
@@ -131,21 +136,38 @@ class Trials {
       : model_(model), options_(options), progress_(progress), most_(most) {
     options_.threads = 1;
     threads_ = options.threads;
-    const double tick = model.description().servo_period;
     const double step = std::min(pattern.duration() / kTrialSamples, kLongestStep);
-    dt_ = tick * std::max(1.0, std::floor(step / tick));
+    ticks_ = static_cast<int>(std::max(1.0, std::floor(step / model.description().servo_period)));
   }
 
-  Outcome of(const Pattern& pattern) const {
+  /// From now on trials have the servo's period and all findings. Each counts as the quick ones
+  /// that take as long.
+  void make_exact() { exact_ = true; }
+  bool exact() const { return exact_; }
+
+  /// The outcome at the servo's period of what is good in a quick trial.
+  Outcome exactly(Pattern pattern, const Mend& mend) const {
+    mend(pattern);
+    Outcome outcome = of(pattern, true);
+    outcome.table_alone = !outcome.good();
+    return outcome;
+  }
+
+  Outcome of(const Pattern& pattern) const { return of(pattern, exact_); }
+
+  Outcome of(const Pattern& pattern, bool exact) const {
     Outcome outcome;
+    const double dt = (exact ? 1 : ticks_) * model_.description().servo_period;
     try {
       CheckOptions options = options_;
       options.friction = pattern.world.friction;
       const ConsistencyReport report =
-          check_consistency(model_, sample(model_, pattern, {.dt = dt_, .threads = 1}), options);
-      outcome.errors = 0;
+          check_consistency(model_, sample(model_, pattern, {.dt = dt, .threads = 1}), options);
+      outcome.errors = outcome.findings = 0;
       for (const Finding& f : report.findings) {  // errors come in order of time
-        if (f.severity != Severity::error || needs_servo_period(f.kind)) continue;
+        if (!exact && needs_servo_period(f.kind)) continue;
+        outcome.findings += f.severity == Severity::error || f.cause >= 0;
+        if (f.severity != Severity::error) continue;
         if (outcome.errors++ < kFirstErrors) outcome.windows.push_back({f.begin, f.end});
       }
     } catch (const Error& error) {
@@ -162,9 +184,10 @@ class Trials {
   /// be sampled.
   std::vector<Outcome> after(const Pattern& pattern, const std::vector<Mend>& mends) {
     std::vector<Outcome> outcomes(mends.size());
-    const size_t tried = std::min(mends.size(), static_cast<size_t>(most_ - made_));
+    const int cost = exact_ ? ticks_ : 1;
+    const size_t tried = std::min(mends.size(), static_cast<size_t>((most_ - made_) / cost));
     if (tried < mends.size()) ended_ = true;
-    made_ += static_cast<int>(tried);
+    made_ += cost * static_cast<int>(tried);
     for (size_t begin = 0; begin < tried; begin += kTrialsBetweenReports) {
       report(progress_, {"look for the cause", -1, ""});  // may stop the search
       std::atomic<bool> stop = false;
@@ -194,9 +217,9 @@ class Trials {
   CheckOptions options_;
   const Progress& progress_;
   int threads_ = 0, most_ = 0;
-  double dt_ = 0.001;
+  int ticks_ = 1;  ///< of the servo in a step of a quick trial
   int made_ = 0;
-  bool ended_ = false;
+  bool ended_ = false, exact_ = false;
 };
 
 std::string seconds(double t) { return text::brief(t, 5) + " s"; }
@@ -891,9 +914,20 @@ class Hypotheses {
     }
   }
 
-  // Legs that are nearly straight at the height of home.
+  // Legs that are nearly straight at the height of home, or folded far below it.
   void cog_height(std::vector<Hypothesis>& made) const {
     const double height = default_cog_height(model_, pattern_);
+    if (legs_are_folded(model_, pattern_, height)) {
+      const double home = home_cog_height(model_, pattern_);
+      for (const double share : {0.97, 0.94, 0.9, 0.85, 0.75})
+        made.push_back({Rank::amount,
+                        {"/defaults/cog_height",
+                         "the COG height is " + text::brief(height) + " m, " +
+                             text::fixed(100 * height / home, 0) + " % of that of the home posture",
+                         "with " + text::brief(share * home, 3) + " m"},
+                        [higher = share * home](Pattern& p) { p.cog_height = higher; }});
+      return;
+    }
     for (const double share : {0.99, 0.97, 0.94, 0.9, 0.85})
       made.push_back({Rank::pace,
                       {"/defaults/cog_height",
@@ -908,6 +942,16 @@ class Hypotheses {
   const Outcome& found_;
   std::vector<WrittenValue> values_;
 };
+
+/// What makes one outcome better than another one. Where two mistakes move one joint, an error of
+/// one of them may count as a consequence of the other one; then no change leaves fewer errors, but
+/// some leave fewer findings.
+enum class Measure { errors, findings };
+
+bool is_better(const Outcome& a, const Outcome& b, Measure measure) {
+  if (measure == Measure::errors || a.errors != b.errors) return a.errors < b.errors;
+  return a.findings < b.findings;
+}
 
 /// The search in one pattern.
 class Search {
@@ -966,8 +1010,12 @@ class Search {
     for (const WrittenValue& value : suspects)
       mends.push_back([&value](Pattern& p) { value.pull(p, 0); });
     const std::vector<Outcome> without = trials_.after(pattern_, mends);
-    int least = found_.errors;
-    for (const Outcome& outcome : without) least = std::min(least, outcome.errors);
+    const auto fewer = [&](const Outcome& o) { return is_better(o, found_, Measure::errors); };
+    const bool by_errors = std::any_of(without.begin(), without.end(), fewer);
+    const Measure measure = by_errors ? Measure::errors : Measure::findings;
+    Outcome least = found_;
+    for (const Outcome& outcome : without)
+      if (is_better(outcome, least, measure)) least = outcome;
     std::vector<Hypothesis> signs;
     for (size_t i = 0; i < suspects.size() && signs.size() < kTriedSigns; ++i)
       if (without[i].errors > 0 && suspects[i].has_sign())
@@ -978,11 +1026,11 @@ class Search {
       if (without[i].errors > 0 && suspects[i].suspicion(model_) > kGrossSuspicion)
         tenths.push_back(tenth_of(suspects[i]));
     test(std::move(tenths));
-    if (least == found_.errors) return;
+    if (!is_better(least, found_, measure)) return;
     size_t looked_at = 0;
     for (size_t i = 0; i < suspects.size() && looked_at < kSuspects; ++i)
-      if (without[i].errors == least) {
-        look_at(suspects[i], without[i]);
+      if (!is_better(least, without[i], measure)) {
+        look_at(suspects[i], without[i], measure);
         ++looked_at;
       }
     demote_slips();
@@ -1003,12 +1051,12 @@ class Search {
       }
   }
 
-  void look_at(const WrittenValue& value, const Outcome& without) {
+  void look_at(const WrittenValue& value, const Outcome& without, Measure measure) {
     double possible = 0, impossible = 1;
     for (int i = 0; i < kBisections; ++i) {
       const double share = 0.5 * (possible + impossible);
       const Outcome outcome = trials_.after(pattern_, [&](Pattern& p) { value.pull(p, share); });
-      (outcome.errors <= without.errors ? possible : impossible) = share;
+      (is_better(without, outcome, measure) ? impossible : possible) = share;
     }
     const WrittenNumber& number = value.numbers.front();
     const double limit = number.neutral + possible * (number.value - number.neutral);
@@ -1077,8 +1125,11 @@ class Search {
   /// The fewest errors that remain, then the most particular rank; the first few of these.
   std::vector<Candidate> chosen() const {
     std::vector<Candidate> sorted;
-    for (const Candidate& c : tried_)
-      if (c.outcome.errors < found_.errors) sorted.push_back(c);
+    for (const Measure measure : {Measure::errors, Measure::findings}) {
+      if (!sorted.empty()) break;
+      for (const Candidate& c : tried_)
+        if (is_better(c.outcome, found_, measure)) sorted.push_back(c);
+    }
     // Another sign or another digit counts as meant only where nothing is left to mend.
     for (Candidate& c : sorted)
       if ((c.hypothesis.rank == Rank::sign || c.hypothesis.rank == Rank::slip) &&
@@ -1116,6 +1167,9 @@ std::string result_words(const Outcome& before, const Outcome& after) {
   if (after.good()) return " the pattern is consistent";
   if (before.errors == kUnsampled)
     return " the motion can be sampled, with " + text::counted(after.errors, "error");
+  if (after.errors >= before.errors)
+    return " " + text::counted(after.findings, "finding") + " of " +
+           std::to_string(before.findings) + (after.findings == 1 ? " remains" : " remain");
   return " " + text::counted(after.errors, "error") + " of " + std::to_string(before.errors) +
          (after.errors == 1 ? " remains" : " remain");
 }
@@ -1130,12 +1184,31 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
   Trials trials(model, pattern, options, progress, most_trials);
   Pattern current = pattern;
   Outcome found = trials.of(current);
+  if (found.good()) {  // what is wrong shows at the servo's period alone
+    trials.make_exact();
+    found = trials.of(current);
+  }
   for (int round = 0; round < kRounds && !found.good() && !trials.ended(); ++round) {
-    Search search(trials, model, current, found);  // the corrections refer to this pattern
-    std::vector<Candidate> best = search.best();
+    std::optional<Search> search(std::in_place, trials, model, current, found);
+    std::vector<Candidate> best = search->best();  // its corrections refer to the search
+    if (best.empty() && !trials.exact()) {         // quick trials may have errors that are none
+      trials.make_exact();
+      found = trials.of(current);
+      search.emplace(trials, model, current, found);
+      best = search->best();
+    }
     if (best.empty()) break;
     for (Candidate& c : best) {
-      c.hypothesis.says.instead += result_words(found, c.outcome);
+      if (c.outcome.good() && !trials.exact()) {
+        c.outcome = trials.exactly(current, c.hypothesis.mend);
+        c.hypothesis.says.instead += c.outcome.good()
+                                         ? result_words(found, c.outcome)
+                                         : " only " + text::counted(c.outcome.errors, "error") +
+                                               " of the table for the robot " +
+                                               (c.outcome.errors == 1 ? "remains" : "remain");
+      } else {
+        c.hypothesis.says.instead += result_words(found, c.outcome);
+      }
       // The steps before this one are part of what is enough.
       if (round > 0) c.hypothesis.says.instead += " (together with the change named before)";
       result.found.push_back(c.hypothesis.says);
@@ -1143,6 +1216,7 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
     Pattern mended = current;
     best.front().hypothesis.mend(mended);
     const Outcome left = best.front().outcome;
+    if (left.table_alone) trials.make_exact();
     current = std::move(mended);
     found = left;
   }

@@ -11,6 +11,7 @@
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/motion/differentiate.hpp"
 #include "ayumi/motion/pattern_context.hpp"
+#include "ayumi/plan/folded_legs.hpp"
 #include "ayumi/plan/sample_job.hpp"
 
 namespace ayumi {
@@ -66,10 +67,11 @@ namespace {
                    "move the COG farther to the side. Make the COG sway less (shorten "
                    "the step period, or move the ZMP towards the other foot with new walk "
                    "--zmp-inwards), or lower the COG height");
-  const std::string remedy = "; lower the COG height (here " +
-                             text::fixed(sample.cog.z() - ground, 4) + " m above the soles)" +
-                             (job.tracks.torso ? ", tilt the torso less," : "") +
-                             " or shorten the stride";
+  const double height = sample.cog.z() - ground;
+  const std::string remedy =
+      std::string("; ") + (legs_are_folded(job.model, job.pattern, height) ? "raise" : "lower") +
+      " the COG height (here " + text::fixed(height, 4) + " m above the soles)" +
+      (job.tracks.torso ? ", tilt the torso less," : "") + " or shorten the stride";
   if (solution.knee_flipped)
     throw in_phase(where + " knee would have to bend the wrong way" + remedy);
   const std::string limit =

@@ -1088,7 +1088,7 @@ def read_table(path: Union[str, PathLike[str]]) -> Table:
     """Reads a table that Ayumi wrote, CSV or JSON."""
 
 def repair(task: Task, *, lock_joints: list[str] = [], lock_feet: list[str] = [], lock_windows: list[tuple[float, float]] = [], weights: dict[str, float] = {}, trust: Optional[str] = None, safety: Optional[float] = None, zmp_margin: Optional[float] = None, max_iterations: Optional[int] = None, progress: Optional[Callable[[str, float, str], Any]] = None) -> Repair:
-    """The nearest consistent motion. Locked joints, feet ('left', 'right') and windows (begin, end) [s] do not move; `weights` are factors on the cost of a joint; `trust` is 'posture', 'cog' or 'zmp'; `zmp_margin` [m] is the wanted distance of the ZMP from the edge. An argument that is not given has the value in the pattern."""
+    """The nearest consistent motion, which bears the payloads of the scenario. Locked joints, feet ('left', 'right') and windows (begin, end) [s] do not move; `weights` are factors on the cost of a joint; `trust` is 'posture', 'cog' or 'zmp'; `zmp_margin` [m] is the wanted distance of the ZMP from the edge. An argument that is not given has the value in the pattern."""
 
 def retimed(robot: Robot, pattern: Pattern, scale: float) -> Pattern:
     """The pattern with all times multiplied by `scale`."""
