@@ -5,14 +5,13 @@
 #   has parsed, and for cold code that of ayumi_cold_headers. It costs a rebuild nothing.
 # AYUMI_UNITY: several sources of a room are compiled as one. A build from nothing takes about a
 #   third of the time; after a change of one source its whole group is compiled, and after a new
-#   source its room. The preset for daily work switches it off. Measured: 24 sources of the program
-#   as one cost 47 s of processor time, and as three times eight 65 s.
+#   source its room. The preset for daily work switches it off.
 # Cold code, which computes nothing in a loop, is compiled with -O1. Its precompiled headers are made
 #   with -O1 too, because g++ optimizes what they bring as they were made.
 
 option(AYUMI_PRECOMPILE "Precompile the headers that most sources include" ON)
 option(AYUMI_UNITY "Compile several sources as one: quick from nothing, slower after a change" ON)
-set(AYUMI_UNITY_SIZE 24 CACHE STRING "How many sources are compiled as one")
+set(AYUMI_UNITY_SIZE 8 CACHE STRING "How many sources are compiled as one")
 
 # ayumi_compile_together(key sources...): about AYUMI_UNITY_SIZE of them as one, in groups of the same
 # size. Groups of different keys stay apart, so that a new source moves no source of another key.
