@@ -1,7 +1,7 @@
 // The pendulum law (14)(15) gives a first COG. The ZMP of the full model differs from its command,
-// because legs and arms have angular momentum. The bounded solution of the error e = cmd z - full z
-// is added to the COG in each pass; the error that remains comes from the change of the limbs'
-// motion.
+// because legs and arms have angular momentum, and the trunk where it leans. The bounded solution
+// of the error e = cmd z - full z is added to the COG in each pass; the error that remains comes
+// from the change of the limbs' motion.
 #include <algorithm>
 #include <cmath>
 #include <mutex>
@@ -9,6 +9,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/bounded_curve.hpp"
 #include "ayumi/math/rotation.hpp"
@@ -59,13 +60,62 @@ Track default_height(const SampleJob& job, const Grid& grid) {
   return spline_through(grid, z);
 }
 
-// (17) with the planned height.
-VectorXd omega_squared_of(const SampleJob& job, const CogPlan& plan, const Grid& grid) {
+// Least height of that pendulum, as a share of the height of the COG. Chosen: a lean against the
+// way of the COG, which nobody has seen, does not make it fall at once.
+constexpr double kLeastHeight = 0.3;
+
+// Step of the COG to either side by which lean_height() looks at the postures [m]. Chosen: 1/20 of
+// what legs of five joints do, far above the tolerance of the inverse kinematics.
+constexpr double kLook = 5e-4;
+
+// Where legs lack joints, the trunk leans to move the COG aside, and its angular momentum L about
+// the COG is proportional to the COG's speed, so that the robot falls like a pendulum that is
+// higher by L / (m v): the ZMP is c - (z + L / (m v)) c'' / g. This is that height for both axes
+// [m], at the start of the motion; 0 for other legs, whose trunk keeps its attitude.
+Eigen::Vector2d lean_height(const SampleJob& job, const CogPlan& plan) {
+  Eigen::Vector2d height = Eigen::Vector2d::Zero();
+  if (!job.ik.lacks_joints()) return height;
+  RobotData data(job.model);
+  const auto posture_at = [&](const Vector3d& cog) {
+    CommandSample sample;
+    sample.state = job.model.rest_state();
+    sample.state.theta = job.ik.start();
+    sample.cog = cog;
+    put_plan(job, 0, sample);
+    solve_posture(job, 0, trunk_attitude(job, 0, sample.feet), sample, data);
+    return sample.state;
+  };
+  for (int axis = 0; axis < 2; ++axis) {
+    if (!plan.solved[axis]) continue;
+    Vector3d cog(plan.zmp[0].at(0).value, plan.zmp[1].at(0).value, plan.cog[2].at(0).value);
+    for (int i = 0; i < 2; ++i)
+      if (!plan.solved[i]) cog[i] = plan.cog[i].at(0).value;
+    cog[axis] -= kLook;
+    RobotState state = posture_at(cog);
+    cog[axis] += 2 * kLook;
+    const RobotState after = posture_at(cog);
+    // The speed with which the COG takes 1 s for both steps, at the first of the postures.
+    state.base_velocity = after.base.position - state.base.position;
+    state.base_angular_velocity =
+        log_rotation(after.base.attitude * state.base.attitude.conjugate());
+    state.dtheta = after.theta - state.theta;
+    update_positions(job.model, state, data);
+    update_velocities(job.model, state, data);
+    const Momentum momentum = centroidal_momentum(job.model, data);
+    height[axis] =
+        (axis == 0 ? momentum.angular.y() : -momentum.angular.x()) / (job.model.mass() * 2 * kLook);
+  }
+  return height;
+}
+
+// (17) with the planned height and `more` above it.
+VectorXd omega_squared_of(const SampleJob& job, const CogPlan& plan, const Grid& grid,
+                          double more) {
   VectorXd w2(grid.n + 1);
   for (int k = 0; k <= grid.n; ++k) {
     const TrackPoint z = plan.cog[2].at(grid.t(k));
     const double above = z.value - plan.zmp[2].at(grid.t(k)).value;
-    w2[k] = (z.acceleration + kGravity) / above;
+    w2[k] = (z.acceleration + kGravity) / std::max(above + more, kLeastHeight * above);
     if (job.feet.support(grid.t(k)) == Support::none || std::abs(w2[k]) < 1e-6) w2[k] = 0;
     if (!(above > 0) || w2[k] < 0)
       fail(ErrorCode::bad_pattern,
@@ -87,7 +137,7 @@ struct CogSolver {
   const SampleJob& job;
   CogPlan& plan;
   Grid grid;
-  VectorXd w2;
+  std::array<VectorXd, 2> w2;  // by axis; 0 in flight
   std::array<VectorXd, 3> cog;
   std::vector<CommandSample> samples = {};  // of the last pass
   std::vector<Eigen::Matrix3d> trunk = {};  // as the pattern asks for it
@@ -113,7 +163,7 @@ void CogSolver::read_tracks() {
 }
 
 void CogSolver::add_solution(int axis, const VectorXd& z) {
-  const RestToRest motion = rest_to_rest_cog(z, w2, grid.h);
+  const RestToRest motion = rest_to_rest_cog(z, w2[axis], grid.h);
   cog[axis] += motion.x;
   plan.bump[0][axis] += motion.begin;
   plan.bump[1][axis] += motion.end;
@@ -187,7 +237,7 @@ double CogSolver::measure(int first, int end) {
   const double weight = job.model.mass() * kGravity;
   double worst = 0;
   for (int k = first; k < end; ++k) {
-    if (w2[k] == 0) continue;
+    if (w2[0][k] == 0) continue;
     const GroundReaction& full = reactions[k - first];
     const double share = std::min(1.0, full.force.z() / weight);
     if (share < kZmpShare) continue;
@@ -252,8 +302,9 @@ Vector3d CogPlan::cog_at(double t) const {
 
 Vector3d CogPlan::zmp_at(double t) const {
   Vector3d z(zmp[0].at(t).value, zmp[1].at(t).value, zmp[2].at(t).value);
-  z.head<2>() += rest_bump(omega[0], t, duration) * bump[0] +
-                 rest_bump(omega[1], duration - t, duration) * bump[1];
+  for (int axis = 0; axis < 2; ++axis)
+    z[axis] += rest_bump(omega[0][axis], t, duration) * bump[0][axis] +
+               rest_bump(omega[1][axis], duration - t, duration) * bump[1][axis];
   return z;
 }
 
@@ -279,8 +330,18 @@ CogPlan plan_cog(const SampleJob& job) {
     return plan;
   }
 
-  CogSolver solver{job, plan, grid, omega_squared_of(job, plan, grid), {}};
-  plan.omega = {std::sqrt(solver.w2[0]), std::sqrt(solver.w2[grid.n])};
+  const Eigen::Vector2d more =
+      job.pattern.full_model ? lean_height(job, plan) : Eigen::Vector2d::Zero();
+  CogSolver solver{
+      job,
+      plan,
+      grid,
+      {omega_squared_of(job, plan, grid, more[0]), omega_squared_of(job, plan, grid, more[1])},
+      {}};
+  for (int axis = 0; axis < 2; ++axis) {
+    plan.omega[0][axis] = std::sqrt(solver.w2[axis][0]);
+    plan.omega[1][axis] = std::sqrt(solver.w2[axis][grid.n]);
+  }
   solver.read_tracks();
   for (int axis = 0; axis < 2; ++axis) {
     if (!plan.solved[axis]) continue;

@@ -106,7 +106,8 @@ struct CogPlan {
   std::array<bool, 2> solved = {false, false};  ///< axes solved from the ZMP
   std::array<Eigen::Vector2d, 2> bump = {Eigen::Vector2d::Zero(),
                                          Eigen::Vector2d::Zero()};  ///< [begin, end](axis) [m]
-  std::array<double, 2> omega = {1, 1};                             ///< at begin and end [1/s]
+  std::array<Eigen::Vector2d, 2> omega = {Eigen::Vector2d::Ones(),
+                                          Eigen::Vector2d::Ones()};  ///< likewise [1/s]
   TrunkTurn turn;
   double duration = 0;  ///< [s]
   /// Postures on a grid from beginning to end, close to the motion's: initial guesses; or none.
