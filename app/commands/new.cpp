@@ -123,32 +123,45 @@ void fit_walk(const Context& context, const RobotModel& model, const NewOptions&
               WalkParameters& w) {
   if (!model.has_soles() || w.turn != 0 || w.side != 0 || w.rise != 0) return;
   // Legs without the roll of the ankle carry the COG aside by a few millimetres only, so that they
-  // step quickly and close to the other foot; another height does not help them.
+  // step quickly and close to the other foot. Lower, their knees need less torque for this.
   const bool lacking = InverseKinematics(model, model.posture()).lacks_joints();
   Dial inwards{"--zmp-inwards", "m", {w.zmp_inwards}};
   if (lacking && w.zmp_inwards == 0)
     for (const double share : {0.9, 0.7})
       inwards.values.push_back(rounded(share * half_sole_width(model), 1e-3));
-  const Dial height =
-      lacking ? Dial{"--cog-height", "m", {w.cog_height}} : height_dial(model, w.cog_height);
+  Dial height = height_dial(model, w.cog_height);
+  if (lacking) {
+    height =
+        dial("--cog-height", "m", starting_height(model), 1e-3, w.cog_height == 0, {0.91, 0.88});
+    height.values.front() = w.cog_height;
+  }
   const std::vector<double> paces =
-      lacking ? std::vector{0.55, 0.34, 0.75, 0.42} : std::vector{1.25, 1.6, 0.8, 2.2};
+      lacking ? std::vector{0.34, 0.55, 0.42, 0.75} : std::vector{1.25, 1.6, 0.8, 2.2};
   const std::vector<double> strides =
       lacking ? std::vector{0.5, 0.25} : std::vector{0.75, 0.5, 0.25};
-  const std::vector<Dial> dials = {
-      height, dial("--stride", "m", w.stride, 1e-3, !options.stride, strides),
-      dial("--period", "s", w.period, 0.01, !options.period, paces), inwards};
+  const Dial stride = dial("--stride", "m", w.stride, 1e-3, !options.stride, strides),
+             period = dial("--period", "s", w.period, 0.01, !options.period, paces);
+  // Of trials that change as much, those that change the last dials come first.
+  const std::vector<Dial> dials = lacking ? std::vector{stride, period, inwards, height}
+                                          : std::vector{height, stride, period, inwards};
   const auto with = [&](const std::vector<double>& values) {
     WalkParameters walk = w;
-    walk.cog_height = values[0];
-    walk.stride = values[1];
-    walk.period = values[2];
-    walk.zmp_inwards = values[3];
+    walk.cog_height = values[lacking ? 3 : 0];
+    walk.stride = values[lacking ? 0 : 1];
+    walk.period = values[lacking ? 1 : 2];
+    walk.zmp_inwards = values[lacking ? 2 : 3];
+    // Quick steps are low: the foot needs the acceleration 1/T^2 for the same lift.
+    if (lacking && !options.lift)
+      walk.lift = rounded(w.lift * std::min(1.0, walk.period / w.period), 5e-4);
     return walk;
   };
+  const double lift = w.lift;
   w = with(values_that_pass(
       context, model, dials,
       [&](const std::vector<double>& values) { return walk_pattern(model, with(values)); }, true));
+  if (w.lift != lift)
+    context.print("  the feet rise by " + text::brief(w.lift) + " m in place of " +
+                  text::brief(lift) + " m, because the steps are quick (--lift changes this)\n");
 }
 
 // Motions that a robot can do that cannot walk, as commands; "" where none was found.
