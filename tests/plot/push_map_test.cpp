@@ -93,6 +93,24 @@ TEST(PushMap, NamesOfDirectionsStandBesideTheDots) {
   }
 }
 
+// On a page of 390 pixels: nothing is cut off, and letters have 11 pixels or more.
+TEST(PushMap, ANarrowMapFitsOnATelephone) {
+  const Drawing drawing = draw_push_map(four_directions(), PushMapLayout::narrow);
+  EXPECT_LE(drawing.width, 350);
+  EXPECT_GT(drawing.height, draw_push_map(four_directions()).height) << "panels below each other";
+  for (const auto& item : drawing.items)
+    if (const auto* text = std::get_if<DrawnText>(&item)) {
+      EXPECT_GE(text->size, 11) << text->text;
+      const double wide = text_width(text->text, text->size, text->bold);
+      const double left = text->position.x() - (text->anchor == TextAnchor::right    ? wide
+                                                : text->anchor == TextAnchor::center ? wide / 2
+                                                                                     : 0);
+      EXPECT_GE(left, 0) << text->text;
+      EXPECT_LE(left + wide, drawing.width) << text->text;
+      EXPECT_LE(text->position.y(), drawing.height) << text->text;
+    }
+}
+
 TEST(PushMap, LongRemarksFit) {
   PushMap map = four_directions();
   map.remarks.push_back(std::string(200, 'x'));

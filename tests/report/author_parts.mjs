@@ -106,7 +106,7 @@ test("the COG height alone, and a swing", () => {
     [{ kind: "set", pointer: "/keyframes/2/cog/height", value: 0.23 }]);
   assert.deepEqual(edits.putPart(state.keyframes, 1.3, "cog", "height", 0.23)[0].value, { t: 1.3, cog: { height: 0.23 } });
   assert.deepEqual(edits.addSwing({ pointer: "/phases/3" }, "left"), [
-    { kind: "set", pointer: "/phases/3/swing", value: { foot: "left", step: { forward: 0, side: 0, turn: 0 } } }]);
+    { kind: "set", pointer: "/phases/3/swing", value: { foot: "left", step: { forward: 0, side: 0, turn: 0 }, lift: 0.02 } }]);
 });
 
 test("a removed key takes its keyframe only where nothing else is in it", () => {

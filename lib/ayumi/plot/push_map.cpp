@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
@@ -17,9 +18,11 @@ using Eigen::Vector4f;
 constexpr double kPanel = 300, kRadius = 108;    // of one panel, of its largest ring [pixel]
 constexpr double kHead = 74, kSide = 14;         // above and beside the panels [pixel]
 constexpr double kPhaseName = 26, kRemark = 20;  // heights of lines of text [pixel]
+constexpr double kLegendLine = 18;               // the same in a legend of several lines
 constexpr size_t kColumns = 3, kMostLaws = 4;    // of panels; as many laws as colours
 constexpr int kCircleSteps = 72;                 // corners of a ring, one every 5 degrees
 
+constexpr double kSmall = 11;                 // size of the smallest letters [pixel]
 constexpr double kDot = 2.6, kDotLine = 1.2;  // radius and line of a value's dot [pixel]
 // Between the largest ring and the name of a direction: a dot on the ring does not touch it.
 constexpr double kNameGap = kDot + kDotLine / 2 + 4;
@@ -73,16 +76,16 @@ void draw_grid(Drawing& drawing, const Panel& panel, const PushMapPhase& phase,
       drawing.items.push_back(
           DrawnText{.position = panel.center + Vector2d(3, 3 - kRadius * ring / panel.most),
                     .text = text::fixed(ring, digits),
-                    .size = 9,
+                    .size = kSmall,
                     .color = kQuiet});
   const auto name = [&](const Vector2d& at, const char* word, TextAnchor anchor) {
     drawing.items.push_back(DrawnText{.position = panel.center + at,
                                       .text = word,
-                                      .size = 10,
+                                      .size = kSmall,
                                       .anchor = anchor,
                                       .color = kQuiet});
   };
-  name({0, -kRadius - kNameGap}, "forward", TextAnchor::center);
+  name({0, -kRadius - kNameGap - 1}, "forward", TextAnchor::center);
   name({0, kRadius + kNameGap + 8}, "back", TextAnchor::center);
   name({-kRadius - kNameGap, 3}, "left", TextAnchor::right);
   name({kRadius + kNameGap, 3}, "right", TextAnchor::left);
@@ -127,25 +130,51 @@ void draw_panel(Drawing& drawing, const Panel& panel, const PushMapPhase& phase,
     draw_curve(drawing, panel, phase.direction, phase.curves[c], c == 0 ? kOpen : kLaws[c - 1]);
 }
 
-void draw_legend(Drawing& drawing, const PushMap& map, bool capped) {
-  double x = kSide;
+/// The words of a text on lines of at most this width [pixel].
+std::vector<std::string> wrapped(const std::string& words, double width) {
+  std::vector<std::string> lines(1);
+  std::istringstream in(words);
+  for (std::string word; in >> word;) {
+    const std::string longer = lines.back().empty() ? word : lines.back() + " " + word;
+    if (!lines.back().empty() && text_width(longer, kSmall) > width)
+      lines.push_back(word);
+    else
+      lines.back() = longer;
+  }
+  return lines;
+}
+
+// As many lines as the width asks for; the height of those below the first one.
+double draw_legend(Drawing& drawing, const PushMap& map, bool capped) {
+  double x = kSide, y = kHead - 24;
+  const auto make_room = [&](double width) {
+    if (x == kSide || x + width <= drawing.width - kSide) return;
+    x = kSide;
+    y += kLegendLine;
+  };
   const auto entry = [&](const std::string& name, const Vector4f& color, bool dashed) {
+    make_room(27 + text_width(name, kSmall));
     DrawnPath line;
-    line.points = {{x, kHead - 28}, {x + 22, kHead - 28}};
+    line.points = {{x, y - 4}, {x + 22, y - 4}};
     line.stroke = color;
     line.width = 2;
     if (dashed) line.dashes = {5, 3};
     drawing.items.push_back(line);
-    drawing.items.push_back(DrawnText{.position = {x + 27, kHead - 24}, .text = name, .size = 11});
-    x += 27 + text_width(name, 11) + 18;
+    drawing.items.push_back(DrawnText{.position = {x + 27, y}, .text = name, .size = kSmall});
+    x += 27 + text_width(name, kSmall) + 18;
   };
   entry("capture bound B", kBound, true);
   entry(map.baseline, kOpen, false);
   for (size_t i = 0; i < map.laws.size(); ++i) entry(map.laws[i], kLaws[i], false);
   std::string unit = "N s, through the COG";
   if (capped) unit += "; hollow point: the robot survives also the largest push that was tried";
-  drawing.items.push_back(
-      DrawnText{.position = {x, kHead - 24}, .text = unit, .size = 11, .color = kQuiet});
+  make_room(text_width(unit, kSmall));
+  for (const std::string& line : wrapped(unit, drawing.width - kSide - x)) {
+    drawing.items.push_back(
+        DrawnText{.position = {x, y}, .text = line, .size = kSmall, .color = kQuiet});
+    y += kLegendLine;
+  }
+  return y - kLegendLine - (kHead - 24);
 }
 
 void check(const PushMap& map) {
@@ -163,7 +192,7 @@ void check(const PushMap& map) {
 
 }  // namespace
 
-Drawing draw_push_map(const PushMap& map) {
+Drawing draw_push_map(const PushMap& map, PushMapLayout layout) {
   check(map);
   double most = 0;
   bool capped = false;
@@ -178,29 +207,40 @@ Drawing draw_push_map(const PushMap& map) {
   const std::vector<double> rings = nice_ticks({0, most}, 5);
   most = std::max(most, rings.back());
 
-  const size_t columns = std::min(kColumns, map.phases.size());
+  const bool narrow = layout == PushMapLayout::narrow;
+  const size_t columns = narrow ? 1 : std::min(kColumns, map.phases.size());
   const size_t rows = (map.phases.size() + columns - 1) / columns;
   Drawing drawing;
-  drawing.width = std::max(2 * kSide + kPanel * static_cast<double>(columns), 620.0);
-  for (const std::string& remark : map.remarks)
-    drawing.width = std::max(drawing.width, 2 * kSide + text_width(remark, 11));
-  drawing.width = std::max(drawing.width, 2 * kSide + text_width(map.title, 15, true));
-  drawing.height = kHead + kPanel * static_cast<double>(rows) +
-                   kRemark * static_cast<double>(map.remarks.size()) + kSide;
+  drawing.width = 2 * kSide + kPanel * static_cast<double>(columns);
+  std::vector<std::string> remarks = map.remarks;
+  if (narrow) {
+    remarks.clear();
+    for (const std::string& remark : map.remarks)
+      for (const std::string& line : wrapped(remark, drawing.width - 2 * kSide))
+        remarks.push_back(line);
+  } else {
+    drawing.width = std::max(drawing.width, 620.0);
+    for (const std::string& remark : remarks)
+      drawing.width = std::max(drawing.width, 2 * kSide + text_width(remark, kSmall));
+    drawing.width = std::max(drawing.width, 2 * kSide + text_width(map.title, 15, true));
+  }
   drawing.title = map.title;
   drawing.description = "largest survivable impulse by direction and gait phase";
-  drawing.items.push_back(
-      DrawnText{.position = {kSide, 26}, .text = map.title, .size = 15, .bold = true});
-  draw_legend(drawing, map, capped);
+  if (!narrow)  // the page that it is in has a heading
+    drawing.items.push_back(
+        DrawnText{.position = {kSide, 26}, .text = map.title, .size = 15, .bold = true});
+  const double head = kHead + draw_legend(drawing, map, capped);
+  drawing.height = head + kPanel * static_cast<double>(rows) +
+                   kRemark * static_cast<double>(remarks.size()) + kSide;
   for (size_t i = 0; i < map.phases.size(); ++i) {
     const Vector2d corner(kSide + kPanel * static_cast<double>(i % columns),
-                          kHead + kPanel * static_cast<double>(i / columns));
+                          head + kPanel * static_cast<double>(i / columns));
     draw_panel(drawing, {corner + Vector2d(kPanel / 2, kPanel / 2 + 8), most}, map.phases[i],
                rings);
   }
-  double y = kHead + kPanel * static_cast<double>(rows) + 10;
-  for (const std::string& remark : map.remarks) {
-    drawing.items.push_back(DrawnText{.position = {kSide, y}, .text = remark, .size = 11});
+  double y = head + kPanel * static_cast<double>(rows) + 10;
+  for (const std::string& remark : remarks) {
+    drawing.items.push_back(DrawnText{.position = {kSide, y}, .text = remark, .size = kSmall});
     y += kRemark;
   }
   return drawing;

@@ -49,9 +49,13 @@ std::string push_map_title(const std::string& pattern, const std::string& robot,
 PushMap push_map(const std::string& title, const std::vector<PushCase>& cases,
                  const PushOptions& push, const CommandSeries& series);
 
+/// For pages and prints, or for a telephone.
+enum class PushMapLayout { wide, narrow };
+
 /// One polar panel per phase, all with the same radius. Throws Error(usage) when there is no phase,
 /// a curve has another length than its directions, or more than four laws.
-Drawing draw_push_map(const PushMap& map);
+/// A narrow map has its panels below each other, and no title.
+Drawing draw_push_map(const PushMap& map, PushMapLayout layout = PushMapLayout::wide);
 
 /// As .svg or .png. Errors as above, and Error(bad_file).
 void write_push_map(const PushMap& map, const std::filesystem::path& path);

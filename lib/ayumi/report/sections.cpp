@@ -236,26 +236,42 @@ std::string findings_section(const ReportInput& input) {
   return section("findings", "Findings", out + table(summary_table(check.summary)));
 }
 
+namespace {
+
+// A phase with its time, which may be its name; a short one stays on one line.
+std::string phase_words(const PushThreshold& threshold) {
+  const std::string at = text::fixed(threshold.at, 3) + " s";
+  if (threshold.phase == "t = " + at)
+    return "t&nbsp;=&nbsp;" + text::fixed(threshold.at, 3) + "&nbsp;s";
+  return escaped(threshold.phase) + ", " + text::fixed(threshold.at, 3) + "&nbsp;s";
+}
+
+}  // namespace
+
 std::string thresholds_section(const ReportInput& input) {
   if (input.thresholds.empty()) return "";
   Table rows = {
       "Largest survivable impulse of 20 ms through the COG. The bound is the impulse that a point "
       "mass on the planned footholds could absorb; + means that the robot survives also the "
       "largest push of the study.",
-      {"phase", "at [s]", "towards [deg]", "law", "impulse [N s]", "open loop [N s]", "bound [N s]",
+      {"phase", "towards [deg]", "law", "impulse [N s]", "open loop [N s]", "bound [N s]",
        "share of the bound"},
       {}};
   for (const PushThreshold& t : input.thresholds)
-    rows.rows.push_back({escaped(t.phase), text::fixed(t.at, 3),
-                         text::fixed(t.direction * 180 / M_PI, 0), escaped(t.controller),
-                         text::fixed(t.impulse, 2) + (t.capped ? "+" : ""),
+    rows.rows.push_back({phase_words(t), text::fixed(t.direction * 180 / M_PI, 0),
+                         escaped(t.controller), text::fixed(t.impulse, 2) + (t.capped ? "+" : ""),
                          text::fixed(t.open_loop, 2), text::fixed(t.bound, 2),
                          t.bound > 0 ? text::fixed(t.impulse / t.bound, 2) : "none"});
-  const std::string svg = to_svg(draw_push_map(threshold_map(input.thresholds)));
+  const auto figure = [&](PushMapLayout layout, const std::string& kind) {
+    const std::string svg = to_svg(draw_push_map(threshold_map(input.thresholds), layout));
+    return "<div class=\"" + kind +
+           "\"><figure class=\"wide natural\" tabindex=\"0\" role=\"region\" "
+           "aria-label=\"Push map\">" +
+           svg.substr(svg.find("<svg")) + "</figure></div>\n";
+  };
   return section("thresholds", "Push thresholds",
-                 "<figure class=\"wide natural\" tabindex=\"0\" role=\"region\" "
-                 "aria-label=\"Push map\">" +
-                     svg.substr(svg.find("<svg")) + "</figure>\n" + table(rows));
+                 figure(PushMapLayout::wide, "wide-curves") +
+                     figure(PushMapLayout::narrow, "narrow-curves") + table(rows));
 }
 
 std::string comparison_section(const ReportInput& input) {

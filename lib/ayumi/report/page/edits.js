@@ -126,9 +126,9 @@ export function splitPhase(phase, time) {
   return [{ kind: "insert", pointer: phase.pointer, value: { until: roundedTime(time), support: phase.support } }, ...rest];
 }
 
-/// A swing that lands beside the other foot.
+/// A swing that lands beside the other foot, with the lift that it has without one (docs/formats.md).
 export function addSwing(phase, foot) {
-  return [{ kind: "set", pointer: phase.pointer + "/swing", value: { foot, step: { forward: 0, side: 0, turn: 0 } } }];
+  return [{ kind: "set", pointer: phase.pointer + "/swing", value: { foot, step: { forward: 0, side: 0, turn: 0 }, lift: 0.02 } }];
 }
 
 /// A phase behind the last one, as long as it takes to look at.
