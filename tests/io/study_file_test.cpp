@@ -106,8 +106,9 @@ TEST(StudyFile, TruncatedTailsAreMirrorImages) {
     for (const double u : {1e-6, 0.1, 0.5, 0.9, 0.999})
       EXPECT_NEAR(quantile(above, u) - 1, 1 - quantile(below, 1 - u), 1e-12) << far << " " << u;
     // P(z > a + x) / P(z > a) is close to exp(-a x).
-    if (far > 5)
+    if (far > 5) {
       EXPECT_NEAR((quantile(above, 0.5) - above.low) / 0.01, std::log(2) / far, 0.02 / far);
+    }
   }
   const std::string refused = complaint(
       quantity_with(R"("what": "mass", "truncated": [1, 0.01, 1.5, 1.6], "source": "t")"));
