@@ -263,7 +263,7 @@ TEST_F(Edit, ImportReadsStandardInputAndNamesMistakes) {
   write(folder / "bad.csv", "1,2,0,0\n");
   const Output bad = ayumi({"import", "bad.csv", "--robot", "hoap1", "-o", "a.json"});
   EXPECT_EQ(bad.exit_code, 3);
-  EXPECT_NE(bad.err.find("bad.csv:1: 4 columns"), std::string::npos) << bad.err;
+  EXPECT_NE(bad.err.find("bad.csv:1: the row has 4 columns"), std::string::npos) << bad.err;
   // Standard input is empty here.
   EXPECT_EQ(ayumi({"import", "-", "--robot", "hoap1", "-o", "a.json"}).exit_code, 3);
   EXPECT_EQ(folder.files(), std::vector<std::string>{"bad.csv"});
