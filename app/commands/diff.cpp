@@ -136,7 +136,7 @@ void add_diff(Command& app, Context& context) {
       ->allow_extra_args(false);
   command
       ->add_option("--safety", options.safety,
-                   "Factor on the cost of missing safety, as for repair "
+                   "Weight of safety in the reported cost, as for repair "
                    "(default: the factor in the pattern; 1 if the pattern has none).")
       ->check(number_within(0.0, 1e6))
       ->type_name("FACTOR");

@@ -189,7 +189,7 @@ void add_new_jump(Command& parent, Context& context) {
       ->type_name("N");
   command
       ->add_option("--profile", options.profile,
-                   "Actuator profile that the pattern names (default: the first profile that is "
+                   "Actuator profile to write into the pattern (default: the first profile that is "
                    "strong enough).")
       ->type_name("NAME");
   command->add_flag(

@@ -244,7 +244,9 @@ void add_push(Command& app, Context& context) {
           "-o,--out", options->out,
           "File for the results, as JSON. Run the command again with the same file to go on.")
       ->type_name("F");
-  command->add_option("--map", options->map, "Draw the largest pushes from above (.svg or .png).")
+  command
+      ->add_option("--map", options->map,
+                   "Draw a map of the largest pushes by direction, seen from above (.svg or .png).")
       ->type_name("F");
   add_pattern_options(*command, options->input);
   command

@@ -480,8 +480,9 @@ void add_repair(Command& app, Context& context) {
   command
       ->add_option(
           "--safety", options.safety,
-          "How much safety counts in comparison with a small change. With a larger factor, the "
-          "repair changes more to gain safety. 0 gives the smallest change that passes "
+          "Weight of safety (distance from the limits) against the size of the change. With a "
+          "larger factor, the repair changes more to gain safety. 0 gives the smallest change that "
+          "passes "
           "the check (default: the factor in the pattern; 1 if the pattern has none).")
       ->check(number_within(0.0, 1e6))
       ->type_name("FACTOR");

@@ -49,7 +49,9 @@ void bind_state(py::module_& m) {
            py::arg("attitude") = Eigen::Vector4d(0, 0, 0, 1),
            py::arg("velocity") = Eigen::Vector3d(0, 0, 0),
            py::arg("angular_velocity") = Eigen::Vector3d(0, 0, 0))
-      .def_readonly("theta", &RobotState::theta, "Joint angles [rad], lengths [m], shape (dof,).")
+      .def_readonly(
+          "theta", &RobotState::theta,
+          "Joint positions, shape (dof,): angles [rad], or displacements of sliding joints [m].")
       .def_readonly("dtheta", &RobotState::dtheta, "Joint rates [rad/s, m/s], shape (dof,).")
       .def_property_readonly(
           "position", [](const RobotState& s) -> const Eigen::Vector3d& { return s.base.position; },

@@ -284,7 +284,7 @@ void bind_log(py::module_& m) {
           "SHA-256 of the motion; the same for the same run.")
       .def(
           "to_dict", [](const Log& l) { return from_json(simulation_json(l.data())); },
-          "The keys of `ayumi simulate --json`.")
+          "The content of `ayumi simulate --json` as a dict.")
       .def(
           "write", [](const Log& l, const Path& path) { write_log(path, l.data()); },
           py::arg("path"), "Writes the log as one binary file, whole or not at all.");
@@ -364,8 +364,9 @@ void bind_simulation(py::module_& m) {
       "object with `state`, `set_state(state)` and `step(targets, input, dt)`, as Plant has them. "
       "`targets`: a function (t, estimate, plan, targets) that returns the servo targets [rad, m], "
       "shape (dof,), in place of those of the controller; with controller='none' it is the whole "
-      "controller. A plant or a controller in Python is called in every tick and slows the run "
-      "several times. `progress`: a function (stage, fraction, detail); the run stops when it "
+      "controller. A plant or a controller in Python is called in every tick and makes the run "
+      "several times slower. `progress`: a function (stage, fraction, detail); the run stops when "
+      "it "
       "returns False.");
 }
 

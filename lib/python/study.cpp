@@ -201,8 +201,9 @@ void bind_gains(py::module_& m) {
       py::arg("zmp_filter") = py::none(), py::arg("forget") = py::none(), py::arg("set") = Gains(),
       py::arg("latency") = py::none(),
       "Gains of DTAD: two `poles` of the COG [1/s], the share of a ZMP error that is absorbed at "
-      "once, times [s] of the return to the command, of the filter of the ZMP and of a lasting "
-      "offset; `set` gives gains by name, and `latency` [s] is the latency of the sensors.");
+      "once, the times [s] of the return to the command and of the filter of the ZMP, and the time "
+      "[s] until a lasting offset of the ZMP is accepted; `set` gives gains by name, and `latency` "
+      "[s] is the latency of the sensors.");
 
   py::class_<TuneFigures>(m, "TuneFigures", "The objective of tune() and its parts.")
       .def_readonly("objective", &TuneFigures::objective, "Dimensionless, smaller is better.")

@@ -48,7 +48,7 @@ void bind_table(py::module_& m) {
           "The text of a CSV file, with a head that says what the table is from.")
       .def(
           "json", [](const Table& t) { return reference_json(t.data(), t.data().caution); },
-          "The same as JSON text.")
+          "The table as JSON text.")
       .def(
           "hoap", [](const Table& t, const RobotModel& robot) { return hoap_csv(robot, t.data()); },
           py::arg("robot"), "The text of a HOAP sequence: encoder counts of every motor.")

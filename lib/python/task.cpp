@@ -76,7 +76,7 @@ void bind_check(py::module_& m) {
           "What the actuators lack, in words; '' where they suffice.")
       .def(
           "to_dict", [](const Judgement& j) { return from_json(check_json(j.report)); },
-          "The keys of `ayumi check --json`.");
+          "The content of `ayumi check --json` as a dict.");
 
   m.def(
       "check",
@@ -125,10 +125,11 @@ void bind_repair(py::module_& m) {
           "max_cog_change", [](const PyRepair& r) { return r.result.max_cog_change; },
           "Largest change of the COG [m].")
       .def_property_readonly(
-          "where", [](const PyRepair& r) { return r.result.where; }, "The joint that moved most.")
+          "where", [](const PyRepair& r) { return r.result.where; },
+          "The joint whose angle the repair changes most.")
       .def_property_readonly(
           "at", [](const PyRepair& r) { return r.result.at; },
-          "The time at which this joint moved most [s].")
+          "The time at which the repair changes this joint most [s].")
       .def_property_readonly(
           "iterations", [](const PyRepair& r) { return r.result.iterations; },
           "Iterations of the solver.")
@@ -137,7 +138,7 @@ void bind_repair(py::module_& m) {
           "Why there is no repair, in words.")
       .def(
           "to_dict", [](const PyRepair& r) { return from_json(repair_json(r.result)); },
-          "The keys of `ayumi repair --json`.");
+          "The content of `ayumi repair --json` as a dict.");
 
   m.def(
       "repair",

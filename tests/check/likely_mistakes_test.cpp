@@ -108,7 +108,7 @@ TEST(ImpossibleValues, FeetThatCross) {
   const auto crossed =
       mistakes_after([&](Pattern& pattern) { pattern.phases[phase].swing->to.position.y() *= -3; });
   expect_called(crossed, "/phases/" + std::to_string(phase) + ": the left foot lands 78 mm to the",
-                "left and right may be exchanged");
+                "perhaps left and right were exchanged");
 }
 
 TEST(ImpossibleValues, ZmpUnderTheFootInTheAir) {

@@ -336,10 +336,9 @@ TEST(SweepCommand, AFullDiskLosesNothing) {
   const Sweep s;
   s.write_study(R"({"seed": {"from": 1, "to": 3000, "count": 3000}, "value.impulse": 0.2})",
                 R"(, "measure": ["check"])");
-  const Output full =
-      run_program({"-c", "ulimit -f 250; exec '" + program_under_test() +
-                             "' sweep study.json -o f.db --quiet --threads 1"},
-                  s.folder.path(), "/bin/sh");
+  const Output full = run_program({"-c", "ulimit -f 250; exec '" + program_under_test() +
+                                             "' sweep study.json -o f.db --quiet --threads 1"},
+                                  s.folder.path(), "/bin/sh");
   EXPECT_EQ(full.exit_code, 3) << full.out << full.err;
   EXPECT_NE(full.err.find("f.db: the results cannot be written: the disk is full"),
             std::string::npos)
@@ -503,8 +502,8 @@ TEST(SweepOnSlurm, AbsentOrRefusing) {
   EXPECT_FALSE(fs::exists(slurm.s.folder / "n.db"));
   write(slurm.s.folder / "refuse", "");
   expect(slurm.slurm("-o r.db --pilot 3"), 3,
-         "sbatch refused the job: sbatch: error: invalid partition specified: nowhere; the rows "
-         "that are done are kept in r.db");
+         "sbatch refused the job: sbatch: error: invalid partition specified: nowhere; the results "
+         "so far are kept in r.db");
   const Output status = slurm.s.run({"sweep", "status", "r.db", "--json"});
   EXPECT_EQ(Json::parse(status.out).at("done"), 3);
   expect(slurm.s.sweep({"-o", "r.db", "--partition", "p"}), 2,

@@ -185,7 +185,7 @@ TEST(MotionFormats, JointsAreMappedByNameAndByOrderOnlyOnRequest) {
   std::string said;
   for (const std::string& line : some.filled) said += line + "\n";
   EXPECT_NE(said.find("unknown joints are left out: HeadYaw\n"), std::string::npos) << said;
-  EXPECT_NE(said.find("joints that the file does not have keep their angles of the home posture: "),
+  EXPECT_NE(said.find("joints that are missing in the file keep the angles of the home posture: "),
             std::string::npos);
   const std::string other = "#WEBOTS_MOTION,V1.0,l_knee,A,B,C\n0,p,0,0,0,0\n40,p,0,0,0,0\n";
   EXPECT_NE(refusal_of(other).find("of its 4 joints only l_knee are joints of"), std::string::npos)

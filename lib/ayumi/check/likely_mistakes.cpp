@@ -126,9 +126,11 @@ class Suspicions {
         if (std::abs(degrees - std::round(degrees)) < kLeastAngle) ++whole;
       }
     if (count >= kManyAngles && 2 * whole < count)
-      said_.push_back({"/units",
-                       "all joint angles are below 2 pi = 6.28 deg; if the angles are in radians, "
-                       "write \"units\": {\"angle\": \"rad\"}"});
+      said_.push_back(
+          {"/units",
+           "all joint angles are numbers below 6.28 (2 pi), which is small for degrees; if "
+           "the angles are in radians, "
+           "write \"units\": {\"angle\": \"rad\"}"});
   }
 
   void times() {
@@ -226,14 +228,14 @@ class Suspicions {
         if (soles_overlap(landing(i)))
           found.push_back({phase_place(i), std::string("the ") + name_of(swing.foot) +
                                                " foot lands on the " + name_of(other(swing.foot)) +
-                                               " foot; left and right may be exchanged"});
+                                               " foot; perhaps left and right were exchanged"});
         continue;
       }
       found.push_back({phase_place(i),
                        std::string("the ") + name_of(swing.foot) + " foot lands " +
                            text::fixed(-1000 * outwards, 0) + " mm to the " +
                            name_of(other(swing.foot)) + " of the " + name_of(other(swing.foot)) +
-                           " foot, so the legs cross; left and right may be exchanged"});
+                           " foot, so the legs cross; perhaps left and right were exchanged"});
     }
     say(found);
   }

@@ -565,7 +565,7 @@ class Hypotheses {
     made.push_back({Rank::exchange,
                     {"/keyframes",
                      "the keys put the ZMP under the left foot where the robot stands on the right "
-                     "foot, or the other way round; left and right may be exchanged",
+                     "foot, or the other way round; perhaps left and right were exchanged",
                      "with left and right exchanged in all ZMP keys"},
                     [](Pattern& p) {
                       for (Keyframe& key : p.keyframes) {
@@ -613,7 +613,7 @@ class Hypotheses {
                            (phase.swing ? std::string(" and the ") + name_of(phase.swing->foot) +
                                               " foot swings"
                                         : "") +
-                           "; left and right may be exchanged",
+                           "; perhaps left and right were exchanged",
                        std::string("with support ") + name_of(meant) +
                            (phase.swing ? std::string(" and a swing of the ") +
                                               name_of(other(phase.swing->foot)) + " foot"
@@ -723,7 +723,7 @@ class Hypotheses {
             {Rank::exchange,
              {key_place(i),
               std::string("the key moves the ") + name_of(side) +
-                  " foot, which carries the robot; left and right may be exchanged",
+                  " foot, which carries the robot; perhaps left and right were exchanged",
               std::string("with the ") + name_of(other(side)) + " foot in its place"},
              [i, s, o](Pattern& p) { std::swap(p.keyframes[i].feet[s], p.keyframes[i].feet[o]); }});
       }
@@ -739,7 +739,8 @@ class Hypotheses {
           {is_alone ? Rank::slip : Rank::sign,
            {key_place(i),
             "the key moves " + key.joints.begin()->first +
-                (key.joints.size() > 1 ? " and others" : "") + "; left and right may be exchanged",
+                (key.joints.size() > 1 ? " and others" : "") +
+                "; perhaps left and right were exchanged",
             "with keys for the joints of the other side"},
            [this, i, map](Pattern& p) {
              std::map<std::string, double> joints;
@@ -1116,7 +1117,7 @@ class Search {
     const double number = value.numbers.front().value;
     return {rank,
             {value.place, value.words + " is " + value.text(pattern_, number),
-             (value.across ? "on the other side (left and right may be exchanged), "
+             (value.across ? "on the other side (perhaps left and right were exchanged), "
                            : "with the other sign, ") +
                  value.text(pattern_, -number) + more + ","},
             [value](Pattern& p) { value.scale(p, -1); }};

@@ -425,7 +425,7 @@ class Log:
         """SHA-256 of the motion; the same for the same run."""
 
     def to_dict(self) -> Any:
-        """The keys of `ayumi simulate --json`."""
+        """The content of `ayumi simulate --json` as a dict."""
 
     def write(self, path: Union[str, PathLike[str]]) -> None:
         """Writes the log as one binary file, whole or not at all."""
@@ -596,11 +596,11 @@ class Repair:
 
     @property
     def where(self) -> str:
-        """The joint that moved most."""
+        """The joint whose angle the repair changes most."""
 
     @property
     def at(self) -> float:
-        """The time at which this joint moved most [s]."""
+        """The time at which the repair changes this joint most [s]."""
 
     @property
     def iterations(self) -> int:
@@ -611,7 +611,7 @@ class Repair:
         """Why there is no repair, in words."""
 
     def to_dict(self) -> Any:
-        """The keys of `ayumi repair --json`."""
+        """The content of `ayumi repair --json` as a dict."""
 
 class Robot:
     """A robot: a tree of links with soles, motors and named postures."""
@@ -678,7 +678,7 @@ class RobotState:
 
     @property
     def theta(self) -> numpy.ndarray:
-        """Joint angles [rad], lengths [m], shape (dof,)."""
+        """Joint positions, shape (dof,): angles [rad], or displacements of sliding joints [m]."""
 
     @property
     def dtheta(self) -> numpy.ndarray:
@@ -865,7 +865,7 @@ class Table:
         """The text of a CSV file, with a head that says what the table is from."""
 
     def json(self) -> str:
-        """The same as JSON text."""
+        """The table as JSON text."""
 
     def hoap(self, robot: Robot) -> str:
         """The text of a HOAP sequence: encoder counts of every motor."""
@@ -984,7 +984,7 @@ class Verdict:
         """What the actuators lack, in words; '' where they suffice."""
 
     def to_dict(self) -> Any:
-        """The keys of `ayumi check --json`."""
+        """The content of `ayumi check --json` as a dict."""
 
 class World:
     """The ground under the robot."""
@@ -1034,7 +1034,7 @@ def fastest_pace(task: Task, *, resolution: float = 0.002, progress: Optional[Ca
     """The fastest uniform time scaling of the pattern that passes the check."""
 
 def gains(robot: Robot, *, poles: Optional[list[complex[2]]] = None, absorb: Optional[float] = None, return_time: Optional[float] = None, zmp_filter: Optional[float] = None, forget: Optional[float] = None, set: dict[str, float] = {}, latency: Optional[float] = None) -> GainStudy:
-    """Gains of DTAD: two `poles` of the COG [1/s], the share of a ZMP error that is absorbed at once, times [s] of the return to the command, of the filter of the ZMP and of a lasting offset; `set` gives gains by name, and `latency` [s] is the latency of the sensors."""
+    """Gains of DTAD: two `poles` of the COG [1/s], the share of a ZMP error that is absorbed at once, the times [s] of the return to the command and of the filter of the ZMP, and the time [s] until a lasting offset of the ZMP is accepted; `set` gives gains by name, and `latency` [s] is the latency of the sensors."""
 
 def identify(robot: Robot, command: Union[Union[str, PathLike[str]], tuple[float, numpy.ndarray]], measured: Union[Union[str, PathLike[str]], tuple[float, numpy.ndarray]], *, loads: Optional[Union[str, PathLike[str]]] = None, per_type: bool = False, stand: str = 'auto', rate: float = 0.0, degrees: bool = False, longest_lag: float = 0.0, threads: int = 0, progress: Optional[Callable[[str, float, str], Any]] = None) -> Identification:
     """The servo constants with which the simulated servos come nearest to what was measured. `command` and `measured` are files, or (dt, angles) with the time between two rows [s] and an array of angles [rad, m], shape (n, dof). `loads` is a file of load cells; `per_type`: one set for all joints of one motor type; `stand`: 'feet', 'fixed' (the root is held upright) or 'auto'; `rate` [1/s] and `degrees` are of files that do not state them; `longest_lag` [s]: an answer that comes later is refused (0: 30 ms, or twice the lag of the slowest servo)."""
@@ -1103,7 +1103,7 @@ def sample(pattern: Pattern, robot: Robot, *, profile: str = '', progress: Optio
     """Samples a pattern for a robot that was loaded."""
 
 def simulate(task: Task, *, controller: Optional[str] = None, gains: dict[str, float] = {}, scenario: Optional[Union[bool, Union[str, PathLike[str]]]] = None, noise: bool = False, true_state: bool = False, substeps: int = 1, seed: int = 1, plant: Union[str, Callable[..., Any]] = 'ayumi', targets: Optional[Callable[..., Any]] = None, allow_unstable: bool = False, progress: Optional[Callable[[str, float, str], Any]] = None) -> Log:
-    """The closed loop of plant, sensors and controller. `controller`: a name of controllers(), or None for the controller of the pattern; `gains`: values by name. `scenario`: False for no disturbances, or a pattern file whose scenario replaces that of the pattern. `noise`: sensors with noise, bias and latency. `true_state`: the controller gets the true state. `substeps`: steps of the integrator per tick. `plant`: 'ayumi', 'mujoco', or a function (robot, profile, world) that returns an object with `state`, `set_state(state)` and `step(targets, input, dt)`, as Plant has them. `targets`: a function (t, estimate, plan, targets) that returns the servo targets [rad, m], shape (dof,), in place of those of the controller; with controller='none' it is the whole controller. A plant or a controller in Python is called in every tick and slows the run several times. `progress`: a function (stage, fraction, detail); the run stops when it returns False."""
+    """The closed loop of plant, sensors and controller. `controller`: a name of controllers(), or None for the controller of the pattern; `gains`: values by name. `scenario`: False for no disturbances, or a pattern file whose scenario replaces that of the pattern. `noise`: sensors with noise, bias and latency. `true_state`: the controller gets the true state. `substeps`: steps of the integrator per tick. `plant`: 'ayumi', 'mujoco', or a function (robot, profile, world) that returns an object with `state`, `set_state(state)` and `step(targets, input, dt)`, as Plant has them. `targets`: a function (t, estimate, plan, targets) that returns the servo targets [rad, m], shape (dof,), in place of those of the controller; with controller='none' it is the whole controller. A plant or a controller in Python is called in every tick and makes the run several times slower. `progress`: a function (stage, fraction, detail); the run stops when it returns False."""
 
 def squat_pattern(robot: Robot, *, depth: Optional[float] = None, period: Optional[float] = None, hold: Optional[float] = None, cycles: Optional[int] = None) -> Pattern:
     """The COG moves down by `depth` m and up again; `hold` s at the lowest point."""

@@ -176,8 +176,8 @@ MotionFile read_deep_mimic(const MotionInput& source) {
       motion.base.push_back(frame_root(source, rows[k], k, 0, 3, false));
     set_values(rows, 7, rows.front().size() - 7, motion);
     motion.notes.push_back(
-        "units: metres and radians, z up; quaternion order: x y z w (assumed, because the file has "
-        "one FrameDuration)");
+        "units: metres and radians, z up; quaternion order: x y z w (assumed from the layout "
+        "with a single FrameDuration, because the file does not state the order)");
   } else {
     const std::vector<std::vector<double>> rows = frames_of(source, root, 9);
     double now = 0;

@@ -311,7 +311,7 @@ std::vector<int> map_joints(const MotionFile& motion, const RobotModel& model,
     notes.push_back("joints that do not move independently on this robot are left out: " +
                     shortened(extra));
   if (!missing.empty())
-    notes.push_back("joints that the file does not have keep their angles of the home posture: " +
+    notes.push_back("joints that are missing in the file keep the angles of the home posture: " +
                     shortened(missing));
   return columns;
 }

@@ -59,7 +59,7 @@ Swing read_swing(const JsonNode& node, Support support, PatternScope& scope) {
     node.at("foot").complain("the " + std::string(name_of(swing.foot)) +
                              " foot carries the robot in this phase (support " + name_of(support) +
                              "), so this foot cannot swing. The support or the swing names the "
-                             "wrong foot; left and right may be exchanged");
+                             "wrong foot; perhaps left and right were exchanged");
   if (node.has("step") == node.has("to"))
     node.complain(node.has("to")
                       ? "\"to\" and \"step\" both say where the foot lands; keep one of them"
