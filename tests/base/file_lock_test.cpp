@@ -32,7 +32,7 @@ TEST(FileLock, SaysThatItsLockCannotBeMade) {
   const fs::path file = folder.path() / "results.db";
   folder.write("results.db.lock", "text");
   EXPECT_EQ(test::error_message([&] { const FileLock lock(file); }, ErrorCode::bad_file)
-                .find(file.string() + ": its lock " + file.string() + ".lock cannot be "),
+                .find(file.string() + ": the lock folder " + file.string() + ".lock cannot be "),
             0u);
   EXPECT_TRUE(fs::is_regular_file(folder.path() / "results.db.lock"));
 }

@@ -308,7 +308,8 @@ TEST(HoapImport, BareRowsOfCountsOrRadians) {
     EXPECT_NEAR(motion.motion.theta(5, knee), 4 * M_PI / 180, 1e-9);
   }
   EXPECT_EQ(read_motion(counts, "a.csv", hoap1(), {.rate = 250}).motion.dt, 0.004);
-  EXPECT_NE(message(counts + "1,2,3\n").find("seq.csv:13: 3 columns"), std::string::npos);
+  EXPECT_NE(message(counts + "1,2,3\n").find("seq.csv:13: the row has 3 columns"),
+            std::string::npos);
 }
 
 TEST(HoapImport, AnglesAreSmoothedAsFarAsIsSaid) {

@@ -183,7 +183,7 @@ TEST(RecordingChecks, OneLineForARecordingThatIsNotTheAnswer) {
        }),
        "arm_joint does not follow its command");
   said(answer_error([](RecordedMotion& m) { m.command.theta.setConstant(0.1); }),
-       "no joint of this recording moves");
+       "the command of this recording moves no joint by 0.5 deg");
 }
 
 /// Two movements, and 1.5 s of rest between them.

@@ -89,7 +89,7 @@ TEST(Hoap, IntervalsThatChangeAreInterpolated) {
 }
 
 TEST(Hoap, SaysWhatIsWrong) {
-  EXPECT_EQ(hoap_error(""), "s.csv: no row with targets for the motors");
+  EXPECT_EQ(hoap_error(""), "s.csv: the file has no row with targets for the motors");
   EXPECT_NE(hoap_error("1,2,0,0,R,R,R\n")
                 .find("s.csv:1: the row has 7 columns, but sequences of this robot have 8"),
             std::string::npos);

@@ -132,7 +132,8 @@ TEST(MotionFormats, MistakesNameFileLineAndFormat) {
   EXPECT_EQ(told(refusal_of("#WEBOTS_MOTION,V3.0,l_knee\n")),
             "m.dat:1: version 'V3.0' is unknown; Ayumi reads V1.0 and V1.1" + webots);
   EXPECT_EQ(told(refusal_of("time,0,1\nl_knee,0,1\nr_knee,0\n")),
-            "m.dat:3: 1 value of 'r_knee', but the first row has 2 times (read as CSV with a row "
+            "m.dat:3: the row of 'r_knee' has 1 value, but the first row has 2 times (read as CSV "
+            "with a row "
             "for each joint, because the first row has times, so each further row is a joint");
   EXPECT_EQ(told(refusal_of("0.02 3 ( 1 2 )\n")),
             "m.dat:1: the brackets hold 2 values, but n is 3 (read as mi-lib .zvs, because the "

@@ -211,10 +211,10 @@ TEST(RobotModel, NamesWhatIsWrongInTheUrdf) {
   EXPECT_EQ(error_of([](auto& r) { r.joints.push_back(hinge("x", "r_shank", "trunk")); }),
             "biped.urdf: link cap: the joints form a loop, so no link is the root; remove one "
             "joint");
-  EXPECT_EQ(
-      error_of([](auto& r) { r.joints[1].parent = "cap"; }),
-      "biped.urdf: link cap: belongs to a loop of joints that is not connected to the root link "
-      "trunk; remove one joint of the loop");
+  EXPECT_EQ(error_of([](auto& r) { r.joints[1].parent = "cap"; }),
+            "biped.urdf: link cap: this link belongs to a loop of joints that is not connected to "
+            "the root link "
+            "trunk; remove one joint of the loop");
   EXPECT_EQ(error_of([](auto& r) { r.links[2].inertia.mass = -1; }),
             "biped.urdf: link l_shank: mass -1 kg is negative; give the link its mass");
   EXPECT_EQ(error_of([](auto& r) { r.links[5].inertia.mass = 0; }),
@@ -243,15 +243,17 @@ TEST(RobotModel, NamesWhatIsWrongInTheUrdf) {
   EXPECT_EQ(error_of([](auto& r) { r.joints[0].lower = 3; }),
             "biped.urdf: joint l_knee: lower limit 3 exceeds the upper limit 2; swap them");
   EXPECT_EQ(error_of([](auto& r) { r.joints[0].mimic = "hip"; }),
-            "biped.urdf: joint l_knee: mimics the joint 'hip', which does not exist; did you mean "
+            "biped.urdf: joint l_knee: this joint mimics the joint 'hip', which does not exist; "
+            "did you mean "
             "'l_hip'?");
-  EXPECT_EQ(error_of([](auto& r) {
-              r.joints[0].mimic = "l_hip";
-              r.joints[1].mimic = "l_knee";
-            }),
-            "biped.urdf: joint l_knee: mimics itself through other joints; break the circle");
+  EXPECT_EQ(
+      error_of([](auto& r) {
+        r.joints[0].mimic = "l_hip";
+        r.joints[1].mimic = "l_knee";
+      }),
+      "biped.urdf: joint l_knee: this joint mimics itself through other joints; break the circle");
   EXPECT_EQ(error_of([](auto& r) { r.joints[0].mimic = "l_cap"; }),
-            "biped.urdf: joint l_knee: mimics the joint 'l_cap', which does not move");
+            "biped.urdf: joint l_knee: this joint mimics the joint 'l_cap', which does not move");
 }
 
 TEST(RobotModel, NamesWhatIsWrongInTheSidecar) {
