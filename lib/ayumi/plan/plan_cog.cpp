@@ -332,12 +332,9 @@ CogPlan plan_cog(const SampleJob& job) {
 
   const Eigen::Vector2d more =
       job.pattern.full_model ? lean_height(job, plan) : Eigen::Vector2d::Zero();
-  CogSolver solver{
-      job,
-      plan,
-      grid,
-      {omega_squared_of(job, plan, grid, more[0]), omega_squared_of(job, plan, grid, more[1])},
-      {}};
+  const VectorXd first = omega_squared_of(job, plan, grid, more[0]);
+  const VectorXd second = more[1] == more[0] ? first : omega_squared_of(job, plan, grid, more[1]);
+  CogSolver solver{job, plan, grid, {first, second}, {}};
   for (int axis = 0; axis < 2; ++axis) {
     plan.omega[0][axis] = std::sqrt(solver.w2[axis][0]);
     plan.omega[1][axis] = std::sqrt(solver.w2[axis][grid.n]);
