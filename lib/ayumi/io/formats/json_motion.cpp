@@ -9,14 +9,13 @@
 
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/io/degrees.hpp"
 #include "ayumi/io/json/json_reader.hpp"
 #include "ayumi/math/elementary.hpp"
 
 namespace ayumi {
 
 namespace {
-
-constexpr double kDegreeInRadians = EIGEN_PI / 180;
 
 bool is_object(const MotionInput& source) {
   const size_t first = source.bytes.find_first_not_of(" \t\r\n");
@@ -30,7 +29,7 @@ bool has_key(const MotionInput& source, const std::string& key) {
 // Degrees with the digits that a number of radians keeps.
 std::string degrees_text(double radians) {
   char text[40];
-  std::snprintf(text, sizeof text, "%.12g", radians / kDegreeInRadians);
+  std::snprintf(text, sizeof text, "%.12g", radians / kRadiansPerDegree);
   return text;
 }
 
@@ -130,7 +129,7 @@ MotionFile read_poppy_move(const MotionInput& source) {
     motion.times.push_back(time);
     for (size_t j = 0; j < names.size(); ++j)
       if (const auto found = row.find(names[j]); found != row.end())
-        motion.values(k, static_cast<Eigen::Index>(j)) = kDegreeInRadians * found->second;
+        motion.values(k, static_cast<Eigen::Index>(j)) = kRadiansPerDegree * found->second;
     ++k;
   }
   motion.notes.push_back("units: seconds and degrees, as the format defines them");

@@ -8,6 +8,7 @@
 #include "ayumi/base/placed_error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/utf8.hpp"
+#include "ayumi/io/degrees.hpp"
 #include "ayumi/io/formats/motion_formats.hpp"
 #include "ayumi/math/smoothing.hpp"
 #include "ayumi/motion/servo_feedforward.hpp"
@@ -15,8 +16,6 @@
 namespace ayumi {
 
 namespace {
-
-constexpr double kDegreeAngle = EIGEN_PI / 180;  // [rad]
 
 /// Rows of a file and of a motion. Chosen: a motion of this length and 60 columns takes 200 MB.
 constexpr size_t kMostRows = 400'000;
@@ -332,7 +331,7 @@ Rows rows_of(const MotionFile& motion, const std::vector<int>& columns, const Ro
     else
       all.col(dof) = motion.values.col(column);
     if (degrees && column >= 0 && !model.dofs()[static_cast<size_t>(dof)].prismatic)
-      all.col(dof) *= kDegreeAngle;
+      all.col(dof) *= kRadiansPerDegree;
   }
   for (Eigen::Index k = 0; k < rows; ++k) {
     const auto at = static_cast<size_t>(k);
@@ -623,7 +622,8 @@ void smooth_angles(const RobotModel& model, const ImportOptions& options,
     const Dof& dof = model.dofs()[i];
     if (dof.prismatic) continue;
     const Eigen::VectorXd raw = theta.col(i);
-    theta.col(i) = smoothed_from_rest(raw, degrees * kDegreeAngle, kCutoff * imported.motion.dt);
+    theta.col(i) =
+        smoothed_from_rest(raw, degrees * kRadiansPerDegree, kCutoff * imported.motion.dt);
     if (!dof.limited) continue;
     // Beside a jump it swings over: no limit is to be broken by that.
     const double margin = model.description().soft_limit_margin;

@@ -10,13 +10,13 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/io/degrees.hpp"
 
 namespace ayumi {
 
 namespace {
 
-constexpr double kCurveDegree = EIGEN_PI / 180;  // [rad]
-constexpr double kUsualFrames = 25;              // Definition: frames per second of Choregraphe
+constexpr double kUsualFrames = 25;  // Definition: frames per second of Choregraphe
 
 /// The keys of one actuator by frame.
 struct Curve {
@@ -49,7 +49,7 @@ void find_curves(const MotionInput& source, const TiXmlElement& element, double&
       if (!text) source.refuse(line, std::string("a key has no ") + name);
       return source.number(text, line, name);
     };
-    curve.keys[number("frame")] = number("value") * (degrees ? kCurveDegree : 1);
+    curve.keys[number("frame")] = number("value") * (degrees ? kRadiansPerDegree : 1);
   }
   for (const Curve& other : curves)
     if (other.joint == curve.joint)
@@ -119,7 +119,7 @@ std::vector<WrittenFile> write_qianim(const RobotModel&, const MotionFile& motio
     for (Eigen::Index k = 0; k < motion.rows(); ++k) {
       char degrees[40];
       std::snprintf(degrees, sizeof degrees, "%.12g",
-                    motion.values(k, static_cast<Eigen::Index>(j)) / kCurveDegree);
+                    motion.values(k, static_cast<Eigen::Index>(j)) / kRadiansPerDegree);
       text += "        <Key value=\"" + std::string(degrees) + "\" frame=\"" + std::to_string(k) +
               "\" />\n";
     }

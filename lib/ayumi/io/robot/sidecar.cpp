@@ -8,6 +8,7 @@
 
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/io/degrees.hpp"
 #include "ayumi/io/json/json_reader.hpp"
 #include "ayumi/io/robot/facing.hpp"
 #include "ayumi/io/robot/robot_source.hpp"
@@ -20,8 +21,6 @@
 namespace ayumi {
 
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 /// Longest running mean of load cells. Definition: a second of readings that are taken every
 /// millisecond, which is the bound of a latency.
@@ -390,10 +389,10 @@ void read_position_limits(const JsonNode& node, RobotDescription& robot) {
     if (joint == robot.joints.end() || !is_among(moving_joints(robot), name))
       entry.complain("'" + name + "' is not a moving joint of the robot" +
                      text::suggestion(name, moving_joints(robot)));
-    const Eigen::Vector2d limits = kDegree * entry.vector2();
+    const Eigen::Vector2d limits = kRadiansPerDegree * entry.vector2();
     if (limits.x() > limits.y())
-      entry.complain("the lower limit " + text::brief(limits.x() / kDegree) +
-                     " deg exceeds the upper limit " + text::brief(limits.y() / kDegree) +
+      entry.complain("the lower limit " + text::brief(limits.x() / kRadiansPerDegree) +
+                     " deg exceeds the upper limit " + text::brief(limits.y() / kRadiansPerDegree) +
                      " deg; swap them");
     joint->has_limits = true;
     joint->lower = limits.x();
@@ -465,7 +464,8 @@ void read_root(const JsonNode& root, RobotDescription& robot, std::string& files
       {"trunk_link", [&](const JsonNode& node) { robot.trunk_link = node.string(); }},
       {"soles", [&](const JsonNode& node) { read_soles(node, robot); }},
       {"postures", [&](const JsonNode& node) { read_postures(node, 1, robot); }},
-      {"postures_deg", [&](const JsonNode& node) { read_postures(node, kDegree, robot); }},
+      {"postures_deg",
+       [&](const JsonNode& node) { read_postures(node, kRadiansPerDegree, robot); }},
       {"servos", [&](const JsonNode& node) { robot.servos = read_servos(node, {}, robot, files); }},
       {"profiles", [&](const JsonNode& node) { read_profiles(node, robot, files); }},
       {"encoders", [&](const JsonNode& node) { read_encoders(node, robot); }},
@@ -475,7 +475,7 @@ void read_root(const JsonNode& root, RobotDescription& robot, std::string& files
       {"control", [&](const JsonNode& node) { read_control(node, robot); }},
       {"soft_limit_margin", [&](const JsonNode& node) { robot.soft_limit_margin = node.number(); }},
       {"soft_limit_margin_deg",
-       [&](const JsonNode& node) { robot.soft_limit_margin = kDegree * node.number(); }},
+       [&](const JsonNode& node) { robot.soft_limit_margin = kRadiansPerDegree * node.number(); }},
       {"servo_period", [&](const JsonNode& node) { robot.servo_period = node.number(); }},
   };
   for (const auto& [key, read] : readers)

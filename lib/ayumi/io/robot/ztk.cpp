@@ -13,6 +13,7 @@
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/io/degrees.hpp"
 #include "ayumi/io/run/sha256.hpp"
 #include "ayumi/io/table/comma_cells.hpp"
 #include "ayumi/model/validate.hpp"
@@ -25,7 +26,6 @@ namespace fs = std::filesystem;
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-constexpr double kZtkDegree = std::numbers::pi / 180;  // [rad]
 // Corners and faces of all shapes. Chosen: the robots of mi-lib have some thousand.
 constexpr size_t kMostZtkFields = 500'000;
 
@@ -366,7 +366,7 @@ class ZtkReader {
               "' is not supported; the supported types are fixed, revolute, prismatic and float");
     joint.type = known->second;
     if (joint.type == JointType::revolute || joint.type == JointType::prismatic) {
-      const double unit = joint.type == JointType::revolute ? kZtkDegree : 1;
+      const double unit = joint.type == JointType::revolute ? kRadiansPerDegree : 1;
       joint.has_limits = section.find("min") && section.find("max");
       if (joint.has_limits) {
         joint.lower = unit * number_or(section, "min", 0);
@@ -522,7 +522,7 @@ class ZtkWriter {
                        : "fixed") +
              "\n";
     if (moves && joint->has_limits) {
-      const double unit = slides ? 1 : kZtkDegree;
+      const double unit = slides ? 1 : kRadiansPerDegree;
       text_ += "min: " + text::exact(joint->lower / unit) +
                "\nmax: " + text::exact(joint->upper / unit) + "\n";
     }
