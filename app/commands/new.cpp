@@ -142,17 +142,20 @@ void fit_walk(const Context& context, const RobotModel& model, const NewOptions&
       lacking ? std::vector{0.34, 0.55, 0.42, 0.75} : std::vector{1.25, 1.6, 0.8, 2.2};
   const std::vector<double> strides =
       lacking ? std::vector{0.5, 0.25} : std::vector{0.75, 0.5, 0.25};
-  const Dial stride = dial("--stride", "m", w.stride, 1e-3, !options.stride, strides),
-             period = dial("--period", "s", w.period, 0.01, !options.period, paces);
+  using WalkDial = std::pair<Dial, double WalkParameters::*>;
+  const WalkDial stature{height, &WalkParameters::cog_height},
+      length{dial("--stride", "m", w.stride, 1e-3, !options.stride, strides),
+             &WalkParameters::stride},
+      pace{dial("--period", "s", w.period, 0.01, !options.period, paces), &WalkParameters::period},
+      shift{inwards, &WalkParameters::zmp_inwards};
   // Of trials that change as much, those that change the last dials come first.
-  const std::vector<Dial> dials = lacking ? std::vector{stride, period, inwards, height}
-                                          : std::vector{height, stride, period, inwards};
+  const std::vector<WalkDial> turned = lacking ? std::vector{length, pace, shift, stature}
+                                               : std::vector{stature, length, pace, shift};
+  std::vector<Dial> dials;
+  for (const WalkDial& each : turned) dials.push_back(each.first);
   const auto with = [&](const std::vector<double>& values) {
     WalkParameters walk = w;
-    walk.cog_height = values[lacking ? 3 : 0];
-    walk.stride = values[lacking ? 0 : 1];
-    walk.period = values[lacking ? 1 : 2];
-    walk.zmp_inwards = values[lacking ? 2 : 3];
+    for (size_t i = 0; i < turned.size(); ++i) walk.*turned[i].second = values[i];
     // Quick steps are low: the foot needs the acceleration 1/T^2 for the same lift.
     if (lacking && !options.lift)
       walk.lift = rounded(w.lift * std::min(1.0, walk.period / w.period), 5e-4);
