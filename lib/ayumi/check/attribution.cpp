@@ -380,8 +380,8 @@ const Condition kMovesCog = {
     }};
 
 const Condition kTouchesByFoot = {
-    "the overlapping body belongs to the leg of the cause; it overlaps by no more than the foot is "
-    "displaced, and only while the foot is displaced",
+    "the leg of the cause overlaps, only while its foot is displaced and by no more than this "
+    "displacement",
     [](Scene& scene, int i, int j, const Interval&) {
       const Violation& foot = scene.of(i);
       const int hip = scene.motion.model.leg(static_cast<Side>(foot.item)).front();
