@@ -118,8 +118,8 @@ void add_global_options(CLI::App& app, Command& command_line, Context& context) 
       ->allow_extra_args(false);
   command_line
       .add_option("--package-path", context.package_path,
-                  "Folder in which Ayumi looks for the package NAME of package://NAME/... in robot "
-                  "files. The folder contains packages, or it is a package itself.")
+                  "Folder in which Ayumi looks for a package when a robot file names a file as "
+                  "package://PACKAGE/... The folder contains packages, or it is a package itself.")
       ->type_name("DIR")
       ->allow_extra_args(false);
 }

@@ -83,9 +83,9 @@ const char* stage_words(LawStage stage) {
     case LawStage::weight_shift:
       return "VIIP shifts the weight before its first step";
     case LawStage::single_support:
-      return "VIIP steps, on one foot";
+      return "VIIP makes steps; the robot stands on one foot";
     case LawStage::double_support:
-      return "VIIP steps, on both feet";
+      return "VIIP makes steps; the robot stands on both feet";
     case LawStage::stoop:
       return "VIIP stoops for a jump, by (24)(25)";
     case LawStage::push:

@@ -61,8 +61,9 @@ void author(Context& context, const AuthorCommand& options) {
 }  // namespace
 
 void add_author(Command& app, Context& context) {
-  Command* command =
-      app.add_subcommand("author", "show a pattern on a live page that follows and edits the file");
+  Command* command = app.add_subcommand("author",
+                                        "show a pattern on a live page that shows each change of "
+                                        "the file and can also edit the file");
   command->footer(
       "Examples:\n  ayumi author walk.json\n  ayumi author walk.json --open\n"
       "  ayumi author walk.json --profile hoap1-strong --port 8080\n"

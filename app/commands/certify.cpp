@@ -205,7 +205,7 @@ Json compare_with(Context& context, const CertifyCommand& options, const Study& 
     fail(ErrorCode::bad_pattern,
          "--against: " + file + " is for the robot " + other.robot.name() + ", but " +
              options.pattern + " is for the robot " + input.robot.name() +
-             "; the cases of the comparison must draw the same robot, so give a pattern for " +
+             "; a comparison needs two patterns for the same robot, so give a pattern for " +
              input.robot.name());
   const SimulateOptions second_loop = simulation_options(context, other, choice);
   const UncertainTask second(other.robot, other.series, study.uncertainty, second_loop);
@@ -382,7 +382,8 @@ void certify_pattern(Context& context, CertifyCommand& options) {
 void add_certify(Command& app, Context& context) {
   Command* command = app.add_subcommand(
       "certify",
-      "test whether the robot fails with at most a given probability, under declared uncertainty");
+      "test whether the failure probability of the robot is at most a given value, under declared "
+      "uncertainty");
   command->footer(
       "Examples:\n  ayumi certify patterns/hoap1_walk.json --failure 0.01 --confidence 0.95\n"
       "  ayumi certify walk.json --study study.json -o out/cases.json --map out/matters.svg\n"
@@ -425,7 +426,7 @@ void add_certify(Command& app, Context& context) {
       ->type_name("F");
   command
       ->add_option("--table", options->table,
-                   "Write all cases with the values that were drawn, as CSV.")
+                   "Write all cases with the values that were chosen at random, as CSV.")
       ->type_name("F");
   command
       ->add_option("--map", options->map,
@@ -441,13 +442,15 @@ void add_certify(Command& app, Context& context) {
   command->add_flag("--rare", options->rare,
                     "Also estimate the failure probability by subset simulation.");
   command
-      ->add_option("--rare-runs", options->subset.runs,
-                   "Number of runs in each level of --rare. It must be a multiple of 10.")
+      ->add_option(
+          "--rare-runs", options->subset.runs,
+          "Number of runs in each level of the subset simulation (--rare), a multiple of 10.")
       ->check(whole_number_within(10, 1000000).description(""))
       ->type_name("N")
       ->capture_default_str();
   command
-      ->add_option("--shard", options->shard, "Run only one shard of the cases, for example 1/4.")
+      ->add_option("--shard", options->shard,
+                   "Run only part I of N parts of the cases (one shard), for example 1/4.")
       ->type_name("I/N");
   command
       ->add_option(

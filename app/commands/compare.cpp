@@ -123,9 +123,10 @@ std::string comparison_words(const Comparison& found, const Recordings& recordin
     words += curve_words(load, 1, load.unit.empty() ? "" : " " + load.unit);
   if (!found.loads.empty()) {
     words += "landings: " + std::to_string(found.landings.size()) +
-             " are in the run and in the recording, at most " +
-             text::fixed(1000 * largest_landing(found), 0) + " ms apart; " +
-             std::to_string(found.unmatched_landings) + " are in only one of the two\n";
+             " are both in the run and in the recording, with times that differ by at most " +
+             text::fixed(1000 * largest_landing(found), 0) + " ms; " +
+             std::to_string(found.unmatched_landings) +
+             (found.unmatched_landings == 1 ? " is" : " are") + " in only one of the two\n";
     for (const ComparedLanding& landing : found.landings) {
       const double later = landing.measured - landing.simulated;
       words += std::string("  ") + name_of(landing.foot) + " at " +

@@ -349,7 +349,7 @@ void add_gaits(Command& app, Context& context) {
            "Speeds to the left [m/s] (default: 0, and one speed on each side of 0).");
   add_axis("--turn", options->turn, "Turning rates to the left [deg/s] (default: -8, 0 and 8).");
   add_axis("--period", options->period,
-           "Times of one step [s] (default: the time of a step in `new walk`).");
+           "Durations of one step [s] (default: the duration of a step in `new walk`).");
   command
       ->add_option("--cog-height", gaits.cog_height,
                    "COG height above the soles [m] (default: the height at which most walks pass "

@@ -153,9 +153,9 @@ void add_import(Command& app, Context& context) {
       ->check(number_within(0.02, 10.0))
       ->type_name("S");
   command
-      ->add_option(
-          "--contact-height", options.how.contact.height,
-          "A sole that is higher than this above the lowest sole does not carry the robot [m].")
+      ->add_option("--contact-height", options.how.contact.height,
+                   "A sole that is more than this height above the lowest sole does not carry the "
+                   "robot [m].")
       ->check(number_within(0.0, 0.2))
       ->capture_default_str();
   command

@@ -226,8 +226,8 @@ void new_walk(const Context& context, NewOptions options) {
       "Walk of " + std::to_string(w.steps) + " steps: stride " + text::brief(w.stride) +
           " m, period " + text::brief(w.period) + " s, double support " +
           text::brief(100 * w.double_support) + " %, lift " + text::brief(w.lift) + " m",
-      "The pattern has no keys of the COG. Ayumi computes the COG from the ZMP keys for the whole "
-      "robot."};
+      "The pattern has no keys of the COG. Ayumi computes the COG from the ZMP keys with the full "
+      "model of the robot."};
   try {
     if (write_new(context, model, walk_pattern(model, w), options, comments)) return;
   } catch (const Error& error) {
@@ -406,7 +406,7 @@ void new_kick(const Context& context, NewOptions options) {
   write_new(context, model, pattern, options,
             {"Kicks " + text::brief(p.length) + " m ahead with the " + options.which +
                  " foot. This foot has keys while it is free.",
-             "The COG is solved from the ZMP keys for the whole robot."});
+             "Ayumi computes the COG from the ZMP keys with the full model of the robot."});
 }
 
 // Turn per step where only the whole angle is given [deg]. Chosen: the feet of HOAP-1 then stay 5
@@ -434,8 +434,8 @@ void new_turn(const Context& context, NewOptions options) {
       context, model, walk_pattern(model, w), options,
       {"Turns by " + text::brief(angle) + " deg in place, in " + std::to_string(w.steps) +
            " steps and one more step that brings the feet together.",
-       "The pattern has no keys of the COG. Ayumi computes the COG from the ZMP keys for the whole "
-       "robot."});
+       "The pattern has no keys of the COG. Ayumi computes the COG from the ZMP keys with the full "
+       "model of the robot."});
 }
 
 void new_march(const Context& context, NewOptions options) {
@@ -453,8 +453,8 @@ void new_march(const Context& context, NewOptions options) {
       context, model, walk_pattern(model, w), options,
       {"Marches in place with " + std::to_string(w.steps) + " steps. Lift " + text::brief(w.lift) +
            " m, period " + text::brief(w.period) + " s.",
-       "The pattern has no keys of the COG. Ayumi computes the COG from the ZMP keys for the whole "
-       "robot."});
+       "The pattern has no keys of the COG. Ayumi computes the COG from the ZMP keys with the full "
+       "model of the robot."});
 }
 
 // Time of standing before a goal of VIIP [s]. Chosen: 3/omega of HOAP-1.
@@ -702,7 +702,7 @@ void add_viip(Command& command, NewOptions& options) {
   add_common(command, options);
   command
       .add_option("--cog", options.cog,
-                  "Displacement of the COG over both feet [m]: forward, left, up.")
+                  "Displacement of the COG while both feet stay [m]: forward, left, up.")
       ->delimiter(',')
       ->expected(3)
       ->type_name("DX,DY,DZ");
@@ -770,8 +770,8 @@ void add_bow(Command& command, NewOptions& options) {
   add_common(command, options);
   command.add_option("--angle", options.angle_deg, "Lean of the trunk [deg] (default: 29).")
       ->type_name("DEG");
-  add_scaled(command, "--period", options.period, "Time down and up [s]", BowParameters().period,
-             "S");
+  add_scaled(command, "--period", options.period,
+             "Time of the motion down and up, without the hold [s]", BowParameters().period, "S");
   add_scaled(command, "--hold", options.hold, "Time at the lowest point [s]", BowParameters().hold,
              "S");
   add_height(command, options.bow.cog_height);
@@ -878,7 +878,7 @@ void add_new(Command& app, Context& context) {
   add_squat(*squat, options);
   squat->callback([shared, &context] { new_squat(context, *shared); });
 
-  Command* sit = command->add_subcommand("sit", "go down as onto a seat");
+  Command* sit = command->add_subcommand("sit", "go down as if to sit on a seat");
   sit->footer("Examples:\n  ayumi new sit --depth 0.06 -o sit.json");
   add_seat(*sit, options);
   sit->callback([shared, &context] { new_seat(context, *shared, true); });

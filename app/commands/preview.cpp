@@ -280,16 +280,17 @@ void add_picture_options(Command& command, PreviewOptions& options) {
       .add_option("--zoom", clip.camera.zoom, "Magnification: 2 draws the robot twice as large.")
       ->capture_default_str();
   command
-      .add_option("--ghost", options.ghost,
-                  "Also draw a translucent robot: 'command', a log of the run such as open_loop, "
-                  "another run, or a pattern of the same robot.")
+      .add_option(
+          "--ghost", options.ghost,
+          "Also draw a second, translucent robot. It shows the 'command', a log of the run such "
+          "as open_loop, another run, or a pattern of the same robot.")
       ->type_name("RUN");
   for (const auto& [name, list, what] :
        {std::tuple{"--hide", &options.hide,
                    "Marks to leave out: cog, zmp, ref-zmp, support, forces, push, trails, heat, "
                    "scale, caption or all."},
         {"--show", &options.show,
-         "Marks to draw. With heat, joints are amber near a limit and red at the limit."}})
+         "Marks to draw. The mark heat colours a joint amber near a limit and red at the limit."}})
     command.add_option(name, *list, what)->delimiter(',')->allow_extra_args(false);
   command.add_option("--title", clip.title, "Text at the beginning of the caption.");
   command.add_flag("--draft", options.draft, "Draw faster, without antialiasing.");

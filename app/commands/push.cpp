@@ -265,8 +265,10 @@ void add_push(Command& app, Context& context) {
       ->type_name("N")
       ->capture_default_str();
   command
-      ->add_option("--times", options->times,
-                   "Times of the pushes [s] (default: standing, and four gait phases).")
+      ->add_option(
+          "--times", options->times,
+          "Times of the pushes [s] (default for a walk with keys: one push while the robot "
+          "stands, and one in each of four phases of a step).")
       ->type_name("T")
       ->delimiter(',');
   command

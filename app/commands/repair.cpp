@@ -472,8 +472,8 @@ void add_repair(Command& app, Context& context) {
   command
       ->add_option(
           "--margin", options.margin,
-          "Wanted distance from the ZMP to the edge of the support [m]. The repair uses this "
-          "distance where the distance in the original motion is smaller (default: 0.9 x "
+          "Wanted distance from the ZMP to the edge of the support [m]. Where the original motion "
+          "has a smaller distance, the repair tries to reach the wanted one (default: 0.9 x "
           "inner radius of the sole).")
       ->check(number_within(0.0, 0.1))
       ->type_name("M");

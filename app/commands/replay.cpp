@@ -257,7 +257,7 @@ void replay(Context& context, const ReplayCommand& options) {
 
 void add_replay(Command& app, Context& context) {
   Command* command = app.add_subcommand(
-      "replay", "play a table or sequence on the simulated robot as its servos would receive it");
+      "replay", "send a table or sequence to the servos of the simulated robot, row by row");
   command->footer(
       "Examples:\n  ayumi replay walk_hoap.csv --robot hoap1\n"
       "  ayumi replay out/reference.csv --profile hoap1-strong --json\n"

@@ -116,14 +116,14 @@ void add_simulate(Command& app, Context& context) {
   add_simulation_options(*command, options->choice);
   command
       ->add_option("--case", options->number,
-                   "Simulate the case of `ayumi certify` with this number.")
+                   "Simulate the case of `ayumi certify` that has this number.")
       ->check(whole_number_within(0, 1000000000).description(""))
       ->type_name("N");
   command
       ->add_option(
           "--study", options->study,
-          "Study file to which the case belongs (default: the uncertainty of the pattern, or "
-          "of the robot if the pattern has none).")
+          "Study file with the uncertainty of the case (default: the uncertainty of the pattern, "
+          "or of the robot if the pattern has none).")
       ->type_name("F");
   command->callback([options, &context] { simulate_pattern(context, *options); });
 }

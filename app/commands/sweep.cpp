@@ -315,7 +315,8 @@ void add_sweep(Command& app, Context& context) {
   command->add_option("-o,--out", options->out, "File for the results (SQLite).")
       ->type_name("F.db");
   command
-      ->add_option("--shard", options->shard, "Run only one shard of the cases, for example 1/4.")
+      ->add_option("--shard", options->shard,
+                   "Run only part I of N parts of the cases (one shard), for example 1/4.")
       ->type_name("I/N");
   command->add_option("--cases", options->cases, "Run only these cases, for example 0-99,120.")
       ->type_name("LIST");

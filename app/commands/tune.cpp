@@ -124,9 +124,9 @@ void add_tune(Command& app, Context& context) {
       "  ayumi tune walk.json --tune ka,tau_z --level 1.0 --directions 8 --json\n"
       "The objective is the sum of two means; smaller is better. The first is a mean over the\n"
       "pushes. A push counts 10 if the robot falls. Otherwise it counts omega / z times the\n"
-      "integral of |DCM - commanded DCM| during 1.2 s. The second is the mean of\n"
-      "|ZMP - reference ZMP| / z of the pattern without a push. z is the COG height, and omega is\n"
-      "the square root of g / z. Gains whose loop is unstable are not tried.");
+      "integral of |DCM - commanded DCM| from the push to 1.2 s after its end. The second is the\n"
+      "mean of |ZMP - reference ZMP| / z of the pattern without a push. z is the COG height, and\n"
+      "omega is the square root of g / z. Gains whose loop is unstable are not tried.");
   auto options = std::make_shared<TuneCommand>();
   TuneOptions& t = options->tune;
   command->add_option("PATTERN", options->pattern, "Pattern file.")->required();
@@ -156,8 +156,10 @@ void add_tune(Command& app, Context& context) {
       ->capture_default_str()
       ->type_name("N");
   command
-      ->add_option("--times", options->times,
-                   "Times of the pushes [s] (default: standing, and four gait phases).")
+      ->add_option(
+          "--times", options->times,
+          "Times of the pushes [s] (default for a walk with keys: one push while the robot "
+          "stands, and one in each of four phases of a step).")
       ->delimiter(',')
       ->type_name("T");
   command->add_option("--rounds", t.rounds, "Number of passes of the search through all gains.")

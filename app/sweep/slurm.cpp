@@ -185,7 +185,7 @@ State read_state(const fs::path& folder) {
     fail(ErrorCode::bad_file,
          file.string() +
              ": this file does not hold the state of a sweep on Slurm, so the sweep cannot go on; "
-             "cancel the jobs of the sweep that still run, and remove the folder");
+             "cancel the jobs of the sweep that still run, and remove the folder of this file");
   }
   return state;
 }

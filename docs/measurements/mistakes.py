@@ -252,7 +252,7 @@ KNOWN = [
     Mistake("times in ms", "walk", milliseconds, r" ms"),
     Mistake("a foothold of 0.9 m", "walk", far_foothold, r"^/phases/3.*(x is 0.9 m|foot lands 0.8\d* m from)"),
     Mistake("footholds exchanged", "walk", exchanged_footholds,
-            r"^/phases/3.*/phases/5 may be exchanged"),
+            r"^/phases/3.*/phases/5 were perhaps exchanged"),
     Mistake("a missing swing", "walk", missing_swing, r"^/phases/3.*swing may be missing"),
     Mistake("COG height of 2.05 m", "walk", high_cog, r"^/defaults/cog_height.*2.05 m"),
     Mistake("COG height ten times too large", "squat", high_cog,

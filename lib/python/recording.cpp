@@ -90,12 +90,15 @@ void bind_import(py::module_& m) {
       "the content unless `format` names one of motion_formats(). `rate` [1/s]: rows per second, "
       "if the rows have no times; `degrees`: angles of a file that does not state their unit are "
       "in degrees; "
-      "`order`: the columns are the joints of the robot in its order, `joints`: their names; "
-      "`motion`: name or number, of a file with several; `commands`: the angles are servo targets; "
+      "`order`: the columns are the joints of the robot, in the order of the robot; "
+      "`joints`: names of the joint columns; `motion`: name or number of the motion, if the file "
+      "has several; "
+      "`commands`: the angles are servo targets; "
       "`smooth`: largest change for smoothing [deg]; `ground`: the soles that carry are put on the "
       "ground; `ramp`: time from rest to the speed of a recording that was cut [s]. A sole carries "
       "the robot when it is at most `contact_height` [m] above the lowest one, slower than "
-      "`contact_speed` [m/s], and the motion of the COG needs `contact_load` times the weight.");
+      "`contact_speed` [m/s], and the motion of the COG needs at least `contact_load` times the "
+      "weight as ground force.");
 }
 
 // Angles that the caller has, as rows for each `dt`, or those of a file.
@@ -142,7 +145,8 @@ void bind_identify(py::module_& m) {
       .def_readonly("lower", &ServoEstimate::lower, "Lower end of the interval.")
       .def_readonly("upper", &ServoEstimate::upper, "Upper end; inf where there is none.")
       .def_readonly("known", &ServoEstimate::known,
-                    "Whether the recording determines the value to better than half of it.")
+                    "Whether the recording determines the value: its uncertainty is at most half "
+                    "of the value.")
       .def("__repr__", [](const ServoEstimate& e) {
         return "<" + text::brief(e.value) + " (" + text::brief(e.lower) + ".." +
                text::brief(e.upper) + ")>";

@@ -100,7 +100,8 @@ void bind_push(py::module_& m) {
                 s.cases, s.options, task.series);
             return py::bytes(encode_png(to_image(draw_push_map(map), scale)));
           },
-          py::arg("scale") = 1.5, "The limits from above as the bytes of a PNG file.");
+          py::arg("scale") = 1.5,
+          "A map of the push limits, seen from above, as the bytes of a PNG file.");
 
   m.def(
       "push",
@@ -269,7 +270,8 @@ void bind_local_pace(py::module_& m) {
           "(limit, share of the duration for which it binds), the longest first; '' where no limit "
           "binds, 'pace' for the largest pace, 'pause' for pauses that are kept.")
       .def_readonly("rounds", &LocalPace::rounds, "Number of courses of time that were checked.")
-      .def_readonly("limited_by", &LocalPace::limited_by, "Why no course of time passes, in words.")
+      .def_readonly("limited_by", &LocalPace::limited_by,
+                    "In words: why no course of time passes the check.")
       .def_readonly("by_posture", &LocalPace::by_posture,
                     "Whether no course of time passes because a posture itself violates a limit.");
   m.def(

@@ -54,7 +54,7 @@ std::vector<Mistaken> list() {
   jump.profile = "hoap1-strong";
   add("foothold of 0.6 m", small(), steps, "/phases/3: the left foot's x is 0.6 m.* 0.06 m",
       [](Pattern& p) { swing(p, 3).to.position.x() = 0.6; });
-  add("footholds exchanged", small(), steps, "/phases/3: .*/phases/5 may be exchanged",
+  add("footholds exchanged", small(), steps, "/phases/3: .*/phases/5 were perhaps exchanged",
       [](Pattern& p) { std::swap(swing(p, 3).to, swing(p, 5).to); });
   add("missing swing", small(), steps, "/phases/3: .*its swing may be missing",
       [](Pattern& p) { p.phases[3].swing.reset(); });

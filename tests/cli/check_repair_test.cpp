@@ -135,8 +135,8 @@ TEST_F(CheckRepair, AChangeOfFrictionBesideAPayloadIsSaidApart) {
     { "type": "friction", "at": 1, "duration": 2, "friction": 0.6 })");
   const Output both = ayumi({"check", "both.json", "-q"});
   EXPECT_EQ(both.exit_code, 1);
-  EXPECT_NE(both.out.find("the verdict counts no disturbances other than payloads. With this "
-                          "disturbance, check finds no other error"),
+  EXPECT_NE(both.out.find("the verdict does not consider disturbances other than payloads. With "
+                          "this disturbance, check finds no other error"),
             std::string::npos)
       << both.out;
 }

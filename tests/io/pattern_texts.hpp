@@ -269,7 +269,8 @@ inline const std::vector<Broken>& mistakes() {
       {"repair", R"({"lock": {"keyframes": [1.5]}})",
        "/repair/lock/keyframes/0: expected a whole number"},
       {"repair", R"({"lock": {"windows": [[2, 1]]}})",
-       "/repair/lock/windows/0: the window must end after it begins, but 1 s comes before 2 s"},
+       "/repair/lock/windows/0: the window must end after it begins, but it begins at 2 s and ends "
+       "at 1 s"},
       {"repair", R"({"lock": {"windows": [1, 2]}})", "/repair/lock/windows/0: expected an array"},
       {"repair", R"({"lock": {"windows": [[-1, 2]]}})",
        "-1 s is outside the range of times, 0 to 3600 s"},

@@ -234,7 +234,7 @@ TEST(Sidecar, StatesLoadCellsAndTheLatencyOfEachSensor) {
     FAIL() << "three cells on four corners";
   } catch (const Error& e) {
     EXPECT_NE(std::string(e.what()).find(
-                  "/sensors/force_cells/left: there are 3 cells, but the sole has 4"),
+                  "/sensors/force_cells/left: there are 3 load cells, but the sole has 4"),
               std::string::npos)
         << e.what();
   }

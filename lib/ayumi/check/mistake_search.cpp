@@ -632,7 +632,7 @@ class Hypotheses {
             {Rank::exchange,
              {phase_place(i),
               std::string("the footholds of this phase and of ") + phase_place(k) +
-                  " may be exchanged",
+                  " were perhaps exchanged",
               "with the two exchanged"},
              [i, k](Pattern& p) { std::swap(p.phases[i].swing->to, p.phases[k].swing->to); }});
     }
@@ -697,7 +697,7 @@ class Hypotheses {
     if (!pattern_.start_feet[0] || !pattern_.start_feet[1]) return;
     made.push_back(
         {Rank::exchange,
-         {"/start", "the left and the right foot may be exchanged", "with the two exchanged"},
+         {"/start", "the left and the right foot were perhaps exchanged", "with the two exchanged"},
          [](Pattern& p) { std::swap(p.start_feet[0], p.start_feet[1]); }});
   }
 

@@ -314,8 +314,8 @@ std::string lost_rows_words(const LostRows& lost, double dt) {
                     rows = text::counted(count, "row"), are = count == 1 ? " is " : " are ",
                     change = text::brief(1000 * dt * static_cast<double>(count), 3) + " ms " +
                              (lost.rows > 0 ? "earlier" : "later") + " than before";
-  return (lost.exact ? "at data row " : "after about data row ") + std::to_string(lost.row + 1) +
-         " (" + time + ") " + rows + are + (lost.rows > 0 ? "missing" : "repeated") +
+  return (lost.exact ? "at data row " : "near data row ") + std::to_string(lost.row + 1) + " (" +
+         time + "), " + rows + are + (lost.rows > 0 ? "missing" : "repeated") +
          ": from here on, the angles are " + change +
          "; record again, or give the rows a time column";
 }

@@ -276,8 +276,8 @@ void validate_force_cells(const RobotDescription& robot) {
     const size_t corners = sole->second.polygon.size();
     if (cells.size() != 1 && cells.size() != corners)
       complain_sidecar(robot, where + "there are " + std::to_string(cells.size()) +
-                                  " cells, but the sole has " + std::to_string(corners) +
-                                  " corners; give one cell for each corner, or one for all");
+                                  " load cells, but the sole has " + std::to_string(corners) +
+                                  " corners; give one load cell for each corner, or one for all");
   }
 }
 

@@ -83,7 +83,7 @@ CommandSeries sample_keys(const RobotModel& model, const Pattern& pattern,
                          : tracks.joint_driven       ? sample_joint_driven(job)
                                                      : sample_body_driven(job);
   if (!links.empty() && posture == Posture::solved)
-    series.origin[links.origin()] = "keys, by the joints of the limb";
+    series.origin[links.origin()] = "solved from keys by the joints of the limb";
   for (const auto& [t, weight] : tracks.weight)
     series.joint_weight.push_back({std::lround(t / options.dt), weight});
   return series;

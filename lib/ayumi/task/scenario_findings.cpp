@@ -35,7 +35,7 @@ std::vector<std::string> findings_under_scenario(const Task& task, const CheckOp
         carried.empty() ? plain : check_consistency(robot, task.series, options);
     const std::vector<Finding> errors =
         errors_brought_by(d, check_consistency(robot, task.series, loaded), counted);
-    std::string words = words_of({d}) + " is a disturbance, and the verdict counts no " +
+    std::string words = words_of({d}) + " is a disturbance, and the verdict does not consider " +
                         (has_payload ? "disturbances other than payloads" : "disturbances") +
                         ". With this disturbance, ";
     if (errors.empty())

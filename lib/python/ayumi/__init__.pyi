@@ -25,7 +25,7 @@ class Actuators:
 
     @property
     def continuous_torque(self) -> numpy.ndarray:
-        """Torques without a time limit [N m, N], shape (dof,)."""
+        """Largest torques for any length of time [N m, N], shape (dof,)."""
 
 class Command:
     """The plan of one tick."""
@@ -343,7 +343,7 @@ class LocalPace:
 
     @property
     def limited_by(self) -> str:
-        """Why no course of time passes, in words."""
+        """In words: why no course of time passes the check."""
 
     @property
     def by_posture(self) -> bool:
@@ -569,7 +569,7 @@ class PushStudy:
         """For each law, one line for pushes while walking, and one for pushes while standing."""
 
     def picture(self, scale: float = 1.5) -> bytes:
-        """The limits from above as the bytes of a PNG file."""
+        """A map of the push limits, seen from above, as the bytes of a PNG file."""
 
 class Repair:
     """What a repair found."""
@@ -774,7 +774,7 @@ class ServoEstimate:
 
     @property
     def known(self) -> bool:
-        """Whether the recording determines the value to better than half of it."""
+        """Whether the recording determines the value: its uncertainty is at most half of the value."""
 
 class SoleForce:
     """Ground force at one vertex of a sole."""
@@ -1040,7 +1040,7 @@ def identify(robot: Robot, command: Union[Union[str, PathLike[str]], tuple[float
     """The servo constants with which the simulated servos come nearest to what was measured. `command` and `measured` are files, or (dt, angles) with the time between two rows [s] and an array of angles [rad, m], shape (n, dof). `loads` is a file of load cells; `per_type`: one set for all joints of one motor type; `stand`: 'feet', 'fixed' (the root is held upright) or 'auto'; `rate` [1/s] and `degrees` are of files that do not state them; `longest_lag` [s]: an answer that comes later is refused (0: 30 ms, or twice the lag of the slowest servo)."""
 
 def import_motion(path: Union[str, PathLike[str]], robot: Robot, *, format: str = '', rate: float = 0.0, degrees: bool = False, order: bool = False, joints: list[str] = [], motion: str = '', commands: bool = False, smooth: Optional[float] = None, ground: bool = False, ramp: float = 0.0, contact_height: Optional[float] = None, contact_speed: Optional[float] = None, contact_load: Optional[float] = None) -> Import:
-    """Reads a motion of another program or robot, as `ayumi import` does. The format follows from the content unless `format` names one of motion_formats(). `rate` [1/s]: rows per second, if the rows have no times; `degrees`: angles of a file that does not state their unit are in degrees; `order`: the columns are the joints of the robot in its order, `joints`: their names; `motion`: name or number, of a file with several; `commands`: the angles are servo targets; `smooth`: largest change for smoothing [deg]; `ground`: the soles that carry are put on the ground; `ramp`: time from rest to the speed of a recording that was cut [s]. A sole carries the robot when it is at most `contact_height` [m] above the lowest one, slower than `contact_speed` [m/s], and the motion of the COG needs `contact_load` times the weight."""
+    """Reads a motion of another program or robot, as `ayumi import` does. The format follows from the content unless `format` names one of motion_formats(). `rate` [1/s]: rows per second, if the rows have no times; `degrees`: angles of a file that does not state their unit are in degrees; `order`: the columns are the joints of the robot, in the order of the robot; `joints`: names of the joint columns; `motion`: name or number of the motion, if the file has several; `commands`: the angles are servo targets; `smooth`: largest change for smoothing [deg]; `ground`: the soles that carry are put on the ground; `ramp`: time from rest to the speed of a recording that was cut [s]. A sole carries the robot when it is at most `contact_height` [m] above the lowest one, slower than `contact_speed` [m/s], and the motion of the COG needs at least `contact_load` times the weight as ground force."""
 
 def jump_pattern(robot: Robot, *, height: Optional[float] = None, stoop: Optional[float] = None, cog_height: Optional[float] = None, forward: Optional[float] = None, times: Optional[int] = None) -> Pattern:
     """Stoop, lift-off, flight, touchdown and settling; all lengths in m."""

@@ -90,7 +90,7 @@ void McapWriter::add_metadata(const std::string& name, const Metadata& values) {
 
 std::uint16_t McapWriter::add_channel(const std::string& topic, const std::string& schema_name,
                                       const std::string& json_schema) {
-  require(!any_, "a channel is added before the first message");
+  require(!any_, "a channel must be added before the first message");
   const auto id = static_cast<std::uint16_t>(channels_.size() + 1);  // 0 means: no schema
   schemas_.push_back(
       Content().u16(id).text(schema_name).text("jsonschema").text(json_schema).record(schema));

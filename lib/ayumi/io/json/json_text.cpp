@@ -248,7 +248,8 @@ std::string with_item(const std::string& text, const std::string& pointer, size_
   const JsonTree root = json_tree(text);
   const JsonTree& array = *require_value(root, pointer).value;
   if (array.kind != '[' || index > array.parts.size())
-    fail(ErrorCode::usage, pointer + " is not an array with a place " + std::to_string(index));
+    fail(ErrorCode::usage,
+         pointer + " is not an array in which an item can have the index " + std::to_string(index));
   return inserted(text, array, index, value);
 }
 

@@ -15,8 +15,8 @@ std::pair<double, double> read_window(const JsonNode& node, PatternScope& scope)
     if (t < 0 || t > kLongestPattern)
       node.complain(text::exact(t) + " s is outside the range of times, 0 to 3600 s");
   if (ends[1] < ends[0])
-    node.complain("the window must end after it begins, but " + text::exact(ends[1]) +
-                  " s comes before " + text::exact(ends[0]) + " s");
+    node.complain("the window must end after it begins, but it begins at " + text::exact(ends[0]) +
+                  " s and ends at " + text::exact(ends[1]) + " s");
   return {ends[0], ends[1]};
 }
 

@@ -55,7 +55,7 @@ Distribution read_distribution(const JsonNode& node, bool angle, PatternScope& s
         (given.empty() ? "none" : text::join(given, " and ")));
   const JsonNode values = node.at(given[0]);
   if (node.has("weights") && given[0] != "choice")
-    node.at("weights").complain("only a choice has weights");
+    node.at("weights").complain("only \"choice\" can have weights");
   const std::vector<double> v = numbers(values, angle, scope);
   const auto expect = [&](size_t count, const char* form) {
     if (v.size() != count)

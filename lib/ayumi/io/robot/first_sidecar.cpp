@@ -182,8 +182,8 @@ std::string soles_text(const RobotModel& model, const RobotGuess& guess) {
                  guess.sole_reason) +
          remark(
              "Softness: stiffness [N/m] and damping time [s] of a whole sole on the ground. Guess: "
-             "the whole weight presses hard rubber in by 0.1 mm. Check it by loading a foot; soft "
-             "soles decide whether a walk falls.") +
+             "the whole weight presses hard rubber in by 0.1 mm. Check this by loading a foot: the "
+             "softness of the soles can decide whether the robot falls when it walks.") +
          "  \"soles\": {\n" + sole_text(soles.at("left"), model, Side::left) + ",\n" +
          sole_text(soles.at("right"), model, Side::right) + "\n  },\n";
 }
@@ -508,7 +508,7 @@ FirstSidecar first_sidecar(const std::string& robot, const std::filesystem::path
   RobotDescription stated = load_robot_description(robot, search, {.meshes = true, .guess = false});
   if (!stated.sidecar_file.empty())
     fail(ErrorCode::usage, robot + ": this robot has a sidecar already, " + stated.sidecar_file +
-                               "; name its URDF to begin anew");
+                               "; to begin anew, give the URDF of this robot");
   namespace fs = std::filesystem;
   const fs::path urdf = fs::weakly_canonical(fs::absolute(stated.urdf_file));
   const std::string urdf_as_written = seen_from(folder, urdf);

@@ -456,8 +456,9 @@ void find_soles(RobotGuess& guess) {
       [&](const Link& link) { return link.body == feet[0].body && !link.collisions.empty(); });
   guess.sole_reason = {"the outline is the hull of all points of the foot's " +
                            std::string(collisions ? "collision shapes" : "visual shapes") +
-                           " that are at most 1 mm above the ground, reduced to at most " +
-                           std::to_string(kMostCorners) + " corners inside this hull",
+                           " that are at most 1 mm above the ground; if this hull has more than " +
+                           std::to_string(kMostCorners) + " corners, only " +
+                           std::to_string(kMostCorners) + " of them are kept",
                        "that this is the outline of the part of the foot that touches the ground; "
                        "when in doubt, make "
                        "the outline smaller"};
@@ -802,15 +803,16 @@ void find_servos(RobotGuess& guess) {
   guess.servo_reason = {
       "kp is the effort limit of the joint divided by " + text::brief(kFullEffortError) +
           " rad; for legs kp is at least " + text::brief(kLegStiffness) +
-          " m g z = " + text::brief(kLegStiffness * weight * z, 3) +
-          " N m/rad (weight times COG height), so that the legs hold the robot; kd = " +
+          " times the weight times the COG height = " + text::brief(kLegStiffness * weight * z, 3) +
+          " N m/rad, so that the legs hold the robot; kd = " +
           text::brief(kDampingTime * std::sqrt(z / kGravity), 2) + " s times kp" +
-          (estimated == 0 ? ""
-                          : "; the effort limits of " + std::to_string(estimated) +
-                                " joints are missing or placeholders, and are replaced by " +
-                                text::brief(kLegEffort) + " m g z = " +
-                                text::brief(kLegEffort * weight * z, 3) + " N m for legs and by " +
-                                text::brief(kOtherEffort) + " m g z for other joints"),
+          (estimated == 0
+               ? ""
+               : "; the effort limits of " + std::to_string(estimated) +
+                     " joints are missing or placeholders, and are replaced by " +
+                     text::brief(kLegEffort) + " times the weight times the COG height = " +
+                     text::brief(kLegEffort * weight * z, 3) + " N m for legs and by " +
+                     text::brief(kOtherEffort) + " times this product for other joints"),
       "gains and rotor inertia of your servos; `ayumi identify` finds them in a recording"};
   robot.assumptions.push_back("servos: " + guess.servo_reason.why);
 }
