@@ -3,6 +3,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/io/json/json_depth.hpp"
 
 namespace ayumi::app {
 
@@ -70,6 +71,8 @@ std::string add_case_results(const std::filesystem::path& file, const Json& stud
                  : "choose another name, or replace the file with --force";
   const std::string bytes = read_file(file);
   try {
+    if (nested_too_deep(bytes))
+      refuse("this file does not hold results of ayumi certify; " + remedy);
     const Json json = Json::parse(bytes);
     if (json.at("format") != kCertifyFormat)
       refuse("this file does not hold results of ayumi certify");

@@ -1,10 +1,10 @@
 #include "pattern_input.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <iostream>
-#include <iterator>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
@@ -13,6 +13,9 @@
 #include "ayumi/io/task_file.hpp"
 
 namespace ayumi::app {
+
+// [bytes] Source: docs/formats.md, the largest pattern.
+constexpr size_t kLargestPattern = size_t{64} << 20;
 
 void add_pattern_options(Command& command, PatternOptions& options) {
   command.add_option("--set", options.set, "Set a parameter that the pattern declares.")
@@ -41,7 +44,16 @@ std::map<std::string, double> read_pairs(const std::vector<std::string>& words,
 
 std::string read_input(const std::filesystem::path& file, size_t most) {
   if (file != "-") return read_file(file, most);
-  return {std::istreambuf_iterator<char>(std::cin), {}};
+  std::string bytes;
+  std::array<char, 65536> block;
+  while (std::cin.read(block.data(), block.size()), std::cin.gcount() > 0) {
+    bytes.append(block.data(), static_cast<size_t>(std::cin.gcount()));
+    if (bytes.size() > most)
+      fail(ErrorCode::bad_file, "standard input: more than " + std::to_string(most) +
+                                    " bytes came; an input of this kind may have at most " +
+                                    std::to_string(most));
+  }
+  return bytes;
 }
 
 namespace {
@@ -62,7 +74,7 @@ std::filesystem::path file_or_bundled(const std::filesystem::path& file) {
 Pattern read_given_pattern(const std::filesystem::path& file,
                            const std::map<std::string, double>& set) {
   if (file != "-") return read_pattern(file_or_bundled(file), set);
-  return pattern_of_text(read_input(file), "standard input", set);
+  return pattern_of_text(read_input(file, kLargestPattern), "standard input", set);
 }
 
 Task load_pattern(const Context& context, const std::filesystem::path& file,

@@ -2,6 +2,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
+#include "ayumi/io/json/json_depth.hpp"
 
 namespace ayumi::app {
 
@@ -127,6 +128,7 @@ KnownCases read_results(const std::filesystem::path& file, const Json& study, si
   };
   const std::string bytes = read_file(file);
   try {
+    if (nested_too_deep(bytes)) refuse("this file does not hold results of ayumi push");
     const Json json = Json::parse(bytes);
     if (json.at("format") != kPushFormat) refuse("this file does not hold results of ayumi push");
     // The order of keys says nothing.

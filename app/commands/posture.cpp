@@ -11,6 +11,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/io/json/json_depth.hpp"
 #include "ayumi/io/pattern/pattern_edit.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/io/run/run_folder.hpp"
@@ -46,6 +47,7 @@ struct PostureSource {
 
 // The value of "format" of a JSON text with comments; "" where it is no such text.
 std::string format_of(const std::string& text) {
+  if (nested_too_deep(text)) return "";
   const Json json = Json::parse(text, nullptr, false, true);
   return json.is_object() ? json.value("format", "") : "";
 }

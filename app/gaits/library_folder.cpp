@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/io/json/json_depth.hpp"
 
 namespace ayumi::app {
 
@@ -31,7 +32,9 @@ std::vector<std::string> files_of_library(const fs::path& folder) {
   const fs::path index = folder / kIndex;
   std::vector<std::string> files = {kIndex};
   try {
-    const Json json = Json::parse(read_file(index));
+    const std::string bytes = read_file(index);
+    if (nested_too_deep(bytes)) throw std::out_of_range("depth");
+    const Json json = Json::parse(bytes);
     if (json.at("format") != kGaitsFormat) throw std::out_of_range("format");
     for (const Json& each : json.at("files")) {
       const fs::path path = fs::path(each.get<std::string>()).lexically_normal();
@@ -98,7 +101,9 @@ std::optional<Json> LibraryFolder::known(const std::string& name) const {
   const fs::path file = staging_ / "done" / (name + ".json");
   if (!is_there(file)) return {};
   try {
-    return Json::parse(read_file(file));
+    const std::string bytes = read_file(file);
+    if (nested_too_deep(bytes)) return {};
+    return Json::parse(bytes);
   } catch (const Json::exception&) {  // written whole, so something else has changed it
     return {};
   }

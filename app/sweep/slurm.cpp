@@ -25,6 +25,7 @@
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/processor_time.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/io/json/json_depth.hpp"
 #include "ayumi/io/run/sha256.hpp"
 
 extern char** environ;
@@ -177,7 +178,10 @@ State read_state(const fs::path& folder) {
   const fs::path file = folder / "state.json";
   if (!fs::exists(file)) return state;
   try {
-    const SlurmJson json = SlurmJson::parse(read_file(file));
+    const std::string bytes = read_file(file);
+    // A discarded value has no member, which is an exception of the kind below.
+    const SlurmJson json =
+        nested_too_deep(bytes) ? SlurmJson(SlurmJson::value_t::discarded) : SlurmJson::parse(bytes);
     state.name = json.at("name");
     for (const SlurmJson& array : json.at("arrays"))
       state.arrays.push_back({array.at("number"), array.at("job")});

@@ -167,6 +167,24 @@ TEST_F(AuthorServer, AnswersOnlyItsOwnPage) {
   EXPECT_NE(client.Put(server.root() + "state", "", "text/plain")->status, 200);
 }
 
+// Before, such a request ended the server: its value was written by recursion.
+TEST_F(AuthorServer, RefusesRequestsThatAreNestedDeeply) {
+  const Server server(file);
+  const std::string deep = std::string(300'000, '[') + std::string(300'000, ']');
+  const std::string hash = server.state()["hash"];
+  for (const auto& [path, body] :
+       {std::pair<std::string, std::string>(
+            "edit", R"({"hash": ")" + hash +
+                        R"(", "edits": [{"kind": "set", "pointer": "/name", "value": )" + deep +
+                        "}]}"),
+        {"job", R"({"kind": "simulate", "options": )" + deep + "}"}}) {
+    const auto answer = server.client().Post(server.root() + path, body, "application/json");
+    ASSERT_TRUE(answer) << path;
+    EXPECT_EQ(answer->status, 400) << answer->body;
+  }
+  EXPECT_EQ(server.state()["hash"], hash);
+}
+
 TEST_F(AuthorServer, FollowsTheFileAndNamesTheLineOfAnError) {
   const Server server(file);
   EXPECT_TRUE(server.state()["consistent"].get<bool>());

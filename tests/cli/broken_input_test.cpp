@@ -1,6 +1,8 @@
 // Broken input of every kind: one clear complaint, exit 3, nothing written, no crash.
 
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <functional>
 #include <map>
 #include <numbers>
@@ -391,6 +393,21 @@ TEST(SoundInput, NamesAreShownWithoutControlCharacters) {
     }
     fs::remove_all(folder / "out");
   }
+}
+
+// Before, the program took all memory.
+TEST(StandardInput, WithoutEndIsRefused) {
+  const std::string command = program_under_test() + " check - 2>&1 </dev/zero";
+  FILE* const program = ::popen(command.c_str(), "r");
+  ASSERT_TRUE(program);
+  std::string said;
+  std::array<char, 4096> block;
+  while (const size_t got = std::fread(block.data(), 1, block.size(), program))
+    said.append(block.data(), got);
+  const int status = ::pclose(program);
+  EXPECT_EQ(WEXITSTATUS(status), 3) << said;
+  EXPECT_NE(said.find("ayumi: standard input: more than 67108864 bytes came"), std::string::npos)
+      << said;
 }
 
 }  // namespace

@@ -81,6 +81,20 @@ TEST(CertifyCommand, GoesOnAndRefusesOtherStudies) {
       << other.err;
 }
 
+// Before, the comparison with the own study descended into it by recursion, and the program
+// crashed.
+TEST(CertifyCommand, RefusesResultsThatAreNestedDeeply) {
+  const CertifyStudy study;
+  const std::string deep = std::string(300'000, '[') + std::string(300'000, ']');
+  write(study.folder / "cases.json",
+        R"({"format": "ayumi.certify/1", "study": {"a": )" + deep + R"(}, "cases": []})");
+  const Output refused = study.certify({"-o", "cases.json"});
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_NE(refused.err.find("cases.json: this file does not hold results of ayumi certify"),
+            std::string::npos)
+      << refused.err;
+}
+
 // A command that needs fewer cases leaves the others in the file, and reads back what it needs.
 TEST(CertifyCommand, KeepsTheCasesThatItDoesNotNeed) {
   const CertifyStudy study;

@@ -71,6 +71,20 @@ TEST(PushCommand, GoesOnFromItsResultsForAnyNumberOfThreads) {
       << other.err;
 }
 
+// Before, the comparison with the own study descended into it by recursion, and the program
+// crashed.
+TEST(PushCommand, RefusesResultsThatAreNestedDeeply) {
+  const Study study;
+  const std::string deep = std::string(300'000, '[') + std::string(300'000, ']');
+  write(study.folder / "results.json",
+        R"({"format": "ayumi.push/1", "study": {"a": )" + deep + R"(}, "cases": []})");
+  const Output refused = study.run(study.command);
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_NE(refused.err.find("results.json: this file does not hold results of ayumi push"),
+            std::string::npos)
+      << refused.err;
+}
+
 TEST(PushCommand, DrawsItsMapAndPrintsJson) {
   const Study study;
   const Output bad = study.run(study.command, {"--map", "map.jpg"});

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Faults of the machine: calls that fail, a disk that is full, and signals at random moments.
 
-    faults.py PROGRAM LIBRARY [--kind calls|disk|signals|all] [--count N] [--seed S]
+    faults.py PROGRAM LIBRARY [--kind calls|disk|signals|all] [--count N] [--seed S] [--only NAMES]
 
 PROGRAM is ayumi and LIBRARY the library of failing_calls.c. Each trial works in a folder of its own.
 What holds after each of them:
@@ -9,7 +9,9 @@ What holds after each of them:
   - exit code 0 or 1 means that every output is there and whole; another code comes with a message;
   - what is there under the name of an output is whole: a file that was there before is unchanged
     or replaced, and a run folder that has a run.json passes its own hashes;
-  - the same command, started again without a fault, does its work.
+  - the same command, started again without a fault, does its work. push, certify and sweep go on
+    with what is there, and give the results of a command that nothing has stopped;
+  - the pattern that a live page edits is one of the texts that the page has sent.
 The exit code is 1 when something does not hold, and the trial is printed so that it can be repeated.
 """
 import argparse
@@ -19,16 +21,25 @@ import os
 import random
 import shutil
 import signal
+import sqlite3
 import subprocess
 import sys
 import tempfile
+import threading
 import time
+import urllib.request
 
 SOURCE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 WALK = os.path.join(SOURCE, "patterns", "hoap1_walk.json")
 STAND = """{"format": "ayumi.pattern/1", "name": "stand", "robot": "hoap1", "units": {"angle": "deg"},
 "defaults": {"posture": "home"}, "phases": [{"duration": 0.3, "support": "both"}],
 "keyframes": [{"t": 0}, {"t": 0.3, "joints": {"l_elbow": -20}}]}
+"""
+STUDY = """{"format": "ayumi.study/1", "sweep": {
+"settings": {"pattern": "stand.json", "disturbances": "push"},
+"cases": {"latin_hypercube": {"samples": 40, "ranges": {"value.impulse": [0.1, 12]}}},
+"disturbances": {"push": [{"type": "impulse", "at": 0.1, "duration": 0.02, "impulse": "${impulse}",
+"direction": [0, 1, 0]}]}}}
 """
 TOO_LONG = 300  # [s] for one command; a loaded machine is slow
 STOPS_WITHIN = 1.0  # [s] from Ctrl-C to the end, on a quiet machine
@@ -37,11 +48,13 @@ STOPS_WITHIN = 1.0  # [s] from Ctrl-C to the end, on a quiet machine
 class Trial:
     """A command in a folder of its own, and what must hold after it."""
 
-    def __init__(self, program, words, outputs, before=()):
-        self.program, self.words, self.outputs = program, words, outputs
+    def __init__(self, program, words, outputs, before=(), goes_on=False):
+        self.program, self.words, self.outputs, self.goes_on = program, words, outputs, goes_on
         self.folder = tempfile.mkdtemp(prefix="ayumi_faults_")
         with open(os.path.join(self.folder, "stand.json"), "w") as file:
             file.write(STAND)
+        with open(os.path.join(self.folder, "study.json"), "w") as file:
+            file.write(STUDY)
         for name in before:
             with open(os.path.join(self.folder, name), "w") as file:
                 file.write("before\n")
@@ -71,6 +84,8 @@ class Trial:
             return [f"{name} is missing after success"] if done else []
         if os.path.isdir(path):
             return complaints_about_run(path, done)
+        if name.endswith(".db"):
+            return complaints_about_database(path)
         with open(path, "rb") as file:
             text = file.read()
         if text == b"before\n":
@@ -83,7 +98,9 @@ class Trial:
 
     def works_now(self):
         """The same command without a fault."""
-        words = self.words if "--force" in self.words else self.words + ["--force"]
+        words = self.words
+        if not self.goes_on and "--force" not in words:
+            words = words + ["--force"]
         again = subprocess.run([self.program] + words, cwd=self.folder, capture_output=True,
                                timeout=TOO_LONG)
         if again.returncode not in (0, 1):
@@ -92,6 +109,15 @@ class Trial:
         for name in self.outputs:
             wrong += self.complaints_about(name, True)
         return wrong
+
+    def results(self):
+        """What a command that goes on must have found in the end, however often it was stopped."""
+        path = os.path.join(self.folder, self.outputs[0])
+        if path.endswith(".db"):
+            with sqlite3.connect(path) as database:
+                return sorted(map(repr, database.execute("SELECT * FROM cases")))
+        with open(path) as file:
+            return json.load(file)
 
     def end(self):
         shutil.rmtree(self.folder, ignore_errors=True)
@@ -119,6 +145,51 @@ def complaints_about_run(folder, done):
     return wrong
 
 
+def complaints_about_database(path):
+    try:
+        with sqlite3.connect(path) as database:
+            said = database.execute("PRAGMA integrity_check").fetchall()
+    except sqlite3.Error as error:
+        return [f"{path} cannot be read: {error}"]
+    return [] if said == [("ok",)] else [f"{path} is damaged: {said}"]
+
+
+class Editor(Trial):
+    """`author`, with a page that changes the pattern again and again."""
+
+    def __init__(self, program):
+        super().__init__(program, ["author", "stand.json", "--json"], [])
+        self.texts, self.thread = [STAND], None
+
+    def start(self, **environment):
+        process = super().start(**environment)
+        self.thread = threading.Thread(target=self.edit, args=(process,), daemon=True)
+        self.thread.start()
+        return process
+
+    def edit(self, process):
+        ask = urllib.request.build_opener(urllib.request.ProxyHandler({})).open
+        try:
+            address = json.loads(process.stdout.readline())["address"]
+            for angle in range(1000000):
+                with ask(address + "state", timeout=5) as answer:
+                    seen = json.load(answer)["hash"]
+                text = STAND.replace("-20", str(-20 - angle % 10)) + " " * (angle % 3000)
+                self.texts.append(text)
+                body = json.dumps({"hash": seen, "text": text}).encode()
+                ask(address + "edit", body, timeout=5).close()
+        except (OSError, ValueError, KeyError):
+            pass  # the server has ended
+
+    def complaints(self, process, out, err, signals=()):
+        self.thread.join(10)
+        wrong = super().complaints(process, out, err, signals)
+        with open(os.path.join(self.folder, "stand.json")) as file:
+            if file.read() not in self.texts:
+                wrong.append("stand.json is none of the texts that the page has sent")
+        return wrong
+
+
 def commands(program, pattern):
     """The commands that are tried: a function that makes a fresh trial of each."""
     return {
@@ -138,10 +209,12 @@ def slow_commands(program):
         **commands(program, WALK),
         "pictures": lambda: Trial(program, ["run", WALK, "-o", "run"], ["run"]),
         "push": lambda: Trial(program, ["push", WALK, "-o", "push.json", "--directions", "2"],
-                              ["push.json"]),
+                              ["push.json"], goes_on=True),
         "certify": lambda: Trial(program, ["certify", WALK, "-o", "cases.json"],
-                                 ["cases.json"]),
-        "author": lambda: Trial(program, ["author", "stand.json"], []),
+                                 ["cases.json"], goes_on=True),
+        "sweep": lambda: Trial(program, ["sweep", "study.json", "-o", "results.db"],
+                               ["results.db"], goes_on=True),
+        "author": lambda: Editor(program),
     }
 
 
@@ -212,10 +285,12 @@ def try_disk(program, library, count, rng, report):
             one_fault(make, library, f"bytes:{n}", report, name, n % 10 == 0)
 
 
-def try_signals(program, count, rng, report):
+def try_signals(program, count, rng, report, only):
     """SIGKILL and Ctrl-C at random moments of long commands."""
     makers = slow_commands(program)
-    lasts = {}
+    if only:
+        makers = {name: make for name, make in makers.items() if name in only}
+    lasts, results = {}, {}
     for trial_number in range(count):
         name = sorted(makers)[trial_number % len(makers)]
         if name not in lasts:
@@ -227,6 +302,8 @@ def try_signals(program, count, rng, report):
                 process.terminate()
             finished(process)
             lasts[name] = time.monotonic() - begin
+            if trial.goes_on:
+                results[name] = trial.results()
             trial.end()
         kind = rng.choice([signal.SIGKILL, signal.SIGINT, signal.SIGTERM])
         trial, moment = makers[name](), rng.uniform(0, lasts[name])
@@ -242,8 +319,11 @@ def try_signals(program, count, rng, report):
         wrong = trial.complaints(process, out, err, signals=(kind,))
         if kind != signal.SIGKILL and took > STOPS_WITHIN * ALLOWANCE:
             wrong.append(f"it took {took:.2f} s to stop")
-        if not wrong and name != "author" and trial_number % 5 == 0:
+        # Each command once, then every fifth time: it takes as long as all the rest.
+        if not wrong and name != "author" and (trial_number < len(makers) or trial_number % 5 == 0):
             wrong = trial.works_now()
+            if not wrong and trial.goes_on and trial.results() != results[name]:
+                wrong = ["the results differ from those of a command that nothing has stopped"]
         report.add(f"{name} {kind.name} at {moment:.3f} s", wrong)
         trial.end()
 
@@ -259,6 +339,7 @@ def main():
     parser.add_argument("--kind", choices=["calls", "disk", "signals", "all"], default="all")
     parser.add_argument("--count", type=int, default=20)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--only", default="", help="commands that signals stop, with commas")
     options = parser.parse_args()
     program, library = os.path.abspath(options.program), os.path.abspath(options.library)
     rng, report = random.Random(options.seed), Report()
@@ -267,7 +348,8 @@ def main():
     if options.kind in ("disk", "all"):
         try_disk(program, library, options.count, rng, report)
     if options.kind in ("signals", "all"):
-        try_signals(program, options.count, rng, report)
+        only = [name for name in options.only.split(",") if name]
+        try_signals(program, options.count, rng, report, only)
     print(f"{report.trials} trials, {report.failures} failed; seed {options.seed}; "
           f"the slowest stop took {report.slowest:.2f} s")
     sys.exit(1 if report.failures else 0)

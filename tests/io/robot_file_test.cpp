@@ -1,6 +1,7 @@
 #include "ayumi/io/robot/robot_file.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <numbers>
@@ -99,6 +100,24 @@ TEST(RobotFile, TheNameOfAFolderMayEndLikeThatOfAFile) {
 }
 
 // The bare URDF: what is inferred is close to what the sidecar says, and said.
+// Before, the robot was read without its sidecar, with servos that nobody had stated.
+TEST(RobotFile, ASidecarThatIsNoFileIsRefused) {
+  const TemporaryFolder folder;
+  folder.write("pipe/robot.urdf", read_file(kRobots + "/hoap1/robot.urdf"));
+  ASSERT_EQ(::mkfifo((folder.path() / "pipe/robot.json").c_str(), 0600), 0);
+  folder.write("link/robot.urdf", read_file(kRobots + "/hoap1/robot.urdf"));
+  std::filesystem::create_symlink("nowhere.json", folder.path() / "link/robot.json");
+  for (const auto& [name, words] :
+       {std::pair("pipe", "robot.json: this is a device or a named pipe"),
+        std::pair("link", "robot.json: no such file")})
+    try {
+      load_robot_description((folder.path() / name).string());
+      ADD_FAILURE() << name;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+    }
+}
+
 TEST(Hoap1, BareUrdfIsInferred) {
   const RobotModel model = load_robot(kRobots + "/hoap1/robot.urdf");
   const RobotModel full = load_robot("hoap1", {{kRobots}});

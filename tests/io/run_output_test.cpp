@@ -90,6 +90,21 @@ TEST_F(RunOutputTest, TakesOverWhatAnInterruptedProcessLeft) {
   EXPECT_EQ(names(), (Names{"a.csv", "run.json"}));
 }
 
+// A folder that a stranger has packed may hold such links. Before, the files behind the second one
+// were moved into the folder of the run.
+TEST_F(RunOutputTest, LinksInPlaceOfItsHiddenFoldersAreNotFollowed) {
+  for (const std::string name : {".ayumi_part", ".ayumi_replaced"}) {
+    fs::remove_all(target);
+    const fs::path mine = folder.write("mine/a.csv", "mine");
+    fs::create_directory(target);
+    fs::create_directory_symlink(mine.parent_path(), target / name);
+    deliver({"a.csv"});
+    EXPECT_EQ(read_file(mine), "mine") << name;
+    EXPECT_EQ(names(), (Names{"a.csv", "run.json"}));
+    verify_run(target);
+  }
+}
+
 TEST_F(RunOutputTest, AKilledDeliveryIsUndoneByTheNextStart) {
   for (const bool replaces : {true, false}) {
     fs::remove_all(target);

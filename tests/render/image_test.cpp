@@ -39,6 +39,13 @@ TEST(Image, DifferentTextDiffers) {
   EXPECT_NE(a.rgb, b.rgb);
 }
 
+// Before, the name of a pattern of 5000 letters ended `run` and `report` with an internal error.
+TEST(Image, TextOfAnyLengthIsCutOffToo) {
+  Image image = white(40, 20);
+  draw_text(image, 0, 10, std::string(100'000, 'n'), {});
+  EXPECT_GT(dark_pixels(image, 0, 40), 40);
+}
+
 TEST(Image, TextOutsideIsCutOff) {
   Image image = white(50, 20);
   draw_text(image, -1000, 10, "far away", {});

@@ -15,6 +15,9 @@ namespace {
 using SurfacePointer = std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)>;
 using ContextPointer = std::unique_ptr<cairo_t, decltype(&cairo_destroy)>;
 
+// [pixels] Definition: cairo makes no wider surface of an image.
+constexpr double kWidestSurface = 32767;
+
 SurfacePointer make_surface(cairo_format_t format, int width, int height) {
   SurfacePointer surface(cairo_image_surface_create(format, width, height), cairo_surface_destroy);
   require(cairo_surface_status(surface.get()) == CAIRO_STATUS_SUCCESS,
@@ -43,7 +46,9 @@ SurfacePointer render_text(const std::string& text, const TextStyle& style) {
   cairo_text_extents(measure.get(), text.c_str(), &extents);
   cairo_font_extents(measure.get(), &font);
   const double pad = std::ceil(0.35 * style.size);
-  const int width = static_cast<int>(std::ceil(extents.x_advance + 2 * pad));
+  // A name may be of any length. What is cut off here is outside every picture.
+  const int width =
+      static_cast<int>(std::min(kWidestSurface, std::ceil(extents.x_advance + 2 * pad)));
   const int height = static_cast<int>(std::ceil(font.ascent + font.descent + 0.4 * pad));
   SurfacePointer surface = make_surface(CAIRO_FORMAT_ARGB32, width, height);
   const ContextPointer context(cairo_create(surface.get()), cairo_destroy);

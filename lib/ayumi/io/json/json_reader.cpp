@@ -7,14 +7,11 @@
 
 #include "ayumi/base/placed_error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/io/json/json_depth.hpp"
 
 namespace ayumi {
 
 namespace {
-
-// Nested arrays and objects. Chosen: Ayumi's files need ten; functions that descend by recursion
-// need less than 1 kB of the 8 MB stack for each.
-constexpr int kDeepestNesting = 200;
 
 std::string kind_of(const Json& value) {
   switch (value.type()) {
@@ -44,26 +41,6 @@ std::string kind_of(const Json& value) {
   throw PlacedError(
       code, file + ":" + std::to_string(line) + ":" + std::to_string(column) + ": " + message,
       {file, "", line});
-}
-
-// Where the text opens the first array or object that lies too deep. Brackets in comments count as
-// well, which can only move the place that a message names.
-size_t too_deep_at(const std::string& bytes) {
-  int depth = 0;
-  bool in_string = false;
-  for (size_t i = 0; i < bytes.size(); ++i) {
-    if (in_string && bytes[i] == '\\')
-      ++i;
-    else if (bytes[i] == '"')
-      in_string = !in_string;
-    else if (in_string)
-      continue;
-    else if (bytes[i] == '[' || bytes[i] == '{') {
-      if (++depth > kDeepestNesting) return i;
-    } else if (bytes[i] == ']' || bytes[i] == '}')
-      --depth;
-  }
-  return bytes.size();
 }
 
 // "[json.exception...] parse error at line 1, column 2: what" -> "what"; "[...] what" -> "what"
@@ -169,7 +146,7 @@ Json parse_json(const std::string& bytes, const std::string& file, ErrorCode cod
                  "the JSON cannot be used: " + reason);
   }
   if (builder.too_deep())
-    fail_in_text(code, file, bytes, too_deep_at(bytes),
+    fail_in_text(code, file, bytes, nested_too_deep(bytes).value_or(bytes.size()),
                  "arrays and objects are nested more than " + std::to_string(kDeepestNesting) +
                      " levels deep; correct the brackets");
   if (!builder.duplicate().empty())

@@ -22,7 +22,11 @@ constexpr const char* kSidecarName = "robot.json";
 // The robot.json or the only other robot of a folder; empty: it has neither.
 fs::path file_in_folder(const fs::path& folder) {
   std::error_code ignored;
-  if (fs::is_regular_file(folder / kSidecarName, ignored)) return folder / kSidecarName;
+  // Also where it is a named pipe or a link to nothing: read_file() says so, and the robot is not
+  // read without its sidecar.
+  const fs::path sidecar = folder / kSidecarName;
+  if (fs::exists(fs::symlink_status(sidecar, ignored)) && !fs::is_directory(sidecar, ignored))
+    return sidecar;
   std::vector<fs::path> robots;
   for (const auto& entry : fs::directory_iterator(folder, ignored))
     if (has_robot_ending(entry.path()) && !entry.is_directory(ignored))

@@ -24,6 +24,13 @@ bool is_there(const fs::path& path) {
   return fs::exists(fs::symlink_status(path, ignored));
 }
 
+// Whether this is a folder itself. A symbolic link to one may lead to files that no run has
+// written, for example in a folder that a stranger has packed.
+bool is_own_folder(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_directory(fs::symlink_status(path, ignored));
+}
+
 // What is there under the name of a file of the run may be removed only where it is a file.
 void require_own_file(const fs::path& path) {
   if (is_there(path)) require_file_target(path);
@@ -53,7 +60,8 @@ std::vector<std::string> names_in(const fs::path& folder) {
 std::vector<fs::path> delivered_files(const fs::path& target) {
   std::vector<fs::path> files;
   const fs::path staging = target / kStaging;
-  if (!is_there(target / kReplaced) || !is_there(staging / kRunJson)) return files;
+  if (!is_own_folder(target / kReplaced) || !is_own_folder(staging)) return files;
+  if (!is_there(staging / kRunJson)) return files;
   for (const std::string& name : run_file_names(staging)) {
     if (name == kRunJson || is_there(staging / name)) continue;
     try {
@@ -67,8 +75,10 @@ std::vector<fs::path> delivered_files(const fs::path& target) {
 // Where a delivery was not completed, what was there before it is there again. Where it was, what
 // it has replaced is removed.
 void undo_delivery(const fs::path& target) {
-  if (!is_there(target / kReplaced)) return;
   std::error_code ignored;
+  for (const char* name : {kStaging, kReplaced})
+    if (!is_own_folder(target / name)) fs::remove(target / name, ignored);
+  if (!is_there(target / kReplaced)) return;
   if (is_there(target / kStaging / kRunJson) || !is_there(target / kRunJson)) {
     for (const fs::path& file : delivered_files(target)) fs::remove(file, ignored);
     for (const std::string& name : names_in(target / kReplaced))

@@ -1,9 +1,11 @@
 #include "ayumi/io/run/simulation_log_file.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <functional>
 #include <map>
 #include <type_traits>
@@ -287,10 +289,14 @@ SimulationLog parse_log(const std::string& bytes, const std::string& file) {
 
 bool is_log_file(const std::filesystem::path& path) {
   std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) return false;  // opening a pipe would wait
-  std::ifstream file(path, std::ios::binary);
+  if (!std::filesystem::is_regular_file(path, ignored)) return false;
+  // O_NONBLOCK: the file may be exchanged for a pipe, and some files of /proc wait for what comes.
+  const int opened = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
+  if (opened < 0) return false;
   std::string begin(8, ' ');
-  return file.read(begin.data(), 8) && begin == kMagic;
+  const ssize_t got = ::read(opened, begin.data(), begin.size());
+  ::close(opened);
+  return got == 8 && begin == kMagic;
 }
 
 SimulationLog read_log(const std::filesystem::path& path) {

@@ -1,0 +1,193 @@
+#include "author/author_requests.hpp"
+
+#include <httplib.h>
+
+#include <atomic>
+#include <map>
+
+#include "ayumi/io/json/json_depth.hpp"
+#include "ayumi/report/page.hpp"
+
+namespace ayumi::app {
+
+namespace {
+
+using httplib::Request;
+using httplib::Response;
+
+// Pages that listen at one time, and threads for them and for requests. Chosen: more than one
+// person opens; each listening page holds a thread.
+constexpr int kListeners = 24, kThreads = 32;
+// Largest request [bytes]. Source: docs/formats.md, the largest pattern.
+constexpr size_t kLargestRequest = size_t{64} << 20;
+// How long a client may take to send the next bytes of its request [s].
+constexpr time_t kRequestPatience = 2;
+
+// Takes as long whatever the words are.
+bool equal_secrets(const std::string& a, const std::string& b) {
+  if (a.size() != b.size()) return false;
+  unsigned char difference = 0;
+  for (size_t i = 0; i < a.size(); ++i)
+    difference = static_cast<unsigned char>(difference | (a[i] ^ b[i]));
+  return difference == 0;
+}
+
+void set_json(Response& response, const AuthorAnswer& answer) {
+  response.status = answer.status;
+  response.set_content(answer.body.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace),
+                       "application/json");
+}
+
+void set_limits(httplib::Server& server) {
+  server.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
+  server.set_keep_alive_max_count(1);
+  server.set_payload_max_length(kLargestRequest);
+  server.set_read_timeout(kRequestPatience);
+  server.set_write_timeout(kRequestPatience);
+  server.set_default_headers({{"Cache-Control", "no-store"},
+                              {"X-Content-Type-Options", "nosniff"},
+                              {"X-Frame-Options", "DENY"},
+                              {"Referrer-Policy", "no-referrer"},
+                              {"Cross-Origin-Resource-Policy", "same-origin"}});
+}
+
+}  // namespace
+
+class AuthorRequests::Router {
+ public:
+  Router(AuthorSession& session, std::string token, int port)
+      : session_(session), token_(std::move(token)), port_(std::to_string(port)) {}
+
+  /// Whether the request is from a page of this server: it knows the secret, and the browser says
+  /// that it was not made by a page of another origin.
+  bool allows(const Request& request) const {
+    const std::string host = request.get_header_value("Host");
+    if (host != kLoopbackAddress + (":" + port_) && host != "localhost:" + port_) return false;
+    if (request.has_header("Origin")) {
+      const std::string origin = request.get_header_value("Origin");
+      if (origin != "http://" + host) return false;
+    }
+    const size_t end = request.path.find('/', 1);
+    return end != std::string::npos && equal_secrets(request.path.substr(1, end - 1), token_);
+  }
+
+  void get(const Request& request, Response& response) {
+    const std::string path = inside(request);
+    if (path.empty()) {
+      response.set_content(std::string(kAuthorPage), "text/html; charset=utf-8");
+    } else if (path == "state") {
+      response.set_content(session_.state(), "application/json");
+    } else if (path == "model.glb") {
+      response.set_content(session_.model(), "model/gltf-binary");
+    } else if (path == "scenery") {
+      response.set_content(session_.scenery(), "application/octet-stream");
+    } else if (path == "series") {
+      const auto bytes = session_.series(request.get_param_value("which"));
+      if (bytes)
+        response.set_content(*bytes, "application/octet-stream");
+      else
+        response.status = 404;
+    } else if (path == "events") {
+      listen(response);
+    } else {
+      response.status = 404;
+    }
+  }
+
+  void post(const Request& request, Response& response) {
+    if (nested_too_deep(request.body))
+      return set_json(response, {400, {{"message", "the request is nested too deeply"}}});
+    const OrderedJson body = OrderedJson::parse(request.body, nullptr, false);
+    if (body.is_discarded() || !body.is_object())
+      return set_json(response, {400, {{"message", "the request is not a JSON object"}}});
+    const std::string path = inside(request);
+    using Handler = AuthorAnswer (AuthorSession::*)(const OrderedJson&);
+    static const std::map<std::string, Handler> handlers = {
+        {"edit", &AuthorSession::edit},       {"undo", &AuthorSession::undo},
+        {"redo", &AuthorSession::redo},       {"pose", &AuthorSession::pose},
+        {"posture", &AuthorSession::posture}, {"mirror", &AuthorSession::mirror},
+        {"job", &AuthorSession::start_job}};
+    const auto found = handlers.find(path);
+    if (found == handlers.end())
+      response.status = 404;
+    else
+      set_json(response, (session_.*found->second)(body));
+  }
+
+  void remove(const Request& request, Response& response) {
+    const std::string path = inside(request);
+    if (path.starts_with("job/"))
+      set_json(response, session_.cancel_job(path.substr(4)));
+    else
+      response.status = 404;
+  }
+
+  void stop() { stopping_ = true; }
+
+ private:
+  std::string inside(const Request& request) const {
+    return request.path.substr(request.path.find('/', 1) + 1);
+  }
+
+  void listen(Response& response) {
+    if (++listeners_ > kListeners) {
+      --listeners_;
+      response.status = 503;
+      return;
+    }
+    auto next = std::make_shared<std::uint64_t>(session_.next_event());
+    auto first = std::make_shared<bool>(true);
+    auto quiet = std::make_shared<int>(0);
+    response.set_chunked_content_provider(
+        "text/event-stream",
+        [this, next, first, quiet](size_t, httplib::DataSink& sink) {
+          if (stopping_) return false;
+          std::string words;
+          if (*first) words = "retry: 500\n\n";
+          *first = false;
+          if (words.empty()) {
+            if (const auto event = session_.wait_for_event(*next)) {
+              ++*next;
+              *quiet = 0;
+              words = "event: " + event->name + "\ndata: " + event->data + "\n\n";
+            } else if (++*quiet % 10 == 0) {
+              words = ": nothing new\n\n";  // so that a page that has gone is noticed
+            }
+          }
+          if (stopping_) return false;
+          return words.empty() ? sink.is_writable() : sink.write(words.data(), words.size());
+        },
+        [this](bool) { --listeners_; });
+  }
+
+  AuthorSession& session_;
+  std::string token_, port_;
+  std::atomic<int> listeners_ = 0;
+  std::atomic<bool> stopping_ = false;
+};
+
+AuthorRequests::AuthorRequests(AuthorSession& session, const std::string& token, int port)
+    : router_(std::make_unique<Router>(session, token, port)) {}
+
+AuthorRequests::~AuthorRequests() = default;
+
+void AuthorRequests::set_up(httplib::Server& server) {
+  set_limits(server);
+  Router* const router = router_.get();
+  server.set_pre_routing_handler([router](const Request& request, Response& response) {
+    if (router->allows(request)) return httplib::Server::HandlerResponse::Unhandled;
+    response.status = 403;
+    return httplib::Server::HandlerResponse::Handled;
+  });
+  server.set_exception_handler([](const Request&, Response& response, std::exception_ptr) {
+    set_json(response,
+             {500, {{"message", "the server could not answer this request; reload the page"}}});
+  });
+  server.Get(".*", [router](const auto& q, auto& a) { router->get(q, a); });
+  server.Post(".*", [router](const auto& q, auto& a) { router->post(q, a); });
+  server.Delete(".*", [router](const auto& q, auto& a) { router->remove(q, a); });
+}
+
+void AuthorRequests::stop() { router_->stop(); }
+
+}  // namespace ayumi::app
