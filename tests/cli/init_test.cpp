@@ -103,7 +103,7 @@ TEST(Init, SoftServosGetGains) {
     EXPECT_EQ(init.exit_code, 0) << init.err;
     return init.out;
   };
-  EXPECT_EQ(init_with("13.37").find("soft"), std::string::npos);
+  EXPECT_EQ(init_with("13.37").find("they are so soft"), std::string::npos);
   EXPECT_EQ(contents(folder / "robot13.37/robot.json").find("\"control\""), std::string::npos);
   EXPECT_NE(init_with("6").find("the default gains of the control law do not keep"),
             std::string::npos);
