@@ -2,10 +2,13 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
+#include "ayumi/base/text.hpp"
 #include "ayumi/io/robot/first_sidecar.hpp"
+#include "ayumi/study/gain_study.hpp"
 #include "pattern_input.hpp"
 #include "robot_picture.hpp"
 
@@ -63,10 +66,69 @@ class NewFolder {
   bool made_ = false, complete_ = false;
 };
 
+// Softness of the servos up to which a stiffer one is looked for. Chosen: servos that are sixteen
+// times too soft are a mistake in the file.
+constexpr double kMostStiffer = 16;
+
+// How many times as stiff the servos of the legs must be for gains that keep the robot standing.
+double stiffness_needed(const RobotModel& model) {
+  for (double factor = 1.25; factor <= kMostStiffer; factor *= 1.25) {
+    RobotDescription stiffer = model.description();
+    std::set<int> joints;  // one may move both legs
+    for (const Side side : {Side::left, Side::right})
+      for (const int dof : model.leg(side)) joints.insert(dof);
+    for (const int dof : joints) {
+      ServoDescription& servo = stiffer.servos[model.dofs()[static_cast<size_t>(dof)].name];
+      servo.kp *= factor;
+      servo.kd *= factor;
+    }
+    const GainStudy study = study_gains(RobotModel(stiffer));
+    if (study.weakest.analysis.stable || nearest_stable_gains(study.loops, study.params))
+      return factor;
+  }
+  return 0;
+}
+
+// The gains nearest to the defaults with which the robot can stand, where it cannot with those.
+SidecarGains gains_for(const RobotModel& model) {
+  const std::vector<ServoDescription>& servos = model.limits().servo;
+  for (const Side side : {Side::left, Side::right})
+    for (const int dof : model.leg(side))
+      if (servos[static_cast<size_t>(dof)].kp <= 0) return {};
+  const GainStudy study = study_gains(model);
+  if (study.weakest.analysis.stable) return {};
+  SidecarGains result;
+  if (const auto stable = nearest_stable_gains(study.loops, study.params)) {
+    result.dtad = changed_loop_gains(*stable, study.params);
+    const double decay = weakest_loop(study.loops, *stable).analysis.decay;
+    result.why =
+        "with the default gains, an error of the standing robot grows by the factor e in " +
+        text::brief(-1 / study.weakest.analysis.decay, 2) + " s (" +
+        study.loops[study.weakest.index].name +
+        "), because the servos are soft. These are the nearest gains found with which " +
+        (decay > 0 ? "it decays; the slowest mode takes " + text::brief(1 / decay, 2) + " s"
+                   : std::string("it grows less than a step lasts"));
+    result.check = "with `ayumi gains`, after the constants of the servos are known";
+    result.to_do =
+        "Check the stiffness of the servos: they are so soft that the default gains of the control "
+        "law do not keep the robot standing. This sidecar has other gains (\"control\").";
+    return result;
+  }
+  const double needed = stiffness_needed(model);
+  result.to_do =
+      "Check the stiffness of the servos of the legs: they are so soft that no gains of the "
+      "control "
+      "law were found that keep the robot standing" +
+      (needed > 0 ? "; with " + text::brief(needed, 2) + " times their kp and kd, there are some."
+                  : std::string("."));
+  return result;
+}
+
 void init(const Context& context, const InitOptions& options) {
   fs::path folder = fs::path(options.out).lexically_normal();
   if (!folder.has_filename()) folder = folder.parent_path();
-  const FirstSidecar sidecar = first_sidecar(options.robot, folder, robot_search(context));
+  const FirstSidecar sidecar =
+      first_sidecar(options.robot, folder, robot_search(context), gains_for);
   NewFolder files(context, folder);
   RobotPicture picture;
   size_t joints = 0;

@@ -86,6 +86,35 @@ TEST(Init, OpenDuckStandsAfterQuickSteps) {
   EXPECT_EQ(slower.exit_code, 0) << slower.err;
 }
 
+// Open Duck Mini with softer servos than its own: `init` writes gains of the law with which it
+// stands, or says how stiff the servos must be.
+TEST(Init, SoftServosGetGains) {
+  const fs::path own = AYUMI_SOURCE_DIR "/../shared/data/open_duck_mini_v2";
+  if (!fs::exists(own)) GTEST_SKIP() << "no file of Open Duck Mini";
+  Folder folder;
+  fs::copy(own, folder / "duck", fs::copy_options::recursive);
+  const std::string text = contents(own / "open_duck_mini_v2.xml"), stated = "kp=\"13.37\"";
+  ASSERT_NE(text.find(stated), std::string::npos);
+  const auto init_with = [&](const std::string& kp) {
+    std::string softer = text;
+    softer.replace(text.find(stated), stated.size(), "kp=\"" + kp + "\"");
+    write(folder / "duck/soft.xml", softer);
+    const Output init = ayumi(folder, {"init", "duck/soft.xml", "-o", "robot" + kp, "--force"});
+    EXPECT_EQ(init.exit_code, 0) << init.err;
+    return init.out;
+  };
+  EXPECT_EQ(init_with("13.37").find("they are so soft"), std::string::npos);
+  EXPECT_EQ(contents(folder / "robot13.37/robot.json").find("\"control\""), std::string::npos);
+  EXPECT_NE(init_with("6").find("the default gains of the control law do not keep"),
+            std::string::npos);
+  EXPECT_NE(contents(folder / "robot6/robot.json").find("\"control\": { \"dtad\": { "),
+            std::string::npos);
+  ASSERT_EQ(ayumi(folder, {"new", "stand", "--robot", "robot6", "-o", "stand.json"}).exit_code, 0);
+  const Output run = ayumi(folder, {"simulate", "stand.json"});
+  EXPECT_EQ(run.exit_code, 0) << run.out << run.err;
+  EXPECT_NE(init_with("1.5").find(" times their kp and kd, there are some."), std::string::npos);
+}
+
 // One joint turns both hips: a turn is done with it and with the trunk.
 TEST(Init, CoupledHipsTurn) {
   Folder folder;

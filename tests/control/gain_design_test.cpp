@@ -9,6 +9,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
 #include "ayumi/model/gravity.hpp"
+#include "tests/support/error_message.hpp"
 
 namespace ayumi {
 namespace {
@@ -123,6 +124,43 @@ TEST(GainDesign, Hoap1DefaultsAreStableAndTooMuchIsRefused) {
     EXPECT_NE(std::string(error.what()).find("the loop is unstable with"), std::string::npos);
     EXPECT_NE(std::string(error.what()).find("ka below"), std::string::npos) << error.what();
   }
+}
+
+// Where no ka alone helps, other gains do, or the refusal asks for stiffer servos.
+TEST(GainDesign, SoftServosGetGainsThatAreStable) {
+  const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
+  const DtadParams defaults;
+  const auto loops_with = [&](double stiffness) {
+    ActuatorLimits actuators = model.limits();
+    for (ServoDescription& servo : actuators.servo) {
+      servo.kp *= stiffness;
+      servo.kd *= stiffness;
+    }
+    return stance_loops(model, actuators, 0.22, 0.001);
+  };
+  const std::vector<LoopModel> stiff = loops_with(1);
+  ASSERT_TRUE(weakest_loop(stiff, defaults).analysis.stable);
+  const auto unchanged = nearest_stable_gains(stiff, defaults);
+  ASSERT_TRUE(unchanged);
+  EXPECT_TRUE(changed_loop_gains(*unchanged, defaults).empty());
+  int mended = 0;
+  for (double stiffness = 0.8; stiffness > 0.01; stiffness *= 0.8) {
+    const std::vector<LoopModel> loops = loops_with(stiffness);
+    if (weakest_loop(loops, defaults).analysis.stable) continue;
+    if (largest_stable_ka(loops, defaults, 1) > 1e-6) continue;
+    const auto gains = nearest_stable_gains(loops, defaults);
+    const std::string refusal = test::error_message([&] { refuse_unstable(loops, defaults); });
+    if (gains) {
+      ++mended;
+      EXPECT_TRUE(weakest_loop(loops, *gains).analysis.stable) << stiffness;
+      EXPECT_NE(refusal.find(changed_loop_gains(*gains, defaults).front().first + " = "),
+                std::string::npos)
+          << refusal;
+    } else {
+      EXPECT_NE(refusal.find("use stiffer servos"), std::string::npos) << refusal;
+    }
+  }
+  EXPECT_GT(mended, 0);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/io/robot/ztk.hpp"
 #include "tests/io/moving_motion.hpp"
 #include "tests/support/error_message.hpp"
 #include "tests/support/hoap1.hpp"
@@ -76,7 +77,7 @@ INSTANTIATE_TEST_SUITE_P(
         // Degrees with twelve digits.
         RoundTrip{"qianim", 1e-12, 0, true, false}, RoundTrip{"poppy-move", 1e-12, 0, true, false},
         RoundTrip{"open-duck", 0, 0, true, true}, RoundTrip{"deepmimic", 0, 0, true, true},
-        RoundTrip{"zvs", 0, 1e-15, false, true}, RoundTrip{"transposed-csv", 0, 0, true, false},
+        RoundTrip{"zvs", 0, 1e-15, true, true}, RoundTrip{"transposed-csv", 0, 0, true, false},
         RoundTrip{"motion-csv", 0, 0, false, true}, RoundTrip{"hrpsys", 0, 1e-15, false, true}),
     [](const auto& info) {
       std::string name = info.param.format;
@@ -106,6 +107,20 @@ TEST(MotionFormats, ForeignFilesAreNamed) {
   EXPECT_NE(refusal_of("Coordinates\nversion=1\nendheader\ntime\tknee\n0\t1\n").find("OpenSim"),
             std::string::npos);
   EXPECT_NE(refusal_of("<Root type=\"Motion\"/>").find("R+ Motion"), std::string::npos);
+  EXPECT_NE(refusal_of("#VRML V2.0 utf8\nPROTO Joint [\n]\n").find("a VRML scene"),
+            std::string::npos);
+  EXPECT_NE(refusal_of("solid foot\n facet normal 0 0 1\n  outer loop\n").find("an STL mesh"),
+            std::string::npos);
+  EXPECT_NE(refusal_of("# a person\n:version 1.10\n:name x\n").find("a skeleton of ASF/AMC"),
+            std::string::npos);
+  EXPECT_NE(refusal_of(":FULLY-SPECIFIED\n:DEGREES\n1\nroot 1 2 3\n").find("ASF/AMC"),
+            std::string::npos);
+  EXPECT_NE(refusal_of("This robot, as I said, walks at 3 m/s.\nIt has no motion here.\n")
+                .find("this is a text without rows of numbers"),
+            std::string::npos);
+  // Numbers under words that blanks separate are a table, whose separators are wrong.
+  EXPECT_NE(refusal_of("time l_knee r_knee\n0 0.1 0.2\n").find("only blanks separate"),
+            std::string::npos);
   for (const std::string& name : read_format_names())
     EXPECT_NE(refusal_of("???").find(name), std::string::npos) << name;
 }
@@ -154,6 +169,41 @@ TEST(MotionFormats, MistakesNameFileLineAndFormat) {
       refusal_of("type: CompositeSeq\ncontent: BodyMotion\nformat_version: 7\ncomponents: []\n")
           .find("Ayumi reads versions 1 to 4"),
       std::string::npos);
+}
+
+TEST(MotionFormats, TheRobotBesideAZvsNamesItsJoints) {
+  const RobotModel& model = hoap1();
+  const MotionFile written = moving(model, 40, 50);
+  const std::vector<WrittenFile> files = find_motion_format("zvs")->write(model, written);
+  ASSERT_EQ(files.size(), 2u);
+  TemporaryFolder folder;
+  const std::string main = (folder.path() / "m.zvs").string();
+  const fs::path robot = folder.path() / "m.ztk";
+  write_file(main, files[0].bytes);
+  EXPECT_NE(refusal_of(files[0].bytes, main).find("without names; give --order"),
+            std::string::npos);
+  // The order of this robot is another one than that of the model.
+  std::vector<std::string> turned = model.dof_names();
+  std::reverse(turned.begin(), turned.end());
+  write_file(robot, ztk_text(model.description(), turned));
+  const ImportedMotion read = read_motion_rows(files[0].bytes, main, model, {});
+  for (int i = 0; i < model.dof_count(); ++i)
+    EXPECT_EQ(read.motion.theta.col(i), written.values.col(model.dof_count() - 1 - i)) << i;
+  EXPECT_EQ(read.motion.base.size(), written.base.size());
+  // A robot with another number of joints, and one that cannot be read, are said and not used.
+  turned.pop_back();
+  for (const std::string& other :
+       {ztk_text(model.description(), turned), std::string("[roki::chain]\n[roki::link]\n")}) {
+    write_file(robot, other);
+    EXPECT_NE(refusal_of(files[0].bytes, main).find("give --order"), std::string::npos);
+    ImportOptions options;
+    options.by_order = true;
+    const ImportedMotion ordered = read_motion_rows(files[0].bytes, main, model, options);
+    EXPECT_EQ(ordered.motion.theta, written.values);
+    EXPECT_TRUE(std::any_of(ordered.filled.begin(), ordered.filled.end(), [](const auto& note) {
+      return note.find("is not used") != std::string::npos;
+    }));
+  }
 }
 
 TEST(MotionFormats, JointsAreMappedByNameAndByOrderOnlyOnRequest) {

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
@@ -159,23 +160,119 @@ double largest_stable_ka(const std::vector<LoopModel>& loops, DtadParams params,
 
 namespace {
 
+// Time constant, times omega, within which errors decay in a loop that is not searched further.
+// Chosen: three times that of the default gains' slowest mode on stiff servos, which forgets
+// offsets (washout, 6.6). At half of it, the gains of soft servos change more; at twice, slower
+// modes are left.
+constexpr double kSlowestDecay = 20;
+// Changes of the gains together. Chosen: the three largest ones of a gain, or one step of three
+// gains; 33 choices, of which each unstable one costs one loop.
+constexpr size_t kMostSteps = 3;
+
+struct LoopGain {
+  std::vector<std::pair<const char*, double DtadParams::*>> fields;
+  std::vector<double> factors;  ///< on the gain, the nearest first
+};
+
+// Chosen: steps of a third for the pull, which helps most on soft servos, of 2 for the others.
+const std::vector<LoopGain>& loop_gains() {
+  static const std::vector<LoopGain> gains = {
+      {{{"ks", &DtadParams::pull_rate}, {"kd", &DtadParams::pull_damping}},
+       {1, 4.0 / 3, 16.0 / 9, 64.0 / 27}},
+      {{{"damp", &DtadParams::rocking_damping}}, {1, 0.5, 0.25, 2}},
+      {{{"ka", &DtadParams::zmp_gain}}, {1, 0.5, 2, 0.25}},
+      {{{"tau_z", &DtadParams::zmp_filter}}, {1, 3, 10}}};
+  return gains;
+}
+
+// Places in the lists of factors with at most kMostSteps steps, by their sum.
+std::vector<std::vector<size_t>> nearest_choices() {
+  std::vector<std::vector<size_t>> all = {{}};
+  for (const LoopGain& gain : loop_gains()) {
+    std::vector<std::vector<size_t>> longer;
+    for (const auto& places : all)
+      for (size_t i = 0; i < gain.factors.size(); ++i) {
+        longer.push_back(places);
+        longer.back().push_back(i);
+      }
+    all = std::move(longer);
+  }
+  const auto steps = [](const auto& v) { return std::accumulate(v.begin(), v.end(), size_t{0}); };
+  std::erase_if(all, [&](const auto& v) { return steps(v) > kMostSteps; });
+  std::stable_sort(all.begin(), all.end(),
+                   [&](const auto& a, const auto& b) { return steps(a) < steps(b); });
+  return all;
+}
+
+}  // namespace
+
+std::optional<DtadParams> nearest_stable_gains(const std::vector<LoopModel>& loops,
+                                               const DtadParams& params) {
+  std::optional<DtadParams> best;
+  double quickest = 0;
+  size_t worst = 0;  // the loop in which the choice before was unstable, which is looked at first
+  for (const std::vector<size_t>& places : nearest_choices()) {
+    DtadParams choice = params;
+    for (size_t i = 0; i < places.size(); ++i)
+      for (const auto& [name, field] : loop_gains()[i].fields)
+        if (places[i] > 0)  // in whole hundredths
+          choice.*field =
+              std::round(100 * choice.*field * loop_gains()[i].factors[places[i]]) / 100;
+    double margin = INFINITY;
+    for (size_t i = 0; i < loops.size() && margin > quickest; ++i) {
+      const size_t at = i == 0 ? worst : i <= worst ? i - 1 : i;
+      const double decay = analyze_loop(loops[at], choice).decay + loops[at].tolerated_growth;
+      if (decay < margin) margin = decay;
+      if (margin <= 0) worst = at;
+    }
+    if (margin <= quickest) continue;
+    best = choice;
+    quickest = margin;
+    if (margin * kSlowestDecay >= std::sqrt(kGravity / loops.front().height)) break;
+  }
+  return best;
+}
+
+std::vector<std::pair<std::string, double>> changed_loop_gains(const DtadParams& params,
+                                                               const DtadParams& other) {
+  std::vector<std::pair<std::string, double>> changed;
+  for (const LoopGain& gain : loop_gains())
+    for (const auto& [name, field] : gain.fields)
+      if (params.*field != other.*field) changed.emplace_back(name, params.*field);
+  return changed;
+}
+
+namespace {
+
+std::string gains_in_words(const std::vector<std::pair<std::string, double>>& gains) {
+  std::vector<std::string> words;
+  for (const auto& [name, value] : gains) words.push_back(name + " = " + text::brief(value));
+  return text::join(words, ", ");
+}
+
+// What makes an unstable loop stable.
+std::string remedy(const std::vector<LoopModel>& loops, const DtadParams& params) {
+  const double low = largest_stable_ka(loops, params, params.zmp_gain);
+  if (low > 1e-6)
+    return "choose ka below " + text::fixed(low, 2) + ", for which the loop is stable";
+  if (const auto stable = nearest_stable_gains(loops, params))
+    return "choose " + gains_in_words(changed_loop_gains(*stable, params)) +
+           ", for which the loop is stable";
+  return "the loop is unstable for every ka, and for all ks, kd, damp and tau_z that were tried, "
+         "because the servos are too soft for this robot: use stiffer servos";
+}
+
 /// Empty when stable.
 std::string growth(const std::vector<LoopModel>& loops, const DtadParams& params) {
   const WeakestLoop weakest = weakest_loop(loops, params);
   if (weakest.analysis.stable) return {};
   const LoopModel& loop = loops[weakest.index];
-  const double low = largest_stable_ka(loops, params, params.zmp_gain);
   return "controller gains: the loop is unstable with ka = " + text::brief(params.zmp_gain) +
          ", tau_z = " + text::brief(params.zmp_filter) + " and sensors and servos that are " +
          text::brief(1e3 * loop.delay) + " ms late. The robot oscillates at " +
          text::fixed(weakest.analysis.frequency, 1) + " Hz (" + loop.name +
          "), and an error grows by the factor e in " + text::brief(-1 / weakest.analysis.decay, 2) +
-         " s; " +
-         (low > 1e-6
-              ? "choose ka below " + text::fixed(low, 2) + ", for which the loop is stable"
-              : std::string(
-                    "the loop is unstable for every ka, because the servos are too soft for this "
-                    "robot, or ks and kd are too small: use stiffer servos, or larger ks and kd"));
+         " s; " + remedy(loops, params);
 }
 
 }  // namespace

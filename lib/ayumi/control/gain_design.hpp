@@ -52,8 +52,18 @@ DtadParams design_gains(double omega, const GainWishes& wishes, DtadParams param
 /// Largest ka with which all loops are stable, other gains as they are; 0 when none is.
 double largest_stable_ka(const std::vector<LoopModel>& loops, DtadParams params, double most = 20);
 
-/// Throws Error(usage) with the mode that grows and the largest short-term gain that would be
-/// stable.
+/// Gains with which all loops are stable: ks and kd together, damp, ka and tau_z, as few changed
+/// and by as little as possible. Of those tried, the first whose errors decay within kSlowestDecay
+/// / omega, else the ones with the quickest decay. Empty: none of them is stable.
+std::optional<DtadParams> nearest_stable_gains(const std::vector<LoopModel>& loops,
+                                               const DtadParams& params);
+
+/// "ks = 3, kd = 3": the gains in which `params` differs from `other`, of those that
+/// nearest_stable_gains() changes, by their names in files.
+std::vector<std::pair<std::string, double>> changed_loop_gains(const DtadParams& params,
+                                                               const DtadParams& other);
+
+/// Throws Error(usage) with the mode that grows and the gains nearby that would be stable.
 void refuse_unstable(const std::vector<LoopModel>& loops, const DtadParams& params);
 
 /// Why a robot should not be run with a controller at this COG height, in the words of

@@ -1,7 +1,9 @@
 #include "ayumi/io/formats/motion_formats.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
+#include <string_view>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
@@ -21,6 +23,7 @@
 #include "ayumi/io/formats/transposed_csv.hpp"
 #include "ayumi/io/formats/webots_motion.hpp"
 #include "ayumi/io/formats/zvs.hpp"
+#include "ayumi/io/table/comma_cells.hpp"
 
 namespace ayumi {
 
@@ -75,7 +78,9 @@ const std::vector<Foreign>& foreign_files() {
       {"Vocaloid Motion Data", "a motion of MikuMikuDance (.vmd)", retarget},
       {"PathFileType", "a TRC recording of markers", retarget},
       {"#!OML:ASF", "an ASF/AMC recording of a person", retarget},
-      {":version", "a skeleton of ASF/AMC", retarget},
+      {"#VRML", "a VRML scene", "name the motion file"},
+      {"ply\n", "a PLY mesh", "name the motion file"},
+      {":FULLY-SPECIFIED", "an ASF/AMC recording of a person", retarget},
       {"#usda", "a USD scene", retarget},
       {"PXR-USDC", "a USD scene", retarget},
       {"\x89HDF", "an HDF5 file", "write its joint angles as CSV"}};
@@ -86,6 +91,63 @@ std::string lower_extension(const std::string& file) {
   std::string extension = fs::path(file).extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return extension;
+}
+
+// Lines at the beginning that say what a text is. Chosen: heads of the formats above are shorter.
+constexpr size_t kHeadLines = 50;
+
+std::vector<std::string_view> head_lines(const MotionInput& source) {
+  std::vector<std::string_view> lines;
+  std::string_view rest = source.bytes;
+  while (!rest.empty() && lines.size() < kHeadLines)
+    if (const std::string_view line = take_line(rest); !line.empty()) lines.push_back(line);
+  return lines;
+}
+
+// Cells of a line that are numbers, and pairs of words with nothing but blanks between them.
+struct LineParts {
+  size_t numbers = 0, cells = 0, word_pairs = 0;
+};
+
+LineParts parts_of(std::string_view line) {
+  LineParts parts;
+  bool word_before = false;
+  while (!line.empty()) {
+    const size_t end = std::min(line.find_first_of(" \t,;"), line.size());
+    const std::string_view cell = line.substr(0, end);
+    const bool word = !cell.empty() && std::isalpha(static_cast<unsigned char>(cell.front()));
+    parts.cells += !cell.empty();
+    parts.numbers += !cell.empty() && cell.find_first_of("0123456789") != std::string_view::npos &&
+                     cell.find_first_not_of("0123456789.eE+-") == std::string_view::npos;
+    parts.word_pairs += word && word_before;
+    if (!cell.empty()) word_before = word;
+    if (end < line.size() && line[end] != ' ') word_before = false;
+    line.remove_prefix(std::min(end + 1, line.size()));
+  }
+  return parts;
+}
+
+// Sentences: words between blanks, and no row of numbers.
+bool is_prose(const MotionInput& source) {
+  size_t pairs = 0;
+  for (const std::string_view line : head_lines(source)) {
+    const LineParts parts = parts_of(line);
+    if (parts.numbers >= 2 || (parts.cells > 0 && parts.numbers == parts.cells)) return false;
+    pairs += parts.word_pairs;
+  }
+  return pairs >= 2;
+}
+
+bool is_text_stl(const MotionInput& source) {
+  const std::vector<std::string_view> lines = head_lines(source);
+  return lines.size() > 1 && lines[0].starts_with("solid") &&
+         (lines[1].starts_with("facet") || lines[1].starts_with("endsolid"));
+}
+
+bool is_asf(const MotionInput& source) {
+  for (const std::string_view line : head_lines(source))
+    if (line.starts_with(":version") || line.starts_with(":bonedata")) return true;
+  return false;
 }
 
 // Kinds that the first bytes prove.
@@ -100,6 +162,12 @@ const Foreign* signed_kind(const MotionInput& source) {
   static const Foreign opensim = {"", "a motion of OpenSim (.mot, .sto)",
                                   "write its coordinates as a table with a head row, as CSV"};
   if (source.bytes.substr(0, 2000).find("\nendheader") != std::string::npos) return &opensim;
+  static const Foreign stl = {"", "an STL mesh", "name the motion file"};
+  if (is_text_stl(source)) return &stl;
+  static const Foreign skeleton = {"", "a skeleton of ASF/AMC",
+                                   "retarget its motion to the robot first, and write the joint "
+                                   "angles as CSV"};
+  if (is_asf(source)) return &skeleton;
   return nullptr;
 }
 
@@ -216,7 +284,13 @@ Recognized recognize(const MotionInput& source) {
     if (kind) break;
     if (!format.recognize || (binary && !format.binary)) continue;
     const std::string reason = format.recognize(source);
-    if (!reason.empty()) return {&format, reason};
+    if (reason.empty()) continue;
+    static const Foreign prose = {"", "a text without rows of numbers", "name the motion file"};
+    if (format.name == "csv" && is_prose(source)) {
+      kind = &prose;
+      break;
+    }
+    return {&format, reason};
   }
   const std::string formats = "import reads " + text::join(read_format_names(), ", ");
   if (source.bytes.find_first_not_of(" \t\r\n") == std::string::npos)

@@ -1,6 +1,10 @@
 #include "ayumi/io/formats/zvs.hpp"
 
+#include <filesystem>
+#include <optional>
+
 #include "ayumi/base/counted.hpp"
+#include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/robot/ztk.hpp"
 #include "ayumi/io/table/comma_cells.hpp"
@@ -23,6 +27,29 @@ std::vector<std::string_view> tokens_of(std::string_view line) {
     tokens.push_back(line.substr(0, end));
     line.remove_prefix(end);
   }
+}
+
+// The joints that move, in the order of their values, of the robot beside the motion; says in
+// `notes` why there are none although there is such a robot.
+std::vector<std::string> joints_beside(const MotionInput& source, size_t width,
+                                       std::vector<std::string>& notes) {
+  const std::optional<std::string> bytes = source.beside(".ztk");
+  if (!bytes) return {};
+  const std::filesystem::path file = std::filesystem::path(source.file).replace_extension(".ztk");
+  try {
+    std::vector<std::string> joints = parse_ztk(*bytes, file).joint_order;
+    if (width == joints.size() || width == joints.size() + kRootValues) {
+      notes.push_back("the names of the joints are those of " + file.filename().string() +
+                      " beside the motion");
+      return joints;
+    }
+    notes.push_back(file.filename().string() + " beside the motion is not used: it has " +
+                    text::counted(joints.size(), "joint") + ", but a row has " +
+                    text::counted(width, "value"));
+  } catch (const Error& error) {
+    notes.push_back("the robot beside the motion is not used: " + std::string(error.what()));
+  }
+  return {};
 }
 
 }  // namespace
@@ -72,7 +99,9 @@ MotionFile read_zvs(const MotionInput& source) {
       cells.data(), static_cast<Eigen::Index>(motion.times.size()),
       static_cast<Eigen::Index>(width));
   motion.notes.push_back("units: seconds, radians and metres, as the format defines them");
-  const auto joints = static_cast<size_t>(source.model.dof_count());
+  motion.joints = joints_beside(source, width, motion.notes);
+  const size_t joints =
+      motion.joints.empty() ? static_cast<size_t>(source.model.dof_count()) : motion.joints.size();
   if (width == joints + kRootValues) {
     for (Eigen::Index k = 0; k < all.rows(); ++k)
       motion.base.push_back(

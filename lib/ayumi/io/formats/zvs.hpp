@@ -1,6 +1,7 @@
 #pragma once
 // Sequences of joint displacements of mi-lib (.zvs): "dt n ( v1 ... vn )" in each line. Where the
-// root floats, its position and rotation vector come first.
+// root floats, its position and rotation vector come first. The joints have the names of the robot
+// (.ztk) of the same name beside the motion, where there is one.
 
 #include "ayumi/io/formats/motion_file.hpp"
 

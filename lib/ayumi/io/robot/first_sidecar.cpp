@@ -324,6 +324,15 @@ std::string profiles_text(const RobotModel& model, const RobotGuess& guess) {
   return text + "      ]\n    }\n  ],\n";
 }
 
+std::string gains_text(const SidecarGains& gains) {
+  if (gains.dtad.empty()) return "";
+  std::vector<std::string> values;
+  for (const auto& [name, value] : gains.dtad)
+    values.push_back(json_text(name) + ": " + text::exact(value));
+  return guessed("Gains of the control law DTAD.", {gains.why, gains.check}) +
+         "  \"control\": { \"dtad\": { " + text::join(values, ", ") + " } },\n";
+}
+
 std::string imu_link(const RobotModel& model) {
   for (const Link& link : model.links()) {
     std::string name = link.name;
@@ -504,7 +513,8 @@ std::vector<std::string> to_do_list(const RobotModel& model, const RobotGuess& g
 }  // namespace
 
 FirstSidecar first_sidecar(const std::string& robot, const std::filesystem::path& folder,
-                           const RobotSearch& search) {
+                           const RobotSearch& search,
+                           const std::function<SidecarGains(const RobotModel&)>& gains) {
   RobotDescription stated = load_robot_description(robot, search, {.meshes = true, .guess = false});
   if (!stated.sidecar_file.empty())
     fail(ErrorCode::usage, robot + ": this robot has a sidecar already, " + stated.sidecar_file +
@@ -526,6 +536,9 @@ FirstSidecar first_sidecar(const std::string& robot, const std::filesystem::path
         (boxes.size() > 3 ? ", ..." : "") +
         "): the robot's file states placeholders, and this sidecar has the inertias of boxes in "
         "their place.");
+  const SidecarGains chosen = gains && model.has_soles() ? gains(model) : SidecarGains{};
+  if (!chosen.to_do.empty()) result.to_do.push_back(chosen.to_do);
+  for (const auto& [name, value] : chosen.dtad) guess.robot.control.dtad[name] = value;
   result.text = "{\n" +
                 remark("The first sidecar of " + model.name() +
                        ", written by ayumi init. All values under \"Guess\" are to be checked; "
@@ -540,7 +553,7 @@ FirstSidecar first_sidecar(const std::string& robot, const std::filesystem::path
                 "  \"facing\": " + json_text(guess.facing) + ",\n" +
                 inertias_text(guess.robot, boxes) + trunk_text(model) + soles_text(model, guess) +
                 home_text(model, guess) + aliases_text(model) + servos_text(model, guess) +
-                profiles_text(model, guess) + sensors_text(model) + "}\n";
+                profiles_text(model, guess) + gains_text(chosen) + sensors_text(model) + "}\n";
   result.robot = guess.robot;
   return result;
 }

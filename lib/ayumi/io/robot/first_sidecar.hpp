@@ -3,7 +3,9 @@
 // under a comment with its reason and with what to check.
 
 #include <filesystem>
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ayumi/io/robot/robot_file.hpp"
@@ -16,10 +18,18 @@ struct FirstSidecar {
   RobotDescription robot;          ///< with the guesses
 };
 
+/// Gains of DTAD for a robot, which io cannot compute.
+struct SidecarGains {
+  std::vector<std::pair<std::string, double>> dtad;  ///< by name; empty: the defaults
+  std::string why, check;                            ///< of the guess
+  std::string to_do;                                 ///< "": nothing
+};
+
 /// `robot` is a file or folder as load_robot() takes it; the sidecar names its URDF relative to
 /// `folder`, where the sidecar will be. Throws as load_robot(), and Error(usage) for a robot that
-/// has a sidecar already.
+/// has a sidecar already. `gains`: called for the robot with the guesses, where it has soles.
 FirstSidecar first_sidecar(const std::string& robot, const std::filesystem::path& folder,
-                           const RobotSearch& search = {});
+                           const RobotSearch& search = {},
+                           const std::function<SidecarGains(const RobotModel&)>& gains = {});
 
 }  // namespace ayumi
