@@ -79,16 +79,29 @@ std::string causes(const ConsistencyReport& report, const RobotModel& model) {
   return out;
 }
 
+// Where and when a figure is reached.
+std::string figure_place(const ConsistencyReport& report, FindingKind kind) {
+  const FigurePlace& p = report.summary_at[kind];
+  if (!std::isfinite(p.at)) return {};
+  return " (" + (p.where.empty() ? "" : p.where + " ") + "at " + text::fixed(p.at, 2) + " s)";
+}
+
 }  // namespace
+
+std::string shares_of_limits(const ConsistencyReport& report) {
+  std::vector<std::string> shares;
+  for (const FindingSpec* spec : summary_figures())
+    if (spec->figure.share_name)
+      shares.push_back(std::string(spec->figure.share_name) + " " +
+                       whole_percent(report.summary[spec->kind]) +
+                       figure_place(report, spec->kind));
+  return text::join(shares, ", ");
+}
 
 std::string check_table(const ConsistencyReport& report, const RobotModel& model, Shown shown) {
   std::string out = shown == Shown::findings ? all_findings(report) : causes(report, model);
   const auto at = [&](FindingKind kind) { return report.summary[kind]; };
-  const auto place = [&](FindingKind kind) {
-    const FigurePlace& p = report.summary_at[kind];
-    if (!std::isfinite(p.at)) return std::string();
-    return " (" + (p.where.empty() ? "" : p.where + " ") + "at " + text::fixed(p.at, 2) + " s)";
-  };
+  const auto place = [&](FindingKind kind) { return figure_place(report, kind); };
   const double margin = at(FindingKind::support_margin);
   out += "  ZMP " + mm_text(std::abs(margin)) + (margin < 0 ? " outside" : " inside") +
          " the support" + place(FindingKind::support_margin) +
@@ -97,12 +110,7 @@ std::string check_table(const ConsistencyReport& report, const RobotModel& model
          text::fixed(at(FindingKind::fz_residual), 2) +
          " N in force; the ZMP of the point-mass model is " +
          mm_text(at(FindingKind::point_mass_gap)) + " from the command\n";
-  std::vector<std::string> shares;
-  for (const FindingSpec* spec : summary_figures())
-    if (spec->figure.share_name)
-      shares.push_back(std::string(spec->figure.share_name) + " " + whole_percent(at(spec->kind)) +
-                       place(spec->kind));
-  out += "  share of the limits: " + text::join(shares, ", ") + "\n";
+  out += "  share of the limits: " + shares_of_limits(report) + "\n";
   out += "  feet: slip " + mm_text(at(FindingKind::foot_slip)) + ", sink " +
          mm_text(at(FindingKind::foot_penetration)) + ", gap while standing " +
          mm_text(at(FindingKind::foot_float)) + "; ";

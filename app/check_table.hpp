@@ -22,6 +22,9 @@ inline constexpr int kMostGroups = 10;
 std::string check_table(const ConsistencyReport& report, const RobotModel& model,
                         Shown shown = Shown::causes);
 
+/// "joint speed 62 % (l_knee at 1.20 s), ...": the largest share of each limit.
+std::string shares_of_limits(const ConsistencyReport& report);
+
 /// A line for each, with this heading.
 std::string mistake_words(const std::vector<Mistake>& mistakes,
                           const char* heading = "likely cause:");

@@ -11,11 +11,13 @@
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/check/likely_mistakes.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/plot/push_map.hpp"
 #include "ayumi/report/replay.hpp"
 #include "ayumi/study/push.hpp"
 #include "ayumi/task/plan_log.hpp"
+#include "check_table.hpp"
 #include "motion_words.hpp"
 #include "repairing.hpp"
 #include "simulation.hpp"
@@ -55,16 +57,20 @@ std::string counted_findings(const Judgement& judgement) {
   return text::counted(errors, "error") + ", " + text::counted(warnings, "warning");
 }
 
-AuthorResult check_job(const AuthorMotion& motion) {
+AuthorResult check_job(const AuthorMotion& motion, const Progress& progress) {
   const Judgement& judgement = motion.judgement;
+  const Task& task = motion.task;
   OrderedJson lines = OrderedJson::array();
+  if (!judgement.good())
+    for (const Mistake& mistake :
+         likely_mistakes(task.robot, task.pattern, check_options(task), progress))
+      lines.push_back("Likely cause: " + mistake.text());
   const std::string& need = judgement.need().text;
   if (!need.empty()) lines.push_back(need);
-  for (const std::string& reason : export_refusals(motion.task, judgement))
+  for (const std::string& reason : export_refusals(task, judgement))
     if (reason != judgement.reason()) lines.push_back("ayumi export refuses the table: " + reason);
-  lines.push_back(counted_findings(judgement) + ", actuators " + motion.task.profile);
-  for (const auto& line : json_lines_of(origin_words(motion.task.series.origin)))
-    lines.push_back(line);
+  lines.push_back(counted_findings(judgement) + ", actuators " + task.profile);
+  lines.push_back("Share of the limits: " + shares_of_limits(judgement.report));
   return {result_json("check", judgement.good() ? "The pattern is consistent." : judgement.reason(),
                       judgement.good(), lines),
           {}};
@@ -314,7 +320,7 @@ const std::vector<std::string>& author_job_kinds() {
 AuthorResult author_job(const std::string& kind, const OrderedJson& options, const Context& context,
                         const AuthorMotion& motion, const std::string& text,
                         const AuthorSetting& setting, const Progress& progress) {
-  if (kind == "check") return check_job(motion);
+  if (kind == "check") return check_job(motion, progress);
   if (kind == "repair") return repair_job(motion, text, progress);
   if (kind == "simulate") return simulate_job(options, context, motion, progress);
   if (kind == "push") return push_job(context, motion, progress);

@@ -6,6 +6,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/check/finding_groups.hpp"
 #include "ayumi/check/stability_series.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/dynamics/reach.hpp"
@@ -63,6 +64,23 @@ OrderedJson finding_json(const RobotModel& model, const Finding& f) {
   return json;
 }
 
+// The findings as `check` prints them: one entry for each cause, with what follows from it.
+OrderedJson groups_json(const RobotModel& model, const ConsistencyReport& report) {
+  OrderedJson groups = OrderedJson::array();
+  for (const FindingGroup& group : finding_groups(report, model)) {
+    OrderedJson consequences = OrderedJson::array();
+    for (const GroupConsequence& c : group.consequences) {
+      const Finding& f = report.findings[static_cast<size_t>(c.worst)];
+      consequences.push_back(words_of(name_of(c.kind)) + ", " + f.where + ": " + amount_text(f));
+    }
+    groups.push_back({{"worst", group.worst},
+                      {"members", group.members},
+                      {"places", text::join(group.places, " and ")},
+                      {"consequences", consequences}});
+  }
+  return groups;
+}
+
 std::string pointer_to(const std::string& list, size_t i) {
   return "/" + list + "/" + std::to_string(i);
 }
@@ -70,15 +88,21 @@ std::string pointer_to(const std::string& list, size_t i) {
 // Whether what stands there is read several times, in the rounds of a block.
 bool is_repeated(const std::string& pointer) { return outermost(pointer) != pointer; }
 
-const OrderedJson& written_at(const AuthorMotion& motion, const std::string& pointer) {
-  return motion.document.at(OrderedJson::json_pointer(pointer));
+// A pattern and its document, as written.
+struct Written {
+  const Pattern& pattern;
+  const OrderedJson& document;
+};
+
+const OrderedJson& written_at(const Written& text, const std::string& pointer) {
+  return text.document.at(OrderedJson::json_pointer(pointer));
 }
 
 // Where the time of a keyframe is written, and from when on the value there counts.
-OrderedJson time_json(const AuthorMotion& motion, size_t i) {
-  const auto& frames = motion.task.pattern.keyframes;
-  const std::string pointer = pointer_of_keyframe(motion.task.pattern, i);
-  const OrderedJson& written = written_at(motion, pointer);
+OrderedJson time_json(const Written& text, size_t i) {
+  const auto& frames = text.pattern.keyframes;
+  const std::string pointer = pointer_of_keyframe(text.pattern, i);
+  const OrderedJson& written = written_at(text, pointer);
   const bool relative = written.contains("after");
   const std::string key = relative ? "after" : "t";
   return {{"time", frames[i].t},
@@ -88,13 +112,13 @@ OrderedJson time_json(const AuthorMotion& motion, size_t i) {
           {"repeated", is_repeated(pointer)}};
 }
 
-OrderedJson phases_json(const AuthorMotion& motion) {
+OrderedJson phases_json(const Written& text) {
   OrderedJson phases = OrderedJson::array();
   double from = 0;
-  for (size_t i = 0; i < motion.task.pattern.phases.size(); ++i) {
-    const Phase& phase = motion.task.pattern.phases[i];
-    const std::string pointer = pointer_of_phase(motion.task.pattern, i);
-    const OrderedJson& written = written_at(motion, pointer);
+  for (size_t i = 0; i < text.pattern.phases.size(); ++i) {
+    const Phase& phase = text.pattern.phases[i];
+    const std::string pointer = pointer_of_phase(text.pattern, i);
+    const OrderedJson& written = written_at(text, pointer);
     const bool relative = written.contains("duration");
     const std::string key = relative ? "duration" : "until";
     phases.push_back(
@@ -144,12 +168,12 @@ class Tracks {
   OrderedJson tracks_ = OrderedJson::array();
 };
 
-OrderedJson tracks_json(const AuthorMotion& motion) {
+OrderedJson tracks_json(const Written& text) {
   Tracks tracks;
-  for (size_t i = 0; i < motion.task.pattern.keyframes.size(); ++i) {
-    const std::string pointer = pointer_of_keyframe(motion.task.pattern, i);
-    const OrderedJson& written = written_at(motion, pointer);
-    const OrderedJson time = time_json(motion, i);
+  for (size_t i = 0; i < text.pattern.keyframes.size(); ++i) {
+    const std::string pointer = pointer_of_keyframe(text.pattern, i);
+    const OrderedJson& written = written_at(text, pointer);
+    const OrderedJson time = time_json(text, i);
     const auto add = [&](const std::string& name, const std::string& kind,
                          const std::string& inside, const OrderedJson& value) {
       OrderedJson key_json = time;
@@ -177,23 +201,23 @@ OrderedJson tracks_json(const AuthorMotion& motion) {
   return tracks.sorted();
 }
 
-OrderedJson keyframes_json(const AuthorMotion& motion) {
+OrderedJson keyframes_json(const Written& text) {
   OrderedJson frames = OrderedJson::array();
-  for (size_t i = 0; i < motion.task.pattern.keyframes.size(); ++i) {
-    const std::string pointer = pointer_of_keyframe(motion.task.pattern, i);
-    const OrderedJson& written = written_at(motion, pointer);
-    frames.push_back(time_json(motion, i));
+  for (size_t i = 0; i < text.pattern.keyframes.size(); ++i) {
+    const std::string pointer = pointer_of_keyframe(text.pattern, i);
+    const OrderedJson& written = written_at(text, pointer);
+    frames.push_back(time_json(text, i));
     frames.back()["pointer"] = pointer;
     frames.back()["more"] = written.contains("weights") || written.contains("interpolation");
   }
   return frames;
 }
 
-OrderedJson disturbances_json(const AuthorMotion& motion) {
+OrderedJson disturbances_json(const Written& text) {
   OrderedJson all = OrderedJson::array();
-  for (size_t i = 0; i < motion.task.pattern.scenario.size(); ++i) {
-    const Disturbance& d = motion.task.pattern.scenario[i];
-    const auto& written = motion.document["scenario"][i];
+  for (size_t i = 0; i < text.pattern.scenario.size(); ++i) {
+    const Disturbance& d = text.pattern.scenario[i];
+    const auto& written = text.document["scenario"][i];
     const std::string pointer = pointer_to("scenario", i);
     OrderedJson one = {
         {"type", name_of(d)},
@@ -316,7 +340,9 @@ void describe(AuthorMotion& motion, const StabilitySeries& stability) {
   OrderedJson own = OrderedJson::array();
   if (motion.document.contains("postures"))
     for (const auto& [name, joints] : motion.document["postures"].items()) own.push_back(name);
-  motion.parts = {{"robot", task.robot.name()},
+  motion.parts = author_structure(task.pattern, motion.document);
+  motion.parts.update(
+      OrderedJson{{"robot", task.robot.name()},
                   {"profile", task.profile},
                   {"duration", task.series.duration()},
                   {"dt", task.series.dt},
@@ -324,10 +350,7 @@ void describe(AuthorMotion& motion, const StabilitySeries& stability) {
                   {"consistent", motion.judgement.good()},
                   {"reason", motion.judgement.reason()},
                   {"findings", findings},
-                  {"phases", phases_json(motion)},
-                  {"keyframes", keyframes_json(motion)},
-                  {"tracks", tracks_json(motion)},
-                  {"disturbances", disturbances_json(motion)},
+                  {"groups", groups_json(task.robot, motion.judgement.report)},
                   {"joints", joints_json(task.robot)},
                   {"handles", handles_json(task.robot)},
                   {"targets", targets_json(motion)},
@@ -335,10 +358,18 @@ void describe(AuthorMotion& motion, const StabilitySeries& stability) {
                   {"own_postures", own},
                   {"strip", strip_json(motion, stability)},
                   {"strip_dt", stability.dt},
-                  {"replay", OrderedJson::parse(live_config(task.robot, motion.plan, kPageRate))}};
+                  {"replay", OrderedJson::parse(live_config(task.robot, motion.plan, kPageRate))}});
 }
 
 }  // namespace
+
+OrderedJson author_structure(const Pattern& pattern, const OrderedJson& document) {
+  const Written text{pattern, document};
+  return {{"phases", phases_json(text)},
+          {"keyframes", keyframes_json(text)},
+          {"tracks", tracks_json(text)},
+          {"disturbances", disturbances_json(text)}};
+}
 
 std::string outermost(const std::string& pointer) {
   return pointer.substr(0, pointer.find('/', pointer.find('/', 1) + 1));

@@ -39,6 +39,10 @@ std::shared_ptr<const AuthorMotion> author_motion(const std::string& text, const
                                                   const AuthorSetting& setting,
                                                   const Progress& progress = {});
 
+/// The members of the page's state that follow from the text alone: its phases, keyframes, tracks
+/// and disturbances, with their places.
+OrderedJson author_structure(const Pattern& pattern, const OrderedJson& document);
+
 /// A slash and a key as they stand in a JSON pointer.
 std::string pointer_token(const std::string& key);
 

@@ -142,20 +142,6 @@ double angle_in_unit(const AuthorMotion& motion, double angle) {
   return motion.task.pattern.degrees ? rounded(angle * 180 / M_PI, 2) : rounded(angle, 4);
 }
 
-// A joint's key stands in "joints", or where the keyframe has its posture as angles, there.
-void set_joint(const AuthorMotion& motion, double time, int dof, double value, KeyEdits& keys) {
-  const auto& frames = motion.task.pattern.keyframes;
-  const Dof& joint = motion.task.robot.dofs()[static_cast<size_t>(dof)];
-  std::string list = "joints";
-  for (size_t i = 0; i < frames.size(); ++i) {
-    const auto& written = motion.document["keyframes"][i];
-    if (std::abs(frames[i].t - time) < kSameTime && written.contains("posture") &&
-        written["posture"].is_object() && written["posture"].contains(joint.name))
-      list = "posture";
-  }
-  keys.set(time, {list, joint.name}, in_unit(motion, joint, value));
-}
-
 // A track that has no keys of its own yet keeps its present value at the keyframes around, so that
 // the change stays between them.
 template <typename HasKey, typename Present>
@@ -175,6 +161,29 @@ void hold_around(const AuthorMotion& motion, double time, const HasKey& has_key,
   }
   if (!keyed_before && before && before->t > 0) set_present(before->t);
   if (!keyed_after && after) set_present(after->t);
+}
+
+// A joint's key stands in "joints", or where the keyframe has its posture as angles, there. Around
+// a joint's first key, its motion stays as it is.
+void set_joint(const AuthorMotion& motion, double time, int dof, double value, KeyEdits& keys) {
+  const auto& frames = motion.task.pattern.keyframes;
+  const Dof& joint = motion.task.robot.dofs()[static_cast<size_t>(dof)];
+  const auto set = [&](double t, double angle) {
+    std::string list = "joints";
+    for (size_t i = 0; i < frames.size(); ++i) {
+      const auto& written = motion.document.at(
+          OrderedJson::json_pointer(pointer_of_keyframe(motion.task.pattern, i)));
+      if (std::abs(frames[i].t - t) < kSameTime && written.contains("posture") &&
+          written["posture"].is_object() && written["posture"].contains(joint.name))
+        list = "posture";
+    }
+    keys.set(t, {list, joint.name}, in_unit(motion, joint, angle));
+  };
+  hold_around(
+      motion, time,
+      [&](const Keyframe& frame) { return frame.posture || frame.joints.contains(joint.name); },
+      [&](double t) { set(t, sample_near(motion.task.series, t).state.theta[dof]); });
+  set(time, value);
 }
 
 void drag_height(const AuthorMotion& motion, double time, double change, KeyEdits& keys) {
@@ -359,7 +368,7 @@ void drag_swing(const AuthorMotion& motion, size_t phase, double time, const Vec
 // A foot without swings that is free: a key at this time, and where its freedom begins and ends the
 // place that it has there.
 void drag_free_foot(const AuthorMotion& motion, Side side, double time, const Vector3d& change,
-                    KeyEdits& keys) {
+                    KeyEdits& keys, std::vector<PatternEdit>& edits) {
   const Pattern& pattern = motion.task.pattern;
   const auto s = static_cast<size_t>(side);
   size_t first = phase_at(pattern, time), last = first;
@@ -376,6 +385,15 @@ void drag_free_foot(const AuthorMotion& motion, Side side, double time, const Ve
   for (const double edge : {begin_of(pattern, first), pattern.phases[last].until})
     if (std::abs(edge - time) > kSameTime && !has_key(edge))
       keys.set(edge, {"feet", foot}, foothold_value(motion, pose(edge)));
+  // A key that is there keeps its form and its expressions, if it has room for the height.
+  for (size_t i = 0; i < pattern.keyframes.size(); ++i) {
+    if (std::abs(pattern.keyframes[i].t - time) > kSameTime || !pattern.keyframes[i].feet[s])
+      continue;
+    const std::string pointer = pointer_of_keyframe(pattern, i) + "/feet/" + foot;
+    const OrderedJson& written = motion.document.at(OrderedJson::json_pointer(pointer));
+    if (written.size() == 2 && written.is_array() && std::abs(change.z()) > kStill) continue;
+    return move_foothold(motion, pointer, change, edits);
+  }
   Isometry3d moved = pose(time);
   moved.translation() += change;
   keys.set(time, {"feet", foot}, foothold_value(motion, moved));
@@ -393,7 +411,7 @@ void drag_foot(const AuthorMotion& motion, double time, Side side, const Vector3
   else if (swings || supports(pattern.phases[phase_at(pattern, time)].support, side))
     drag_start(motion, side, level, edits);
   else
-    drag_free_foot(motion, side, time, change, keys);
+    drag_free_foot(motion, side, time, change, keys, edits);
 }
 
 // ---- sampling again

@@ -30,6 +30,8 @@ using namespace std::chrono_literals;
 constexpr auto kLook = 20ms;
 // Clocks of file systems go on in steps of up to 10 ms (jiffies of 100 Hz).
 constexpr auto kClockStep = 30ms;
+// A file that is away for longer is gone. Chosen: editors that replace a file do so within 0.1 s.
+constexpr auto kGone = 500ms;
 // Between two news of one job. Chosen: a bar that moves ten times a second looks smooth.
 constexpr auto kNews = 100ms;
 // Events that are kept for pages that are slow. A page that misses some asks for the state anew.
@@ -39,13 +41,19 @@ constexpr size_t kTriangles = 60'000;
 
 AuthorAnswer refused(const std::string& message) { return {422, {{"message", message}}}; }
 
+// A message without the name of the pattern's file in front: the page shows one file only.
+std::string without_file(const std::string& message, const fs::path& file) {
+  const std::string name = file.string() + ": ";
+  return message.starts_with(name) ? message.substr(name.size()) : message;
+}
+
 // Calls `work`; what it throws is an answer in words.
 template <typename Work>
-AuthorAnswer answered(const Work& work) {
+AuthorAnswer answered(const fs::path& file, const Work& work) {
   try {
     return work();
   } catch (const Error& error) {
-    return refused(error.what());
+    return refused(without_file(error.what(), file));
   } catch (const nlohmann::json::exception&) {
     return {400, {{"message", "the request does not have the form that the page sends"}}};
   }
@@ -64,6 +72,7 @@ struct AuthorSession::View {
   std::uint64_t version = 0;
   std::string text, hash;
   std::optional<OrderedJson> error;            // why the text has no motion
+  std::optional<OrderedJson> structure;        // of a pattern that reads and has no motion
   std::shared_ptr<const AuthorMotion> motion;  // of the text, or the last one before
   std::shared_ptr<const AuthorMotion> ghost;   // the last consistent one, if it is another
   std::optional<AuthorResult> result;          // of the last job on this text
@@ -148,6 +157,7 @@ void AuthorSession::follow() {
       if (changed_.wait_for(lock, kLook, [&] { return stopping_; })) return;
     }
     const std::lock_guard lock(reading_);
+    if (is_gone()) continue;
     const bool same = std::all_of(seen_.begin(), seen_.end(), [](const auto& seen) {
       return stamp_of(seen.first) == seen.second;
     });
@@ -159,6 +169,26 @@ void AuthorSession::follow() {
     } catch (const Error&) {  // the file is away for a moment; the next look finds it
     }
   }
+}
+
+// Whether the file is away. A file that stays away is an error of the page, until it comes back.
+bool AuthorSession::is_gone() {
+  const auto now = std::chrono::steady_clock::now();
+  if (stamp_of(setting_.file).size >= 0) {
+    gone_since_.reset();
+    return false;
+  }
+  seen_[setting_.file] = {};  // whatever comes back is read
+  if (!gone_since_) gone_since_ = now;
+  const Shown before = view();
+  const std::string words = "the file is gone. The page goes on when it is there again";
+  if (now - *gone_since_ < kGone || (before->error && (*before->error)["message"] == words))
+    return true;
+  auto next = std::make_shared<View>(*before);
+  next->error = OrderedJson::object({{"message", words}});
+  next->structure.reset();
+  publish(std::move(next));
+  return true;
 }
 
 void AuthorSession::load_robot_of(const std::string& text, bool anew) {
@@ -215,12 +245,20 @@ void AuthorSession::refresh() {
   } catch (const PlacedError& error) {
     const SourcePlace& at = error.place();
     const bool here = at.file == setting_.file.string();
-    next->error = {{"message", error.what()}, {"pointer", at.pointer}};
+    next->error = {{"message", without_file(error.what(), setting_.file)}, {"pointer", at.pointer}};
     if (here && at.line > 0) (*next->error)["line"] = at.line;
     if (here && at.line == 0)
       (*next->error)["line"] = line_at(text, nearest_value(text, at.pointer).begin);
   } catch (const Error& error) {
-    next->error = OrderedJson::object({{"message", error.what()}});
+    next->error = OrderedJson::object({{"message", without_file(error.what(), setting_.file)}});
+  }
+  if (next->error) {
+    try {
+      next->structure = author_structure(pattern_of_text(text, setting_.file, setting_.set),
+                                         OrderedJson::parse(text, nullptr, true, true));
+    } catch (const Error&) {  // the page shows the places of the old motion and changes nothing
+    } catch (const nlohmann::json::exception&) {
+    }
   }
   publish(std::move(next));
 }
@@ -237,7 +275,10 @@ std::string AuthorSession::state() {
                       {"stale", shown->error.has_value()},
                       {"undo", shown->undo_steps},
                       {"redo", shown->redo_steps}};
-  OrderedJson features = {"edit", "undo"};
+  OrderedJson features = {"undo"};
+  // Of a text that cannot be read, the page knows the places of the old motion only. A change would
+  // reach another keyframe than the one that is shown.
+  if (!shown->error || shown->structure) features.push_back("edit");
   if (shown->motion) {
     json.update(shown->motion->parts);
     // Of a motion that is older than the text, nothing can be changed but the text.
@@ -253,6 +294,7 @@ std::string AuthorSession::state() {
     json["motions"] = motions;
     json["result"] = shown->result ? shown->result->shown : OrderedJson(nullptr);
   }
+  if (shown->structure) json.update(*shown->structure);
   json["features"] = features;
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
@@ -298,21 +340,33 @@ AuthorAnswer AuthorSession::write(const std::string& seen, const std::string& te
 
 namespace {
 
-// Keys inside a VIIP phase would make a pattern that is read now unreadable. Other errors are shown
-// at their line.
-void refuse_keys_in_goals(const std::string& text, const AuthorSetting& setting) {
-  std::optional<Pattern> pattern;
+// Throws what is wrong with a text that cannot be read as a pattern. What only the robot cannot do
+// is no such error: it is shown at its line.
+void require_readable(const std::string& text, const AuthorSetting& setting) {
+  const Pattern pattern = pattern_of_text(text, setting.file, setting.set);
+  if (has_viip_phases(pattern)) without_viip_phases(pattern);
+}
+
+// Refuses the change that makes a pattern unreadable; one that was unreadable before may stay so.
+void refuse_unreadable(const std::string& before, const std::string& after,
+                       const AuthorSetting& setting) {
   try {
-    pattern = pattern_of_text(text, setting.file, setting.set);
-  } catch (const Error&) {
+    require_readable(after, setting);
+  } catch (const Error& error) {
+    try {
+      require_readable(before, setting);
+    } catch (const Error&) {
+      return;
+    }
+    fail(error.code(), "nothing was written, because the pattern could not be read then: " +
+                           without_file(error.what(), setting.file));
   }
-  if (pattern && has_viip_phases(*pattern)) without_viip_phases(*pattern);  // throws
 }
 
 }  // namespace
 
 AuthorAnswer AuthorSession::edit(const OrderedJson& request) {
-  return answered([&]() -> AuthorAnswer {
+  return answered(setting_.file, [&]() -> AuthorAnswer {
     const std::lock_guard lock(reading_);
     const std::string seen_hash = request.at("hash");
     std::vector<PatternEdit> edits;
@@ -339,13 +393,13 @@ AuthorAnswer AuthorSession::edit(const OrderedJson& request) {
     const std::string text = request.contains("text")
                                  ? request["text"].get<std::string>()
                                  : edited_text(shown->text, edits, setting_.set);
-    if (!shown->error) refuse_keys_in_goals(text, setting_);
+    refuse_unreadable(shown->text, text, setting_);
     return write(shown->text, text);
   });
 }
 
 AuthorAnswer AuthorSession::step(const OrderedJson& request, int by) {
-  return answered([&]() -> AuthorAnswer {
+  return answered(setting_.file, [&]() -> AuthorAnswer {
     const std::lock_guard lock(reading_);
     if (read_file(setting_.file) != view()->text) refresh();
     const Shown shown = view();
@@ -385,7 +439,7 @@ OrderedJson edits_json(const std::vector<PatternEdit>& edits) {
 }  // namespace
 
 AuthorAnswer AuthorSession::pose(const OrderedJson& request) {
-  return answered([&]() -> AuthorAnswer {
+  return answered(setting_.file, [&]() -> AuthorAnswer {
     const Shown shown = view();
     if (!shown->motion || shown->error)
       return refused("the text of the pattern has an error; correct it first");
@@ -409,16 +463,17 @@ AuthorAnswer AuthorSession::pose(const OrderedJson& request) {
         row.push_back(value);
       }
     }
-    return {
-        200,
-        {{"row", row},
-         {"edits", edits_json(answer.edits)},
-         {"message", answer.message.empty() ? OrderedJson(nullptr) : OrderedJson(answer.message)}}};
+    return {200,
+            {{"row", row},
+             {"edits", edits_json(answer.edits)},
+             {"message", answer.message.empty()
+                             ? OrderedJson(nullptr)
+                             : OrderedJson(without_file(answer.message, setting_.file))}}};
   });
 }
 
 AuthorAnswer AuthorSession::posture(const OrderedJson& request) {
-  return answered([&]() -> AuthorAnswer {
+  return answered(setting_.file, [&]() -> AuthorAnswer {
     const Shown shown = view();
     if (!shown->motion || shown->error)
       return refused("the text of the pattern has an error; correct it first");
@@ -429,7 +484,7 @@ AuthorAnswer AuthorSession::posture(const OrderedJson& request) {
 }
 
 AuthorAnswer AuthorSession::mirror(const OrderedJson& request) {
-  return answered([&]() -> AuthorAnswer {
+  return answered(setting_.file, [&]() -> AuthorAnswer {
     const Shown shown = view();
     if (!shown->motion || shown->error)
       return refused("the text of the pattern has an error; correct it first");
@@ -440,7 +495,7 @@ AuthorAnswer AuthorSession::mirror(const OrderedJson& request) {
 // ---- jobs
 
 AuthorAnswer AuthorSession::start_job(const OrderedJson& request) {
-  return answered([&]() -> AuthorAnswer {
+  return answered(setting_.file, [&]() -> AuthorAnswer {
     const std::lock_guard lock(jobs_);
     const std::string kind = request.at("kind");
     const auto& kinds = author_job_kinds();
@@ -488,7 +543,7 @@ void AuthorSession::work(std::uint64_t id, std::string kind, OrderedJson options
   } catch (const Interrupted&) {
     news["error"] = "cancelled";
   } catch (const std::exception& error) {
-    news["error"] = error.what();
+    news["error"] = without_file(error.what(), setting_.file);
   }
   // From here on another job may start: whoever sees the result below may ask for one at once.
   // start_job() joins this thread first.

@@ -79,6 +79,7 @@ class AuthorSession {
   void refresh();
   void load_robot_of(const std::string& text, bool anew);
   bool robot_changed() const;
+  bool is_gone();
   std::vector<std::filesystem::path> robot_files() const;
   Stamps stamps() const;
   void publish(std::shared_ptr<View> view);
@@ -96,6 +97,7 @@ class AuthorSession {
   std::optional<NamedRobot> robot_;
   Stamps seen_;
   std::optional<std::chrono::steady_clock::time_point> read_at_;  ///< until a second look
+  std::optional<std::chrono::steady_clock::time_point> gone_since_;
   TextHistory history_;
 
   std::mutex state_;  ///< of all below

@@ -87,6 +87,66 @@ async function addsPhasesAndKeys(tab) {
   expect(JSON.stringify(data()) === JSON.stringify(before), "all is as before");
 }
 
+/// Values that are not written can be written, and taken away again: nothing else changes.
+async function writesOptionalValues(tab) {
+  const before = text(), i = data().phases.findIndex((phase) => phase.swing && phase.swing.lift === undefined);
+  const at = (pointer) => `#selected [data-id="${pointer}"]`;
+  await tab.click("#whole");
+  await tab.after(() => tab.type(at("/defaults/cog_height"), 0.24));
+  expect(data().defaults?.cog_height === 0.24, "a COG height of the whole pattern: " + JSON.stringify(data().defaults));
+  await tab.after(() => tab.click("#undo"));
+  expect(text() === before, "and back");
+  await tab.click(keySelector(2));
+  await tab.after(() => tab.type(at("/keyframes/2/interpolation"), "linear"));
+  expect(data().keyframes[2].interpolation === "linear", "an interpolation: " + JSON.stringify(data().keyframes[2]));
+  await tab.after(() => tab.type(at("/keyframes/2/torso/pitch"), 2));
+  expect(data().keyframes[2].torso?.pitch === 2, "a pitch of the trunk: " + JSON.stringify(data().keyframes[2]));
+  await tab.after(() => tab.click("#undo"));
+  await tab.after(() => tab.click("#undo"));
+  expect(text() === before, "and back");
+  if (i >= 0) {
+    await tab.click(`[data-id="/phases/${i}"]`);
+    await tab.after(() => tab.type(at(`/phases/${i}/swing/lift`), 0.015));
+    expect(data().phases[i].swing.lift === 0.015, "a lift: " + JSON.stringify(data().phases[i]));
+    await tab.after(() => tab.type(at(`/phases/${i}/swing/lift`), ""));
+    expect(data().phases[i].swing.lift === undefined, "the lift is taken away: " + JSON.stringify(data().phases[i]));
+    await tab.after(() => tab.click("#undo"));
+    await tab.after(() => tab.click("#undo"));
+    expect(text() === before, "and back");
+  }
+}
+
+/// A new key is selected; a time that is typed for it joins the keyframe that is there, and one
+/// beyond its neighbours is refused.
+async function movesKeysByTyping(tab) {
+  const before = data();
+  await tab.run("window.ayumiAuthor.page.show(0.3); document.getElementById('to-edit').click(); document.getElementById('key-track').value = 'torso';");
+  await tab.after(() => tab.click("#add-key button"));
+  const selected = await tab.run("return window.ayumiAuthor.page.selection.pointer");
+  expect(selected === "/keyframes/1/torso", "the new key is selected: " + selected);
+  const added = text();
+  await tab.type('#selected [data-id="/keyframes/1/t"]', 2.9);
+  await wait(200);
+  expect(text() === added, "a time beyond the next keyframe is not written");
+  await tab.after(() => tab.type('#selected [data-id="/keyframes/1/t"]', before.keyframes[1].t));
+  expect(data().keyframes.length === before.keyframes.length && data().keyframes[1].torso, "it joins the keyframe: " + JSON.stringify(data().keyframes.slice(0, 3)));
+  await tab.after(() => tab.click("#undo"));
+  await tab.after(() => tab.click("#undo"));
+  expect(JSON.stringify(data()) === JSON.stringify(before), "all is as before");
+}
+
+/// While the text has other places than the motion that is shown, nothing can be changed there.
+async function locksWhatIsOld(tab) {
+  const before = data(), wrong = structuredClone(before);
+  wrong.keyframes.splice(1, 0, { t: 0, zmp: "left" });
+  await tab.click(keySelector(3));
+  await tab.after(() => save(JSON.stringify(wrong, null, 1)));
+  const seen = await tab.run("const p = window.ayumiAuthor.page; return [Boolean(p.state.error), p.can('edit'), [...document.querySelectorAll('#selected input')].every((e) => e.disabled)]");
+  expect(seen[0] && !seen[1] && seen[2], "the fields are locked: " + seen);
+  await tab.after(() => save(JSON.stringify(before, null, 1)));
+  expect(await tab.run("return window.ayumiAuthor.page.can('edit')"), "and free again");
+}
+
 async function dragsInTime(tab) {
   const before = data(), along = await tab.run("return document.getElementById('keys-along').checked");
   expect(along, "keys follow the ends of phases");
@@ -119,8 +179,8 @@ async function showsFindings(tab) {
   await tab.after(() => save(JSON.stringify(wrong, null, 1)));
   const seen = await tab.run(`
     const findings = window.ayumiAuthor.page.state.findings;
-    const joint = findings.findIndex((one) => one.joint);
-    document.querySelectorAll("#findings button")[joint].click();
+    const joint = window.ayumiAuthor.page.groups().map((group) => group.worst).find((i) => findings[i].joint);
+    document.querySelector('#findings [data-id="answer ' + joint + '"]').click();
     const page = window.ayumiAuthor.page;
     return { count: findings.length, at: findings[joint].at, time: page.time, red: window.ayumiAuthor.wrongBodies(),
       curves: page.curves.chosen, joint: findings[joint].joint, ghost: page.viewer.actors[1].root.visible,
@@ -342,7 +402,8 @@ let driving;
 try {
   driving = await startDriver(driver, shots);
   const tab = await openPage(driving, 1280, 800);
-  await runTrials(tab, [looks, namesEverything, editsByKeyboard, addsPhasesAndKeys, dragsInTime, showsFindings, keepsBothVersions,
+  await runTrials(tab, [looks, namesEverything, editsByKeyboard, addsPhasesAndKeys,
+    writesOptionalValues, movesKeysByTyping, locksWhatIsOld, dragsInTime, showsFindings, keepsBothVersions,
     poses, postures, pushesTheRobot, works, showsResults, keepsWhatIsBeingTyped, showsNoDeadControls]);
   await followsTheFile(driving, tab);
   await quiet(tab);

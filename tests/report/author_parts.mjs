@@ -1,10 +1,12 @@
 // node --test author_parts.mjs: the parts of the live page that need no browser.
 
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { test } from "node:test";
 
 import { TimeAxis, snapped } from "../../lib/ayumi/report/page/time_axis.js";
 import * as edits from "../../lib/ayumi/report/page/edits.js";
+import { fieldsOf, missingFields, parsePattern, valueAt } from "../../lib/ayumi/report/page/fields.js";
 import { strain, colorOf, heightOf, worstIn } from "../../lib/ayumi/report/page/strip_colors.js";
 import { sideBySide, nearDifferences } from "../../lib/ayumi/report/page/text_difference.js";
 
@@ -206,4 +208,70 @@ test("texts beside each other: every line once, equal lines as equal", () => {
   const one = sideBySide("a\nb\nc\nd\ne\nf\ng\nh", "a\nb\nc\nd\ne\nf\ng\nH");
   assert.equal(one.filter((row) => !row.same).length, 1);
   assert.deepEqual(nearDifferences(one, 1)[0], { gap: 6 });
+});
+
+// ---- what may be written
+
+const schema = JSON.parse(readFileSync(new URL("../../docs/schemas/pattern-1.schema.json", import.meta.url)));
+const definition = (node) => node?.$ref ? definition(schema.$defs[node.$ref.split("/").at(-1)]) : node;
+
+/// The schema of a place, by the way that exists among several.
+function schemaAt(node, path) {
+  if (!path.length) return definition(node);
+  const now = definition(node);
+  for (const way of [now, ...now.oneOf || []]) {
+    const part = definition(way).properties?.[path[0]];
+    if (part) return schemaAt(part, path.slice(1));
+  }
+  return null;
+}
+
+const roots = { pattern: schema, phase: schema.$defs.phase, keyframe: schema.$defs.keyframe, disturbance: schema.$defs.disturbance };
+const whole = { phase: { swing: { step: {} }, viip: { jump: {}, velocity: [0, 0] } }, disturbance: { type: "impulse" } };
+
+test("the page offers what the schema knows, with its choices", () => {
+  const state = { postures: ["home"] };
+  for (const [kind, fields] of Object.entries(fieldsOf))
+    for (const { path, choices } of fields(whole[kind] || {}, state)) {
+      const known = schemaAt(roots[kind], path);
+      assert.ok(known, `${kind}: ${path.join(".")} is not in the schema`);
+      const listed = known.enum || known.oneOf?.flatMap((one) => definition(one).enum || []);
+      if (choices && listed?.length) assert.deepEqual([...choices].sort(), [...listed].sort(), path.join("."));
+    }
+});
+
+// The members of a keyframe, a phase and a swing that the form does not offer have a control of
+// their own: dragging, New key of, or a button.
+test("the page leaves out no member of a phase, a swing or a keyframe without a control of its own", () => {
+  const own = { phase: ["until", "duration", "support", "swing", "viip"],
+    keyframe: ["t", "after", "joints", "feet", "hands", "gaze", "weights"] };
+  for (const [kind, others] of Object.entries(own)) {
+    const offered = fieldsOf[kind](whole[kind] || {}, { postures: [] }).map(({ path }) => path[0]);
+    for (const name of Object.keys(roots[kind].properties))
+      assert.ok(offered.includes(name) || others.includes(name), `${kind}: ${name}`);
+  }
+  const swing = fieldsOf.phase(whole.phase, {}).filter(({ path }) => path[0] === "swing").map(({ path }) => path[1]);
+  for (const name of Object.keys(schema.$defs.swing.properties))
+    assert.ok(swing.includes(name) || ["foot", "to"].includes(name), `swing: ${name}`);
+});
+
+test("a pattern with comments is read, and what is missing is known", () => {
+  const text = '{ // "a": 1\n "phases": [{ "until": 1, "support": "left", /* } */ "swing": { "foot": "right", "step": { "forward": "${a} // b" } } }] }';
+  const pattern = parsePattern(text);
+  assert.equal(valueAt(pattern, "/phases/0/swing/step/forward"), "${a} // b");
+  assert.deepEqual(missingFields("phase", "/phases/0", pattern.phases[0], {}).map(({ pointer }) => pointer),
+    ["/phases/0/swing/lift", "/phases/0/swing/step/side", "/phases/0/swing/step/up", "/phases/0/swing/step/turn"]);
+  assert.equal(parsePattern("{ phases: 1 }"), null);
+  assert.equal(valueAt(null, "/phases"), undefined);
+});
+
+test("a keyframe joins another one unless both have the same key", () => {
+  const pattern = { keyframes: [{ t: 1, joints: { a: 1 }, zmp: "left" }, { t: 2, joints: { b: 2 } }, { after: 1, zmp: "right" }] };
+  const frames = pattern.keyframes.map((frame, i) => ({ pointer: `/keyframes/${i}`, time: i + 1, time_value: frame.t ?? frame.after,
+    time_pointer: `/keyframes/${i}/${frame.t ? "t" : "after"}`, time_base: frame.t ? 0 : i }));
+  const state = { keyframes: frames };
+  assert.deepEqual(edits.joinKeyframe(state, pattern, frames[1], frames[0]), [
+    { kind: "set", pointer: "/keyframes/0/joints/b", value: 2 }, { kind: "remove", pointer: "/keyframes/1" },
+    { kind: "set", pointer: "/keyframes/2/after", value: 2 }]);
+  assert.equal(edits.joinKeyframe(state, pattern, frames[2], frames[0]), null);
 });

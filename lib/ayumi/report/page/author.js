@@ -7,6 +7,7 @@ import { Vector3 } from "three";
 import { chooseVersion } from "./conflict.js";
 import { Curves } from "./curves.js";
 import { byId, element, fixed, refill, seconds } from "./dom.js";
+import { parsePattern } from "./fields.js";
 import { Handles } from "./handles.js";
 import { Inspector } from "./inspector.js";
 import { Jobs } from "./jobs.js";
@@ -26,7 +27,7 @@ const motionWords = { plan: "the pattern", ghost: "last consistent", repair: "re
 const tabs = ["answers", "edit", "pose", "postures", "pushes", "text"];
 
 /// What a state has where the server says nothing of it.
-const nothing = { features: [], motions: ["plan"], findings: [], phases: [], tracks: [], keyframes: [],
+const nothing = { features: [], motions: ["plan"], findings: [], groups: [], phases: [], tracks: [], keyframes: [],
   disturbances: [], joints: [], handles: [], targets: [], postures: [], own_postures: [], strip: [], strip_dt: 0.01,
   result: null, error: null, stale: false };
 
@@ -91,6 +92,7 @@ class Page {
     const state = { ...nothing, ...latest };
     if (this.state) this.follow(this.state, state);
     this.state = state;
+    this.document = parsePattern(state.text);
     document.title = `${state.file} – Ayumi author`;
     byId("file").textContent = state.file;
     this.showError(state);
@@ -100,7 +102,7 @@ class Page {
       await this.fetchMotions();
       if (!this.viewer) await this.build();
       else this.viewer.replace(this.whole());
-      this.axis.stretch(Math.max(state.duration, this.viewer.last));
+      this.axis.stretch(Math.max(state.duration, this.viewer.last, state.error ? state.phases.at(-1)?.until ?? 0 : 0));
       byId("scrub").max = String(this.viewer.last);
       this.handles.take(state.handles);
       this.handles.takeTargets(state.targets);
@@ -373,14 +375,27 @@ class Page {
     byId("to-answers").textContent = findings.length ? `Answers (${findings.length})` : "Answers";
     const old = error && findings.length ? [element("p", { class: "soft" },
       "These findings are about the old motion, because the changed file cannot be read.")] : [];
-    refill(byId("findings"), findings.length ? [...old, ...findings.map((one, i) => element("button", { type: "button",
-      class: "answer " + one.severity, "data-id": "answer " + i, "aria-pressed": String(one === this.finding),
-      onclick: () => this.showFinding(one) },
-    element("span", {}, element("strong", {}, one.severity === "error" ? "Error" : "Warning"), ` at ${seconds(one.at)}`),
-    element("span", {}, one.message),
-    one.hint ? element("span", { class: "soft" }, one.hint) : null))]
+    refill(byId("findings"), findings.length ? [...old, ...this.groups().map((group) => this.answer(group))]
       : [element("p", { class: error ? "soft" : "good" }, error ? "The file cannot be read, so there are no findings."
         : this.state.consistent ? "Nothing is wrong: the motion is consistent." : "")]);
+  }
+
+  /// Findings by cause, as `ayumi check` groups them.
+  groups() {
+    const { findings, groups } = this.state;
+    return groups.length ? groups : findings.map((one, i) => ({ worst: i, members: [i], places: one.where, consequences: [] }));
+  }
+
+  answer({ worst, members, places, consequences }) {
+    const { findings } = this.state, one = findings[worst];
+    const times = members.length > 1 ? `${members.length} times, worst at ${seconds(one.at)}` : `at ${seconds(one.at)}`;
+    return element("button", { type: "button", class: "answer " + one.severity, "data-id": "answer " + worst,
+      "aria-pressed": String(members.some((i) => findings[i] === this.finding)), onclick: () => this.showFinding(one) },
+    element("span", {}, element("strong", {}, one.severity === "error" ? "Error" : "Warning"), " " + times),
+    element("span", {}, one.message),
+    places !== one.where && members.length > 1 ? element("span", {}, `The same of: ${places}`) : null,
+    one.hint ? element("span", { class: "soft" }, one.hint) : null,
+    consequences.length ? element("span", { class: "soft" }, `Consequences: ${consequences.join("; ")}`) : null);
   }
 
   renderText() {
@@ -391,10 +406,12 @@ class Page {
     byId("text").querySelector(".wrong")?.scrollIntoView({ block: "center" });
   }
 
-  showError({ error, stale, replay }) {
+  showError({ error, stale, replay, features }) {
     byId("error").hidden = !error;
     byId("error-place").textContent = error ? error.line ? `Line ${error.line}:` : "Error:" : "";
-    byId("error-words").textContent = error ? error.message + (stale && replay ? " The picture shows the old motion in grey." : "") : "";
+    byId("error-words").textContent = error ? error.message + (stale && replay
+      ? (/[.!?]$/.test(error.message) ? "" : ".") + " The picture shows the old motion in grey." +
+        (features.includes("edit") ? "" : " The pattern can be changed here again when the file can be read; Undo takes changes back.") : "") : "";
     byId("error-go").hidden = !error?.line;
     if (error && !replay) byId("verdict").textContent = "cannot be read";
   }
@@ -473,6 +490,7 @@ class Page {
     await this.load();
     if (job.error) return;
     this.openTab("answers");
+    byId("tab-answers").scrollTop = 0;
     if (job.kind !== "simulate") return;
     const run = ["closed_loop", "open_loop"].find((name) => this.state.motions.includes(name));
     if (run) {
@@ -546,7 +564,8 @@ class Page {
     const time = byId("time"), plotOf = (event) => event.target.closest?.(".plot");
     const timeAt = (event, plot) => {
       const box = plot.getBoundingClientRect();
-      return this.axis.timeOf(Math.min(1, Math.max(0, (event.clientX - box.left) / box.width)));
+      const t = this.axis.timeOf(Math.min(1, Math.max(0, (event.clientX - box.left) / box.width)));
+      return event.shiftKey || event.ctrlKey ? t : Math.min(this.axis.to, this.timeline.pointed(t, (this.axis.to - this.axis.from) / box.width));
     };
     let plot = null;
     time.addEventListener("pointerdown", (event) => {

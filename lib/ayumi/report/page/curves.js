@@ -5,6 +5,8 @@ import { rowAt } from "./series.js";
 
 const high = 84, top = 8, bottom = 6;
 const colors = ["#0b6fc2", "#c2570b", "#0a8754", "#9b2fae", "#b01e3c", "#6b6b00"];
+/// What an axis shows at least: smaller changes are noise of the computation.
+const leastRange = { mm: 1, deg: 0.1, "deg/s": 1, N: 1, "N m": 0.01 };
 const axisWords = { x: "x (forward)", y: "y (left)", z: "z (up)" };
 
 /// What a column of the series is for a reader: { label, unit, scale, group }; null for what is not
@@ -131,7 +133,9 @@ export class Curves {
           }
           lines.push({ points, dashes, color: one.color });
         }
-      if (!(most > low)) [low, most] = [Number.isFinite(low) ? low - 1 : -1, Number.isFinite(low) ? low + 1 : 1];
+      if (!Number.isFinite(low)) [low, most] = [0, 0];
+      const lacking = (leastRange[list[0].unit] ?? 1e-6) - (most - low);
+      if (lacking > 0) [low, most] = [low - lacking / 2, most + lacking / 2];
       const room = 0.06 * (most - low);
       [low, most] = [low - room, most + room];
       const y = (value) => top + (high - top - bottom) * (most - value) / (most - low);

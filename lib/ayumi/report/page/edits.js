@@ -1,10 +1,12 @@
 // What the author does, as edits of the pattern's text: lists of { kind, pointer, value }. The server
 // writes them into the text and leaves everything else as it is.
 
+import { token, valueAt } from "./fields.js";
+
 /// Times are written to the millisecond.
 export const roundedTime = (t) => Number(t.toFixed(3));
 
-const sameTime = (a, b) => Math.abs(a - b) < 5e-4;
+export const sameTime = (a, b) => Math.abs(a - b) < 5e-4;
 
 /// A number where the words are one, else the words: an expression or a name.
 export function written(words) {
@@ -86,6 +88,25 @@ const isRelative = (frame) => frame.time_pointer.endsWith("/after");
 /// A keyframe that counts from the one before it stays at its time when that one is at `base` now.
 const follow = (frame, base) => frame && isRelative(frame) && canDrag(frame.time_value, frame)
   ? [{ kind: "set", pointer: frame.time_pointer, value: timeValue(frame.time, base) }] : [];
+
+/// All of a keyframe in another one, which is at the time that was typed for it; null where both have
+/// the same key or one stands in a block that repeats. `document` is the pattern as written.
+export function joinKeyframe(state, document, frame, there) {
+  if (frame.repeated || there.repeated) return null;
+  const from = valueAt(document, frame.pointer), to = valueAt(document, there.pointer);
+  if (!from || !to) return null;
+  const edits = [];
+  const isParts = (value) => value && typeof value === "object" && !Array.isArray(value);
+  for (const [name, value] of Object.entries(from)) {
+    if (name === "t" || name === "after") continue;
+    if (to[name] === undefined) edits.push({ kind: "set", pointer: there.pointer + token(name), value });
+    else if (isParts(value) && isParts(to[name]) && Object.keys(value).every((part) => to[name][part] === undefined))
+      for (const [part, one] of Object.entries(value)) edits.push({ kind: "set", pointer: there.pointer + token(name) + token(part), value: one });
+    else return null;
+  }
+  const i = state.keyframes.indexOf(frame), next = state.keyframes[i + 1], before = i > 0 ? state.keyframes[i - 1].time : 0;
+  return [...edits, { kind: "remove", pointer: frame.pointer }, ...follow(next, before)];
+}
 
 /// A key without its keyframe's other tracks; a keyframe with nothing else goes as a whole.
 export function removeKey(state, key) {

@@ -1,7 +1,8 @@
 // What is selected on the timeline, with its values to be typed; and new keys at the cursor.
 
 import { byId, element, seconds } from "./dom.js";
-import { addSwing, appendPhase, putKey, putPart, putTarget, removeKey, splitPhase, valueFromRow, written } from "./edits.js";
+import { addSwing, appendPhase, joinKeyframe, putKey, putPart, putTarget, removeKey, roomOfKey, roundedTime, sameTime, splitPhase, valueFromRow, written } from "./edits.js";
+import { isOptional, missingFields, token, valueAt } from "./fields.js";
 import { nameOfTrack } from "./timeline.js";
 
 /// Unit of a value by the names that lead to it.
@@ -21,7 +22,7 @@ const places = ["forward", "left", "up", "yaw"];
 const millimetre = (value) => Number(value.toFixed(4));
 const words = { to: "lands", joint: "angle", zmp: "ZMP", cog: "COG", fz: "force", t: "time", x: "forward", y: "left" };
 const zmpWords = { left: "Put it under the left foot", center: "Put it in the middle", right: "Put it under the right foot" };
-const wholes = ["cog", "torso", "feet", "posture", "swing"];
+const wholes = ["cog", "torso", "feet", "posture", "swing", "viip", "defaults", "world", "parameters"];
 
 /// What a value is called, by the names that lead to it.
 export function nameOf(path) {
@@ -39,13 +40,27 @@ export class Inspector {
       event.preventDefault();
       this.addKey();
     });
+    byId("key-time").addEventListener("change", (event) => {
+      const time = Number(event.target.value);
+      if (Number.isFinite(time)) this.page.show(Math.max(0, time));
+    });
+    // Enter moves the cursor and adds nothing.
+    byId("key-time").addEventListener("keydown", (event) => {
+      if (event.key !== "Enter") return;
+      event.preventDefault();
+      event.target.dispatchEvent(new Event("change"));
+    });
+    byId("whole").addEventListener("click", () => this.page.select({ kind: "pattern", pointer: "" }));
   }
 
-  /// One input for each value of a JSON text; a change is an edit of that value alone.
-  inputs(pointer, value, path, choices = {}) {
+  /// One input for each value of a JSON text; a change is an edit of that value alone, or what
+  /// `edits` makes of it.
+  inputs(pointer, value, path, choices = {}, edits = null) {
     if (value && typeof value === "object")
-      return Object.entries(value).flatMap(([name, part]) => this.inputs(`${pointer}/${name.replaceAll("~", "~0").replaceAll("/", "~1")}`,
-        part, [...path, Array.isArray(value) ? Number(name) : name], choices));
+      return Object.entries(value).flatMap(([name, part]) => this.inputs(pointer + token(name),
+        part, [...path, Array.isArray(value) ? Number(name) : name], choices, edits));
+    // Where the robot cannot do what is written, the shown motion is older than the text.
+    if (this.page.state.error) value = valueAt(this.page.document, pointer) ?? value;
     const unit = unitOf(path, this.page.state.angle_unit), last = path.at(-1);
     const name = nameOf(path);
     const options = choices[last];
@@ -58,15 +73,92 @@ export class Inspector {
     input.disabled = !this.page.can("edit");
     input.addEventListener("change", () => {
       const next = typeof value === "boolean" ? input.value === "true" : written(input.value);
-      if (next !== value && next !== "") this.page.edit([{ kind: "set", pointer, value: next }]);
+      if (next === "" && this.mayGo(pointer)) this.page.edit([{ kind: "remove", pointer }]);
+      else if (next !== value && next !== "") {
+        const list = edits ? edits(next) : [{ kind: "set", pointer, value: next }];
+        if (list) this.page.edit(list);
+        else input.value = String(value);
+      }
     });
     return [element("label", { class: "value" }, element("span", {}, name), input,
       element("span", { class: "unit" }, options ? "" : unit))];
   }
 
+  /// The thing of the text that the selection is in: { kind, pointer, value }.
+  written() {
+    const { state, selection, document } = this.page;
+    const frame = selection?.kind === "key" && state.keyframes.find((one) => selection.pointer.startsWith(one.pointer + "/"));
+    const kind = selection?.kind === "key" ? "keyframe" : selection?.kind, pointer = frame ? frame.pointer : selection?.pointer;
+    const value = pointer === undefined ? undefined : valueAt(document, pointer);
+    return value && typeof value === "object" ? { kind, pointer, value } : null;
+  }
+
+  mayGo(pointer) {
+    const there = this.written();
+    return Boolean(there) && isOptional(there.kind, there.pointer, there.value, this.page.state, pointer);
+  }
+
+  /// What may be written there and is not, each with what holds without it.
+  missing() {
+    const there = this.written();
+    if (!there || !this.page.can("edit")) return [];
+    const fields = missingFields(there.kind, there.pointer, there.value, this.page.state);
+    if (!fields.length) return [];
+    return [element("h4", {}, "Not written"), ...fields.map(({ path, otherwise, choices, pointer }) => {
+      const input = choices ? element("select", {}, element("option", { value: "" }, `(${otherwise})`),
+        ...choices.map((one) => element("option", { value: one }, one)))
+        : element("input", { type: "text", spellcheck: "false", autocomplete: "off", placeholder: otherwise });
+      input.dataset.id = pointer;
+      input.dataset.written = "";
+      input.addEventListener("change", () => {
+        const next = written(input.value);
+        if (next !== "") this.page.edit([{ kind: "set", pointer, value: next }]);
+      });
+      return element("label", { class: "value missing" }, element("span", {}, nameOf(path)), input,
+        element("span", { class: "unit" }, choices ? "" : unitOf(path, this.page.state.angle_unit)));
+    })];
+  }
+
+  pattern() {
+    const value = this.page.document || {}, shown = ["name", "profile", "defaults", "parameters", "start", "world", "controller", "repair", "tolerances"];
+    const parts = shown.filter((name) => value[name] !== undefined);
+    return [element("h3", {}, "The whole pattern"),
+      ...parts.flatMap((name) => this.inputs("/" + name, value[name], [name], this.choicesOf("pattern")))];
+  }
+
+  /// Names that a value may have, by its last name.
+  choicesOf(kind) {
+    return Object.fromEntries(missingFields(kind, "", {}, this.page.state).filter(({ choices }) => choices)
+      .map(({ path, choices }) => [path.at(-1), choices]));
+  }
+
+  /// A typed time: a key joins the keyframe that is there, and stays between its neighbours.
+  timeEdits(key, state) {
+    return (next) => {
+      if (typeof next !== "number") return [{ kind: "set", pointer: key.time_pointer, value: next }];
+      const time = next + (key.time_base || 0), frame = state.keyframes.find((one) => key.pointer.startsWith(one.pointer + "/"));
+      const there = state.keyframes.find((one) => one !== frame && sameTime(one.time, time));
+      const joined = there && joinKeyframe(state, this.page.document, frame, there);
+      if (joined) {
+        this.page.selection = { kind: "key", pointer: there.pointer + key.pointer.slice(frame.pointer.length) };
+        return joined;
+      }
+      if (there) {
+        this.page.say(`The keyframe at ${seconds(time)} already has a key of the same track, so nothing is written.`);
+        return null;
+      }
+      const [from, to] = roomOfKey(state.keyframes, key.pointer);
+      if (time >= from && time <= to) return [{ kind: "set", pointer: key.time_pointer, value: next }];
+      this.page.say(`A keyframe stays between its neighbours: here from ${seconds(from)} to ${seconds(to)}. ` +
+        "To bring a key further, remove it and add it at the other time.");
+      return null;
+    };
+  }
+
   selected() {
     const { state, selection } = this.page;
     if (!selection) return null;
+    if (selection.kind === "pattern") return selection;
     if (selection.kind === "phase") return state.phases.find((one) => one.pointer === selection.pointer);
     if (selection.kind === "disturbance")
       return state.disturbances.find((one) => one.pointer === selection.pointer);
@@ -79,8 +171,8 @@ export class Inspector {
     const thing = this.selected(), box = byId("selected"), { selection, state } = this.page;
     const active = document.activeElement, typed = box.contains(active) && active.matches("input") ? active.value : null;
     box.replaceChildren(...!thing ? [element("p", { class: "soft" },
-      "Nothing is selected. Choose a key, a phase or a disturbance on the timeline.")]
-      : this[selection.kind](thing, state));
+      "Nothing is selected. Choose a key, a phase or a disturbance on the timeline, or the whole pattern.")]
+      : [...this[selection.kind](thing, state), ...this.missing()]);
     this.restore(box, active?.dataset?.id, typed !== active?.dataset?.written ? typed : null);
     byId("add-key").hidden = !this.page.can("edit");
     this.offerTracks(state);
@@ -112,8 +204,12 @@ export class Inspector {
     const others = state.tracks.flatMap((track) => track.keys.filter((one) =>
       one.time_pointer === key.time_pointer && one.pointer !== key.pointer).map(() => nameOfTrack(track)));
     return [element("h3", {}, `${name} key at ${seconds(key.time)}`),
-      ...this.inputs(key.time_pointer, key.time_value, [key.time_pointer.split("/").at(-1)]),
+      ...this.inputs(key.time_pointer, key.time_value, [key.time_pointer.split("/").at(-1)], {}, this.timeEdits(key, state)),
       ...this.inputs(key.pointer, key.value, path, choices),
+      ...frame ? ["interpolation", "weights"].flatMap((more) => {
+        const value = valueAt(this.page.document, `${frame.pointer}/${more}`);
+        return value === undefined ? [] : this.inputs(`${frame.pointer}/${more}`, value, [more], this.choicesOf("keyframe"));
+      }) : [],
       others.length ? element("p", { class: "soft" }, `This keyframe also has keys of: ${others.join(", ")}. All keys of a keyframe move together.`) : null,
       ...key.track.name === "zmp" && !named ? ["left", "center", "right"].map((place) =>
         this.button(() => [{ kind: "set", pointer: key.pointer, value: place }], zmpWords[place])) : [],
@@ -152,9 +248,13 @@ export class Inspector {
       ...phase.support ? this.inputs(phase.pointer + "/support", phase.support, ["support"],
         { support: ["both", "left", "right", "none"] }) : [],
       ...phase.swing ? this.inputs(phase.pointer + "/swing", phase.swing, ["swing"], { foot: ["left", "right"] }) : [],
+      ...phase.support ? [] : this.inputs(phase.pointer + "/viip", valueAt(this.page.document, phase.pointer + "/viip") ?? {}, ["viip"],
+        { release: ["ref_z", "spring"] }),
       ...this.swingButtons(phase),
       this.splitter = this.button(() => splitPhase(phase, this.page.time), "Cut at the cursor"),
-      index === state.phases.length - 1 ? this.button(() => appendPhase(state.phases), "Add a phase after this one") : null,
+      index === state.phases.length - 1 && this.page.can("edit") ? element("button", { type: "button", onclick: async () => {
+        if (await this.page.edit(appendPhase(state.phases))) this.page.select({ kind: "phase", pointer: this.page.state.phases.at(-1).pointer }, this.page.state.phases.at(-1).from);
+      } }, "Add a phase after this one") : null,
       state.phases.length > 1 ? this.button(() => [{ kind: "remove", pointer: phase.pointer }], "Remove this phase") : null].filter(Boolean);
   }
 
@@ -168,7 +268,7 @@ export class Inspector {
 
   disturbance(one) {
     return [element("h3", {}, `Disturbance at ${seconds(one.from)}`),
-      ...Object.entries(one.value || {}).flatMap(([name, value]) => this.inputs(`${one.pointer}/${name}`, value, [name])),
+      ...Object.entries(one.value || {}).flatMap(([name, value]) => this.inputs(`${one.pointer}/${name}`, value, [name], { frame: ["world", "link"] })),
       this.button(() => [{ kind: "remove", pointer: one.pointer }], "Remove this disturbance")].filter(Boolean);
   }
 
@@ -183,24 +283,32 @@ export class Inspector {
     if (chosen) select.value = chosen;
   }
 
-  addKey() {
-    const { state } = this.page, track = byId("key-track").value;
+  async addKey() {
+    const { state } = this.page, track = byId("key-track").value, time = this.page.time, row = this.page.row();
     const handle = state.handles.find((one) => track === "target " + one.name);
-    if (handle) {
-      const place = this.page.handles.placeOf(handle, this.page.row()).toArray().map(millimetre);
-      return void this.page.edit(putTarget(state.keyframes, this.page.time, handle, place));
-    }
-    if (track === "cog height")
-      return void this.page.edit(putPart(state.keyframes, this.page.time, "cog", "height",
-        valueFromRow("cog", this.page.row(), this.page.motion.columns).height));
-    const value = valueFromRow(track, this.page.row(), this.page.motion.columns, state.angle_unit);
-    const whole = ["zmp", "cog", "fz", "torso"].includes(track);
-    this.page.edit(whole ? putKey(state.keyframes, this.page.time, track, value)
-      : putPart(state.keyframes, this.page.time, "joints", track, value));
+    const joint = !handle && !["zmp", "cog", "cog height", "fz", "torso"].includes(track);
+    const value = handle ? this.page.handles.placeOf(handle, row).toArray().map(millimetre)
+      : valueFromRow(track === "cog height" ? "cog" : track, row, this.page.motion.columns, state.angle_unit);
+    const edits = handle ? putTarget(state.keyframes, time, handle, value)
+      : track === "cog height" ? putPart(state.keyframes, time, "cog", "height", value.height)
+        : joint ? putPart(state.keyframes, time, "joints", track, value) : putKey(state.keyframes, time, track, value);
+    if (!edits.length) return this.page.say("Between the rounds of a block that repeats there is no room for a key.");
+    if (await this.page.edit(edits)) this.selectNew(handle ? handle.gaze ? "/gaze" : "/hands" + token(handle.link)
+      : track === "cog height" ? "/cog" : joint ? "/joints" + token(track) : "/" + track, time);
+  }
+
+  /// The key that has just been added is selected, with the focus in its first value.
+  selectNew(inside, time) {
+    const frame = this.page.state.keyframes.find((one) => sameTime(one.time, time));
+    if (!frame) return;
+    const pointer = frame.pointer + inside;
+    if (!this.page.state.tracks.some((track) => track.keys.some((one) => one.pointer === pointer))) return;
+    this.page.select({ kind: "key", pointer }, frame.time);
+    [...byId("selected").querySelectorAll("input, select")].find((one) => one.dataset.id?.startsWith(pointer))?.focus();
   }
 
   moved() {
-    byId("key-time").textContent = seconds(this.page.time);
+    if (document.activeElement !== byId("key-time")) byId("key-time").value = String(roundedTime(this.page.time));
     const thing = this.page.selection?.kind === "phase" ? this.selected() : null;
     if (thing && this.splitter) this.splitter.hidden = !splitPhase(thing, this.page.time).length;
   }

@@ -9,6 +9,9 @@ const supportWords = { both: "both", left: "left", right: "right", none: "flight
 const trackWords = { zmp: "ZMP", cog: "COG", fz: "Vertical force", torso: "Trunk",
   trunk: "Trunk", posture: "Posture", weights: "Weights" };
 
+/// The least round step that a pixel of the timeline tells apart [s].
+export const roundStep = (perPixel) => [0.001, 0.01, 0.1].find((step) => step >= perPixel) ?? 1;
+
 export const nameOfTrack = (track) => trackWords[track.name] ||
   (track.kind === "joint" ? track.joint : track.name[0].toUpperCase() + track.name.slice(1));
 
@@ -88,7 +91,8 @@ export class Timeline {
       if (!this.page.can("edit") || !canDrag(phase.until_value, phase) || !this.visible(phase.until, phase.until)) return;
       const grip = element("button", { type: "button", class: "grip", style: this.place(phase.until),
         "data-id": phase.until_pointer, title: `End of phase ${i + 1}: drag, or Ctrl and arrow keys`,
-        "aria-label": `End of phase ${i + 1} at ${seconds(phase.until)}` });
+        "aria-label": `End of phase ${i + 1} at ${seconds(phase.until)}`,
+        onclick: () => this.page.select(thing, phase.until) });
       this.movable(grip, { time: phase.until, room: roomOfPhase(state.phases, i), words: "phase",
         edits: (t) => movePhase(this.page.state, i, t, byId("keys-along").checked) });
       parts.push(grip);
@@ -184,7 +188,9 @@ export class Timeline {
 
   findings(state) {
     const parts = [];
-    state.findings.forEach((finding, i) => {
+    // Errors are drawn last, above the warnings of the same time.
+    const order = state.findings.map((finding, i) => [finding, i]).sort(([a], [b]) => (a.severity === "error") - (b.severity === "error"));
+    order.forEach(([finding, i]) => {
       if (!this.visible(finding.begin, finding.end)) return;
       parts.push(element("button", { type: "button", class: "finding " + finding.severity,
         style: this.place(finding.begin, finding.end), "data-id": "finding " + i,
@@ -203,6 +209,7 @@ export class Timeline {
   /// Drag by pointer, or Ctrl and the arrow keys (with Shift by 1 ms), which are written after a rest.
   movable(mark, { time, room, edits, together }) {
     let shown = time, timer = 0;
+    const { version } = this.page.state;
     const clamp = (t) => Math.min(room[1], Math.max(room[0], t));
     const move = (t) => {
       shown = roundedTime(clamp(t));
@@ -215,7 +222,10 @@ export class Timeline {
       this.dragged = null;
       byId("time-tip").hidden = true;
       mark.classList.remove("dragged");
-      const list = write ? edits(shown) : [];
+      // The file has other places now: what is dragged may be another thing there.
+      const changed = this.page.state.version !== version;
+      if (write && changed) this.page.say("The file changed while you dragged, so nothing was written. Please drag again.");
+      const list = write && !changed ? edits(shown) : [];
       if (list.length) this.page.edit(list);
       else this.render();
       if (this.late) {
@@ -248,6 +258,7 @@ export class Timeline {
         mark.removeEventListener("pointermove", moved);
         mark.removeEventListener("pointerup", up);
         mark.removeEventListener("pointercancel", cancel);
+        mark.removeEventListener("lostpointercapture", cancel);
         removeEventListener("keydown", escape, true);
         if (!begun) return;
         // The click that ends a drag selects nothing.
@@ -261,6 +272,7 @@ export class Timeline {
       mark.addEventListener("pointermove", moved);
       mark.addEventListener("pointerup", up);
       mark.addEventListener("pointercancel", cancel);
+      mark.addEventListener("lostpointercapture", cancel);
       addEventListener("keydown", escape, true);
     });
     mark.addEventListener("keydown", (event) => {
@@ -277,6 +289,13 @@ export class Timeline {
       move(shown + way * (event.shiftKey ? 0.001 : 0.01));
       timer = setTimeout(() => { timer = 0; end(true); }, 500);
     });
+  }
+
+  /// A time that was pointed at: that of a key or the end of a phase nearby, else a round one.
+  pointed(t, perPixel) {
+    const { state } = this.page, step = roundStep(perPixel);
+    const near = snapped(t, [...state.phases.map((phase) => phase.until), ...state.keyframes.map((frame) => frame.time)], 4 * perPixel);
+    return near !== t ? near : roundedTime(Math.round(t / step) * step);
   }
 
   /// Times that a dragged thing snaps to.

@@ -1,0 +1,82 @@
+// Every value that an author may give to the whole pattern, a phase, a keyframe or a disturbance
+// (docs/formats.md), with what holds where it is not written. The page offers those that are
+// missing. A test compares this list with the schema of the pattern.
+
+const interpolation = ["linear", "cubic", "minimum_jerk", "hold", "spline"];
+const field = (path, otherwise) => ({ path, otherwise });
+const turns = ["roll", "pitch", "yaw"];
+
+/// What a member is, by the kind of thing: { path, otherwise, choices }. `value` is what is written
+/// there, `state` the page's state.
+export const fieldsOf = {
+  pattern: (value, state) => [
+    { path: ["name"], otherwise: "none" },
+    { path: ["profile"], otherwise: "the first one of the robot" },
+    { path: ["defaults", "cog_height"], otherwise: "as in the posture" },
+    { path: ["defaults", "posture"], otherwise: "home", choices: state.postures },
+    { path: ["defaults", "interpolation"], otherwise: "minimum_jerk", choices: interpolation },
+    { path: ["defaults", "cog_model"], otherwise: "full", choices: ["full", "point_mass"] },
+    { path: ["world", "friction"], otherwise: "0.8" },
+    ...typeof value.world?.ground === "string" ? [] : ["roll", "pitch", "height"].map((name) =>
+      ({ path: ["world", "ground", name], otherwise: "0" })),
+    { path: ["controller", "type"], otherwise: "dtad", choices: ["none", "dtad", "viip", "preview",
+      "foot-guided", "dcm-step", "dtad-literal", "viip-landings", "viip-nofeedback"] },
+    { path: ["repair", "trust"], otherwise: "posture", choices: ["posture", "cog", "zmp"] },
+  ],
+  phase: (value) => [
+    ...value.swing ? [field(["swing", "lift"], "0.02")] : [],
+    ...value.swing?.step ? ["forward", "side", "up", "turn"].map((name) => ({ path: ["swing", "step", name], otherwise: "0" })) : [],
+    ...value.viip?.jump ? [field(["viip", "jump", "height"], "0.03"), field(["viip", "jump", "stoop"], "0.03"),
+      field(["viip", "jump", "forward"], "0"), { path: ["viip", "jump", "times"], otherwise: "1" },
+      { path: ["viip", "jump", "release"], otherwise: "ref_z", choices: ["ref_z", "spring"] }] : [],
+    ...value.viip?.velocity || value.viip?.turn !== undefined || value.viip?.step
+      ? [{ path: ["viip", "steps"], otherwise: "as many as fit" }] : [],
+    ...value.viip?.velocity ? [{ path: ["viip", "turn"], otherwise: "0" }] : [],
+  ],
+  keyframe: (value, state) => [
+    { path: ["interpolation"], otherwise: "that of the pattern", choices: interpolation },
+    ...typeof value.posture === "object" ? [] : [{ path: ["posture"], otherwise: "none", choices: state.postures }],
+    { path: ["zmp"], otherwise: "no key", choices: ["left", "center", "right"] },
+    ...["x", "y", "height"].map((name) => ({ path: ["cog", name], otherwise: "no key" })),
+    { path: ["fz"], otherwise: "no key" },
+    ...turns.map((name) => ({ path: ["torso", name], otherwise: value.torso ? "0" : "no key" })),
+  ],
+  disturbance: (value) => [
+    { path: ["duration"], otherwise: ["impulse", "bump"].includes(value.type) ? "a short time" : "to the end" },
+    ...["impulse", "force", "torque"].includes(value.type) ? [{ path: ["on"], otherwise: "cog" },
+      { path: ["frame"], otherwise: "world", choices: ["world", "link"] }] : [],
+  ],
+};
+
+/// The pattern of a text with comments; null where it is not JSON.
+export function parsePattern(text) {
+  const plain = (text || "").replace(/"(?:\\.|[^"\\])*"|\/\/[^\n]*|\/\*[\s\S]*?\*\//g,
+    (part) => part[0] === '"' ? part : " ");
+  try {
+    return JSON.parse(plain);
+  } catch {
+    return null;
+  }
+}
+
+export const token = (name) => "/" + String(name).replaceAll("~", "~0").replaceAll("/", "~1");
+
+export function valueAt(document, pointer) {
+  return pointer.split("/").slice(1).reduce((value, part) =>
+    value?.[part.replaceAll("~1", "/").replaceAll("~0", "~")], document ?? undefined);
+}
+
+const joined = (path) => path.map(token).join("");
+
+const inside = (value, path) => path.reduce((part, name) => part?.[name], value);
+
+/// The fields that are not written in `value`, with their pointers.
+export function missingFields(kind, pointer, value, state) {
+  return fieldsOf[kind](value, state).filter(({ path }) => inside(value, path) === undefined)
+    .map((field) => ({ ...field, pointer: pointer + joined(field.path) }));
+}
+
+/// Whether the value at a pointer may be taken away: it is one of the optional ones of its kind.
+export function isOptional(kind, pointer, value, state, at) {
+  return fieldsOf[kind](value, state).some(({ path }) => pointer + joined(path) === at);
+}
