@@ -186,13 +186,19 @@ TEST(PatternEdit, PointersReferToTheTextBeforeTheFirstEdit) {
                          {Kind::insert, "/keyframes/1", R"({"t":0.6})"},
                          {Kind::set, "/keyframes/2/t", "1.9"},
                          {Kind::remove, "/keyframes/1", ""},
-                         {Kind::insert, "/keyframes/-", R"({"t":3})"}}),
-      R"({ "keyframes": [{ "t": 0 }, { "t": 0.4 }, { "t": 0.6 }, { "t": 1.9 }, { "t": 3 }] })");
+                         {Kind::insert, "/keyframes/-", R"({"t":3})"},
+                         {Kind::insert, "/keyframes/-", R"({"t":4})"},
+                         {Kind::insert, "/keyframes/-", R"({"t":5})"}}),
+      R"({ "keyframes": [{ "t": 0 }, { "t": 0.4 }, { "t": 0.6 }, { "t": 1.9 }, { "t": 3 }, { "t": 4 }, { "t": 5 }] })");
 }
 
 TEST(PatternEdit, AListThatIsMissingIsMade) {
   EXPECT_EQ(edited_text("{ \"a\": 1 }", {{Kind::insert, "/scenario/-", R"({"at":1})"}}),
             R"({ "a": 1, "scenario": [{ "at": 1 }] })");
+  EXPECT_EQ(edited_text("{ \"a\": 1 }", {{Kind::insert, "/scenario/-", R"({"at":1})"},
+                                         {Kind::insert, "/scenario/-", R"({"at":2})"},
+                                         {Kind::insert, "/scenario/-", R"({"at":3})"}}),
+            R"({ "a": 1, "scenario": [{ "at": 1 }, { "at": 2 }, { "at": 3 }] })");
 }
 
 TEST(PatternEdit, RefusesWhatIsNotThere) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
@@ -171,13 +172,21 @@ std::vector<PatternEdit> in_working_order(const Json& document,
   for (const PatternEdit& edit : edits)
     (moves_items(document, edit) ? last : first).push_back(edit);
   std::reverse(last.begin(), last.end());
-  const auto place = [&](const PatternEdit& edit) {
+  const auto size_around = [&](const PatternEdit& edit) -> size_t {
     const Json::json_pointer around(split(edit.pointer).around);
-    const size_t size = document.contains(around) ? document.at(around).size() : 0;
-    return item_index(edit, size);
+    return document.contains(around) ? document.at(around).size() : 0;
   };
+  const auto place = [&](const PatternEdit& edit) { return item_index(edit, size_around(edit)); };
   std::stable_sort(last.begin(), last.end(),
                    [&](const PatternEdit& a, const PatternEdit& b) { return place(a) > place(b); });
+  // Of several items behind the last one, the last is put there first, and each other one before
+  // it.
+  std::set<std::string> extended;
+  for (PatternEdit& edit : last) {
+    const Place at = split(edit.pointer);
+    if (at.name == "-" && !extended.insert(at.around).second)
+      edit.pointer = at.around + "/" + std::to_string(size_around(edit));
+  }
   first.insert(first.end(), last.begin(), last.end());
   return first;
 }
