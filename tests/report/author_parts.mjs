@@ -148,6 +148,32 @@ test("a phase is cut only within it, and never in its swing", () => {
   assert.deepEqual(edits.appendPhase([phase]), [{ kind: "insert", pointer: "/phases/-", value: { until: 2.5, support: "both" } }]);
 });
 
+test("a flight brings along the COG keys that it needs, or says what is missing", () => {
+  const phases = [0, 1.3, 1.42].map((from, i) => ({ from, until: [1.3, 1.42, 2.5][i], support: "both", pointer: `/phases/${i}` }));
+  const document = { keyframes: [{ t: 0, zmp: "center" }, { t: 1.3, cog: { x: 0.01 } }] };
+  const keyframes = document.keyframes.map(({ t }, i) => ({ time: t, time_value: t, pointer: `/keyframes/${i}`, time_pointer: `/keyframes/${i}/t` }));
+  const cogAt = () => ({ x: 0.01, y: 0, height: 0.24 });
+  const { edits: list, brought, landing } = edits.putSupport({ phases, keyframes }, document, 1, "none", cogAt);
+  assert.equal(landing, false);
+  assert.deepEqual(brought, [0.82, 1.18, 1.3, 1.42, 1.54, 1.9]);
+  assert.deepEqual(list[0], { kind: "set", pointer: "/phases/1/support", value: "none" });
+  // The parabola rises by g T^2 / 8. From rest to the lift-off at g T / 2 within T, the quintic rises
+  // all the way from g T^2 / 4 below.
+  assert.deepEqual(list.slice(1, 4), [
+    { kind: "insert", pointer: "/keyframes/1", value: { t: 0.82, cog: { height: 0.24 } } },
+    { kind: "insert", pointer: "/keyframes/1", value: { t: 1.18, cog: { height: 0.187 } } },
+    { kind: "set", pointer: "/keyframes/1/cog/height", value: 0.2223 }]);
+  assert.deepEqual(list[4].value, { t: 1.42, cog: { height: 0.2223, x: 0.01 } }, "a coordinate with keys needs them, too");
+  const state = { phases: phases.slice(0, 2), keyframes };
+  assert.deepEqual(edits.putSupport(state, document, 1, "none", cogAt).edits.at(-1),
+    { kind: "insert", pointer: "/phases/-", value: { until: 2.42, support: "both" } });
+  for (const [index, wrong] of [[0, {}], [1, { swing: {} }], [1, { repeated: true }]])
+    assert.match(edits.putSupport({ phases: phases.map((one, i) => i === index ? { ...one, ...wrong } : one), keyframes },
+      document, index, "none", cogAt).refused, /[.]$/);
+  assert.deepEqual(edits.putSupport({ phases, keyframes }, document, 1, "left", cogAt),
+    { edits: [{ kind: "set", pointer: "/phases/1/support", value: "left" }] });
+});
+
 test("the trunk's attitude comes back from its quaternion", () => {
   const [roll, pitch, yaw] = [0.2, -0.3, 0.4];
   const half = (angle) => [Math.cos(angle / 2), Math.sin(angle / 2)];

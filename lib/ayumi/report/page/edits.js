@@ -152,6 +152,75 @@ export function addSwing(phase, foot) {
   return [{ kind: "set", pointer: phase.pointer + "/swing", value: { foot, step: { forward: 0, side: 0, turn: 0 }, lift: 0.02 } }];
 }
 
+const gravity = 9.80665;
+const tenths = (value) => Number(value.toFixed(4));
+
+/// How long and how deep the COG moves on the ground before a flight of `length` s and after it: as
+/// deep as the quintic from rest to the lift-off of the parabola needs to rise all the way, and at
+/// most by a fifth of the height (about what legs that are nearly straight have).
+function stoopOf(length, room, height) {
+  const deepest = 0.2 * height;
+  const time = Math.min(length, room / 4, -2 * length + Math.sqrt(4 * length ** 2 + 20 * deepest / gravity));
+  return { time, depth: gravity * time * (4 * length + time) / 20 };
+}
+
+/// Another support of a phase, as { edits } or { refused: why }. A flight follows a parabola, so
+/// "none" brings along the COG keys that are missing: at lift-off and touchdown, so low that the top of
+/// the parabola has the present height, a stoop before and after, and a phase to land in. `cogAt(t)` is the present COG { x, y, height }.
+export function putSupport(state, document, index, support, cogAt) {
+  const phase = state.phases[index], own = { kind: "set", pointer: phase.pointer + "/support", value: support };
+  if (support !== "none") return { edits: [own] };
+  if (index === 0 || [-1, 1].some((way) => state.phases[index + way]?.support === "none"))
+    return { refused: "A flight needs a phase on the ground before it and after it. Add one, or cut this phase first." };
+  if (phase.swing) return { refused: "In a flight no foot swings. Remove the swing of this phase first." };
+  const inBlock = { refused: "This flight needs keys of the COG height at lift-off and touchdown, but a block that repeats " +
+    "has no room for new keys. Write them in the text." };
+  if (phase.repeated) return inBlock;
+  const last = index + 1 === state.phases.length, landing = last ? 1 : state.phases[index + 1].until - phase.until;
+  const written = state.keyframes.map((frame) => ({ time: frame.time, cog: valueAt(document, frame.pointer)?.cog }));
+  const keyed = (part) => written.filter(({ cog }) => cog?.[part] !== undefined);
+  const values = new Map();
+  const put = (time, part, value) => {
+    // The edges of the flight count exactly, even where they are no full milliseconds.
+    const t = time === phase.from || time === phase.until ? Number(time.toFixed(9)) : roundedTime(time);
+    if (keyed(part).some((one) => sameTime(one.time, t))) return;
+    values.set(t, { ...values.get(t), [part]: tenths(value) });
+  };
+  const length = phase.until - phase.from;
+  const edgeHeight = (time) => {
+    const there = keyed("height").some((one) => sameTime(one.time, time)), { height } = cogAt(time);
+    return there ? height : height - Math.min(gravity * length ** 2 / 8, 0.1 * height);
+  };
+  for (const time of [phase.from, phase.until]) {
+    put(time, "height", edgeHeight(time));
+    for (const part of ["x", "y"]) if (keyed(part).length) put(time, part, cogAt(time)[part]);
+  }
+  for (const [edge, way, room] of [[phase.from, -1, phase.from - state.phases[index - 1].from], [phase.until, 1, landing]]) {
+    const inside = (one) => (one.time - edge) * way > 5e-4 && (one.time - edge) * way < room + 5e-4;
+    if (keyed("height").some(inside)) continue;
+    const low = edgeHeight(edge), { time, depth } = stoopOf(length, room, low);
+    put(edge + way * time, "height", low - depth - 5e-5);
+    put(edge + 4 * way * time, "height", cogAt(edge).height);
+  }
+  const edits = [own];
+  for (const time of [...values.keys()].sort((a, b) => a - b)) {
+    const there = state.keyframes.find((frame) => sameTime(frame.time, time)), value = values.get(time);
+    const added = there && written.find((one) => sameTime(one.time, time)).cog !== undefined
+      ? Object.entries(value).map(([part, one]) => ({ kind: "set", pointer: `${there.pointer}/cog/${part}`, value: one }))
+      : putKey(state.keyframes, time, "cog", value);
+    if (!added.length) return inBlock;
+    for (const one of added) if (one.kind === "insert") one.value.t = time;
+    // Of two new keyframes before one that counts from the one before it, the later one counts.
+    for (const one of added) {
+      const same = edits.findIndex((other) => other.kind === "set" && other.pointer === one.pointer);
+      if (same >= 0) edits.splice(same, 1);
+      edits.push(one);
+    }
+  }
+  if (last) edits.push({ kind: "insert", pointer: "/phases/-", value: { until: roundedTime(phase.until + landing), support: "both" } });
+  return { edits, brought: [...values.keys()].sort((a, b) => a - b), landing: last };
+}
+
 /// A phase behind the last one, as long as it takes to look at.
 export function appendPhase(phases) {
   return [{ kind: "insert", pointer: "/phases/-",

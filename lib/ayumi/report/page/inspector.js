@@ -1,8 +1,9 @@
 // What is selected on the timeline, with its values to be typed; and new keys at the cursor.
 
 import { byId, element, seconds } from "./dom.js";
-import { addSwing, appendPhase, joinKeyframe, putKey, putPart, putTarget, removeKey, roomOfKey, roundedTime, sameTime, splitPhase, valueFromRow, written } from "./edits.js";
+import { addSwing, appendPhase, joinKeyframe, putKey, putPart, putSupport, putTarget, removeKey, roomOfKey, roundedTime, sameTime, splitPhase, valueFromRow, written } from "./edits.js";
 import { isOptional, missingFields, token, valueAt } from "./fields.js";
+import { sampleAt } from "./series.js";
 import { nameOfTrack } from "./timeline.js";
 
 /// Unit of a value by the names that lead to it.
@@ -246,7 +247,7 @@ export class Inspector {
     return [element("h3", {}, `Phase ${index + 1}, ${seconds(phase.from)} to ${seconds(phase.until)}`),
       ...this.inputs(phase.until_pointer, phase.until_value, [phase.until_pointer.split("/").at(-1)]),
       ...phase.support ? this.inputs(phase.pointer + "/support", phase.support, ["support"],
-        { support: ["both", "left", "right", "none"] }) : [],
+        { support: ["both", "left", "right", "none"] }, (next) => this.support(index, next)) : [],
       ...phase.swing ? this.inputs(phase.pointer + "/swing", phase.swing, ["swing"], { foot: ["left", "right"] }) : [],
       ...phase.support ? [] : this.inputs(phase.pointer + "/viip", valueAt(this.page.document, phase.pointer + "/viip") ?? {}, ["viip"],
         { release: ["ref_z", "spring"] }),
@@ -256,6 +257,17 @@ export class Inspector {
         if (await this.page.edit(appendPhase(state.phases))) this.page.select({ kind: "phase", pointer: this.page.state.phases.at(-1).pointer }, this.page.state.phases.at(-1).from);
       } }, "Add a phase after this one") : null,
       state.phases.length > 1 ? this.button(() => [{ kind: "remove", pointer: phase.pointer }], "Remove this phase") : null].filter(Boolean);
+  }
+
+  /// A flight brings the COG keys that it needs along, or is refused with what is missing.
+  support(index, next) {
+    const { state, document, motion } = this.page;
+    const cogAt = (time) => valueFromRow("cog", sampleAt(motion, time), motion.columns, state.angle_unit);
+    const { edits, refused, brought, landing } = putSupport(state, document, index, next, cogAt);
+    if (refused) this.page.say(refused + " Nothing was written.");
+    else if (brought?.length) this.page.say(`The flight follows a parabola, so keys of the COG were written at ${brought.map(seconds).join(", ")}` +
+      (landing ? ", and a phase on both feet after it." : "."));
+    return refused ? null : edits;
   }
 
   /// On one foot, the other one may swing; where it lands is then typed, or dragged in the picture.
