@@ -186,6 +186,10 @@ void set_joint(const AuthorMotion& motion, double time, int dof, double value, K
   set(time, value);
 }
 
+// A place that is typed or drawn has tenths of a millimetre.
+bool is_level(const Vector3d& change) { return std::abs(change.z()) < 2 * kStill; }
+bool is_upright(const Vector3d& change) { return change.head<2>().norm() < 2 * kStill; }
+
 void drag_height(const AuthorMotion& motion, double time, double change, KeyEdits& keys) {
   const auto height = [&](double t) { return sample_near(motion.task.series, t).cog.z(); };
   hold_around(
@@ -213,7 +217,16 @@ Isometry3d body_pose(const AuthorMotion& motion, const CommandSample& sample, in
   return data.pose(body);
 }
 
-// Across the line from the body's origin to the point the trunk leans; along it the COG rises.
+// An attitude with the upright axis of `wanted` and the yaw of `now`.
+Matrix3d with_yaw_of(const Matrix3d& now, const Matrix3d& wanted) {
+  const double yaw = matrix_to_rpy(now).z();
+  const Vector3d up = rpy_to_matrix({0, 0, -yaw}) * wanted.col(2);
+  return rpy_to_matrix(
+      {-std::asin(std::clamp(up.y(), -1.0, 1.0)), std::atan2(up.x(), up.z()), yaw});
+}
+
+// Across the line from the body's origin to the point the trunk leans; along it the COG rises. A
+// level change is a lean alone, and an upright one a rise alone.
 void drag_trunk(const AuthorMotion& motion, double time, const AuthorHandle& handle,
                 const Vector3d& change, KeyEdits& keys) {
   const auto attitude = [&](double t) {
@@ -222,13 +235,15 @@ void drag_trunk(const AuthorMotion& motion, double time, const AuthorHandle& han
   const Matrix3d now = attitude(time);
   const Vector3d arm = now * handle.point;
   if (arm.norm() < 1e-3) return;
-  const double along = change.dot(arm.normalized());
+  const bool level = is_level(change), upright = is_upright(change);
+  const double along = level ? 0 : upright ? change.z() : change.dot(arm.normalized());
   const Vector3d turn = arm.cross(change) / arm.squaredNorm();
-  if (turn.norm() * arm.norm() > kStill) {
+  if (!upright && turn.norm() * arm.norm() > kStill) {
     hold_around(
         motion, time, [](const Keyframe& frame) { return frame.torso.has_value(); },
         [&](double t) { keys.set(t, {"torso"}, attitude_value(motion, attitude(t))); });
-    keys.set(time, {"torso"}, attitude_value(motion, exp_rotation(turn).toRotationMatrix() * now));
+    const Matrix3d wanted = exp_rotation(turn).toRotationMatrix() * now;
+    keys.set(time, {"torso"}, attitude_value(motion, with_yaw_of(now, wanted)));
   }
   if (std::abs(along) > kStill) drag_height(motion, time, along, keys);
 }
@@ -554,6 +569,9 @@ class Drag {
     }
     // A sole on the ground stays at its height, which is no miss.
     if (handle_.kind == AuthorHandle::Kind::foot) off.z() = 0;
+    // A trunk that leans comes down, and one that rises stays over the feet.
+    if (handle_.kind == AuthorHandle::Kind::trunk && is_level(change_)) off.z() = 0;
+    if (handle_.kind == AuthorHandle::Kind::trunk && is_upright(change_)) off.head<2>().setZero();
     return off;
   }
 
@@ -790,7 +808,15 @@ std::vector<PatternEdit> joint_edits(const AuthorMotion& motion, const PoseWish&
 PoseAnswer posed(const AuthorMotion& motion, const std::string& text, const AuthorSetting& setting,
                  const PoseWish& wish) {
   try {
-    if (!wish.drag.empty()) return Drag(motion, text, setting, wish).answer();
+    if (!wish.drag.empty()) {
+      // The picture has fewer samples than the motion. What counts is by how much it was dragged.
+      PoseWish exact = wish;
+      if (wish.from)
+        exact.to += place_of(motion, handle_named(motion, wish.drag),
+                             sample_near(motion.task.series, wish.time)) -
+                    *wish.from;
+      return Drag(motion, text, setting, exact).answer();
+    }
     PoseAnswer out;
     out.edits = wish.target.empty() ? joint_edits(motion, wish) : moved_target(motion, wish);
     out.row = row_of(motion, sampled_with(motion, text, setting, out.edits, wish.time));

@@ -20,6 +20,7 @@ struct PoseWish {
   std::string drag;                              ///< name of a handle; empty: none
   std::string target;                            ///< pointer of an AuthorTarget at `time`
   Eigen::Vector3d to = Eigen::Vector3d::Zero();  ///< where its point shall be, world [m]
+  std::optional<Eigen::Vector3d> from;           ///< where the picture had it, world [m]
 };
 
 struct PoseAnswer {

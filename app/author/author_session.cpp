@@ -449,10 +449,12 @@ AuthorAnswer AuthorSession::pose(const OrderedJson& request) {
       wish.joints = request["joints"].get<std::map<std::string, double>>();
     if (request.contains("drag")) wish.drag = request["drag"];
     if (request.contains("target")) wish.target = request["target"];
-    if (request.contains("to")) {
-      const auto to = request.at("to").get<std::array<double, 3>>();
-      wish.to = {to[0], to[1], to[2]};
-    }
+    const auto place = [&](const char* name) {
+      const auto xyz = request.at(name).get<std::array<double, 3>>();
+      return Eigen::Vector3d(xyz[0], xyz[1], xyz[2]);
+    };
+    if (request.contains("to")) wish.to = place("to");
+    if (request.contains("from")) wish.from = place("from");
     const PoseAnswer answer = posed(*shown->motion, shown->text, setting_, wish);
     OrderedJson row = nullptr;
     if (!answer.row.empty()) {

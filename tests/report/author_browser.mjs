@@ -268,6 +268,14 @@ async function poses(tab) {
   const to = await tab.run("const p = window.ayumiAuthor.page; return p.row()[p.columns['cog.y']]");
   expect(Math.abs(to - from) > 0.001, `the COG is dragged from ${from} to ${to}`);
   await tab.after(() => tab.click("#undo"));
+  // Straight down in the slanted view is down, and nothing else.
+  const zmpBefore = JSON.stringify(data().keyframes.map((frame) => frame.zmp).filter(Boolean));
+  await tab.run("window.ayumiAuthor.page.viewer.look('iso');");
+  await tab.after(async () => tab.drag(await tab.run("return window.ayumiAuthor.pixelOf('cog')"), [1, 4]));
+  const lower = data().keyframes.find((frame) => Math.abs(frame.t - 0.6) < 1e-6);
+  expect(lower?.cog?.height > 0, "a key of the COG height: " + JSON.stringify(lower));
+  expect(JSON.stringify(data().keyframes.map((frame) => frame.zmp).filter(Boolean)) === zmpBefore, "the ZMP keeps its keys");
+  await tab.after(() => tab.click("#undo"));
 }
 
 async function postures(tab) {

@@ -5,6 +5,7 @@ import { readFileSync } from "node:fs";
 import { test } from "node:test";
 
 import { TimeAxis, snapped } from "../../lib/ayumi/report/page/time_axis.js";
+import { largerPart, nearAxis } from "../../lib/ayumi/report/page/drag_parts.js";
 import * as edits from "../../lib/ayumi/report/page/edits.js";
 import { fieldsOf, missingFields, parsePattern, valueAt } from "../../lib/ayumi/report/page/fields.js";
 import { strain, colorOf, heightOf, worstIn } from "../../lib/ayumi/report/page/strip_colors.js";
@@ -300,4 +301,18 @@ test("a keyframe joins another one unless both have the same key", () => {
     { kind: "set", pointer: "/keyframes/0/joints/b", value: 2 }, { kind: "remove", pointer: "/keyframes/1" },
     { kind: "set", pointer: "/keyframes/2/after", value: 2 }]);
   assert.equal(edits.joinKeyframe(state, pattern, frames[2], frames[0]), null);
+});
+
+test("a drag of the COG or the trunk is level or upright, by its larger part", () => {
+  const c = Math.cos(0.35), s = Math.sin(0.35), right = [0.6, 0.8, 0], up = [-0.8 * s, 0.6 * s, c];
+  const inPicture = (x, y) => [0, 1, 2].map((i) => x * right[i] + y * up[i]);
+  largerPart(inPicture(0.002, -0.03), right, up).forEach((value, i) => near(value, [0, 0, -0.03 / c][i]));
+  largerPart(inPicture(0.03, 0.01), right, up).forEach((value, i) => near(value, [0.018, 0.024, 0][i]));
+  // From above, both directions of the picture are level.
+  largerPart([0.1, 0.2, 0.05], [1, 0, 0], [0, 0.8, 0.6 - 0.2]).forEach((value, i) => near(value, [0.1, (0.8 * 0.2 + 0.4 * 0.05) / 0.8, 0][i]));
+});
+
+test("a view that is nearly along an axis drags exactly across it", () => {
+  assert.deepEqual(nearAxis([0.1, -0.99, -0.1]).map((x) => x + 0), [0, -1, 0]);
+  assert.deepEqual(nearAxis([0.6, 0.7, -0.3]), [0.6, 0.7, -0.3]);
 });

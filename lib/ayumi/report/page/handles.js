@@ -5,6 +5,7 @@
 import { BufferGeometry, Line, LineBasicMaterial, Mesh, MeshBasicMaterial, OctahedronGeometry, Plane, Raycaster,
   SphereGeometry, Vector2, Vector3 } from "three";
 import { byId, seconds } from "./dom.js";
+import { largerPart, nearAxis } from "./drag_parts.js";
 import { bodyOf } from "./viewer.js";
 
 const reach = 14;  // [px] around a point within which the pointer takes it
@@ -23,7 +24,8 @@ export class Handles {
       const mark = this.page.drawing ? null : this.near(event);
       stage.style.cursor = this.page.drawing ? "crosshair" : mark ? "grab" : "";
       const name = mark?.target ? `target of the ${mark.target.label} at ${seconds(mark.target.time)}` : mark?.handle.label;
-      stage.title = mark ? `${name}: drag it, with Shift only up and down` : "";
+      stage.title = !mark ? "" : this.isOneWay(mark.handle) && !mark.target ? `${name}: drag it sideways, or up and down`
+        : `${name}: drag it, with Shift only up and down`;
     });
   }
 
@@ -149,20 +151,31 @@ export class Handles {
     addEventListener("keydown", escape, true);
   }
 
+  /// The COG and the trunk change one thing sideways and another one up and down.
+  isOneWay(handle) {
+    return handle?.name === "cog" || handle?.name === "trunk";
+  }
+
   /// In the plane that faces the eye; with Shift upright only.
   dragOf({ handle, target, ball }, event) {
-    const facing = this.page.viewer.camera.getWorldDirection(new Vector3());
+    const { camera } = this.page.viewer, oneWay = !target && this.isOneWay(handle);
+    const right = new Vector3(), up = new Vector3(), facing = new Vector3();
+    camera.updateMatrixWorld();
+    camera.matrixWorld.extractBasis(right, up, facing);
+    if (!oneWay) facing.set(...nearAxis(facing.toArray()));
     const plane = new Plane().setFromNormalAndCoplanarPoint(facing, ball.position);
     const begin = ball.position.clone(), first = this.hit(event, plane);
     if (!first) return null;
     let changed = false;
     if (target) this.page.show(target.time);
-    const what = target ? { target: target.pointer } : { drag: handle.name };
+    const what = target ? { target: target.pointer } : { drag: handle.name, from: begin.toArray() };
     return {
       move: (e) => {
         const at = this.hit(e, plane);
         if (!at) return;
-        const to = begin.clone().add(at.sub(first));
+        const way = at.sub(first);
+        if (oneWay && !e.shiftKey) way.set(...largerPart(way.toArray(), right.toArray(), up.toArray()));
+        const to = begin.clone().add(way);
         if (e.shiftKey) to.set(begin.x, begin.y, to.z);
         changed = changed || to.distanceTo(begin) > 5e-4;
         if (target) ball.position.copy(to);

@@ -117,6 +117,8 @@ export class Pose {
         if (!this.asked) break;
         this.answer = status === 200 ? value : null;
         byId("pose-words").textContent = status === 200 ? value.message || "" : value.message || "The server cannot make this change. Please reload the page.";
+        // A drag is looked at in the picture, so what it cannot do is said there.
+        if (sent.drag || sent.target) this.page.say(byId("pose-words").textContent);
         if (this.answer?.row) this.page.preview(Float32Array.from(this.answer.row));
       }
     })();
@@ -126,7 +128,8 @@ export class Pose {
 
   async write() {
     await this.waiting;
-    const edits = this.answer?.edits || [];
+    const edits = this.answer?.edits || [], words = byId("pose-words").textContent;
+    if (!edits.length && words) this.page.say(words + " Nothing was written.");
     const kept = edits.length > 0;
     if (kept) await this.page.edit(edits);
     this.forget();
