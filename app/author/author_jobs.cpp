@@ -134,18 +134,21 @@ AuthorResult simulate_job(const OrderedJson& asked, const Context& context,
     options.seed = context.seed;
     if (run.spec.type != ControllerKind::none) refuse_unstable_gains(task, run.spec, false);
     const SimulationLog log = simulate(task, options, progress);
-    lines.push_back(outcome_text(log));
-    good = log.result.outcome == Outcome::stands;
     const std::string who = run.spec.type == ControllerKind::none
                                 ? "in open loop"
                                 : std::string("with ") + name_of(run.spec.type);
+    lines.push_back(outcome_text(log));
+    good = log.result.outcome == Outcome::stands;
     verdict = log.result.outcome == Outcome::stands ? "The robot stands " + who + "."
               : log.result.outcome == Outcome::fell
                   ? "The robot falls " + who + " at " + text::fixed(log.result.fell_at, 2) + " s."
                   : "The robot does not settle " + who + ".";
+    // The pushes are the same in each run, the falls are not.
     for (const SimulationEvent& event : log.events)
-      if (event.kind == "fell" || event.kind == "push")
-        marks.push_back({{"time", event.t}, {"text", event.kind + ", " + event.text}});
+      if (event.kind == "fell")
+        marks.push_back({{"time", event.t}, {"text", who + ": fell, " + event.text}});
+      else if (event.kind == "push" && out.series.empty())
+        marks.push_back({{"time", event.t}, {"text", "push, " + event.text}});
     out.series[run.name] = live_series(log, kPageRate);
   }
   out.shown = result_json("simulate", verdict, good, lines);

@@ -6,6 +6,7 @@ import { test } from "node:test";
 
 import { TimeAxis, snapped } from "../../lib/ayumi/report/page/time_axis.js";
 import { largerPart, nearAxis } from "../../lib/ayumi/report/page/drag_parts.js";
+import { arrowsOf, wordsOfPush } from "../../lib/ayumi/report/page/push_parts.js";
 import * as edits from "../../lib/ayumi/report/page/edits.js";
 import { fieldsOf, missingFields, parsePattern, valueAt } from "../../lib/ayumi/report/page/fields.js";
 import { strain, colorOf, heightOf, worstIn } from "../../lib/ayumi/report/page/strip_colors.js";
@@ -315,4 +316,14 @@ test("a drag of the COG or the trunk is level or upright, by its larger part", (
 test("a view that is nearly along an axis drags exactly across it", () => {
   assert.deepEqual(nearAxis([0.1, -0.99, -0.1]).map((x) => x + 0), [0, -1, 0]);
   assert.deepEqual(nearAxis([0.6, 0.7, -0.3]), [0.6, 0.7, -0.3]);
+});
+
+test("a push has its direction in words, and an arrow where it acts on the COG", () => {
+  const push = { type: "impulse", size: 2, unit: "N s", link: "cog", direction: [0, 2, 0], from: 1, until: 1.02, text: "" };
+  assert.equal(wordsOfPush(push), "impulse of 2 N s on cog towards 90 degrees");
+  assert.equal(wordsOfPush({ ...push, direction: [0, 0, -1] }), "impulse of 2 N s on cog downwards");
+  assert.equal(wordsOfPush({ ...push, direction: undefined }), "impulse of 2 N s on cog");
+  assert.equal(wordsOfPush({ type: "friction", text: "friction 0.3 at 1 s" }), "friction 0.3 at 1 s");
+  assert.deepEqual(arrowsOf([push, { ...push, link: "head" }, { type: "friction" }]),
+    [{ begin: 1, end: 1.02, from_cog: [0, 0, 0], direction: [0, 1, 0] }]);
 });

@@ -13,6 +13,7 @@ import { Inspector } from "./inspector.js";
 import { Jobs } from "./jobs.js";
 import { Pose } from "./pose.js";
 import { Postures } from "./postures.js";
+import { arrowsOf } from "./push_parts.js";
 import { Pushes } from "./pushes.js";
 import { Rig } from "./rig.js";
 import { sampleAt } from "./series.js";
@@ -127,7 +128,7 @@ class Page {
   }
 
   whole() {
-    return { config: { ...this.state.replay, view: byId("look").value }, series: this.motion,
+    return { config: { ...this.state.replay, view: byId("look").value, pushes: arrowsOf(this.state.disturbances) }, series: this.motion,
       scenery: this.scenery };
   }
 

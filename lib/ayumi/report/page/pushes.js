@@ -3,6 +3,7 @@
 import { Vector3 } from "three";
 import { byId, element, seconds } from "./dom.js";
 import { addDisturbance } from "./edits.js";
+import { wordsOfPush } from "./push_parts.js";
 
 const units = { impulse: "N s", force: "N" };
 
@@ -62,7 +63,7 @@ export class Pushes {
     byId("pushes").replaceChildren(...state.disturbances.map((one) => element("li", {},
       element("button", { type: "button", class: "line",
         onclick: () => this.page.select({ kind: "disturbance", pointer: one.pointer }, one.from) },
-      `${seconds(one.from)}: ${one.type}, ${one.text}`))));
+      `${seconds(one.from)}: ${wordsOfPush(one)}`))));
     byId("no-pushes").hidden = Boolean(state.disturbances.length);
     this.moved();
   }

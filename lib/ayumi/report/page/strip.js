@@ -36,7 +36,9 @@ export class Strip {
       return { lane, canvas, value, row: element("div", { class: "lane strip" }, button,
         element("div", { class: "plot" }, canvas)) };
     });
-    box.replaceChildren(...this.lanes.map((one) => one.row));
+    const shown = byId("which").selectedOptions[0];
+    box.replaceChildren(...shown && shown.value !== "plan" ? [element("p", { class: "soft of-pattern" },
+      `The strip shows the pattern; the picture and the curves show: ${shown.textContent}.`)] : [], ...this.lanes.map((one) => one.row));
     this.draw();
     this.moved(this.page.time);
   }
