@@ -520,6 +520,23 @@ TEST_F(AuthorServer, WhatIsDraggedIsWhatThePatternThenIs) {
   }
 }
 
+TEST_F(AuthorServer, ADragOfTheTrunkLeansItOrMovesItUpAndDown) {
+  const Server server(file);
+  const auto edits_of = [&](const std::vector<double>& to) {
+    const OrderedJson wish = {{"time", 2.4}, {"drag", "trunk"}, {"from", {0, 0, 0}}, {"to", to}};
+    const auto [status, answer] = server.post("pose", wish);
+    EXPECT_EQ(status, 200) << answer;
+    EXPECT_TRUE(answer["message"].is_null()) << answer["message"];
+    return answer["edits"].dump();
+  };
+  const std::string lean = edits_of({0.01, 0.005, 0}), rise = edits_of({0, 0, -0.004});
+  EXPECT_NE(lean.find("torso"), std::string::npos) << lean;
+  EXPECT_EQ(lean.find("height"), std::string::npos) << lean;
+  EXPECT_EQ(lean.find("yaw"), std::string::npos) << lean;
+  EXPECT_NE(rise.find("height"), std::string::npos) << rise;
+  EXPECT_EQ(rise.find("torso"), std::string::npos) << rise;
+}
+
 TEST_F(AuthorServer, SaysWhatCannotBeReached) {
   const Server server(file);
   const auto far = server.post("pose", {{"time", 2.4}, {"drag", "left_hand"}, {"to", {3, 0, 0}}});
