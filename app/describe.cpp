@@ -67,6 +67,7 @@ std::string names_kind(const CLI::Option& option) {
                                                            {"joints", "joints"},
                                                            {"lock", "joints"},
                                                            {"weight", "joints"},
+                                                           {"tolerance", "findings"},
                                                            {"EQ", "equations"},
                                                            {"plant", "plants"},
                                                            {"controller", "controllers"},
@@ -193,6 +194,7 @@ std::string bash_completion(const CLI::App& app) {
                                     : kind) +
                   " names='" + choices + "' ;;\n";
         }
+  text += "    *' --describe') kind= names='" + text::join(description_kinds(), " ") + "' ;;\n";
   return text +
          "  esac\n"
          "  if [[ -n $kind && $kind != files && $word != -* ]]; then\n"
@@ -309,7 +311,10 @@ std::string fish_options(const CLI::App& app, const std::string& condition) {
 }
 
 std::string fish_completion(const CLI::App& app) {
-  std::string text = "# Completion of ayumi for fish.\n" + fish_options(app, "");
+  std::string text = "# Completion of ayumi for fish.\n" + fish_options(app, "") +
+                     "complete -c ayumi -n 'string match -q -- \"*--describe*\" (commandline -pc)' "
+                     "-l describe -x -a '" +
+                     text::join(description_kinds(), " ") + "'\n";
   std::vector<Level> levels = levels_of(app);
   levels.insert(levels.begin(), {"", &app});
   for (const Level& level : levels) {

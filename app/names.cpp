@@ -12,6 +12,7 @@
 #include "ayumi/control/laws/viip.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/io/run/run_folder.hpp"
+#include "ayumi/limits/finding.hpp"
 #include "equations.hpp"
 #include "pattern_input.hpp"
 #include "simulation.hpp"
@@ -89,6 +90,7 @@ std::set<std::string> names_of(const Context& context, const std::string& kind,
   if (kind == "robots")
     for (const RobotEntry& entry : find_robots(robot_search(context))) names.insert(entry.name);
   if (kind == "gains") names = gain_names();
+  if (kind == "findings") names = {finding_kind_names().begin(), finding_kind_names().end()};
   if (kind == "controllers") return {controller_names().begin(), controller_names().end()};
   if (kind == "plants") {
     const std::vector<std::string> plants = built_plants();

@@ -13,6 +13,7 @@
 #include "ayumi/model/diagnose.hpp"
 #include "ayumi/model/outline.hpp"
 #include "ayumi/render/clip.hpp"
+#include "option_checks.hpp"
 #include "pattern_input.hpp"
 #include "robot_picture.hpp"
 #include "terminal.hpp"
@@ -416,6 +417,7 @@ void add_inspect(Command& app, Context& context) {
   command->add_option("--picture", options->picture, "Draw the home posture on the ground (.png).")
       ->type_name("FILE");
   command->add_option("--view", options->view, "View: " + text::join(view_names(), ", ") + ".")
+      ->check(one_of(view_names()).description(""))
       ->capture_default_str();
   command->callback([&context, options] { inspect(context, *options); });
 }

@@ -370,6 +370,7 @@ void add_posture(Command& app, Context& context) {
       ->required()
       ->type_name("F");
   drawn.add_option("--view", options->view, "View: " + text::join(view_names(), ", ") + ".")
+      ->check(one_of(view_names()).description(""))
       ->capture_default_str();
   drawn.callback([options, &context] { draw(context, *options); });
   Command& mirrored = add_kind(*command, "mirror", "exchange left and right", options);

@@ -266,6 +266,7 @@ void add_picture_options(Command& command, PreviewOptions& options) {
       ->check(whole_number_within(1, 100))
       ->capture_default_str();
   command.add_option("--view", clip.camera.view, "View: " + text::join(view_names(), ", ") + ".")
+      ->check(one_of(view_names()).description(""))
       ->capture_default_str();
   command.add_option("--camera", options.camera, "Camera: follow, fixed or orbit.")
       ->check(one_of({"follow", "fixed", "orbit"}).description(""))

@@ -90,6 +90,9 @@ TEST(Names, AreAskedForByEveryCompletion) {
   EXPECT_NE(zsh.find(": _ayumi_names joints'"), std::string::npos);
   EXPECT_NE(zsh.find(": _ayumi_names robots'"), std::string::npos);
   EXPECT_NE(fish.find("-l profile -r -a '(ayumi --names profiles "), std::string::npos);
+  EXPECT_NE(bash.find("' check --tolerance') kind=findings"), std::string::npos);
+  EXPECT_NE(bash.find("' preview --view') kind= names='front side "), std::string::npos);
+  EXPECT_NE(bash.find("*' --describe') kind= names='man bash zsh fish'"), std::string::npos);
   EXPECT_NE(bash.find("' identify --unit') kind= names='rad deg'"), std::string::npos);
   EXPECT_NE(names({"controllers"}).find("\ndtad\n"), std::string::npos);
   EXPECT_NE(names({"plants"}).find("\nayumi\n"), std::string::npos);
@@ -105,6 +108,8 @@ const std::vector<Completed> kCompleted = {
     {"ayumi repair w.json --lock l_kn", "l_knee", "r_knee"},
     {"ayumi simulate w.json --controller d", "dtad", "viip"},
     {"ayumi identify hoap1 --unit d", "deg", "rad"},
+    {"ayumi preview w.json --view ortho-s", "ortho-side", "front"},
+    {"ayumi check w.json --tolerance joint_s", "joint_speed", "joint_torque"},
     {"ayumi edit mir", "mirror", "loop"},
     {"ayumi help rep", "repair", "check"},
     {"ayumi posture draw --robot huma", "humanoid30", "hoap1"},
@@ -144,6 +149,7 @@ TEST(Names, CompleteInFish) {
   // A command that is chosen is not offered again.
   const Output chosen = completed_by_fish(folder, "ayumi new walk ");
   EXPECT_EQ(chosen.out.find("squat"), std::string::npos) << chosen.out;
+  EXPECT_EQ(completed_by_fish(folder, "ayumi --describe z").out, "zsh\n");
 }
 
 TEST(Names, CompleteInZsh) {
