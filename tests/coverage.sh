@@ -1,9 +1,9 @@
 #!/bin/bash
 # Measures how many lines and branches of lib the tests reach, by tests without ../shared.
 #
-#   tests/coverage.sh               every room, by the whole suite; several hours on one processor
+#   tests/coverage.sh               every room, by the whole suite; hours on one processor (estimated)
 #   tests/coverage.sh ROOM…         these rooms by their own tests, for example: base math motion.
-#                                   The first time builds the libraries (half an hour)
+#                                   The first time builds the libraries (estimated: half an hour)
 #
 # The sources are copied to build/coverage/ayumi, where no folder ../shared is, and are built there
 # without optimization that joins lines. Prints a table, and writes build/coverage/uncovered.txt:

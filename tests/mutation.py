@@ -10,7 +10,7 @@ room run until one of them fails. Then the source is put back, also after Ctrl-C
 `git checkout lib` puts it back; so the script begins only where git sees no change in lib.) A fault
 that does not compile is not counted, and another one takes its place.
 
-300 faults (the default) take about six hours on one processor: a fault costs the compilation of one
+300 faults (the default) take about six hours on one processor (estimated): a fault costs the compilation of one
 unit, the linking of the test programs, and their running time. A sample is enough for an estimate;
 the script prints how many faults it has planted, and the interval in which the share of noticed
 faults lies with 95 % probability. It needs python3 and a build folder. The faults that no test has

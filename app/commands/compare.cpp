@@ -73,7 +73,7 @@ std::string curve_words(const ComparedCurve& curve, double unit, const std::stri
   std::string words = "  " + curve.name + ": " + text::brief(curve.mean / unit, 3) + name +
                       " on average, at most " + text::brief(curve.largest / unit, 3) + name +
                       " at " + text::fixed(curve.largest_at, 3) + " s";
-  if (curve.lag != 0)
+  if (std::abs(curve.lag) >= 0.00005)  // what is printed as 0.0 ms is no lag
     words += ", the recording is " + text::fixed(1000 * std::abs(curve.lag), 1) +
              (curve.lag > 0 ? " ms behind" : " ms ahead");
   if (curve.unit != "rad" && curve.correlation != 0)
@@ -125,8 +125,8 @@ std::string comparison_words(const Comparison& found, const Recordings& recordin
     words += "landings: " + std::to_string(found.landings.size()) +
              " are both in the run and in the recording, with times that differ by at most " +
              text::fixed(1000 * largest_landing(found), 0) + " ms; " +
-             std::to_string(found.unmatched_landings) +
-             (found.unmatched_landings == 1 ? " is" : " are") + " in only one of the two\n";
+             std::to_string(found.lone_landings.size()) +
+             (found.lone_landings.size() == 1 ? " is" : " are") + " in only one of the two\n";
     for (const ComparedLanding& landing : found.landings) {
       const double later = landing.measured - landing.simulated;
       words += std::string("  ") + name_of(landing.foot) + " at " +
@@ -134,6 +134,9 @@ std::string comparison_words(const Comparison& found, const Recordings& recordin
                text::fixed(1000 * std::abs(later), 0) + (later < 0 ? " ms earlier" : " ms later") +
                " in the recording\n";
     }
+    for (const LoneLanding& landing : found.lone_landings)
+      words += std::string("  ") + name_of(landing.foot) + " at " + text::fixed(landing.t, 3) +
+               " s of the run, only in the " + (landing.measured ? "recording" : "run") + "\n";
   }
   if (!found.imu.empty()) words += "differences of the IMU:\n";
   for (const ComparedCurve& curve : found.imu) words += curve_words(curve, 1, " " + curve.unit);
@@ -146,6 +149,10 @@ Json comparison_json(const Comparison& found) {
     landings.push_back({{"foot", name_of(landing.foot)},
                         {"simulated_s", landing.simulated},
                         {"measured_s", landing.measured}});
+  Json alone = Json::array();
+  for (const LoneLanding& landing : found.lone_landings)
+    alone.push_back({{"foot", name_of(landing.foot)},
+                     {landing.measured ? "measured_s" : "simulated_s", landing.t}});
   return {{"shift_s", found.shift},
           {"begin_s", found.begin},
           {"end_s", found.end},
@@ -155,7 +162,8 @@ Json comparison_json(const Comparison& found) {
           {"loads", json_of(found.loads)},
           {"landings", landings},
           {"landing_max_s", largest_landing(found)},
-          {"landings_unmatched", found.unmatched_landings},
+          {"landings_unmatched", found.lone_landings.size()},
+          {"landings_alone", alone},
           {"imu", json_of(found.imu)},
           {"notes", found.notes}};
 }
@@ -170,7 +178,7 @@ void write_comparison_report(const Context& context, const CompareCommand& optio
   SimulationLog measured;
   if (recordings.angles) {
     measured = measured_log(log, model, *recordings.angles, found.shift);
-    input.runs.insert(input.runs.end() - 1, {"measured", &measured});
+    input.runs.insert(input.runs.end() - 1, {"measured", &measured, true});
   }
   const Report made = make_report(model, input, {}, context.progress());
   write_file(options.report, made.html);

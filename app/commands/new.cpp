@@ -121,10 +121,16 @@ std::vector<double> values_that_pass(const Context& context, const RobotModel& m
   return result.values;
 }
 
-// Fills what was left out of a walk in place or forward.
-void fit_walk(const Context& context, const RobotModel& model, const NewOptions& options,
-              WalkParameters& w) {
-  if (!model.has_soles() || w.turn != 0 || w.side != 0 || w.rise != 0) return;
+// A dial of a walk, and what it turns.
+struct WalkDial {
+  Dial dial;
+  std::function<void(WalkParameters&, double)> set;
+};
+
+// Fills what was left out of a walk in place, forward, or of a turn: `length` is what makes its
+// steps longer. `lifts`: the feet may rise less than asked for, because nobody asked.
+void fit_steps(const Context& context, const RobotModel& model, const NewOptions& options,
+               WalkParameters& w, const WalkDial& length, bool lifts = false) {
   // Legs without the roll of the ankle carry the COG aside by a few millimetres only, so that they
   // step quickly and close to the other foot. Lower, their knees need less torque for this.
   const bool lacking = InverseKinematics(model, model.posture()).lacks_joints();
@@ -140,22 +146,21 @@ void fit_walk(const Context& context, const RobotModel& model, const NewOptions&
   }
   const std::vector<double> paces =
       lacking ? std::vector{0.34, 0.55, 0.42, 0.75} : std::vector{1.25, 1.6, 0.8, 2.2};
-  const std::vector<double> strides =
-      lacking ? std::vector{0.5, 0.25} : std::vector{0.75, 0.5, 0.25};
-  using WalkDial = std::pair<Dial, double WalkParameters::*>;
-  const WalkDial stature{height, &WalkParameters::cog_height},
-      length{dial("--stride", "m", w.stride, 1e-3, !options.stride, strides),
-             &WalkParameters::stride},
-      pace{dial("--period", "s", w.period, 0.01, !options.period, paces), &WalkParameters::period},
-      shift{inwards, &WalkParameters::zmp_inwards};
+  const WalkDial stature{height, [](WalkParameters&p, double v) { p.cog_height = v; }},
+      pace{dial("--period", "s", w.period, 0.01, !options.period, paces),
+           [](WalkParameters&p, double v) { p.period = v; }},
+      shift{inwards, [](WalkParameters&p, double v) { p.zmp_inwards = v; }},
+      rise{dial("--lift", "m", w.lift, 1e-3, !options.lift, {0.75, 0.5}),
+           [](WalkParameters&p, double v) { p.lift = v; }};
   // Of trials that change as much, those that change the last dials come first.
-  const std::vector<WalkDial> turned = lacking ? std::vector{length, pace, shift, stature}
-                                               : std::vector{stature, length, pace, shift};
+  std::vector<WalkDial> turned = lacking ? std::vector{length, pace, shift, stature}
+                                         : std::vector{stature, length, pace, shift};
+  if (lifts && !lacking) turned.insert(turned.begin() + 1, rise);
   std::vector<Dial> dials;
-  for (const WalkDial& each : turned) dials.push_back(each.first);
+  for (const WalkDial& each : turned) dials.push_back(each.dial);
   const auto with = [&](const std::vector<double>& values) {
     WalkParameters walk = w;
-    for (size_t i = 0; i < turned.size(); ++i) walk.*turned[i].second = values[i];
+    for (size_t i = 0; i < turned.size(); ++i) turned[i].set(walk, values[i]);
     // Quick steps are low: the foot needs the acceleration 1/T^2 for the same lift.
     if (lacking && !options.lift)
       walk.lift = rounded(w.lift * std::min(1.0, walk.period / w.period), 5e-4);
@@ -165,9 +170,23 @@ void fit_walk(const Context& context, const RobotModel& model, const NewOptions&
   w = with(values_that_pass(
       context, model, dials,
       [&](const std::vector<double>& values) { return walk_pattern(model, with(values)); }, true));
-  if (w.lift != lift)
+  if (w.lift != lift && lacking)
     context.print("  the feet rise by " + text::brief(w.lift) + " m in place of " +
                   text::brief(lift) + " m, because the steps are quick (--lift changes this)\n");
+}
+
+// Shares of the default length of a step. Legs without the roll of the ankle step shorter at once.
+std::vector<double> step_shares(const RobotModel& model) {
+  return InverseKinematics(model, model.posture()).lacks_joints() ? std::vector{0.5, 0.25}
+                                                                  : std::vector{0.75, 0.5, 0.25};
+}
+
+void fit_walk(const Context& context, const RobotModel& model, const NewOptions& options,
+              WalkParameters& w, bool lifts = false) {
+  if (!model.has_soles() || w.turn != 0 || w.side != 0 || w.rise != 0) return;
+  const WalkDial stride{dial("--stride", "m", w.stride, 1e-3, !options.stride, step_shares(model)),
+                        [](WalkParameters& p, double v) { p.stride = v; }};
+  fit_steps(context, model, options, w, stride, lifts);
 }
 
 // Motions that a robot can do that cannot walk, as commands; "" where none was found.
@@ -395,11 +414,13 @@ void new_kick(const Context& context, NewOptions options) {
   const std::vector<Dial> dials = {
       height_dial(model, p.cog_height),
       dial("--length", "m", p.length, 1e-3, !options.length, {0.75, 0.5, 0.25}),
-      dial("--period", "s", p.period, 0.01, !options.period, {1.25, 1.6, 2.2})};
+      dial("--period", "s", p.period, 0.01, !options.period, {1.25, 1.6, 2.2}),
+      dial("--height", "m", p.height, 1e-3, !options.height, {0.6, 0.4})};
   const auto make = [&](const std::vector<double>& values) {
     p.cog_height = values[0];
     p.length = values[1];
     p.period = values[2];
+    p.height = values[3];
     return kick_pattern(model, p);
   };
   const Pattern pattern = make(values_that_pass(context, model, dials, make));
@@ -424,12 +445,20 @@ void new_turn(const Context& context, NewOptions options) {
   w.stride = 0;
   w.period = options.period.value_or(scaled.period);
   w.lift = options.lift.value_or(scaled.lift);
-  const double most =
-      std::max(1.0, std::abs(options.turn_deg == 0 ? kTurnPerStep : options.turn_deg));
-  w.steps = static_cast<int>(std::ceil(std::abs(angle) / most - 1e-9));
-  w.turn = angle / w.steps * std::numbers::pi / 180;
   // The foot on the side to which the robot turns goes first, away from the other one.
   w.first_swing = angle > 0 ? Side::left : Side::right;
+  const auto in_steps_of = [angle](WalkParameters& p, double most) {
+    p.steps = static_cast<int>(std::ceil(std::abs(angle) / most - 1e-9));
+    p.turn = angle / p.steps * std::numbers::pi / 180;
+  };
+  const double most =
+      std::max(1.0, std::abs(options.turn_deg == 0 ? kTurnPerStep : options.turn_deg));
+  in_steps_of(w, most);
+  if (model.has_soles())
+    fit_steps(context, model, options, w,
+              {dial("--per-step", "deg", most, 1, options.turn_deg == 0, step_shares(model)),
+               in_steps_of},
+              true);
   write_new(
       context, model, walk_pattern(model, w), options,
       {"Turns by " + text::brief(angle) + " deg in place, in " + std::to_string(w.steps) +
@@ -448,7 +477,7 @@ void new_march(const Context& context, NewOptions options) {
   w.lift = options.lift.value_or(rounded(1.6 * scaled.lift, 1e-3));
   w.first_swing = options.first == "left" ? Side::left : Side::right;
   options.stride = 0;
-  fit_walk(context, model, options, w);
+  fit_walk(context, model, options, w, true);
   write_new(
       context, model, walk_pattern(model, w), options,
       {"Marches in place with " + std::to_string(w.steps) + " steps. Lift " + text::brief(w.lift) +
@@ -575,19 +604,22 @@ void new_stand(const Context& context, const NewOptions& options) {
            : "The robot stands on both feet with bent knees, lower than in the home posture."});
 }
 
-// Amplitudes shrink until the check finds the pattern consistent.
+// Amplitudes shrink, and the robot bends its knees more, until the check finds the pattern
+// consistent.
 void new_excite(const Context& context, const NewOptions& options) {
   const RobotModel model = load_robot(options.robot, robot_search(context));
-  double scale = options.scale;
-  while (model.has_soles() && scale > 0.2 * options.scale) {
-    Task task = make_task(excite_pattern(model, scale), model, "", context.progress());
-    if (judge(task).good()) break;
-    scale *= 0.8;
-  }
-  write_new(context, model, excite_pattern(model, scale), options,
+  const double given = rounded(100 * options.scale, 1e-3);  // as a dial [%]
+  const Dial amplitudes =
+      dial("amplitudes of", "%", given, 0.1, true, {0.8, 0.64, 0.512, 0.41, 0.328, 0.262});
+  const Dial height{"a COG height of", "of the usual one", {1, 0.96, 0.92}, true};
+  const auto make = [&](const std::vector<double>& values) {
+    return excite_pattern(model, 0.01 * values[1], values[0]);
+  };
+  const std::vector<double> values = values_that_pass(context, model, {height, amplitudes}, make);
+  write_new(context, model, make(values), options,
             {"Slow sweeps, chirps and steps of every joint, for `ayumi identify`. Joints of a leg "
              "are moved while the robot stands on one foot.",
-             "The amplitudes are " + text::brief(100 * scale, 3) + " % of the usual ones."});
+             "The amplitudes are " + text::brief(values[1], 3) + " % of the usual ones."});
 }
 
 // Options that several generators share.

@@ -1,6 +1,7 @@
 // ayumi new jump: a jump as keys, and the highest one that a profile's actuators allow.
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "ayumi/author/generate/generate.hpp"
@@ -52,6 +53,29 @@ std::string choose_profile(const RobotModel& model, JumpParameters& p, bool stoo
     if (!stoop_open) break;
   }
   p.stoop = stoop;
+  return {};
+}
+
+// A lower jump that some profile carries out, where the default one is too much: the first of a
+// grid of shares of the height, the stoop and the COG height that nobody asked for; heights first.
+// "" and the values unchanged where there is none.
+std::string lower_jump(const RobotModel& model, JumpParameters& p, const JumpOptions& options,
+                       const Progress& progress) {
+  // Chosen: half the height takes 0.7 of the speed; a jump of less than a tenth is hardly one.
+  const std::vector<double> lower = {0.75, 0.5, 0.3, 0.2, 0.1}, same = {1.0};
+  const JumpParameters asked = p;
+  int done = 0;
+  for (const double stature : options.cog_height ? same : std::vector{1.0, 0.9})
+    for (const double stoop : options.stoop ? same : std::vector{1.0, 0.4})
+      for (const double height : options.height ? same : lower) {
+        report(progress, {"look for a lower jump", done++ / 20.0, ""});
+        p.height = 1e-4 * std::round(1e4 * height * asked.height);
+        p.cog_height = 1e-4 * std::round(1e4 * stature * asked.cog_height);
+        p.stoop = 1e-4 * std::round(1e4 * stoop * asked.stoop);
+        const std::string profile = sufficient_profile(model, p);
+        if (!profile.empty()) return profile;
+      }
+  p = asked;
   return {};
 }
 
@@ -128,13 +152,22 @@ void new_jump(Context& context, JumpOptions options) {
   if (options.profile.empty()) {
     options.profile = choose_profile(model, p, !options.stoop);
     jump_pattern(model, p);  // values out of range are refused first
-    if (options.profile.empty())
-      context.print(
-          "no actuator profile of " + model.name() + " is strong enough for a jump of " +
-          text::brief(p.height) + " m with a stoop of " + text::brief(p.stoop) +
-          " m and a COG height (ref z_G) of " + text::brief(p.cog_height) +
-          " m. Choose a lower --height, another --stoop or another --cog-height. `ayumi check` "
-          "names the limits that the jump exceeds\n");
+    if (options.profile.empty()) {
+      context.print("no actuator profile of " + model.name() + " is strong enough for a jump of " +
+                    text::brief(p.height) + " m with a stoop of " + text::brief(p.stoop) +
+                    " m and a COG height (ref z_G) of " + text::brief(p.cog_height) + " m. ");
+      options.profile = lower_jump(model, p, options, context.progress());
+      if (options.profile.empty())
+        context.print(
+            "No lower jump was found either, where a value was not given as an option. Choose a "
+            "lower --height, another --stoop or another --cog-height. `ayumi check` names the "
+            "limits that the jump exceeds\n");
+      else
+        context.print("These values were found: --height " + text::brief(p.height) +
+                      " m, --stoop " + text::brief(p.stoop) + " m, --cog-height " +
+                      text::brief(p.cog_height) +
+                      " m. `ayumi new jump --highest` looks for the highest jump\n");
+    }
   }
   Pattern pattern = jump_pattern(model, p);
   pattern.profile = options.profile;

@@ -45,7 +45,7 @@ struct Played {
 
 /// How closely a simulated robot follows the targets.
 struct Tracking {
-  double mean = 0, most = 0;  ///< |joint angle - target| [rad]
+  double mean = 0, most = 0;  ///< |what the encoder reads - target| [rad]
   std::string joint;          ///< of the largest
   double at = 0;              ///< of the largest [s]
 };
@@ -126,7 +126,7 @@ Task planned(const ReplayCommand& options, const RobotModel& model, const std::s
   return task;
 }
 
-Tracking tracking_of(const SimulationLog& log, size_t rows) {
+Tracking tracking_of(const SimulationLog& log, const ActuatorLimits& actuators, size_t rows) {
   Tracking tracking;
   double sum = 0;
   long count = 0;
@@ -135,7 +135,8 @@ Tracking tracking_of(const SimulationLog& log, size_t rows) {
     if (log.result.fell_at >= 0 && t > log.result.fell_at) break;
     const SimulationSample& s = log.samples[k];
     for (Eigen::Index j = 0; j < s.target.size(); ++j) {
-      const double error = std::abs(s.state.theta[j] - s.target[j]);
+      const double reading = s.state.theta[j] - actuators.servo[static_cast<size_t>(j)].offset;
+      const double error = std::abs(reading - s.target[j]);
       sum += error;
       ++count;
       if (error <= tracking.most) continue;
@@ -224,7 +225,8 @@ void replay(Context& context, const ReplayCommand& options) {
     how.settle = options.settle;
     how.seed = context.seed;
     logs.push_back(simulate(task, how, context.progress(), context.command_line));
-    const Tracking tracking = tracking_of(logs.back(), static_cast<size_t>(board.targets.cols()));
+    const Tracking tracking = tracking_of(logs.back(), model.limits(options.profile),
+                                          static_cast<size_t>(board.targets.cols()));
     words += "  " + plant + ": " + outcome_text(logs.back()) + "; the joints are " +
              in_degrees(tracking.mean) + " from their targets on average and " +
              in_degrees(tracking.most, 2) + " at most (" + tracking.joint + " at " +

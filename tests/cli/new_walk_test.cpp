@@ -1,4 +1,7 @@
-// `ayumi new walk`: the profile it writes, and what it says where none is enough.
+// `ayumi new walk`: the profile it writes, and what it says where none is enough. Other kinds for
+// robots from public files.
+
+#include <filesystem>
 
 #include "tests/cli/program.hpp"
 
@@ -68,6 +71,34 @@ TEST(NewWalk, AsideNoFartherThanTheLegsCan) {
             std::string::npos)
       << beyond.err;
 }
+
+class NewKinds : public testing::TestWithParam<const char*> {};
+
+// An elbow at its limit at home (SR1), arms that are not raised beside the head (mighty), legs that
+// must bend for a turn (mighty), shins that meet in a turn (DARwIn-OP).
+TEST_P(NewKinds, ATurnAndAWaveAreConsistent) {
+  const std::filesystem::path robot =
+      std::filesystem::path(AYUMI_SOURCE_DIR "/../shared/data") / GetParam();
+  if (!std::filesystem::exists(robot)) GTEST_SKIP() << "no file " << robot;
+  Folder folder;
+  const Output made = run_program({"init", robot.string(), "-o", "robot"}, folder.path());
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  for (const std::string kind : {"turn", "wave"}) {
+    const std::string file = kind + ".json";
+    const Output out =
+        run_program({"new", "-q", kind, "--robot", "./robot", "-o", file}, folder.path());
+    ASSERT_EQ(out.exit_code, 0) << kind << ": " << out.err;
+    const Output check = run_program({"check", "-q", file}, folder.path());
+    EXPECT_EQ(check.exit_code, 0) << kind << ": " << out.out << check.out;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Robots, NewKinds,
+                         testing::Values("choreonoid/SR1/SR1.urdf", "roki/mighty.ztk",
+                                         "darwin_op/urdf/darwin.urdf"),
+                         [](const auto& info) {
+                           return std::filesystem::path(info.param).stem().string();
+                         });
 
 }  // namespace
 }  // namespace ayumi::test

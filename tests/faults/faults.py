@@ -319,8 +319,9 @@ def try_signals(program, count, rng, report, only):
         wrong = trial.complaints(process, out, err, signals=(kind,))
         if kind != signal.SIGKILL and took > STOPS_WITHIN * ALLOWANCE:
             wrong.append(f"it took {took:.2f} s to stop")
-        # Each command once, then every fifth time: it takes as long as all the rest.
-        if not wrong and name != "author" and (trial_number < len(makers) or trial_number % 5 == 0):
+        # Every fifth time, as it takes as long as all the rest: of each round another command.
+        again = (trial_number + trial_number // len(makers)) % 5 == 0
+        if not wrong and name != "author" and again:
             wrong = trial.works_now()
             if not wrong and trial.goes_on and trial.results() != results[name]:
                 wrong = ["the results differ from those of a command that nothing has stopped"]

@@ -6,7 +6,7 @@
 #   tests/faults/run.sh [--kind calls|disk|signals|all] [--count N] [--seed S] [--only NAMES] [BUILD]
 #
 # BUILD is a folder with the built program and tests (default: build/release). Without options: 500
-# random moments, seed 1, which takes about an hour and a half on one processor. --only run,push stops
+# random moments, seed 1. That takes some hours on one processor (estimated). --only run,push stops
 # only these commands. A failure is printed so that it can be repeated. It needs python3.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."

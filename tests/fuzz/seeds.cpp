@@ -13,11 +13,13 @@
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/io/robot/mesh_message.hpp"
 #include "ayumi/io/run/run_folder.hpp"
+#include "ayumi/io/run/sha256.hpp"
 #include "ayumi/io/run/simulation_log_file.hpp"
 #include "ayumi/io/table/table.hpp"
 #include "ayumi/plan/sample.hpp"
 #include "ayumi/sim/simulate.hpp"
 #include "fuzz_target.hpp"
+#include "requests_seed.hpp"
 
 namespace {
 
@@ -338,6 +340,50 @@ void mesh_seeds(const Seeds& seeds) {
   seeds.dictionary("mesh_answer", {std::string(8, '\0'), std::string(8, '\xff')});
 }
 
+void request_seeds(const Seeds& seeds) {
+  const std::string host = "Host: 127.0.0.1:" + std::to_string(fuzz::kPort) + "\n";
+  const std::string hash = "\"hash\": \"" + sha256(fuzz::kAuthored) + "\"";
+  const auto head = [&](const std::string& method, const std::string& path) {
+    return method + " /" + fuzz::kSecret + "/" + path + " HTTP/1.1\n" + host;
+  };
+  for (const std::string path :
+       {"", "state", "model.glb", "scenery", "series?which=plan", "events"})
+    seeds.put("requests", "get_" + path.substr(0, path.find('?')), head("GET", path));
+  seeds.put("requests", "cancel", head("DELETE", "job/1"));
+  const std::pair<std::string, std::string> posts[] = {
+      {"edit",
+       "{" + hash + R"(, "edits": [{"kind": "set", "pointer": "/keyframes/1/t", "value": 0.09},
+{"kind": "insert", "pointer": "/keyframes/2", "value": {"t": 0.1, "zmp": "left"}},
+{"kind": "remove", "pointer": "/name"}]})"},
+      {"edit", "{" + hash + R"(, "text": "{\"format\": \"ayumi.pattern/1\"}"})"},
+      {"undo", "{" + hash + "}"},
+      {"redo", "{" + hash + "}"},
+      {"pose", R"({"time": 0.05, "joints": {"l_elbow": -0.2}})"},
+      {"pose", R"({"time": 0.1, "drag": "cog", "to": [0.01, 0, 0.24]})"},
+      {"pose", R"({"time": 0.1, "drag": "left foot", "target": "pose", "to": [0.01, 0.04, 0.02]})"},
+      {"posture", R"({"time": 0.1, "name": "bent", "mirror": true})"},
+      {"mirror", R"({"pointer": "/keyframes/1"})"},
+      {"job", R"({"kind": "simulate", "options": {}})"},
+      {"job", R"({"kind": "repair"})"}};
+  std::set<std::string> words = words_of_schemas({"pattern"});
+  int number = 0;
+  for (const auto& [path, body] : posts) {
+    const std::string origin = number % 2 ? "Origin: http://127.0.0.1:8080\n" : "";
+    seeds.put(
+        "requests", path + std::to_string(number++),
+        {{"", head("POST", path) + origin +
+                  "Content-Type: application/json\nContent-Length: " + fuzz::kLengthOfBody + "\n"},
+         {"body", body}});
+    collect_keys(Json::parse(body), words);
+  }
+  words.merge(
+      std::set<std::string>{"Host: ", "Origin: ", "Content-Length: ", "Expect: 100-continue",
+                            "Transfer-Encoding: chunked", "Content-Encoding: gzip",
+                            "Range: bytes=0-1", "Connection: close", "multipart/form-data",
+                            "application/x-www-form-urlencoded", "HEAD ", "PUT ", "OPTIONS "});
+  seeds.dictionary("requests", words);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -351,6 +397,7 @@ int main(int argc, char** argv) try {
   motion_seeds(seeds);
   run_seeds(seeds);
   mesh_seeds(seeds);
+  request_seeds(seeds);
 } catch (const std::exception& error) {
   std::cerr << error.what() << "\n";
   return 1;

@@ -406,6 +406,16 @@ class Hypotheses {
                          [&](const Keyframe& other) { return other.pointer == pointer; }) > 1;
   }
 
+  // Whether a time is within a flight, not at its ends.
+  bool flies(double t) const {
+    double from = 0;
+    for (const Phase& phase : pattern_.phases) {
+      if (phase.support == Support::none && !phase.viip && t > from && t < phase.until) return true;
+      from = phase.until;
+    }
+    return false;
+  }
+
   void key_times(std::vector<Hypothesis>& made) const {
     const auto& keys = pattern_.keyframes;
     for (size_t i = 0; i < keys.size(); ++i) {
@@ -414,6 +424,8 @@ class Hypotheses {
       const double after = i + 1 < keys.size() ? keys[i + 1].t : pattern_.duration();
       const auto add = [&](Rank rank, double t, const std::string& why, double change = 0) {
         if (t <= before || t >= after || t == keys[i].t) return;
+        // In a flight the COG follows its parabola: a key of the COG there would be the next error.
+        if ((keys[i].cog_x || keys[i].cog_y || keys[i].cog_height) && flies(t)) return;
         made.push_back(
             {rank,
              {key_place(i), "t is " + seconds(keys[i].t) + why, "with t = " + seconds(t)},

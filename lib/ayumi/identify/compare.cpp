@@ -45,12 +45,25 @@ double interpolated(const Eigen::Ref<const VectorXd>& values, double dt, double 
   return (1 - u) * values[k] + u * values[k + 1];
 }
 
+// Zero offsets of the encoders with which the run was simulated: a joint is this much beyond what
+// its encoder reads [rad, m].
+VectorXd encoder_offsets(const RobotModel& model, const SimulationLog& log) {
+  VectorXd offsets = VectorXd::Zero(model.dof_count());
+  const std::vector<std::string> known = model.profile_names();
+  if (std::find(known.begin(), known.end(), log.provenance.profile) == known.end()) return offsets;
+  const std::vector<ServoDescription>& servos = model.limits(log.provenance.profile).servo;
+  for (Index j = 0; j < offsets.size(); ++j) offsets[j] = servos[static_cast<size_t>(j)].offset;
+  return offsets;
+}
+
+// What the encoders of the simulated robot read.
 AngleTable angles_of(const RobotModel& model, const SimulationLog& log) {
+  const VectorXd offsets = encoder_offsets(model, log);
   AngleTable table;
   table.dt = log.dt;
   table.theta.resize(static_cast<Index>(log.samples.size()), model.dof_count());
   for (size_t k = 0; k < log.samples.size(); ++k)
-    table.theta.row(static_cast<Index>(k)) = log.samples[k].state.theta.transpose();
+    table.theta.row(static_cast<Index>(k)) = (log.samples[k].state.theta - offsets).transpose();
   table.has.assign(static_cast<size_t>(model.dof_count()), 1);
   table.resolution = VectorXd::Zero(model.dof_count());
   return table;
@@ -129,14 +142,15 @@ void match_landings(Side foot, const std::vector<double>& measured,
           (best == simulated.size() || std::abs(simulated[i] - t) < std::abs(simulated[best] - t)))
         best = i;
     if (best == simulated.size()) {
-      ++result.unmatched_landings;
+      result.lone_landings.push_back({foot, true, t});
       continue;
     }
     used[best] = 1;
     result.landings.push_back({foot, t, simulated[best]});
   }
   for (size_t i = 0; i < simulated.size(); ++i)
-    if (!used[i] && within(simulated[i])) ++result.unmatched_landings;
+    if (!used[i] && within(simulated[i]))
+      result.lone_landings.push_back({foot, false, simulated[i]});
 }
 
 VectorXd share_of(const VectorXd& left, const VectorXd& right) {
@@ -175,6 +189,8 @@ void compare_loads(const SimulationLog& log, const SensorTable& sensors, Compari
   }
   std::sort(result.landings.begin(), result.landings.end(),
             [](const auto& a, const auto& b) { return a.simulated < b.simulated; });
+  std::sort(result.lone_landings.begin(), result.lone_landings.end(),
+            [](const auto& a, const auto& b) { return a.t < b.t; });
 }
 
 void compare_imu(const RobotModel& model, const SimulationLog& log, const SensorTable& sensors,
@@ -298,12 +314,14 @@ Comparison compare(const RobotModel& model, const SimulationLog& log,
 SimulationLog measured_log(const SimulationLog& log, const RobotModel& model,
                            const AngleTable& measured, double shift) {
   SimulationLog result = log;
+  const VectorXd offsets = encoder_offsets(model, log);
   for (size_t k = 0; k < result.samples.size(); ++k) {
     const double t = log.dt * static_cast<double>(k) - shift;
     if (t < 0 || t > measured.duration()) continue;
     for (int j = 0; j < model.dof_count(); ++j)
       if (measured.has[static_cast<size_t>(j)])
-        result.samples[k].state.theta[j] = interpolated(measured.theta.col(j), measured.dt, t);
+        result.samples[k].state.theta[j] =
+            offsets[j] + interpolated(measured.theta.col(j), measured.dt, t);
   }
   return result;
 }

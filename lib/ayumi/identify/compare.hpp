@@ -28,6 +28,13 @@ struct ComparedLanding {
   double measured = 0, simulated = 0;  ///< in the run's time [s]
 };
 
+/// A landing that only the recording or only the run has.
+struct LoneLanding {
+  Side foot = Side::left;
+  bool measured = false;  ///< in the recording
+  double t = 0;           ///< in the run's time [s]
+};
+
 struct Comparison {
   double shift = 0;                   ///< time in the run of the recording's first row [s]
   double begin = 0, end = 0;          ///< what was compared, in the run's time [s]
@@ -35,8 +42,8 @@ struct Comparison {
   std::vector<ComparedCurve> joints;  ///< [rad, m], robot's order
   std::vector<ComparedCurve> loads;   ///< left, right [N], left share [1]; empty: none recorded
   std::vector<ComparedCurve> imu;     ///< acc [m/s^2], gyro [rad/s] by axis; empty: none recorded
-  std::vector<ComparedLanding> landings;  ///< those that both have
-  int unmatched_landings = 0;
+  std::vector<ComparedLanding> landings;   ///< those that both have
+  std::vector<LoneLanding> lone_landings;  ///< the others, in order of time
   std::vector<std::string> notes;  ///< in one line each: joints without a column, another rate, ...
 
   double mean_joint() const {  ///< over all joints [rad]
@@ -57,7 +64,8 @@ struct CompareOptions {
 };
 
 /// Throws Error(bad_file) "`file`: what" where the recording and the run have no time in common.
-/// Joints with another sign or unit, or that do not follow, are noted.
+/// Joints with another sign or unit, or that do not follow, are noted. The recording holds what the
+/// encoders read, so the zero offsets of the run's servos are taken from the simulated angles.
 Comparison compare(const RobotModel& model, const SimulationLog& log,
                    const std::optional<AngleTable>& measured, const SensorTable& sensors,
                    const CompareOptions& options, const std::string& file);

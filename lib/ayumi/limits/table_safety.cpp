@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "ayumi/base/counted.hpp"
@@ -156,15 +157,19 @@ class JointJudge {
   double step_;    // per tick, counts or rad
 };
 
-void judge_ends(const ReferenceTrajectory& motion, const SafetyOptions& options,
+// The motion of `count` rows between ramp and hold.
+void judge_ends(const SafeTable& safe, size_t count, const SafetyOptions& options,
                 SafetyReport& report, Violations& violations) {
-  const size_t last = motion.rows.size() - 1;
+  const ReferenceTrajectory& motion = safe.table;
+  const size_t last = count - 1;
   if (last == 0) return;
   const auto window = static_cast<size_t>(std::lround(options.rest_window / motion.dt));
   const size_t span = std::clamp<size_t>(window, 1, last);
   const double time = static_cast<double>(span) * motion.dt;
   for (size_t j = 0; j < motion.joints.size(); ++j) {
-    const auto at = [&](size_t k) { return motion.rows[k].theta[static_cast<Eigen::Index>(j)]; };
+    const auto at = [&](size_t k) {
+      return motion.rows[safe.first + k].theta[static_cast<Eigen::Index>(j)];
+    };
     const double start = std::abs(at(span) - at(0)) / time;
     const double end = std::abs(at(last) - at(last - span)) / time;
     report.start_speed = std::max(report.start_speed, start);
@@ -316,7 +321,7 @@ Eigen::MatrixXi encoder_counts(const RobotModel& model, const ReferenceTrajector
   return counts;
 }
 
-SafeTable make_safe(const RobotModel& model, const ReferenceTrajectory& reference,
+SafeTable make_safe(const RobotModel& model, ReferenceTrajectory reference,
                     const SafetyOptions& options) {
   const std::vector<Eigen::Index> columns = columns_of(model, reference);
   for (const ReferenceRow& row : reference.rows)
@@ -330,28 +335,34 @@ SafeTable make_safe(const RobotModel& model, const ReferenceTrajectory& referenc
       from[columns[static_cast<size_t>(dof)]] = posture[dof];
   }
   SafeTable result;
-  result.table = reference;
-  result.table.rows.clear();
   result.first =
       ramp_rows(target - from, speed_limits(model, columns, options), reference.dt, options);
-  for (size_t k = 0; k < result.first; ++k) {
-    ReferenceRow row = reference.rows.front();
-    const double s = static_cast<double>(k) / static_cast<double>(result.first);
-    row.theta = from + ramp_share(s) * (target - from);
-    result.table.rows.push_back(row);
-  }
-  result.table.rows.insert(result.table.rows.end(), reference.rows.begin(), reference.rows.end());
   const auto hold =
       static_cast<size_t>(std::ceil(std::max(0.0, options.hold) / reference.dt - 1e-9));
-  result.table.rows.insert(result.table.rows.end(), hold, reference.rows.back());
+  const size_t count = reference.rows.size();
+  {
+    // The rows of a long motion take most of the memory of a check, so none is there twice.
+    std::vector<ReferenceRow> motion = std::move(reference.rows);
+    result.table = std::move(reference);
+    std::vector<ReferenceRow>& rows = result.table.rows;
+    rows.clear();
+    rows.reserve(result.first + count + hold);
+    for (size_t k = 0; k < result.first; ++k) {
+      const double s = static_cast<double>(k) / static_cast<double>(result.first);
+      rows.push_back(motion.front());
+      rows.back().theta = from + ramp_share(s) * (target - from);
+    }
+    std::move(motion.begin(), motion.end(), std::back_inserter(rows));
+    for (size_t k = 0; k < hold; ++k) rows.push_back(ReferenceRow(rows.back()));
+  }
 
   SafetyReport& report = result.report;
-  report.ramp = static_cast<double>(result.first) * reference.dt;
-  report.hold = static_cast<double>(hold) * reference.dt;
-  report.motion = static_cast<double>(reference.rows.size() - 1) * reference.dt;
+  report.ramp = static_cast<double>(result.first) * result.table.dt;
+  report.hold = static_cast<double>(hold) * result.table.dt;
+  report.motion = static_cast<double>(count - 1) * result.table.dt;
   Violations violations;
   judge_rows(model, result.table, options, report, violations);
-  judge_ends(reference, options, report, violations);
+  judge_ends(result, count, options, report, violations);
   add_violations(result, violations.list());
   report.rows = violations.every();
   return result;

@@ -71,7 +71,7 @@ struct SafeTable {
 /// Lays ramp and hold around the motion and judges the result. The ramp is minimum jerk and grows
 /// until no joint passes half its speed limit. Throws Error(bad_pattern) for no rows or joints that
 /// are not the robot's, Error(bad_model) for an unknown posture or profile.
-SafeTable make_safe(const RobotModel& model, const ReferenceTrajectory& reference,
+SafeTable make_safe(const RobotModel& model, ReferenceTrajectory reference,
                     const SafetyOptions& options = {});
 
 /// Where motor torques (rows x dof of the robot, the first at `begin` [s] of a table) are beyond

@@ -34,7 +34,8 @@ constexpr const char* kPolicy =
 
 std::vector<LociRun> loci_runs(const ReportInput& input) {
   std::vector<LociRun> runs;
-  for (const ReportRun& run : input.runs) runs.push_back({html::name_of(run), run.log});
+  for (const ReportRun& run : input.runs)
+    if (!run.recorded) runs.push_back({html::name_of(run), run.log});
   return runs;
 }
 

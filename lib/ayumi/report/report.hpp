@@ -18,6 +18,8 @@ namespace ayumi {
 struct ReportRun {
   std::string name;          ///< "open loop", "closed loop"
   const SimulationLog* log;  ///< must outlive the call
+  /// Only its joints were measured: it is a ghost of the replay, and has no outcome and no curves.
+  bool recorded = false;
 };
 
 struct ReportInput {

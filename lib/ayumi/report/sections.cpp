@@ -59,6 +59,7 @@ Table run_table(const ReportInput& input) {
         "torque [%]", "flight [s]", "steps", "foot slip [mm]"})
     table.head.emplace_back(name);
   for (const ReportRun& run : input.runs) {
+    if (run.recorded) continue;
     const SimulationResult& r = run.log->result;
     table.rows.push_back({escaped(name_of(run)), outcome_cell(r), degrees(r.max_tilt),
                           millimetres(r.final_cog_error), millimetres(r.zmp_tracking_rms),
@@ -163,8 +164,10 @@ std::string verdict_section(const ReportInput& input) {
   const bool stands = result.outcome == Outcome::stands;
   const bool consistent = !input.results.check || input.results.check->consistent;
   const bool repaired = input.results.repair && input.results.repair->status == "repaired";
-  std::string out = "<p class=\"verdict\">The " + escaped(name_of(judged)) + " " +
-                    outcome_cell(result) + escaped(push_words(*judged.log));
+  std::string out = "<p class=\"verdict\">The " +
+                    std::string(judged.name == judged.log->plant ? "robot in the plant " : "") +
+                    escaped(name_of(judged)) + " " + outcome_cell(result) +
+                    escaped(push_words(*judged.log));
   if (input.results.check)
     out += "; the pattern is " + marked(consistent ? Tone::good
                                         : repaired ? Tone::neutral
@@ -274,6 +277,16 @@ std::string thresholds_section(const ReportInput& input) {
                      figure(PushMapLayout::narrow, "narrow-curves") + table(rows));
 }
 
+namespace {
+
+/// A time [s] in ms, never "-0".
+std::string milliseconds(double time, int digits) {
+  const double shown = std::round(1000 * time * std::pow(10, digits));
+  return text::fixed(shown == 0 ? 0 : 1000 * time, digits);
+}
+
+}  // namespace
+
 std::string comparison_section(const ReportInput& input) {
   if (!input.comparison) return "";
   const Comparison& found = *input.comparison;
@@ -290,18 +303,22 @@ std::string comparison_section(const ReportInput& input) {
       const std::string name = curve.unit == "rad" ? "deg" : curve.unit;
       rows.rows.push_back({escaped(curve.name + (name.empty() ? "" : " [" + name + "]")),
                            text::brief(curve.mean / unit, 3), text::brief(curve.largest / unit, 3),
-                           text::fixed(curve.largest_at, 3), text::fixed(1000 * curve.lag, 1),
+                           text::fixed(curve.largest_at, 3), milliseconds(curve.lag, 1),
                            text::fixed(curve.correlation, 3)});
     }
   std::string words = table(rows);
   for (const std::string& note : found.notes) words += "<p>" + escaped(note) + "</p>\n";
-  if (!found.landings.empty()) {
-    Table landings = {"Landings", {"foot", "run [s]", "delay of the recording [ms]"}, {}};
-    for (const ComparedLanding& landing : found.landings)
-      landings.rows.push_back({ayumi::name_of(landing.foot), text::fixed(landing.simulated, 3),
-                               text::fixed(1000 * (landing.measured - landing.simulated), 0)});
-    words += table(landings);
-  }
+  Table landings = {
+      "Landings", {"foot", "run [s]", "recording [s]", "delay of the recording [ms]"}, {}};
+  for (const ComparedLanding& landing : found.landings)
+    landings.rows.push_back({ayumi::name_of(landing.foot), text::fixed(landing.simulated, 3),
+                             text::fixed(landing.measured, 3),
+                             milliseconds(landing.measured - landing.simulated, 0)});
+  for (const LoneLanding& landing : found.lone_landings)
+    landings.rows.push_back({ayumi::name_of(landing.foot),
+                             landing.measured ? "none" : text::fixed(landing.t, 3),
+                             landing.measured ? text::fixed(landing.t, 3) : "none", "none"});
+  if (!landings.rows.empty()) words += table(landings);
   return section("comparison", "Comparison with a recording",
                  words + to_svg(draw_comparison(found, "Measured and simulated")));
 }

@@ -10,6 +10,7 @@
 
 #include "ayumi/author/edit/edit.hpp"
 #include "ayumi/author/edit/move_key.hpp"
+#include "ayumi/author/edit/round_time.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/dynamics/inverse_kinematics.hpp"
@@ -424,7 +425,6 @@ Pattern chained(const RobotModel& model, const MotionPart& first, const MotionPa
     add_key(result.keyframes, at_start);
   else
     result.keyframes.back().hands = at_start.hands, result.keyframes.back().gaze = at_start.gaze;
-  const auto round_time = [](double t) { return 1e-9 * std::round(1e9 * t); };
   for (Phase phase : two.feet.phases()) {
     phase.pointer.clear();
     phase.until = round_time(phase.until + later);

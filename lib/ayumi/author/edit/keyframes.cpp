@@ -6,6 +6,7 @@
 
 #include "ayumi/author/edit/edit.hpp"
 #include "ayumi/author/edit/move_key.hpp"
+#include "ayumi/author/edit/round_time.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/math/rotation.hpp"
@@ -208,11 +209,11 @@ Pattern alternated(const RobotModel& model, const Pattern& pattern, int times, b
                              on_level_ground(then[static_cast<size_t>(index(side))]).inverse();
     require_moved_together(shift, next);
     for (Phase phase : next.phases) {
-      phase.until = 1e-9 * std::round(1e9 * (phase.until + k * length));
+      phase.until = round_time(phase.until + k * length);
       result.phases.push_back(phase);
     }
     for (Keyframe key : next.keyframes) {
-      key.t = 1e-9 * std::round(1e9 * (key.t + k * length));
+      key.t = round_time(key.t + k * length);
       if (key.posture && odd && image.postures != relative.postures) {
         for (const auto& [joint, angle] : posture_joints(model, image, *key.posture, key.place))
           key.joints.emplace(joint, angle);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "ayumi/author/edit/edit.hpp"
+#include "ayumi/author/edit/round_time.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/math/quintic.hpp"
@@ -22,12 +23,12 @@ Pattern retimed(const RobotModel& model, const Pattern& pattern, double scale) {
   Pattern result = pattern;
   if (scale == 1) return result;
   const double weight = model.mass() * kGravity;
-  for (Phase& phase : result.phases) phase.until *= scale;
+  for (Phase& phase : result.phases) phase.until = round_time(scale * phase.until);
   for (Keyframe& key : result.keyframes) {
-    key.t *= scale;
+    key.t = round_time(scale * key.t);
     if (key.fz) *key.fz = weight + (*key.fz - weight) / (scale * scale);
   }
-  for (Disturbance& push : result.scenario) push.at *= scale;
+  for (Disturbance& push : result.scenario) push.at = round_time(scale * push.at);
   for (auto& [begin, end] : result.repair.windows) {
     begin *= scale;
     end *= scale;
@@ -64,8 +65,8 @@ Pattern stretched(const RobotModel& model, const Pattern& pattern, double begin,
   const double weight = model.mass() * kGravity;
   const auto later = [&](double t) {
     return t <= begin ? t
-           : t < end  ? begin + factor * (t - begin)
-                      : t + (factor - 1) * (end - begin);
+           : t < end  ? round_time(begin + factor * (t - begin))
+                      : round_time(t + (factor - 1) * (end - begin));
   };
   Pattern result = pattern;
   for (Phase& phase : result.phases) phase.until = later(phase.until);

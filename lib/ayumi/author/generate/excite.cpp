@@ -182,7 +182,7 @@ std::map<int, std::vector<int>> other_joints(const RobotModel& model) {
 
 }  // namespace
 
-Pattern excite_pattern(const RobotModel& model, double scale) {
+Pattern excite_pattern(const RobotModel& model, double scale, double stature) {
   require_range("excite", "scale", scale, 0.01, 2, "");
   Pattern pattern;
   pattern.name = "excitation of every joint";
@@ -191,6 +191,8 @@ Pattern excite_pattern(const RobotModel& model, double scale) {
   double t = 0;
   if (model.has_soles()) {
     pattern.cog_height = bent_height(model);
+    if (stature != 1)
+      pattern.cog_height = to_tenth_millimetre(stature * default_cog_height(model, pattern));
     const double height = default_cog_height(model, pattern);
     for (const OnOneFoot what : {OnOneFoot::squat, OnOneFoot::sway_ahead, OnOneFoot::sway_aside,
                                  OnOneFoot::swing_ahead, OnOneFoot::swing_aside})
@@ -202,23 +204,25 @@ Pattern excite_pattern(const RobotModel& model, double scale) {
   for (const auto& [place, joints] : other_joints(model)) {
     struct Range {
       std::string joint;
-      double center, half;
+      double center, half, rest;
     };
     std::vector<Range> ranges;
     for (const int j : joints) {
       const Dof& dof = model.dofs()[static_cast<size_t>(j)];
-      double half = scale * (dof.prismatic ? 0.01 : kJointAngle), center = home[j];
+      double half = scale * (dof.prismatic ? 0.01 : kJointAngle), center = home[j], rest = home[j];
       if (dof.limited) {
         const double room = 0.5 * (dof.upper - dof.lower) - margin;
         if (room <= 0) continue;
         half = std::min(half, room);
         center = std::clamp(center, dof.lower + margin + half, dof.upper - margin - half);
       }
-      ranges.push_back({dof.name, center, half});
+      // A joint that comes back to its limit would need a target of its servo beyond it.
+      if (dof.limited) rest = std::clamp(rest, dof.lower + margin, dof.upper - margin);
+      ranges.push_back({dof.name, center, half, rest});
     }
     const auto back = [&](double step) {
       Keyframe key;
-      for (const Range& r : ranges) key.joints[r.joint] = home[model.find_dof(r.joint)];
+      for (const Range& r : ranges) key.joints[r.joint] = r.rest;
       writer.add(t += step, key);
     };
     back(kPause);

@@ -116,9 +116,9 @@ KickParameters kick_defaults(const RobotModel& model);
 Pattern kick_pattern(const RobotModel& model, const KickParameters& parameters);
 
 /// Slow sweeps, chirps and steps of every joint within its limits, by which `identify` tells the
-/// constants of servos apart; the robot stands on both feet. `scale` of all amplitudes. Throws as
-/// walk_pattern.
-Pattern excite_pattern(const RobotModel& model, double scale = 1);
+/// constants of servos apart; the robot stands on both feet. `scale` of all amplitudes, `stature`
+/// of the COG height. Throws as walk_pattern.
+Pattern excite_pattern(const RobotModel& model, double scale = 1, double stature = 1);
 
 /// Stoop, lift-off, flight, touchdown and settling, `times` times without a rest between.
 struct JumpParameters {

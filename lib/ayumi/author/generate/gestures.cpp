@@ -1,5 +1,7 @@
 // Gestures. Each part is minimum jerk with rest at both ends; the motion starts and ends with the
 // COG over the middle of the feet, or is solved from ZMP keys there.
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "ayumi/author/generate/generate.hpp"
@@ -239,7 +241,10 @@ Pattern wave_pattern(const RobotModel& model, const WaveParameters& p) {
   const int hand = hand_body(model, p.side);
   if (hand < 0)
     fail(ErrorCode::usage, "wave: " + model.name() + " has no " + name_of(p.side) +
-                               " arm of three joints or more; choose the other hand");
+                               " arm of three joints or more; " +
+                               (hand_body(model, other(p.side)) >= 0
+                                    ? "choose the other hand"
+                                    : "write keys of the joints that it has instead"));
   const std::vector<int> arm = limb_dofs(model, hand);
   const Vector3d point = limb_point(model, hand);
   const Vector3d shoulder =
@@ -248,26 +253,50 @@ Pattern wave_pattern(const RobotModel& model, const WaveParameters& p) {
   for (int b = hand; b != model.dofs()[static_cast<size_t>(arm.back())].body;
        b = model.bodies()[static_cast<size_t>(b)].parent)
     length += model.bodies()[static_cast<size_t>(b)].placement.translation().norm();
-  // Beside the head and to and fro, in lengths of the arm from the shoulder. Chosen: within reach
-  // of arms of three joints, clear of the head.
+  // The two ends of a wave, in lengths of the arm from the shoulder: ahead, outwards, up. Chosen:
+  // beside the head, within reach of arms of three joints and clear of the head; where the arm
+  // cannot be raised so far, lower and farther ahead.
+  constexpr std::array<std::array<std::array<double, 3>, 2>, 3> kPlaces = {
+      {{{{0.3, 0.35, 0.65}, {0.3, 0.6, 0.5}}},
+       {{{0.6, 0.3, 0.3}, {0.5, 0.6, 0.2}}},
+       {{{0.65, 0.2, -0.3}, {0.5, 0.5, -0.35}}}}};
   const double out = p.side == Side::left ? 1 : -1;
   const double room = model.description().soft_limit_margin + kWaveRoom;
   std::array<Eigen::VectorXd, 2> raised;
-  for (const size_t i : {0, 1}) {
-    const Vector3d place =
-        shoulder + length * Vector3d(0.3, out * (i == 0 ? 0.35 : 0.6), i == 0 ? 0.65 : 0.5);
-    const ReachSolution found = reach(model, state, hand, point, place, arm, room);
-    if (found.missing > 0.25 * length)
-      fail(ErrorCode::usage, std::string("wave: the ") + name_of(p.side) + " hand stays " +
-                                 text::fixed(1e3 * found.missing, 0) +
-                                 " mm away from its place beside the head, because joints of the "
-                                 "arm are at their limits; choose the other hand");
-    raised[i] = found.theta;
-    state.theta = found.theta;  // the other end is sought near this one
+  double missing = 0;
+  for (const auto& ends : kPlaces) {
+    RobotState found = state;
+    double worst = 0;
+    for (const size_t i : {0, 1}) {
+      const Vector3d place = shoulder + length * Vector3d(ends[i][0], out * ends[i][1], ends[i][2]);
+      const ReachSolution solution = reach(model, found, hand, point, place, arm, room);
+      worst = std::max(worst, solution.missing);
+      raised[i] = found.theta = solution.theta;  // the other end is sought near this one
+    }
+    missing = missing == 0 ? worst : std::min(missing, worst);
+    if (worst <= 0.25 * length) break;
+    raised[0].resize(0);
   }
+  if (raised[0].size() == 0)
+    fail(ErrorCode::usage,
+         std::string("wave: the ") + name_of(p.side) + " hand stays " +
+             text::fixed(1e3 * missing, 0) +
+             " mm away from its places beside the head and in front of the shoulder, because "
+             "joints of the arm are at their limits; write keys of the arm's joints instead");
   const double rest = rest_time(model);
   PatternBuilder writer{pattern};
-  const Eigen::VectorXd home = model.rest_state().theta;
+  // A joint that came back to its limit would need a target of its servo beyond it: such an arm
+  // begins and ends beside its home posture.
+  Eigen::VectorXd home = model.rest_state().theta;
+  bool beside = false;
+  for (const int dof : arm) {
+    const Dof& joint = model.dofs()[static_cast<size_t>(dof)];
+    if (!joint.limited || joint.upper - joint.lower < 2 * room) continue;
+    const double inside = std::clamp(home[dof], joint.lower + room, joint.upper - room);
+    if (inside == home[dof]) continue;
+    home[dof] = inside;
+    beside = true;
+  }
   const auto at = [&](double t, const Eigen::VectorXd& theta) {
     Keyframe key;
     for (const int dof : arm) {
@@ -277,7 +306,12 @@ Pattern wave_pattern(const RobotModel& model, const WaveParameters& p) {
     }
     writer.add(t, key);
   };
-  writer.key(0, ZmpKey::Place::center);
+  if (beside) {
+    at(0, home);
+    pattern.keyframes.back().zmp = ZmpKey{ZmpKey::Place::center, Vector2d::Zero()};
+  } else {
+    writer.key(0, ZmpKey::Place::center);
+  }
   // It is raised and lowered in the time of two swings.
   double t = rest;
   at(t, home);

@@ -1,11 +1,9 @@
 #include "ayumi/io/run/simulation_log_file.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <functional>
 #include <map>
 #include <type_traits>
@@ -288,15 +286,13 @@ SimulationLog parse_log(const std::string& bytes, const std::string& file) {
 }
 
 bool is_log_file(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) return false;
-  // O_NONBLOCK: the file may be exchanged for a pipe, and some files of /proc wait for what comes.
-  const int opened = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
-  if (opened < 0) return false;
+  std::error_code error;
+  // Opening a pipe would wait, and so would reading some files of /proc, which state no size.
+  if (!std::filesystem::is_regular_file(path, error)) return false;
+  if (std::filesystem::file_size(path, error) < kPrefix || error) return false;
+  std::ifstream file(path, std::ios::binary);
   std::string begin(8, ' ');
-  const ssize_t got = ::read(opened, begin.data(), begin.size());
-  ::close(opened);
-  return got == 8 && begin == kMagic;
+  return file.read(begin.data(), 8) && begin == kMagic;
 }
 
 SimulationLog read_log(const std::filesystem::path& path) {
