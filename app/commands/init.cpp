@@ -107,7 +107,7 @@ SidecarGains gains_for(const RobotModel& model) {
         study.loops[study.weakest.index].name +
         "), because the servos are soft. These are the nearest gains found with which " +
         (decay > 0 ? "it decays; the slowest mode takes " + text::brief(1 / decay, 2) + " s"
-                   : std::string("it grows less than a step lasts"));
+                   : std::string("it grows by less than the factor e during a step"));
     result.check = "with `ayumi gains`, after the constants of the servos are known";
     result.to_do =
         "Check the stiffness of the servos: they are so soft that the default gains of the control "
@@ -117,8 +117,7 @@ SidecarGains gains_for(const RobotModel& model) {
   const double needed = stiffness_needed(model);
   result.to_do =
       "Check the stiffness of the servos of the legs: they are so soft that no gains of the "
-      "control "
-      "law were found that keep the robot standing" +
+      "control law were found that keep the robot standing" +
       (needed > 0 ? "; with " + text::brief(needed, 2) + " times their kp and kd, there are some."
                   : std::string("."));
   return result;

@@ -14,7 +14,7 @@ namespace ayumi {
 inline constexpr int kDeepestNesting = 200;
 
 /// Where the text opens the first array or object that lies too deep; nothing where none does.
-/// Brackets in comments count as well, which can only move the place that a message names.
+/// Use it alone only for texts without comments: brackets and quotes in comments count as well.
 inline std::optional<size_t> nested_too_deep(const std::string& bytes) {
   int depth = 0;
   bool in_string = false;

@@ -95,10 +95,12 @@ export function joinKeyframe(state, document, frame, there) {
   if (frame.repeated || there.repeated) return null;
   const from = valueAt(document, frame.pointer), to = valueAt(document, there.pointer);
   if (!from || !to) return null;
+  // They hold for all values of a keyframe, so a key that brought its own would change the others.
+  if (["interpolation", "weights"].some((name) => JSON.stringify(from[name]) !== JSON.stringify(to[name]))) return null;
   const edits = [];
   const isParts = (value) => value && typeof value === "object" && !Array.isArray(value);
   for (const [name, value] of Object.entries(from)) {
-    if (name === "t" || name === "after") continue;
+    if (["t", "after", "interpolation", "weights"].includes(name)) continue;
     if (to[name] === undefined) edits.push({ kind: "set", pointer: there.pointer + token(name), value });
     else if (isParts(value) && isParts(to[name]) && Object.keys(value).every((part) => to[name][part] === undefined))
       for (const [part, one] of Object.entries(value)) edits.push({ kind: "set", pointer: there.pointer + token(name) + token(part), value: one });

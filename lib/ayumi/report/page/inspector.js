@@ -124,7 +124,7 @@ export class Inspector {
     const value = this.page.document || {}, shown = ["name", "profile", "defaults", "parameters", "start", "world", "controller", "repair", "tolerances"];
     const parts = shown.filter((name) => value[name] !== undefined);
     return [element("h3", {}, "The whole pattern"),
-      ...parts.flatMap((name) => this.inputs("/" + name, value[name], [name], this.choicesOf("pattern")))];
+      ...parts.flatMap((name) => this.inputs("/" + name, value[name], [name], name === "parameters" ? {} : this.choicesOf("pattern")))];
   }
 
   /// Names that a value may have, by its last name.
@@ -141,11 +141,15 @@ export class Inspector {
       const there = state.keyframes.find((one) => one !== frame && sameTime(one.time, time));
       const joined = there && joinKeyframe(state, this.page.document, frame, there);
       if (joined) {
-        this.page.selection = { kind: "key", pointer: there.pointer + key.pointer.slice(frame.pointer.length) };
-        return joined;
+        // The places of keyframes change with the edit, so the key is looked for by its time after it.
+        const inside = key.pointer.slice(frame.pointer.length);
+        this.page.edit(joined).then((written) => { if (written) this.selectNew(inside, there.time); });
+        return null;
       }
       if (there) {
-        this.page.say(`The keyframe at ${seconds(time)} already has a key of the same track, so nothing is written.`);
+        this.page.say(frame.repeated || there.repeated
+          ? "A keyframe of a block that repeats joins no other one, so nothing is written."
+          : `The keyframe at ${seconds(time)} has a value that this one has too, or another interpolation or other weights, so nothing is written.`);
         return null;
       }
       const [from, to] = roomOfKey(state.keyframes, key.pointer);
@@ -262,6 +266,10 @@ export class Inspector {
   /// A flight brings the COG keys that it needs along, or is refused with what is missing.
   support(index, next) {
     const { state, document, motion } = this.page;
+    if (next === "none" && byId("which").value !== "plan") {
+      this.page.say("The keys of a flight are made from the pattern. Choose to show the pattern first. Nothing was written.");
+      return null;
+    }
     const cogAt = (time) => valueFromRow("cog", sampleAt(motion, time), motion.columns, state.angle_unit);
     const { edits, refused, brought, landing } = putSupport(state, document, index, next, cogAt);
     if (refused) this.page.say(refused + " Nothing was written.");
@@ -296,6 +304,8 @@ export class Inspector {
   }
 
   async addKey() {
+    if (byId("which").value !== "plan")
+      return this.page.say("A new key has the value of the pattern at this time. Choose to show the pattern first. Nothing was written.");
     const { state } = this.page, track = byId("key-track").value, time = this.page.time, row = this.page.row();
     const handle = state.handles.find((one) => track === "target " + one.name);
     const joint = !handle && !["zmp", "cog", "cog height", "fz", "torso"].includes(track);
