@@ -14,9 +14,6 @@
 
 namespace ayumi::app {
 
-// [bytes] Source: docs/formats.md, the largest pattern.
-constexpr size_t kLargestPattern = size_t{64} << 20;
-
 void add_pattern_options(Command& command, PatternOptions& options) {
   command.add_option("--set", options.set, "Set a parameter that the pattern declares.")
       ->type_name("NAME=VALUE")

@@ -11,6 +11,9 @@
 
 namespace ayumi {
 
+/// Largest pattern, and largest file that it includes [bytes]. Source: docs/formats.md.
+inline constexpr size_t kLargestPattern = size_t{64} << 20;
+
 /// Reads a pattern, its posture libraries and its table. `set_parameters` replaces defaults of
 /// declared parameters. Strict: throws Error(bad_pattern) "file: /json/pointer: what, limit, what
 /// to do" for unknown keys, wrong types or units, times that do not increase, empty lists, numbers

@@ -15,9 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// [bytes] Source: docs/formats.md.
-constexpr size_t kLargestFile = size_t{64} << 20;
-
 // Phases and keyframes of a file, repeated ones included. Chosen: one each 0.1 s of the longest
 // pattern is less than half of it.
 constexpr size_t kMostItems = 100000;
@@ -78,7 +75,7 @@ struct LibraryFile {
 
 LibraryFile read_library(const fs::path& path, Pattern& pattern) {
   LibraryFile file;
-  file.bytes = read_file(path, kLargestFile);
+  file.bytes = read_file(path, kLargestPattern);
   const Json document = parse_json(file.bytes, path.string(), ErrorCode::bad_pattern);
   const JsonNode root = root_of(document, path.string(), ErrorCode::bad_pattern);
   require_format(root, "ayumi.postures/1");
@@ -309,7 +306,7 @@ bool names_a_path(const std::string& robot) {
 }
 
 Pattern read_pattern(const fs::path& path, const std::map<std::string, double>& set_parameters) {
-  return pattern_of_text(read_file(path, kLargestFile), path, set_parameters);
+  return pattern_of_text(read_file(path, kLargestPattern), path, set_parameters);
 }
 
 Pattern pattern_of_text(const std::string& text, const fs::path& path,
