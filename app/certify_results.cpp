@@ -71,9 +71,7 @@ std::string add_case_results(const std::filesystem::path& file, const Json& stud
                  : "choose another name, or replace the file with --force";
   const std::string bytes = read_file(file);
   try {
-    if (nested_too_deep(bytes))
-      refuse("this file does not hold results of ayumi certify; " + remedy);
-    const Json json = Json::parse(bytes);
+    const auto json = shallow_json<Json>(bytes);
     if (json.at("format") != kCertifyFormat)
       refuse("this file does not hold results of ayumi certify");
     // The order of keys says nothing.

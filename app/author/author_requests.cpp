@@ -6,6 +6,7 @@
 #include <map>
 
 #include "ayumi/io/json/json_depth.hpp"
+#include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/report/page.hpp"
 
 namespace ayumi::app {
@@ -18,8 +19,6 @@ using httplib::Response;
 // Pages that listen at one time, and threads for them and for requests. Chosen: more than one
 // person opens; each listening page holds a thread.
 constexpr int kListeners = 24, kThreads = 32;
-// Largest request [bytes]. Source: docs/formats.md, the largest pattern.
-constexpr size_t kLargestRequest = size_t{64} << 20;
 // How long a client may take to send the next bytes of its request [s].
 constexpr time_t kRequestPatience = 2;
 
@@ -41,7 +40,7 @@ void set_json(Response& response, const AuthorAnswer& answer) {
 void set_limits(httplib::Server& server) {
   server.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
   server.set_keep_alive_max_count(1);
-  server.set_payload_max_length(kLargestRequest);
+  server.set_payload_max_length(kLargestPattern);
   server.set_read_timeout(kRequestPatience);
   server.set_write_timeout(kRequestPatience);
   server.set_default_headers({{"Cache-Control", "no-store"},
@@ -95,11 +94,11 @@ class AuthorRequests::Router {
   }
 
   void post(const Request& request, Response& response) {
-    if (nested_too_deep(request.body))
-      return set_json(response, {400, {{"message", "the request is nested too deeply"}}});
-    const OrderedJson body = OrderedJson::parse(request.body, nullptr, false);
-    if (body.is_discarded() || !body.is_object())
-      return set_json(response, {400, {{"message", "the request is not a JSON object"}}});
+    const auto body = shallow_json<OrderedJson>(request.body);
+    if (!body.is_object())
+      return set_json(
+          response,
+          {400, {{"message", "the request is not a JSON object, or it is nested too deeply"}}});
     const std::string path = inside(request);
     using Handler = AuthorAnswer (AuthorSession::*)(const OrderedJson&);
     static const std::map<std::string, Handler> handlers = {

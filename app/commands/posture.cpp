@@ -47,8 +47,7 @@ struct PostureSource {
 
 // The value of "format" of a JSON text with comments; "" where it is no such text.
 std::string format_of(const std::string& text) {
-  if (nested_too_deep(text)) return "";
-  const Json json = Json::parse(text, nullptr, false, true);
+  const auto json = shallow_json<Json>(text, true);
   return json.is_object() ? json.value("format", "") : "";
 }
 

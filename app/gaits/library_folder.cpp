@@ -32,9 +32,7 @@ std::vector<std::string> files_of_library(const fs::path& folder) {
   const fs::path index = folder / kIndex;
   std::vector<std::string> files = {kIndex};
   try {
-    const std::string bytes = read_file(index);
-    if (nested_too_deep(bytes)) throw std::out_of_range("depth");
-    const Json json = Json::parse(bytes);
+    const auto json = shallow_json<Json>(read_file(index));
     if (json.at("format") != kGaitsFormat) throw std::out_of_range("format");
     for (const Json& each : json.at("files")) {
       const fs::path path = fs::path(each.get<std::string>()).lexically_normal();
@@ -100,13 +98,9 @@ LibraryFolder::LibraryFolder(const fs::path& folder, const Json& asked, bool rep
 std::optional<Json> LibraryFolder::known(const std::string& name) const {
   const fs::path file = staging_ / "done" / (name + ".json");
   if (!is_there(file)) return {};
-  try {
-    const std::string bytes = read_file(file);
-    if (nested_too_deep(bytes)) return {};
-    return Json::parse(bytes);
-  } catch (const Json::exception&) {  // written whole, so something else has changed it
-    return {};
-  }
+  auto json = shallow_json<Json>(read_file(file));
+  if (json.is_discarded()) return {};  // written whole, so something else has changed it
+  return json;
 }
 
 void LibraryFolder::add(const std::string& name, const Json& result,

@@ -178,10 +178,7 @@ State read_state(const fs::path& folder) {
   const fs::path file = folder / "state.json";
   if (!fs::exists(file)) return state;
   try {
-    const std::string bytes = read_file(file);
-    // A discarded value has no member, which is an exception of the kind below.
-    const SlurmJson json =
-        nested_too_deep(bytes) ? SlurmJson(SlurmJson::value_t::discarded) : SlurmJson::parse(bytes);
+    const auto json = shallow_json<SlurmJson>(read_file(file));
     state.name = json.at("name");
     for (const SlurmJson& array : json.at("arrays"))
       state.arrays.push_back({array.at("number"), array.at("job")});

@@ -4,6 +4,7 @@
 
 #include <ctime>
 
+#include "ayumi/io/json/json_depth.hpp"
 #include "tests/support/error_message.hpp"
 
 namespace ayumi {
@@ -39,6 +40,21 @@ TEST(JsonReader, RefusesTextThatNestsTooDeeply) {
 }
 
 // 100,000 members took minutes, because each of them was visited again after every other.
+// Values that are read otherwise than by parse_json.
+TEST(JsonReader, DepthIsCountedOutsideOfStringsAndComments) {
+  const std::string deep(201, '['), flat(200, '[');
+  EXPECT_EQ(nested_too_deep(deep), std::optional<size_t>(200));
+  EXPECT_EQ(nested_too_deep(flat), std::nullopt);
+  for (const std::string comment : {"// 3\" of rubber\n", "/* 3\" of rubber */"}) {
+    EXPECT_EQ(nested_too_deep(comment + deep), std::optional<size_t>(comment.size() + 200));
+    EXPECT_TRUE(shallow_json<Json>(comment + deep, true).is_discarded());
+  }
+  EXPECT_EQ(nested_too_deep("// " + deep + "\n" + flat), std::nullopt);
+  EXPECT_EQ(nested_too_deep("[\"\\\"" + deep + "\"]"), std::nullopt);
+  EXPECT_TRUE(shallow_json<Json>("[1").is_discarded());
+  EXPECT_EQ(shallow_json<Json>("[1]"), Json::array({1}));
+}
+
 TEST(JsonReader, TakesTimeThatIsLinearInTheNumberOfMembers) {
   std::string text = "{\"p0\": {\"a\": 1}";
   for (int i = 1; i < 100'000; ++i) text += ", \"p" + std::to_string(i) + "\": {\"a\": [1, 2]}";

@@ -14,23 +14,40 @@ namespace ayumi {
 inline constexpr int kDeepestNesting = 200;
 
 /// Where the text opens the first array or object that lies too deep; nothing where none does.
-/// Use it alone only for texts without comments: brackets and quotes in comments count as well.
+/// Strings and comments are passed over.
 inline std::optional<size_t> nested_too_deep(const std::string& bytes) {
   int depth = 0;
   bool in_string = false;
   for (size_t i = 0; i < bytes.size(); ++i) {
-    if (in_string && bytes[i] == '\\')
-      ++i;
-    else if (bytes[i] == '"')
-      in_string = !in_string;
-    else if (in_string)
-      continue;
-    else if (bytes[i] == '[' || bytes[i] == '{') {
+    const char c = bytes[i];
+    if (in_string) {
+      if (c == '\\')
+        ++i;
+      else if (c == '"')
+        in_string = false;
+    } else if (c == '"') {
+      in_string = true;
+    } else if (c == '/' && i + 1 < bytes.size() && (bytes[i + 1] == '/' || bytes[i + 1] == '*')) {
+      const bool line = bytes[i + 1] == '/';
+      const size_t end = bytes.find(line ? "\n" : "*/", i + 2);
+      if (end == std::string::npos) return {};
+      i = line ? end : end + 1;
+    } else if (c == '[' || c == '{') {
       if (++depth > kDeepestNesting) return i;
-    } else if (bytes[i] == ']' || bytes[i] == '}')
+    } else if (c == ']' || c == '}') {
       --depth;
+    }
   }
   return {};
+}
+
+/// The value of a JSON text that is trusted less than its form, as Json or OrderedJson; a discarded
+/// value where the text is no JSON or is nested too deeply. A discarded value has no members:
+/// asking it for one is an exception of the library, as for a value of the wrong type.
+template <typename Value>
+Value shallow_json(const std::string& bytes, bool with_comments = false) {
+  if (nested_too_deep(bytes)) return Value(Value::value_t::discarded);
+  return Value::parse(bytes, nullptr, false, with_comments);
 }
 
 }  // namespace ayumi
