@@ -1,28 +1,26 @@
 # What makes a build from nothing quick.
 #
 # AYUMI_PRECOMPILE: the headers that nearly every source includes (Eigen, the standard library, and
-#   those that a target names) are parsed once. The libraries share two sets of them: what ayumi_core
-#   has parsed, and for cold code that of ayumi_cold_headers. It costs a rebuild nothing.
+#   those that a target names) are parsed once for each level of optimization, because g++ optimizes
+#   what a precompiled header brings as the header was made.
 # AYUMI_UNITY: several sources of a room are compiled as one. A build from nothing takes about a
 #   third of the time; after a change of one source its whole group is compiled, and after a new
 #   source its room. The preset for daily work switches it off.
-# Cold code, which computes nothing in a loop, is compiled with -O1. Its precompiled headers are made
-#   with -O1 too, because g++ optimizes what they bring as they were made.
+# Rooms that run in a loop (each tick of a simulation, each iteration of a repair) are compiled with
+#   -O3. Warm ones, which call them and judge what they return, are compiled with -O1: check, repair,
+#   push and retime take the same time. Cold ones read, write and draw; with -Og they compile in
+#   three quarters of the time of -O1.
 
 option(AYUMI_PRECOMPILE "Precompile the headers that most sources include" ON)
 option(AYUMI_UNITY "Compile several sources as one: quick from nothing, slower after a change" ON)
-set(AYUMI_UNITY_SIZE 8 CACHE STRING "How many sources are compiled as one")
-set(AYUMI_COLD_UNITY_SIZE 24 CACHE STRING "How many sources of cold code are compiled as one")
+set(AYUMI_UNITY_SIZE 8 CACHE STRING "How many sources are compiled as one at -O3")
+set(AYUMI_COLD_UNITY_SIZE 24 CACHE STRING "How many warm or cold sources are compiled as one")
 
-# ayumi_compile_together(key [COLD] sources...): about AYUMI_UNITY_SIZE of them as one, in groups of the
-# same size. Groups of different keys stay apart, so that a new source moves no source of another key.
-# COLD: about AYUMI_COLD_UNITY_SIZE. Three groups of eight as one take 0.57 of the time at -O1, but
-# 1.2 times as long at -O3, where the optimizer works on more functions at once.
-function(ayumi_compile_together key)
-  set(size ${AYUMI_UNITY_SIZE})
-  if("${ARGV1}" STREQUAL "COLD")
-    set(size ${AYUMI_COLD_UNITY_SIZE})
-  endif()
+# ayumi_compile_together(key size sources...): about this many of them as one, in groups of the same
+# size. Groups of different keys stay apart, so that a new source moves no source of another key.
+# Three groups of eight as one take 0.57 of the time at -O1, but 1.2 times as long at -O3, where the
+# optimizer works on more functions at once: therefore two sizes.
+function(ayumi_compile_together key size)
   list(FILTER ARGN INCLUDE REGEX "[.]cpp$")
   list(LENGTH ARGN count)
   math(EXPR groups "(2 * ${count} + ${size}) / (2 * ${size})")
@@ -59,16 +57,37 @@ endfunction()
 # be inlined there although the code is position independent.
 set(AYUMI_LIBRARY_OPTIONS -ffp-contract=off -fno-semantic-interposition)
 
-# ayumi_compile_cold(target): for a target with AYUMI_LIBRARY_OPTIONS and position independent code.
-function(ayumi_compile_cold target)
-  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
-  ayumi_compile_quickly(${target} REUSE_FROM ayumi_cold_headers)
+# ayumi_compile_with_heat(target HOT|WARM|COLD): for a target with AYUMI_LIBRARY_OPTIONS and position
+# independent code.
+set(AYUMI_HOT_OPTION)
+set(AYUMI_WARM_OPTION $<$<CONFIG:Release>:-O1>)
+set(AYUMI_COLD_OPTION $<$<CONFIG:Release>:-Og>)
+set(AYUMI_HOT_HEADERS <Eigen/Dense>)
+set(AYUMI_WARM_HEADERS <Eigen/Dense>)
+set(AYUMI_COLD_HEADERS <Eigen/Dense> <nlohmann/json.hpp>)
+function(ayumi_compile_with_heat target heat)
+  target_compile_options(${target} PRIVATE ${AYUMI_${heat}_OPTION})
+  ayumi_compile_quickly(${target} REUSE_FROM ayumi_${heat}_headers)
 endfunction()
-file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/cold_headers.cpp CONTENT "")
-add_library(ayumi_cold_headers OBJECT ${CMAKE_CURRENT_BINARY_DIR}/cold_headers.cpp)
-set_target_properties(ayumi_cold_headers PROPERTIES POSITION_INDEPENDENT_CODE ON)
-target_link_libraries(ayumi_cold_headers PRIVATE Eigen3::Eigen Threads::Threads
-                      nlohmann_json::nlohmann_json)
-target_compile_options(ayumi_cold_headers PRIVATE ${AYUMI_LIBRARY_OPTIONS}
-                       $<$<CONFIG:Release>:-O1>)
-ayumi_compile_quickly(ayumi_cold_headers <Eigen/Dense> <nlohmann/json.hpp>)
+file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/headers.cpp CONTENT "")
+foreach(heat HOT WARM COLD)
+  add_library(ayumi_${heat}_headers OBJECT ${CMAKE_CURRENT_BINARY_DIR}/headers.cpp)
+  set_target_properties(ayumi_${heat}_headers PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  target_link_libraries(ayumi_${heat}_headers PRIVATE Eigen3::Eigen Threads::Threads
+                        nlohmann_json::nlohmann_json)
+  target_compile_options(ayumi_${heat}_headers PRIVATE ${AYUMI_LIBRARY_OPTIONS}
+                         ${AYUMI_${heat}_OPTION})
+  ayumi_compile_quickly(ayumi_${heat}_headers ${AYUMI_${heat}_HEADERS})
+endforeach()
+
+# ayumi_link_hot_first(target libraries...): puts these libraries before the target's own objects. A
+# function of a template that several objects have (much of Eigen) is kept once, as the first of them
+# has it; with a cold object first, the hot rooms would run what was compiled for it (check took 1.3
+# times as long).
+function(ayumi_link_hot_first target)
+  set(files ${ARGN})
+  list(TRANSFORM files REPLACE "(.+)" "$<TARGET_FILE:\\1>")
+  list(JOIN files " " files)
+  target_link_options(${target} PRIVATE
+    "SHELL:-Wl,--whole-archive ${files} -Wl,--no-whole-archive")
+endfunction()
