@@ -173,6 +173,7 @@ std::string scenario_words(const std::vector<std::string>& sentences) {
   for (const auto& [kind, value] : read_pairs(options.tolerances, "--tolerance"))
     judged.tolerances[kind] = value;
   judged.threads = context.threads;
+  judged.degrees = pattern.degrees;
   const std::vector<Mistake> mistakes = likely_mistakes(robot, pattern, judged, context.progress());
   try {
     sample_at_servo_period(robot, pattern, {}, context.threads);
