@@ -288,8 +288,15 @@ std::string zsh_completion(const CLI::App& app) {
   return text + "  esac\n}\n_ayumi \"$@\"\n";
 }
 
+// Each name with an empty description of its own: the help of the option stays with the option.
 std::string fish_names(const std::string& kind) {
-  return " -a '(ayumi --names " + kind + " (commandline -opc)[2..] 2>/dev/null)'";
+  return " -a '(ayumi --names " + kind +
+         " (commandline -opc)[2..] 2>/dev/null | string replace -r \\$ \\t)'";
+}
+
+// Robots, patterns and runs are also files.
+bool may_be_file(const std::string& kind) {
+  return kind.empty() || kind.starts_with("robots") || kind == "equations";
 }
 
 std::string fish_options(const CLI::App& app, const std::string& condition) {
@@ -300,9 +307,10 @@ std::string fish_options(const CLI::App& app, const std::string& condition) {
     for (const std::string& name : option->get_snames()) text += " -s " + name;
     for (const std::string& name : option->get_lnames()) text += " -l " + name;
     const std::string choices = text::join(choices_of(*option), " ");
-    if (takes_value(*option)) text += choices.empty() ? " -r" : " -x";
+    if (takes_value(*option))
+      text += choices.empty() && may_be_file(names_kind(*option)) ? " -r" : " -x";
     if (!choices.empty())
-      text += " -a '" + choices + "'";
+      text += " -a '(printf %s\\t\\n " + choices + ")'";
     else if (!names_kind(*option).empty())
       text += fish_names(names_kind(*option));
     text += " -d '" + fish_text(option->get_description()) + "'\n";

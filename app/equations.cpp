@@ -19,6 +19,7 @@ constexpr char kAxis[] = "xyz";
 
 std::string mm(double metres) { return text::fixed(1e3 * metres, 1) + " mm"; }
 std::string fixed(double value, int digits) { return text::fixed(value, digits); }
+std::string rate_text(double radians) { return text::brief(radians * 180 / M_PI, 3) + " deg/s"; }
 std::string acceleration(double value) { return fixed(value, 3) + " m/s2"; }
 
 /// Collects lines and values; a number that is put into words is a value too.
@@ -366,20 +367,20 @@ EquationNumbers resolution_numbers(const RunInstant& i) {
   for (size_t j = 0; j < std::min<size_t>(5, order.size()); ++j) {
     const std::string& name = i.log.joints[static_cast<size_t>(order[j])];
     joints += (j ? ", " : "") + name + " " +
-              fixed(w.scalar("ref.dtheta." + name, "rad/s", rates[order[j]]), 2) + " (W " +
+              rate_text(w.scalar("ref.dtheta." + name, "rad/s", rates[order[j]])) + " (W " +
               text::brief(w.scalar("weight." + name, "1", s.weight[order[j]])) + ")";
   }
   w.line("ref COG rate " + fixed(1e3 * w.part("ref.dcog", "m/s", s.reference_dcog, 0), 1) + ", " +
          fixed(1e3 * w.part("ref.dcog", "m/s", s.reference_dcog, 1), 1) + ", " +
          fixed(1e3 * w.part("ref.dcog", "m/s", s.reference_dcog, 2), 1) + " mm/s is produced by " +
-         std::to_string(rates.size()) + " joints together; the fastest joints [rad/s]:");
+         std::to_string(rates.size()) + " joints together; the fastest joints:");
   w.line("  " + joints);
   const TaskResiduals& left = s.residuals;
   w.line("part of u that J_U ref dtheta does not produce: COG " +
          text::brief(1e3 * w.scalar("residual.cog", "m/s", left.cog)) + " mm/s, foot " +
          text::brief(1e3 * w.scalar("residual.foot", "m/s", left.foot)) + " mm/s and " +
-         text::brief(w.scalar("residual.foot_turn", "rad/s", left.foot_turn)) + " rad/s, trunk " +
-         text::brief(w.scalar("residual.trunk", "rad/s", left.trunk)) + " rad/s");
+         rate_text(w.scalar("residual.foot_turn", "rad/s", left.foot_turn)) + ", trunk " +
+         rate_text(w.scalar("residual.trunk", "rad/s", left.trunk)));
   limit_lines(w, i);
   return w.take();
 }

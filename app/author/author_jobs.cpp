@@ -11,12 +11,13 @@
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
-#include "ayumi/check/likely_mistakes.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/plot/push_map.hpp"
 #include "ayumi/report/replay.hpp"
 #include "ayumi/study/push.hpp"
+#include "ayumi/task/foothold_collisions.hpp"
 #include "ayumi/task/plan_log.hpp"
+#include "ayumi/task/run_stability.hpp"
 #include "check_table.hpp"
 #include "motion_words.hpp"
 #include "repairing.hpp"
@@ -63,7 +64,7 @@ AuthorResult check_job(const AuthorMotion& motion, const Progress& progress) {
   OrderedJson lines = OrderedJson::array();
   if (!judgement.good())
     for (const Mistake& mistake :
-         likely_mistakes(task.robot, task.pattern, check_options(task), progress))
+         likely_causes(task, check_options(task), judgement.report, progress))
       lines.push_back("Likely cause: " + mistake.text());
   const std::string& need = judgement.need().text;
   if (!need.empty()) lines.push_back(need);
@@ -102,6 +103,8 @@ AuthorResult repair_job(const AuthorMotion& motion, const std::string& text,
   out.series["repair"] = live_series(
       plan_log(task.robot, task.robot.limits(task.profile), result.series, result.series, stride),
       kPageRate);
+  out.strips["repair"] =
+      author_strip(task, stability_series(task.robot, result.series, options.check));
   return out;
 }
 
@@ -150,6 +153,8 @@ AuthorResult simulate_job(const OrderedJson& asked, const Context& context,
       else if (event.kind == "push" && out.series.empty())
         marks.push_back({{"time", event.t}, {"text", "push, " + event.text}});
     out.series[run.name] = live_series(log, kPageRate);
+    out.strips[run.name] =
+        author_strip(task, run_stability(task.robot, task.robot.limits(task.profile), log));
   }
   out.shown = result_json("simulate", verdict, good, lines);
   out.shown["marks"] = marks;

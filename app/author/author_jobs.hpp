@@ -12,8 +12,9 @@
 namespace ayumi::app {
 
 struct AuthorResult {
-  OrderedJson shown;                          ///< member "result" of the page's state
-  std::map<std::string, std::string> series;  ///< tables of "repair", "open_loop", "closed_loop"
+  OrderedJson shown;                           ///< member "result" of the page's state
+  std::map<std::string, std::string> series;   ///< tables of "repair", "open_loop", "closed_loop"
+  OrderedJson strips = OrderedJson::object();  ///< of the same motions: { lanes, dt }
 };
 
 /// Kinds of jobs, in the order of the page's buttons.

@@ -303,9 +303,9 @@ OrderedJson lane_json(const Lane& lane, const std::vector<double>& values, doubl
           {"worst", worst},      {"values", scaled}};
 }
 
-OrderedJson strip_json(const AuthorMotion& motion, const StabilitySeries& s) {
-  const RobotModel& model = motion.task.robot;
-  const Tolerances allowed = tolerances(check_options(motion.task), model, motion.task.series);
+OrderedJson strip_json(const Task& task, const StabilitySeries& s) {
+  const RobotModel& model = task.robot;
+  const Tolerances allowed = tolerances(check_options(task), model, task.series);
   const Sole& sole = model.sole(Side::left);
   const double middle = 1e3 * ConvexPolygon(sole.polygon).margin(sole.center);
   const double weight = model.mass() * kGravity;
@@ -356,7 +356,7 @@ void describe(AuthorMotion& motion, const StabilitySeries& stability) {
                   {"targets", targets_json(motion)},
                   {"postures", postures_of(motion)},
                   {"own_postures", own},
-                  {"strip", strip_json(motion, stability)},
+                  {"strip", strip_json(task, stability)},
                   {"strip_dt", stability.dt},
                   {"replay", OrderedJson::parse(live_config(task.robot, motion.plan, kPageRate))}});
 }
@@ -369,6 +369,10 @@ OrderedJson author_structure(const Pattern& pattern, const OrderedJson& document
           {"keyframes", keyframes_json(text)},
           {"tracks", tracks_json(text)},
           {"disturbances", disturbances_json(text)}};
+}
+
+OrderedJson author_strip(const Task& task, const StabilitySeries& stability) {
+  return {{"lanes", strip_json(task, stability)}, {"dt", stability.dt}};
 }
 
 std::string outermost(const std::string& pointer) {

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "ayumi/check/stability_series.hpp"
 #include "ayumi/io/task_file.hpp"
 #include "ayumi/sim/simulation_log.hpp"
 
@@ -42,6 +43,9 @@ std::shared_ptr<const AuthorMotion> author_motion(const std::string& text, const
 /// The members of the page's state that follow from the text alone: its phases, keyframes, tracks
 /// and disturbances, with their places.
 OrderedJson author_structure(const Pattern& pattern, const OrderedJson& document);
+
+/// What the strip of the page shows of a motion or a run of the task: { lanes, dt }.
+OrderedJson author_strip(const Task& task, const StabilitySeries& stability);
 
 /// A slash and a key as they stand in a JSON pointer.
 std::string pointer_token(const std::string& key);

@@ -828,21 +828,23 @@ PoseAnswer posed(const AuthorMotion& motion, const std::string& text, const Auth
 }
 
 std::vector<PatternEdit> captured(const AuthorMotion& motion, double time, const std::string& name,
-                                  bool mirror) {
+                                  bool mirror, const std::map<std::string, double>& angles) {
   if (name.empty()) fail(ErrorCode::usage, "the posture needs a name");
   const RobotModel& robot = motion.task.robot;
-  const Eigen::VectorXd& theta = sample_near(motion.task.series, time).state.theta;
+  Eigen::VectorXd theta = sample_near(motion.task.series, time).state.theta;
+  for (const auto& [joint, angle] : angles)
+    if (const int dof = robot.find_dof(joint); dof >= 0) theta[dof] = angle;
   Eigen::VectorXd shown = theta;
   if (mirror) {
     const MirrorMap map = mirror_map(robot);
     for (Eigen::Index i = 0; i < theta.size(); ++i)
       shown[map.dof[static_cast<size_t>(i)]] = map.sign[static_cast<size_t>(i)] * theta[i];
   }
-  OrderedJson angles = OrderedJson::object();
+  OrderedJson posture = OrderedJson::object();
   for (int dof = 0; dof < robot.dof_count(); ++dof)
-    angles[robot.dofs()[static_cast<size_t>(dof)].name] =
+    posture[robot.dofs()[static_cast<size_t>(dof)].name] =
         in_unit(motion, robot.dofs()[static_cast<size_t>(dof)], shown[dof]);
-  return {{PatternEdit::Kind::set, "/postures" + pointer_token(name), angles.dump()}};
+  return {{PatternEdit::Kind::set, "/postures" + pointer_token(name), posture.dump()}};
 }
 
 namespace {

@@ -33,10 +33,11 @@ struct PoseAnswer {
 PoseAnswer posed(const AuthorMotion& motion, const std::string& text, const AuthorSetting& setting,
                  const PoseWish& wish);
 
-/// All joints at a time as a posture of the pattern under this name, as it is or mirrored. Throws
-/// Error(usage) for an empty name, and Error(bad_model) where the robot has no mirror image.
+/// All joints at a time as a posture of the pattern under this name, as it is or mirrored; with
+/// angles in place of those of the motion where a run is shown [rad, m]. Throws Error(usage) for an
+/// empty name, and Error(bad_model) where the robot has no mirror image.
 std::vector<PatternEdit> captured(const AuthorMotion& motion, double time, const std::string& name,
-                                  bool mirror);
+                                  bool mirror, const std::map<std::string, double>& angles = {});
 
 /// The keyframe at this pointer with left and right exchanged: only values that change are written.
 /// Throws Error(usage) for a pointer without a keyframe, and Error(bad_model) as captured().

@@ -287,11 +287,18 @@ std::string AuthorSession::state() {
         features.push_back(each);
       for (const std::string& kind : author_job_kinds()) features.push_back("job." + kind);
     }
-    OrderedJson motions = {"plan"};
-    if (shown->ghost) motions.push_back("ghost");
-    if (shown->result)
+    OrderedJson motions = {"plan"}, strips = OrderedJson::object();
+    if (shown->ghost) {
+      motions.push_back("ghost");
+      const OrderedJson& parts = shown->ghost->parts;
+      strips["ghost"] = {{"lanes", parts["strip"]}, {"dt", parts["strip_dt"]}};
+    }
+    if (shown->result) {
       for (const auto& [which, series] : shown->result->series) motions.push_back(which);
+      strips.update(shown->result->strips);
+    }
     json["motions"] = motions;
+    json["strips"] = strips;
     json["result"] = shown->result ? shown->result->shown : OrderedJson(nullptr);
   }
   if (shown->structure) json.update(*shown->structure);
@@ -373,10 +380,11 @@ AuthorAnswer AuthorSession::edit(const OrderedJson& request) {
     if (!request.contains("text"))
       for (const auto& one : request.at("edits")) {
         const std::string kind = one.at("kind");
-        if (kind != "set" && kind != "insert" && kind != "remove")
+        if (kind != "set" && kind != "insert" && kind != "remove" && kind != "repeat")
           return refused("there is no edit '" + kind + "'");
         edits.push_back({kind == "set"      ? PatternEdit::Kind::set
                          : kind == "insert" ? PatternEdit::Kind::insert
+                         : kind == "repeat" ? PatternEdit::Kind::repeat
                                             : PatternEdit::Kind::remove,
                          one.at("pointer"), one.contains("value") ? one["value"].dump() : ""});
       }
@@ -480,8 +488,10 @@ AuthorAnswer AuthorSession::posture(const OrderedJson& request) {
     if (!shown->motion || shown->error)
       return refused("the text of the pattern has an error; correct it first");
     return {200,
-            {{"edits", edits_json(captured(*shown->motion, request.at("time"), request.at("name"),
-                                           request.value("mirror", false)))}}};
+            {{"edits",
+              edits_json(captured(*shown->motion, request.at("time"), request.at("name"),
+                                  request.value("mirror", false),
+                                  request.value("joints", std::map<std::string, double>())))}}};
   });
 }
 

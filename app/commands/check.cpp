@@ -19,6 +19,7 @@
 #include "ayumi/io/pattern/pattern_table.hpp"
 #include "ayumi/io/run/results_json.hpp"
 #include "ayumi/plot/com_zmp_plot.hpp"
+#include "ayumi/task/foothold_collisions.hpp"
 #include "ayumi/task/payload_findings.hpp"
 #include "ayumi/task/plan_log.hpp"
 #include "ayumi/task/scenario_findings.hpp"
@@ -173,6 +174,7 @@ std::string scenario_words(const std::vector<std::string>& sentences) {
   for (const auto& [kind, value] : read_pairs(options.tolerances, "--tolerance"))
     judged.tolerances[kind] = value;
   judged.threads = context.threads;
+  judged.degrees = pattern.degrees;
   const std::vector<Mistake> mistakes = likely_mistakes(robot, pattern, judged, context.progress());
   try {
     sample_at_servo_period(robot, pattern, {}, context.threads);
@@ -209,7 +211,7 @@ Checked checked_one(const Context& context, const CheckCommand& options, const s
   const std::vector<Mistake> mistakes =
       report.consistent   ? doubtful_values(input.robot, input.pattern)
       : !payloads.empty() ? payloads
-                          : likely_mistakes(input.robot, input.pattern, judged, context.progress());
+                          : likely_causes(input, judged, report, context.progress());
   const std::vector<std::string> disturbed = findings_under_scenario(input, judged, report);
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

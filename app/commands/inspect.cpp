@@ -276,12 +276,13 @@ std::string profile_lines(const RobotModel& model) {
     std::vector<std::string> cells = {name};
     size_t widest = 20;
     for (int i = 0; i < model.dof_count(); ++i)
-      cells.push_back(limit(limits.speed[i]) + "  " + limit(limits.peak_torque[i]) + " / " +
+      cells.push_back(limit(limits.speed[i] * (model.dofs()[i].prismatic ? 1e3 : 180 / EIGEN_PI)) +
+                      "  " + limit(limits.peak_torque[i]) + " / " +
                       limit(limits.continuous_torque[i]));
     for (const std::string& cell : cells) widest = std::max(widest, cell.size());
     for (size_t i = 0; i < lines.size(); ++i) lines[i] += right_aligned(cells[i], widest + 2);
   }
-  return "Actuator limits: speed [rad/s], peak / continuous torque [N m]\n" +
+  return "Actuator limits: speed [deg/s, mm/s], peak / continuous torque [N m]\n" +
          text::join(lines, "\n") + "\n";
 }
 

@@ -39,6 +39,7 @@ struct NewOptions {
   double duration = 3.0;
   double stand_height = 0;  // [m]; 0: of the home posture
   double scale = 1;         // of the amplitudes of an excitation
+  double low = 0;           // COG height of an excitation; 0: left out [m]
   // Left out: HOAP-1's, scaled to the robot.
   std::vector<double> cog, velocity, cog_velocity;  // goals of VIIP
   double moving = 1;                                // time of a COG velocity [s]
@@ -113,7 +114,10 @@ std::vector<double> values_that_pass(const Context& context, const RobotModel& m
         "\n"
         "  after " +
         std::to_string(result.tried) + " trials, these values were found: " + changed + "\n");
-  else if (result.tried > 1 && !result.refused)  // else the error says it
+  else if (result.tried > 1 && result.refused)  // the error follows
+    context.print("none of " + std::to_string(result.tried) +
+                  " combinations of height, length and time can be done by " + model.name() + "\n");
+  else if (result.tried > 1)
     context.print("none of " + std::to_string(result.tried) +
                   " combinations of height, length and time passes the check. First error with the "
                   "default values: " +
@@ -611,7 +615,10 @@ void new_excite(const Context& context, const NewOptions& options) {
   const double given = rounded(100 * options.scale, 1e-3);  // as a dial [%]
   const Dial amplitudes =
       dial("amplitudes of", "%", given, 0.1, true, {0.8, 0.64, 0.512, 0.41, 0.328, 0.262});
-  const Dial height{"a COG height of", "of the usual one", {1, 0.96, 0.92}, true};
+  const double usual = default_cog_height(model, excite_pattern(model, options.scale));
+  const Dial height{
+      "a COG height of", "of the usual one",
+      options.low > 0 ? std::vector{options.low / usual} : std::vector{1.0, 0.96, 0.92}, true};
   const auto make = [&](const std::vector<double>& values) {
     return excite_pattern(model, 0.01 * values[1], values[0]);
   };
@@ -949,6 +956,12 @@ void add_new(Command& app, Context& context) {
   excite->add_option("--scale", options.scale, "Factor on the amplitudes of all movements.")
       ->check(number_within(0.05, 2.0))
       ->capture_default_str();
+  excite
+      ->add_option("--cog-height", options.low,
+                   "COG height [m]; 0 = the usual one, or a lower one if the robot needs it.")
+      ->check(number_within(0.0, 100.0))
+      ->capture_default_str()
+      ->type_name("M");
   excite->callback([shared, &context] { new_excite(context, *shared); });
 }
 

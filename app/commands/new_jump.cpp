@@ -115,6 +115,20 @@ JumpParameters highest_jump(const RobotModel& model, JumpParameters p, const std
   return best;
 }
 
+// The highest jump of the first profile that has one, where nobody asked for any value; "" and the
+// values unchanged where there is none.
+std::string any_jump(const RobotModel& model, JumpParameters& p, const JumpOptions& options,
+                     const Progress& progress) {
+  if (options.height || options.stoop || options.cog_height) return {};
+  for (const std::string& name : model.profile_names()) {
+    const JumpParameters best = highest_jump(model, p, name, progress);
+    if (best.height <= 0) continue;
+    p = best;
+    return name;
+  }
+  return {};
+}
+
 std::vector<std::string> comments_of(const JumpParameters& p) {
   const std::string way = p.forward == 0 ? "in place" : text::brief(p.forward) + " m forward each";
   return {
@@ -158,10 +172,16 @@ void new_jump(Context& context, JumpOptions options) {
                     " m and a COG height (ref z_G) of " + text::brief(p.cog_height) + " m. ");
       options.profile = lower_jump(model, p, options, context.progress());
       if (options.profile.empty())
+        options.profile = any_jump(model, p, options, context.progress());
+      if (options.profile.empty())
         context.print(
-            "No lower jump was found either, where a value was not given as an option. Choose a "
-            "lower --height, another --stoop or another --cog-height. `ayumi check` names the "
-            "limits that the jump exceeds\n");
+            options.height || options.stoop || options.cog_height
+                ? "No lower jump was found either, where a value was not given as an "
+                  "option. Choose a lower --height, another --stoop or another "
+                  "--cog-height. `ayumi check` names the limits that the jump exceeds\n"
+                : "No jump of 1 mm or more passes the check, from any COG height and with "
+                  "any stoop that was tried, so these actuators cannot jump. `ayumi "
+                  "check` names the limits that the jump exceeds\n");
       else
         context.print("These values were found: --height " + text::brief(p.height) +
                       " m, --stoop " + text::brief(p.stoop) + " m, --cog-height " +

@@ -21,6 +21,7 @@
 #include "ayumi/plan/sample_plan.hpp"
 #include "ayumi/repair/repair_pattern.hpp"
 #include "ayumi/repair/weighted_change.hpp"
+#include "ayumi/task/foothold_collisions.hpp"
 #include "check_table.hpp"
 #include "motion_words.hpp"
 #include "option_checks.hpp"
@@ -385,10 +386,9 @@ void repair_pattern(Context& context, RepairCommand options) {
   // Of a motion that is made from scratch, only the plan stands in the pattern: it is not sampled.
   std::vector<Mistake> mistakes;
   if (context.exit_code == 4)
-    mistakes = options.from_scratch
-                   ? impossible_values(input.robot, input.pattern)
-                   : likely_mistakes(input.robot, input.pattern,
-                                     check_options(input, options.tolerances), context.progress());
+    mistakes = options.from_scratch ? impossible_values(input.robot, input.pattern)
+                                    : likely_causes(input, check_options(input, options.tolerances),
+                                                    result.before, context.progress());
   std::vector<PassingValues> values;
   const bool changes = context.exit_code == 4 && !options.from_scratch;  // of a motion
   if (changes && !input.pattern.parameters.empty())

@@ -146,7 +146,7 @@ TEST_F(CheckRepair, JointsAreDrawnAgainstTheirLimits) {
   EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
   EXPECT_NE(drawn.out.find("drawn in joints.svg: "), std::string::npos) << drawn.out;
   const std::string svg = contents(folder / "joints.svg");
-  for (const char* words : {"r_knee [rad/s]", "l_hip_roll [N m]", "[deg]", "limit of a joint"})
+  for (const char* words : {"r_knee [deg/s]", "l_hip_roll [N m]", "[deg]", "limit of a joint"})
     EXPECT_NE(svg.find(words), std::string::npos) << words;
   EXPECT_EQ(ayumi({"check", kWalk, "--plot", "joints.svg"}).exit_code, 3);  // it exists
   EXPECT_EQ(ayumi({"check", kWalk, kWalk, "--plot", "two.svg"}).exit_code, 2);

@@ -89,7 +89,7 @@ TEST(Names, AreAskedForByEveryCompletion) {
   EXPECT_NE(bash.find("' edit ramp --posture') kind=postures"), std::string::npos);
   EXPECT_NE(zsh.find(": _ayumi_names joints'"), std::string::npos);
   EXPECT_NE(zsh.find(": _ayumi_names robots'"), std::string::npos);
-  EXPECT_NE(fish.find("-l profile -r -a '(ayumi --names profiles "), std::string::npos);
+  EXPECT_NE(fish.find("-l profile -x -a '(ayumi --names profiles "), std::string::npos);
   EXPECT_NE(bash.find("' check --tolerance') kind=findings"), std::string::npos);
   EXPECT_NE(bash.find("' preview --view') kind= names='front side "), std::string::npos);
   EXPECT_NE(bash.find("*' --describe') kind= names='man bash zsh fish'"), std::string::npos);
@@ -150,6 +150,17 @@ TEST(Names, CompleteInFish) {
   const Output chosen = completed_by_fish(folder, "ayumi new walk ");
   EXPECT_EQ(chosen.out.find("squat"), std::string::npos) << chosen.out;
   EXPECT_EQ(completed_by_fish(folder, "ayumi --describe z").out, "zsh\n");
+  // The help of an option stands beside the option, not beside each of its values; a value that is
+  // no file offers no files.
+  const std::string joints = completed_by_fish(folder, "ayumi repair w.json --lock ").out;
+  EXPECT_NE(("\n" + joints).find("\nl_knee\n"), std::string::npos) << joints;
+  EXPECT_EQ(joints.find("w.json"), std::string::npos) << joints;
+  const std::string views = completed_by_fish(folder, "ayumi preview w.json --view ").out;
+  EXPECT_NE(("\n" + views).find("\nfront\n"), std::string::npos) << views;
+  EXPECT_NE(completed_by_fish(folder, "ayumi repair w.json --loc").out.find("--lock\t"),
+            std::string::npos);
+  const std::string numbers = "\n" + completed_by_fish(folder, "ayumi explain ").out;
+  EXPECT_NE(numbers.find("\n22\n"), std::string::npos) << numbers;
 }
 
 TEST(Names, CompleteInZsh) {

@@ -365,7 +365,7 @@ TEST(MotionFormats, RampsLetARecordingBeginAndEndAtRest) {
   const CutEnds cut = cut_ends(hoap1(), motion);
   EXPECT_TRUE(cut.begin && cut.end);
   ASSERT_EQ(cut.words.size(), 2u);
-  EXPECT_NE(cut.words[0].find("begins while the robot moves (l_knee at 1 rad/s)"),
+  EXPECT_NE(cut.words[0].find("begins while the robot moves (l_knee at 57.3 deg/s)"),
             std::string::npos)
       << cut.words[0];
   EXPECT_NE(cut.words[0].find("--ramp"), std::string::npos);

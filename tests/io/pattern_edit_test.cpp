@@ -192,6 +192,29 @@ TEST(PatternEdit, PointersReferToTheTextBeforeTheFirstEdit) {
       R"({ "keyframes": [{ "t": 0 }, { "t": 0.4 }, { "t": 0.6 }, { "t": 1.9 }, { "t": 3 }, { "t": 4 }, { "t": 5 }] })");
 }
 
+TEST(PatternEdit, ItemsBecomeABlockThatRepeatsWithTheirComments) {
+  const std::string text =
+      "{\n  \"phases\": [\n    { \"until\": 1 }, // stands\n    { \"duration\": 0.5 }, // left\n"
+      "    /* then */ { \"duration\": 0.4 }, // right\n    { \"until\": 4 }\n  ]\n}\n";
+  const std::vector<PatternEdit> edits = {
+      {Kind::repeat, "/phases/1", R"({"items": 2, "repeat": 3, "count": "i"})"},
+      {Kind::set, "/phases/3/until", "5.8"},
+      {Kind::set, "/phases/2/duration", "0.45"}};
+  EXPECT_EQ(edited_text(text, edits),
+            "{\n  \"phases\": [\n    { \"until\": 1 }, // stands\n"
+            "    { \"repeat\": 3, \"count\": \"i\", \"phases\": [\n"
+            "    { \"duration\": 0.5 }, // left\n"
+            "    /* then */ { \"duration\": 0.45 }\n    ] }, // right\n    { \"until\": 5.8 }\n"
+            "  ]\n}\n");
+  const std::string short_text = R"({"keyframes":[{"t":0},{"t":1}]})";
+  EXPECT_EQ(
+      edited_text(short_text, {{Kind::repeat, "/keyframes/1", R"({"items": 1, "repeat": 2})"}}),
+      R"({"keyframes":[{"t":0},{ "repeat": 2, "keyframes": [ {"t":1} ] }]})");
+  EXPECT_THROW(
+      edited_text(short_text, {{Kind::repeat, "/keyframes/1", R"({"items": 2, "repeat": 2})"}}),
+      Error);
+}
+
 TEST(PatternEdit, AListThatIsMissingIsMade) {
   EXPECT_EQ(edited_text("{ \"a\": 1 }", {{Kind::insert, "/scenario/-", R"({"at":1})"}}),
             R"({ "a": 1, "scenario": [{ "at": 1 }] })");

@@ -87,6 +87,48 @@ async function addsPhasesAndKeys(tab) {
   expect(JSON.stringify(data()) === JSON.stringify(before), "all is as before");
 }
 
+/// Parameters, blocks of the ground, goals of VIIP and blocks that repeat are made, and taken back.
+async function makesWhatIsNotThere(tab) {
+  const before = text();
+  const press = (words) => tab.run("[...document.querySelectorAll('#selected button')].find((b) => b.textContent === arguments[0]).click();", words);
+  const fill = (id, value) => tab.run("const e = document.querySelector(`#selected [data-id=\"${arguments[0]}\"]`); e.focus(); e.value = arguments[1];", id, String(value));
+  await tab.click("#whole");
+  await fill("new parameter", "trial");
+  await fill("new parameter value", 0.04);
+  await tab.after(() => press("New"));
+  expect(data().parameters?.trial === 0.04, "a parameter: " + JSON.stringify(data().parameters));
+  await tab.after(() => press("Add a block to the ground"));
+  expect(data().world?.blocks?.length === 1, "a block: " + JSON.stringify(data().world));
+  expect(await tab.run(`return document.querySelector('#selected [data-id="/world/blocks/0/height"]')?.value`) === "0.005", "its height can be typed");
+  await tab.after(() => press("Remove this block"));
+  expect(!data().world?.blocks, "and removed: " + JSON.stringify(data().world));
+  for (let i = 0; i < 3; ++i) await tab.after(() => tab.click("#undo"));
+  expect(text() === before, "and all is as before");
+
+  const { phases, keyframes } = data(), last = keyframes.filter(({ t }) => t > 0 && t <= phases[0].until).length;
+  await tab.click('[data-id="/phases/0"]');
+  await fill("/phases/0 rounds", 3);
+  await tab.after(() => press("Repeat"));
+  const block = data().phases[0], keys = data().keyframes.find((one) => one.repeat);
+  expect(block.repeat === 3 && block.phases.length === 1, "a block of phases: " + JSON.stringify(block));
+  expect(!last || (keys?.repeat === 3 && keys.keyframes.length === last), "and of its keys: " + JSON.stringify(keys));
+  const later = data().phases.at(-1).until;
+  expect(Math.abs(later - phases.at(-1).until - 2 * phases[0].until) < 1e-6, `what comes later comes later: ${later}`);
+  const shown = await tab.run("const s = window.ayumiAuthor.page.state; return [s.phases.length, s.error?.message ?? '']");
+  expect(shown[0] === phases.length + 2 && !shown[1], "the page shows its rounds: " + shown);
+  await tab.after(() => tab.click("#undo"));
+  expect(text() === before, "and back");
+
+  await tab.click(`[data-id="/phases/${phases.length - 1}"]`);
+  await tab.after(() => press("Add a phase after this one"));
+  await tab.after(() => tab.type(`#selected [data-id="/phases/${phases.length} goal"]`, "cog"));
+  expect(data().phases.at(-1).viip?.cog && !data().phases.at(-1).support, "a goal of VIIP: " + JSON.stringify(data().phases.at(-1)));
+  await tab.after(() => tab.type(`#selected [data-id="/phases/${phases.length} goal"]`, "none"));
+  expect(data().phases.at(-1).support === "both" && !data().phases.at(-1).viip, "and keys again: " + JSON.stringify(data().phases.at(-1)));
+  for (let i = 0; i < 3; ++i) await tab.after(() => tab.click("#undo"));
+  expect(text() === before, "and all is as before");
+}
+
 /// Values that are not written can be written, and taken away again: nothing else changes.
 async function writesOptionalValues(tab) {
   const before = text(), i = data().phases.findIndex((phase) => phase.swing && phase.swing.lift === undefined);
@@ -335,6 +377,19 @@ async function showsResults(tab) {
   await tab.click("#job-simulate");
   expect(await until(() => tab.run("return document.getElementById('which').value === 'closed_loop' && window.ayumiAuthor.page.viewer.last > arguments[0] + 0.5", whole), 60),
     "the run is shown: " + await tab.run("return document.getElementById('which').value"));
+  const strip = await tab.run(`const p = window.ayumiAuthor.page, { lanes, dt } = p.strip();
+    return [lanes.map((one) => one.name).join() === p.state.strip.map((one) => one.name).join(), dt * lanes[0].values.length, p.state.strip[0].values.length * p.state.strip_dt,
+      document.querySelector(".of-pattern").textContent];`);
+  expect(strip[0] && strip[1] > strip[2] + 0.5 && /strip and curves show: run/.test(strip[3]), "and so is its strip: " + strip);
+  // A key is one of the pattern, whatever is shown.
+  const planned = await tab.run("const p = window.ayumiAuthor.page; p.show(1); return p.planRow()[p.plan.columns['q.l_elbow']] * 180 / Math.PI");
+  await tab.run("document.getElementById('to-edit').click(); document.getElementById('key-track').value = 'l_elbow';");
+  await tab.after(() => tab.click("#add-key button"));
+  const made = data().keyframes.find(({ t }) => Math.abs(t - 1) < 1e-6)?.joints?.l_elbow;
+  expect(Math.abs(made - planned) < 0.01, `a key with the value of the pattern: ${made}, not ${planned}`);
+  await tab.after(() => tab.click("#undo"));
+  await tab.click("#job-simulate");
+  expect(await until(() => tab.run("return document.getElementById('which').value === 'closed_loop'"), 60), "the run is shown again");
   await tab.after(() => tab.run("window.ayumiAuthor.page.edit([{ kind: 'set', pointer: '/keyframes/0/zmp', value: 'left' }]);"));
   const back = await tab.run("return [document.getElementById('which').value, window.ayumiAuthor.page.viewer.last]");
   expect(back[0] === "plan" && Math.abs(back[1] - whole) < 1e-6, "an edit shows the pattern again: " + back);
@@ -410,7 +465,7 @@ let driving;
 try {
   driving = await startDriver(driver, shots);
   const tab = await openPage(driving, 1280, 800);
-  await runTrials(tab, [looks, namesEverything, editsByKeyboard, addsPhasesAndKeys,
+  await runTrials(tab, [looks, namesEverything, editsByKeyboard, addsPhasesAndKeys, makesWhatIsNotThere,
     writesOptionalValues, movesKeysByTyping, locksWhatIsOld, dragsInTime, showsFindings, keepsBothVersions,
     poses, postures, pushesTheRobot, works, showsResults, keepsWhatIsBeingTyped, showsNoDeadControls]);
   await followsTheFile(driving, tab);

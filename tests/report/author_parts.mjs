@@ -327,3 +327,76 @@ test("a push has its direction in words, and an arrow where it acts on the COG",
   assert.deepEqual(arrowsOf([push, { ...push, link: "head" }, { type: "friction" }]),
     [{ begin: 1, end: 1.02, from_cog: [0, 0, 0], direction: [0, 1, 0] }]);
 });
+
+// Two phases on the right foot from 1 to 1.5 s, a last one, and keys; one key counts from another.
+const walk = () => {
+  const document = { parameters: { i: 3 }, phases: [{ until: 1, support: "both" },
+    { until: 1.4, support: "right", swing: { foot: "left", step: {} } }, { duration: 0.1, support: "both" }, { until: "${a} + 2", support: "both" }],
+  keyframes: [{ t: 0, zmp: "center" }, { t: 1, zmp: "right" }, { after: 0.4, zmp: "right" }, { t: 1.45, zmp: "left" }, { after: 1, zmp: "center" }] };
+  const times = [0, 1, 1.4, 1.45, 2.45];
+  const keyframes = document.keyframes.map((frame, i) => {
+    const key = frame.t === undefined ? "after" : "t";
+    return { time: times[i], time_value: frame[key], time_pointer: `/keyframes/${i}/${key}`, time_base: key === "t" ? 0 : times[i - 1], pointer: `/keyframes/${i}` };
+  });
+  const ends = [0, 1, 1.4, 1.5, 3.2];
+  const phases = document.phases.map((phase, i) => {
+    const key = phase.until === undefined ? "duration" : "until";
+    return { from: ends[i], until: ends[i + 1], until_value: phase[key], until_pointer: `/phases/${i}/${key}`, pointer: `/phases/${i}`,
+      support: phase.support, swing: phase.swing ?? null };
+  });
+  return { document, state: { keyframes, phases } };
+};
+
+test("phases and their keys become blocks that repeat, and what is later comes later", () => {
+  const { document, state } = walk();
+  const { edits: made, refused } = edits.repeatPhases(state, document, 1, 2, 3);
+  assert.equal(refused, undefined);
+  assert.deepEqual(made, [
+    { kind: "set", pointer: "/phases/1/until", value: "1.4 + 0.5*${round}" },
+    { kind: "remove", pointer: "/keyframes/2/after" },
+    { kind: "set", pointer: "/keyframes/2/t", value: "1.4 + 0.5*${round}" },
+    { kind: "set", pointer: "/keyframes/3/t", value: "1.45 + 0.5*${round}" },
+    { kind: "set", pointer: "/phases/3/until", value: 4.2 },
+    { kind: "repeat", pointer: "/phases/1", value: { items: 2, repeat: 3, count: "round" } },
+    { kind: "repeat", pointer: "/keyframes/2", value: { items: 2, repeat: 3, count: "round" } }]);
+});
+
+test("a block that repeats is refused where every round would be at the same place", () => {
+  const places = [(one) => { one.document.keyframes[2].zmp = [0, 0.04]; }, (one) => { one.document.keyframes[3].cog = { x: 0.1 }; },
+    (one) => { one.state.phases[1].swing = { foot: "left", to: [0.1, 0.04] }; }, (one) => { one.state.phases[2].repeated = true; }];
+  for (const change of places) {
+    const one = walk();
+    change(one);
+    assert.ok(edits.repeatPhases(one.state, one.document, 1, 2, 3).refused);
+  }
+  const { document, state } = walk();
+  assert.ok(edits.repeatPhases(state, document, 1, 2, 1).refused);
+  // A robot that stays may have places.
+  state.phases[1].swing = null;
+  document.keyframes[3].zmp = [0, 0.04];
+  assert.ok(edits.repeatPhases(state, document, 1, 2, 3).edits);
+});
+
+test("a phase gets a goal of VIIP in place of its support and its swing, and back", () => {
+  const schema = JSON.parse(readFileSync(new URL("../../docs/schemas/pattern-1.schema.json", import.meta.url)));
+  const phase = { pointer: "/phases/1", support: "right", swing: { foot: "left", step: {} } };
+  for (const { name, value } of edits.goals.slice(1)) {
+    const [first, second, last] = edits.putGoal(phase, name, "deg");
+    assert.deepEqual([first, second].map((one) => one.kind + one.pointer), ["remove/phases/1/swing", "remove/phases/1/support"]);
+    assert.equal(last.pointer, "/phases/1/viip");
+    for (const key of Object.keys(value("deg"))) assert.ok(schema.$defs.viip.properties[key], key);
+    assert.equal(edits.goalOf(last.value), name);
+  }
+  assert.equal(edits.goalOf(null), "none");
+  assert.deepEqual(edits.putGoal({ pointer: "/phases/1", support: null }, "none", "deg").map((one) => one.pointer), ["/phases/1/viip", "/phases/1/support"]);
+});
+
+test("a block of the ground has what the schema asks for", () => {
+  const { block, patch } = JSON.parse(readFileSync(new URL("../../docs/schemas/pattern-1.schema.json", import.meta.url))).$defs;
+  for (const [list, { properties, required }] of [["blocks", block], ["patches", patch]]) {
+    const { value, pointer } = edits.addToGround(list)[0];
+    assert.equal(pointer, `/world/${list}/-`);
+    for (const name of Object.keys(value)) assert.ok(properties[name], name);
+    for (const name of required) assert.ok(value[name] !== undefined, name);
+  }
+});

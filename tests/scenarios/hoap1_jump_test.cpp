@@ -143,7 +143,7 @@ TEST(Hoap1Jump, GeneratedKeysNeedTheStrongActuators) {
   const ConsistencyReport real = check_consistency(hoap1(), series, options);
   const ActuatorNeed need = actuator_need(hoap1(), series, options, real);
   for (const char* words : {"profile hoap1 is too weak: the motion needs ", " N m at ",
-                            " rad/s at ", "hoap1-strong, hoap1-strong-soft are strong enough"})
+                            " deg/s at ", "hoap1-strong, hoap1-strong-soft are strong enough"})
     EXPECT_NE(need.text.find(words), std::string::npos) << need.text;
   EXPECT_EQ(need.sufficient, (std::vector<std::string>{"hoap1-strong", "hoap1-strong-soft"}));
 }

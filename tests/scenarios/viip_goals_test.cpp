@@ -107,7 +107,7 @@ TEST(ViipGoals, StepsAreJudgedByAWalkWithKeys) {
   CheckOptions options;
   options.profile = "hoap1";
   const ActuatorNeed need = actuator_need(hoap1(), goals, options);
-  EXPECT_NE(need.text.find("rad/s at"), std::string::npos) << need.text;
+  EXPECT_NE(need.text.find("deg/s at"), std::string::npos) << need.text;
   EXPECT_EQ(need.sufficient, (std::vector<std::string>{"hoap1-strong", "hoap1-strong-soft"}));
   options.profile = "hoap1-strong";
   EXPECT_EQ(actuator_need(hoap1(), goals, options).text, "");

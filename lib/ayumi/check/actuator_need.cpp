@@ -5,6 +5,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/limits/amount_text.hpp"
 
 namespace ayumi {
 
@@ -25,9 +26,10 @@ std::vector<std::string> missing(const ConsistencyReport& report) {
   for (const FindingSpec* spec : actuator_findings()) {
     const Finding* f = worst(report, spec->kind);
     if (!f) continue;
-    parts.push_back(text::brief(std::abs(f->worst), 3) + " " + f->unit + spec->actuator.after +
-                    " at " + f->where + " at " + text::fixed(f->at, 2) + " s (limit " +
-                    text::brief(std::abs(f->limit), 3) + ")");
+    const ShownUnit unit = shown_unit(f->unit, f->in_degrees);
+    parts.push_back(text::brief(std::abs(f->worst) * unit.scale, 3) + " " + unit.name +
+                    spec->actuator.after + " at " + f->where + " at " + text::fixed(f->at, 2) +
+                    " s (limit " + text::brief(std::abs(f->limit) * unit.scale, 3) + ")");
   }
   return parts;
 }

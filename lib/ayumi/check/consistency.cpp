@@ -81,6 +81,7 @@ Finding finding_of(const JudgedMotion& motion, const std::vector<FindingWindow>&
   f.unit = spec.finding_unit ? spec.finding_unit(motion, v) : spec.unit;
   f.place = spec.place(motion, v);
   f.where = place_text(motion, v);
+  f.in_degrees = motion.degrees;
   const Advice advice = spec.advice(motion, window);
   f.remedy = advice.remedy;
   f.hint = advice.remedy + advice.or_repair;

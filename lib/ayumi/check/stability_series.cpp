@@ -11,11 +11,13 @@
 
 namespace ayumi {
 
-namespace {
-
 using Eigen::Vector3d;
 
+namespace {
+
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
 
 void keep_least(double& kept, double value) {
   if (std::isnan(kept) || value < kept) kept = value;
@@ -25,7 +27,6 @@ void keep_largest(double& kept, double value) {
   if (std::isnan(kept) || value > kept) kept = value;
 }
 
-// The joint with the largest share of its limit; joints without a limit do not count.
 void keep_worst(double& kept, int& dof, const Eigen::VectorXd& value,
                 const Eigen::VectorXd& limit) {
   for (Eigen::Index i = 0; i < value.size(); ++i) {
@@ -36,6 +37,19 @@ void keep_worst(double& kept, int& dof, const Eigen::VectorXd& value,
     dof = static_cast<int>(i);
   }
 }
+
+StabilitySeries empty_stability(size_t size, double dt) {
+  StabilitySeries out;
+  out.dt = dt;
+  for (auto* values : {&out.zmp_margin, &out.dcm_margin, &out.normal_force, &out.friction,
+                       &out.speed, &out.torque})
+    values->assign(size, kNone);
+  out.speed_dof.assign(size, -1);
+  out.torque_dof.assign(size, -1);
+  return out;
+}
+
+namespace {
 
 // By sample: the first sample of the next phase of contacts, or -1.
 std::vector<int> next_contacts(const CommandSeries& series) {
@@ -80,13 +94,7 @@ StabilitySeries stability_series(const RobotModel& model, const CommandSeries& s
   const int count = static_cast<int>(series.samples.size());
   const int stretch = std::max(1, static_cast<int>(std::lround(dt / series.dt)));
   const auto size = static_cast<size_t>((count + stretch - 1) / stretch);
-  StabilitySeries out;
-  out.dt = stretch * series.dt;
-  for (auto* values : {&out.zmp_margin, &out.dcm_margin, &out.normal_force, &out.friction,
-                       &out.speed, &out.torque})
-    values->assign(size, kNone);
-  out.speed_dof.assign(size, -1);
-  out.torque_dof.assign(size, -1);
+  StabilitySeries out = empty_stability(size, stretch * series.dt);
   for (int k = 0; k < count; ++k) {
     const auto i = static_cast<size_t>(k / stretch);
     const CommandSample& sample = series.samples[static_cast<size_t>(k)];

@@ -24,6 +24,15 @@ struct StabilitySeries {
   std::vector<int> speed_dof, torque_dof;  ///< that joint; -1: no joint has a limit
 };
 
+/// For `size` stretches of `dt` [s], without a value yet.
+StabilitySeries empty_stability(size_t size, double dt);
+
+// Of several samples of a stretch the worst; NaN: none yet.
+void keep_least(double& kept, double value);
+void keep_largest(double& kept, double value);
+/// The joint with the largest share of its limit; joints without a limit do not count.
+void keep_worst(double& kept, int& dof, const Eigen::VectorXd& value, const Eigen::VectorXd& limit);
+
 /// Throws as check_consistency().
 StabilitySeries stability_series(const RobotModel& model, const CommandSeries& series,
                                  const CheckOptions& options, double dt = 0.01);

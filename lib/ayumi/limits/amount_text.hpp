@@ -1,5 +1,6 @@
 #pragma once
-// A finding's value and its limit in words: lengths in mm, angles in degrees.
+// A finding's value and its limit in words: lengths in mm, angles and their rates in the unit of
+// the pattern's angles.
 
 #include <Eigen/Core>
 
@@ -8,13 +9,25 @@
 
 namespace ayumi {
 
+/// A unit for people: a value times `scale` is in `name`.
+struct ShownUnit {
+  double scale = 1;
+  std::string name;
+};
+
+/// "rad/s" as "deg/s" where angles are in degrees; other units as they are.
+inline ShownUnit shown_unit(const std::string& unit, bool degrees) {
+  if (degrees && unit.starts_with("rad")) return {180 / EIGEN_PI, "deg" + unit.substr(3)};
+  return {1, unit};
+}
+
 /// "300 deg, limit 1 deg", with as many digits as show that the two differ.
 inline std::string amount_text(const Finding& finding) {
+  const ShownUnit shown = shown_unit(finding.unit, finding.in_degrees);
   const auto quantity = [&](double value, int more_digits) -> std::string {
     if (finding.unit == "m") return text::fixed(1000 * value, 1 + more_digits) + " mm";
-    if (finding.unit == "rad") return text::brief(value * 180 / EIGEN_PI, 4 + more_digits) + " deg";
     if (finding.unit == "1") return text::fixed(value, 2 + more_digits);
-    return text::brief(value, 4 + more_digits) + " " + finding.unit;
+    return text::brief(value * shown.scale, 4 + more_digits) + " " + shown.name;
   };
   // Digits beyond the usual ones. Chosen: a smaller difference is rounding of the computation.
   constexpr int kMostMoreDigits = 6;

@@ -12,6 +12,7 @@
 #include <algorithm>
 
 #include "ayumi/base/text.hpp"
+#include "ayumi/limits/amount_text.hpp"
 #include "ayumi/limits/judged_motion.hpp"
 #include "ayumi/limits/row_site.hpp"
 #include "ayumi/limits/table_safety.hpp"
@@ -158,7 +159,7 @@ Advice table_position_advice(const JudgedMotion& motion, const FindingWindow& wi
   const double beyond = std::abs(v.value - v.limit);
   const std::string amount = v.detail == kInCounts ? text::brief(beyond) + " counts"
                              : dof.prismatic       ? text::brief(1e3 * beyond, 3) + " mm"
-                                             : text::brief(beyond * 180 / EIGEN_PI, 3) + " deg";
+                                                   : angle_size(beyond, motion.degrees, 3);
   return {refused_text(motion, v) + " is " + amount + " beyond its range: move " + dof.name +
               " back by this amount, or let the joint reverse its direction more gently",
           kOrRepair};
@@ -178,14 +179,17 @@ std::string target_step_infeasibility(const Finding& f, double violation) {
 }
 
 std::string table_position_infeasibility(const Finding& f, double) {
-  return "the servo target of " + f.where + " reaches " + text::brief(f.worst, 6) + " " + f.unit +
-         ", but `export` accepts only " + text::brief(f.limit, 6) + " " + f.unit;
+  const ShownUnit unit = shown_unit(f.unit, f.in_degrees);
+  return "the servo target of " + f.where + " reaches " + text::brief(f.worst * unit.scale, 6) +
+         " " + unit.name + ", but `export` accepts only " + text::brief(f.limit * unit.scale, 6) +
+         " " + unit.name;
 }
 
 std::string rest_infeasibility(const Finding& f, double) {
-  return "the servo target of " + f.where + " has " + text::brief(f.worst, 3) + " " + f.unit +
-         " at an end of the motion, but `export` accepts at most " + text::brief(f.limit, 3) + " " +
-         f.unit;
+  const ShownUnit unit = shown_unit(f.unit, f.in_degrees);
+  return "the servo target of " + f.where + " has " + text::brief(f.worst * unit.scale, 3) + " " +
+         unit.name + " at an end of the motion, but `export` accepts at most " +
+         text::brief(f.limit * unit.scale, 3) + " " + unit.name;
 }
 
 }  // namespace

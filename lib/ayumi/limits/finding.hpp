@@ -83,6 +83,7 @@ struct Finding {
   int cause = -1;           ///< index of that error in the report; -1: none, or read from a file
   std::string remedy = {};  ///< the hint without the advice to use `repair`
   Place place = {};
+  bool in_degrees = true;  ///< texts for people have angles in degrees, not in rad
 };
 
 /// The dof of a finding at a joint, -1 of any other.

@@ -72,7 +72,7 @@ Advice position_advice(const JudgedMotion& motion, const FindingWindow& window) 
   const Dof& dof = motion.model.dofs()[v.item];
   const double beyond = std::abs(v.value - v.limit);
   return {"move " + dof.name + " back by " +
-              (dof.prismatic ? in_mm(beyond) : text::fixed(beyond * 180 / EIGEN_PI, 2) + " deg") +
+              (dof.prismatic ? in_mm(beyond) : angle_size(beyond, motion.degrees)) +
               " in this window",
           kOrRepair};
 }
@@ -80,8 +80,7 @@ Advice position_advice(const JudgedMotion& motion, const FindingWindow& window) 
 std::string position_infeasibility(const Finding& f, double violation) {
   const bool prismatic = f.unit == "m";
   return f.where + " goes " +
-         (prismatic ? in_mm(violation)
-                    : text::fixed(std::abs(violation) * 180 / EIGEN_PI, 1) + " deg") +
+         (prismatic ? in_mm(violation) : angle_size(violation, f.in_degrees, 1)) +
          " beyond its limit";
 }
 

@@ -15,6 +15,7 @@ JudgedMotion::JudgedMotion(const RobotModel& model, const CommandSeries& series,
       series(series),
       tolerance_of(tolerances(options, model, series)),
       friction(options.friction),
+      degrees(options.degrees),
       limits(model.limits(options.profile)),
       plan(contact_plan(series)),
       collisions(model),
@@ -93,6 +94,12 @@ const char* joint_unit(const JudgedMotion& motion, const Violation& v, const cha
 }
 
 std::string in_mm(double metres) { return text::fixed(1000 * std::abs(metres), 1) + " mm"; }
+
+std::string angle_size(double radians, bool degrees, int digits) {
+  const double size = std::abs(radians);
+  return degrees ? text::fixed(size * 180 / EIGEN_PI, digits) + " deg"
+                 : text::fixed(size, digits + 2) + " rad";
+}
 
 std::string ratio_text(double ratio) { return text::fixed(std::ceil(100 * ratio - 1e-9) / 100, 2); }
 

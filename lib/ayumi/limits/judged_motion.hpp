@@ -59,6 +59,7 @@ struct JudgedMotion {
   const CommandSeries& series;
   const Tolerances tolerance_of;
   const double friction;  ///< coefficient
+  const bool degrees;     ///< unit of angles in texts
   const ActuatorLimits& limits;
   const ContactPlan plan;
   const CollisionModel collisions;
@@ -131,7 +132,9 @@ const char* axis_name(int axis);
 /// `rotary`, or for a prismatic joint (the item) the other unit.
 const char* joint_unit(const JudgedMotion&, const Violation&, const char* rotary,
                        const char* prismatic);
-std::string in_mm(double metres);           ///< of the size, "12.0 mm"
+std::string in_mm(double metres);  ///< of the size, "12.0 mm"
+/// Of the size, "3.08 deg", or in rad with two digits more.
+std::string angle_size(double radians, bool degrees, int digits = 2);
 std::string ratio_text(double ratio);       ///< rounded up to 0.01, "1.04"
 std::string slow_down_text(double factor);  ///< "stretch this window to 1.04 times its length"
 inline constexpr const char* kOrRepair = ", or use `ayumi repair`";

@@ -160,6 +160,7 @@ struct CheckOptions {
   double friction = 0.8;
   std::map<std::string, double> tolerances;  ///< by the name of the kind
   int threads = 0;                           ///< 0: all cores; results do not depend on it
+  bool degrees = true;  ///< unit of the pattern's angles, in which texts for people have theirs
 };
 
 /// The defaults with those that were set. Throws Error(usage) for an unknown name or a tolerance

@@ -55,7 +55,7 @@ Advice step_advice(const JudgedMotion& motion, const FindingWindow& window) {
   const Violation& v = window.worst;
   const Dof& dof = motion.model.dofs()[v.item];
   return dof.name + " jumps by " +
-         (dof.prismatic ? in_mm(v.value) : text::brief(v.value * 180 / EIGEN_PI, 3) + " deg") +
+         (dof.prismatic ? in_mm(v.value) : angle_size(v.value, motion.degrees)) +
          " in one servo period: spread the step over " +
          text::fixed(std::ceil(std::abs(v.value / v.limit)), 0) + " periods";
 }

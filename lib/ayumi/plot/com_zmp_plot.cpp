@@ -55,11 +55,12 @@ PanelPlan joint_panel(const RobotModel& model, int dof) {
 
 PanelPlan speed_panel(const RobotModel& model, const std::string& profile, int dof) {
   const Dof& d = model.dofs()[static_cast<size_t>(dof)];
-  const double limit = model.limits(profile).speed[dof];
+  const double unit = d.prismatic ? 1e-3 : kDegree;
+  const double limit = model.limits(profile).speed[dof] / unit;
   PanelPlan panel;
-  panel.name = d.name + (d.prismatic ? " [m/s]" : " [rad/s]");
-  panel.run = [dof](const SimulationSample& s) { return s.state.dtheta[dof]; };
-  panel.least = d.prismatic ? 0.02 : 0.2;
+  panel.name = d.name + (d.prismatic ? " [mm/s]" : " [deg/s]");
+  panel.run = [dof, unit](const SimulationSample& s) { return s.state.dtheta[dof] / unit; };
+  panel.least = d.prismatic ? 20 : 10;
   if (std::isfinite(limit)) panel.limits = {-limit, limit};
   return panel;
 }

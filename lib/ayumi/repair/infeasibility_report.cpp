@@ -7,6 +7,7 @@
 #include <map>
 
 #include "ayumi/base/text.hpp"
+#include "ayumi/limits/amount_text.hpp"
 #include "ayumi/limits/limit.hpp"
 #include "ayumi/repair/constraint_relaxation.hpp"
 
@@ -76,8 +77,10 @@ std::string window_text(const Finding& f) {
 
 std::string violation_text(const Finding& f, double violation) {
   if (const auto text = spec_of(f.kind).infeasibility) return text(f, violation);
-  return std::string(name_of(f.kind)) + " of " + f.where + " is " + text::brief(f.worst) + " " +
-         f.unit + ", but the limit is " + text::brief(f.limit) + " " + f.unit;
+  const ShownUnit unit = shown_unit(f.unit, f.in_degrees);
+  return std::string(name_of(f.kind)) + " of " + f.where + " is " +
+         text::brief(f.worst * unit.scale) + " " + unit.name + ", but the limit is " +
+         text::brief(f.limit * unit.scale) + " " + unit.name;
 }
 
 std::string words_of(const InfeasibilityCause& cause) {

@@ -104,6 +104,7 @@ CheckOptions check_options(const Task& task) {
   options.friction = task.pattern.world.friction;
   options.tolerances = task.pattern.tolerances;
   options.threads = task.threads;
+  options.degrees = task.pattern.degrees;
   return options;
 }
 

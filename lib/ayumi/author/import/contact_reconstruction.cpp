@@ -261,8 +261,8 @@ std::string movement_at(const RobotModel& model, const RawMotion& motion, Eigen:
       (motion.theta.row(k + 1) - motion.theta.row(k)).cwiseAbs().maxCoeff(&joint) / motion.dt;
   const bool slides = model.dofs()[static_cast<size_t>(joint)].prismatic;
   if (rate > kRestRate)
-    return model.dof_names()[static_cast<size_t>(joint)] + " at " + text::brief(rate, 3) +
-           (slides ? " m/s" : " rad/s");
+    return model.dof_names()[static_cast<size_t>(joint)] + " at " +
+           text::brief(slides ? rate : rate * 180 / EIGEN_PI, 3) + (slides ? " m/s" : " deg/s");
   if (motion.base.empty()) return "";
   const auto at = static_cast<size_t>(k);
   const double speed = (motion.base[at + 1].position - motion.base[at].position).norm() / motion.dt;

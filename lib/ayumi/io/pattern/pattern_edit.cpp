@@ -146,6 +146,31 @@ std::string insert(const std::string& text, const Json& document, const PatternE
   return with_item(text, place.around, item_index(edit, list.size()), spaced_in_order(edit.value));
 }
 
+// The items stand in the block as they stood in the list, with their comments.
+std::string repeated(const std::string& text, const PatternEdit& edit) {
+  const Place place = split(edit.pointer);
+  auto block = nlohmann::ordered_json::parse(edit.value);
+  const size_t first = item_index(edit, 0), items = block.value("items", size_t(0));
+  block.erase("items");
+  const auto begin = find_value(text, edit.pointer);
+  const auto end = items > 0
+                       ? find_value(text, place.around + "/" + std::to_string(first + items - 1))
+                       : std::nullopt;
+  if (!begin || !end)
+    fail(ErrorCode::usage, "'" + edit.pointer + "' and the items after it are not there");
+  const size_t line = text.rfind('\n', begin->begin) + 1;  // 0 where there is no line before
+  const size_t word = text.find_first_not_of(" \t", line);
+  const bool own_line = word == begin->begin;
+  const std::string indent = own_line ? text.substr(line, word - line) : "";
+  const std::string line_end = text.find("\r\n") == std::string::npos ? "\n" : "\r\n";
+  const std::string gap = own_line ? line_end + indent : " ";
+  const std::string name = split(place.around).name;
+  std::string head = spaced_in_order(block.dump());
+  head.replace(head.size() - 2, 2, ", " + Json(name).dump() + ": [" + gap);
+  return text.substr(0, begin->begin) + head + text.substr(begin->begin, end->end - begin->begin) +
+         gap + "] }" + text.substr(end->end);
+}
+
 std::string applied(const std::string& text, const PatternEdit& edit,
                     const Parameters& parameters) {
   const Json document = parse_json(text, "the pattern", ErrorCode::bad_pattern);
@@ -153,12 +178,13 @@ std::string applied(const std::string& text, const PatternEdit& edit,
   if (!Json::accept(edit.value))
     fail(ErrorCode::bad_pattern, edit.pointer + ": '" + edit.value + "' is not a value");
   if (edit.kind == PatternEdit::Kind::insert) return insert(text, document, edit);
+  if (edit.kind == PatternEdit::Kind::repeat) return repeated(text, edit);
   return set(text, document, edit, parameters);
 }
 
 // Whether an edit moves the items behind it.
 bool moves_items(const Json& document, const PatternEdit& edit) {
-  if (edit.kind == PatternEdit::Kind::insert) return true;
+  if (edit.kind == PatternEdit::Kind::insert || edit.kind == PatternEdit::Kind::repeat) return true;
   if (edit.kind == PatternEdit::Kind::set) return false;
   const Json::json_pointer around(split(edit.pointer).around);
   return document.contains(around) && document.at(around).is_array();

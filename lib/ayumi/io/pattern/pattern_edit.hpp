@@ -13,11 +13,14 @@ struct PatternEdit {
   enum class Kind {
     set,     ///< replace the value, or add it where it is missing, with the objects around it
     insert,  ///< a new item of an array, at the index that ends the pointer; "-": behind the last
-    remove   ///< a member or an item
+    remove,  ///< a member or an item
+    repeat   ///< items of an array, from the pointer on, become the content of a block that repeats
   };
   Kind kind = Kind::set;
   std::string pointer;  ///< JSON pointer
-  std::string value;    ///< JSON text; empty for remove
+  /// JSON text; empty for remove. For repeat: { "items": how many, and what the block has, as
+  /// "repeat" and "count" }.
+  std::string value;
 };
 
 /// The text after the edits. The pointers of all edits refer to the text before the first one;

@@ -35,7 +35,10 @@ StepGoal read_steps(const JsonNode& node, PatternScope& scope) {
   }
   if (const auto turn = node.find("turn")) {
     goal.turn = read_angle(*turn, scope);
-    if (std::abs(goal.turn) > kFastest) turn->complain("the turning rate must be at most 10 rad/s");
+    if (std::abs(goal.turn) > kFastest)
+      turn->complain("the turning rate must be at most " +
+                     text::brief(kFastest / *scope.radians_per_unit, 3) +
+                     (*scope.radians_per_unit == 1 ? " rad/s" : " deg/s"));
   }
   return goal;
 }

@@ -29,7 +29,7 @@ const tabs = ["answers", "edit", "pose", "postures", "pushes", "text"];
 
 /// What a state has where the server says nothing of it.
 const nothing = { features: [], motions: ["plan"], findings: [], groups: [], phases: [], tracks: [], keyframes: [],
-  disturbances: [], joints: [], handles: [], targets: [], postures: [], own_postures: [], strip: [], strip_dt: 0.01,
+  disturbances: [], joints: [], handles: [], targets: [], postures: [], own_postures: [], strip: [], strip_dt: 0.01, strips: {},
   result: null, error: null, stale: false };
 
 class Page {
@@ -45,7 +45,7 @@ class Page {
       lost: () => { byId("lost").hidden = false; },
       found: () => { byId("lost").hidden = true; this.load(); } });
     this.timeline = new Timeline(this);
-    this.strip = new Strip(this);
+    this.lanes = new Strip(this);
     this.curves = new Curves(this);
     this.inspector = new Inspector(this);
     this.pose = new Pose(this);
@@ -163,11 +163,13 @@ class Page {
   }
 
   async fetchMotions() {
-    const ghost = this.ghostName();
-    const [motion, other, scenery] = await Promise.all([this.series(byId("which").value),
-      ghost ? this.series(ghost) : null, this.server.bytes(`scenery?version=${this.state.version}`)]);
+    const ghost = this.ghostName(), shown = byId("which").value;
+    const [motion, other, scenery, plan] = await Promise.all([this.series(shown),
+      ghost ? this.series(ghost) : null, this.server.bytes(`scenery?version=${this.state.version}`),
+      shown === "plan" ? null : this.series("plan")]);
     if (!motion) throw new Error("the motion is missing");
     this.motion = motion;
+    this.plan = plan || motion;
     this.ghostMotion = other;
     this.scenery = new Float32Array(scenery || 0);
   }
@@ -195,6 +197,30 @@ class Page {
 
   row() {
     return this.previewed || sampleAt(this.motion, this.time);
+  }
+
+  /// What the pattern has at a time, whatever is shown: new keys and edits are of the pattern.
+  planRow(t = this.time) {
+    return this.showsPlan() && this.previewed ? this.previewed : sampleAt(this.plan, t);
+  }
+
+  showsPlan() {
+    return byId("which").value === "plan";
+  }
+
+  /// A change of the posture is one of the pattern, so the pattern is shown. True where it was not.
+  async showPlan() {
+    if (this.showsPlan()) return false;
+    byId("which").value = "plan";
+    await this.changeMotions();
+    this.say("The pattern is shown now, because this changes the pattern.");
+    return true;
+  }
+
+  /// The lanes of the strip for what is shown: of the pattern, a repaired motion, or a run.
+  strip() {
+    const own = this.state.strips[byId("which").value];
+    return own ? { ...own, own: true } : { lanes: this.state.strip, dt: this.state.strip_dt, own: this.showsPlan() };
   }
 
   show(t) {
@@ -235,7 +261,7 @@ class Page {
       `ZMP ${["x", "y"].map((a) => mm("zmp." + a)).join(", ")} mm · f_z ${row[this.columns.fz].toFixed(1)} N`;
     if (this.viewer.playing) this.previewed = null;
     this.moveCursor();
-    this.strip.moved(time);
+    this.lanes.moved(time);
     this.curves.moved(time);
     this.pose.moved(row);
     this.inspector.moved();
@@ -364,7 +390,7 @@ class Page {
   renderTime() {
     if (!this.state.replay) return;  // there is no motion yet
     this.timeline.render();
-    this.strip.render();
+    this.lanes.render();
     this.curves.render();
     this.moveCursor();
   }

@@ -223,6 +223,85 @@ export function putSupport(state, document, index, support, cogAt) {
   return { edits, brought: [...values.keys()].sort((a, b) => a - b), landing: last };
 }
 
+/// What a phase of VIIP may be asked for, each with values to begin with (docs/formats.md).
+export const goals = [
+  { name: "none", words: "no goal: keys", value: null },
+  { name: "step", words: "steps on the spot", value: () => ({ step: "in_place", steps: 4 }) },
+  { name: "velocity", words: "steps at a velocity", value: () => ({ velocity: [0.05, 0], steps: 6 }) },
+  { name: "turn", words: "steps that turn", value: (angle) => ({ turn: angle === "deg" ? 10 : 0.17, steps: 6 }) },
+  { name: "cog", words: "the COG at a place", value: () => ({ cog: [0.01, 0, 0] }) },
+  { name: "cog_velocity", words: "the COG at a velocity", value: () => ({ cog_velocity: [0.01, 0, 0] }) },
+  { name: "jump", words: "jumps", value: () => ({ jump: { height: 0.03 } }) },
+];
+
+/// Which of the goals a phase has, by name.
+export function goalOf(viip) {
+  if (!viip) return "none";
+  return goals.map((one) => one.name).find((name) => viip[name] !== undefined) ?? "velocity";
+}
+
+/// Another goal of VIIP for a phase, or keys again. The other values of the phase stay.
+export function putGoal(phase, name, angleUnit) {
+  const pointer = phase.pointer, goal = goals.find((one) => one.name === name);
+  if (!goal.value)
+    return phase.support ? [] : [{ kind: "remove", pointer: pointer + "/viip" }, { kind: "set", pointer: pointer + "/support", value: "both" }];
+  return [...phase.swing ? [{ kind: "remove", pointer: pointer + "/swing" }] : [],
+    ...phase.support ? [{ kind: "remove", pointer: pointer + "/support" }] : [],
+    { kind: "set", pointer: pointer + "/viip", value: goal.value(angleUnit) }];
+}
+
+/// A time of each round: what is written, and the length of the rounds before.
+const inRounds = (value, length, count) => `${value} + ${length}*\${${count}}`;
+
+/// The phases from `first` to `last` and their keyframes as blocks that repeat, `times` rounds in all;
+/// what comes later comes later. { edits } or { refused: why }.
+export function repeatPhases(state, document, first, last, times) {
+  const phases = state.phases.slice(first, last + 1), from = phases[0].from, until = phases.at(-1).until;
+  const length = Number((until - from).toFixed(6)), shift = (times - 1) * length;
+  const frames = state.keyframes.filter((frame) => frame.time > from + 5e-4 && frame.time < until + 5e-4);
+  if (!(times >= 2 && Number.isInteger(times))) return { refused: "A block repeats at least two times." };
+  if ([...phases, ...frames].some((one) => one.repeated)) return { refused: "A part of this is already in a block that repeats. Change the block in the text." };
+  if (phases.some(({ swing }) => swing && !swing.step))
+    return { refused: "A swing of these phases lands at a place in the world, so every round would land there. Write it as a step first." };
+  const walks = phases.some(({ swing }) => swing), values = frames.map((frame) => valueAt(document, frame.pointer) ?? {});
+  const placed = values.findIndex(({ zmp, cog, feet, hands, gaze }) => (zmp && typeof zmp !== "string") || cog?.x !== undefined || cog?.y !== undefined || feet || hands || gaze);
+  if (walks && placed >= 0)
+    return { refused: `The keyframe at ${frames[placed].time.toFixed(3)} s names a place in the world, and the robot is elsewhere in each round. ` +
+      "Write its ZMP as left, center or right, and leave out places of the COG, the feet, the hands and the gaze." };
+  const names = document.parameters ?? {}, count = ["i", "round", "n", "rounds"].find((name) => names[name] === undefined);
+  const edits = [], set = (pointer, value) => edits.push({ kind: "set", pointer, value });
+  for (const phase of phases)
+    if (phase.until_pointer.endsWith("/until")) set(phase.until_pointer, inRounds(phase.until_value, length, count));
+  for (const [i, frame] of frames.entries()) {
+    if (!isRelative(frame)) set(frame.time_pointer, inRounds(frame.time_value, length, count));
+    else if (i === 0) {
+      edits.push({ kind: "remove", pointer: frame.time_pointer });
+      set(frame.pointer + "/t", inRounds(roundedTime(frame.time), length, count));
+    }
+  }
+  for (const phase of state.phases.slice(last + 1)) {
+    if (!phase.until_pointer.endsWith("/until")) continue;
+    if (!canDrag(phase.until_value, phase)) return { refused: "A later block that repeats has times of its own. Change them in the text." };
+    set(phase.until_pointer, roundedTime(phase.until + shift));
+  }
+  const later = state.keyframes.filter((frame) => frame.time >= until + 5e-4);
+  for (const [i, frame] of later.entries()) {
+    const moves = !isRelative(frame) || (i === 0 && !frames.length);
+    if (!moves) continue;
+    if (!canDrag(frame.time_value, frame)) return { refused: "A later block that repeats has times of its own. Change them in the text." };
+    set(frame.time_pointer, timeValue(frame.time + shift, frame.time_base));
+  }
+  edits.push({ kind: "repeat", pointer: phases[0].pointer, value: { items: phases.length, repeat: times, count } });
+  if (frames.length) edits.push({ kind: "repeat", pointer: frames[0].pointer, value: { items: frames.length, repeat: times, count } });
+  return { edits };
+}
+
+/// A block or a patch of the ground, ahead of the robot.
+export function addToGround(list) {
+  const value = { x: [0.1, 0.3], y: [-0.2, 0.2], ...list === "blocks" ? { height: 0.005 } : { friction: 0.4 } };
+  return [{ kind: "insert", pointer: `/world/${list}/-`, value }];
+}
+
 /// A phase behind the last one, as long as it takes to look at.
 export function appendPhase(phases) {
   return [{ kind: "insert", pointer: "/phases/-",

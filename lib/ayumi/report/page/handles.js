@@ -132,6 +132,10 @@ export class Handles {
     event.preventDefault();
     const { viewer } = this.page, stage = viewer.stage;
     viewer.play(false);
+    if (mark && !this.page.showsPlan()) {
+      this.page.showPlan().then(() => this.page.say("The pattern is shown now, because a drag changes the pattern. Drag again."));
+      return;
+    }
     const drag = mark ? this.dragOf(mark, event) : this.arrowOf(event);
     if (!drag) return;
     stage.setPointerCapture(event.pointerId);

@@ -1,7 +1,7 @@
 // What is selected on the timeline, with its values to be typed; and new keys at the cursor.
 
 import { byId, element, seconds } from "./dom.js";
-import { addSwing, appendPhase, joinKeyframe, putKey, putPart, putSupport, putTarget, removeKey, roomOfKey, roundedTime, sameTime, splitPhase, valueFromRow, written } from "./edits.js";
+import { addSwing, addToGround, appendPhase, goalOf, goals, joinKeyframe, putGoal, putKey, putPart, putSupport, putTarget, removeKey, repeatPhases, roomOfKey, roundedTime, sameTime, splitPhase, valueFromRow, written } from "./edits.js";
 import { isOptional, missingFields, token, valueAt } from "./fields.js";
 import { sampleAt } from "./series.js";
 import { nameOfTrack } from "./timeline.js";
@@ -10,7 +10,11 @@ import { nameOfTrack } from "./timeline.js";
 export function unitOf(path, angle) {
   const name = path.at(-1), track = path[0];
   if (["t", "after", "at", "until", "duration"].includes(name)) return "s";
-  if (["x", "y", "z", "height", "lift", "radius", "forward", "side", "up"].includes(name)) return "m";
+  if (track === "viip" && name === "turn") return angle + "/s";
+  if (path.includes("velocity") || path.includes("cog_velocity")) return "m/s";
+  if (["x", "y", "z", "height", "cog_height", "lift", "stoop", "radius", "forward", "side", "up"].includes(name)) return "m";
+  if (["blocks", "patches"].includes(path[1]) && ["x", "y", "position"].includes(path[3])) return "m";
+  if (track === "viip" && path[1] === "cog") return "m";
   if (["roll", "pitch", "yaw", "turn"].includes(name) || track === "joints" || track === "joint" ||
     (track === "posture" && path.length > 1)) return angle;
   if (track === "zmp" || track === "cog" || name === "to" || path.includes("to") || track === "position" || track === "point")
@@ -21,12 +25,17 @@ export function unitOf(path, angle) {
 
 const places = ["forward", "left", "up", "yaw"];
 const millimetre = (value) => Number(value.toFixed(4));
-const words = { to: "lands", joint: "angle", zmp: "ZMP", cog: "COG", fz: "force", t: "time", x: "forward", y: "left" };
+const words = { to: "lands", joint: "angle", zmp: "ZMP", cog: "COG", fz: "force", t: "time", x: "forward", y: "left",
+  cog_height: "COG height", cog_model: "COG model", cog_velocity: "COG velocity" };
 const zmpWords = { left: "Put it under the left foot", center: "Put it in the middle", right: "Put it under the right foot" };
 const wholes = ["cog", "torso", "feet", "posture", "swing", "viip", "defaults", "world", "parameters"];
 
 /// What a value is called, by the names that lead to it.
 export function nameOf(path) {
+  // The sides of a block or a patch: { "x": [from, to], "y": [from, to] }.
+  if (["blocks", "patches"].includes(path[1]) && path.length === 5)
+    return `${words[path[3]] ?? path[3]} ${path[3] === "position" ? places[path[4]] : ["from", "to"][path[4]] ?? path[4] + 1}`;
+  if (["blocks", "patches"].includes(path[1]) && path.length === 4) return path[3];
   const from = wholes.includes(path[0]) && path.length > 1 ? 1 : 0;
   return path.slice(from).map((name) => typeof name === "number" ? places[name] ?? String(name + 1)
     : words[name] || name).join(" ");
@@ -57,6 +66,9 @@ export class Inspector {
   /// One input for each value of a JSON text; a change is an edit of that value alone, or what
   /// `edits` makes of it.
   inputs(pointer, value, path, choices = {}, edits = null) {
+    // The height field of a ground is no list to be typed.
+    if (Array.isArray(value) && Array.isArray(value[0]))
+      return [element("p", { class: "soft" }, `${nameOf(path)}: ${value.length} × ${value[0].length} numbers, to be changed in the text`)];
     if (value && typeof value === "object")
       return Object.entries(value).flatMap(([name, part]) => this.inputs(pointer + token(name),
         part, [...path, Array.isArray(value) ? Number(name) : name], choices, edits));
@@ -121,10 +133,39 @@ export class Inspector {
   }
 
   pattern() {
-    const value = this.page.document || {}, shown = ["name", "profile", "defaults", "parameters", "start", "world", "controller", "repair", "tolerances"];
+    const value = this.page.document || {}, shown = ["name", "profile", "defaults", "start", "world", "controller", "repair", "tolerances"];
     const parts = shown.filter((name) => value[name] !== undefined);
+    const ground = ["blocks", "patches"], without = (name) => name !== "world" ? value[name]
+      : Object.fromEntries(Object.entries(value.world).filter(([part]) => !ground.includes(part)));
     return [element("h3", {}, "The whole pattern"),
-      ...parts.flatMap((name) => this.inputs("/" + name, value[name], [name], name === "parameters" ? {} : this.choicesOf("pattern")))];
+      ...parts.flatMap((name) => this.inputs("/" + name, without(name), [name], this.choicesOf("pattern"))),
+      ...ground.flatMap((list) => this.onGround(list, value.world?.[list] ?? [])),
+      ...this.parameters(value.parameters ?? {})];
+  }
+
+  /// Blocks and patches of the ground, which can be added and removed.
+  onGround(list, items) {
+    const one = { blocks: "Block", patches: "Patch of other friction" }[list];
+    return [...items.flatMap((item, i) => [element("h4", {}, `${one} ${i + 1}`),
+      ...this.inputs(`/world/${list}/${i}`, item, ["world", list, i]),
+      this.button(() => [{ kind: "remove", pointer: items.length > 1 ? `/world/${list}/${i}` : `/world/${list}` }], `Remove this ${list === "blocks" ? "block" : "patch"}`)]),
+    this.button(() => addToGround(list), { blocks: "Add a block to the ground", patches: "Add a patch of other friction" }[list])];
+  }
+
+  /// The parameters, and a new one: what is typed elsewhere as ${name} has its value.
+  parameters(written) {
+    const name = element("input", { type: "text", size: "10", required: true, pattern: "[A-Za-z_][A-Za-z0-9_]*", spellcheck: "false", autocomplete: "off",
+      "aria-label": "Name of the new parameter" });
+    const number = element("input", { type: "number", step: "any", required: true, "aria-label": "Value of the new parameter" });
+    name.dataset.id = "new parameter";
+    number.dataset.id = "new parameter value";
+    return [element("h4", {}, "Parameters"), ...this.inputs("/parameters", written, ["parameters"]),
+      this.page.can("edit") ? element("form", { class: "value", onsubmit: (event) => {
+        event.preventDefault();
+        if (written[name.value] !== undefined) return this.page.say(`There is a parameter ${name.value} already. Nothing was written.`);
+        return this.page.edit([{ kind: "set", pointer: "/parameters" + token(name.value), value: Number(number.value) }])
+          .then((done) => { if (done) this.page.say(`In every field, \${${name.value}} is this number now.`); });
+      } }, name, number, element("button", { type: "submit" }, "New")) : null];
   }
 
   /// Names that a value may have, by its last name.
@@ -220,7 +261,7 @@ export class Inspector {
         this.button(() => [{ kind: "set", pointer: key.pointer, value: place }], zmpWords[place])) : [],
       key.track.name === "zmp" && named && this.page.can("edit") ? element("button", { type: "button",
         title: "Write the point [x, y] in place of the name", onclick: () => this.page.edit([{ kind: "set", pointer: key.pointer,
-          value: valueFromRow("zmp", this.page.row(), this.page.motion.columns, state.angle_unit) }]) }, "Write the point as numbers") : null,
+          value: valueFromRow("zmp", this.page.planRow(), this.page.plan.columns, state.angle_unit) }]) }, "Write the point as numbers") : null,
       ...isTarget(key.track) ? this.targetButtons(key) : [],
       frame && this.page.can("mirror") ? element("button", { type: "button", title: "Exchange left and right in this keyframe",
         onclick: () => this.page.mirror(frame.pointer) }, "Mirror this keyframe") : null,
@@ -253,6 +294,7 @@ export class Inspector {
       ...phase.support ? this.inputs(phase.pointer + "/support", phase.support, ["support"],
         { support: ["both", "left", "right", "none"] }, (next) => this.support(index, next)) : [],
       ...phase.swing ? this.inputs(phase.pointer + "/swing", phase.swing, ["swing"], { foot: ["left", "right"] }) : [],
+      this.goal(phase, state),
       ...phase.support ? [] : this.inputs(phase.pointer + "/viip", valueAt(this.page.document, phase.pointer + "/viip") ?? {}, ["viip"],
         { release: ["ref_z", "spring"] }),
       ...this.swingButtons(phase),
@@ -260,17 +302,43 @@ export class Inspector {
       index === state.phases.length - 1 && this.page.can("edit") ? element("button", { type: "button", onclick: async () => {
         if (await this.page.edit(appendPhase(state.phases))) this.page.select({ kind: "phase", pointer: this.page.state.phases.at(-1).pointer }, this.page.state.phases.at(-1).from);
       } }, "Add a phase after this one") : null,
-      state.phases.length > 1 ? this.button(() => [{ kind: "remove", pointer: phase.pointer }], "Remove this phase") : null].filter(Boolean);
+      state.phases.length > 1 ? this.button(() => [{ kind: "remove", pointer: phase.pointer }], "Remove this phase") : null,
+      this.repetition(phase, index)].filter(Boolean);
+  }
+
+  /// Keys, or a goal that the control law VIIP carries out.
+  goal(phase, state) {
+    if (phase.repeated || !this.page.can("edit")) return null;
+    const now = goalOf(phase.support ? null : valueAt(this.page.document, phase.pointer + "/viip"));
+    const select = element("select", {}, ...goals.map((one) => element("option", { value: one.name }, one.words)));
+    select.value = now;
+    select.dataset.id = phase.pointer + " goal";
+    select.addEventListener("change", () => this.page.edit(putGoal(phase, select.value, state.angle_unit)).then((done) => { if (!done) select.value = now; }));
+    return element("label", { class: "value" }, element("span", {}, "VIIP goal"), select, element("span", { class: "unit" }));
+  }
+
+  /// This phase and those before it, with their keys, several times.
+  repetition(phase, index) {
+    if (!this.page.can("edit")) return null;
+    if (phase.repeated) return element("p", { class: "soft" }, "This phase is in a block that repeats. Change the number of rounds in the text.");
+    const number = (value, most, words) => {
+      const input = element("input", { type: "number", min: words === "rounds" ? "2" : "1", max: String(most), value: String(value), required: true, "aria-label": words });
+      input.dataset.id = phase.pointer + " " + words;
+      return input;
+    };
+    const phases = number(1, index + 1, "phases to repeat"), rounds = number(2, 1000, "rounds");
+    return element("form", { class: "repeat", onsubmit: (event) => {
+      event.preventDefault();
+      const { edits, refused } = repeatPhases(this.page.state, this.page.document, index + 1 - Number(phases.value), index, Number(rounds.value));
+      if (refused) this.page.say(refused + " Nothing was written.");
+      else this.page.edit(edits);
+    } }, "Repeat the last ", phases, " phases, up to this one, ", rounds, " times in all ", element("button", { type: "submit" }, "Repeat"));
   }
 
   /// A flight brings the COG keys that it needs along, or is refused with what is missing.
   support(index, next) {
-    const { state, document, motion } = this.page;
-    if (next === "none" && byId("which").value !== "plan") {
-      this.page.say("The keys of a flight are made from the pattern. Choose to show the pattern first. Nothing was written.");
-      return null;
-    }
-    const cogAt = (time) => valueFromRow("cog", sampleAt(motion, time), motion.columns, state.angle_unit);
+    const { state, document, plan } = this.page;
+    const cogAt = (time) => valueFromRow("cog", sampleAt(plan, time), plan.columns, state.angle_unit);
     const { edits, refused, brought, landing } = putSupport(state, document, index, next, cogAt);
     if (refused) this.page.say(refused + " Nothing was written.");
     else if (brought?.length) this.page.say(`The flight follows a parabola, so keys of the COG were written at ${brought.map(seconds).join(", ")}` +
@@ -304,13 +372,13 @@ export class Inspector {
   }
 
   async addKey() {
-    if (byId("which").value !== "plan")
-      return this.page.say("A new key has the value of the pattern at this time. Choose to show the pattern first. Nothing was written.");
-    const { state } = this.page, track = byId("key-track").value, time = this.page.time, row = this.page.row();
+    // The place of a hand is that of the robot in the picture.
+    if (byId("key-track").value.startsWith("target ")) await this.page.showPlan();
+    const { state } = this.page, track = byId("key-track").value, time = this.page.time, row = this.page.planRow();
     const handle = state.handles.find((one) => track === "target " + one.name);
     const joint = !handle && !["zmp", "cog", "cog height", "fz", "torso"].includes(track);
     const value = handle ? this.page.handles.placeOf(handle, row).toArray().map(millimetre)
-      : valueFromRow(track === "cog height" ? "cog" : track, row, this.page.motion.columns, state.angle_unit);
+      : valueFromRow(track === "cog height" ? "cog" : track, row, this.page.plan.columns, state.angle_unit);
     const edits = handle ? putTarget(state.keyframes, time, handle, value)
       : track === "cog height" ? putPart(state.keyframes, time, "cog", "height", value.height)
         : joint ? putPart(state.keyframes, time, "joints", track, value) : putKey(state.keyframes, time, track, value);

@@ -110,6 +110,7 @@ export class Pose {
     byId("pose-buttons").hidden = false;
     if (this.waiting) return this.waiting;
     this.waiting = (async () => {
+      await this.page.showPlan();
       let sent = null;
       while (this.asked && this.asked !== sent) {
         sent = this.asked;

@@ -15,8 +15,11 @@ export class Postures {
   async capture(mirror) {
     const name = byId("posture-name").value.trim();
     if (!name) return;
+    // Of a run, the joints are those that are shown.
+    const columns = this.page.motion.columns, row = this.page.row();
+    const joints = this.page.showsPlan() ? {} : Object.fromEntries(this.page.state.joints.map((one) => [one.name, row[columns["q." + one.name]]]));
     const { status, value } = await this.page.server.ask("POST", "posture",
-      { time: this.page.time, name, mirror });
+      { time: this.page.time, name, mirror, joints });
     if (status !== 200) return this.page.say(value.message || "The posture cannot be captured.");
     if (await this.page.edit(value.edits)) byId("posture-name").value = "";
   }
@@ -46,6 +49,6 @@ export class Postures {
   }
 
   moved() {
-    byId("posture-time").textContent = seconds(this.page.time);
+    byId("posture-time").textContent = seconds(this.page.time) + (this.page.showsPlan() ? "" : ` (${byId("which").selectedOptions[0].textContent})`);
   }
 }

@@ -22,29 +22,30 @@ export class Strip {
   }
 
   render() {
-    const { state } = this.page, box = byId("strip");
-    this.lanes = state.strip.map((lane) => {
-      const canvas = element("canvas", { role: "img", "aria-label": summary(lane, state.strip_dt),
-        title: summary(lane, state.strip_dt) });
+    const box = byId("strip"), { lanes, dt, own } = this.page.strip();
+    this.dt = dt;
+    this.lanes = lanes.map((lane) => {
+      const canvas = element("canvas", { role: "img", "aria-label": summary(lane, dt), title: summary(lane, dt) });
       const value = element("span", { class: "value" });
       const button = element("button", { type: "button", class: "label", title: "Go to the time of the worst value",
-        "aria-label": summary(lane, state.strip_dt) + ". Go there.",
+        "aria-label": summary(lane, dt) + ". Go there.",
         onclick: () => {
-          const worst = worstIn(lane, state.strip_dt, 0, Infinity);
-          if (worst) this.page.show(worst.index * state.strip_dt);
+          const worst = worstIn(lane, dt, 0, Infinity);
+          if (worst) this.page.show(worst.index * dt);
         } }, element("span", {}, lane.name), value);
       return { lane, canvas, value, row: element("div", { class: "lane strip" }, button,
         element("div", { class: "plot" }, canvas)) };
     });
     const shown = byId("which").selectedOptions[0];
     box.replaceChildren(...shown && shown.value !== "plan" ? [element("p", { class: "soft of-pattern" },
-      `The strip shows the pattern; the picture and the curves show: ${shown.textContent}.`)] : [], ...this.lanes.map((one) => one.row));
+      own ? `Picture, strip and curves show: ${shown.textContent}.`
+        : `The strip shows the pattern; the picture and the curves show: ${shown.textContent}.`)] : [], ...this.lanes.map((one) => one.row));
     this.draw();
     this.moved(this.page.time);
   }
 
   draw() {
-    const { axis, state } = this.page, scale = Math.min(2, devicePixelRatio);
+    const { axis } = this.page, scale = Math.min(2, devicePixelRatio);
     for (const { lane, canvas } of this.lanes) {
       const wide = Math.round(canvas.parentElement.clientWidth * scale);
       const high = Math.round(canvas.parentElement.clientHeight * scale);
@@ -54,8 +55,8 @@ export class Strip {
       const pen = canvas.getContext("2d");
       for (let x = 0; x < wide; ++x) {
         const from = axis.timeOf(x / wide), to = axis.timeOf((x + 1) / wide);
-        if (from > (lane.values.length - 0.5) * state.strip_dt) break;
-        const worst = worstIn(lane, state.strip_dt, from, to);
+        if (from > (lane.values.length - 0.5) * this.dt) break;
+        const worst = worstIn(lane, this.dt, from, to);
         if (!worst) continue;
         const tall = Math.max(1, Math.round(high * heightOf(worst.share)));
         pen.fillStyle = colorOf(worst.share);
@@ -65,9 +66,8 @@ export class Strip {
   }
 
   moved(time) {
-    const dt = this.page.state.strip_dt;
     for (const { lane, value } of this.lanes) {
-      const i = Math.max(0, Math.min(lane.values.length - 1, Math.round(time / dt)));
+      const i = Math.max(0, Math.min(lane.values.length - 1, Math.round(time / this.dt)));
       const joint = lane.worst?.[i];
       value.textContent = worded(lane, lane.values[i]) + (joint ? ` ${joint}` : "");
       const share = strain(lane, lane.values[i]);

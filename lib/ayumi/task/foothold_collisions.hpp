@@ -1,0 +1,25 @@
+#pragma once
+// Footholds at which the two feet of the robot overlap. The finding names two bodies and a window
+// of time; what the author wrote is a step that turns too far or is too narrow.
+
+#include <vector>
+
+#include "ayumi/base/progress.hpp"
+#include "ayumi/check/likely_mistakes.hpp"
+#include "ayumi/task/task.hpp"
+
+namespace ayumi {
+
+/// The swings that bring a foot a little inside the other one, at most three of them, each with the
+/// least step to the side and the largest turn with which the feet are apart and the check finds
+/// fewer errors. Where the feet overlap by more, as after an exchange of left and right,
+/// likely_mistakes() says it better. Samples and checks the pattern up to twice for each.
+std::vector<Mistake> foothold_collisions(const Task& task, const CheckOptions& options,
+                                         const ConsistencyReport& report);
+
+/// What is likely to be wrong in an inconsistent pattern: those footholds, then likely_mistakes(),
+/// which stand alone where they name one value of the same phase that explains everything.
+std::vector<Mistake> likely_causes(const Task& task, const CheckOptions& options,
+                                   const ConsistencyReport& report, const Progress& progress = {});
+
+}  // namespace ayumi

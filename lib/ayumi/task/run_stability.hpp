@@ -1,0 +1,17 @@
+#pragma once
+// How near a run was to its limits over time, for the same picture as that of the planned motion
+// (check/stability_series).
+
+#include "ayumi/check/stability_series.hpp"
+#include "ayumi/sim/simulation_log.hpp"
+
+namespace ayumi {
+
+/// Of the true state of a run. Soles carry where more than 5 % of the weight rests on them. ZMP and
+/// DCM are inside the hull of the soles that carry, seen from above, where they really are; the DCM
+/// also of those that the plan puts down next, where the run then has them. Torques are those that
+/// the servos applied.
+StabilitySeries run_stability(const RobotModel& model, const ActuatorLimits& actuators,
+                              const SimulationLog& log, double dt = 0.01);
+
+}  // namespace ayumi
