@@ -8,8 +8,10 @@
 #include <regex>
 
 #include "ayumi/author/generate/generate.hpp"
+#include "ayumi/check/consistency.hpp"
 #include "ayumi/check/likely_mistakes.hpp"
 #include "ayumi/check/mistake_search.hpp"
+#include "ayumi/plan/sample.hpp"
 #include "tests/support/robot_motions.hpp"
 
 namespace ayumi::test {
@@ -300,6 +302,49 @@ TEST(PlantedMistakes, SoundPatternsHaveNone) {
         << mistaken.name;
     EXPECT_TRUE(doubtful_values(mistaken.robot, mistaken.pattern).empty()) << mistaken.name;
   }
+}
+
+// A torque that is a little too large, at one step or at every step, comes from no exchanged side,
+// no slip of a digit and no change by a hair; the search for its cause is brief.
+TEST(PlantedMistakes, SlightErrorsHaveNoGrossCause) {
+  const std::regex gross("exchanged|decimal point|other sign|read in|missing");
+  WalkParameters inwards = walk_defaults(small());  // keys of the ZMP are points on the soles
+  inwards.steps = 3;
+  inwards.zmp_inwards = 0.005;
+  const std::vector<std::pair<const RobotModel*, Pattern>> walks = {
+      {&small(), walk(small())},
+      {&tall(), walk(tall())},
+      {&small(), walk_pattern(small(), inwards)}};
+  for (const auto& [robot, pattern] : walks) {
+    CheckOptions options = options_of(pattern);
+    const double most = check_consistency(*robot, sample(*robot, pattern), options)
+                            .summary[FindingKind::joint_torque];
+    for (const double share : {0.99, 0.93}) {
+      options.tolerances["joint_torque"] = share * most;
+      ASSERT_FALSE(check_consistency(*robot, sample(*robot, pattern), options).consistent);
+      const Explanations search = find_explanations(*robot, pattern, options, {});
+      EXPECT_LE(search.trials, kMostTrials / 2) << robot->name() << ", " << share;
+      for (const Explanation& e : search.found) {
+        const std::string words = e.written + "; " + e.instead;
+        EXPECT_FALSE(std::regex_search(words, gross)) << e.place << ": " << words;
+        // A value differs from the one that would do.
+        std::smatch is, would;
+        const bool both = std::regex_search(e.written, is, std::regex(" is (-?[0-9.]+ [a-z]+)")) &&
+                          std::regex_search(e.instead, would,
+                                            std::regex("values (up|down) to (-?[0-9.]+ [a-z]+)"));
+        EXPECT_FALSE(both && is[1] == would[2]) << e.place << ": " << words;
+      }
+    }
+  }
+}
+
+// Footholds in good order are not called exchanged, whatever is wrong.
+TEST(PlantedMistakes, FootholdsInOrderAreNotCalledExchanged) {
+  Pattern pattern = walk(small());
+  for (Phase& phase : pattern.phases) phase.until *= 0.7;
+  for (Keyframe& key : pattern.keyframes) key.t *= 0.7;
+  for (const Mistake& mistake : likely_mistakes(small(), pattern, options_of(pattern)))
+    EXPECT_EQ(mistake.text().find("exchanged"), std::string::npos) << mistake.text();
 }
 
 // The number of trials is bounded over all rounds, for any bound; what was found until then is

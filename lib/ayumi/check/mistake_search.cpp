@@ -1,5 +1,6 @@
 #include "ayumi/check/mistake_search.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -81,6 +82,17 @@ constexpr double kNoLength = 1e-4;
 // A segment that lasts less than this share of its neighbour is too short before a value is out by
 // a power of ten. Chosen: keys of one motion are seldom so unequal.
 constexpr double kShortSegment = 0.15;
+// An error is slight where it is beyond its limit by less than this share of the limit, by less
+// than this share of the length of a leg [m], of the weight [N], of both [N m], or by less than
+// this angle [rad]. Chosen: a wrong unit, digit, sign, foot or side is wrong by the whole of what
+// was meant, and so are the errors that it brings about. A motion with slight errors alone is near
+// its limits.
+constexpr double kSlightShare = 0.25, kSlightLength = 0.015, kSlightForce = 0.05,
+                 kSlightAngle = 0.05;
+// A value that would have to change by less than this is at a limit of the robot, and no mistake: a
+// share of its unit (the length of a leg, a radian, the weight, 1). Chosen: 1 mm for a leg of 0.2
+// m, 0.3 deg.
+constexpr double kLeastMistake = 0.005;
 // Errors of a motion that cannot be sampled. Definition: more than of any that can.
 constexpr int kUnsampled = std::numeric_limits<int>::max();
 
@@ -97,6 +109,7 @@ struct Outcome {
   std::vector<Window> windows = {};  ///< of the errors that follow from no other one [s]
 
   bool table_alone = false;  ///< a quick trial has none of these errors
+  bool slight = false;       ///< all errors are slight
 
   bool good() const { return errors == 0; }
   bool touches(double begin, double end) const {
@@ -127,6 +140,18 @@ bool needs_servo_period(FindingKind kind) {
          kind == FindingKind::motor_acceleration;
 }
 
+bool is_slight(const RobotModel& model, const Finding& f) {
+  const double beyond = std::abs(f.worst - f.limit);
+  const double leg = leg_length(model), weight = model.mass() * kGravity;
+  if (spec_of(f.kind).is_ratio())
+    return std::abs(f.worst) <= (1 + kSlightShare) * std::abs(f.limit);
+  if (f.unit == "m") return beyond <= kSlightLength * leg;
+  if (f.unit == "rad") return beyond <= kSlightAngle;
+  if (f.unit == "N") return beyond <= kSlightForce * weight;
+  if (f.unit == "N m") return beyond <= kSlightForce * weight * leg;
+  return beyond <= kSlightShare * std::abs(f.limit);
+}
+
 /// Samples and checks versions of a pattern: quickly, without the findings that need the servo's
 /// period, or exactly.
 class Trials {
@@ -137,13 +162,18 @@ class Trials {
     options_.threads = 1;
     threads_ = options.threads;
     const double step = std::min(pattern.duration() / kTrialSamples, kLongestStep);
-    ticks_ = static_cast<int>(std::max(1.0, std::floor(step / model.description().servo_period)));
+    const double period = model.description().servo_period;
+    ticks_ = static_cast<int>(std::max(1.0, std::floor(step / period)));
+    quick_cost_ = static_cast<int>(
+        std::max(1.0, std::floor(pattern.duration() / (ticks_ * period * kTrialSamples))));
   }
 
   /// From now on trials have the servo's period and all findings. Each counts as the quick ones
   /// that take as long.
   void make_exact() { exact_ = true; }
   bool exact() const { return exact_; }
+  /// Whether exact trials differ from quick ones in the steps of time.
+  bool finer_when_exact() const { return ticks_ > 1; }
 
   /// The outcome at the servo's period of what is good in a quick trial.
   Outcome exactly(Pattern pattern, const Mend& mend) const {
@@ -164,10 +194,12 @@ class Trials {
       const ConsistencyReport report =
           check_consistency(model_, sample(model_, pattern, {.dt = dt, .threads = 1}), options);
       outcome.errors = outcome.findings = 0;
+      outcome.slight = true;
       for (const Finding& f : report.findings) {  // errors come in order of time
         if (!exact && needs_servo_period(f.kind)) continue;
         outcome.findings += f.severity == Severity::error || f.cause >= 0;
         if (f.severity != Severity::error) continue;
+        outcome.slight = outcome.slight && is_slight(model_, f);
         if (outcome.errors++ < kFirstErrors) outcome.windows.push_back({f.begin, f.end});
       }
     } catch (const Error& error) {
@@ -184,7 +216,7 @@ class Trials {
   /// be sampled.
   std::vector<Outcome> after(const Pattern& pattern, const std::vector<Mend>& mends) {
     std::vector<Outcome> outcomes(mends.size());
-    const int cost = exact_ ? ticks_ : 1;
+    const int cost = quick_cost_ * (exact_ ? ticks_ : 1);
     const size_t tried = std::min(mends.size(), static_cast<size_t>((most_ - made_) / cost));
     if (tried < mends.size()) ended_ = true;
     made_ += cost * static_cast<int>(tried);
@@ -217,7 +249,8 @@ class Trials {
   CheckOptions options_;
   const Progress& progress_;
   int threads_ = 0, most_ = 0;
-  int ticks_ = 1;  ///< of the servo in a step of a quick trial
+  int ticks_ = 1;       ///< of the servo in a step of a quick trial
+  int quick_cost_ = 1;  ///< of a quick trial
   int made_ = 0;
   bool ended_ = false, exact_ = false;
 };
@@ -238,7 +271,12 @@ Side stance_of(Support support) { return support == Support::left ? Side::left :
 class Hypotheses {
  public:
   Hypotheses(const RobotModel& model, const Pattern& pattern, const Outcome& found)
-      : model_(model), pattern_(pattern), found_(found), values_(written_values(model, pattern)) {}
+      : model_(model), pattern_(pattern), found_(found), values_(written_values(model, pattern)) {
+    try {
+      feet_.emplace(model, pattern);
+    } catch (const Error&) {  // the phases themselves are wrong
+    }
+  }
 
   const std::vector<WrittenValue>& values() const { return values_; }
 
@@ -255,6 +293,21 @@ class Hypotheses {
     std::vector<Hypothesis> made;
     key_times(made);
     phase_times(made);
+    return made;
+  }
+
+  /// What differs from its like in the same pattern, or contradicts another part of it.
+  std::vector<Hypothesis> irregular() const {
+    std::vector<Hypothesis> made;
+    phase_times(made);
+    foothold_exchanges(made);
+    zmp_sides(made);
+    zmp_keys(made);
+    all_zmp_keys(made);
+    swings(made);
+    double_supports(made);
+    leg_keys(made);
+    interpolations(made);
     return made;
   }
 
@@ -284,7 +337,8 @@ class Hypotheses {
     std::vector<Hypothesis> made;
     cog_height(made);
     if (pattern_.table || pattern_.correction) return made;
-    for (const double factor : {1.25, 1.6, 2.0, 3.0, 5.0})
+    const std::vector<double> usual = {1.25, 1.6, 2.0, 3.0, 5.0}, slight = {1.03, 1.1, 1.25};
+    for (const double factor : found_.slight ? slight : usual)
       made.push_back({Rank::pace,
                       {"/phases", "the motion takes " + seconds(pattern_.duration()),
                        "with all times multiplied by " + text::brief(factor)},
@@ -507,6 +561,19 @@ class Hypotheses {
     return single == Support::left ? ZmpKey::Place::left : ZmpKey::Place::right;
   }
 
+  // Whether this key puts the ZMP under the foot on which the robot stands alone: at its place, or
+  // at a point on its sole.
+  bool is_under(const Keyframe& key, Support single) const {
+    if (key.zmp->place != ZmpKey::Place::point) return key.zmp->place == place_under(single);
+    if (!feet_) return false;
+    const Side side = stance_of(single);
+    Eigen::AlignedBox2d sole;
+    for (const Eigen::Vector2d& corner : model_.sole(side).polygon) sole.extend(corner);
+    const Eigen::Isometry3d place = feet_->pose(side, key.t);
+    const Eigen::Vector3d zmp(key.zmp->point.x(), key.zmp->point.y(), place.translation().z());
+    return sole.contains((place.inverse() * zmp).head<2>());
+  }
+
   /// The keys that lead the ZMP while the robot stands on one foot, and put it elsewhere: those of
   /// the phase, and where it begins or ends between keys, the nearest ones outside.
   std::vector<size_t> wrong_zmp_keys(size_t phase) const {
@@ -523,8 +590,7 @@ class Hypotheses {
     if (before) keys.insert(keys.begin(), *before);
     if (after) keys.push_back(*after);
     for (const size_t k : keys)
-      if (pattern_.keyframes[k].zmp->place != place_under(pattern_.phases[phase].support))
-        wrong.push_back(k);
+      if (!is_under(pattern_.keyframes[k], pattern_.phases[phase].support)) wrong.push_back(k);
     return wrong;
   }
 
@@ -614,6 +680,27 @@ class Hypotheses {
     }
   }
 
+  /// What the feet go from foothold to foothold [m].
+  double way_of_feet(const Pattern& pattern) const {
+    double way = 0;
+    std::array<std::optional<Eigen::Vector3d>, 2> at;
+    for (const Phase& phase : pattern.phases) {
+      if (!phase.swing || phase.swing->step) continue;
+      auto& last = at[static_cast<size_t>(index(phase.swing->foot))];
+      if (last) way += (phase.swing->to.position - *last).norm();
+      last = phase.swing->to.position;
+    }
+    return way;
+  }
+
+  // Exchanged footholds lead the feet back and forth. Footholds in good order would do so after an
+  // exchange.
+  bool exchange_shortens_way(size_t one, size_t other) const {
+    Pattern exchanged = pattern_;
+    std::swap(exchanged.phases[one].swing->to, exchanged.phases[other].swing->to);
+    return way_of_feet(exchanged) < way_of_feet(pattern_) - kNoLength;
+  }
+
   void phase_sides(std::vector<Hypothesis>& made) const {
     for (size_t i = 0; i < pattern_.phases.size(); ++i) {
       const Phase& phase = pattern_.phases[i];
@@ -635,18 +722,34 @@ class Hypotheses {
                         if (p.phases[i].swing)
                           p.phases[i].swing->foot = other(p.phases[i].swing->foot);
                       }});
-      if (!phase.swing || phase.swing->step) continue;
-      std::vector<size_t> later;
-      for (size_t k = i + 1; k < pattern_.phases.size() && later.size() < 2; ++k)
-        if (pattern_.phases[k].swing && !pattern_.phases[k].swing->step) later.push_back(k);
-      for (const size_t k : later)
-        made.push_back(
-            {Rank::exchange,
-             {phase_place(i),
-              std::string("the footholds of this phase and of ") + phase_place(k) +
-                  " were perhaps exchanged",
-              "with the two exchanged"},
-             [i, k](Pattern& p) { std::swap(p.phases[i].swing->to, p.phases[k].swing->to); }});
+      add_foothold_exchanges(i, made);
+    }
+  }
+
+  void foothold_exchanges(std::vector<Hypothesis>& made) const {
+    for (size_t i = 0; i < pattern_.phases.size(); ++i)
+      if (is_single(pattern_.phases[i].support) && reaches(i)) add_foothold_exchanges(i, made);
+  }
+
+  // With one of the next two.
+  void add_foothold_exchanges(size_t phase, std::vector<Hypothesis>& made) const {
+    const auto has_place = [&](size_t i) {
+      return pattern_.phases[i].swing && !pattern_.phases[i].swing->step;
+    };
+    if (!has_place(phase)) return;
+    int later = 0;
+    for (size_t k = phase + 1; k < pattern_.phases.size() && later < 2; ++k) {
+      if (!has_place(k)) continue;
+      ++later;
+      if (!exchange_shortens_way(phase, k)) continue;
+      made.push_back({Rank::exchange,
+                      {phase_place(phase),
+                       std::string("the footholds of this phase and of ") + phase_place(k) +
+                           " were perhaps exchanged",
+                       "with the two exchanged"},
+                      [phase, k](Pattern& p) {
+                        std::swap(p.phases[phase].swing->to, p.phases[k].swing->to);
+                      }});
     }
   }
 
@@ -779,12 +882,7 @@ class Hypotheses {
   }
 
   void swings(std::vector<Hypothesis>& made) const {
-    std::optional<FootPlan> feet;
-    try {
-      feet.emplace(model_, pattern_);
-    } catch (const Error&) {
-      return;
-    }
+    if (!feet_) return;
     for (size_t i = 0; i < pattern_.phases.size(); ++i) {
       const Phase& phase = pattern_.phases[i];
       if (phase.swing || phase.viip || !is_single(phase.support)) continue;
@@ -792,11 +890,11 @@ class Hypotheses {
       if (has_foot_key(idle, begin_of(i), phase.until)) continue;
       // Half the way of the other foot's next step ahead of it, or beside it.
       RelativeStep step;
-      const Eigen::Isometry3d stance = feet->pose(other(idle), phase.until);
+      const Eigen::Isometry3d stance = feet_->pose(other(idle), phase.until);
       for (size_t k = i + 1; k < pattern_.phases.size(); ++k)
         if (pattern_.phases[k].swing && pattern_.phases[k].swing->foot == other(idle)) {
           const Eigen::Vector3d way =
-              stance.inverse() * feet->pose(other(idle), pattern_.phases[k].until).translation();
+              stance.inverse() * feet_->pose(other(idle), pattern_.phases[k].until).translation();
           step.forward = 0.5 * way.x();
           break;
         }
@@ -954,6 +1052,7 @@ class Hypotheses {
   const Pattern& pattern_;
   const Outcome& found_;
   std::vector<WrittenValue> values_;
+  std::optional<FootPlan> feet_ = {};
 };
 
 /// What makes one outcome better than another one. Where two mistakes move one joint, an error of
@@ -969,15 +1068,19 @@ bool is_better(const Outcome& a, const Outcome& b, Measure measure) {
 /// The search in one pattern.
 class Search {
  public:
-  Search(Trials& trials, const RobotModel& model, const Pattern& pattern, const Outcome& found)
+  /// `rounds`: changes that may be named one after the other from now on.
+  Search(Trials& trials, const RobotModel& model, const Pattern& pattern, const Outcome& found,
+         int rounds)
       : trials_(trials),
         model_(model),
         pattern_(pattern),
         found_(found),
+        rounds_(rounds),
         hypotheses_(model, pattern, found) {}
 
   /// The best explanations, equal in what they leave and in their rank.
   std::vector<Candidate> best() {
+    if (found_.slight) return best_of_slight();
     const auto kinds = {&Hypotheses::units, &Hypotheses::times, &Hypotheses::exchanges,
                         &Hypotheses::missing};
     Rank reached = Rank::unit;
@@ -992,6 +1095,16 @@ class Search {
   }
 
  private:
+  // Without what nothing in the pattern speaks for: another sign, digit or foot.
+  std::vector<Candidate> best_of_slight() {
+    test(hypotheses_.units());
+    if (enough(Rank::unit)) return chosen();
+    values();
+    test(hypotheses_.irregular());
+    if (!enough(Rank::amount)) test(hypotheses_.paces());
+    return chosen();
+  }
+
   bool enough(Rank reached) const {
     return std::any_of(tried_.begin(), tried_.end(), [&](const Candidate& c) {
       return c.outcome.good() && c.hypothesis.rank <= reached;
@@ -1012,7 +1125,7 @@ class Search {
   void values() {
     std::vector<WrittenValue> suspects;
     for (const WrittenValue& value : hypotheses_.values())
-      if (value.suspicion(model_) > 0 && found_.touches(value.begin, value.end))
+      if (value.suspicion(model_) > kLeastMistake && found_.touches(value.begin, value.end))
         suspects.push_back(value);
     std::stable_sort(suspects.begin(), suspects.end(),
                      [&](const WrittenValue& a, const WrittenValue& b) {
@@ -1029,16 +1142,7 @@ class Search {
     Outcome least = found_;
     for (const Outcome& outcome : without)
       if (is_better(outcome, least, measure)) least = outcome;
-    std::vector<Hypothesis> signs;
-    for (size_t i = 0; i < suspects.size() && signs.size() < kTriedSigns; ++i)
-      if (without[i].errors > 0 && suspects[i].has_sign())
-        signs.push_back(sign_of(suspects[i], ""));
-    test(std::move(signs));
-    std::vector<Hypothesis> tenths;
-    for (size_t i = 0; i < suspects.size(); ++i)
-      if (without[i].errors > 0 && suspects[i].suspicion(model_) > kGrossSuspicion)
-        tenths.push_back(tenth_of(suspects[i]));
-    test(std::move(tenths));
+    if (!found_.slight) test_other_numbers(suspects, without);
     if (!is_better(least, found_, measure)) return;
     size_t looked_at = 0;
     for (size_t i = 0; i < suspects.size() && looked_at < kSuspects; ++i)
@@ -1047,6 +1151,20 @@ class Search {
         ++looked_at;
       }
     demote_slips();
+  }
+
+  // The other sign, and a tenth, of values without which the errors do not vanish.
+  void test_other_numbers(const std::vector<WrittenValue>& suspects,
+                          const std::vector<Outcome>& without) {
+    std::vector<Hypothesis> signs, tenths;
+    for (size_t i = 0; i < suspects.size(); ++i) {
+      if (without[i].errors == 0) continue;
+      if (suspects[i].has_sign() && signs.size() < kTriedSigns)
+        signs.push_back(sign_of(suspects[i], ""));
+      if (suspects[i].suspicion(model_) > kGrossSuspicion) tenths.push_back(tenth_of(suspects[i]));
+    }
+    test(std::move(signs));
+    test(std::move(tenths));
   }
 
   // Where a small change of another value is enough, a decimal point is as good a guess as a size.
@@ -1076,11 +1194,13 @@ class Search {
     const std::string up_to =
         (number.value > number.neutral ? "up to " : "down to ") + value.text(pattern_, limit);
     const std::string written = value.words + " is " + value.text(pattern_, number.value);
+    if (std::abs(number.value - limit) < kLeastMistake * value.unit(model_)) return;
     tried_.push_back({{Rank::amount,
                        {value.place, written, "with values " + up_to},
                        [value](Pattern& p) { value.pull(p, 0); },
                        number.value == 0 ? 1 : std::abs(1 - limit / number.value)},
                       without});
+    if (found_.slight) return;
     std::vector<Hypothesis> slips;
     // Almost no value of this sign is possible, and the size of this value is usual.
     const bool other_sign =
@@ -1135,13 +1255,25 @@ class Search {
             [value](Pattern& p) { value.scale(p, -1); }};
   }
 
+  /// Whether a change can be a cause: it leaves no more errors than the other changes that may be
+  /// named after it could remove, if each removed as many. A value that is wrong by much is worth a
+  /// look in any case.
+  bool is_believable(const Candidate& c) const {
+    if (found_.errors == kUnsampled) return true;
+    const int changes = std::max(2, rounds_);  // the last one removes at least half
+    const auto leaves_few = [&](int left, int of) { return left * changes <= of * (changes - 1); };
+    if (c.outcome.errors == found_.errors) return leaves_few(c.outcome.findings, found_.findings);
+    return leaves_few(c.outcome.errors, found_.errors) ||
+           (c.hypothesis.rank == Rank::amount && c.hypothesis.change >= kSmallChange);
+  }
+
   /// The fewest errors that remain, then the most particular rank; the first few of these.
   std::vector<Candidate> chosen() const {
     std::vector<Candidate> sorted;
     for (const Measure measure : {Measure::errors, Measure::findings}) {
       if (!sorted.empty()) break;
       for (const Candidate& c : tried_)
-        if (is_better(c.outcome, found_, measure)) sorted.push_back(c);
+        if (is_better(c.outcome, found_, measure) && is_believable(c)) sorted.push_back(c);
     }
     // Another sign or another digit counts as meant only where nothing is left to mend.
     for (Candidate& c : sorted)
@@ -1172,6 +1304,7 @@ class Search {
   const RobotModel& model_;
   const Pattern& pattern_;
   const Outcome& found_;
+  int rounds_;
   Hypotheses hypotheses_;
   std::vector<Candidate> tried_;
 };
@@ -1202,13 +1335,18 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
     found = trials.of(current);
   }
   for (int round = 0; round < kRounds && !found.good() && !trials.ended(); ++round) {
-    std::optional<Search> search(std::in_place, trials, model, current, found);
+    const int left_rounds = kRounds - round;
+    std::optional<Search> search(std::in_place, trials, model, current, found, left_rounds);
     std::vector<Candidate> best = search->best();  // its corrections refer to the search
-    if (best.empty() && !trials.exact()) {         // quick trials may have errors that are none
-      trials.make_exact();
-      found = trials.of(current);
-      search.emplace(trials, model, current, found);
-      best = search->best();
+    if (best.empty() && !trials.exact() && trials.finer_when_exact()) {
+      // Quick trials may have errors that are none.
+      const Outcome exact = trials.of(current, true);
+      if (exact.errors < found.errors) {
+        trials.make_exact();
+        found = exact;
+        search.emplace(trials, model, current, found, left_rounds);
+        best = search->best();
+      }
     }
     if (best.empty()) break;
     for (Candidate& c : best) {

@@ -2,7 +2,9 @@
 // What an author has probably written wrongly, found by trial: one thing in the pattern is put
 // right, and the motion is sampled and checked again. What is enough to make the pattern consistent
 // is named, the most particular first: a unit, a decimal point, an exchanged side, a sign,
-// something that is missing, then a value that is too large or too small.
+// something that is missing, then a value that is too large or too small. A motion whose errors are
+// all slight is near its limits: another sign, digit or foot is tried only where something else in
+// the pattern speaks for it.
 
 #include <string>
 #include <vector>
