@@ -3,6 +3,7 @@
 #include <chrono>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/run/results_json.hpp"
@@ -50,10 +51,10 @@ SimulationLog simulate_case(const Context& context, const Task& input,
   return log;
 }
 
-RunFolder run_of(const Task& input, const SimulationLog& log) {
+RunFolder run_of(const Task& input, SimulationLog simulated) {
   RunFolder run;
+  const SimulationLog& log = run.logs["closed_loop"] = std::move(simulated);
   run.provenance = log.provenance;
-  run.logs["closed_loop"] = log;
   const Judgement judged = judge(input, check_options(input));
   run.sections.emplace_back("sampled_from", nlohmann::ordered_json(input.series.origin).dump());
   run.sections.emplace_back("check", check_json(judged.report));
@@ -77,15 +78,18 @@ void simulate_pattern(Context& context, const SimulateCommand& options) {
         {"run.json", "log_closed_loop.bin", "reference.csv", "reference_pushed.csv"});
   const Task input = load_pattern(context, options.pattern, options.input);
   const auto begin = std::chrono::steady_clock::now();
-  const SimulationLog log = options.number < 0 ? simulate_once(context, input, options.choice)
-                                               : simulate_case(context, input, options);
+  SimulationLog log = options.number < 0 ? simulate_once(context, input, options.choice)
+                                         : simulate_case(context, input, options);
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 
   context.print(options.pattern + ": " + outcome_text(log) + "\n");
   if (options.number >= 0) context.print("  " + log.events.front().text + "\n");
+  nlohmann::ordered_json json = nlohmann::ordered_json::parse(simulation_json(log));
+  json["realtime_factor"] = static_cast<double>(log.samples.size()) * log.dt / wall;
+  context.exit_code = log.result.outcome == Outcome::stands ? 0 : 1;
   if (!options.out.empty()) {
-    const RunFolder run = run_of(input, log);
+    const RunFolder run = run_of(input, std::move(log));
     RunOutput output(options.out, context.force);
     write_run(output.folder(), run);
     output.deliver();
@@ -93,10 +97,7 @@ void simulate_pattern(Context& context, const SimulateCommand& options) {
       context.print("  no table for a robot: " + reason + "\n");
     context.print("  written to " + options.out + "\n");
   }
-  nlohmann::ordered_json json = nlohmann::ordered_json::parse(simulation_json(log));
-  json["realtime_factor"] = static_cast<double>(log.samples.size()) * log.dt / wall;
   context.print_json(json.dump(2));
-  context.exit_code = log.result.outcome == Outcome::stands ? 0 : 1;
 }
 
 }  // namespace

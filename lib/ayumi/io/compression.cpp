@@ -27,6 +27,7 @@ std::string zstd_frame(std::string_view bytes) {
       ZSTD_compress2(context.get(), frame.data(), frame.size(), bytes.data(), bytes.size());
   require(ZSTD_isError(size) == 0, "zstd refused to compress");
   frame.resize(size);
+  frame.shrink_to_fit();
   return frame;
 }
 

@@ -277,14 +277,17 @@ size_t largest_head(size_t columns) {
 
 }  // namespace
 
-std::string compress_samples(std::string_view rows, size_t columns, const ColumnSources& sources) {
+std::string compress_samples(std::string rows, size_t columns, const ColumnSources& sources) {
   const size_t count = columns == 0 ? 0 : rows.size() / (columns * sizeof(double));
   require(sources.empty() || sources.size() == columns,
           "the sources are for another number of columns");
   std::vector<Column> values(columns, Column(count));
   for (size_t c = 0; c < columns; ++c)
     for (size_t k = 0; k < count; ++k) values[c][k] = float_at(rows, k * columns + c);
-  std::string planes(columns * count * sizeof(double), '\0');
+  rows = {};
+  // The head is as long as the predictors need, and stands right before the planes.
+  const size_t begin = largest_head(columns);
+  std::string bytes(begin + columns * count * sizeof(double), '\0');
   std::vector<Predictor> predictors;
   std::vector<std::uint64_t> numbers;
   for (size_t c = 0; c < columns; ++c) {
@@ -292,11 +295,14 @@ std::string compress_samples(std::string_view rows, size_t columns, const Column
         best_predictor(values, c, sources.empty() ? std::vector<size_t>() : sources[c], numbers));
     for (size_t plane = 0; plane < 8; ++plane)
       for (size_t k = 0; k < count; ++k)
-        planes[plane_begin(plane, c, columns, count) + k] =
+        bytes[begin + plane_begin(plane, c, columns, count) + k] =
             static_cast<char>(numbers[k] >> (8 * plane));
   }
   require(decoding_order(predictors).size() == columns, "some columns predict each other");
-  return zstd_frame(head_of(predictors) + planes);
+  values = {};
+  const std::string head = head_of(predictors);
+  bytes.replace(begin - head.size(), head.size(), head);
+  return zstd_frame(std::string_view(bytes).substr(begin - head.size()));
 }
 
 std::string decompress_samples(std::string_view bytes, size_t columns, size_t rows,

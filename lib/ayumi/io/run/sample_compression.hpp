@@ -21,9 +21,9 @@ namespace ayumi {
 /// each other, directly or through others.
 using ColumnSources = std::vector<std::vector<size_t>>;
 
-/// `rows` holds rows of `columns` floats, one after the other.
-std::string compress_samples(std::string_view rows, size_t columns,
-                             const ColumnSources& sources = {});
+/// `rows` holds rows of `columns` floats, one after the other. Move it here: the function frees it
+/// early, and takes twice its memory at most.
+std::string compress_samples(std::string rows, size_t columns, const ColumnSources& sources = {});
 
 /// The rows again. Throws Error(bad_file), beginning with `file`, when `bytes` is not the whole
 /// result of compress_samples() for that many columns and rows.
