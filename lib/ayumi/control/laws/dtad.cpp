@@ -23,6 +23,7 @@
 #include "ayumi/control/torque_feedforward.hpp"
 #include "ayumi/dynamics/inverse_kinematics.hpp"
 #include "ayumi/dynamics/zmp.hpp"
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/model/gravity.hpp"
 
@@ -77,6 +78,16 @@ GainFields gain_fields(DtadParams& p) {
   GainFields fields = body_gain_fields(p);
   fields.merge(zmp_gain_fields(p));
   return fields;
+}
+
+/// Tilt of the plan's trunk about the world's x and y axes [rad]. `data`: of a posture whose waist
+/// is that of the plan.
+Vector2d planned_tilt(const RobotModel& model, const RobotData& data, const RobotState& plan) {
+  const Vector3d in_base = data.rotation[0].transpose() * data.rotation[model.trunk_body()].col(2);
+  const Vector3d up = plan.base.attitude * in_base;
+  const double sine = elementary::hypot(up.x(), up.y());
+  if (sine == 0) return Vector2d::Zero();
+  return elementary::atan2(sine, up.z()) / sine * Vector2d(-up.y(), up.x());
 }
 
 /// Throws Error(usage) for a gain of a baseline that is out of range.
@@ -309,7 +320,8 @@ Vector2d Dtad::zmp_gap(const Vector2d& ref_zmp, double w, double z) {
 void Dtad::turn_upper_body(double w) {
   const Vector3d moment =
       model_->mass() * kGravity * params_.momentum_gain * Vector3d(-outside_.y(), outside_.x(), 0);
-  body_.turn(momentum_.update(moment, body_.data(), plan().state.theta, w, command_.dt()));
+  body_.turn(momentum_.update(moment, body_.data(), plan().state.theta,
+                              planned_tilt(*model_, body_.data(), plan().state), w, command_.dt()));
 }
 
 // A planned flight lasts until its end is planned and the load cells feel the ground.
