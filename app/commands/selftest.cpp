@@ -81,7 +81,7 @@ const std::array<Job, 5> kJobs = {{
     {"walk", "a walk with a push and DTAD", walk_text,
      "2d9764e3c3ea7a57a06f20ddc4e2b9b5d87d7c86cabd9a4a59648df333cbfc65"},
     {"jump", "a jump", jump_text,
-     "1938dddba37b5a55e337e8e4f25802909b83f573ebbc287cf7a11dc7aa377b84"},
+     "7ff40b6f3804e9a477df705bce9564569434951d3ba3b8d2d8124e60a6cbabaf"},
     {"viip", "a walk by VIIP", viip_text,
      "a87c0184cfa0b6153244b2fa9be994925fa0918e778f6a53998919d5d29b58de"},
     {"repair", "a repaired walk", repair_text,

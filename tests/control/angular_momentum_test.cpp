@@ -12,6 +12,7 @@
 namespace ayumi {
 namespace {
 
+using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
@@ -102,7 +103,8 @@ TEST_P(UpperBody, GivesTheMomentAndNoneAboutTheVertical) {
   AngularMomentumTask task(b.model, b.limits());
   const double size = 1e-3 * b.model.mass();
   const Vector3d moment(0.6 * size, -0.8 * size, 0);
-  const UpperBodyTurn& turn = task.update(moment, b.data, b.state.theta, kHoapOmega, kMomentumTick);
+  const UpperBodyTurn& turn =
+      task.update(moment, b.data, b.state.theta, Vector2d::Zero(), kHoapOmega, kMomentumTick);
   VectorXd rate(task.joints().size() + 2);
   rate.head<2>() = turn.lean_rate.head<2>();
   for (size_t i = 0; i < task.joints().size(); ++i)
@@ -120,8 +122,9 @@ TEST_P(UpperBody, StaysWithinRangeSpeedAndTorqueAndComesBack) {
   const Vector3d moment = 5 * b.model.mass() * Vector3d(1, 1, 0);
   double most = 0, arms = 0;
   for (int k = 0; k < 4000; ++k) {
-    const UpperBodyTurn& turn = task.update(k < 1000 ? moment : Vector3d(Vector3d::Zero()), b.data,
-                                            b.state.theta, kHoapOmega, kMomentumTick);
+    const UpperBodyTurn& turn =
+        task.update(k < 1000 ? moment : Vector3d(Vector3d::Zero()), b.data, b.state.theta,
+                    Vector2d::Zero(), kHoapOmega, kMomentumTick);
     most = std::max(most, turn.lean.cwiseAbs().maxCoeff());
     arms = std::max(arms, turn.joints.cwiseAbs().maxCoeff());
     for (int j = 0; j < b.model.dof_count(); ++j) {
@@ -135,10 +138,33 @@ TEST_P(UpperBody, StaysWithinRangeSpeedAndTorqueAndComesBack) {
   EXPECT_GT(most, 0.3);
   EXPECT_LT(most, 0.45);
   EXPECT_GT(arms, 0.5);
-  const UpperBodyTurn& last =
-      task.update(Vector3d::Zero(), b.data, b.state.theta, kHoapOmega, kMomentumTick);
+  const UpperBodyTurn& last = task.update(Vector3d::Zero(), b.data, b.state.theta, Vector2d::Zero(),
+                                          kHoapOmega, kMomentumTick);
   EXPECT_LT(last.lean.norm(), 0.01);
   EXPECT_LT(last.joints.norm(), 0.01);
+}
+
+// A trunk that the plan tilts is turned less far to this side: together not as far as a fall.
+TEST_P(UpperBody, ATiltedTrunkIsTurnedLessFar) {
+  AtHome b(GetParam());
+  const Vector2d tilt(0, 0.5);
+  for (const double sign : {1.0, -1.0})
+    for (const Vector3d& axis : {Vector3d(0, 1, 0), Vector3d(1, 0, 0)}) {
+      SCOPED_TRACE(testing::Message() << sign << " " << axis.transpose());
+      AngularMomentumTask task(b.model, b.limits());
+      Vector2d most = Vector2d::Zero();
+      for (int k = 0; k < 1000; ++k) {
+        const UpperBodyTurn& turn = task.update(5 * sign * b.model.mass() * axis, b.data,
+                                                b.state.theta, tilt, kHoapOmega, kMomentumTick);
+        most = most.cwiseMax(sign * turn.lean.head<2>());
+        EXPECT_LT((tilt + turn.lean.head<2>()).norm(), 0.68);
+      }
+      if (axis.y() != 0) {
+        EXPECT_NEAR(most.y(), sign > 0 ? 0.15 : 0.42, 0.03);
+      } else {
+        EXPECT_GT(most.x(), 0.3);
+      }
+    }
 }
 
 // W: what is made heavy turns less, and the rest takes over.
@@ -150,7 +176,7 @@ TEST_P(UpperBody, WeightsMoveTheTurnFromTheArmsToTheTrunk) {
     VectorXd weight = b.model.joint_weight();
     for (const int j : task.joints()) weight[j] = arms;
     task.weigh(weight);
-    return task.update(moment, b.data, b.state.theta, kHoapOmega, kMomentumTick);
+    return task.update(moment, b.data, b.state.theta, Vector2d::Zero(), kHoapOmega, kMomentumTick);
   };
   const UpperBodyTurn light = turn_with(0.01), heavy = turn_with(1e6);
   EXPECT_LT(heavy.joint_rates.norm(), 1e-3 * light.joint_rates.norm());

@@ -4,6 +4,7 @@
 
 #include "ayumi/author/generate/generate.hpp"
 #include "ayumi/base/file.hpp"
+#include "ayumi/control/capture_bound.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
@@ -184,6 +185,40 @@ TEST(DtadGaits, APushInFlight) {
     EXPECT_EQ(outcome(ControllerKind::none), Outcome::fell);
     EXPECT_EQ(outcome(ControllerKind::dtad), Outcome::stands);
   }
+}
+
+// Motions that lean the trunk or lower the COG, pushed in the middle near the capture bound: where
+// the robot stands in open loop, it stands with the law. A trunk that bows by 29 deg must not be
+// turned on until it counts as fallen.
+TEST(DtadGaits, StandsWhereOpenLoopStands) {
+  int stood = 0;
+  for (const char* name : {"hoap1", "humanoid30"}) {
+    const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/" + std::string(name));
+    for (const auto& [kind, pattern] : {std::pair{"bow", bow_pattern(model, bow_defaults(model))},
+                                        {"squat", squat_pattern(model, squat_defaults(model))},
+                                        {"sit", sit_pattern(model, seat_defaults(model))}}) {
+      const CommandSeries series = sample(model, pattern);
+      const double middle = 0.5 * series.duration();
+      const CaptureRegion region =
+          capture_region(model, series, std::lround(middle / series.dt), 72);
+      for (int i = 0; i < 4; ++i) {
+        const double angle = i * M_PI / 2;
+        const double bound = capture_bound(region, {std::cos(angle), std::sin(angle)});
+        SCOPED_TRACE(testing::Message() << name << ", " << kind << ", " << angle);
+        const auto outcome = [&](ControllerKind law) {
+          SimulateOptions options;
+          options.controller.type = law;
+          options.scenario = {push(middle, angle, 0.95 * bound)};
+          options.settle = 2;
+          return simulate(model, series, options).result.outcome;
+        };
+        if (outcome(ControllerKind::none) != Outcome::stands) continue;
+        ++stood;
+        EXPECT_EQ(outcome(ControllerKind::dtad), Outcome::stands);
+      }
+    }
+  }
+  EXPECT_GE(stood, 12);
 }
 
 TEST(DtadGaits, TheLargeRobotWalksUnderItsPush) {

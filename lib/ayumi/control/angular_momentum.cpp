@@ -15,6 +15,7 @@
 namespace ayumi {
 
 using Eigen::Matrix3d;
+using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
@@ -30,6 +31,11 @@ constexpr double kReturnRate = 0.5;
 // survives 1.20 B, with 0.42 1.26 B; with 0.5 three more of 32 pushes become harder to survive for
 // its real motors than without any turn.
 constexpr double kTrunkRange = 0.42;
+
+// Largest tilt of the trunk, that of the plan and the turn together [rad]: 37 deg. Derived: 0.8 is a
+// fall (sim/fall_monitor), and the robot tilts by up to 0.15 more than its reference under large
+// pushes that it survives.
+constexpr double kTrunkTilt = 0.65;
 
 // Shares of the speed and the peak torque of a joint that the turn may use. Chosen: the legs carry
 // the robot with the same motors at the same time. With a quarter of the torque the standing robot
@@ -152,10 +158,15 @@ const Eigen::Matrix3Xd& AngularMomentumTask::matrix(const RobotData& data) {
 }
 
 // A coordinate may become as fast as lets its torque stop it at the end of its range.
-void AngularMomentumTask::bound(const VectorXd& commanded, double dt) {
+void AngularMomentumTask::bound(const VectorXd& commanded, const Vector2d& tilt, double dt) {
   for (Eigen::Index i = 0; i < weight_.size(); ++i) {
     double below = -kTrunkRange, above = kTrunkRange;
-    if (i >= 2) {
+    if (i < 2) {
+      const double other = tilt[1 - i] + turn_[1 - i];
+      const double most = std::sqrt(std::max(0.0, kTrunkTilt * kTrunkTilt - other * other));
+      below = std::min(0.0, std::max(below, -most - tilt[i]));
+      above = std::max(0.0, std::min(above, most - tilt[i]));
+    } else {
       const auto j = static_cast<size_t>(joints_[static_cast<size_t>(i) - 2]);
       const Dof& dof = model_->dofs()[j];
       below = std::min(0.0, dof.lower - commanded[static_cast<Eigen::Index>(j)]);
@@ -198,13 +209,13 @@ void AngularMomentumTask::accelerate(const Vector3d& moment) {
 }
 
 const UpperBodyTurn& AngularMomentumTask::update(const Vector3d& moment, const RobotData& data,
-                                                 const VectorXd& commanded, double omega,
-                                                 double dt) {
+                                                 const VectorXd& commanded, const Vector2d& tilt,
+                                                 double omega, double dt) {
   const double back = kReturnRate * omega;
   rate_ -= dt * (back * back * turn_ + 2 * back * rate_);
   if (!moment.isZero(0) || !turn_.isZero(kReturned) || !rate_.isZero(kReturned)) {
     matrix(data);
-    bound(commanded, dt);
+    bound(commanded, tilt, dt);
     accelerate(moment);
     rate_ += dt * acceleration_;
     turn_ += dt * rate_;

@@ -32,10 +32,12 @@ class AngularMomentumTask {
   void weigh(const Eigen::VectorXd& weight);
 
   /// One tick of dt [s]. `moment`: dL about the COG, world axes; its vertical part is not used
-  /// [N m]. `data` holds the positions of the reference, `commanded` the joints of the plan [rad];
+  /// [N m]. `data` holds the positions of the reference, `commanded` the joints of the plan [rad],
+  /// `tilt` the tilt of the plan's trunk about the world's x and y axes [rad];
   /// omega = sqrt(g / z) [1/s] is the unit of the rate at which the turn is given back.
   const UpperBodyTurn& update(const Eigen::Vector3d& moment, const RobotData& data,
-                              const Eigen::VectorXd& commanded, double omega, double dt);
+                              const Eigen::VectorXd& commanded, const Eigen::Vector2d& tilt,
+                              double omega, double dt);
 
   /// A_G at these positions: angular momentum about the COG by rate of each coordinate, the trunk's
   /// two first [N m s].
@@ -45,7 +47,7 @@ class AngularMomentumTask {
   const std::vector<int>& joints() const { return joints_; }
 
  private:
-  void bound(const Eigen::VectorXd& commanded, double dt);
+  void bound(const Eigen::VectorXd& commanded, const Eigen::Vector2d& tilt, double dt);
   void accelerate(const Eigen::Vector3d& moment);
 
   const RobotModel* model_;

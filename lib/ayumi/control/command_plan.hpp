@@ -28,6 +28,9 @@ class CommandPlan {
   /// Sample of the series that now() comes from; a moved plan has a clock of its own.
   long sample() const;
 
+  /// Whether now() is behind the last sample, where the plan is at rest.
+  bool at_rest() const { return sample() >= static_cast<long>(series_->samples.size()); }
+
   /// W of now() [dof]; null: the robot's own.
   const Eigen::VectorXd* joint_weight() const { return series_->joint_weight_at(sample()); }
 

@@ -23,6 +23,7 @@
 #include "ayumi/control/torque_feedforward.hpp"
 #include "ayumi/dynamics/inverse_kinematics.hpp"
 #include "ayumi/dynamics/zmp.hpp"
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/model/gravity.hpp"
 
@@ -38,6 +39,12 @@ namespace {
 // deg. Chosen: what a slope needs that the walk survives (docs/theory.md, "The offset"). Figures
 // change by less than 5 % from half to twice.
 constexpr double kOffsetLimit = 0.09;
+
+// Distance of the planned ZMP from the planned COG from which a plan at rest contradicts itself,
+// and way of the COG in a time 1/omega up to which a plan rests, times z: 1 mm on HOAP-1. Chosen:
+// above rounding and the noise of sampled motions. Half and twice change nothing for a ZMP that is
+// 10 mm off (scenarios/imported_motions_test).
+constexpr double kContradiction = 0.004;
 
 // Time after which the tilt of a foot that lies on the ground counts as the ground's, in 1/omega:
 // 50 ms on HOAP-1. Chosen: docs/theory.md, "A foot on a bump". Half: pushed walk, touchdowns 6 to
@@ -77,6 +84,49 @@ GainFields gain_fields(DtadParams& p) {
   GainFields fields = body_gain_fields(p);
   fields.merge(zmp_gain_fields(p));
   return fields;
+}
+
+/// Tilt of the plan's trunk about the world's x and y axes [rad]. `data`: of a posture whose waist
+/// is that of the plan.
+Vector2d planned_tilt(const RobotModel& model, const RobotData& data, const RobotState& plan) {
+  const Vector3d in_base = data.rotation[0].transpose() * data.rotation[model.trunk_body()].col(2);
+  const Vector3d up = plan.base.attitude * in_base;
+  const double sine = elementary::hypot(up.x(), up.y());
+  if (sine == 0) return Vector2d::Zero();
+  return elementary::atan2(sine, up.z()) / sine * Vector2d(-up.y(), up.x());
+}
+
+/// The offset of the ZMP that is accepted, within its bound.
+Vector2d bounded_offset(Vector2d offset, double z) {
+  const double limit = kOffsetLimit * z;
+  if (offset.norm() > limit) offset *= limit / offset.norm();
+  return offset;
+}
+
+/// The offset less the part of it that a plan's contradiction has made: -contradiction at most.
+Vector2d without_contradiction(const Vector2d& offset, const Vector2d& contradiction) {
+  const double size = contradiction.norm();
+  if (size == 0) return offset;
+  const Vector2d along = contradiction / size;
+  return offset + std::clamp(-offset.dot(along), 0.0, size) * along;
+}
+
+/// Mean of the planned ZMP less the COG over the first or the last time 1/omega of a plan that
+/// rests there; zero where it moves, or where both agree.
+Vector2d contradiction(const CommandSeries& series, bool at_end, double w) {
+  const std::vector<CommandSample>& samples = series.samples;
+  const auto count =
+      std::min(samples.size(), static_cast<size_t>(std::lround(1 / (w * series.dt))) + 1);
+  const size_t first = at_end ? samples.size() - count : 0, last = first + count - 1;
+  const double limit = kContradiction * kGravity / (w * w);
+  if ((samples[last].cog - samples[first].cog).norm() > limit) return Vector2d::Zero();
+  Vector2d sum = Vector2d::Zero();
+  for (size_t k = first; k <= last; ++k) {
+    if (samples[k].support == Support::none) return Vector2d::Zero();
+    sum += (samples[k].zmp - samples[k].cog).head<2>();
+  }
+  const Vector2d mean = sum / static_cast<double>(count);
+  return mean.norm() > limit ? mean : Vector2d::Zero();
 }
 
 /// Throws Error(usage) for a gain of a baseline that is out of range.
@@ -249,12 +299,22 @@ CogReference Dtad::cog_reference(const Estimate& estimate, LawTerms& terms) {
       long_term_force(command.fz, m, p.height_stiffness * w * w, p.height_damping * w, error), m);
 
   // At rest the ZMP is under the COG. Its distance from the one asked for is an offset already:
-  // servos that sag, a floor that slopes.
+  // servos that sag, a floor that slopes, a plan whose ZMP is not that of its COG. The last one
+  // ends with the plan.
   if (first_ && p.offset_time > 0 && !polygon.empty()) {
     const Vector2d asked = polygon.project(planned - K * error.position.head<2>());
     offset_ = -error.position.head<2>() - (asked - planned);
+    offset_ = bounded_offset(offset_ - contradiction(command_.series(), false, w), z);
   }
   first_ = false;
+  if (command_.at_rest() && !ended_) {
+    ended_ = true;
+    const CommandSeries& series = command_.series();
+    const Eigen::Matrix3d turn =
+        command.feet[0].linear() * series.samples.back().feet[0].linear().transpose();
+    offset_ =
+        without_contradiction(offset_, turn.topLeftCorner<2, 2>() * contradiction(series, true, w));
+  }
 
   filter_.update(estimate, low_pass_share(command_.dt(), w, p.zmp_filter));
   const double w2 = omega_squared(ref.fz, m, z);
@@ -299,8 +359,7 @@ Vector2d Dtad::zmp_gap(const Vector2d& ref_zmp, double w, double z) {
   const Vector2d gap = filter_.zmp() - ref_zmp - offset_;
   if (params_.offset_time > 0) {
     offset_ += command_.dt() * w / params_.offset_time * gap;
-    const double limit = kOffsetLimit * z;
-    if (offset_.norm() > limit) offset_ *= limit / offset_.norm();
+    offset_ = bounded_offset(offset_, z);
   }
   return gap;
 }
@@ -309,7 +368,8 @@ Vector2d Dtad::zmp_gap(const Vector2d& ref_zmp, double w, double z) {
 void Dtad::turn_upper_body(double w) {
   const Vector3d moment =
       model_->mass() * kGravity * params_.momentum_gain * Vector3d(-outside_.y(), outside_.x(), 0);
-  body_.turn(momentum_.update(moment, body_.data(), plan().state.theta, w, command_.dt()));
+  body_.turn(momentum_.update(moment, body_.data(), plan().state.theta,
+                              planned_tilt(*model_, body_.data(), plan().state), w, command_.dt()));
 }
 
 // A planned flight lasts until its end is planned and the load cells feel the ground.

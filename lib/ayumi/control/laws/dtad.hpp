@@ -129,6 +129,7 @@ class Dtad {
   Eigen::Vector2d offset_ = Eigen::Vector2d::Zero();   // accepted offset of the ZMP [m]
   Eigen::Vector2d outside_ = Eigen::Vector2d::Zero();  // ZMP wanted less the one asked for [m]
   bool first_ = true;                                  // no tick yet, from rest
+  bool ended_ = false;                                 // the plan is at rest behind its last sample
   bool flying_ = false;                                // from the planned lift-off to the landing
 };
 

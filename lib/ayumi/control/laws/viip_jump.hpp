@@ -42,7 +42,9 @@ class ViipJump {
     Eigen::Vector3d momentum = Eigen::Vector3d::Zero();  // angular, about the COG [N m s]
     std::array<Eigen::Vector3d, 2> feet, landing;        // from the COG [m]
     double duration = 0;                                 // to the expected touchdown [s]
-    double retraction = 0;                               // of the legs before it [m]
+    double touchdown_speed = 0;                          // that is expected, down [m/s]
+    double rise = 0, hold = 0;  // of the rate at which the legs give way before it [s]
+    double retraction = 0;      // of the legs before it [m]
   };
 
   void enter(Stage stage);
@@ -57,6 +59,7 @@ class ViipJump {
   Resolution resolve_with_momentum(double share);
   void release();
   void fly(const Estimate& estimate, ControlOutput& out);
+  double retraction(double t) const;
   Eigen::Vector3d foot_position(int side, double t) const;
   void measure_speed(const Estimate& estimate);
   void touch_down(const Estimate& estimate);
