@@ -49,7 +49,8 @@ OrderedJson finding_json(const RobotModel& model, const Finding& f) {
       {"end", f.end},
       {"at", f.at},
       {"message", words_of(name_of(f.kind)) + ", " + f.where + ": " + amount_text(f)},
-      {"hint", f.hint},
+      // The page has a button in place of the command.
+      {"hint", f.hint == f.remedy || f.remedy.empty() ? f.hint : f.remedy + ", or choose Repair"},
       {"bodies", OrderedJson::array()},
       {"side", nullptr},
       {"joint", nullptr},

@@ -43,8 +43,11 @@ AuthorAnswer refused(const std::string& message) { return {422, {{"message", mes
 
 // A message without the name of the pattern's file in front: the page shows one file only.
 std::string without_file(const std::string& message, const fs::path& file) {
-  const std::string name = file.string() + ": ";
-  return message.starts_with(name) ? message.substr(name.size()) : message;
+  const std::string name = file.string() + ":";
+  if (!message.starts_with(name)) return message;
+  // "FILE: words" or "FILE:12:2: words"; the page shows the line itself.
+  const size_t words = message.find_first_not_of("0123456789:", name.size());
+  return words == std::string::npos || message[words] != ' ' ? message : message.substr(words + 1);
 }
 
 // Calls `work`; what it throws is an answer in words.

@@ -114,10 +114,7 @@ std::vector<double> values_that_pass(const Context& context, const RobotModel& m
         "\n"
         "  after " +
         std::to_string(result.tried) + " trials, these values were found: " + changed + "\n");
-  else if (result.tried > 1 && result.refused)  // the error follows
-    context.print("none of " + std::to_string(result.tried) +
-                  " combinations of height, length and time can be done by " + model.name() + "\n");
-  else if (result.tried > 1)
+  else if (result.tried > 1 && !result.refused)  // else the error says it
     context.print("none of " + std::to_string(result.tried) +
                   " combinations of height, length and time passes the check. First error with the "
                   "default values: " +

@@ -295,6 +295,20 @@ TEST_F(AuthorServer, EditsExpressionsWithTheParametersOfTheCommand) {
   EXPECT_EQ(contents(file), with("\"${side}\"", "\"${side} + 0.003\""));
 }
 
+// The page has a button, so its words do not name the command.
+TEST_F(AuthorServer, AdvisesTheButtonOfTheRepair) {
+  const Server server(file);
+  ASSERT_EQ(server
+                .edit({{{"kind", "set"},
+                        {"pointer", "/keyframes/0/joints"},
+                        {"value", {{"l_elbow", -170}}}}})
+                .first,
+            200);
+  const std::string findings = server.state()["findings"].dump();
+  EXPECT_NE(findings.find(" deg in this window, or choose Repair"), std::string::npos) << findings;
+  EXPECT_EQ(findings.find("ayumi repair"), std::string::npos) << findings;
+}
+
 // What cannot be read as a pattern is not written; what the robot cannot do is, and is shown at its
 // line. While the motion is older than the text, only places that both have can be changed.
 TEST_F(AuthorServer, RefusesEditsThatMakeThePatternUnreadable) {
@@ -326,6 +340,12 @@ TEST_F(AuthorServer, RefusesEditsThatMakeThePatternUnreadable) {
   state = server.state_when([&](const OrderedJson& now) { return now["text"] == other; });
   EXPECT_FALSE(state["error"].is_null());
   EXPECT_FALSE(can_edit(state)) << "every keyframe has another place";
+  const std::string broken = "{ \"format\": oops }";
+  save(broken);
+  state = server.state_when([&](const OrderedJson& now) { return now["text"] == broken; });
+  EXPECT_EQ(state["error"]["line"], 1);
+  EXPECT_EQ(state["error"]["message"].get<std::string>().find(file.string()), std::string::npos)
+      << state["error"];
   save(walk);
   EXPECT_TRUE(
       can_edit(server.state_when([](const OrderedJson& now) { return now["error"].is_null(); })));
