@@ -338,6 +338,34 @@ TEST(PlantedMistakes, SlightErrorsHaveNoGrossCause) {
   }
 }
 
+// A value that is wrong by much is named although most errors remain.
+TEST(PlantedMistakes, AStoopFarTooDeepIsNamed) {
+  Pattern hop;
+  hop.robot = "hoap1";
+  hop.profile = "hoap1-strong";
+  for (const auto& [until, support] :
+       {std::pair(1.5, Support::both), {1.65, Support::none}, {3.5, Support::both}}) {
+    Phase phase;
+    phase.until = until;
+    phase.support = support;
+    hop.phases.push_back(phase);
+  }
+  for (const auto& [t, height] : {std::pair(0.5, 0.245),
+                                  {1.2, 0.19},
+                                  {1.5, 0.235},
+                                  {1.65, 0.235},
+                                  {1.9, 0.19},
+                                  {2.7, 0.245}}) {
+    Keyframe key;
+    key.t = t;
+    key.cog_height = height;
+    hop.keyframes.push_back(key);
+  }
+  const std::vector<Mistake> found = likely_mistakes(small(), hop, options_of(hop));
+  ASSERT_FALSE(found.empty());
+  EXPECT_EQ(found.front().words.rfind("the COG height is 0.19 m", 0), 0u) << found.front().text();
+}
+
 // Footholds in good order are not called exchanged, whatever is wrong.
 TEST(PlantedMistakes, FootholdsInOrderAreNotCalledExchanged) {
   Pattern pattern = walk(small());
