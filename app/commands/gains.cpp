@@ -147,9 +147,9 @@ void add_gains(Command& app, Context& context) {
       "robot.");
   auto options = std::make_shared<GainsCommand>();
   command
-      ->add_option(
-          "ROBOT", options->robot,
-          "Name of a bundled robot, folder, sidecar or robot file (URDF, MJCF, SDF, body, ztk).")
+      ->add_option("ROBOT", options->robot,
+                   "Name of a bundled robot, or a folder, sidecar or robot file (URDF, MJCF, SDF, "
+                   "Choreonoid body, mi-lib ztk).")
       ->required();
   command
       ->add_option("--poles", options->poles,

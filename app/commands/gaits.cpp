@@ -333,9 +333,9 @@ void add_gaits(Command& app, Context& context) {
   auto options = std::make_shared<GaitsCommand>();
   GaitOptions& gaits = options->options;
   command
-      ->add_option(
-          "ROBOT", options->robot,
-          "Name of a bundled robot, folder, sidecar or robot file (URDF, MJCF, SDF, body, ztk).")
+      ->add_option("ROBOT", options->robot,
+                   "Name of a bundled robot, or a folder, sidecar or robot file (URDF, MJCF, SDF, "
+                   "Choreonoid body, mi-lib ztk).")
       ->required();
   command->add_option("-o,--out", options->out, "Folder for the library.")
       ->type_name("DIR")

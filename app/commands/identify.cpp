@@ -180,9 +180,9 @@ void add_identify(Command& app, Context& context) {
   static IdentifyCommand options;
   static std::string unit = "rad";
   command
-      ->add_option(
-          "ROBOT", options.robot,
-          "Name of a bundled robot, folder, sidecar or robot file (URDF, MJCF, SDF, body, ztk).")
+      ->add_option("ROBOT", options.robot,
+                   "Name of a bundled robot, or a folder, sidecar or robot file (URDF, MJCF, SDF, "
+                   "Choreonoid body, mi-lib ztk).")
       ->required();
   command
       ->add_option("--command", options.command,

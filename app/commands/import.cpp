@@ -101,9 +101,9 @@ void add_import(Command& app, Context& context) {
   static std::string unit = "rad", signs = "encoder";
   command->add_option("FILE", options.file, "Motion file; - is standard input.")->required();
   command
-      ->add_option(
-          "--robot", options.robot,
-          "Name of a bundled robot, folder, sidecar or robot file (URDF, MJCF, SDF, body, ztk).")
+      ->add_option("--robot", options.robot,
+                   "Name of a bundled robot, or a folder, sidecar or robot file (URDF, MJCF, SDF, "
+                   "Choreonoid body, mi-lib ztk).")
       ->required()
       ->type_name("ROBOT");
   command

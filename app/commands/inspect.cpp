@@ -412,7 +412,8 @@ void add_inspect(Command& app, Context& context) {
   auto options = std::make_shared<InspectOptions>();
   command
       ->add_option("robot", options->robot,
-                   "Name of a bundled robot, folder, sidecar, URDF, MJCF, SDF, body or ztk file.")
+                   "Name of a bundled robot, or a folder, sidecar or robot file (URDF, MJCF, SDF, "
+                   "Choreonoid body, mi-lib ztk).")
       ->required()
       ->type_name("ROBOT");
   command->add_option("--picture", options->picture, "Draw the home posture on the ground (.png).")

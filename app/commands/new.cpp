@@ -62,9 +62,9 @@ bool write_new(const Context& context, const RobotModel& model, Pattern pattern,
 
 void add_common(Command& command, NewOptions& options) {
   command
-      .add_option(
-          "--robot", options.robot,
-          "Name of a bundled robot, folder, sidecar or robot file (URDF, MJCF, SDF, body, ztk).")
+      .add_option("--robot", options.robot,
+                  "Name of a bundled robot, or a folder, sidecar or robot file (URDF, MJCF, SDF, "
+                  "Choreonoid body, mi-lib ztk).")
       ->type_name("ROBOT")
       ->capture_default_str();
   command.add_option("-o,--out", options.out, "Pattern file to write.")->type_name("F")->required();

@@ -207,9 +207,9 @@ void add_new_jump(Command& parent, Context& context) {
       "  ayumi new jump --forward 0.02 -o forward.json\n"
       "  ayumi new jump --highest --profile hoap1 -o highest.json");
   command
-      ->add_option(
-          "--robot", options.robot,
-          "Name of a bundled robot, folder, sidecar or robot file (URDF, MJCF, SDF, body, ztk).")
+      ->add_option("--robot", options.robot,
+                   "Name of a bundled robot, or a folder, sidecar or robot file (URDF, MJCF, SDF, "
+                   "Choreonoid body, mi-lib ztk).")
       ->type_name("ROBOT")
       ->capture_default_str();
   command->add_option("-o,--out", options.out, "Pattern file to write.")

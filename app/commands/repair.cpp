@@ -493,8 +493,10 @@ void add_repair(Command& app, Context& context) {
       ->type_name("S")
       ->capture_default_str();
   command
-      ->add_option("--max-iterations", options.repair.max_iterations,
-                   "Largest number of iterations of Ipopt in each round.")
+      ->add_option(
+          "--max-iterations", options.repair.max_iterations,
+          "Largest number of iterations in each run of the solver Ipopt. A repair runs Ipopt "
+          "several times.")
       ->check(whole_number_within(1, 10000))
       ->type_name("N")
       ->capture_default_str();

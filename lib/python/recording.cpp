@@ -36,7 +36,7 @@ void bind_import(py::module_& m) {
                     "The pattern; ayumi.sample(found.pattern, robot) samples it.")
       .def_readonly("format", &ImportedPattern::format, "Name of the format of the file.")
       .def_readonly("reason", &ImportedPattern::reason,
-                    "Why the content is of this format; '' where the caller stated it.")
+                    "Why Ayumi chose this format; '' if the caller named the format.")
       .def_readonly("rows", &ImportedPattern::rows, "Data rows, or key poses, of the file.")
       .def_readonly(
           "contacts", &ImportedPattern::contacts,

@@ -153,7 +153,8 @@ void bind_step(py::module_& m) {
       .def_readwrite("friction", &World::friction, "Coulomb coefficient.");
   py::class_<ExternalWrench>(m, "Wrench", "A force or a couple from outside during one step.")
       .def_readonly("body", &ExternalWrench::body, "Index of the body; -1: through the COG.")
-      .def_readonly("point", &ExternalWrench::point, "World [m], shape (3,).")
+      .def_readonly("point", &ExternalWrench::point,
+                    "Point of attack in the world [m], shape (3,).")
       .def_readonly("force", &ExternalWrench::force, "World [N], shape (3,).")
       .def_readonly("torque", &ExternalWrench::torque, "World [N m], shape (3,).");
   py::class_<StepInput>(m, "StepInput", "What acts on the robot from outside during one step.")
@@ -167,8 +168,10 @@ void bind_step(py::module_& m) {
              return SoleForce{position, force, gap};
            }),
            py::arg("position"), py::arg("force"), py::arg("gap") = 0.0)
-      .def_readonly("position", &SoleForce::position, "World [m], shape (3,).")
-      .def_readonly("force", &SoleForce::force, "On the robot, world [N], shape (3,).")
+      .def_readonly("position", &SoleForce::position,
+                    "Place of the vertex in the world [m], shape (3,).")
+      .def_readonly("force", &SoleForce::force,
+                    "Force of the ground on the robot, in world axes [N], shape (3,).")
       .def_readonly("gap", &SoleForce::gap, "Distance to the ground, negative inside [m].");
   py::class_<StepReport>(m, "StepReport",
                          "Forces of a step, as means over the duration of the step.")

@@ -303,7 +303,7 @@ void bind_pace(py::module_& m) {
       .def_readonly("scale", &FastestPace::scale, "Smallest factor on all times that passes.")
       .def_readonly("bounded", &FastestPace::bounded, "False: even the fastest scale passes.")
       .def_readonly("limited_by", &FastestPace::limited_by,
-                    "First error at the scale just below, in words.")
+                    "First error at a slightly smaller scale, in words.")
       .def_readonly("evaluations", &FastestPace::evaluations, "Number of scales tried.");
   m.def(
       "fastest_pace",

@@ -105,7 +105,7 @@ std::vector<Mistaken> list() {
   add("a segment too long for its stoop", small(), jump, "/keyframes/1: t is 1.1 s, so .* lasts",
       [](Pattern& p) { p.keyframes[1].t = 1.1; });
   add("the foot on the wrong side", small(), steps,
-      "/phases/3: the left foot's y is -0.039 m; on the other side .*exchanged.* 0.039 m",
+      "/phases/3: the left foot's y is -0.039 m; on the other side, at 0.039 m .*exchanged",
       [](Pattern& p) { swing(p, 3).to.position.y() *= -1; });
   add("a phase that names the wrong foot", small(), steps,
       "/phases/3: support is left .*exchanged; with support right", [](Pattern& p) {

@@ -336,9 +336,9 @@ TEST(EncodedMesh, IsNotBelieved) {
   EXPECT_EQ(complaint([](MeshPart& part) { part.normals[0] *= 2; }),
             "part 1: normal 0 is not a unit vector");
   EXPECT_EQ(complaint([&](MeshPart& part) { part.uvs[0].x() = nan; }),
-            "part 1: a place in the texture is not finite");
+            "part 1: a texture coordinate is not finite");
   EXPECT_EQ(complaint([](MeshPart& part) { part.uvs.pop_back(); }),
-            "part 1: 3 places in the texture for 4 vertices");
+            "part 1: 3 texture coordinates for 4 vertices");
   EXPECT_EQ(complaint([](MeshPart& part) { part.triangles.clear(); }), "part 1: no triangle");
   EXPECT_EQ(complaint([&](MeshPart& part) { part.color[3] = nan; }),
             "part 1: the colour is not finite");

@@ -380,7 +380,7 @@ const Condition kMovesCog = {
     }};
 
 const Condition kTouchesByFoot = {
-    "the leg of the cause overlaps, only while its foot is displaced and by no more than this "
+    "the leg of the cause overlaps only while its foot is displaced, and by at most this "
     "displacement",
     [](Scene& scene, int i, int j, const Interval&) {
       const Violation& foot = scene.of(i);

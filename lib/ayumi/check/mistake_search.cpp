@@ -1218,7 +1218,7 @@ class Search {
     const bool other_sign =
         limit / number.value < kNoShare && std::abs(number.value) < value.unit(model_);
     if (value.has_sign())
-      slips.push_back(sign_of(value, ", and with values " + up_to,
+      slips.push_back(sign_of(value, ", or with values " + up_to,
                               value.across ? Rank::slip
                               : other_sign ? Rank::exchange
                                            : Rank::sign));
@@ -1227,8 +1227,8 @@ class Search {
     const auto add = [&](double factor, const std::string& why) {
       slips.push_back({Rank::slip,
                        {value.place, written,
-                        why + ", " + value.text(pattern_, factor * number.value) +
-                            ", and with values " + up_to},
+                        why + " (" + value.text(pattern_, factor * number.value) +
+                            "), or with values " + up_to + ","},
                        [value, factor](Pattern& p) { value.scale(p, factor); }});
     };
     // The least change first.
@@ -1251,19 +1251,21 @@ class Search {
     const double number = value.numbers.front().value;
     return {Rank::slip,
             {value.place, value.words + " is " + value.text(pattern_, number),
-             "with the decimal point one place further left, " +
-                 value.text(pattern_, 0.1 * number) + ","},
+             "with the decimal point one place further left (" +
+                 value.text(pattern_, 0.1 * number) + "),"},
             [value](Pattern& p) { value.scale(p, 0.1); }};
   }
 
   Hypothesis sign_of(const WrittenValue& value, const std::string& more,
                      Rank rank = Rank::sign) const {
     const double number = value.numbers.front().value;
+    const std::string negated = value.text(pattern_, -number);
     return {rank,
             {value.place, value.words + " is " + value.text(pattern_, number),
-             (value.across ? "on the other side (perhaps left and right were exchanged), "
-                           : "with the other sign, ") +
-                 value.text(pattern_, -number) + more + ","},
+             (value.across
+                  ? "on the other side, at " + negated + " (perhaps left and right were exchanged)"
+                  : "with the other sign (" + negated + ")") +
+                 more + ","},
             [value](Pattern& p) { value.scale(p, -1); }};
   }
 

@@ -60,7 +60,7 @@ CommandSeries sample_carried(const SampleJob& job) {
   fill_rates(series.samples, job.dt, true);
   for (int k = 0; k < job.count; ++k)
     put_ground_commands(job, plan, k * job.dt, series.samples[static_cast<size_t>(k)]);
-  series.origin["joints"] = "the default posture, carried along the COG";
+  series.origin["joints"] = "the default posture at all times; the base moves with the COG";
   return series;
 }
 

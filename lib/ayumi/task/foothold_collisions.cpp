@@ -204,11 +204,11 @@ class Footholds {
     std::vector<std::string> remedies;
     for (const std::optional<Remedy>& remedy : {to_the_side(phase), less_turned(phase)}) {
       if (!remedy) continue;
-      remedies.push_back("with " + remedy->words + " " + text::counted(remedy->errors, "error") +
+      remedies.push_back("with " + remedy->words + ", " + text::counted(remedy->errors, "error") +
                          " of " + std::to_string(errors_) +
                          (remedy->errors == 1 ? " remains" : " remain"));
     }
-    if (!remedies.empty()) words += "; " + text::join(remedies, ", ");
+    if (!remedies.empty()) words += "; " + text::join(remedies, ", and ");
     return Mistake{pointer_of_phase(task_.pattern, phase) + "/swing", words};
   }
 

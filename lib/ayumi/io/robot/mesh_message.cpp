@@ -83,7 +83,7 @@ class MeshDecoder {
       complain("more than " + std::to_string(kMostMeshTriangles) + " triangles");
     if (part.triangles.empty()) complain("no triangle");
     if (!part.uvs.empty() && part.uvs.size() != part.vertices.size())
-      complain(std::to_string(part.uvs.size()) + " places in the texture for " +
+      complain(std::to_string(part.uvs.size()) + " texture coordinates for " +
                std::to_string(part.vertices.size()) + " vertices");
     for (size_t i = 0; i < part.vertices.size(); ++i) {
       if (!part.vertices[i].allFinite()) complain("vertex " + std::to_string(i) + " is not finite");
@@ -91,7 +91,7 @@ class MeshDecoder {
         complain("normal " + std::to_string(i) + " is not a unit vector");
     }
     for (const Eigen::Vector2f& uv : part.uvs)
-      if (!uv.allFinite()) complain("a place in the texture is not finite");
+      if (!uv.allFinite()) complain("a texture coordinate is not finite");
     for (size_t i = 0; i < part.triangles.size(); ++i)
       for (const std::uint32_t corner : part.triangles[i])
         if (corner >= part.vertices.size())
