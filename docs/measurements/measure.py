@@ -652,8 +652,11 @@ def viip_walking():
     return lines
 
 
+JUMPING_MASS = 6.5  # of HOAP-1 [kg]
+
+
 def jump(height, stoop, release, *words):
-    """Errors of the apex and of the stoop at the landing."""
+    """Errors of the apex and of the stoop at the landing; peak force over that of (27)."""
     pattern = bundled("hoap1_jump")
     pattern["phases"][1]["viip"]["jump"] = {"height": height, "stoop": stoop, "release": release}
     figures, log = simulate(write_pattern(pattern, "jump"), *words, log=True)
@@ -665,7 +668,10 @@ def jump(height, stoop, release, *words):
     landing = min(round(e["t_s"] / log.dt) for e in figures["events"]
                   if e["kind"] == "touchdown" and e["t_s"] / log.dt > top)
     sunk = z[landing] - min(z[landing:])
-    return f"{100 * (figures['apex_m'] / planned - 1):+.1f} %, {100 * (sunk / stoop - 1):+.0f} %"
+    speed = min(log.columns["dcog.z"][top:landing])
+    spring = JUMPING_MASS * (speed**2 / stoop + 9.80665)
+    return (f"{100 * (figures['apex_m'] / planned - 1):+.1f} %, {100 * (sunk / stoop - 1):+.0f} %, "
+            f"{max(log.columns['fz'][top:]) / spring:.1f}")
 
 
 @table("viip/jumps")
