@@ -117,7 +117,7 @@ struct Outcome {
   std::vector<Window> windows = {};  ///< of the errors that follow from no other one [s]
 
   bool table_alone = false;  ///< a quick trial has none of these errors
-  bool slight = false;       ///< all errors are slight
+  bool slight = false;       ///< all errors and what follows from them are slight
 
   bool good() const { return errors == 0; }
   bool touches(double begin, double end) const {
@@ -208,9 +208,10 @@ class Trials {
       outcome.slight = true;
       for (const Finding& f : report.findings) {  // errors come in order of time
         if (!exact && needs_servo_period(f.kind)) continue;
-        outcome.findings += f.severity == Severity::error || f.cause >= 0;
-        if (f.severity != Severity::error) continue;
+        if (f.severity != Severity::error && f.cause < 0) continue;
+        ++outcome.findings;
         outcome.slight = outcome.slight && is_slight(model_, f);
+        if (f.severity != Severity::error) continue;
         if (outcome.errors++ < kFirstErrors) outcome.windows.push_back({f.begin, f.end});
       }
     } catch (const Error& error) {
