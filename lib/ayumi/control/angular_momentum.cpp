@@ -32,8 +32,8 @@ constexpr double kReturnRate = 0.5;
 // its real motors than without any turn.
 constexpr double kTrunkRange = 0.42;
 
-// Largest tilt of the trunk, that of the plan and the turn together [rad]: 37 deg. Derived: 0.8 is a
-// fall (sim/fall_monitor), and the robot tilts by up to 0.15 more than its reference under large
+// Largest tilt of the trunk, that of the plan and the turn together [rad]: 37 deg. Derived: 0.8 is
+// a fall (sim/fall_monitor), and the robot tilts by up to 0.15 more than its reference under large
 // pushes that it survives.
 constexpr double kTrunkTilt = 0.65;
 
