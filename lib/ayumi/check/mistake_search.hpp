@@ -29,8 +29,8 @@ inline constexpr int kMostTrials = 300;
 
 struct Explanations {
   std::vector<Explanation> found;
-  int trials = 0;  ///< versions of the pattern that were sampled and checked; one with more
-                   ///< samples, or with legs of fewer than six joints, counts as several
+  int trials = 0;        ///< versions of the pattern that were sampled and checked; one with more
+                         ///< samples, or with legs of fewer than six joints, counts as several
   bool complete = true;  ///< false: more could have been tried when the bound on trials was
                          ///< reached, and errors are left
 };
