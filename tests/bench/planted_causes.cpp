@@ -16,8 +16,8 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/check/consistency.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
-#include "ayumi/math/random.hpp"
 #include "ayumi/plan/foot_plan.hpp"
+#include "tests/support/dice.hpp"
 #include "tests/support/faults.hpp"
 
 using namespace ayumi;
@@ -26,19 +26,6 @@ using namespace ayumi::test;
 namespace {
 
 using Kinds = std::set<FindingKind>;
-
-class Dice {
- public:
-  explicit Dice(std::uint64_t seed) : random_(seed) {
-    for (int i = 0; i < 4; ++i) random_.bits();  // neighbouring seeds begin alike
-  }
-  double between(double low, double high) { return low + (high - low) * random_.uniform(); }
-  size_t below(size_t count) { return static_cast<size_t>(random_.bits() % count); }
-  double sign() { return below(2) == 0 ? 1 : -1; }
-
- private:
-  Random random_;
-};
 
 struct Motion {
   std::string name;

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "ayumi/author/generate/generate.hpp"
-#include "ayumi/math/random.hpp"
+#include "tests/support/dice.hpp"
 #include "tests/support/faults.hpp"
 #include "tests/support/hoap1.hpp"
 
@@ -17,23 +17,6 @@ struct FaultyPattern {
 };
 
 namespace faulty {
-
-class Dice {
- public:
-  explicit Dice(std::uint64_t seed) : random_(seed) {
-    for (int i = 0; i < 4; ++i) random_.bits();  // neighbouring seeds begin alike
-  }
-  double between(double low, double high) { return low + (high - low) * random_.uniform(); }
-  size_t below(size_t count) { return static_cast<size_t>(random_.bits() % count); }
-  double sign() { return below(2) == 0 ? 1 : -1; }
-  template <class Value>
-  const Value& one_of(const std::vector<Value>& values) {
-    return values[below(values.size())];
-  }
-
- private:
-  Random random_;
-};
 
 inline const std::vector<std::string>& arm_joints() {
   static const std::vector<std::string> names = {"l_shoulder_pitch", "r_shoulder_pitch",
