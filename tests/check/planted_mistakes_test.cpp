@@ -54,7 +54,7 @@ std::vector<Mistaken> list() {
   const Pattern kick = kick_pattern(small(), low);
   Pattern jump = jump_pattern(small(), jump_defaults(small()));
   jump.profile = "hoap1-strong";
-  add("foothold of 0.6 m", small(), steps, "/phases/3: the left foot's x is 0.6 m.* 0.06 m",
+  add("foothold of 0.6 m", small(), steps, "/phases/3: the left foot's x is 0.6 m.*\\(0.06 m\\)",
       [](Pattern& p) { swing(p, 3).to.position.x() = 0.6; });
   add("footholds exchanged", small(), steps, "/phases/3: .*/phases/5 were perhaps exchanged",
       [](Pattern& p) { std::swap(swing(p, 3).to, swing(p, 5).to); });
@@ -69,9 +69,9 @@ std::vector<Mistaken> list() {
     for (Keyframe& key : p.keyframes)
       for (auto& entry : key.joints) entry.second *= kDegree;
   });
-  add("COG height of 2.15 m", small(), squat, "/keyframes/2: the COG height is 2.15 m.* 0.215 m",
+  add("COG height of 2.15 m", small(), squat, "/keyframes/2: the COG height is 2.15 m.*\\(0.215 m\\)",
       [](Pattern& p) { p.keyframes[2].cog_height = 2.15; });
-  add("a COG height of 600 mm", tall(), strides, "/defaults/cog_height: .*in mm, 0.6 m",
+  add("a COG height of 600 mm", tall(), strides, "/defaults/cog_height: .*in mm \\(0.6 m\\)",
       [](Pattern& p) { p.cog_height = 600; });
   add("times in ms", small(), steps, "/phases: .*read as ms", [](Pattern& p) {
     for (Phase& phase : p.phases) phase.until *= 1000;
