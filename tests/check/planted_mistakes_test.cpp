@@ -69,7 +69,8 @@ std::vector<Mistaken> list() {
     for (Keyframe& key : p.keyframes)
       for (auto& entry : key.joints) entry.second *= kDegree;
   });
-  add("COG height of 2.15 m", small(), squat, "/keyframes/2: the COG height is 2.15 m.*\\(0.215 m\\)",
+  add("COG height of 2.15 m", small(), squat,
+      "/keyframes/2: the COG height is 2.15 m.*\\(0.215 m\\)",
       [](Pattern& p) { p.keyframes[2].cog_height = 2.15; });
   add("a COG height of 600 mm", tall(), strides, "/defaults/cog_height: .*in mm \\(0.6 m\\)",
       [](Pattern& p) { p.cog_height = 600; });
