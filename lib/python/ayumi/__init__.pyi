@@ -294,7 +294,7 @@ class Import:
 
     @property
     def reason(self) -> str:
-        """Why the content is of this format; '' where the caller stated it."""
+        """Why Ayumi chose this format; '' if the caller named the format."""
 
     @property
     def rows(self) -> int:
@@ -447,7 +447,7 @@ class Pace:
 
     @property
     def limited_by(self) -> str:
-        """First error at the scale just below, in words."""
+        """First error at a slightly smaller scale, in words."""
 
     @property
     def evaluations(self) -> int:
@@ -784,11 +784,11 @@ class SoleForce:
 
     @property
     def position(self) -> numpy.ndarray:
-        """World [m], shape (3,)."""
+        """Place of the vertex in the world [m], shape (3,)."""
 
     @property
     def force(self) -> numpy.ndarray:
-        """On the robot, world [N], shape (3,)."""
+        """Force of the ground on the robot, in world axes [N], shape (3,)."""
 
     @property
     def gap(self) -> float:
@@ -1008,7 +1008,7 @@ class Wrench:
 
     @property
     def point(self) -> numpy.ndarray:
-        """World [m], shape (3,)."""
+        """Point of attack in the world [m], shape (3,)."""
 
     @property
     def force(self) -> numpy.ndarray:
