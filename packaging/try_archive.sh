@@ -10,14 +10,14 @@ if [[ -z ${BARE_DEBIAN:-} ]]; then
   debootstrap --variant=minbase bookworm "$scratch/debian" >/dev/null
   BARE_DEBIAN=$scratch/debian
 fi
-mkdir "$scratch/root"
-cp --archive "$BARE_DEBIAN/." "$scratch/root"
-mkdir "$scratch/root/try"
-tar --extract --directory "$scratch/root/try" --file "$archive"
+mkdir "$scratch/bare"
+cp --archive "$BARE_DEBIAN/." "$scratch/bare"
+mkdir "$scratch/bare/try"
+tar --extract --directory "$scratch/bare/try" --file "$archive"
 
 # Every part with libraries of its own: repair, pictures, plots, clips, the second plant.
-unshare --net --pid --fork --mount --mount-proc="$scratch/root/proc" \
-  chroot "$scratch/root" /bin/sh -eu <<'END'
+unshare --net --pid --fork --mount --mount-proc="$scratch/bare/proc" \
+  chroot "$scratch/bare" /bin/sh -eu <<'END'
 cd /try
 ayumi=$(echo /try/ayumi-*/bin/ayumi) share=$(echo /try/ayumi-*/share/ayumi)
 ln -s "$ayumi" /usr/bin/ayumi

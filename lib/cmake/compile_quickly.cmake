@@ -81,10 +81,10 @@ foreach(heat HOT WARM COLD)
   ayumi_compile_quickly(ayumi_${heat}_headers ${AYUMI_${heat}_HEADERS})
 endforeach()
 
-# ayumi_link_hot_first(target libraries...): puts these libraries before the target's own objects. A
-# function of a template that several objects have (much of Eigen) is kept once, as the first of them
-# has it; with a cold object first, the hot rooms would run what was compiled for it (check took 1.3
-# times as long). Builds without these levels keep the usual order.
+# ayumi_link_hot_first(target libraries...): puts these libraries before the target's own objects.
+# Several objects contain the same functions of templates (many of Eigen's), and the linker keeps the
+# first copy of each. If a cold object came first, the hot rooms would run the copy that was compiled
+# with -Og: check took 1.3 times as long. Builds without these levels keep the usual order.
 function(ayumi_link_hot_first target)
   set(files ${ARGN})
   list(TRANSFORM files REPLACE "(.+)" "$<TARGET_FILE:\\1>")

@@ -364,7 +364,7 @@ std::vector<Mistake> likely_mistakes(const RobotModel& model, const Pattern& pat
   const Explanations search = find_explanations(model, pattern, options, progress);
   std::vector<Mistake> mistakes;
   for (const Explanation& e : search.found)
-    mistakes.push_back({e.place, e.written + "; " + e.instead});
+    mistakes.push_back({e.place, e.written + "; " + e.instead, e.enough});
   if (mistakes.empty()) mistakes = impossible_values(model, pattern);
   if (search.complete) return mistakes;
   const std::string changes = std::to_string(search.trials) +

@@ -18,6 +18,7 @@ namespace ayumi {
 struct Mistake {
   std::string place;  ///< JSON pointer in the file; "" for the whole pattern
   std::string words;
+  bool explains_all = false;  ///< put right, the pattern is consistent
 
   std::string text() const { return place.empty() ? words : place + ": " + words; }
 };

@@ -1376,6 +1376,7 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
       } else {
         c.hypothesis.says.instead += result_words(found, c.outcome);
       }
+      c.hypothesis.says.enough = c.outcome.good();
       // The steps before this one are part of what is enough.
       if (round > 0) c.hypothesis.says.instead += " (together with the change named before)";
       result.found.push_back(c.hypothesis.says);

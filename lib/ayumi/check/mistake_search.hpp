@@ -20,6 +20,7 @@ struct Explanation {
   std::string place;    ///< JSON pointer in the pattern's file
   std::string written;  ///< what stands there: "the right foot's x is 0.9 m"
   std::string instead;  ///< what would do: "with 0.09 m, ... the pattern is consistent"
+  bool enough = false;  ///< with it, the pattern is consistent
 };
 
 /// Versions of the pattern that are sampled and checked in all rounds together. Chosen: the planted

@@ -52,10 +52,6 @@ constexpr double kRestTime = 0.5;
 /// Slowest oscillation of the ZMP that is looked for [Hz]. Chosen: faster than any step, and slower
 /// than the rocking of a robot on soft soles. Slower motions are judged by the COG.
 constexpr double kSlowestRocking = 3;
-/// Fraction of the weight above which a foot or the robot is on the ground. Chosen: above the noise
-/// of contacts that open and close, below the load of any stance. Half: pushed walk, touchdowns 6
-/// to 5; twice: 7.
-constexpr double kTouchLoad = 0.05;
 /// Time off the ground after which the robot is in flight [s]. Chosen: a shorter one is a rebound.
 /// Half: viip jump, flight 0.154 to 0.177 s; twice: no change.
 constexpr double kMinFlight = 0.04;

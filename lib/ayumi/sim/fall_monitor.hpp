@@ -10,6 +10,11 @@
 
 namespace ayumi {
 
+/// Fraction of the weight above which a foot or the robot is on the ground. Chosen: above the noise
+/// of contacts that open and close, below the load of any stance. Half: pushed walk, touchdowns 6
+/// to 5; twice: 7.
+inline constexpr double kTouchLoad = 0.05;
+
 /// The largest errors of a run until its end or its fall.
 struct LargestErrors {
   double cog = 0;        ///< of the COG relative to the feet, horizontal [m]

@@ -234,9 +234,8 @@ std::vector<Mistake> likely_causes(const Task& task, const CheckOptions& options
   const std::vector<Mistake> mistakes =
       likely_mistakes(task.robot, task.pattern, options, progress);
   const auto explained = [&](const Mistake& foothold) {
-    return mistakes.size() == 1 && !mistakes[0].place.empty() &&
-           foothold.place.starts_with(mistakes[0].place) &&
-           mistakes[0].words.find("the pattern is consistent") != std::string::npos;
+    return mistakes.size() == 1 && mistakes[0].explains_all && !mistakes[0].place.empty() &&
+           foothold.place.starts_with(mistakes[0].place);
   };
   std::erase_if(causes, explained);
   causes.insert(causes.end(), mistakes.begin(), mistakes.end());

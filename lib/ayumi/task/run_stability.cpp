@@ -10,6 +10,7 @@
 #include "ayumi/math/polygon.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/motion/ground_world.hpp"
+#include "ayumi/sim/fall_monitor.hpp"
 
 namespace ayumi {
 
@@ -17,9 +18,6 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-// Share of the weight above which a sole carries. Source: kTouchLoad of sim/fall_monitor.cpp.
-constexpr double kCarries = 0.05;
 
 using Feet = std::array<bool, 2>;
 
@@ -55,7 +53,7 @@ StabilitySeries run_stability(const RobotModel& model, const ActuatorLimits& act
   StabilitySeries out =
       empty_stability(static_cast<size_t>((count + stretch - 1) / stretch), stretch * log.dt);
   const std::vector<int> next = next_planned(log);
-  const double least_load = kCarries * model.mass() * kGravity;
+  const double least_load = kTouchLoad * model.mass() * kGravity;
   RobotData now(model), later(model);
   int later_at = -1;
   for (int k = 0; k < count; ++k) {
