@@ -287,7 +287,7 @@ Comparison compare(const RobotModel& model, const SimulationLog& log,
       const AngleTable run = rows_until(simulated, result.end),
                        recorded = rows_until(*measured, result.end - result.shift);
       const std::string lost = lost_rows_words(
-          lost_rows(run, recorded, moving_joints(run, recorded), -result.shift), measured->dt);
+          lost_rows(run, recorded, moving_joints(run, recorded), -result.shift), *measured);
       if (!lost.empty()) result.notes.push_back("the recording: " + lost);
     }
     if (const std::string wrong = loads_rows_complaint(sensors, *measured); !wrong.empty())

@@ -4,7 +4,7 @@
 // once: with p the command that is delayed as the recording is, the differences e = theta - p of
 // all joints j step by n dt p'_j, where n is the number of lost rows. Least squares over the rows
 // around give n and its standard deviation. Where nothing moves, the delays before and after show
-// it.
+// it, for each joint that moves on both sides: joints with different servos have different delays.
 
 #include <string>
 #include <vector>
@@ -28,9 +28,9 @@ struct LostRows {
 LostRows lost_rows(const AngleTable& command, const AngleTable& measured,
                    const std::vector<Eigen::Index>& dofs, double delay);
 
-/// "data row 8001 (8 s, one row every 1 ms): 3 rows are missing before it, ..."; empty where no
-/// row is lost.
-std::string lost_rows_words(const LostRows& lost, double dt);
+/// "at data row 8001 (8.000 s, one row every 1 ms), 3 rows are missing: from here on, ..."; empty
+/// where no row is lost.
+std::string lost_rows_words(const LostRows& lost, const AngleTable& measured);
 
 /// What is wrong with the number of rows of `loads`, which were recorded with `measured`; empty:
 /// nothing, or rows with times of their own.

@@ -226,7 +226,7 @@ void require_answer(const RobotModel& model, const AngleTable& command, const An
   }
   const double behind = std::clamp(shift, 0.0, longest_lag);
   if (const LostRows lost = lost_rows(command, measured, dofs, behind); lost.found)
-    complain(lost_rows_words(lost, measured.dt));
+    complain(lost_rows_words(lost, measured));
   // What is missing where nothing moves shows at the end only.
   const double least = std::abs(measured.dt - command.dt) < 1e-9
                            ? 0.5 * command.dt
