@@ -5,6 +5,7 @@
 #include <cmath>
 #include <type_traits>
 
+#include "ayumi/render/ground_plane.hpp"
 #include "ayumi/sim/ground.hpp"
 
 namespace ayumi::test {
@@ -71,46 +72,6 @@ TEST(VisibleRegion, StaysInThePictureAndTakesItWholeForWhatIsBehindTheCamera) {
   behind.add(Vector3d(3, 0, 0));
   EXPECT_EQ(behind.pixels().width, kWidth);
   EXPECT_EQ(behind.pixels().height, kHeight);
-}
-
-TEST(VisibleRegion, WhatIsAroundMakesThePictureWhole) {
-  for (const PixelBox& inner :
-       {PixelBox{10, 20, 100, 50}, PixelBox{}, PixelBox{0, 0, kWidth, kHeight}}) {
-    int pixels = inner.width * inner.height;
-    for (const PixelBox& box : around(inner, kWidth, kHeight)) pixels += box.width * box.height;
-    EXPECT_EQ(pixels, kWidth * kHeight);
-  }
-}
-
-// By a second route: rays of single pixels, from the bottom upwards.
-TEST(GroundHeight, IsWhereTheFirstRowLeavesTheSquare) {
-  for (const Vector3d& eye : {Vector3d(2, -2, 1), Vector3d(1.5, 0.2, 0.35), Vector3d(0.1, 0, 3)}) {
-    const Camera camera = camera_at(eye);
-    const Eigen::Matrix4d back =
-        (projection_matrix(camera, kAspect) * view_matrix(camera)).inverse();
-    const GroundRectangle plane = level_ground(-0.2);
-    const Eigen::Vector2d center(0.3, -0.1);
-    const double reach = 20;
-    const auto sees_ground = [&](double x, double y) {
-      const Vector3d p = (back * Eigen::Vector4d(x, y, 0, 1)).hnormalized();
-      const Vector3d ray = p - eye;
-      const double along = (plane.origin.z() - eye.z()) / ray.z();
-      const Vector3d at = eye + along * ray;
-      return along > 0 && std::abs(at.x() - center.x()) < reach &&
-             std::abs(at.y() - center.y()) < reach;
-    };
-    double first = 1;
-    for (int row = 0; row < 2000 && first == 1; ++row) {
-      const double y = -1 + row / 1000.0;
-      for (int i = -20; i <= 20; ++i)
-        if (!sees_ground(i / 20.0, y)) first = y;
-    }
-    EXPECT_NEAR(ground_height(camera, kAspect, plane, center, reach), first, 2e-3);
-  }
-}
-
-TEST(GroundHeight, IsTheBottomSeenFromBelow) {
-  EXPECT_EQ(ground_height(camera_at({2, 0, -1}), kAspect, level_ground(0), {0, 0}, 10), -1);
 }
 
 TEST(Covered, BoundsWhatIsNotZero) {

@@ -22,7 +22,7 @@ namespace ayumi {
   X(BINDRENDERBUFFER, BindRenderbuffer) \
   X(BINDTEXTURE, BindTexture) \
   X(BINDVERTEXARRAY, BindVertexArray) \
-  X(BLENDFUNC, BlendFunc) \
+  X(BLENDFUNCSEPARATE, BlendFuncSeparate) \
   X(BLITFRAMEBUFFER, BlitFramebuffer) \
   X(BUFFERDATA, BufferData) \
   X(CHECKFRAMEBUFFERSTATUS, CheckFramebufferStatus) \
@@ -68,12 +68,6 @@ namespace ayumi {
   X(VERTEXATTRIBPOINTER, VertexAttribPointer) \
   X(VIEWPORT, Viewport)
 // clang-format on
-
-/// Part of an index buffer.
-struct IndexRange {
-  GLsizei count = 0;
-  size_t first = 0;
-};
 
 /// Vertices as RenderVertex holds them.
 struct GlMesh {

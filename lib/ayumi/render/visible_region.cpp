@@ -45,35 +45,4 @@ PixelBox VisibleRegion::pixels() const {
           edge(seen_.max().y(), height_, kSpare + 1) - y};
 }
 
-std::array<PixelBox, 4> around(const PixelBox& inner, int width, int height) {
-  const int right = inner.x + inner.width, top = inner.y + inner.height;
-  return {{{0, 0, width, inner.y},
-           {0, top, width, height - top},
-           {0, inner.y, inner.x, inner.height},
-           {right, inner.y, width - right, inner.height}}};
-}
-
-// The square is seen as a convex shape: it holds a row whose two ends it holds, and with the lowest
-// row and another one all rows between.
-double ground_height(const Camera& camera, double aspect, const GroundRectangle& plane,
-                     const Vector2d& center, double reach) {
-  const Eigen::Matrix3d turn = view_matrix(camera).topLeftCorner<3, 3>();  // right, up, back
-  const double up = std::tan(0.5 * camera.field_of_view), right = up * aspect;
-  const Vector3d eye = camera.eye - plane.origin;
-  const auto is_ground = [&](double x, double y) {
-    const Vector3d ray = turn.transpose() * Vector3d(x * right, y * up, -1);
-    const double depth = -plane.normal.dot(eye) / plane.normal.dot(ray);
-    if (!(depth > camera.near && depth < camera.far)) return false;
-    const Vector3d at = eye + depth * ray;
-    return std::abs(plane.u.dot(at) - center.x()) < reach &&
-           std::abs(plane.v.dot(at) - center.y()) < reach;
-  };
-  const auto is_row = [&](double y) { return is_ground(-1, y) && is_ground(1, y); };
-  if (plane.normal.dot(eye) <= 0 || !is_row(-1)) return -1;
-  if (is_row(1)) return 1;
-  double low = -1, high = 1;
-  for (int i = 0; i < 20; ++i) (is_row(0.5 * (low + high)) ? low : high) = 0.5 * (low + high);
-  return low;
-}
-
 }  // namespace ayumi

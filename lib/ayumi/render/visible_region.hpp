@@ -1,12 +1,10 @@
 #pragma once
-// Which part of a picture has edges to be smoothed, and which part is ground alone. Pixels and rows
-// are counted from the bottom, as OpenGL does.
+// Which part of a picture something stands in before the ground. Pixels and rows are counted from
+// the bottom, as OpenGL does.
 
 #include <Eigen/Geometry>
-#include <array>
 
 #include "ayumi/render/camera.hpp"
-#include "ayumi/render/ground_plane.hpp"
 
 namespace ayumi {
 
@@ -30,13 +28,5 @@ class VisibleRegion {
   int width_, height_;
   Eigen::AlignedBox2d seen_;  // -1..1 over the picture
 };
-
-/// The picture without `inner`, as boxes beside each other.
-std::array<PixelBox, 4> around(const PixelBox& inner, int width, int height);
-
-/// Height up to which a picture shows nothing but the square of the plane with this middle (plane
-/// coordinates) and half edge [m]: -1 its bottom, 1 its top.
-double ground_height(const Camera& camera, double aspect, const GroundRectangle& plane,
-                     const Eigen::Vector2d& center, double reach);
 
 }  // namespace ayumi
