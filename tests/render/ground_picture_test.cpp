@@ -193,7 +193,7 @@ TEST(LayPixelsOver, MixesByCoverFromTheBottomUpwards) {
   Image image{4, 3, std::vector<std::uint8_t>(36, 100)};
   const std::vector<std::uint8_t> part = {10, 20, 30, 255, 0, 0, 0, 0,  //
                                           50, 60, 70, 127, 1, 2, 3, 1};
-  lay_pixels_over(part.data(), {1, 0, 2, 2}, image);
+  lay_pixels_over(part.data(), 2, {1, 0, 2, 2}, image);
   const auto is = [&](int x, int y, int r, int g, int b) {
     const std::uint8_t* p = image.pixel(x, y);
     EXPECT_EQ((std::array<int, 3>{p[0], p[1], p[2]}), (std::array<int, 3>{r, g, b})) << x << y;

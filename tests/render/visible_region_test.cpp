@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <type_traits>
 
@@ -72,6 +73,59 @@ TEST(VisibleRegion, StaysInThePictureAndTakesItWholeForWhatIsBehindTheCamera) {
   behind.add(Vector3d(3, 0, 0));
   EXPECT_EQ(behind.pixels().width, kWidth);
   EXPECT_EQ(behind.pixels().height, kHeight);
+}
+
+// By a second route: points inside the body, each at its pixel.
+TEST(CoveredTiles, HoldsEveryPointOfABodyAndLeavesMuchOut) {
+  const Camera camera = camera_at({1.2, -1, 0.7});
+  const PixelBox part{20, 10, 280, 180};
+  const auto turned = [](double angle) {
+    Isometry3d pose = Isometry3d::Identity();
+    pose.rotate(Eigen::AngleAxisd(angle, Vector3d(1, 2, 3).normalized()));
+    return pose;
+  };
+  const AlignedBox3d box(Vector3d(-0.02, -0.02, -0.3), Vector3d(0.02, 0.03, 0.25));
+  for (const double angle : {0.0, 0.7, 2.1}) {
+    CoveredTiles tiles(clip_of(camera), kWidth, kHeight, part);
+    tiles.add(box, turned(angle));
+    const std::vector<PixelBox> runs = tiles.runs();
+    int area = 0;
+    for (const PixelBox& run : runs) {
+      area += run.width * run.height;
+      EXPECT_TRUE(run.x >= part.x && run.y >= part.y && run.x + run.width <= part.x + part.width &&
+                  run.y + run.height <= part.y + part.height);
+    }
+    EXPECT_LT(area, part.width * part.height / 3);
+    for (int i = 0; i < 1000; ++i) {
+      const Vector3d share(i % 10 / 9.0, i / 10 % 10 / 9.0, i / 100 / 9.0);
+      const Vector3d point = turned(angle) * Vector3d(box.min() + share.cwiseProduct(box.sizes()));
+      const Vector3d pixel = project(camera, kWidth, kHeight, point);
+      const double x = pixel.x(), y = kHeight - pixel.y();
+      if (x < part.x || y < part.y || x >= part.x + part.width || y >= part.y + part.height)
+        continue;
+      EXPECT_TRUE(std::any_of(runs.begin(), runs.end(),
+                              [&](const PixelBox& run) {
+                                return x >= run.x && x < run.x + run.width && y >= run.y &&
+                                       y < run.y + run.height;
+                              }))
+          << x << " " << y;
+    }
+  }
+}
+
+TEST(CoveredTiles, TakesAllForWhatIsBehindTheCameraAndNothingForWhatIsOutside) {
+  const Camera camera = camera_at({2, 0, 0.3});
+  const PixelBox part{16, 32, 100, 50};
+  const auto area = [&](const std::vector<Vector3d>& points) {
+    CoveredTiles tiles(clip_of(camera), kWidth, kHeight, part);
+    tiles.add(points);
+    int sum = 0;
+    for (const PixelBox& run : tiles.runs()) sum += run.width * run.height;
+    return sum;
+  };
+  EXPECT_EQ(area({{3, 0, 0}, {0, 0, 0}}), part.width * part.height);
+  EXPECT_EQ(area({{0, 500, 0}, {0, 501, 0}}), 0);
+  EXPECT_EQ(area({}), 0);
 }
 
 TEST(Covered, BoundsWhatIsNotZero) {

@@ -367,9 +367,9 @@ void GroundPicture::draw_shadow(const ShadowPicture& shadow, Image& image) const
   }
 }
 
-void lay_pixels_over(const std::uint8_t* rgba, const PixelBox& box, Image& image) {
+void lay_pixels_over(const std::uint8_t* rgba, int stride, const PixelBox& box, Image& image) {
   for (int row = 0; row < box.height; ++row) {
-    const std::uint8_t* from = rgba + size_t(4) * size_t(box.width) * size_t(row);
+    const std::uint8_t* from = rgba + size_t(4) * size_t(stride) * size_t(row);
     std::uint8_t* to = image.pixel(box.x, image.height - 1 - box.y - row);
     for (int x = 0; x < box.width; ++x, from += 4, to += 3) {
       if (from[3] == 0) continue;

@@ -63,7 +63,8 @@ class GroundPicture {
 };
 
 /// Lays a part of a picture over it: four bytes per pixel from its bottom row upwards, red, green
-/// and blue multiplied by the fourth, which says how much of the pixel they cover.
-void lay_pixels_over(const std::uint8_t* rgba, const PixelBox& box, Image& image);
+/// and blue multiplied by the fourth, which says how much of the pixel they cover. A row begins
+/// `stride` pixels after the one below.
+void lay_pixels_over(const std::uint8_t* rgba, int stride, const PixelBox& box, Image& image);
 
 }  // namespace ayumi

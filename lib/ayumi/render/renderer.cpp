@@ -26,7 +26,6 @@ using Eigen::Matrix4f;
 using Eigen::Vector3d;
 
 constexpr size_t kShadowTriangles = 4000;  // finer ones do not show in a shadow of kShadowSize
-constexpr int kSamples = 4;                // per pixel, where edges are smoothed
 
 const Eigen::Vector4f kNoTint = Eigen::Vector4f::Zero();
 
@@ -99,6 +98,7 @@ Renderer::Parts::Parts(const DrawnRobot& drawn_bodies, const RenderOptions& chos
   textured = gl.link(kSolidVertex, kSolidFragment, kTextureInput);
   standing = gl.link(kSceneryVertex, kSolidFragment, kSceneryInput);
   flat = gl.link(kFlatVertex, kFlatFragment);
+  mean = gl.link(kMeanVertex, kMeanFragment);
   ground = gl.link(kGroundVertex, kGroundFragment, on_floor.hole.isEmpty() ? kWhole : kWithHole);
   robot = gl.make_mesh();
   caster = gl.make_mesh();
@@ -112,11 +112,8 @@ Renderer::Parts::Parts(const DrawnRobot& drawn_bodies, const RenderOptions& chos
   if (!on_floor.hole.isEmpty())
     hole << on_floor.hole.min().cast<float>(), on_floor.hole.max().cast<float>();
   square = gl.make_square();
-  drawn = gl.make_target(options.width, options.height, options.antialias ? kSamples : 0, GL_RGBA8,
-                         true);
+  runs = gl.make_places();
   scenery_box = bounds(on_floor.triangles);
-  if (options.antialias)
-    finished = gl.make_target(options.width, options.height, 0, GL_RGBA8, false);
   flattened = gl.make_target(kShadowSize, kShadowSize, 0, GL_R8, false);
   gl.GenTextures(1, &coverage);
   gl.BindTexture(GL_TEXTURE_2D, coverage);
@@ -332,14 +329,16 @@ Image Renderer::render(const Scene& scene) {
       .draw(p.shadow, image);
   const PixelBox part = p.with_bodies(scene, view_projection);
   if (part.width <= 0 || part.height <= 0) return image;
+  p.make_room(part);
   p.gl.BindFramebuffer(GL_FRAMEBUFFER, p.drawn.framebuffer);
-  p.gl.Viewport(0, 0, p.options.width, p.options.height);
-  p.gl.Enable(GL_SCISSOR_TEST);
-  p.gl.Scissor(part.x, part.y, part.width, part.height);
+  p.gl.Viewport(-part.x, -part.y, p.options.width, p.options.height);
   p.gl.DepthFunc(GL_LEQUAL);
   p.gl.Enable(GL_DEPTH_TEST);
   p.gl.ClearColor(0, 0, 0, 0);
+  // A part of a target would be cleared by drawing over it, which takes much longer.
   p.gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  p.gl.Enable(GL_SCISSOR_TEST);
+  p.gl.Scissor(0, 0, part.width, part.height);
   p.draw_plane_depth(scene, setting, part);
   p.order = p.nearest_first(scene);
   p.light(scene, view_projection, sun);
@@ -350,7 +349,7 @@ Image Renderer::render(const Scene& scene) {
   p.begin_mixing();
   p.draw_exposures(scene, view_projection);
   p.draw_overlay(scene);
-  p.lay_over(part, image);
+  p.lay_over(part, p.covered_runs(scene, view_projection, part), image);
   return image;
 }
 

@@ -11,6 +11,8 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr int kShadowBlur = 2;  // radius of the box [pixel of the coverage]
+constexpr int kSamples = 4;     // per pixel, where edges are smoothed; as the shader kMeanFragment
+constexpr int kRoom = 64;       // [pixel] by which targets grow
 
 }  // namespace
 
@@ -87,10 +89,7 @@ void Renderer::Parts::draw_plane_depth(const Scene& scene, const Setting& settin
   if (!options.ground || scene.camera.parallel_height > 0) return;
   const PixelBox box = below_ground(scene, setting);
   if (box.width <= 0 || box.height <= 0) return;
-  const auto restrict_to = [&](const PixelBox& part) {
-    gl.Scissor(part.x, part.y, part.width, part.height);
-  };
-  restrict_to(box);
+  gl.Scissor(box.x - within.x, box.y - within.y, box.width, box.height);
   const GroundRectangle& plane = setting.plane;
   const double distance = (scene.camera.eye - scene.camera.target).norm();
   gl.UseProgram(ground);
@@ -110,22 +109,70 @@ void Renderer::Parts::draw_plane_depth(const Scene& scene, const Setting& settin
   gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
   gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   gl.Disable(GL_POLYGON_OFFSET_FILL);
-  restrict_to(within);
+  gl.Scissor(0, 0, within.width, within.height);
 }
 
-void Renderer::Parts::lay_over(const PixelBox& box, Image& image) {
+std::vector<PixelBox> Renderer::Parts::covered_runs(const Scene& scene,
+                                                    const Matrix4f& view_projection,
+                                                    const PixelBox& box) const {
+  CoveredTiles tiles(view_projection, options.width, options.height, box);
+  for (size_t i = 0; i < boxes.size(); ++i) {
+    tiles.add(boxes[i], scene.poses[i]);
+    for (const Exposure& exposure : scene.exposures) tiles.add(boxes[i], exposure.poses[i]);
+  }
+  tiles.add(scenery_box, scene.floor);
+  tiles.add(bounds(scene.bumps), scene.floor);
+  const std::vector<std::uint32_t>& indices = scene.overlay.indices;
+  for (size_t i = 0; i + 2 < indices.size(); i += 3) {
+    std::array<Vector3d, 3> corners;
+    for (size_t k = 0; k < 3; ++k)
+      corners[k] = scene.overlay.vertices[indices[i + k]].position.cast<double>();
+    tiles.add(corners);
+  }
+  return tiles.runs();
+}
+
+void Renderer::Parts::make_room(const PixelBox& box) {
+  if (box.width <= drawn.width && box.height <= drawn.height) return;
+  const auto whole = [](int size) { return (size + kRoom - 1) / kRoom * kRoom; };
+  const int width = std::max(drawn.width, whole(box.width));
+  const int height = std::max(drawn.height, whole(box.height));
+  gl.discard(drawn);
+  gl.discard(finished);
+  drawn = gl.make_target(width, height, options.antialias ? kSamples : 0, GL_RGBA8, true);
+  if (options.antialias) finished = gl.make_target(width, height, 0, GL_RGBA8, false);
+}
+
+void Renderer::Parts::lay_over(const PixelBox& box, const std::vector<PixelBox>& parts,
+                               Image& image) {
   if (options.antialias) {
-    const int right = box.x + box.width, top = box.y + box.height;
+    std::vector<float> places;
+    for (const PixelBox& part : parts) {
+      const auto left = float(part.x - box.x), bottom = float(part.y - box.y);
+      const float right = left + float(part.width), top = bottom + float(part.height);
+      for (const float number : {left, bottom, right, bottom, right, top,  //
+                                 left, bottom, right, top, left, top})
+        places.push_back(number);
+    }
+    gl.BindFramebuffer(GL_FRAMEBUFFER, finished.framebuffer);
+    gl.Viewport(0, 0, finished.width, finished.height);
     gl.Disable(GL_SCISSOR_TEST);
-    gl.BindFramebuffer(GL_READ_FRAMEBUFFER, drawn.framebuffer);
-    gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, finished.framebuffer);
-    gl.BlitFramebuffer(box.x, box.y, right, top, box.x, box.y, right, top, GL_COLOR_BUFFER_BIT,
-                       GL_NEAREST);
-    gl.BindFramebuffer(GL_READ_FRAMEBUFFER, finished.framebuffer);
+    gl.Disable(GL_DEPTH_TEST);
+    gl.UseProgram(mean);
+    gl.set(mean, "center", 0.5 * finished.width, 0.5 * finished.height);
+    gl.BindTexture(GL_TEXTURE_2D_MULTISAMPLE, drawn.color);
+    gl.BindVertexArray(runs.array);
+    gl.BindBuffer(GL_ARRAY_BUFFER, runs.vertices);
+    gl.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(places.size() * sizeof(float)),
+                  places.data(), GL_STREAM_DRAW);
+    gl.DrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(places.size() / 2));
   }
   pixels.resize(size_t(4) * size_t(box.width) * size_t(box.height));
-  gl.ReadPixels(box.x, box.y, box.width, box.height, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
-  lay_pixels_over(pixels.data(), box, image);
+  gl.ReadPixels(0, 0, box.width, box.height, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
+  for (const PixelBox& part : parts)
+    lay_pixels_over(
+        &pixels[4 * (size_t(part.y - box.y) * size_t(box.width) + size_t(part.x - box.x))],
+        box.width, part, image);
 }
 
 }  // namespace ayumi

@@ -33,14 +33,15 @@ struct Renderer::Parts {
   RenderOptions options;
   OffscreenContext context;
   Gl gl;
-  GLuint solid, textured, standing, ground, flat;
-  GlMesh robot, caster, overlay, scenery, bumps, square;
+  GLuint solid, textured, standing, ground, flat, mean;
+  GlMesh robot, caster, overlay, scenery, bumps, square, runs;
   std::vector<BodyRanges> ranges;
   std::vector<IndexRange> caster_ranges;   // by body: what throws the shadow
   std::vector<Eigen::AlignedBox3d> boxes;  // of each body, body frame
   std::vector<size_t> order;               // in which bodies are drawn
   std::vector<std::string> notes;
-  GlTarget drawn, finished, flattened;  // finished: without samples, where antialiased
+  GlTarget drawn, finished;  // as large as what is before the ground; finished: without samples
+  GlTarget flattened;
   GLuint coverage = 0;
   std::vector<std::uint8_t> pixels;  // of a part of the picture, as OpenGL gives it
   IndexRange all_scenery;
@@ -72,8 +73,13 @@ struct Renderer::Parts {
   /// The ground's depth where it may hide something; its colours are of a picture of its own.
   void draw_plane_depth(const Scene& scene, const Setting& setting, const PixelBox& within);
   void draw_overlay(const Scene& scene);
+  /// The tiles of the box where anything but the ground is.
+  std::vector<PixelBox> covered_runs(const Scene& scene, const Eigen::Matrix4f& view_projection,
+                                     const PixelBox& box) const;
+  /// Targets for a part of the picture, its corner at theirs.
+  void make_room(const PixelBox& box);
   /// Smoothed, over the picture of ground and sky.
-  void lay_over(const PixelBox& box, Image& image);
+  void lay_over(const PixelBox& box, const std::vector<PixelBox>& parts, Image& image);
 };
 
 }  // namespace ayumi

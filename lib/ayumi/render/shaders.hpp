@@ -157,4 +157,21 @@ out vec4 pixel;
 void main() { pixel = vec4(1.0); }
 )";
 
+// One colour from the samples of each pixel; places in pixels.
+inline constexpr const char* kMeanVertex = R"(
+layout(location = 0) in vec2 place;
+uniform vec2 center;
+void main() { gl_Position = vec4(place / center - 1.0, 0.0, 1.0); }
+)";
+
+inline constexpr const char* kMeanFragment = R"(
+uniform sampler2DMS samples;
+out vec4 pixel;
+void main() {
+  ivec2 at = ivec2(gl_FragCoord.xy);
+  pixel = 0.25 * (texelFetch(samples, at, 0) + texelFetch(samples, at, 1) +
+                  texelFetch(samples, at, 2) + texelFetch(samples, at, 3));
+}
+)";
+
 }  // namespace ayumi::shaders

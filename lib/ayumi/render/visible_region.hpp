@@ -3,6 +3,8 @@
 // the bottom, as OpenGL does.
 
 #include <Eigen/Geometry>
+#include <span>
+#include <vector>
 
 #include "ayumi/render/camera.hpp"
 
@@ -27,6 +29,24 @@ class VisibleRegion {
   Eigen::Matrix4d view_projection_;
   int width_, height_;
   Eigen::AlignedBox2d seen_;  // -1..1 over the picture
+};
+
+/// Which parts of a box of the picture have anything in them, by tiles of a few pixels.
+class CoveredTiles {
+ public:
+  CoveredTiles(const Eigen::Matrix4f& view_projection, int width, int height, const PixelBox& box);
+  /// Of these points, the smallest convex body.
+  void add(std::span<const Eigen::Vector3d> points);
+  void add(const Eigen::AlignedBox3d& box, const Eigen::Isometry3d& pose);
+  /// Beside and above each other, within the box.
+  std::vector<PixelBox> runs() const;
+
+ private:
+  Eigen::Matrix4d view_projection_;
+  int width_, height_;
+  PixelBox box_;
+  int columns_, rows_;
+  std::vector<bool> covered_;  // by rows
 };
 
 }  // namespace ayumi
