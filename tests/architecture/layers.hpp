@@ -132,7 +132,7 @@ inline const std::vector<ThirdParty>& third_parties() {
       {"POSIX",
        std::regex("sys/.*|(unistd|fcntl|signal|spawn|poll|termios|pthread|malloc)\\.h"),
        {"base", "render", "app", "mesh_reader"}},
-      {"processor intrinsics", std::regex("(imm|x86)intrin\\.h"), {"dynamics", "sim"}}};
+      {"processor intrinsics", std::regex("(imm|x86)intrin\\.h"), {"dynamics", "sim", "render"}}};
   return table;
 }
 

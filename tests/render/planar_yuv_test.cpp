@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -58,6 +59,33 @@ TEST(PlanarYuv, PixelsStayInTheirPlaces) {
       EXPECT_EQ(planes[size_t(4 * y + x)], x == 3 && y == 2 ? 235 : x == 0 && y == 1 ? 63 : 16);
   EXPECT_EQ((std::vector<std::uint8_t>(planes.begin() + 16, planes.end())),
             (std::vector<std::uint8_t>{122, 128, 128, 128, 156, 128, 128, 128}));
+}
+
+// By a second route: pictures of two pixels a side have no eight pixels to be taken at once.
+TEST(PlanarYuv, EightPixelsAtOnceGiveTheSameBytes) {
+  std::mt19937 random(11);
+  std::uniform_int_distribution<int> byte(0, 255);
+  for (const int width : {2, 8, 10, 12, 18, 26, 64}) {
+    Image image = plain(width, 4, {0, 0, 0});
+    for (std::uint8_t& value : image.rgb) value = static_cast<std::uint8_t>(byte(random));
+    std::vector<std::uint8_t> planes;
+    to_yuv420(image, planes);
+    const size_t w = size_t(width), cb = 4 * w, cr = cb + w;
+    for (size_t y = 0; y < 4; y += 2)
+      for (size_t x = 0; x < w; x += 2) {
+        Image small = plain(2, 2, {0, 0, 0});
+        for (size_t row = 0; row < 2; ++row)
+          std::copy_n(&image.rgb[3 * (w * (y + row) + x)], 6, &small.rgb[6 * row]);
+        std::vector<std::uint8_t> expected;
+        to_yuv420(small, expected);
+        EXPECT_EQ(planes[w * y + x], expected[0]);
+        EXPECT_EQ(planes[w * y + x + 1], expected[1]);
+        EXPECT_EQ(planes[w * (y + 1) + x], expected[2]);
+        EXPECT_EQ(planes[w * (y + 1) + x + 1], expected[3]);
+        EXPECT_EQ(planes[cb + w / 2 * (y / 2) + x / 2], expected[4]);
+        EXPECT_EQ(planes[cr + w / 2 * (y / 2) + x / 2], expected[5]);
+      }
+  }
 }
 
 }  // namespace

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <type_traits>
 
+#include "ayumi/render/ground_plane.hpp"
 #include "ayumi/sim/ground.hpp"
 
 namespace ayumi::test {
@@ -73,44 +75,57 @@ TEST(VisibleRegion, StaysInThePictureAndTakesItWholeForWhatIsBehindTheCamera) {
   EXPECT_EQ(behind.pixels().height, kHeight);
 }
 
-TEST(VisibleRegion, WhatIsAroundMakesThePictureWhole) {
-  for (const PixelBox& inner :
-       {PixelBox{10, 20, 100, 50}, PixelBox{}, PixelBox{0, 0, kWidth, kHeight}}) {
-    int pixels = inner.width * inner.height;
-    for (const PixelBox& box : around(inner, kWidth, kHeight)) pixels += box.width * box.height;
-    EXPECT_EQ(pixels, kWidth * kHeight);
-  }
-}
-
-// By a second route: rays of single pixels, from the bottom upwards.
-TEST(GroundHeight, IsWhereTheFirstRowLeavesTheSquare) {
-  for (const Vector3d& eye : {Vector3d(2, -2, 1), Vector3d(1.5, 0.2, 0.35), Vector3d(0.1, 0, 3)}) {
-    const Camera camera = camera_at(eye);
-    const Eigen::Matrix4d back =
-        (projection_matrix(camera, kAspect) * view_matrix(camera)).inverse();
-    const GroundRectangle plane = level_ground(-0.2);
-    const Eigen::Vector2d center(0.3, -0.1);
-    const double reach = 20;
-    const auto sees_ground = [&](double x, double y) {
-      const Vector3d p = (back * Eigen::Vector4d(x, y, 0, 1)).hnormalized();
-      const Vector3d ray = p - eye;
-      const double along = (plane.origin.z() - eye.z()) / ray.z();
-      const Vector3d at = eye + along * ray;
-      return along > 0 && std::abs(at.x() - center.x()) < reach &&
-             std::abs(at.y() - center.y()) < reach;
-    };
-    double first = 1;
-    for (int row = 0; row < 2000 && first == 1; ++row) {
-      const double y = -1 + row / 1000.0;
-      for (int i = -20; i <= 20; ++i)
-        if (!sees_ground(i / 20.0, y)) first = y;
+// By a second route: points inside the body, each at its pixel.
+TEST(CoveredTiles, HoldsEveryPointOfABodyAndLeavesMuchOut) {
+  const Camera camera = camera_at({1.2, -1, 0.7});
+  const PixelBox part{20, 10, 280, 180};
+  const auto turned = [](double angle) {
+    Isometry3d pose = Isometry3d::Identity();
+    pose.rotate(Eigen::AngleAxisd(angle, Vector3d(1, 2, 3).normalized()));
+    return pose;
+  };
+  const AlignedBox3d box(Vector3d(-0.02, -0.02, -0.3), Vector3d(0.02, 0.03, 0.25));
+  for (const double angle : {0.0, 0.7, 2.1}) {
+    CoveredTiles tiles(clip_of(camera), kWidth, kHeight, part);
+    tiles.add(box, turned(angle));
+    const std::vector<PixelBox> runs = tiles.runs();
+    int area = 0;
+    for (const PixelBox& run : runs) {
+      area += run.width * run.height;
+      EXPECT_TRUE(run.x >= part.x && run.y >= part.y && run.x + run.width <= part.x + part.width &&
+                  run.y + run.height <= part.y + part.height);
     }
-    EXPECT_NEAR(ground_height(camera, kAspect, plane, center, reach), first, 2e-3);
+    EXPECT_LT(area, part.width * part.height / 3);
+    for (int i = 0; i < 1000; ++i) {
+      const Vector3d share(i % 10 / 9.0, i / 10 % 10 / 9.0, i / 100 / 9.0);
+      const Vector3d point = turned(angle) * Vector3d(box.min() + share.cwiseProduct(box.sizes()));
+      const Vector3d pixel = project(camera, kWidth, kHeight, point);
+      const double x = pixel.x(), y = kHeight - pixel.y();
+      if (x < part.x || y < part.y || x >= part.x + part.width || y >= part.y + part.height)
+        continue;
+      EXPECT_TRUE(std::any_of(runs.begin(), runs.end(),
+                              [&](const PixelBox& run) {
+                                return x >= run.x && x < run.x + run.width && y >= run.y &&
+                                       y < run.y + run.height;
+                              }))
+          << x << " " << y;
+    }
   }
 }
 
-TEST(GroundHeight, IsTheBottomSeenFromBelow) {
-  EXPECT_EQ(ground_height(camera_at({2, 0, -1}), kAspect, level_ground(0), {0, 0}, 10), -1);
+TEST(CoveredTiles, TakesAllForWhatIsBehindTheCameraAndNothingForWhatIsOutside) {
+  const Camera camera = camera_at({2, 0, 0.3});
+  const PixelBox part{16, 32, 100, 50};
+  const auto area = [&](const std::vector<Vector3d>& points) {
+    CoveredTiles tiles(clip_of(camera), kWidth, kHeight, part);
+    tiles.add(points);
+    int sum = 0;
+    for (const PixelBox& run : tiles.runs()) sum += run.width * run.height;
+    return sum;
+  };
+  EXPECT_EQ(area({{3, 0, 0}, {0, 0, 0}}), part.width * part.height);
+  EXPECT_EQ(area({{0, 500, 0}, {0, 501, 0}}), 0);
+  EXPECT_EQ(area({}), 0);
 }
 
 TEST(Covered, BoundsWhatIsNotZero) {

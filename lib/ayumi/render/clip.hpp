@@ -48,12 +48,27 @@ struct ClipSummary {
   std::vector<std::string> notes;  ///< what is drawn otherwise than the robot's files say, and why
 };
 
+/// What all renderers of one clip share.
+struct ClipShape {
+  double height = 1;                                  ///< of the robot [m]
+  std::vector<std::vector<Eigen::Vector3d>> outline;  ///< farthest points of each body, its frame
+  std::shared_ptr<const DrawnRobot> robot;
+  std::vector<std::string> notes;
+};
+/// `thin`: triangles that a picture of this size cannot show are left out, which pays where many
+/// pictures are drawn.
+std::shared_ptr<const ClipShape> clip_shape(const RobotModel& model, const SimulationLog& log,
+                                            const ClipOptions& options, bool thin);
+
 /// One picture of the run at `t`, overlays and caption included.
 class ClipRenderer {
  public:
   /// `model` and `log` must outlive it. Throws Error(usage) for an empty log, options out of range,
   /// or a log of another robot.
   ClipRenderer(const RobotModel& model, const SimulationLog& log, const ClipOptions& options);
+  /// `shape` as clip_shape() gives it for the same robot, run and options.
+  ClipRenderer(const RobotModel& model, const SimulationLog& log, const ClipOptions& options,
+               std::shared_ptr<const ClipShape> shape);
   Image frame(double t);
   /// The same as a part of the clip, the legend of which is that of all its pictures.
   Image clip_frame(double t);
@@ -77,7 +92,6 @@ class ClipRenderer {
   ClipOptions options_;
   std::vector<PushRecord> pushes_;
   std::vector<std::string> notes_;
-  std::vector<BodySurface> surface_;                   ///< until the renderer has it
   double height_;                                      ///< of the robot [m]
   std::vector<std::vector<Eigen::Vector3d>> outline_;  ///< farthest points of each body, its frame
   std::optional<Framing> framing_;

@@ -63,16 +63,21 @@ GlMesh Gl::make_mesh() const {
   return mesh;
 }
 
-GlMesh Gl::make_square() const {
-  GlMesh square;
-  GenVertexArrays(1, &square.array);
-  BindVertexArray(square.array);
-  GenBuffers(1, &square.vertices);
-  BindBuffer(GL_ARRAY_BUFFER, square.vertices);
-  const float corners[] = {-1, -1, 1, -1, -1, 1, 1, 1};
-  BufferData(GL_ARRAY_BUFFER, sizeof corners, corners, GL_STATIC_DRAW);
+GlMesh Gl::make_places() const {
+  GlMesh places;
+  GenVertexArrays(1, &places.array);
+  BindVertexArray(places.array);
+  GenBuffers(1, &places.vertices);
+  BindBuffer(GL_ARRAY_BUFFER, places.vertices);
   EnableVertexAttribArray(0);
   VertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, 0, nullptr);
+  return places;
+}
+
+GlMesh Gl::make_square() const {
+  const GlMesh square = make_places();
+  const float corners[] = {-1, -1, 1, -1, -1, 1, 1, 1};
+  BufferData(GL_ARRAY_BUFFER, sizeof corners, corners, GL_STATIC_DRAW);
   return square;
 }
 
@@ -110,12 +115,29 @@ GlTarget Gl::make_target(int width, int height, int samples, GLenum format, bool
     RenderbufferStorageMultisample(GL_RENDERBUFFER, samples, storage, width, height);
     FramebufferRenderbuffer(GL_FRAMEBUFFER, where, GL_RENDERBUFFER, name);
   };
-  attach(target.color, format, GL_COLOR_ATTACHMENT0);
+  if (samples > 0) {
+    target.sampled = true;
+    GenTextures(1, &target.color);
+    BindTexture(GL_TEXTURE_2D_MULTISAMPLE, target.color);
+    TexImage2DMultisample(GL_TEXTURE_2D_MULTISAMPLE, samples, format, width, height, GL_TRUE);
+    FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D_MULTISAMPLE,
+                         target.color, 0);
+  } else {
+    attach(target.color, format, GL_COLOR_ATTACHMENT0);
+  }
   if (depth) attach(target.depth, GL_DEPTH_COMPONENT24, GL_DEPTH_ATTACHMENT);
   if (CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
     fail(ErrorCode::internal, "off-screen rendering: no picture of " + std::to_string(width) +
                                   " x " + std::to_string(height) + " pixels could be made");
   return target;
+}
+
+void Gl::discard(GlTarget& target) const {
+  if (target.framebuffer) DeleteFramebuffers(1, &target.framebuffer);
+  if (target.depth) DeleteRenderbuffers(1, &target.depth);
+  if (target.color && target.sampled) DeleteTextures(1, &target.color);
+  if (target.color && !target.sampled) DeleteRenderbuffers(1, &target.color);
+  target = {};
 }
 
 void Gl::set(GLuint program, const char* name, const Eigen::Matrix4f& value) const {

@@ -22,8 +22,7 @@ namespace ayumi {
   X(BINDRENDERBUFFER, BindRenderbuffer) \
   X(BINDTEXTURE, BindTexture) \
   X(BINDVERTEXARRAY, BindVertexArray) \
-  X(BLENDFUNC, BlendFunc) \
-  X(BLITFRAMEBUFFER, BlitFramebuffer) \
+  X(BLENDFUNCSEPARATE, BlendFuncSeparate) \
   X(BUFFERDATA, BufferData) \
   X(CHECKFRAMEBUFFERSTATUS, CheckFramebufferStatus) \
   X(CLEAR, Clear) \
@@ -32,7 +31,10 @@ namespace ayumi {
   X(COMPILESHADER, CompileShader) \
   X(CREATEPROGRAM, CreateProgram) \
   X(CREATESHADER, CreateShader) \
+  X(DELETEFRAMEBUFFERS, DeleteFramebuffers) \
+  X(DELETERENDERBUFFERS, DeleteRenderbuffers) \
   X(DELETESHADER, DeleteShader) \
+  X(DELETETEXTURES, DeleteTextures) \
   X(DEPTHFUNC, DepthFunc) \
   X(DEPTHMASK, DepthMask) \
   X(DISABLE, Disable) \
@@ -41,6 +43,7 @@ namespace ayumi {
   X(ENABLE, Enable) \
   X(ENABLEVERTEXATTRIBARRAY, EnableVertexAttribArray) \
   X(FRAMEBUFFERRENDERBUFFER, FramebufferRenderbuffer) \
+  X(FRAMEBUFFERTEXTURE2D, FramebufferTexture2D) \
   X(GENBUFFERS, GenBuffers) \
   X(GENERATEMIPMAP, GenerateMipmap) \
   X(GENFRAMEBUFFERS, GenFramebuffers) \
@@ -58,6 +61,7 @@ namespace ayumi {
   X(SCISSOR, Scissor) \
   X(SHADERSOURCE, ShaderSource) \
   X(TEXIMAGE2D, TexImage2D) \
+  X(TEXIMAGE2DMULTISAMPLE, TexImage2DMultisample) \
   X(TEXPARAMETERI, TexParameteri) \
   X(UNIFORM1F, Uniform1f) \
   X(UNIFORM2F, Uniform2f) \
@@ -69,12 +73,6 @@ namespace ayumi {
   X(VIEWPORT, Viewport)
 // clang-format on
 
-/// Part of an index buffer.
-struct IndexRange {
-  GLsizei count = 0;
-  size_t first = 0;
-};
-
 /// Vertices as RenderVertex holds them.
 struct GlMesh {
   GLuint array = 0, vertices = 0, indices = 0;
@@ -84,6 +82,7 @@ struct GlMesh {
 struct GlTarget {
   GLuint framebuffer = 0, color = 0, depth = 0;
   int width = 0, height = 0;
+  bool sampled = false;  ///< `color` is a texture of several samples per pixel
 };
 
 /// Needs a current OffscreenContext, whose destruction frees all objects made here.
@@ -104,8 +103,11 @@ struct Gl {
   /// A strip of two triangles over -1..1, places alone.
   GlMesh make_square() const;
   void fill(const GlMesh& mesh, const Triangles& triangles, GLenum usage) const;
+  /// Places alone, two numbers each.
+  GlMesh make_places() const;
   /// `samples` per pixel, 0 for one without resolving. Throws Error(internal) where refused.
   GlTarget make_target(int width, int height, int samples, GLenum format, bool depth) const;
+  void discard(GlTarget& target) const;
   void draw(const IndexRange& range) const;
 
   void set(GLuint program, const char* name, const Eigen::Matrix4f& value) const;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "ayumi/base/error.hpp"
+
 namespace ayumi {
 
 using Eigen::Matrix4f;
@@ -56,6 +58,10 @@ void blur(std::vector<std::uint8_t>& image, int size, int radius) {
   const auto n = static_cast<size_t>(size), r = static_cast<size_t>(radius), width = 2 * r + 1;
   std::vector<std::uint8_t> smooth(image.size());  // along rows
   std::vector<std::uint16_t> sums(n);              // of columns, a whole row at a time
+  // Multiplied and shifted, this divides every sum of `width` bytes by `width` exactly.
+  const std::uint32_t part = (1u << 24) / static_cast<std::uint32_t>(width) + 1;
+  require(width <= 255, "a shadow is blurred too widely");
+  const auto mean = [&](std::uint32_t sum) { return static_cast<std::uint8_t>(sum * part >> 24); };
   const auto add_row = [&](size_t y, int sign) {
     for (size_t x = 0; x < n; ++x)
       sums[x] = static_cast<std::uint16_t>(sums[x] + sign * smooth[y * n + x]);
@@ -63,12 +69,12 @@ void blur(std::vector<std::uint8_t>& image, int size, int radius) {
   for (int pass = 0; pass < 2; ++pass) {
     for (size_t y = 0; y < n; ++y) {
       const std::uint8_t* from = &image[y * n];
-      size_t sum = 0;
+      std::uint32_t sum = 0;
       for (size_t x = 0; x < std::min(r, n); ++x) sum += from[x];
       for (size_t x = 0; x < n; ++x) {
         if (x + r < n) sum += from[x + r];
         if (x > r) sum -= from[x - r - 1];
-        smooth[y * n + x] = static_cast<std::uint8_t>(sum / width);
+        smooth[y * n + x] = mean(sum);
       }
     }
     std::fill(sums.begin(), sums.end(), std::uint16_t(0));
@@ -76,8 +82,7 @@ void blur(std::vector<std::uint8_t>& image, int size, int radius) {
     for (size_t y = 0; y < n; ++y) {
       if (y + r < n) add_row(y + r, 1);
       if (y > r) add_row(y - r - 1, -1);
-      for (size_t x = 0; x < n; ++x)
-        image[y * n + x] = static_cast<std::uint8_t>(sums[x] / static_cast<std::uint16_t>(width));
+      for (size_t x = 0; x < n; ++x) image[y * n + x] = mean(sums[x]);
     }
   }
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 
 #include "ayumi/base/error.hpp"
@@ -64,6 +65,25 @@ SurfacePointer render_text(const std::string& text, const TextStyle& style) {
   return surface;
 }
 
+// Texts that are kept drawn. Chosen: more than one frame has; at half, a legend of many marks is
+// drawn anew for every frame, at twice, memory of a clip's times is kept that no other frame shows.
+constexpr size_t kMostTexts = 64;
+
+/// render_text(), of which the last ones are kept: the frames of a clip have the same words, and
+/// each is asked for its width first.
+std::shared_ptr<cairo_surface_t> text_surface(const std::string& text, const TextStyle& style) {
+  thread_local std::map<std::string, std::shared_ptr<cairo_surface_t>> kept;
+  std::string key(reinterpret_cast<const char*>(&style.size), sizeof style.size);
+  key += style.bold ? 'b' : ' ';
+  for (const Eigen::Vector4f* color : {&style.color, &style.plate})
+    key.append(reinterpret_cast<const char*>(color->data()), 4 * sizeof(float));
+  key += text;
+  const auto found = kept.find(key);
+  if (found != kept.end()) return found->second;
+  if (kept.size() >= kMostTexts) kept.clear();
+  return kept[key] = render_text(text, style);
+}
+
 /// Lays a premultiplied ARGB surface over the picture with its top left corner at (left, top).
 void compose(Image& image, cairo_surface_t* surface, int left, int top) {
   const int width = cairo_image_surface_get_width(surface);
@@ -112,12 +132,12 @@ void write_png(const std::filesystem::path& path, const Image& image) {
 }
 
 int drawn_width(const std::string& text, const TextStyle& style) {
-  return text.empty() ? 0 : cairo_image_surface_get_width(render_text(text, style).get());
+  return text.empty() ? 0 : cairo_image_surface_get_width(text_surface(text, style).get());
 }
 
 int draw_text(Image& image, double x, double y, const std::string& text, const TextStyle& style) {
   if (text.empty()) return 0;
-  const SurfacePointer surface = render_text(text, style);
+  const std::shared_ptr<cairo_surface_t> surface = text_surface(text, style);
   const int width = cairo_image_surface_get_width(surface.get());
   const int height = cairo_image_surface_get_height(surface.get());
   const double share = style.anchor == TextAnchor::left     ? 0.0

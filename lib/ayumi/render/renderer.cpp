@@ -8,15 +8,16 @@
 #include "ayumi/render/simplify.hpp"
 #include "ayumi/render/texture.hpp"
 
-// Order of a frame: the robot's shadow as coverage seen along the sun, read back, blurred and given
-// back as a small texture; then robot, scenery, ground, sky, shadow, exposures, overlay. An
-// exposure is drawn twice, first into the depth alone, so that only its nearest surface shines
+// Order of a frame: the robot's shadow as coverage seen along the sun, read back and blurred;
+// ground, sky and shadow as a picture (ground_picture.hpp). Then, in OpenGL, only where anything
+// else is: the depth of the ground where it may hide something, robot, scenery, exposures, overlay.
+// These are drawn on nothing, with colours multiplied by how much of a pixel they cover, and laid
+// over the picture: ground, sky and shadow have no edges that samples would smooth (the grid
+// smooths its own lines), so one colour per pixel is the same as one per sample.
+//
+// An exposure is drawn twice, first into the depth alone, so that only its nearest surface shines
 // through. It lies a little behind where it is: what coincides with it is seen, without speckle.
 // What an overlay hides behind the robot is drawn first and faintly, then its visible part.
-//
-// Ground, sky and shadow have no edges that samples would smooth (the grid smooths its own lines).
-// An antialiased frame is drawn with samples only where something else is, then resolved into the
-// rest, which has one sample and no depth.
 
 namespace ayumi {
 namespace {
@@ -25,7 +26,6 @@ using Eigen::Matrix4f;
 using Eigen::Vector3d;
 
 constexpr size_t kShadowTriangles = 4000;  // finer ones do not show in a shadow of kShadowSize
-constexpr int kSamples = 4;                // per pixel, where edges are smoothed
 
 const Eigen::Vector4f kNoTint = Eigen::Vector4f::Zero();
 
@@ -61,34 +61,59 @@ Eigen::Vector4f heat_color(float heat) {
   return {1.0f, 0.62f * (1 - std::clamp(heat, 0.0f, 1.0f)), 0.02f, 1.0f};
 }
 
-Renderer::Parts::Parts(const std::vector<BodySurface>& surface, const RenderOptions& chosen,
+std::shared_ptr<const DrawnRobot> drawn_robot(const std::vector<BodySurface>& robot) {
+  auto drawn = std::make_shared<DrawnRobot>();
+  Triangles all;
+  const auto add = [&](const Triangles& part) {
+    const IndexRange range = {static_cast<int>(part.indices.size()), all.indices.size()};
+    append(all, part);
+    return range;
+  };
+  for (const BodySurface& body : robot) {
+    DrawnRobot::Body out = {add(body.closed), add(body.open), {}, {}, {}};
+    for (const TexturedSurface& part : body.textured)
+      out.textured.emplace_back(add(part.triangles), part.texture);
+    for (const Triangles* part : parts_of(body)) out.box.extend(bounds(*part));
+    drawn->bodies.push_back(std::move(out));
+  }
+  drawn->triangles = welded(all);
+  std::vector<BodySurface> coarse = robot;
+  simplify(coarse, kShadowTriangles);
+  all = {};
+  for (size_t i = 0; i < coarse.size(); ++i) {
+    const size_t first = all.indices.size();
+    for (const Triangles* part : parts_of(coarse[i])) append(all, *part);
+    drawn->bodies[i].caster = {static_cast<int>(all.indices.size() - first), first};
+  }
+  for (RenderVertex& vertex : all.vertices) vertex = {vertex.position, {0, 0, 0}, {}, {0, 0}};
+  drawn->casters = welded(all);
+  return drawn;
+}
+
+Renderer::Parts::Parts(const DrawnRobot& drawn_bodies, const RenderOptions& chosen,
                        const Scenery& on_floor)
     : options(chosen), context(chosen.way), gl(context) {
   using namespace shaders;
   solid = gl.link(kSolidVertex, kSolidFragment, kPlainInput);
   textured = gl.link(kSolidVertex, kSolidFragment, kTextureInput);
   standing = gl.link(kSceneryVertex, kSolidFragment, kSceneryInput);
-  sky = gl.link(kSkyVertex, kSkyFragment);
   flat = gl.link(kFlatVertex, kFlatFragment);
-  const char* area = on_floor.hole.isEmpty() ? kWhole : kWithHole;
-  ground = gl.link(kGroundVertex, kGroundFragment, area);
-  shadow = gl.link(kGroundVertex, kShadowFragment, area);
+  mean = gl.link(kMeanVertex, kMeanFragment);
+  ground = gl.link(kGroundVertex, kGroundFragment, on_floor.hole.isEmpty() ? kWhole : kWithHole);
   robot = gl.make_mesh();
   caster = gl.make_mesh();
   overlay = gl.make_mesh();
   scenery = gl.make_mesh();
   bumps = gl.make_mesh();
-  upload(surface);
+  upload(drawn_bodies);
   gl.fill(scenery, on_floor.triangles, GL_STATIC_DRAW);
   all_scenery.count = static_cast<GLsizei>(on_floor.triangles.indices.size());
+  hole_box = on_floor.hole;
   if (!on_floor.hole.isEmpty())
     hole << on_floor.hole.min().cast<float>(), on_floor.hole.max().cast<float>();
   square = gl.make_square();
-  drawn = gl.make_target(options.width, options.height, options.antialias ? kSamples : 0, GL_RGBA8,
-                         true);
+  runs = gl.make_places();
   scenery_box = bounds(on_floor.triangles);
-  if (options.antialias)
-    finished = gl.make_target(options.width, options.height, 0, GL_RGBA8, false);
   flattened = gl.make_target(kShadowSize, kShadowSize, 0, GL_R8, false);
   gl.GenTextures(1, &coverage);
   gl.BindTexture(GL_TEXTURE_2D, coverage);
@@ -100,13 +125,7 @@ Renderer::Parts::Parts(const std::vector<BodySurface>& surface, const RenderOpti
   gl.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
 }
 
-void Renderer::Parts::upload(const std::vector<BodySurface>& surface) {
-  Triangles all;
-  const auto add = [&](const Triangles& part) {
-    const IndexRange range = {static_cast<GLsizei>(part.indices.size()), all.indices.size()};
-    append(all, part);
-    return range;
-  };
+void Renderer::Parts::upload(const DrawnRobot& drawn_bodies) {
   std::map<std::string, GLuint> pictures;
   const auto picture = [&](const std::string& file) {
     const auto known = pictures.find(file);
@@ -114,26 +133,16 @@ void Renderer::Parts::upload(const std::vector<BodySurface>& surface) {
     const Texture texture = read_texture(file, notes);
     return pictures[file] = gl.make_texture(texture.rgba, texture.width, texture.height);
   };
-  for (const BodySurface& body : surface) {
-    BodyRanges body_ranges = {add(body.closed), add(body.open), {}};
-    for (const TexturedSurface& part : body.textured)
-      body_ranges.textured.emplace_back(add(part.triangles), picture(part.texture));
+  for (const DrawnRobot::Body& body : drawn_bodies.bodies) {
+    BodyRanges body_ranges = {body.closed, body.open, {}};
+    for (const auto& [range, file] : body.textured)
+      body_ranges.textured.emplace_back(range, picture(file));
     ranges.push_back(std::move(body_ranges));
-    Eigen::AlignedBox3d box;
-    for (const Triangles* part : parts_of(body)) box.extend(bounds(*part));
-    boxes.push_back(box);
+    caster_ranges.push_back(body.caster);
+    boxes.push_back(body.box);
   }
-  gl.fill(robot, welded(all), GL_STATIC_DRAW);
-  std::vector<BodySurface> coarse = surface;
-  simplify(coarse, kShadowTriangles);
-  all = {};
-  for (const BodySurface& body : coarse) {
-    const size_t first = all.indices.size();
-    for (const Triangles* part : parts_of(body)) append(all, *part);
-    caster_ranges.push_back({static_cast<GLsizei>(all.indices.size() - first), first});
-  }
-  for (RenderVertex& vertex : all.vertices) vertex = {vertex.position, {0, 0, 0}, {}, {0, 0}};
-  gl.fill(caster, welded(all), GL_STATIC_DRAW);
+  gl.fill(robot, drawn_bodies.triangles, GL_STATIC_DRAW);
+  gl.fill(caster, drawn_bodies.casters, GL_STATIC_DRAW);
 }
 
 Eigen::AlignedBox3d Renderer::Parts::bounds_of(const std::vector<Eigen::Isometry3d>& poses) const {
@@ -153,6 +162,7 @@ void Renderer::Parts::light(const Scene& scene, const Matrix4f& view_projection,
     gl.set(program, "sun", sun);
     gl.set(program, "up", Vector3d(Vector3d::UnitZ()));
     gl.set(program, "opacity", 1.0);
+    gl.set(program, "least", 1.0);
     gl.set(program, "tint", kNoTint);
   }
 }
@@ -229,6 +239,13 @@ void Renderer::Parts::set_view(const Matrix4f& view_projection) {
   }
 }
 
+void Renderer::Parts::begin_mixing() {
+  for (const GLuint program : {textured, solid}) {
+    gl.UseProgram(program);
+    gl.set(program, "least", 0.0);
+  }
+}
+
 void Renderer::Parts::draw_exposures(const Scene& scene, const Matrix4f& view_projection) {
   for (size_t i = 0; i < scene.exposures.size(); ++i) {
     const Exposure& exposure = scene.exposures[i];
@@ -263,7 +280,10 @@ void Renderer::Parts::draw_overlay(const Scene& scene) {
 }
 
 Renderer::Renderer(const std::vector<BodySurface>& robot, const RenderOptions& options,
-                   const Scenery& scenery) {
+                   const Scenery& scenery)
+    : Renderer(options, *drawn_robot(robot), scenery) {}
+
+Renderer::Renderer(const RenderOptions& options, const DrawnRobot& robot, const Scenery& scenery) {
   for (const int edge : {options.width, options.height})
     if (edge < 1 || edge > 4096)
       fail(ErrorCode::usage, "picture size " + std::to_string(options.width) + "x" +
@@ -292,35 +312,45 @@ Image Renderer::render(const Scene& scene) {
   const GroundRectangle plane =
       ground_rectangle(scene.ground, box.isEmpty() ? Eigen::AlignedBox3d(none, none) : box, sun);
   const Eigen::Matrix4d flatten = flattening(plane, sun);
-  const Matrix4f view_projection =
-      (projection_matrix(scene.camera, double(p.options.width) / p.options.height) *
-       view_matrix(scene.camera))
-          .cast<float>();
-  const Setting setting = {plane, view_projection, with_shadow};
-  p.gl.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-  if (with_shadow) p.draw_coverage(scene, flatten);
-  p.gl.Viewport(0, 0, p.options.width, p.options.height);
-  p.gl.DepthFunc(GL_LEQUAL);
+  const Eigen::Matrix4d to_clip =
+      projection_matrix(scene.camera, double(p.options.width) / p.options.height) *
+      view_matrix(scene.camera);
+  const Matrix4f view_projection = to_clip.cast<float>();
+  const Setting setting = {plane, view_projection};
+  // What is drawn on nothing has its colours multiplied by its cover, and the covers add up.
+  p.gl.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   p.gl.Disable(GL_BLEND);
+  p.gl.Disable(GL_SCISSOR_TEST);
+  p.shadow.cover.clear();
+  if (with_shadow) p.draw_coverage(scene, flatten);
+  Image image;
+  GroundPicture(scene.camera, to_clip, p.options.width, p.options.height, plane, p.hole_box,
+                p.options.ground)
+      .draw(p.shadow, image);
+  const PixelBox part = p.with_bodies(scene, view_projection);
+  if (part.width <= 0 || part.height <= 0) return image;
+  p.make_room(part);
   p.gl.BindFramebuffer(GL_FRAMEBUFFER, p.drawn.framebuffer);
-  PixelBox edges;
-  if (p.options.antialias)
-    p.draw_around(edges = p.with_edges(scene, view_projection), scene, setting);
+  p.gl.Viewport(-part.x, -part.y, p.options.width, p.options.height);
+  p.gl.DepthFunc(GL_LEQUAL);
   p.gl.Enable(GL_DEPTH_TEST);
-  p.gl.Clear(GL_DEPTH_BUFFER_BIT);
+  p.gl.ClearColor(0, 0, 0, 0);
+  // A part of a target would be cleared by drawing over it, which takes much longer.
+  p.gl.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  p.gl.Enable(GL_SCISSOR_TEST);
+  p.gl.Scissor(0, 0, part.width, part.height);
+  p.draw_plane_depth(scene, setting, part);
   p.order = p.nearest_first(scene);
   p.light(scene, view_projection, sun);
   p.draw_bodies(scene.poses, 1.0, [&](size_t i) {
     return i < scene.heat.size() ? heat_tint(scene.heat[i]) : kNoTint;
   });
   p.draw_scenery(scene, flatten.cast<float>(), with_shadow);
-  p.draw_plane(scene, setting);
-  p.draw_sky(scene, setting);
-  p.draw_shadow(setting);
+  p.begin_mixing();
   p.draw_exposures(scene, view_projection);
   p.draw_overlay(scene);
-  if (p.options.antialias) p.resolve(edges);
-  return p.read();
+  p.lay_over(part, p.covered_runs(scene, view_projection, part), image);
+  return image;
 }
 
 const std::vector<std::string>& Renderer::notes() const { return parts_->notes; }

@@ -4,6 +4,8 @@
 
 #include <Eigen/Geometry>
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "ayumi/render/camera.hpp"
@@ -21,6 +23,20 @@ struct RenderOptions {
   bool ground = true;
   Offscreen way = Offscreen::automatic;
 };
+
+/// The robot's triangles as renderers take them: made once, however many renderers draw it.
+struct DrawnRobot {
+  struct Body {
+    IndexRange closed, open;
+    std::vector<std::pair<IndexRange, std::string>> textured;  ///< with the file of the picture
+    IndexRange caster;
+    Eigen::AlignedBox3d box;  ///< body frame
+  };
+  Triangles triangles;  ///< of all bodies, each in its frame
+  Triangles casters;    ///< what throws the shadow, coarser
+  std::vector<Body> bodies;
+};
+std::shared_ptr<const DrawnRobot> drawn_robot(const std::vector<BodySurface>& robot);
 
 /// The robot once more, translucent: a ghost, or an earlier instant.
 struct Exposure {
@@ -57,6 +73,8 @@ class Renderer {
   /// Throws Error(usage) for a size outside 1..4096, Error(internal) where OpenGL fails.
   Renderer(const std::vector<BodySurface>& robot, const RenderOptions& options,
            const Scenery& scenery = {});
+  /// Nothing of the robot is kept but what OpenGL holds of it.
+  Renderer(const RenderOptions& options, const DrawnRobot& robot, const Scenery& scenery = {});
   ~Renderer();
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;

@@ -1,4 +1,5 @@
-#include <cstring>
+#include <algorithm>
+#include <array>
 
 #include "ayumi/render/renderer_parts.hpp"
 
@@ -9,29 +10,9 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr int kShadowBlur = 2;      // radius of the box [pixel of the coverage]
-constexpr double kPlaneReach = 30;  // of the ground's square, in distances of the camera
-const Vector3d kHorizon = {0.877, 0.893, 0.907};  // sRGB
-const Eigen::Vector4f kWholePlane = {0, 0, 1, 1};
-
-/// Point of the plane below the camera's target, its coordinates.
-Eigen::Vector2d middle_of_plane(const Camera& camera, const GroundRectangle& plane) {
-  const Vector3d target = camera.target - plane.origin;
-  return {plane.u.dot(target), plane.v.dot(target)};
-}
-
-/// Four bytes per pixel from the bottom become three from the top.
-Image image_of(const std::vector<std::uint8_t>& rgba, int width, int height) {
-  Image image{width, height, std::vector<std::uint8_t>(size_t(3) * width * height)};
-  for (int y = 0; y < height; ++y) {
-    const std::uint8_t* source = &rgba[size_t(4) * width * (height - 1 - y)];
-    std::uint8_t* target = image.pixel(0, y);
-    int x = 0;
-    for (; x + 1 < width; ++x) std::memcpy(target + 3 * x, source + 4 * x, 4);
-    std::memcpy(target + 3 * x, source + 4 * x, 3);
-  }
-  return image;
-}
+constexpr int kShadowBlur = 2;  // radius of the box [pixel of the coverage]
+constexpr int kSamples = 4;     // per pixel, where edges are smoothed; as the shader kMeanFragment
+constexpr int kRoom = 64;       // [pixel] by which targets grow
 
 }  // namespace
 
@@ -50,16 +31,18 @@ void Renderer::Parts::draw_coverage(const Scene& scene, const Eigen::Matrix4d& f
     gl.set(flat, "flatten", Matrix4f((flatten * scene.poses[i].matrix()).cast<float>()));
     gl.draw(caster_ranges[i]);
   }
-  std::vector<std::uint8_t> cover(size_t(kShadowSize) * kShadowSize);
+  std::vector<std::uint8_t>& cover = shadow.cover;
+  cover.resize(size_t(kShadowSize) * kShadowSize);
   gl.ReadPixels(0, 0, kShadowSize, kShadowSize, GL_RED, GL_UNSIGNED_BYTE, cover.data());
   blur(cover, kShadowSize, kShadowBlur);
-  shade = covered(cover, kShadowSize);
+  shadow.dark = covered(cover, kShadowSize);
+  if (!all_scenery.count && scene.bumps.indices.empty()) return;
   gl.BindTexture(GL_TEXTURE_2D, coverage);
   gl.TexImage2D(GL_TEXTURE_2D, 0, GL_R8, kShadowSize, kShadowSize, 0, GL_RED, GL_UNSIGNED_BYTE,
                 cover.data());
 }
 
-PixelBox Renderer::Parts::with_edges(const Scene& scene, const Matrix4f& view_projection) const {
+PixelBox Renderer::Parts::with_bodies(const Scene& scene, const Matrix4f& view_projection) const {
   VisibleRegion region(view_projection, options.width, options.height);
   for (size_t i = 0; i < boxes.size(); ++i) {
     region.add(boxes[i], scene.poses[i]);
@@ -72,103 +55,124 @@ PixelBox Renderer::Parts::with_edges(const Scene& scene, const Matrix4f& view_pr
   return region.pixels();
 }
 
-/// Leaves `drawn` to be drawn into, within `inner`.
-void Renderer::Parts::draw_around(const PixelBox& inner, const Scene& scene,
-                                  const Setting& setting) {
-  const auto restrict_to = [&](const PixelBox& box) {
-    gl.Scissor(box.x, box.y, box.width, box.height);
+PixelBox Renderer::Parts::below_ground(const Scene& scene, const Setting& setting) const {
+  VisibleRegion region(setting.view_projection, options.width, options.height);
+  const GroundRectangle& plane = setting.plane;
+  const auto is_below = [&](const Vector3d& p) { return plane.normal.dot(p - plane.origin) < 0; };
+  const auto add = [&](const Eigen::AlignedBox3d& box, const Eigen::Isometry3d& pose) {
+    if (box.isEmpty()) return;
+    bool below = false;
+    for (int i = 0; i < 8; ++i)
+      below |= is_below(pose * box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)));
+    if (below) region.add(box, pose);
   };
-  gl.BindFramebuffer(GL_FRAMEBUFFER, finished.framebuffer);
-  gl.Disable(GL_DEPTH_TEST);
-  gl.Enable(GL_SCISSOR_TEST);
-  for (const PixelBox& box : around(inner, options.width, options.height)) {
-    if (box.width <= 0 || box.height <= 0) continue;
-    restrict_to(box);
-    draw_sky(scene, setting);
-    draw_plane(scene, setting);
-    draw_shadow(setting);
+  for (size_t i = 0; i < boxes.size(); ++i) {
+    add(boxes[i], scene.poses[i]);
+    // These lie farther away than where they are.
+    for (const Exposure& exposure : scene.exposures) region.add(boxes[i], exposure.poses[i]);
   }
-  gl.BindFramebuffer(GL_FRAMEBUFFER, drawn.framebuffer);
-  restrict_to(inner);
+  add(scenery_box, scene.floor);
+  add(bounds(scene.bumps), scene.floor);
+  const std::vector<RenderVertex>& marks = scene.overlay.vertices;
+  for (size_t i = 0; i + 2 < scene.overlay.indices.size(); i += 3) {
+    std::array<Vector3d, 3> corners;
+    for (size_t k = 0; k < 3; ++k)
+      corners[k] = marks[scene.overlay.indices[i + k]].position.cast<double>();
+    if (std::any_of(corners.begin(), corners.end(), is_below))
+      for (const Vector3d& corner : corners) region.add(corner);
+  }
+  return region.pixels();
 }
 
-void Renderer::Parts::place(GLuint program, const Setting& setting, const Eigen::Vector2d& at,
-                            double reach, const Eigen::Vector4f& part) {
-  gl.UseProgram(program);
-  gl.set(program, "view_projection", setting.view_projection);
-  gl.set(program, "origin", setting.plane.origin);
-  gl.set(program, "axis_u", setting.plane.u);
-  gl.set(program, "axis_v", setting.plane.v);
-  gl.set(program, "center", at.x(), at.y());
-  gl.set(program, "reach", reach);
-  gl.set(program, "part", part);
-  gl.set(program, "hole", hole);
+void Renderer::Parts::draw_plane_depth(const Scene& scene, const Setting& setting,
+                                       const PixelBox& within) {
+  if (!options.ground || scene.camera.parallel_height > 0) return;
+  const PixelBox box = below_ground(scene, setting);
+  if (box.width <= 0 || box.height <= 0) return;
+  gl.Scissor(box.x - within.x, box.y - within.y, box.width, box.height);
+  const GroundRectangle& plane = setting.plane;
+  const double distance = (scene.camera.eye - scene.camera.target).norm();
+  gl.UseProgram(ground);
+  gl.set(ground, "view_projection", setting.view_projection);
+  gl.set(ground, "origin", plane.origin);
+  gl.set(ground, "axis_u", plane.u);
+  gl.set(ground, "axis_v", plane.v);
+  const Eigen::Vector2d middle = middle_of_plane(scene.camera, plane);
+  gl.set(ground, "center", middle.x(), middle.y());
+  gl.set(ground, "reach", kPlaneReach * distance);
+  gl.set(ground, "hole", hole);
   gl.BindVertexArray(square.array);
   gl.Enable(GL_CULL_FACE);
-}
-
-void Renderer::Parts::draw_plane(const Scene& scene, const Setting& setting) {
-  if (!options.ground || scene.camera.parallel_height > 0) return;
-  const double distance = (scene.camera.eye - scene.camera.target).norm();
-  place(ground, setting, middle_of_plane(scene.camera, setting.plane), kPlaneReach * distance,
-        kWholePlane);
-  gl.set(ground, "fade", 4.5 * distance);
-  gl.set(ground, "horizon", kHorizon);
   gl.Enable(GL_POLYGON_OFFSET_FILL);
   gl.PolygonOffset(1, 1);  // soles lie in the ground plane
+  gl.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
   gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+  gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   gl.Disable(GL_POLYGON_OFFSET_FILL);
+  gl.Scissor(0, 0, within.width, within.height);
 }
 
-void Renderer::Parts::draw_sky(const Scene& scene, const Setting& setting) {
-  const double distance = (scene.camera.eye - scene.camera.target).norm();
-  const bool covers = options.ground && hole.isZero() && scene.camera.parallel_height <= 0;
-  const double bottom =
-      covers ? ground_height(scene.camera, double(options.width) / options.height, setting.plane,
-                             middle_of_plane(scene.camera, setting.plane), kPlaneReach * distance) -
-                   4.0 / options.height
-             : -1;
-  if (bottom > 1 - 6.0 / options.height) return;
-  gl.UseProgram(sky);
-  gl.set(sky, "bottom", bottom);
-  gl.set(sky, "horizon", kHorizon);
-  gl.set(sky, "horizon_height",
-         horizon_height(scene.camera, setting.plane.normal, setting.view_projection));
-  gl.BindVertexArray(square.array);
-  gl.Enable(GL_CULL_FACE);
-  gl.DepthMask(GL_FALSE);
-  gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-  gl.DepthMask(GL_TRUE);
+std::vector<PixelBox> Renderer::Parts::covered_runs(const Scene& scene,
+                                                    const Matrix4f& view_projection,
+                                                    const PixelBox& box) const {
+  CoveredTiles tiles(view_projection, options.width, options.height, box);
+  for (size_t i = 0; i < boxes.size(); ++i) {
+    tiles.add(boxes[i], scene.poses[i]);
+    for (const Exposure& exposure : scene.exposures) tiles.add(boxes[i], exposure.poses[i]);
+  }
+  tiles.add(scenery_box, scene.floor);
+  tiles.add(bounds(scene.bumps), scene.floor);
+  const std::vector<std::uint32_t>& indices = scene.overlay.indices;
+  for (size_t i = 0; i + 2 < indices.size(); i += 3) {
+    std::array<Vector3d, 3> corners;
+    for (size_t k = 0; k < 3; ++k)
+      corners[k] = scene.overlay.vertices[indices[i + k]].position.cast<double>();
+    tiles.add(corners);
+  }
+  return tiles.runs();
 }
 
-void Renderer::Parts::draw_shadow(const Setting& setting) {
-  if (!setting.with_shadow) return;
-  place(shadow, setting, setting.plane.center, setting.plane.reach, shade);
-  gl.set(shadow, "strength", 0.42);
-  gl.BindTexture(GL_TEXTURE_2D, coverage);
-  gl.DepthMask(GL_FALSE);
-  gl.Enable(GL_BLEND);
-  gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-  gl.Disable(GL_BLEND);
-  gl.DepthMask(GL_TRUE);
+void Renderer::Parts::make_room(const PixelBox& box) {
+  if (box.width <= drawn.width && box.height <= drawn.height) return;
+  const auto whole = [](int size) { return (size + kRoom - 1) / kRoom * kRoom; };
+  const int width = std::max(drawn.width, whole(box.width));
+  const int height = std::max(drawn.height, whole(box.height));
+  gl.discard(drawn);
+  gl.discard(finished);
+  drawn = gl.make_target(width, height, options.antialias ? kSamples : 0, GL_RGBA8, true);
+  if (options.antialias) finished = gl.make_target(width, height, 0, GL_RGBA8, false);
 }
 
-/// Into the picture without samples, from which it will be read.
-void Renderer::Parts::resolve(const PixelBox& box) {
-  const int right = box.x + box.width, top = box.y + box.height;
-  gl.Disable(GL_SCISSOR_TEST);
-  gl.BindFramebuffer(GL_READ_FRAMEBUFFER, drawn.framebuffer);
-  gl.BindFramebuffer(GL_DRAW_FRAMEBUFFER, finished.framebuffer);
-  if (box.width > 0 && box.height > 0)
-    gl.BlitFramebuffer(box.x, box.y, right, top, box.x, box.y, right, top, GL_COLOR_BUFFER_BIT,
-                       GL_NEAREST);
-  gl.BindFramebuffer(GL_READ_FRAMEBUFFER, finished.framebuffer);
-}
-
-Image Renderer::Parts::read() {
-  pixels.resize(size_t(4) * options.width * options.height);
-  gl.ReadPixels(0, 0, options.width, options.height, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
-  return image_of(pixels, options.width, options.height);
+void Renderer::Parts::lay_over(const PixelBox& box, const std::vector<PixelBox>& parts,
+                               Image& image) {
+  if (options.antialias) {
+    std::vector<float> places;
+    for (const PixelBox& part : parts) {
+      const auto left = float(part.x - box.x), bottom = float(part.y - box.y);
+      const float right = left + float(part.width), top = bottom + float(part.height);
+      for (const float number : {left, bottom, right, bottom, right, top,  //
+                                 left, bottom, right, top, left, top})
+        places.push_back(number);
+    }
+    gl.BindFramebuffer(GL_FRAMEBUFFER, finished.framebuffer);
+    gl.Viewport(0, 0, finished.width, finished.height);
+    gl.Disable(GL_SCISSOR_TEST);
+    gl.Disable(GL_DEPTH_TEST);
+    gl.UseProgram(mean);
+    gl.set(mean, "center", 0.5 * finished.width, 0.5 * finished.height);
+    gl.BindTexture(GL_TEXTURE_2D_MULTISAMPLE, drawn.color);
+    gl.BindVertexArray(runs.array);
+    gl.BindBuffer(GL_ARRAY_BUFFER, runs.vertices);
+    gl.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(places.size() * sizeof(float)),
+                  places.data(), GL_STREAM_DRAW);
+    gl.DrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(places.size() / 2));
+  }
+  pixels.resize(size_t(4) * size_t(box.width) * size_t(box.height));
+  gl.ReadPixels(0, 0, box.width, box.height, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
+  for (const PixelBox& part : parts)
+    lay_pixels_over(
+        &pixels[4 * (size_t(part.y - box.y) * size_t(box.width) + size_t(part.x - box.x))],
+        box.width, part, image);
 }
 
 }  // namespace ayumi

@@ -1,25 +1,26 @@
 #pragma once
 // What the renderer holds of OpenGL. Bodies, marks and the order of a frame are in renderer.cpp;
-// ground, sky, shadow and the joining of smoothed and plain pixels in renderer_ground.cpp.
+// the shadow, the plane that hides and the joining with the ground's picture in
+// renderer_ground.cpp.
 
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "ayumi/render/gl.hpp"
+#include "ayumi/render/ground_picture.hpp"
 #include "ayumi/render/ground_plane.hpp"
 #include "ayumi/render/renderer.hpp"
 #include "ayumi/render/visible_region.hpp"
 
 namespace ayumi {
 
-constexpr int kShadowSize = 256;  ///< of the coverage [pixel]
+constexpr int kShadowSize = ShadowPicture::kSize;  ///< of the coverage [pixel]
 
-/// Where a frame's ground, shadow and horizon are.
+/// Where a frame's ground is.
 struct Setting {
   GroundRectangle plane;
   Eigen::Matrix4f view_projection;
-  bool with_shadow = false;
 };
 
 /// A body in the index buffer.
@@ -32,25 +33,27 @@ struct Renderer::Parts {
   RenderOptions options;
   OffscreenContext context;
   Gl gl;
-  GLuint solid, textured, standing, ground, sky, flat, shadow;
-  GlMesh robot, caster, overlay, scenery, bumps, square;
+  GLuint solid, textured, standing, ground, flat, mean;
+  GlMesh robot, caster, overlay, scenery, bumps, square, runs;
   std::vector<BodyRanges> ranges;
   std::vector<IndexRange> caster_ranges;   // by body: what throws the shadow
   std::vector<Eigen::AlignedBox3d> boxes;  // of each body, body frame
   std::vector<size_t> order;               // in which bodies are drawn
   std::vector<std::string> notes;
-  GlTarget drawn, finished, flattened;  // finished: without samples, where antialiased
+  GlTarget drawn, finished;  // as large as what is before the ground; finished: without samples
+  GlTarget flattened;
   GLuint coverage = 0;
-  std::vector<std::uint8_t> pixels;  // of the picture, as OpenGL gives it
+  std::vector<std::uint8_t> pixels;  // of a part of the picture, as OpenGL gives it
   IndexRange all_scenery;
   Eigen::AlignedBox3d scenery_box;
-  Eigen::Vector4f hole = {0, 0, 0, 0};   // low x, y, high x, y; of the plane's coordinates
-  Eigen::Vector4f shade = {0, 0, 1, 1};  // part of the shadow's square that is dark
+  Eigen::AlignedBox2d hole_box;
+  Eigen::Vector4f hole = {0, 0, 0, 0};  // low x, y, high x, y; of the plane's coordinates
+  ShadowPicture shadow;                 // of the frame
 
-  Parts(const std::vector<BodySurface>& surface, const RenderOptions& render_options,
+  Parts(const DrawnRobot& drawn_bodies, const RenderOptions& render_options,
         const Scenery& on_floor);
 
-  void upload(const std::vector<BodySurface>& surface);
+  void upload(const DrawnRobot& drawn_bodies);
   Eigen::AlignedBox3d bounds_of(const std::vector<Eigen::Isometry3d>& poses) const;
   std::vector<size_t> nearest_first(const Scene& scene) const;
   void draw_coverage(const Scene& scene, const Eigen::Matrix4d& flatten);
@@ -60,17 +63,23 @@ struct Renderer::Parts {
   void draw_bodies(const std::vector<Eigen::Isometry3d>& poses, double opacity, const Tint& tint);
   void draw_scenery(const Scene& scene, const Eigen::Matrix4f& flatten, bool with_shadow);
   void set_view(const Eigen::Matrix4f& view_projection);
+  /// From now on surfaces are as opaque as they say, and blended.
+  void begin_mixing();
   void draw_exposures(const Scene& scene, const Eigen::Matrix4f& view_projection);
-  PixelBox with_edges(const Scene& scene, const Eigen::Matrix4f& view_projection) const;
-  void draw_around(const PixelBox& inner, const Scene& scene, const Setting& setting);
-  void place(GLuint program, const Setting& setting, const Eigen::Vector2d& at, double reach,
-             const Eigen::Vector4f& part);
-  void draw_plane(const Scene& scene, const Setting& setting);
-  void draw_sky(const Scene& scene, const Setting& setting);
-  void draw_shadow(const Setting& setting);
+  /// Where anything but the ground is.
+  PixelBox with_bodies(const Scene& scene, const Eigen::Matrix4f& view_projection) const;
+  /// Where anything is that the ground may hide.
+  PixelBox below_ground(const Scene& scene, const Setting& setting) const;
+  /// The ground's depth where it may hide something; its colours are of a picture of its own.
+  void draw_plane_depth(const Scene& scene, const Setting& setting, const PixelBox& within);
   void draw_overlay(const Scene& scene);
-  void resolve(const PixelBox& box);
-  Image read();
+  /// The tiles of the box where anything but the ground is.
+  std::vector<PixelBox> covered_runs(const Scene& scene, const Eigen::Matrix4f& view_projection,
+                                     const PixelBox& box) const;
+  /// Targets for a part of the picture, its corner at theirs.
+  void make_room(const PixelBox& box);
+  /// Smoothed, over the picture of ground and sky.
+  void lay_over(const PixelBox& box, const std::vector<PixelBox>& parts, Image& image);
 };
 
 }  // namespace ayumi

@@ -1,6 +1,5 @@
 #pragma once
-// The renderer's shader programs (GLSL 3.30). Colours are linear inside, sRGB at the end; those of
-// ground and sky are sRGB throughout.
+// The renderer's shader programs (GLSL 3.30). Colours are linear inside, sRGB at the end.
 
 namespace ayumi::shaders {
 
@@ -82,7 +81,7 @@ vec4 surface_color(vec4 base) {
 // Light from the whole sky, brighter from above; the sun; a dull highlight. A face seen from
 // behind, or with its normal turned away, is lit as if it were the front; a normal that is turned
 // away just so, at an outline, stays (turned, it would look down into the dark). Zero normal: an
-// unlit mark.
+// unlit mark. `least` is 1 where nothing shines through.
 inline constexpr const char* kSolidFragment = R"(
 in vec3 world_position;
 in vec3 world_normal;
@@ -91,6 +90,7 @@ uniform vec3 eye;
 uniform vec3 sun;
 uniform vec3 up;
 uniform float opacity;
+uniform float least;
 out vec4 pixel;
 void main() {
   vec4 own_color = surface_color(base_color);
@@ -100,17 +100,18 @@ void main() {
   n = dot(n, v) < (gl_FrontFacing ? -0.25 : 0.0) ? -n : n;
   float direct = max(dot(n, sun), 0.0);
   vec3 ambient = mix(vec3(0.30, 0.29, 0.28), vec3(0.62, 0.65, 0.70), 0.5 + 0.5 * dot(n, up));
-  float shine = max(dot(n, normalize(v + sun)), 0.0);
-  shine *= shine; shine *= shine; shine *= shine; shine *= shine; shine *= shine;
+  vec3 half_way = v + sun;
+  float shine = max(dot(n, half_way), 0.0);
+  shine *= shine / max(dot(half_way, half_way), 1e-12);
+  shine *= shine; shine *= shine; shine *= shine; shine *= shine;
   // What is black still mirrors a little of the sky.
   vec3 lit = own_color.rgb * (0.62 * ambient + 0.72 * direct) + 0.015 * ambient +
              0.10 * shine * direct;
-  pixel = vec4(to_srgb(size < 1e-6 ? own_color.rgb : lit), own_color.a * opacity);
+  pixel = vec4(to_srgb(size < 1e-6 ? own_color.rgb : lit), max(own_color.a * opacity, least));
 }
 )";
 
-// A part of the ground plane; plane coordinates in metres. `part` is its middle and half edges, in
-// units of `reach` around `center`.
+// A square of the ground plane; plane coordinates in metres.
 inline constexpr const char* kGroundVertex = R"(
 layout(location = 0) in vec2 corner;
 uniform mat4 view_projection;
@@ -119,10 +120,9 @@ uniform vec3 axis_u;
 uniform vec3 axis_v;
 uniform vec2 center;
 uniform float reach;
-uniform vec4 part;
 out vec2 plane;
 void main() {
-  plane = center + reach * (part.xy + part.zw * corner);
+  plane = center + reach * corner;
   gl_Position = view_projection * vec4(origin + plane.x * axis_u + plane.y * axis_v, 1.0);
 }
 )";
@@ -135,55 +135,13 @@ uniform vec4 hole;
 bool outside(vec2 p) { return any(lessThan(p, hole.xy)) || any(greaterThan(p, hole.zw)); }
 )";
 
+// For its depth alone.
 inline constexpr const char* kGroundFragment = R"(
 in vec2 plane;
-uniform vec2 center;
-uniform float fade;
-uniform vec3 horizon;
 out vec4 pixel;
-// Share of a pixel that lines of a spacing cover; far away, where they run together, their mean.
-float grid(vec2 p, vec2 footprint, vec2 sharpness, float spacing, float width) {
-  vec2 q = p * (1.0 / spacing);
-  vec2 away = abs(q - floor(q + 0.5)) * spacing;
-  vec2 cover = clamp(0.5 + (0.5 * max(vec2(width), footprint) - away) * sharpness, 0.0, 1.0) *
-               min(width * sharpness, 1.0);
-  cover = mix(cover, vec2(width / spacing), clamp(footprint * (2.0 / spacing) - 0.6, 0.0, 1.0));
-  return max(cover.x, cover.y);
-}
-// Colours are sRGB here: a root per pixel of the whole picture would cost more than all the rest.
 void main() {
-  vec2 footprint = max(fwidth(plane), vec2(1e-6));
-  vec2 sharpness = 1.0 / footprint;
   if (!outside(plane)) discard;
-  vec3 color = vec3(0.798, 0.801, 0.798);
-  color = mix(color, vec3(0.646, 0.653, 0.659),
-              0.55 * grid(plane, footprint, sharpness, 0.1, 0.0022));
-  color = mix(color, vec3(0.508, 0.518, 0.535),
-              0.80 * grid(plane, footprint, sharpness, 1.0, 0.006));
-  vec2 d = (plane - center) * (1.0 / fade);
-  float near = 1.0 / (1.0 + dot(d, d) * dot(d, d));
-  pixel = vec4(mix(horizon, color, near), 1.0);
-}
-)";
-
-inline constexpr const char* kSkyVertex = R"(
-layout(location = 0) in vec2 corner;
-uniform float bottom;
-out float height;
-void main() {
-  height = mix(bottom, 1.0, 0.5 + 0.5 * corner.y);
-  gl_Position = vec4(corner.x, height, 1.0, 1.0);
-}
-)";
-
-inline constexpr const char* kSkyFragment = R"(
-in float height;
-uniform vec3 horizon;
-uniform float horizon_height;
-out vec4 pixel;
-void main() {
-  vec3 zenith = vec3(0.735, 0.798, 0.867);
-  pixel = vec4(mix(horizon, zenith, clamp(height - horizon_height, 0.0, 1.0)), 1.0);
+  pixel = vec4(0.0);
 }
 )";
 
@@ -199,17 +157,20 @@ out vec4 pixel;
 void main() { pixel = vec4(1.0); }
 )";
 
-inline constexpr const char* kShadowFragment = R"(
-in vec2 plane;
+// One colour from the samples of each pixel; places in pixels.
+inline constexpr const char* kMeanVertex = R"(
+layout(location = 0) in vec2 place;
 uniform vec2 center;
-uniform float reach;
-uniform sampler2D coverage;
-uniform float strength;
+void main() { gl_Position = vec4(place / center - 1.0, 0.0, 1.0); }
+)";
+
+inline constexpr const char* kMeanFragment = R"(
+uniform sampler2DMS samples;
 out vec4 pixel;
 void main() {
-  if (!outside(plane)) discard;
-  float cover = texture(coverage, 0.5 + 0.5 * (plane - center) / reach).r;
-  pixel = vec4(0.03, 0.04, 0.07, strength * cover);
+  ivec2 at = ivec2(gl_FragCoord.xy);
+  pixel = 0.25 * (texelFetch(samples, at, 0) + texelFetch(samples, at, 1) +
+                  texelFetch(samples, at, 2) + texelFetch(samples, at, 3));
 }
 )";
 

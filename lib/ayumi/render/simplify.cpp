@@ -4,7 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <unordered_map>
+
+#include "ayumi/render/key_numbers.hpp"
 
 // A vertex moves to the mean of the vertices in its cell; triangles whose corners share a cell go.
 // Within a cell, vertices that look towards different sides of a cube keep normals of their own, so
@@ -30,19 +31,22 @@ std::uint64_t key_of(const RenderVertex& vertex, const Vector3f& origin, float e
 }
 
 struct Cells {
-  std::unordered_map<std::uint64_t, std::uint32_t> number;
+  KeyNumbers<2> numbers;
   std::vector<Vector3f> sum;
   std::vector<float> count;
 
+  explicit Cells(size_t vertices) : numbers(vertices) {}
+
   std::uint32_t add(std::uint64_t key, const Vector3f& value) {
-    const auto [entry, fresh] = number.emplace(key, static_cast<std::uint32_t>(sum.size()));
-    if (fresh) {
+    const std::uint32_t number =
+        numbers.number({static_cast<std::uint32_t>(key), static_cast<std::uint32_t>(key >> 32)});
+    if (number == sum.size()) {
       sum.emplace_back(Vector3f::Zero());
       count.push_back(0);
     }
-    sum[entry->second] += value;
-    count[entry->second] += 1;
-    return entry->second;
+    sum[number] += value;
+    count[number] += 1;
+    return number;
   }
 };
 
@@ -50,7 +54,7 @@ Triangles clustered(const Triangles& surface, float edge) {
   Triangles out;
   if (surface.indices.empty()) return out;
   const Vector3f origin = bounds(surface).min().cast<float>();
-  Cells places, normals;
+  Cells places(surface.vertices.size()), normals(surface.vertices.size());
   std::vector<std::uint32_t> place, side;
   for (const RenderVertex& vertex : surface.vertices) {
     place.push_back(places.add(key_of(vertex, origin, edge, false), vertex.position));

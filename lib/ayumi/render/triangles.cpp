@@ -5,10 +5,10 @@
 #include <cmath>
 #include <cstring>
 #include <numbers>
-#include <unordered_map>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/math/rotation.hpp"
+#include "ayumi/render/key_numbers.hpp"
 
 namespace ayumi {
 namespace {
@@ -120,20 +120,14 @@ Eigen::Isometry3d frame_along(const Vector3d& origin, const Vector3d& direction)
 
 /// Vertices at the same place get the same number.
 std::vector<std::uint32_t> weld(const Triangles& surface) {
-  const auto hash = [](const std::array<float, 3>& key) {
-    size_t sum = 0;
-    for (const float value : key)
-      sum = sum * 0x9E3779B97F4A7C15 + std::bit_cast<std::uint32_t>(value);
-    return sum ^ sum >> 29;
-  };
-  std::unordered_map<std::array<float, 3>, std::uint32_t, decltype(hash)> known(
-      surface.vertices.size(), hash);
+  KeyNumbers<3> places(surface.vertices.size());
   std::vector<std::uint32_t> welded;
   welded.reserve(surface.vertices.size());
   for (const RenderVertex& vertex : surface.vertices) {
-    const std::array<float, 3> key = {vertex.position[0] + 0.0f, vertex.position[1] + 0.0f,
-                                      vertex.position[2] + 0.0f};
-    welded.push_back(known.emplace(key, static_cast<std::uint32_t>(known.size())).first->second);
+    KeyNumbers<3>::Key key;
+    for (size_t axis = 0; axis < 3; ++axis)  // -0 is 0
+      key[axis] = std::bit_cast<std::uint32_t>(vertex.position[Eigen::Index(axis)] + 0.0f);
+    welded.push_back(places.number(key));
   }
   return welded;
 }
@@ -141,14 +135,17 @@ std::vector<std::uint32_t> weld(const Triangles& surface) {
 /// Every directed edge has exactly one opposite.
 bool is_closed(const Triangles& surface) {
   const std::vector<std::uint32_t> welded = weld(surface);
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> edges, reversed;
+  std::vector<std::uint64_t> edges, reversed;
+  edges.reserve(surface.indices.size());
+  reversed.reserve(surface.indices.size());
   for (size_t i = 0; i < surface.indices.size(); i += 3) {
     std::array<std::uint32_t, 3> corner;
     for (size_t k = 0; k < 3; ++k) corner[k] = welded[surface.indices[i + k]];
     if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) continue;
     for (size_t k = 0; k < 3; ++k) {
-      edges.emplace_back(corner[k], corner[(k + 1) % 3]);
-      reversed.emplace_back(corner[(k + 1) % 3], corner[k]);
+      const std::uint64_t from = corner[k], to = corner[(k + 1) % 3];
+      edges.push_back(from << 32 | to);
+      reversed.push_back(to << 32 | from);
     }
   }
   std::sort(edges.begin(), edges.end());
@@ -194,22 +191,17 @@ void append(Triangles& target, const Triangles& part, const Eigen::Isometry3d& p
 }
 
 Triangles welded(const Triangles& surface) {
-  using Key = std::array<std::uint32_t, sizeof(RenderVertex) / 4>;
-  const auto hash = [](const Key& key) {
-    size_t sum = 0;
-    for (const std::uint32_t word : key) sum = (sum ^ word) * 0x9E3779B97F4A7C15;
-    return sum ^ sum >> 29;
-  };
-  std::unordered_map<Key, std::uint32_t, decltype(hash)> known(surface.vertices.size(), hash);
+  using Numbers = KeyNumbers<sizeof(RenderVertex) / 4>;
+  Numbers known(surface.vertices.size());
   Triangles out;
   out.indices.reserve(surface.indices.size());
   for (const std::uint32_t index : surface.indices) {
     const RenderVertex& vertex = surface.vertices[index];
-    Key key;
+    Numbers::Key key;
     std::memcpy(key.data(), &vertex, sizeof key);
-    const auto [entry, fresh] = known.emplace(key, static_cast<std::uint32_t>(out.vertices.size()));
-    if (fresh) out.vertices.push_back(vertex);
-    out.indices.push_back(entry->second);
+    const std::uint32_t number = known.number(key);
+    if (number == out.vertices.size()) out.vertices.push_back(vertex);
+    out.indices.push_back(number);
   }
   return out;
 }

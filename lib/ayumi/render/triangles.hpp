@@ -24,6 +24,12 @@ struct Triangles {
   std::vector<std::uint32_t> indices;  ///< three per triangle
 };
 
+/// A part of `indices`.
+struct IndexRange {
+  int count = 0;
+  size_t first = 0;
+};
+
 /// Adds `part` to `target`, moved and turned by `pose`.
 void append(Triangles& target, const Triangles& part,
             const Eigen::Isometry3d& pose = Eigen::Isometry3d::Identity());

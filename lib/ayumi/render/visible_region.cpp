@@ -1,6 +1,7 @@
 #include "ayumi/render/visible_region.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace ayumi {
@@ -11,6 +12,7 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr int kSpare = 2;  // [pixel] around what is seen, for smoothed edges
+constexpr int kTile = 16;  // [pixel] edge
 
 }  // namespace
 
@@ -45,35 +47,93 @@ PixelBox VisibleRegion::pixels() const {
           edge(seen_.max().y(), height_, kSpare + 1) - y};
 }
 
-std::array<PixelBox, 4> around(const PixelBox& inner, int width, int height) {
-  const int right = inner.x + inner.width, top = inner.y + inner.height;
-  return {{{0, 0, width, inner.y},
-           {0, top, width, height - top},
-           {0, inner.y, inner.x, inner.height},
-           {right, inner.y, width - right, inner.height}}};
+CoveredTiles::CoveredTiles(const Eigen::Matrix4f& view_projection, int width, int height,
+                           const PixelBox& box)
+    : view_projection_(view_projection.cast<double>()),
+      width_(width),
+      height_(height),
+      box_(box),
+      columns_((box.width + kTile - 1) / kTile),
+      rows_((box.height + kTile - 1) / kTile),
+      covered_(size_t(columns_) * size_t(rows_), false) {}
+
+void CoveredTiles::add(std::span<const Vector3d> points) {
+  std::vector<Vector2d> seen;  // [pixel] from the box's corner
+  Eigen::AlignedBox2d all;
+  for (const Vector3d& point : points) {
+    const Eigen::Vector4d clip = view_projection_ * point.homogeneous();
+    if (clip.w() < 1e-6) return std::fill(covered_.begin(), covered_.end(), true);
+    const Vector2d place = (clip.head<2>() / clip.w()).cwiseMax(-100).cwiseMin(100);
+    seen.emplace_back((0.5 + 0.5 * place.x()) * width_ - box_.x,
+                      (0.5 + 0.5 * place.y()) * height_ - box_.y);
+    all.extend(seen.back());
+  }
+  if (all.isEmpty()) return;
+  const auto tile = [](double at, int count) {
+    return std::clamp(static_cast<int>(std::floor(at / kTile)), 0, count - 1);
+  };
+  const auto is_beside = [](double low, double high, int count) {
+    return high < 0 || low >= double(count) * kTile;
+  };
+  if (is_beside(all.min().y() - kSpare, all.max().y() + kSpare, rows_)) return;
+  const int last = tile(all.max().y() + kSpare, rows_);
+  for (int row = tile(all.min().y() - kSpare, rows_); row <= last; ++row) {
+    const double bottom = row * kTile - kSpare, top = (row + 1) * kTile + kSpare;
+    double low = INFINITY, high = -INFINITY;
+    const auto take = [&](double x) {
+      low = std::min(low, x);
+      high = std::max(high, x);
+    };
+    // What is between any two points, within the row.
+    for (size_t i = 0; i < seen.size(); ++i)
+      for (size_t k = i; k < seen.size(); ++k) {
+        const Vector2d &a = seen[i], &b = seen[k];
+        const double rise = b.y() - a.y();
+        double from = 0, to = 1;
+        if (std::abs(rise) > 1e-9) {
+          const double at_bottom = (bottom - a.y()) / rise, at_top = (top - a.y()) / rise;
+          from = std::max(from, std::min(at_bottom, at_top));
+          to = std::min(to, std::max(at_bottom, at_top));
+        } else if (a.y() < bottom || a.y() > top) {
+          continue;
+        }
+        if (from > to) continue;
+        take(a.x() + from * (b.x() - a.x()));
+        take(a.x() + to * (b.x() - a.x()));
+      }
+    if (!(low <= high) || is_beside(low - kSpare, high + kSpare, columns_)) continue;
+    const auto begin = covered_.begin() + row * columns_;
+    std::fill(begin + tile(low - kSpare, columns_), begin + tile(high + kSpare, columns_) + 1,
+              true);
+  }
 }
 
-// The square is seen as a convex shape: it holds a row whose two ends it holds, and with the lowest
-// row and another one all rows between.
-double ground_height(const Camera& camera, double aspect, const GroundRectangle& plane,
-                     const Vector2d& center, double reach) {
-  const Eigen::Matrix3d turn = view_matrix(camera).topLeftCorner<3, 3>();  // right, up, back
-  const double up = std::tan(0.5 * camera.field_of_view), right = up * aspect;
-  const Vector3d eye = camera.eye - plane.origin;
-  const auto is_ground = [&](double x, double y) {
-    const Vector3d ray = turn.transpose() * Vector3d(x * right, y * up, -1);
-    const double depth = -plane.normal.dot(eye) / plane.normal.dot(ray);
-    if (!(depth > camera.near && depth < camera.far)) return false;
-    const Vector3d at = eye + depth * ray;
-    return std::abs(plane.u.dot(at) - center.x()) < reach &&
-           std::abs(plane.v.dot(at) - center.y()) < reach;
-  };
-  const auto is_row = [&](double y) { return is_ground(-1, y) && is_ground(1, y); };
-  if (plane.normal.dot(eye) <= 0 || !is_row(-1)) return -1;
-  if (is_row(1)) return 1;
-  double low = -1, high = 1;
-  for (int i = 0; i < 20; ++i) (is_row(0.5 * (low + high)) ? low : high) = 0.5 * (low + high);
-  return low;
+void CoveredTiles::add(const Eigen::AlignedBox3d& box, const Eigen::Isometry3d& pose) {
+  if (box.isEmpty()) return;
+  std::array<Vector3d, 8> corners;
+  for (int i = 0; i < 8; ++i)
+    corners[size_t(i)] = pose * box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i));
+  add(corners);
+}
+
+std::vector<PixelBox> CoveredTiles::runs() const {
+  std::vector<PixelBox> all;
+  for (int row = 0; row < rows_; ++row)
+    for (int column = 0; column < columns_;) {
+      const auto is_covered = [&](int at) {
+        return at < columns_ && covered_[size_t(row) * size_t(columns_) + size_t(at)];
+      };
+      const int first = column;
+      while (is_covered(column)) ++column;
+      if (column > first) {
+        const int x = first * kTile, y = row * kTile;
+        all.push_back({box_.x + x, box_.y + y, std::min(column * kTile, box_.width) - x,
+                       std::min(y + kTile, box_.height) - y});
+      } else {
+        ++column;
+      }
+    }
+  return all;
 }
 
 }  // namespace ayumi

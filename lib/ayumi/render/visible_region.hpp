@@ -1,12 +1,12 @@
 #pragma once
-// Which part of a picture has edges to be smoothed, and which part is ground alone. Pixels and rows
-// are counted from the bottom, as OpenGL does.
+// Which part of a picture something stands in before the ground. Pixels and rows are counted from
+// the bottom, as OpenGL does.
 
 #include <Eigen/Geometry>
-#include <array>
+#include <span>
+#include <vector>
 
 #include "ayumi/render/camera.hpp"
-#include "ayumi/render/ground_plane.hpp"
 
 namespace ayumi {
 
@@ -31,12 +31,22 @@ class VisibleRegion {
   Eigen::AlignedBox2d seen_;  // -1..1 over the picture
 };
 
-/// The picture without `inner`, as boxes beside each other.
-std::array<PixelBox, 4> around(const PixelBox& inner, int width, int height);
+/// Which parts of a box of the picture have anything in them, by tiles of a few pixels.
+class CoveredTiles {
+ public:
+  CoveredTiles(const Eigen::Matrix4f& view_projection, int width, int height, const PixelBox& box);
+  /// Of these points, the smallest convex body.
+  void add(std::span<const Eigen::Vector3d> points);
+  void add(const Eigen::AlignedBox3d& box, const Eigen::Isometry3d& pose);
+  /// Beside and above each other, within the box.
+  std::vector<PixelBox> runs() const;
 
-/// Height up to which a picture shows nothing but the square of the plane with this middle (plane
-/// coordinates) and half edge [m]: -1 its bottom, 1 its top.
-double ground_height(const Camera& camera, double aspect, const GroundRectangle& plane,
-                     const Eigen::Vector2d& center, double reach);
+ private:
+  Eigen::Matrix4d view_projection_;
+  int width_, height_;
+  PixelBox box_;
+  int columns_, rows_;
+  std::vector<bool> covered_;  // by rows
+};
 
 }  // namespace ayumi

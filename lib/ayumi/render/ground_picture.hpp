@@ -1,0 +1,70 @@
+#pragma once
+// Ground, sky and the robot's shadow as a picture, row by row: what each pixel of it shows follows
+// from its place alone, without triangles. Colours are sRGB throughout.
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "ayumi/render/ground_plane.hpp"
+#include "ayumi/render/image.hpp"
+#include "ayumi/render/visible_region.hpp"
+
+namespace ayumi {
+
+/// Half edge of the square of the plane that is seen, in distances of the camera from its target.
+constexpr double kPlaneReach = 30;
+
+/// Point of the plane at the camera's target, its coordinates: the middle of that square.
+Eigen::Vector2d middle_of_plane(const Camera& camera, const GroundRectangle& plane);
+
+/// Pixels of a row, the end excluded.
+struct PixelSpan {
+  int begin = 0, end = 0;
+};
+
+/// The robot's shadow as coverage of a square of the plane.
+struct ShadowPicture {
+  static constexpr int kSize = 256;     ///< of an edge [pixel]
+  std::vector<std::uint8_t> cover;      ///< kSize^2, along u then v of the plane; empty: no shadow
+  Eigen::Vector4f dark = {0, 0, 0, 0};  ///< as covered() gives it
+
+  /// Between pixels; `at` 0..1 over the square, its edge beyond.
+  float at(float along_u, float along_v) const;
+};
+
+/// A square of the plane around the middle of the picture, as a camera sees it.
+class GroundPicture {
+ public:
+  /// `to_clip` of the camera; `hole` in the plane's coordinates, empty for none. Without `shown`,
+  /// all is sky.
+  GroundPicture(const Camera& camera, const Eigen::Matrix4d& to_clip, int width, int height,
+                const GroundRectangle& plane, const Eigen::AlignedBox2d& hole, bool shown);
+
+  /// Where a row shows the plane: before and behind the hole.
+  std::array<PixelSpan, 2> plane_in_row(int y) const;
+  void draw(const ShadowPicture& shadow, Image& image) const;
+
+ private:
+  /// Numbers above or equal 0 where a pixel is to be taken: a x + b y + c.
+  using Line = Eigen::Vector3d;
+  int width_, height_;
+  GroundRectangle plane_;
+  bool shown_ = false;
+  double horizon_ = 0;
+  double fade_ = 1;                 // distance at which the ground becomes the horizon's colour [m]
+  Eigen::Vector2d middle_, whole_;  // of the square; whole metres near it
+  Eigen::Matrix3d place_;           // pixel (x, y, 1) to (u, v, 1) over the distance
+  std::vector<Line> seen_, hole_;
+
+  PixelSpan span(const std::vector<Line>& lines, int y) const;
+  void draw_shadow(const ShadowPicture& shadow, Image& image) const;
+};
+
+/// Lays a part of a picture over it: four bytes per pixel from its bottom row upwards, red, green
+/// and blue multiplied by the fourth, which says how much of the pixel they cover. A row begins
+/// `stride` pixels after the one below.
+void lay_pixels_over(const std::uint8_t* rgba, int stride, const PixelBox& box, Image& image);
+
+}  // namespace ayumi

@@ -1,0 +1,50 @@
+#pragma once
+// Numbers for keys in the order in which they come first: a table of open addressing, because a
+// mesh has up to millions of corners and a node of memory for each takes most of the time to read
+// it.
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace ayumi {
+
+/// A key is an array of 32-bit words.
+template <size_t Words>
+class KeyNumbers {
+ public:
+  using Key = std::array<std::uint32_t, Words>;
+
+  /// For at most so many different keys.
+  explicit KeyNumbers(size_t most)
+      : shift_(64 - std::bit_width(2 * most + 1)),
+        slots_(size_t{1} << std::bit_width(2 * most + 1)) {
+    keys_.reserve(most);
+  }
+
+  /// Its number, the next one where it is new.
+  std::uint32_t number(const Key& key) {
+    std::uint64_t sum = 0;
+    for (const std::uint32_t word : key) sum = (sum ^ word) * 0x9E3779B97F4A7C15;
+    sum = (sum ^ sum >> 29) * 0x9E3779B97F4A7C15;
+    for (size_t at = sum >> shift_;; at = (at + 1) & (slots_.size() - 1)) {
+      if (slots_[at] == 0) {
+        keys_.push_back(key);
+        slots_[at] = static_cast<std::uint32_t>(keys_.size());
+        return slots_[at] - 1;
+      }
+      if (keys_[slots_[at] - 1] == key) return slots_[at] - 1;
+    }
+  }
+
+  size_t size() const { return keys_.size(); }
+
+ private:
+  int shift_;
+  std::vector<std::uint32_t> slots_;  // number + 1; 0: free
+  std::vector<Key> keys_;
+};
+
+}  // namespace ayumi

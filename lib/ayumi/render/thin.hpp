@@ -1,0 +1,19 @@
+#pragma once
+// Fewer triangles where nobody sees the difference: vertices move onto neighbours as long as the
+// surface stays within a fraction of a pixel of where it was.
+
+#include <vector>
+
+#include "ayumi/render/robot_surface.hpp"
+
+namespace ayumi {
+
+/// The same surface with fewer triangles: about `tolerance` [m] from the original ones. A vertex
+/// only moves along an edge onto the other end. Outlines of open surfaces and borders of colours
+/// keep their course as surfaces do; normals and colours of the corners that stay are kept; closed
+/// surfaces stay closed. Pictures on surfaces are not touched. The method is that of Garland and
+/// Heckbert (1997), with the squared distances as a mean over the area that a vertex stands for.
+Triangles thinned(const Triangles& surface, double tolerance);
+void thin(std::vector<BodySurface>& surface, double tolerance);
+
+}  // namespace ayumi
