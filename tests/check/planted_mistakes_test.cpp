@@ -6,6 +6,7 @@
 #include <functional>
 #include <numbers>
 #include <regex>
+#include <set>
 
 #include "ayumi/author/generate/generate.hpp"
 #include "ayumi/check/consistency.hpp"
@@ -31,29 +32,33 @@ Pattern walk(const RobotModel& robot) {
 struct Mistaken {
   const char* name;
   const RobotModel& robot;
-  Pattern pattern;
+  const Pattern& sound;
   std::function<void(Pattern&)> plant;
   const char* named;  ///< a regular expression that the first likely cause matches
 };
 
 Swing& swing(Pattern& p, size_t phase) { return *p.phases[phase].swing; }
 
-std::vector<Mistaken> list() {
+std::vector<Mistaken> make_list() {
   std::vector<Mistaken> all;
-  const auto add = [&](const char* name, const RobotModel& robot, Pattern pattern,
+  const auto add = [&](const char* name, const RobotModel& robot, const Pattern& sound,
                        const char* named, std::function<void(Pattern&)> plant) {
-    all.push_back({name, robot, std::move(pattern), std::move(plant), named});
+    all.push_back({name, robot, sound, std::move(plant), named});
   };
-  const Pattern steps = walk(small()), strides = walk(tall());
-  const Pattern squat = squat_pattern(small(), squat_defaults(small()));
-  const Pattern sway = sway_pattern(tall(), sway_defaults(tall()));
-  const Pattern bow = bow_pattern(small(), bow_defaults(small()));
-  const Pattern wave = wave_pattern(small(), wave_defaults(small()));
+  static const Pattern steps = walk(small()), strides = walk(tall());
+  static const Pattern squat = squat_pattern(small(), squat_defaults(small()));
+  static const Pattern sway = sway_pattern(tall(), sway_defaults(tall()));
+  static const Pattern bow = bow_pattern(small(), bow_defaults(small()));
+  static const Pattern wave = wave_pattern(small(), wave_defaults(small()));
   KickParameters low = kick_defaults(small());
   low.cog_height = 0.238;
-  const Pattern kick = kick_pattern(small(), low);
-  Pattern jump = jump_pattern(small(), jump_defaults(small()));
-  jump.profile = "hoap1-strong";
+  static const Pattern kick = kick_pattern(small(), low);
+  static const Pattern wide_kick = kick_pattern(tall(), kick_defaults(tall()));
+  static const Pattern jump = [] {
+    Pattern pattern = jump_pattern(small(), jump_defaults(small()));
+    pattern.profile = "hoap1-strong";
+    return pattern;
+  }();
   add("foothold of 0.6 m", small(), steps, "/phases/3: the left foot's x is 0.6 m.*\\(0.06 m\\)",
       [](Pattern& p) { swing(p, 3).to.position.x() = 0.6; });
   add("footholds exchanged", small(), steps, "/phases/3: .*/phases/5 were perhaps exchanged",
@@ -201,7 +206,7 @@ std::vector<Mistaken> list() {
             return;
           }
       });
-  add("a kick farther than the leg", tall(), kick_pattern(tall(), kick_defaults(tall())),
+  add("a kick farther than the leg", tall(), wide_kick,
       "/keyframes/4: the right foot's x is 0.72 m; with the decimal point one place further left",
       [](Pattern& p) { p.keyframes[4].feet[1]->position.x() = 0.72; });
   add("a bow within 60 ms", small(), bow,
@@ -217,6 +222,11 @@ std::vector<Mistaken> list() {
   return all;
 }
 
+const std::vector<Mistaken>& list() {
+  static const std::vector<Mistaken> all = make_list();
+  return all;
+}
+
 CheckOptions options_of(const Pattern& pattern) {
   CheckOptions options;
   options.profile = pattern.profile;
@@ -226,7 +236,7 @@ CheckOptions options_of(const Pattern& pattern) {
 
 TEST(PlantedMistakes, AreNamed) {
   for (const Mistaken& mistaken : list()) {
-    Pattern pattern = mistaken.pattern;
+    Pattern pattern = mistaken.sound;
     mistaken.plant(pattern);
     const std::vector<Mistake> found =
         likely_mistakes(mistaken.robot, pattern, options_of(pattern));
@@ -296,13 +306,15 @@ TEST(PlantedMistakes, WhatOnlyTheTableShowsIsNamed) {
 }
 
 TEST(PlantedMistakes, SoundPatternsHaveNone) {
+  std::set<const Pattern*> seen;  // many mistakes are planted into the same pattern
   for (const Mistaken& mistaken : list()) {
-    EXPECT_TRUE(
-        find_explanations(mistaken.robot, mistaken.pattern, options_of(mistaken.pattern), {})
-            .found.empty())
+    const Pattern& sound = mistaken.sound;
+    if (!seen.insert(&sound).second) continue;
+    EXPECT_TRUE(find_explanations(mistaken.robot, sound, options_of(sound), {}).found.empty())
         << mistaken.name;
-    EXPECT_TRUE(doubtful_values(mistaken.robot, mistaken.pattern).empty()) << mistaken.name;
+    EXPECT_TRUE(doubtful_values(mistaken.robot, sound).empty()) << mistaken.name;
   }
+  EXPECT_EQ(seen.size(), 9u);
 }
 
 // A torque that is a little too large, at one step or at every step, comes from no exchanged side,

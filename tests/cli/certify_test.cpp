@@ -12,7 +12,9 @@ using Json = nlohmann::json;
 
 struct CertifyStudy {
   Folder folder;
-  CertifyStudy() {
+  CertifyStudy() { write_files(); }
+  explicit CertifyStudy(const std::string& name) : folder(name) { write_files(); }
+  void write_files() const {
     const Output made = run({"new", "stand", "--duration", "1.5", "-o", "stand.json"});
     EXPECT_EQ(made.exit_code, 0) << made.err;
     write(folder / "study.json", R"({
@@ -30,6 +32,15 @@ struct CertifyStudy {
                                       "--failure", "0.1",        "--runs",  "40",      "--all"};
     words.insert(words.end(), more.begin(), more.end());
     return run(words);
+  }
+  /// Its results with all cases, which are the same bytes each time: they are computed once.
+  static const std::string& whole() {
+    static const std::string text = [] {
+      const CertifyStudy study("CertifyStudy");
+      EXPECT_EQ(study.certify({"-o", "cases.json"}).exit_code, 1);
+      return contents(study.folder / "cases.json");
+    }();
+    return text;
   }
 };
 
@@ -64,8 +75,8 @@ TEST(CertifyCommand, SameBytesForThreadsAndShards) {
 
 TEST(CertifyCommand, GoesOnAndRefusesOtherStudies) {
   const CertifyStudy study;
-  ASSERT_EQ(study.certify({"-o", "cases.json"}).exit_code, 1);
-  const std::string whole = contents(study.folder / "cases.json");
+  const std::string& whole = CertifyStudy::whole();
+  write(study.folder / "cases.json", whole);
   Json partly = Json::parse(whole);
   for (int i = 0; i < 20; ++i) partly["cases"].erase(3);
   partly["cases"][0][4] = 0.125;  // taken over, not simulated again
@@ -98,8 +109,8 @@ TEST(CertifyCommand, RefusesResultsThatAreNestedDeeply) {
 // A command that needs fewer cases leaves the others in the file, and reads back what it needs.
 TEST(CertifyCommand, KeepsTheCasesThatItDoesNotNeed) {
   const CertifyStudy study;
-  ASSERT_EQ(study.certify({"-o", "cases.json"}).exit_code, 1);
-  const std::string whole = contents(study.folder / "cases.json");
+  const std::string& whole = CertifyStudy::whole();
+  write(study.folder / "cases.json", whole);
   const Output fewer = study.run({"certify", "stand.json", "--quiet", "--study", "study.json",
                                   "--failure", "0.1", "--runs", "29", "-o", "cases.json"});
   EXPECT_EQ(fewer.exit_code, 1) << fewer.err;
@@ -109,7 +120,7 @@ TEST(CertifyCommand, KeepsTheCasesThatItDoesNotNeed) {
 
 TEST(CertifyCommand, ReplacesNoFileWithoutForce) {
   const CertifyStudy study;
-  ASSERT_EQ(study.certify({"-o", "cases.json"}).exit_code, 1);
+  write(study.folder / "cases.json", CertifyStudy::whole());
   write(study.folder / "mine.txt", "mine");
   const Output merged = study.certify({"--merge", "cases.json", "-o", "mine.txt"});
   EXPECT_EQ(merged.exit_code, 3);
@@ -144,7 +155,8 @@ TEST(CertifyCommand, RefusesWhatThePlantDoesNotUse) {
 
 TEST(CertifyCommand, ACaseCanBeSimulatedAlone) {
   const CertifyStudy study;
-  const Output all = study.certify({"--json"});
+  write(study.folder / "cases.json", CertifyStudy::whole());
+  const Output all = study.certify({"--json", "-o", "cases.json"});
   const Json worst = Json::parse(all.out).at("worst_cases").at(0);
   const std::string number = std::to_string(worst.at("case").get<long>());
   const Output alone = study.run({"simulate", "stand.json", "--quiet", "--study", "study.json",
@@ -160,7 +172,8 @@ TEST(CertifyCommand, ACaseCanBeSimulatedAlone) {
 
 TEST(CertifyCommand, ComparesLawsAndRefusesBadInput) {
   const CertifyStudy study;
-  const Output compared = study.certify({"--against-controller", "none"});
+  write(study.folder / "cases.json", CertifyStudy::whole());
+  const Output compared = study.certify({"--against-controller", "none", "-o", "cases.json"});
   EXPECT_NE(compared.out.find("compared with 'none' in the same 40 cases"), std::string::npos)
       << compared.out << compared.err;
   EXPECT_NE(compared.out.find("McNemar's exact test"), std::string::npos);

@@ -9,6 +9,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/run/log_fields.hpp"
 #include "ayumi/io/run/run_folder.hpp"
+#include "ayumi/io/run/simulation_log_file.hpp"
 #include "tests/cli/program.hpp"
 
 namespace ayumi::test {
@@ -153,6 +154,25 @@ TEST(ExplainCommand, WordsAndTheNumbersOfARun) {
   EXPECT_EQ(run_here({"explain", "18", "run"}).exit_code, 2);
 }
 
+/// Writes the samples before, at and after k as a log of their own, for which they are 0, 1 and 2:
+/// the whole log takes a third of a second to read. Events keep their distance from the sample.
+void write_instant(const SimulationLog& log, size_t k, const fs::path& file) {
+  SimulationLog instant = log;
+  const size_t first = k > 0 ? k - 1 : 0;
+  instant.samples = {log.samples.at(first), log.samples.at(k),
+                     log.samples.at(std::min(k + 1, log.samples.size() - 1))};
+  for (SimulationEvent& event : instant.events) event.t -= log.dt * (static_cast<double>(k) - 1);
+  write_log(file, instant);
+}
+
+/// What `explain` prints about the sample that write_instant() has in the middle.
+Output explained(int equation, const Folder& folder, double dt, bool json) {
+  std::vector<std::string> words = {"explain", std::to_string(equation),
+                                    "instant.bin@" + text::exact(dt)};
+  if (json) words.push_back("--json");
+  return run_program(words, folder.path());
+}
+
 /// Every column of a log's sample by its name.
 std::map<std::string, double> columns_of(const SimulationLog& log, size_t k) {
   std::string bytes;
@@ -199,16 +219,16 @@ TEST(ExplainCommand, EveryNumberIsTheLogsOwn) {
     const SimulationLog log = read_run_log(folder / "run");
     size_t computed = 0;
     for (const double t : run.times) {
-      const std::map<std::string, double> columns =
-          columns_of(log, static_cast<size_t>(std::lround(t / log.dt)));
+      const auto k = static_cast<size_t>(std::lround(t / log.dt));
+      const std::map<std::string, double> columns = columns_of(log, k);
+      write_instant(log, k, folder / "instant.bin");
       size_t values = 0;
       for (int n = 1; n <= 29; ++n) {
         // All equations once under each of DTAD, VIIP and its jump, else one of each group.
         if (!(run.all && t == run.times[0]) && !groups.contains(n)) continue;
         SCOPED_TRACE(std::string(run.name) + " (" + std::to_string(n) + ") at " +
                      std::to_string(t));
-        const Output each = run_program(
-            {"explain", std::to_string(n), "run@" + text::exact(t), "--json"}, folder.path());
+        const Output each = explained(n, folder, log.dt, true);
         ASSERT_EQ(each.exit_code, 0) << each.err;
         const Json json = Json::parse(each.out);
         for (const Json& value : json.at("values")) {
@@ -272,10 +292,8 @@ TEST(ExplainCommand, SaysCutOnlyWhereSomethingWasCut) {
     int& count = moved ? cut : whole;
     if (count == 4 || (count > 0 && k % 50 != 0)) continue;
     ++count;
-    const std::string words =
-        run_program({"explain", "18", "run@" + text::exact(log.dt * static_cast<double>(k))},
-                    folder.path())
-            .out;
+    write_instant(log, k, folder / "instant.bin");
+    const std::string words = explained(18, folder, log.dt, false).out;
     EXPECT_EQ(words.find("nearest point of the support of") != std::string::npos, moved) << words;
     EXPECT_EQ(words.find("inside the support of") != std::string::npos, !moved) << words;
   }

@@ -4,6 +4,7 @@
 #include <sys/file.h>
 #include <sys/stat.h>
 
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "tests/cli/program.hpp"
@@ -46,6 +47,18 @@ class Run : public testing::Test {
     words.insert(words.end(), more.begin(), more.end());
     return ayumi(words);
   }
+  /// Puts a run of a pattern at `out`; each is run once for all tests that only need a run.
+  void given_run(const std::string& pattern) {
+    if (!made_) made_ = std::make_unique<Folder>("Run");
+    if (!fs::exists(*made_ / pattern)) {
+      const Output made = run(pattern);
+      ASSERT_EQ(made.exit_code, 0) << made.out << made.err;
+      fs::copy(folder / "out", *made_ / pattern, fs::copy_options::recursive);
+      return;
+    }
+    fs::copy(*made_ / pattern, folder / "out", fs::copy_options::recursive);
+  }
+  static void TearDownTestSuite() { made_.reset(); }
   Output exported(const std::vector<std::string>& more, const std::string& format = "hoap") {
     std::vector<std::string> words = {"export", "out", "--format", format, "-o", "t", "-q"};
     words.insert(words.end(), more.begin(), more.end());
@@ -57,6 +70,7 @@ class Run : public testing::Test {
     return text.substr(text.find("\nt[s]") + 1);
   }
   Folder folder;
+  static inline std::unique_ptr<Folder> made_;
 };
 
 TEST_F(Run, TheTableIsThatOfTheRunWithoutDisturbances) {
@@ -82,7 +96,7 @@ TEST_F(Run, TheTableIsThatOfTheRunWithoutDisturbances) {
 
 // Whatever disturbs the run, the tables for the robot are those of the run without it.
 TEST_F(Run, TheTablesOfManyDisturbedRunsAreThoseOfTheUndisturbedRun) {
-  ASSERT_EQ(run("calm.json").exit_code, 0);
+  ASSERT_NO_FATAL_FAILURE(given_run("calm.json"));
   const std::string table = rows("out/reference.csv"), hoap = contents(folder / "out/hoap.csv");
   const std::vector<std::string> scenarios = {
       R"({ "type": "impulse", "at": 0.2, "duration": 0.02, "direction": [1, 0, 0], "impulse": 0.4 })",
@@ -109,7 +123,7 @@ TEST_F(Run, TheTablesOfManyDisturbedRunsAreThoseOfTheUndisturbedRun) {
 
 // A table says which servo it was made for, and may be made for another.
 TEST_F(Run, TablesAreMadeForAServo) {
-  ASSERT_EQ(run("calm.json").exit_code, 0);
+  ASSERT_NO_FATAL_FAILURE(given_run("calm.json"));
   EXPECT_NE(contents(folder / "out/reference.csv").find("\n# servo: lead\n# servo_profile: hoap1"),
             std::string::npos);
   std::vector<std::string> made;
@@ -131,7 +145,7 @@ TEST_F(Run, TablesAreMadeForAServo) {
 }
 
 TEST_F(Run, TheTableOfAPushedRunIsExportedWithPushedOnlyAndSaysSo) {
-  ASSERT_EQ(run("pushed.json").exit_code, 0);
+  ASSERT_NO_FATAL_FAILURE(given_run("pushed.json"));
   ASSERT_EQ(exported({}, "csv").exit_code, 0);
   EXPECT_EQ(contents(folder / "t").find("disturbances"), std::string::npos);
   for (const std::string input : {"out", "out/reference_pushed.csv"}) {
@@ -154,7 +168,7 @@ TEST_F(Run, TheTableOfAPushedRunIsExportedWithPushedOnlyAndSaysSo) {
 
 // The caution goes along with a table that becomes a pattern.
 TEST_F(Run, APatternMadeOfAPushedTableIsNotForARobotEither) {
-  ASSERT_EQ(run("pushed.json").exit_code, 0);
+  ASSERT_NO_FATAL_FAILURE(given_run("pushed.json"));
   ASSERT_EQ(
       ayumi({"import", "out/reference_pushed.csv", "--robot", "hoap1", "-o", "i.json"}).exit_code,
       0);
@@ -223,7 +237,7 @@ TEST_F(Run, AnInconsistentPatternGivesNoTableForARobot) {
 }
 
 TEST_F(Run, ExplainSaysWhereTheTracksOfTheRunComeFrom) {
-  ASSERT_EQ(run("calm.json").exit_code, 0);
+  ASSERT_NO_FATAL_FAILURE(given_run("calm.json"));
   const Output people = ayumi({"explain", "18", "out@0.5"});
   ASSERT_EQ(people.exit_code, 0) << people.err;
   EXPECT_NE(people.out.find("  sampled from\n    joints "), std::string::npos) << people.out;
@@ -233,7 +247,7 @@ TEST_F(Run, ExplainSaysWhereTheTracksOfTheRunComeFrom) {
 }
 
 TEST_F(Run, ExportRefusesAFolderThatHasChanged) {
-  ASSERT_EQ(run("calm.json").exit_code, 0);
+  ASSERT_NO_FATAL_FAILURE(given_run("calm.json"));
   for (const std::string name :
        {"reference.csv", "reference.json", "hoap.csv", "log_open_loop.bin", "run.json"}) {
     const std::string before = contents(folder / "out" / name);
@@ -266,7 +280,7 @@ TEST_F(Run, ExportRefusesAFolderThatHasChanged) {
 }
 
 TEST_F(Run, ForceLeavesNothingOfTheRunBeforeAndEverythingOfTheUser) {
-  ASSERT_EQ(run("pushed.json").exit_code, 0);
+  ASSERT_NO_FATAL_FAILURE(given_run("pushed.json"));
   write(folder / "out/notes.txt", "mine");
   const Output second = run("calm.json");
   EXPECT_EQ(second.exit_code, 3);
@@ -326,7 +340,7 @@ TEST_F(Run, BadInputLeavesNoFolder) {
 
 // What is there under the name of an output and is no regular file stays as it is.
 TEST_F(Run, NoCommandReplacesALinkADeviceOrAPipe) {
-  ASSERT_EQ(run("calm.json").exit_code, 0);
+  ASSERT_NO_FATAL_FAILURE(given_run("calm.json"));
   write(folder / "target", "mine");
   for (const std::string name : {"l.json", "l.csv", "l.svg", "l.html", "l.png"})
     fs::create_symlink("target", folder / name);
@@ -361,7 +375,7 @@ TEST_F(Run, NoCommandReplacesALinkADeviceOrAPipe) {
 }
 
 TEST_F(Run, AllCommandsRefuseAnExistingFileInOneSentence) {
-  ASSERT_EQ(run("calm.json").exit_code, 0);
+  ASSERT_NO_FATAL_FAILURE(given_run("calm.json"));
   for (const std::string name : {"x.json", "x.csv", "x.svg", "x.html", "x.png", "x.glb"})
     write(folder / name, "mine");
   const std::vector<std::vector<std::string>> commands = {

@@ -2,8 +2,10 @@
 """Faults of the machine: calls that fail, a disk that is full, and signals at random moments.
 
     faults.py PROGRAM LIBRARY [--kind calls|disk|signals|all] [--count N] [--seed S] [--only NAMES]
+              [--steps N]
 
 PROGRAM is ayumi and LIBRARY the library of failing_calls.c. Each trial works in a folder of its own.
+Signals stop commands that work on the bundled walk, or on a walk of so many steps.
 What holds after each of them:
   - the program has ended by itself or by our signal: never by SIGSEGV, SIGABRT and the like;
   - exit code 0 or 1 means that every output is there and whole; another code comes with a message;
@@ -203,14 +205,14 @@ def commands(program, pattern):
     }
 
 
-def slow_commands(program):
+def slow_commands(program, walk):
     """What runs long enough to be stopped at a random moment."""
     return {
-        **commands(program, WALK),
-        "pictures": lambda: Trial(program, ["run", WALK, "-o", "run"], ["run"]),
-        "push": lambda: Trial(program, ["push", WALK, "-o", "push.json", "--directions", "2"],
+        **commands(program, walk),
+        "pictures": lambda: Trial(program, ["run", walk, "-o", "run"], ["run"]),
+        "push": lambda: Trial(program, ["push", walk, "-o", "push.json", "--directions", "2"],
                               ["push.json"], goes_on=True),
-        "certify": lambda: Trial(program, ["certify", WALK, "-o", "cases.json"],
+        "certify": lambda: Trial(program, ["certify", walk, "-o", "cases.json"],
                                  ["cases.json"], goes_on=True),
         "sweep": lambda: Trial(program, ["sweep", "study.json", "-o", "results.db"],
                                ["results.db"], goes_on=True),
@@ -285,9 +287,9 @@ def try_disk(program, library, count, rng, report):
             one_fault(make, library, f"bytes:{n}", report, name, n % 10 == 0)
 
 
-def try_signals(program, count, rng, report, only):
+def try_signals(program, walk, count, rng, report, only):
     """SIGKILL and Ctrl-C at random moments of long commands."""
-    makers = slow_commands(program)
+    makers = slow_commands(program, walk)
     if only:
         makers = {name: make for name, make in makers.items() if name in only}
     lasts, results = {}, {}
@@ -341,6 +343,7 @@ def main():
     parser.add_argument("--count", type=int, default=20)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", default="", help="commands that signals stop, with commas")
+    parser.add_argument("--steps", type=int, help="a walk of so many steps in place of the bundled one")
     options = parser.parse_args()
     program, library = os.path.abspath(options.program), os.path.abspath(options.library)
     rng, report = random.Random(options.seed), Report()
@@ -350,7 +353,13 @@ def main():
         try_disk(program, library, options.count, rng, report)
     if options.kind in ("signals", "all"):
         only = [name for name in options.only.split(",") if name]
-        try_signals(program, options.count, rng, report, only)
+        with tempfile.TemporaryDirectory(prefix="ayumi_faults_walk_") as folder:
+            walk = WALK
+            if options.steps is not None:
+                walk = os.path.join(folder, "walk.json")
+                subprocess.run([program, "new", "walk", "--steps", str(options.steps), "-o", walk,
+                                "-q"], check=True, stdout=subprocess.DEVNULL)
+            try_signals(program, walk, options.count, rng, report, only)
     print(f"{report.trials} trials, {report.failures} failed; seed {options.seed}; "
           f"the slowest stop took {report.slowest:.2f} s")
     sys.exit(1 if report.failures else 0)
