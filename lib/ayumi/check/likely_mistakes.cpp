@@ -369,7 +369,8 @@ std::vector<Mistake> likely_mistakes(const RobotModel& model, const Pattern& pat
   if (search.complete) return mistakes;
   const std::string changes = std::to_string(search.trials) +
                               " trial changes of the pattern, after which the search stopped";
-  if (mistakes.empty()) return {{"", "none was found by " + changes}};
+  if (mistakes.empty())
+    return {{.place = "", .words = "no likely cause was found by " + changes, .is_cause = false}};
   mistakes.back().words += "; there may be another cause that was not found by " + changes;
   return mistakes;
 }
@@ -378,7 +379,9 @@ std::string with_mistakes(const std::string& message, const Pattern& pattern,
                           const std::vector<Mistake>& mistakes) {
   if (mistakes.empty()) return message;
   std::vector<std::string> texts;
-  for (const Mistake& mistake : mistakes) texts.push_back(mistake.text());
+  for (const Mistake& mistake : mistakes)
+    if (mistake.is_cause) texts.push_back(mistake.text());
+  if (texts.empty()) return message + "; " + mistakes.front().words;
   const std::string file = pattern.file.empty() ? "" : pattern.file + ": ";
   const bool in_file = !file.empty() && message.rfind(file, 0) == 0;
   return (in_file ? file : "") + "likely cause: " + text::join(texts, "; or ") +
