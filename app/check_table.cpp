@@ -130,7 +130,15 @@ std::string check_table(const ConsistencyReport& report, const RobotModel& model
 std::string mistake_words(const std::vector<Mistake>& mistakes, const char* heading) {
   std::string words;
   for (const Mistake& mistake : mistakes)
-    words += "  " + painted(Paint::caution, heading) + " " + mistake.text() + "\n";
+    if (mistake.is_cause)
+      words += "  " + painted(Paint::caution, heading) + " " + mistake.text() + "\n";
+  return words;
+}
+
+std::string search_words(const std::vector<Mistake>& mistakes) {
+  std::string words;
+  for (const Mistake& mistake : mistakes)
+    if (!mistake.is_cause) words += "  " + mistake.words + "\n";
   return words;
 }
 

@@ -25,9 +25,12 @@ std::string check_table(const ConsistencyReport& report, const RobotModel& model
 /// "joint speed 62 % (l_knee at 1.20 s), ...": the largest share of each limit.
 std::string shares_of_limits(const ConsistencyReport& report);
 
-/// A line for each, with this heading.
+/// A line for each cause, with this heading.
 std::string mistake_words(const std::vector<Mistake>& mistakes,
                           const char* heading = "likely cause:");
+
+/// What a search that found no cause tried.
+std::string search_words(const std::vector<Mistake>& mistakes);
 
 /// Names, default tolerances, units and meanings of all kinds.
 std::string tolerance_table();

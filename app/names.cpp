@@ -27,6 +27,7 @@ namespace fs = std::filesystem;
 struct Named {
   std::optional<RobotModel> robot;
   std::optional<Pattern> pattern;
+  bool by_word = false;  ///< a word names the robot; else it is the one that `new` takes
 };
 
 template <class Read>
@@ -58,6 +59,7 @@ Named named_by(const Context& context, const std::vector<std::string>& words) {
         load(log->provenance.robot);
     if (fs::exists(word) || word.find('/') == std::string::npos) load(word);
   }
+  named.by_word = named.robot.has_value();
   if (!named.robot) load("hoap1");
   return named;
 }
@@ -111,8 +113,17 @@ std::set<std::string> names_of(const Context& context, const std::string& kind,
 
 void print_names(const Context& context, const std::string& kinds,
                  const std::vector<std::string>& words) {
-  std::istringstream each(kinds);
-  for (std::string kind; std::getline(each, kind, ',');)
+  std::vector<std::string> each;
+  std::istringstream list(kinds);
+  for (std::string kind; std::getline(list, kind, ',');) each.push_back(kind);
+  // Of a robot and what belongs to it, the robot is named first.
+  if (each.size() > 1 && each.front() == "robots") {
+    if (named_by(context, words).by_word)
+      each.erase(each.begin());
+    else
+      each.resize(1);
+  }
+  for (const std::string& kind : each)
     for (const std::string& name : names_of(context, kind, words))
       std::printf("%s\n", text::printable(name).c_str());
 }

@@ -9,7 +9,8 @@
 namespace ayumi::app {
 
 /// Prints the names of the kinds, which commas separate, a line each: "robots", "joints",
-/// "postures", "profiles", "gains", "controllers", "plants" or "equations". `words` are those of
+/// "postures", "profiles", "gains", "controllers", "plants" or "equations". Of "robots" and other
+/// kinds, only the robots until a robot is named, and then only the others. `words` are those of
 /// the command line that is being typed: the robot is that of `--robot`, else the first robot,
 /// pattern or run among them, else the one that `new` takes. A shell that completes wants no
 /// message: where a file cannot be read, nothing is printed.

@@ -62,16 +62,19 @@ AuthorResult check_job(const AuthorMotion& motion, const Progress& progress) {
   const Judgement& judgement = motion.judgement;
   const Task& task = motion.task;
   OrderedJson lines = OrderedJson::array();
+  std::vector<Mistake> mistakes;
   if (!judgement.good())
-    for (const Mistake& mistake :
-         likely_causes(task, check_options(task), judgement.report, progress))
-      lines.push_back("Likely cause: " + mistake.text());
+    mistakes = likely_causes(task, check_options(task), judgement.report, progress);
+  for (const Mistake& mistake : mistakes)
+    if (mistake.is_cause) lines.push_back("Likely cause: " + mistake.text());
   const std::string& need = judgement.need().text;
   if (!need.empty()) lines.push_back(need);
   for (const std::string& reason : export_refusals(task, judgement))
     if (reason != judgement.reason()) lines.push_back("ayumi export refuses the table: " + reason);
   lines.push_back(counted_findings(judgement) + ", actuators " + task.profile);
   lines.push_back("Share of the limits: " + shares_of_limits(judgement.report));
+  for (const Mistake& mistake : mistakes)
+    if (!mistake.is_cause) lines.push_back("The search: " + mistake.words);
   return {result_json("check", judgement.good() ? "The pattern is consistent." : judgement.reason(),
                       judgement.good(), lines),
           {}};

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <numbers>
 #include <optional>
 
 #include "ayumi/base/counted.hpp"
@@ -15,6 +14,7 @@
 #include "ayumi/base/file_lock.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
+#include "ayumi/limits/amount_text.hpp"
 #include "ayumi/plot/influence_plot.hpp"
 #include "ayumi/study/subset_simulation.hpp"
 #include "certify_results.hpp"
@@ -76,8 +76,15 @@ std::string counts_text(const Certificate& c) {
   return text;
 }
 
-void print_certificate(const Context& context, const Certificate& c, const KnownResults& results,
-                       const CertifyOptions& options) {
+/// "2.3 deg", in the unit of the pattern's angles.
+std::string angle_words(double angle, bool degrees, int digits) {
+  const ShownUnit unit = shown_unit("rad", degrees);
+  // In rad, two digits more say as much.
+  return text::fixed(angle * unit.scale, unit.scale == 1 ? digits + 2 : digits) + " " + unit.name;
+}
+
+void print_certificate(const Context& context, bool degrees, const Certificate& c,
+                       const KnownResults& results, const CertifyOptions& options) {
   const std::string confidence = in_percent(options.confidence) + " confidence";
   std::string text = c.outcome.certified ? "certified: " : "not certified: ";
   text += counts_text(c);
@@ -106,6 +113,7 @@ void print_certificate(const Context& context, const Certificate& c, const Known
                   confidence + "\n");
   }
   if (c.largest.runs > 0) {
+    const ShownUnit tilt = shown_unit("rad", degrees);
     const auto figure = [](double value, double factor, const std::string& unit) {
       return std::isfinite(value) ? text::brief(factor * value, 3) + unit
                                   : std::string("no bound (a run fell)");
@@ -114,7 +122,7 @@ void print_certificate(const Context& context, const Certificate& c, const Known
                   " of all runs stay within each of these bounds, with " + confidence +
                   ": COG error " + figure(c.largest.cog_error, 1e3, " mm") + ", torque " +
                   figure(c.largest.torque, 100, " % of the limit") + ", foot tilt " +
-                  figure(c.largest.foot_tilt, 180 / std::numbers::pi, " deg") + "\n");
+                  figure(c.largest.foot_tilt, tilt.scale, " " + tilt.name) + "\n");
   }
 }
 
@@ -135,7 +143,7 @@ void print_influences(const Context& context, std::vector<ValueInfluence> influe
   }
 }
 
-void print_worst(const Context& context, const KnownResults& results,
+void print_worst(const Context& context, bool degrees, const KnownResults& results,
                  const std::vector<long>& numbers) {
   context.print("  worst cases (ayumi simulate --case N shows one):\n");
   for (const long number : numbers) {
@@ -144,7 +152,7 @@ void print_worst(const Context& context, const KnownResults& results,
                   (r.fell_at >= 0 ? " at " + text::fixed(r.fell_at, 2) + " s" : "") +
                   ", COG error " + text::fixed(1e3 * r.cog_error, 1) + " mm, torque " +
                   text::fixed(100 * r.torque, 0) + " %, foot tilt " +
-                  text::fixed(r.foot_tilt * 180 / std::numbers::pi, 1) + " deg\n");
+                  angle_words(r.foot_tilt, degrees, 1) + "\n");
   }
 }
 
@@ -344,11 +352,12 @@ void certify_pattern(Context& context, CertifyCommand& options) {
   const std::vector<long> worst = worst_cases(results, kWorst);
   const std::string law = name_of(simulate.controller.type);
   context.print(options.pattern + ", " + input.robot.name() + ", " + law + "\n");
-  print_certificate(context, found, results, options.certify);
+  const bool degrees = input.pattern.degrees;
+  print_certificate(context, degrees, found, results, options.certify);
   const Json sources = print_sources(context, study);
   context.print(left_out);
   if (!influence.empty()) print_influences(context, influence);
-  print_worst(context, results, worst);
+  print_worst(context, degrees, results, worst);
   Json json = {{"study", asked},
                {"certificate", certificate_json(found, options.certify)},
                {"uncertainty", sources},

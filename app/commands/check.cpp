@@ -175,20 +175,23 @@ std::string scenario_words(const std::vector<std::string>& sentences) {
     judged.tolerances[kind] = value;
   judged.threads = context.threads;
   judged.degrees = pattern.degrees;
-  const std::vector<Mistake> mistakes = likely_mistakes(robot, pattern, judged, context.progress());
+  std::vector<Mistake> mistakes = likely_mistakes(robot, pattern, judged, context.progress());
   try {
     sample_at_servo_period(robot, pattern, {}, context.threads);
   } catch (const Error& first) {
+    if (names_its_value(first))
+      std::erase_if(mistakes, [](const Mistake& mistake) { return !mistake.explains_all; });
     throw_with_message(first, with_mistakes(first.what(), pattern, mistakes));
   }
-  throw error;  // of what no sample shows: a name of the scenario, a gain
+  throw error;  // of what no sample shows
 }
 
 Task load_or_explain(const Context& context, const std::string& file, const CheckCommand& options) {
   try {
     return load_pattern(context, file, options.input);
   } catch (const Error& error) {
-    if (error.code() != ErrorCode::bad_pattern || file == "-") throw;
+    const bool is_of_numbers = error.code() == ErrorCode::bad_pattern && !is_of_unknown_name(error);
+    if (!is_of_numbers || file == "-") throw;
     explain(context, error, file, options);
   }
 }
@@ -231,7 +234,7 @@ Checked checked_one(const Context& context, const CheckCommand& options, const s
                  "\n") +
       refusal_words(input, judgement) +
       check_table(report, input.robot, options.all ? Shown::findings : Shown::causes) +
-      origin_words(input.series.origin);
+      search_words(mistakes) + origin_words(input.series.origin);
   std::vector<std::string> panels;
   if (!options.plot.empty()) {
     panels = plot_joints_against_limits(input, report, options.plot);
@@ -247,7 +250,8 @@ Checked checked_one(const Context& context, const CheckCommand& options, const s
                        {"sufficient_profiles", need.sufficient},
                        {"own", own.empty() ? Json(nullptr) : Json(own)}};
   json["likely_mistakes"] = Json::array();
-  for (const Mistake& mistake : mistakes) json["likely_mistakes"].push_back(mistake.text());
+  for (const Mistake& mistake : mistakes)
+    if (mistake.is_cause) json["likely_mistakes"].push_back(mistake.text());
   json["with_disturbances"] = disturbed;
   json["export_refuses"] = export_refusals(input, judgement);
   if (!options.plot.empty()) json["plot"] = {{"output", options.plot}, {"series", panels}};

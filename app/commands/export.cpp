@@ -21,6 +21,7 @@
 #include "ayumi/io/run/run_folder.hpp"
 #include "ayumi/io/table/csv_dialect.hpp"
 #include "ayumi/io/table/table.hpp"
+#include "ayumi/limits/amount_text.hpp"
 #include "ayumi/limits/table_safety.hpp"
 #include "ayumi/render/gltf.hpp"
 #include "ayumi/sim/simulate.hpp"
@@ -61,6 +62,11 @@ struct Source {
   std::optional<std::string> original = {};  ///< bytes of the imported file of the format
   double interval = 0;  ///< from row to row of the file that was imported; 0: none was [s]
 };
+
+/// The unit of angles in texts: that of the pattern, if there is one.
+bool angles_in_degrees(const Source& source) {
+  return !source.plan || source.plan->pattern.degrees;
+}
 
 /// The format of a motion that is written; null for the joint tables of this program.
 const MotionFormat* motion_format(const ExportOptions& options) {
@@ -411,14 +417,16 @@ std::string in_words(const ExportOptions& options, const Source& source, const S
     text += "; the largest step is " + text::fixed(100 * report.max_step_ratio, 1) +
             " % of the limit (" + report.worst_joint + " at " +
             on_both_clocks(report.worst_at, report.ramp, report.ramp + report.motion) + ")";
+  const ShownUnit margin = shown_unit("rad", angles_in_degrees(source));
   if (!report.margin_joint.empty())
     text += (report.min_limit_margin < 0 ? "; the joint farthest beyond its position limit is "
                                          : "; the joint nearest to its position limit is ") +
             report.margin_joint + " (" +
-            text::brief(std::abs(report.min_limit_margin) * 180 / EIGEN_PI, 3) + " deg)";
+            text::brief(std::abs(report.min_limit_margin) * margin.scale, 3) + " " + margin.name +
+            ")";
   text += "\n";
   for (const SafetyViolation& violation : report.violations)
-    text += "  unsafe: " + text_of(violation) + "\n";
+    text += "  unsafe: " + text_of(violation, angles_in_degrees(source)) + "\n";
   if (!options.force_unsafe && plays(options) && (!source.unfit.empty() || !report.safe))
     text += "  --force-unsafe writes the table nevertheless\n";
   return text;
@@ -450,7 +458,7 @@ std::string words_on_sequence(const Source& source, const SafeTable& safe) {
 TableCaution caution_of_written(const Source& source, const SafeTable& safe) {
   std::vector<std::string> words = source.unfit;
   for (const SafetyViolation& violation : safe.report.violations)
-    words.push_back("unsafe: " + text_of(violation));
+    words.push_back("unsafe: " + text_of(violation, angles_in_degrees(source)));
   return {source.disturbances, text::join(words, "; ")};
 }
 

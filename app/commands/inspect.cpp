@@ -12,6 +12,7 @@
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/model/diagnose.hpp"
 #include "ayumi/model/outline.hpp"
+#include "ayumi/plan/foot_plan.hpp"
 #include "ayumi/render/clip.hpp"
 #include "option_checks.hpp"
 #include "pattern_input.hpp"
@@ -367,6 +368,21 @@ std::string list_lines(const std::string& title, const std::vector<std::string>&
   return text;
 }
 
+// Where the first keys of the feet are, in the words of a pattern.
+std::string feet_line(const RobotModel& model) {
+  if (!model.has_soles() || !model.has_posture("home")) return "";
+  const auto feet = start_feet(model, {});
+  const auto place = [&](Side side) {
+    const Eigen::Vector3d& p = feet[static_cast<size_t>(index(side))].translation();
+    const auto number = [](double value) {  // to the micrometre, and zero without a sign
+      return text::brief(std::round(1e6 * value) * 1e-6 + 0.0);
+    };
+    return "\"" + std::string(name_of(side)) + "\": [" + number(p.x()) + ", " + number(p.y()) +
+           ", " + number(p.z()) + "]";
+  };
+  return "Feet at home, as in keys [m]: " + place(Side::left) + ", " + place(Side::right) + "\n";
+}
+
 std::string inspection_text(const RobotModel& model, const Stance& stance,
                             const std::vector<ModelWarning>& warnings) {
   std::vector<std::string> notes;
@@ -379,10 +395,11 @@ std::string inspection_text(const RobotModel& model, const Stance& stance,
          std::to_string(model.links().size()) + " links\nCOG at home: x " +
          text::fixed(cog.x(), 1) + ", y " + text::fixed(cog.y(), 1) + ", z " +
          text::fixed(cog.z(), 1) + " mm from " +
-         (model.has_soles() ? "the middle between the sole frames" : "the root link") + "\n\n" +
-         joint_lines(model) + "\n" + coupling_lines(model) + profile_lines(model) + "\n" +
-         sole_lines(model) + sensor_lines(model) + gain_lines(model) + posture_line(model) + "\n" +
-         list_lines("Assumptions", model.description().assumptions) + list_lines("Warnings", notes);
+         (model.has_soles() ? "the middle between the sole frames" : "the root link") + "\n" +
+         feet_line(model) + "\n" + joint_lines(model) + "\n" + coupling_lines(model) +
+         profile_lines(model) + "\n" + sole_lines(model) + sensor_lines(model) + gain_lines(model) +
+         posture_line(model) + "\n" + list_lines("Assumptions", model.description().assumptions) +
+         list_lines("Warnings", notes);
 }
 
 void inspect(const Context& context, const InspectOptions& options) {

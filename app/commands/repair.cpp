@@ -126,7 +126,7 @@ std::string in_words(const RepairCommand& options, const Task& input, const Repa
          std::to_string(result.constraints) + " constraints, " + std::to_string(result.iterations) +
          " iterations, " + text::fixed(wall, 2) + " s\n";
   for (const std::string& reason : result.reasons) out += "  because " + reason + "\n";
-  out += mistake_words(mistakes);
+  out += mistake_words(mistakes) + search_words(mistakes);
   if (result.status == RepairStatus::repaired) out += check_table(result.check, model);
   return out;
 }
@@ -413,7 +413,8 @@ void repair_pattern(Context& context, RepairCommand options) {
   json["parameters_together"] = in_json(alone ? PassingValues() : values.front());
   json["slower"] = in_json(pace);
   json["likely_mistakes"] = nlohmann::ordered_json::array();
-  for (const Mistake& mistake : mistakes) json["likely_mistakes"].push_back(mistake.text());
+  for (const Mistake& mistake : mistakes)
+    if (mistake.is_cause) json["likely_mistakes"].push_back(mistake.text());
   json["wall_s"] = wall;
   json["output"] = written ? nlohmann::ordered_json(options.out) : nullptr;
   context.print_json(json.dump(2));

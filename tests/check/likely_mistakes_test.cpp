@@ -52,6 +52,20 @@ size_t nth_swing(const Pattern& pattern, int n) {
 
 }  // namespace
 
+// What a search tried in vain is no cause, and does not stand before what is known.
+TEST(LikelyMistakes, ASearchWithoutACauseComesLast) {
+  Pattern pattern = sound_walk();
+  pattern.file = "a.json";
+  const std::vector<Mistake> none = {{.place = "",
+                                      .words = "no likely cause was found",
+                                      .explains_all = false,
+                                      .is_cause = false}};
+  EXPECT_EQ(with_mistakes("a.json: phases/1: out of reach", pattern, none),
+            "a.json: phases/1: out of reach; no likely cause was found");
+  EXPECT_EQ(with_mistakes("a.json: phases/1: out of reach", pattern, {{"/units", "in degrees"}}),
+            "a.json: likely cause: /units: in degrees; the first error is: phases/1: out of reach");
+}
+
 TEST(ImpossibleValues, SoundPatternsHaveNone) {
   for (const Pattern& pattern :
        {sound_walk(), stand_pattern(hoap1(), 1), sway_pattern(hoap1(), sway_defaults(hoap1()))})

@@ -415,5 +415,52 @@ TEST(PlantedMistakes, AMissingSwingOfAConsistentPatternIsDoubted) {
   EXPECT_EQ(doubts.front().place, "/phases/3");
 }
 
+// Values that check does not use, or that are too good to be true.
+TEST(PlantedMistakes, ValuesOfTheWorldThatNobodyMeansAreDoubted) {
+  const auto doubt = [](const std::function<void(Pattern&)>& plant) {
+    Pattern pattern = walk(tall());
+    plant(pattern);
+    const std::vector<Mistake> doubts = doubtful_values(tall(), pattern);
+    EXPECT_LE(doubts.size(), 1u);
+    return doubts.empty() ? "" : doubts.front().text();
+  };
+  const auto push = [](double at, PushKind kind, double size, double duration) {
+    Disturbance d;
+    d.at = at;
+    d.duration = duration;
+    d.what = Push{.kind = kind, .magnitude = size};
+    return d;
+  };
+  EXPECT_EQ(doubt([](Pattern& p) { p.world.friction = 1.2; }), "");
+  const std::string rough = doubt([](Pattern& p) { p.world.friction = 80; });
+  EXPECT_TRUE(rough.starts_with("/world/friction: ")) << rough;
+  EXPECT_NE(rough.find("percentage, write 0.8"), std::string::npos) << rough;
+  // 35 kg; 10 N s are 0.3 m/s.
+  EXPECT_EQ(doubt([&](Pattern& p) { p.scenario = {push(1, PushKind::impulse, 10, 0.02)}; }), "");
+  const std::string hard =
+      doubt([&](Pattern& p) { p.scenario = {push(1, PushKind::impulse, 10'000, 0.02)}; });
+  EXPECT_TRUE(hard.starts_with("/scenario/0: the impulse is ")) << hard;
+  EXPECT_NE(hard.find("if it is in mN s, write 10"), std::string::npos) << hard;
+  EXPECT_EQ(doubt([&](Pattern& p) { p.scenario = {push(1, PushKind::force, 500, 0.02)}; }), "");
+  EXPECT_NE(doubt([&](Pattern& p) { p.scenario = {push(1, PushKind::force, 500, 1)}; }), "");
+  const std::string late =
+      doubt([&](Pattern& p) { p.scenario = {push(99, PushKind::impulse, 10, 0.02)}; });
+  EXPECT_NE(late.find("/scenario/0: the disturbance begins at 99 s, but the motion ends at "),
+            std::string::npos)
+      << late;
+  EXPECT_EQ(doubt([&](Pattern& p) {
+              p.scenario = {push(p.duration() + 0.5, PushKind::impulse, 10, 0.02)};
+            }),
+            "");
+}
+
+// Nobody means a motion that goes on for ten times as long with nothing in it.
+TEST(PlantedMistakes, AKeyBehindTheEndIsNoReasonForALongMotion) {
+  Pattern pattern = walk(tall());
+  pattern.keyframes.back().t = pattern.duration() + 0.3;
+  for (const Mistake& mistake : likely_mistakes(tall(), pattern, options_of(pattern)))
+    EXPECT_EQ(mistake.text().find("with an end at"), std::string::npos) << mistake.text();
+}
+
 }  // namespace
 }  // namespace ayumi::test

@@ -71,6 +71,43 @@ TEST_F(CheckRepair, TheMistakeIsNamedFirst) {
       << foot.out;
 }
 
+// No other number mends a name that nothing has: the name is what is said, and nothing is searched.
+TEST_F(CheckRepair, AnUnknownNameIsSaidAloneAtOnce) {
+  const std::string key = R"({ "t": 2.22, "zmp": "left" })";
+  const std::vector<std::pair<std::string, std::string>> misspelt = {
+      {R"({ "t": 2.22, "zmp": "left", "joints": { "l_elbw": 0.1 } })", "did you mean 'l_elbow'?"},
+      {R"({ "t": 2.22, "zmp": "left", "posture": "hom" })", "did you mean 'home'?"},
+      {R"({ "t": 2.22, "zmp": "left", "hands": { "l_forarm": [0.1, 0.1, 0.2] } })",
+       "did you mean 'l_forearm'?"}};
+  for (const auto& [with, meant] : misspelt) {
+    plant("name.json", key, with);
+    const Output answer = ayumi({"check", "name.json"});
+    EXPECT_EQ(answer.exit_code, 3);
+    EXPECT_NE(answer.err.find(meant), std::string::npos) << answer.err;
+    EXPECT_EQ(answer.err.find("likely cause"), std::string::npos) << answer.err;
+    EXPECT_EQ(answer.err.find("look for the cause"), std::string::npos) << answer.err;
+    EXPECT_EQ(answer.err.find("trial"), std::string::npos) << answer.err;
+  }
+}
+
+// The key of a foot that carries is named, with where the foot stands, and not a change of times
+// with which the motion can be sampled.
+TEST_F(CheckRepair, AFootThatItsKeysDragIsNamed) {
+  EXPECT_EQ(ayumi({"new", "kick", "--robot", "hoap1", "-o", "kick.json", "-q"}).exit_code, 0);
+  std::string text = contents(folder / "kick.json");
+  const std::string key = R"("right": [0, -0.039])";
+  const size_t at = text.find(key);
+  ASSERT_NE(at, std::string::npos) << text;
+  write(folder / "dragged.json", text.replace(at, key.size(), R"("right": [0, -0.044])"));
+  const Output answer = ayumi({"check", "dragged.json", "-q"});
+  EXPECT_EQ(answer.exit_code, 3);
+  EXPECT_NE(answer.err.find("dragged.json: phases/0: the right foot stands at [0, -0.039, 0] m"),
+            std::string::npos)
+      << answer.err;
+  EXPECT_NE(answer.err.find("is at [0, -0.044, 0] m, 5 mm away"), std::string::npos) << answer.err;
+  EXPECT_EQ(answer.err.find("likely cause"), std::string::npos) << answer.err;
+}
+
 // The author knows the load: the motion has to bear it, and the answer says how much it bears.
 TEST_F(CheckRepair, APayloadOfTheScenarioIsPartOfTheVerdict) {
   plant(

@@ -70,6 +70,13 @@ TEST(Names, AreThoseOfTheRobotOnTheCommandLine) {
   EXPECT_NE(names({"gains"}).find("\nsoonest\n"), std::string::npos);  // of a baseline
   EXPECT_NE(names({"controllers"}).find("\nfoot-guided\n"), std::string::npos);
   EXPECT_NE(names({"postures", "posture", "draw", "hoap1"}).find("\nhome\n"), std::string::npos);
+  // A posture belongs to a robot, which is named before it.
+  const std::string first = names({"robots,postures", "posture", "draw"});
+  EXPECT_NE(first.find("\nhoap1\n"), std::string::npos) << first;
+  EXPECT_EQ(first.find("\nhome\n"), std::string::npos) << first;
+  const std::string second = names({"robots,postures", "posture", "draw", "hoap1"});
+  EXPECT_EQ(second.find("\nhoap1\n"), std::string::npos) << second;
+  EXPECT_NE(second.find("\nhome\n"), std::string::npos) << second;
   const std::string tall = names({"joints", "new", "walk", "--robot", "humanoid30"});
   EXPECT_NE(tall.find("\nneck"), std::string::npos) << tall;
   EXPECT_EQ(names({"joints", "new", "walk"}).find("\nneck"), std::string::npos);

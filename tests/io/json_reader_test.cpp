@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <ctime>
 
 #include "ayumi/io/json/json_depth.hpp"
+#include "ayumi/io/json/json_slip.hpp"
 #include "tests/support/error_message.hpp"
 
 namespace ayumi {
@@ -19,13 +21,93 @@ std::string parse_error(const std::string& bytes) {
 }
 
 TEST(JsonReader, NamesLineAndColumnOfASyntaxError) {
-  EXPECT_TRUE(parse_error("{\n  \"a\": 1,\n  \"b\": }\n").starts_with("f.json:3:8: "))
-      << parse_error("{\n  \"a\": 1,\n  \"b\": }\n");
+  EXPECT_EQ(parse_error("{\n  \"a\": 1,\n  \"b\": }\n"),
+            "f.json:3:7: the value of the name \"b\" is missing behind its colon");
   EXPECT_EQ(parse_error(" \n"), "f.json: the file is empty; it must hold JSON");
   EXPECT_TRUE(parse_error("{\"a\": NaN}").starts_with("f.json:1:"));
   EXPECT_NE(parse_error("{\"a\": 1e999}").find("f.json"), std::string::npos);
   EXPECT_EQ(parse_error("{\"a\": {\"b\": 1, \"b\": 2}}"),
             "f.json: the key 'b' appears twice in one object; keep one");
+}
+
+// What an author mistypes, and what the message says of it: the line and column where the text is
+// put right, and what is missing there or too much.
+TEST(JsonReader, NamesASlipInWordsAboutTheText) {
+  const std::vector<std::pair<std::string, std::string>> slips = {
+      {"{\n \"t\": 0.5\n \"zmp\": 1}", "f.json:2:10: a comma is missing after 0.5"},
+      {"{\n \"zmp\": \"left\" // a\n \"t\": 1}", "f.json:2:15: a comma is missing after \"left\""},
+      {"{\"t\": 0.5,\n}",
+       "f.json:1:10: this comma has nothing behind it but a }; remove the comma"},
+      {"[1,, 2]", "f.json:1:4: two commas stand in a row; remove one"},
+      {"{\"a\": 1; \"b\": 2}", "f.json:1:8: a comma is meant here, not a semicolon"},
+      {"{t: 0.5}", "f.json:1:2: the name t needs quotation marks: \"t\""},
+      {"{\"zmp\": left}", "f.json:1:9: the word left needs quotation marks: \"left\""},
+      {"{\"zmp\": \"left }\n", "f.json:1:15: a quotation mark is missing: \"left begins"},
+      {"{\"t: 0.5, \"zmp\": 1}", "f.json:1:4: a quotation mark is missing: \"t begins"},
+      {"{\"zmp\": left\"}", "f.json:1:9: a quotation mark is missing before left"},
+      {"{'t': 1}", "f.json:1:2: names and words stand in straight quotation marks"},
+      {"{\"t\" 0.5}", "f.json:1:5: a colon is missing after the name \"t\""},
+      {"{\"t\" = 0.5}", "f.json:1:6: between the name \"t\" and its value stands a colon, not ="},
+      {"{\"a\": , \"b\": 1}", "f.json:1:6: the value of the name \"a\" is missing"},
+      {"{\"left\", \"right\"}", "f.json:1:8: the name \"left\" has no value"},
+      {"{\"t\": .5}", "f.json:1:7: a number has a digit before its point: write 0.5"},
+      {"{\"t\": 5.}", "f.json:1:7: a number has a digit behind its point: write 5 or 5.0"},
+      {"{\"t\": +5}", "f.json:1:7: a number has no + before it: write 5"},
+      {"{\"t\": 0,5}", "f.json:1:8: a number has a decimal point, not a comma"},
+      {"{\"t\": 30deg}", "f.json:1:7: '30deg' is no number: write 30 without the deg"},
+      {"{\"t\": 2*0.5}", "f.json:1:8: an expression stands in quotation marks"},
+      {"{\"t\": ${a}}", "f.json:1:7: an expression stands in quotation marks: \"${a}\""},
+      {"{\"a\": True}", "f.json:1:7: True is written as true"},
+      {"# c\n{}", "f.json:1:1: a comment begins with //, not with #"},
+      {"{\"a\": (1, 2)}", "f.json:1:7: a list stands in [ ], not in ( )"},
+      {"{\"a\": \"C:\\q\"}", "f.json:1:10: a backslash between quotation marks is written twice"},
+      {"[{\"a\": 1, {\"a\": 2}]", "f.json:1:9: the { of line 1 is not closed: a } is missing"},
+      {"[{\"a\": 1\n {\"a\": 2}]", "f.json:1:9: the { of line 1 is not closed: a } and a comma"},
+      {"{\"a\": [\n1\n\"b\": 2}", "f.json:2:2: the [ of line 1 is not closed: a ] and a comma"},
+      {"{\"a\": [1}", "f.json:1:9: the [ of line 1 is not closed before this }"},
+      {"{\"a\": 1}}", "f.json:1:9: this } is too much: all brackets were closed before it"},
+      {"{\n  \"a\": {\n  \"b\": 1\n}", "f.json:2:8: the text ends too early: a } is missing"},
+      {"{\"a\": [\n1",
+       "f.json:2:2: the text ends too early; missing: ] for the [ of line 1, then }"},
+      {"/* x", "f.json:1:1: this comment has no end: */ is missing"},
+      {"{\"a\": \"\xff\"}", "f.json:1:8: the text is not in the encoding UTF-8 here"},
+  };
+  for (const auto& [text, words] : slips)
+    EXPECT_TRUE(parse_error(text).starts_with(words)) << text << "\n" << parse_error(text);
+}
+
+// A character that is left out of a pattern: the message names its line, and for a bracket, whose
+// line only its author knows, it names some slip in any case.
+TEST(JsonReader, NamesTheLineOfAnyCharacterThatIsLeftOut) {
+  const std::string text = R"({
+  "name": "kick", // a comment, with "quotes"
+  "defaults": { "interpolation": "cubic" },
+  "phases": [
+    { "until": 1.3, "support": "both" },
+    { "until": 2.9, "support": "left", "swing": { "foot": "right", "to": [0.1, -0.04] } }
+  ],
+  "keyframes": [
+    { "t": 0, "zmp": "center" },
+    { "t": "${up} + 0.1", "joints": { "l_knee": -3e1, "r_knee": 20 } }
+  ]
+})";
+  const auto line_of = [](const std::string& words, size_t at) {
+    return std::count(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+  };
+  for (size_t i = 0; i < text.size(); ++i) {
+    if (std::string(",:\"[]{}").find(text[i]) == std::string::npos) continue;
+    std::string broken = text;
+    broken.erase(i, 1);
+    const std::optional<JsonSlip> slip = find_json_slip(broken);
+    if (Json::accept(broken, true)) {
+      EXPECT_FALSE(slip) << slip->words;
+      continue;
+    }
+    ASSERT_TRUE(slip) << "without the character " << i;
+    if (std::string(",:\"").find(text[i]) != std::string::npos) {
+      EXPECT_EQ(line_of(broken, slip->at), line_of(text, i)) << i << ": " << slip->words;
+    }
+  }
 }
 
 TEST(JsonReader, RefusesTextThatNestsTooDeeply) {

@@ -5,6 +5,7 @@
 #include "ayumi/check/actuator_need.hpp"
 #include "ayumi/check/consistency.hpp"
 #include "ayumi/limits/amount_text.hpp"
+#include "ayumi/limits/table_safety.hpp"
 #include "tests/support/planted.hpp"
 
 namespace ayumi::test {
@@ -55,6 +56,19 @@ TEST(UnitsInWords, AreThoseOfThePattern) {
   };
   EXPECT_NE(need(true).find(" deg/s at l_elbow"), std::string::npos) << need(true);
   EXPECT_NE(need(false).find(" rad/s at l_elbow"), std::string::npos) << need(false);
+}
+
+TEST(UnitsInWords, OfARefusedTableToo) {
+  SafetyViolation violation;
+  violation.joint = "l_elbow";
+  violation.kind = "speed";
+  violation.unit = "rad/s";
+  violation.value = 5;
+  violation.limit = 4.76;
+  EXPECT_NE(text_of(violation).find("speed 286.479 deg/s, limit 272.728 deg/s"), std::string::npos)
+      << text_of(violation);
+  EXPECT_NE(text_of(violation, false).find("speed 5 rad/s, limit 4.76 rad/s"), std::string::npos)
+      << text_of(violation, false);
 }
 
 // Values of results and JSON do not depend on it.

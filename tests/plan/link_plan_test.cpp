@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 #include "ayumi/author/edit/edit.hpp"
@@ -247,6 +248,47 @@ TEST(LinkPlan, SaysByHowMuchAHandIsOutOfReach) {
   const double missing = std::stod(message.substr(at_mm));
   EXPECT_NEAR(missing, 100, 12) << message;
   EXPECT_NE(message.find("in the frame of the trunk; move the target"), std::string::npos);
+}
+
+// On the way to a key in the world, the trunk may be elsewhere than at the time of the key. A
+// target that only the bent trunk brings within reach is not said to be far out of reach.
+TEST(LinkPlan, DoesNotMeasureTheReachOfATrunkThatIsOnItsWay) {
+  const auto bow = [](double bent, double set_out) {
+    Pattern pattern = standing(4);
+    at(pattern, 0).torso = Vector3d::Zero();
+    at(pattern, 0).zmp = ZmpKey{ZmpKey::Place::center};
+    at(pattern, bent).torso = Vector3d(0, 35 * M_PI / 180, 0);
+    if (set_out > 0) at(pattern, set_out).hands["right"] = LinkTarget{};
+    at(pattern, 3).torso = Vector3d(0, 35 * M_PI / 180, 0);
+    return pattern;
+  };
+  // Where the hand is when the arm hangs from the bent trunk.
+  Pattern hangs = bow(2, 0);
+  at(hangs, 2).joints = {{"r_shoulder_pitch", 0.96}, {"r_elbow", -0.1}};
+  at(hangs, 3).joints = {{"r_shoulder_pitch", 0.96}, {"r_elbow", -0.1}};
+  const auto in_order = [](Pattern pattern) {
+    std::sort(pattern.keyframes.begin(), pattern.keyframes.end(),
+              [](const Keyframe& a, const Keyframe& b) { return a.t < b.t; });
+    return pattern;
+  };
+  const CommandSeries bent = sample(hoap1(), in_order(hangs));
+  const int body = hand_body(hoap1(), Side::right);
+  const Vector3d end = hand_at(hoap1(), sample_at(bent, 2.5).state, body).end;
+  // The hand sets out with the trunk, but the trunk bends later: refused for the way alone.
+  Pattern early = bow(2.9, 0);
+  at(early, 0.2).hands["right"] = LinkTarget{};
+  at(early, 1.5).hands["right"] = place(end);
+  at(early, 3).hands["right"] = place(end);
+  const std::string message =
+      test::error_message([&] { sample(hoap1(), in_order(early)); }, ErrorCode::bad_pattern);
+  EXPECT_NE(message.find("on the way to this key: the right hand is out of reach by "),
+            std::string::npos)
+      << message;
+  EXPECT_NE(message.find("the trunk is on its way, too"), std::string::npos) << message;
+  // With the trunk bent first, the same place is reached.
+  Pattern late = bow(1.5, 1.5);
+  at(late, 3).hands["right"] = place(end);
+  EXPECT_NO_THROW(sample(hoap1(), in_order(late)));
 }
 
 TEST(LinkPlan, RefusesLinksThatItCannotMove) {

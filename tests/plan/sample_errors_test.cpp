@@ -1,6 +1,7 @@
 // What an author gets wrong is told with file, place and remedy.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -121,7 +122,22 @@ TEST(SampleErrors, FootKeysThatDragASupportingFoot) {
                  foot.position = {0.05, 0.05, 0};
                  p.keyframes[1].feet[0] = foot;
                }),
-               {"phases/0", "left foot", "while it carries"});
+               {"phases/0", "left foot", "while it carries", "the key /keyframes/1 at ",
+                "is at [0.05, 0.05, 0] m, 50 mm away", "the place where the foot stands"});
+  // A key that is missing where the foot leaves the ground: it moves before.
+  expect_words(message_of([](Pattern& p) {
+                 for (Phase& phase : p.phases) phase.swing.reset();
+                 Foothold foot;
+                 foot.position = {0.02, -0.05, 0.02};
+                 p.phases[1].support = Support::left;
+                 p.keyframes.push_back(p.keyframes.back());
+                 p.keyframes.back().t = p.phases[1].until - 0.01;
+                 p.keyframes.back().feet[1] = foot;
+                 std::sort(p.keyframes.begin(), p.keyframes.end(),
+                           [](const Keyframe& a, const Keyframe& b) { return a.t < b.t; });
+               }),
+               {"phases/0", "right foot stands at [0, -0.05, 0] m until ", " mm away",
+                "Give the foot a key at ", " s where it stands"});
 }
 
 }  // namespace

@@ -12,6 +12,12 @@ struct SourcePlace {
   std::string file;
   std::string pointer;  ///< JSON pointer; "" for the whole file
   int line = 0;         ///< counted from 1; 0: the pointer names the place
+  /// The error is about a name that nothing has, so that no other number mends it.
+  bool unknown_name = false;
+  /// The error names the value that is wrong. A cause that leaves other errors says less.
+  bool names_value = false;
+
+  bool empty() const { return file.empty() && pointer.empty() && line == 0; }
 };
 
 class PlacedError : public Error {
@@ -24,13 +30,32 @@ class PlacedError : public Error {
   SourcePlace place_;
 };
 
+/// Throws an error of a pattern that names what is not there, without a place.
+[[noreturn]] inline void fail_unknown_name(const std::string& message) {
+  SourcePlace nowhere;
+  nowhere.unknown_name = true;
+  throw PlacedError(ErrorCode::bad_pattern, message, nowhere);
+}
+
+inline bool names_its_value(const Error& error) {
+  const auto* const placed = dynamic_cast<const PlacedError*>(&error);
+  return placed && placed->place().names_value;
+}
+
+inline bool is_of_unknown_name(const Error& error) {
+  const auto* const placed = dynamic_cast<const PlacedError*>(&error);
+  return placed && placed->place().unknown_name;
+}
+
 /// Calls `work`. An Error that leaves it without a place gets this one; its message stays.
 template <typename Work>
-auto at_place(const SourcePlace& place, const Work& work) {
+auto at_place(SourcePlace place, const Work& work) {
   try {
     return work();
-  } catch (const PlacedError&) {
-    throw;
+  } catch (const PlacedError& error) {
+    if (!error.place().empty()) throw;
+    place.unknown_name = error.place().unknown_name;
+    throw PlacedError(error.code(), error.what(), place);
   } catch (const Error& error) {
     throw PlacedError(error.code(), error.what(), place);
   }

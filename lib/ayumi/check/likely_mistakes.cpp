@@ -43,6 +43,15 @@ constexpr double kOnGround = 1e-3;
 constexpr double kLeastAngle = 1e-3;
 // So many angles make a rule of what may be chance in a few. Chosen: two keys of two joints.
 constexpr size_t kManyAngles = 4;
+// The ground is hardly ever rougher. Chosen: rubber on dry concrete has 1; at half, rubber soles
+// are doubted, at twice, a friction of 3 passes for a real one.
+constexpr double kRoughest = 2;
+// A push that gives the whole robot more speed than this is no trial of its balance [m/s]. Chosen:
+// ten times what walking robots survive; at half and at twice, units that are wrong by 1000 are
+// named as well.
+constexpr double kFastestPush = 2;
+// How long a simulation holds the last posture [s]. Definition: SimulateOptions.
+constexpr double kHeld = 1;
 // Mistakes of one kind that are named one by one.
 constexpr size_t kNamed = 2;
 
@@ -62,6 +71,9 @@ class Suspicions {
                                     [](const Phase& phase) { return phase.swing.has_value(); });
     if (feet_ && swings) missing_swings();
     small_angles();
+    friction();
+    pushes();
+    late_disturbances();
     return said_;
   }
 
@@ -131,6 +143,52 @@ class Suspicions {
            "all joint angles are numbers below 6.28 (2 pi), which is small for degrees; if "
            "the angles are in radians, "
            "write \"units\": {\"angle\": \"rad\"}"});
+  }
+
+  void friction() {
+    const double mu = pattern_.world.friction;
+    if (mu > kRoughest)
+      said_.push_back(
+          {"/world/friction",
+           "the friction of the ground is " + text::brief(mu) +
+               ", but rubber on dry concrete has about 1" +
+               (mu <= 100 ? "; if this is a percentage, write " + text::brief(mu / 100) : "")});
+  }
+
+  void pushes() {
+    std::vector<Mistake> found;
+    for (size_t i = 0; i < pattern_.scenario.size(); ++i) {
+      const Disturbance& d = pattern_.scenario[i];
+      const auto* push = std::get_if<Push>(&d.what);
+      if (!push || push->kind == PushKind::torque) continue;
+      const bool impulse = push->kind == PushKind::impulse;
+      const double whole = push->magnitude * (impulse ? 1 : d.duration);
+      const double speed = whole / model_.mass();
+      if (!(speed > kFastestPush) || !std::isfinite(speed)) continue;
+      const std::string unit = impulse ? "N s" : "N";
+      std::string words = std::string(impulse ? "the impulse is " : "the force is ") +
+                          text::brief(push->magnitude) + " " + unit + ", which gives " +
+                          model_.name() + " (" + text::brief(model_.mass(), 3) +
+                          " kg) a speed of " + text::brief(speed, 3) + " m/s";
+      if (1e-3 * speed <= kFastestPush)
+        words += "; if it is in m" + unit + ", write " + text::brief(1e-3 * push->magnitude);
+      found.push_back({"/scenario/" + std::to_string(i), words});
+    }
+    say(found);
+  }
+
+  // A simulation holds the last posture for a while, and may be told to hold it longer.
+  void late_disturbances() {
+    if (!feet_) return;
+    std::vector<Mistake> found;
+    for (size_t i = 0; i < pattern_.scenario.size(); ++i)
+      if (pattern_.scenario[i].at > feet_->duration() + kHeld)
+        found.push_back({"/scenario/" + std::to_string(i),
+                         "the disturbance begins at " + text::brief(pattern_.scenario[i].at) +
+                             " s, but the motion ends at " + text::brief(feet_->duration()) +
+                             " s; it acts only if the simulation holds the last posture that long "
+                             "(--settle)"});
+    say(found);
   }
 
   void times() {
@@ -369,7 +427,8 @@ std::vector<Mistake> likely_mistakes(const RobotModel& model, const Pattern& pat
   if (search.complete) return mistakes;
   const std::string changes = std::to_string(search.trials) +
                               " trial changes of the pattern, after which the search stopped";
-  if (mistakes.empty()) return {{"", "none was found by " + changes}};
+  if (mistakes.empty())
+    return {{.place = "", .words = "no likely cause was found by " + changes, .is_cause = false}};
   mistakes.back().words += "; there may be another cause that was not found by " + changes;
   return mistakes;
 }
@@ -378,7 +437,9 @@ std::string with_mistakes(const std::string& message, const Pattern& pattern,
                           const std::vector<Mistake>& mistakes) {
   if (mistakes.empty()) return message;
   std::vector<std::string> texts;
-  for (const Mistake& mistake : mistakes) texts.push_back(mistake.text());
+  for (const Mistake& mistake : mistakes)
+    if (mistake.is_cause) texts.push_back(mistake.text());
+  if (texts.empty()) return message + "; " + mistakes.front().words;
   const std::string file = pattern.file.empty() ? "" : pattern.file + ": ";
   const bool in_file = !file.empty() && message.rfind(file, 0) == 0;
   return (in_file ? file : "") + "likely cause: " + text::join(texts, "; or ") +

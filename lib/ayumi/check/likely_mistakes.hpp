@@ -19,6 +19,7 @@ struct Mistake {
   std::string place;  ///< JSON pointer in the file; "" for the whole pattern
   std::string words;
   bool explains_all = false;  ///< put right, the pattern is consistent
+  bool is_cause = true;       ///< false: no cause was found, and the words say what was tried
 
   std::string text() const { return place.empty() ? words : place + ": " + words; }
 };
@@ -28,7 +29,8 @@ struct Mistake {
 std::vector<Mistake> impossible_values(const RobotModel& model, const Pattern& pattern);
 
 /// Mistakes that a consistent pattern may contain: a single support without a swing among others
-/// with one, and angles of a few degrees that look like radians.
+/// with one, angles of a few degrees that look like radians, ground that is rougher than any, pushes
+/// that no robot survives, and disturbances after the end.
 std::vector<Mistake> doubtful_values(const RobotModel& model, const Pattern& pattern);
 
 /// What, put right, would make the pattern consistent; where nothing does, its impossible values.
@@ -38,7 +40,8 @@ std::vector<Mistake> likely_mistakes(const RobotModel& model, const Pattern& pat
                                      const CheckOptions& options, const Progress& progress = {});
 
 /// "likely cause: ...; the first thing that fails: MESSAGE", or MESSAGE where no mistake is
-/// likely. The name of the pattern's file, where MESSAGE begins with it, stays in front.
+/// likely. What a search tried that found no cause stands behind MESSAGE. The name of the pattern's
+/// file, where MESSAGE begins with it, stays in front.
 std::string with_mistakes(const std::string& message, const Pattern& pattern,
                           const std::vector<Mistake>& mistakes);
 

@@ -77,6 +77,9 @@ constexpr double kDoubleSupport = 0.2;
 // A phase whose duration differs by less than this share from that of its like is as long as it was
 // meant to be. Chosen: generated walks differ by 1 %.
 constexpr double kUsualShare = 0.2;
+// No phase of a robot is shorter [s]. Chosen: ten times less than the shortest steps of small
+// robots; a time in seconds that is read in ms is below half of it, and steps are above twice.
+constexpr double kShortestPhase = 0.02;
 // So many keyframes that would be at ends of phases are no chance. Chosen: those of two steps.
 constexpr long kManyKeys = 4;
 // A time that is nearer to another than this share of it is meant to be the same. Chosen: times are
@@ -547,8 +550,12 @@ class Hypotheses {
       const std::string lasts = "the phase ends at " + seconds(until) + " and lasts " +
                                 seconds(until - begin) +
                                 (usual ? ", while similar phases last " + seconds(*usual) : "");
+      // A motion that goes on so long has keys there.
+      const bool last = i + 1 == pattern_.phases.size();
+      const double keyed = pattern_.keyframes.empty() ? 0 : pattern_.keyframes.back().t;
+      const auto is_used = [&](double t) { return !last || t <= until || 2 * keyed > begin + t; };
       for (const double t : meant)
-        if (t > begin && t < after && t != until)
+        if (t > begin + kShortestPhase && t < after && t != until && is_used(t))
           made.push_back({Rank::slip,
                           {phase_place(i), lasts, "with an end at " + seconds(t)},
                           [i, t](Pattern& p) { p.phases[i].until = t; }});

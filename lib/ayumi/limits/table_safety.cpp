@@ -11,6 +11,7 @@
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/limits/amount_text.hpp"
 
 namespace ayumi {
 
@@ -249,11 +250,10 @@ std::string on_both_clocks(double t, double begin, double end) {
   return text::fixed(t, 3) + " s (" + pattern + ")";
 }
 
-std::string text_of(const SafetyViolation& v) {
-  const bool angle = v.unit.starts_with("rad");
-  const std::string unit = angle ? "deg" + v.unit.substr(3) : v.unit;
+std::string text_of(const SafetyViolation& v, bool degrees) {
+  const ShownUnit unit = shown_unit(v.unit, degrees);
   const auto quantity = [&](double value) {
-    return text::brief(angle ? value * 180 / EIGEN_PI : value, 6) + " " + unit;
+    return text::brief(value * unit.scale, 6) + " " + unit.name;
   };
   const std::string what = v.kind == "start_speed" ? "speed at the start"
                            : v.kind == "end_speed" ? "speed at the end"

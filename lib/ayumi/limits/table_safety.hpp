@@ -45,7 +45,7 @@ struct SafetyViolation {
 std::string on_both_clocks(double t, double begin, double end);
 
 /// "l_knee at 3.234 s (pattern 1.234 s): step 61 counts, limit 57 (3 rows)"
-std::string text_of(const SafetyViolation& violation);
+std::string text_of(const SafetyViolation& violation, bool degrees = true);
 
 struct SafetyReport {
   bool safe = true;

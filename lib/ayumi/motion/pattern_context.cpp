@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "ayumi/base/error.hpp"
+#include "ayumi/base/placed_error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 
@@ -32,13 +32,12 @@ int find_joint(const RobotModel& model, const std::string& joint, const std::str
   if (dof >= 0) return dof;
   for (const JointDescription& each : model.description().joints)
     if (each.name == joint)
-      fail(ErrorCode::bad_pattern,
-           place + ": joint '" + joint + "' " +
-               (each.mimic.empty() ? "does not move; remove the key"
-                                   : "follows '" + each.mimic + "' (mimic); set '" + each.mimic +
-                                         "' in place of this joint"));
-  fail(ErrorCode::bad_pattern, place + ": the robot '" + model.name() + "' has no joint '" + joint +
-                                   "'" + text::suggestion(joint, model.dof_names()));
+      fail_unknown_name(place + ": joint '" + joint + "' " +
+                        (each.mimic.empty() ? "does not move; remove the key"
+                                            : "follows '" + each.mimic + "' (mimic); set '" +
+                                                  each.mimic + "' in place of this joint"));
+  fail_unknown_name(place + ": the robot '" + model.name() + "' has no joint '" + joint + "'" +
+                    text::suggestion(joint, model.dof_names()));
 }
 
 std::map<std::string, double> posture_joints(const RobotModel& model, const Pattern& pattern,
@@ -62,10 +61,9 @@ std::map<std::string, double> posture_joints(const RobotModel& model, const Patt
   std::vector<std::string> known;
   for (const auto& entry : pattern.postures) known.push_back(entry.first);
   for (const auto& entry : model.description().postures) known.push_back(entry.first);
-  fail(ErrorCode::bad_pattern, in_file(pattern, place) + ": neither the pattern nor the robot '" +
-                                   model.name() + "' has a posture '" + name + "'" +
-                                   text::suggestion(name, known) +
-                                   "; known: " + text::join(known, ", "));
+  fail_unknown_name(in_file(pattern, place) + ": neither the pattern nor the robot '" +
+                    model.name() + "' has a posture '" + name + "'" +
+                    text::suggestion(name, known) + "; known: " + text::join(known, ", "));
 }
 
 Eigen::VectorXd default_posture(const RobotModel& model, const Pattern& pattern) {

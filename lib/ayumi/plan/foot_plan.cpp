@@ -59,6 +59,47 @@ bool finite(const Foothold& foothold) {
   return foothold.position.allFinite() && foothold.rpy.allFinite();
 }
 
+// The key that drags the foot is the first one, from the beginning of the phase on, that is
+// elsewhere.
+[[noreturn]] void complain_of_dragged_foot(const FootPlan& feet, const Pattern& pattern, Side side,
+                                           size_t phase) {
+  const double first = feet.begin(static_cast<int>(phase)), until = feet.phases()[phase].until;
+  const Isometry3d stands = feet.pose(side, first);
+  size_t dragging = 0;
+  for (size_t i = 0; i < pattern.keyframes.size(); ++i) {
+    const auto& key = pattern.keyframes[i].feet[index(side)];
+    if (!key || pattern.keyframes[i].t < first - kInstant) continue;
+    dragging = i;
+    if (!pose_of(*key).isApprox(stands, 1e-9)) break;
+  }
+  const auto place = [](const Vector3d& p) {
+    const auto number = [](double value) {  // to the micrometre, and zero without a sign
+      return text::brief(std::round(1e6 * value) * 1e-6 + 0.0);
+    };
+    return "[" + number(p.x()) + ", " + number(p.y()) + ", " + number(p.z()) + "] m";
+  };
+  const double t = pattern.keyframes[dragging].t;
+  const Vector3d wanted = feet.pose(side, t).translation();
+  const double far = (wanted - stands.translation()).norm();
+  const std::string pointer = pointer_of_keyframe(pattern, dragging);
+  const std::string message =
+      std::string("the ") + name_of(side) + " foot stands at " + place(stands.translation()) +
+      " until " + text::brief(until) +
+      " s, but its keys move it while it carries the robot: the key " + pointer + " at " +
+      text::brief(t) + " s " +
+      (far > 1e-6 ? "is at " + place(wanted) + ", " + text::brief(1000 * far, 3) + " mm away"
+                  : "turns it") +
+      (t > until + kInstant
+           ? ". Give the foot a key at " + text::brief(until) + " s where it stands"
+           : ". Give this key the place where the foot stands") +
+      ", or move the foot in a phase in which it does not carry the robot";
+  SourcePlace at = {pattern.file, pointer + "/feet"};
+  at.names_value = true;
+  throw PlacedError(ErrorCode::bad_pattern,
+                    in_file(pattern, pointer_of_phase(pattern, phase).substr(1)) + ": " + message,
+                    at);
+}
+
 }  // namespace
 
 Isometry3d pose_of(const Foothold& foothold) {
@@ -193,10 +234,7 @@ void FootPlan::read_foot_keys(const Pattern& pattern, Side side) {
     const double first = begin(static_cast<int>(i)), length = phases_[i].until - first;
     for (int step = 1; step <= 8; ++step)
       if (!pose(side, first + length * step / 8).isApprox(pose(side, first), 1e-9))
-        complain(pattern, pointer_of_phase(pattern, i).substr(1),
-                 std::string("the keys of the ") + name_of(side) +
-                     " foot move this foot while it carries the robot; move the foot in a phase in "
-                     "which it does not carry the robot");
+        complain_of_dragged_foot(*this, pattern, side, i);
   }
 }
 

@@ -104,11 +104,13 @@ void LinkPlan::add_target(const std::string& name, bool gaze, const std::vector<
   };
   size_t first = 0;
   while (!asks(pattern_->keyframes[first])) ++first;
-  const auto complain = [&](const std::string& message) {
+  const auto complain = [&](const std::string& message, bool unknown_name = false) {
+    SourcePlace place = {pattern_->file, pointer_of_keyframe(*pattern_, first) + "/" + target.key};
+    place.unknown_name = unknown_name;
     throw PlacedError(
         ErrorCode::bad_pattern,
         in_file(*pattern_, pattern_->keyframes[first].place + "/" + target.key) + ": " + message,
-        {pattern_->file, pointer_of_keyframe(*pattern_, first) + "/" + target.key});
+        place);
   };
   if (gaze) {
     target.name = "gaze";
@@ -131,7 +133,8 @@ void LinkPlan::add_target(const std::string& name, bool gaze, const std::vector<
       std::vector<std::string> known = {"left", "right"};
       for (const Link& each : model.links()) known.push_back(each.name);
       complain("the robot '" + model.name() + "' has no link '" + name + "'" +
-               text::suggestion(name, known) + "; give left, right or the name of a link");
+                   text::suggestion(name, known) + "; give left, right or the name of a link",
+               true);
     }
     target.name = "link " + name;
     target.body = model.links()[static_cast<size_t>(link)].body;
@@ -510,6 +513,33 @@ double off_direction(const Vector3d& along, const Vector3d& direction, double we
   return angle > kAligned ? angle : 0;
 }
 
+// Whether keys of the trunk or of the COG height, or steps, move the trunk between these times.
+bool trunk_moves(const Pattern& pattern, double begin, double end) {
+  const auto changes = [&](const auto& value_of_key) {
+    std::optional<Vector3d> before;
+    for (const Keyframe& key : pattern.keyframes) {
+      const std::optional<Vector3d> value = value_of_key(key);
+      if (!value) continue;
+      const bool moves = before && (*value - *before).norm() > kSameMoment;
+      if (moves && key.t > begin) return true;
+      before = value;
+      if (key.t >= end) break;
+    }
+    return false;
+  };
+  const bool steps = std::any_of(pattern.phases.begin(), pattern.phases.end(),
+                                 [&, from = 0.0](const Phase& phase) mutable {
+                                   const double first = from;
+                                   from = phase.until;
+                                   return phase.swing && first < end && phase.until > begin;
+                                 });
+  return steps || changes([](const Keyframe& key) { return key.torso; }) ||
+         changes([](const Keyframe& key) -> std::optional<Vector3d> {
+           if (!key.cog_height) return std::nullopt;
+           return Vector3d(0, 0, *key.cog_height);
+         });
+}
+
 }  // namespace
 
 bool LinkPlan::reached(const std::vector<Aim>& aims, const RobotData& data) const {
@@ -530,8 +560,11 @@ void LinkPlan::complain(const Group& group, double t, const std::vector<Aim>& ai
                                  [t](const Anchor& anchor) { return anchor.t >= t - kSameMoment; });
   const Anchor& key = next == target.anchors.end() ? target.anchors.back() : *next;
   const bool under_way = next != target.anchors.end() && key.t > t + kSameMoment;
+  const bool in_trunk = key.target && key.target->frame == LinkTarget::Frame::trunk;
+  // Where the trunk moves until then, the reach at the time of the key is not known here.
+  const bool trunk_waits = in_trunk || !trunk_moves(*pattern_, t, key.t);
   // On the way to a key the limb is at the end of its reach; what counts is how far the key is.
-  if (under_way && key.target) {
+  if (under_way && key.target && trunk_waits) {
     RobotState there = state;
     std::vector<Aim> goal = aims_at(group, key.t, keyed, there, data, true);
     minimize(group, goal, keyed, there, data);
@@ -555,7 +588,6 @@ void LinkPlan::complain(const Group& group, double t, const std::vector<Aim>& ai
       at_limit.empty() ? ""
                        : ", with " + text::join(at_limit, ", ") + " at " +
                              (at_limit.size() > 1 ? "their position limits" : "its position limit");
-  const bool in_trunk = key.target && key.target->frame == LinkTarget::Frame::trunk;
   const std::string in_frame = in_trunk ? " in the frame of the trunk" : "";
   std::string what, remedy;
   if (target.gaze) {
@@ -565,7 +597,10 @@ void LinkPlan::complain(const Group& group, double t, const std::vector<Aim>& ai
     what = "the " + target.name + " is out of reach by " + millimetres(missing);
     remedy = "the " + target.name + " reaches only " +
              numbers(in_trunk ? Vector3d(trunk.inverse() * end) : end, 4) + in_frame +
-             "; move the target, or move or tilt the trunk";
+             (under_way && !trunk_waits
+                  ? "; the trunk is on its way, too: let the hand set out when the trunk has "
+                    "arrived, with a key \"free\" of the hand there, or move the target"
+                  : "; move the target, or move or tilt the trunk");
   } else {
     what = "the " + target.name + " is at its place but points " + degrees(angle) +
            " away from its direction (allowed " + degrees(kAligned) + ")";

@@ -120,11 +120,13 @@ std::string repair_words(const RepairNote& note) {
   return words + "</ul>\n";
 }
 
-std::string figure(double value, const std::string& unit) {
+std::string figure(double value, const std::string& unit, bool in_degrees = true) {
   if (!std::isfinite(value)) return "not known";
-  // One unit for each quantity: lengths in mm, angles in deg, as in curves and tables.
+  // One unit for each quantity: lengths in mm, angles in deg, as in curves and tables. A finding
+  // has the unit of its hint, which is that of the pattern.
   if (unit == "m") return millimetres(value) + " mm";
-  if (unit.starts_with("rad")) return degrees(value) + " deg" + escaped(unit.substr(3));
+  if (unit.starts_with("rad") && in_degrees)
+    return degrees(value) + " deg" + escaped(unit.substr(3));
   return three_digits(value) + (unit == "1" ? "" : " " + escaped(unit));
 }
 
@@ -139,7 +141,8 @@ Table finding_table(const ConsistencyReport& check) {
                                        : ayumi::name_of(f.severity),
          escaped(f.where),
          time_link(f.at) + " (" + text::fixed(f.begin, 2) + " to " + text::fixed(f.end, 2) + ")",
-         figure(f.worst, f.unit), figure(f.limit, f.unit), escaped(f.hint)});
+         figure(f.worst, f.unit, f.in_degrees), figure(f.limit, f.unit, f.in_degrees),
+         escaped(f.hint)});
   return table;
 }
 

@@ -26,14 +26,14 @@ void refuse_unknown_places(const Pattern& pattern, const RobotModel& robot) {
     const std::string place = pattern.file + ": /scenario/" + std::to_string(i);
     const auto refuse_link = [&](const std::string& name) {
       if (std::find(links.begin(), links.end(), name) == links.end())
-        fail(ErrorCode::bad_pattern, place + "/on: " + robot.name() + " has no link '" + name +
-                                         "'" + text::suggestion(name, links) +
-                                         "; 'cog' pushes through the centre of gravity");
+        fail_unknown_name(place + "/on: " + robot.name() + " has no link '" + name + "'" +
+                          text::suggestion(name, links) +
+                          "; 'cog' pushes through the centre of gravity");
     };
     const auto refuse_joint = [&](const std::string& name) {
       if (!name.empty() && std::find(joints.begin(), joints.end(), name) == joints.end())
-        fail(ErrorCode::bad_pattern, place + "/joint: " + robot.name() + " has no joint '" + name +
-                                         "'" + text::suggestion(name, joints));
+        fail_unknown_name(place + "/joint: " + robot.name() + " has no joint '" + name + "'" +
+                          text::suggestion(name, joints));
     };
     std::visit(
         [&](const auto& what) {
@@ -50,7 +50,7 @@ void with_place(const std::string& place, const Check& check) {
   try {
     check();
   } catch (const Error& error) {
-    fail(ErrorCode::bad_pattern, place + ": " + error.what());
+    fail_unknown_name(place + ": " + error.what());
   }
 }
 
@@ -83,7 +83,8 @@ Task make_task(Pattern pattern, RobotModel robot, const std::string& profile,
     try {
       return sample_at_servo_period(robot, pattern, progress, threads);
     } catch (const Error& error) {
-      if (error.code() != ErrorCode::bad_pattern) throw;
+      const bool says_all = is_of_unknown_name(error) || names_its_value(error);
+      if (error.code() != ErrorCode::bad_pattern || says_all) throw;
       throw_with_message(error,
                          with_mistakes(error.what(), pattern, impossible_values(robot, pattern)));
     }

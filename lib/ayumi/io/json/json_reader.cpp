@@ -8,6 +8,7 @@
 #include "ayumi/base/placed_error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/json/json_depth.hpp"
+#include "ayumi/io/json/json_slip.hpp"
 
 namespace ayumi {
 
@@ -133,8 +134,14 @@ Json parse_json(const std::string& bytes, const std::string& file, ErrorCode cod
   try {
     Json::sax_parse(bytes, &builder, Json::input_format_t::json, true, true);
   } catch (const Json::parse_error& error) {
+    if (const auto slip = find_json_slip(bytes))
+      fail_in_text(code, file, bytes, slip->at, slip->words);
     const size_t offset = error.byte > 0 ? error.byte - 1 : 0;
-    fail_in_text(code, file, bytes, offset, reason_of(error.what()));
+    const std::string reason = reason_of(error.what());
+    fail_in_text(code, file, bytes, offset,
+                 reason.find("UTF-8") == std::string::npos
+                     ? reason
+                     : "the text is not in the encoding UTF-8 here; save the file in UTF-8");
   } catch (const Json::exception& error) {
     // A number beyond those of a double, which stands between quotes at the end of the message.
     const std::string reason = reason_of(error.what());
