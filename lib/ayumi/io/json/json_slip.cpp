@@ -476,6 +476,8 @@ class SlipFinder {
       return say(at_, "a list stands in [ ], not in ( )");
     if (token_ == Token::other && (text_[at_] == '*' || text_[at_] == '/'))
       return say(at_, "an expression stands in quotation marks, as in \"${stride} * 2\"");
+    if (token_ == Token::other && std::iscntrl(static_cast<unsigned char>(text_[at_])) != 0)
+      return say(at_, "an invisible character stands here; remove it");
     if (token_ == Token::other)
       return say(at_, "the character '" + token_words() + "' has no meaning here");
   }
