@@ -106,6 +106,10 @@ TEST(Hoap, SaysWhatIsWrong) {
   EXPECT_NE(hoap_error("1,2,0,0,0,R,R,R\n1,2,0,0,\n")
                 .find("s.csv:2: the row has 5 columns, but the rows"),
             std::string::npos);
+  EXPECT_NE(hoap_error("1,2,0,0,0,R,R,R\n1,2,0,0,0,R,R,")
+                .find("s.csv:2: the row ends with ',R,R,', but the first row with ',R,R,R'; the "
+                      "file may be truncated"),
+            std::string::npos);
 }
 
 TEST(Hoap, NeedsEncodersAndWholeMilliseconds) {

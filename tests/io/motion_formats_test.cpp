@@ -91,6 +91,28 @@ std::string refusal_of(const std::string& bytes, const std::string& file = "m.da
   return error_message([&] { read_motion_rows(bytes, file, hoap1(), options); });
 }
 
+// A root at 1e30 m, as a damaged number makes it, is no motion.
+TEST(MotionFormats, PlacesThatNoMotionReachesAreRefused) {
+  const auto rows = [](const std::string& x) {
+    std::string text;
+    for (int k = 0; k < 8; ++k) {
+      text += (k == 4 ? x : "0") + ",0,0.3,0,0,0,1";
+      for (int j = 0; j < hoap1().dof_count(); ++j) text += ",0." + std::to_string(k);
+      text += "\n";
+    }
+    return text;
+  };
+  ImportOptions options;
+  options.by_order = true;
+  options.rate = 30;
+  EXPECT_EQ(refusal_of(rows("12"), "m.csv", options), "");
+  const std::string refused = refusal_of(rows("1e30"), "m.csv", options);
+  EXPECT_TRUE(
+      refused.starts_with("m.csv: row 5: the root is at 1e+30 m, but at most 10000 m from "
+                          "the origin are possible; correct the file"))
+      << refused;
+}
+
 TEST(MotionFormats, ForeignFilesAreNamed) {
   EXPECT_NE(refusal_of(std::string("\x80\x04\x95\x00", 4)).find("a Python pickle"),
             std::string::npos);

@@ -11,6 +11,7 @@
 #include "ayumi/io/degrees.hpp"
 #include "ayumi/io/formats/motion_formats.hpp"
 #include "ayumi/math/smoothing.hpp"
+#include "ayumi/model/gravity.hpp"
 #include "ayumi/motion/servo_feedforward.hpp"
 
 namespace ayumi {
@@ -256,6 +257,34 @@ void refuse_degrees(const MotionFile& motion, Eigen::Index column, const std::st
                                   (motion.unit != MotionFile::Unit::of_format
                                        ? "give --unit deg if the angles are in degrees"
                                        : "this format holds radians, so correct the file"));
+}
+
+/// Farthest place of a motion from the origin of its world [m], and largest ground force in weights
+/// of the robot. Chosen: far beyond any recording; a digit too many or a damaged number is beyond.
+constexpr double kFarthest = 10000, kMostWeights = 1000;
+
+void refuse_absurd(const MotionFile& motion, const RobotModel& model, const std::string& file) {
+  const auto refuse = [&](size_t row, const std::string& what) {
+    fail(ErrorCode::bad_file,
+         file + ": row " + std::to_string(row + 1) + ": " + what + "; correct the file");
+  };
+  const auto check = [&](size_t row, const char* name, const Eigen::Vector3d& place) {
+    double most = 0;  // NaN: not set in this row
+    for (const double x : place)
+      if (std::abs(x) > most) most = std::abs(x);
+    if (most > kFarthest)
+      refuse(row, std::string("the ") + name + " is at " + text::brief(most) + " m, but at most " +
+                      text::brief(kFarthest) + " m from the origin are possible");
+  };
+  for (size_t k = 0; k < motion.base.size(); ++k) check(k, "root", motion.base[k].position);
+  for (size_t k = 0; k < motion.cog.size(); ++k) check(k, "COG", motion.cog[k]);
+  for (size_t k = 0; k < motion.zmp.size(); ++k) check(k, "ZMP", motion.zmp[k]);
+  const double most = kMostWeights * model.mass() * kGravity;
+  for (size_t k = 0; k < motion.fz.size(); ++k)
+    if (std::abs(motion.fz[k]) > most)
+      refuse(k, "the vertical force is " + text::brief(motion.fz[k]) + " N, but at most " +
+                    text::brief(most) + " N (" + text::brief(kMostWeights) +
+                    " times the weight) are possible");
 }
 
 bool is_joint_of(const RobotModel& model, const std::string& name) {
@@ -638,6 +667,7 @@ void read_rows(const std::string& bytes, const std::string& file, const RobotMod
                const ImportOptions& options, ImportedMotion& result) {
   const MotionFile read = read_file_of(bytes, file, model, options, result);
   const std::vector<int> columns = map_joints(read, model, options, file, result.filled);
+  refuse_absurd(read, model, file);
   result.filled.insert(result.filled.end(), read.notes.begin(), read.notes.end());
   const bool assumed = read.unit == MotionFile::Unit::assumed;
   if (assumed)
