@@ -18,6 +18,7 @@
 #include "ayumi/base/shortened_text.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/render/encoder.hpp"
+#include "ayumi/render/hidden_parts.hpp"
 #include "ayumi/render/simplify.hpp"
 #include "ayumi/render/thin.hpp"
 
@@ -320,7 +321,10 @@ std::shared_ptr<const ClipShape> clip_shape(const RobotModel& model, const Simul
   // At most so large is the robot in a picture that it fits into.
   const double pixel =
       shape->height / (options.picture.height * std::max(1.0, options.camera.zoom));
-  if (thin_surface) thin(surface, kThinned * pixel);
+  if (thin_surface) {
+    leave_out_hidden(surface);
+    thin(surface, kThinned * pixel);
+  }
   shape->robot = drawn_robot(surface);
   return shape;
 }
