@@ -132,8 +132,12 @@ TEST(GroundPicture, IsWhatEachPixelShows) {
     const double far = std::clamp(2 * footprint / spacing - 0.6, 0.0, 1.0);
     return cover + (width / spacing - cover) * far;
   };
-  for (const Vector3d& eye : {Vector3d(2, -2, 1), Vector3d(0.6, 0.2, 0.35), Vector3d(9, 3, 4)}) {
-    const View view(eye, 0.05);
+  for (const auto& [eye, tilt] : {std::pair{Vector3d(2, -2, 1), 0.05},
+                                  {Vector3d(0.6, 0.2, 0.35), 0.05},
+                                  {Vector3d(9, 3, 4), 0.05},
+                                  {Vector3d(2, -2, 0.3), 0.5},
+                                  {Vector3d(-2, 1, 0.4), 0.4}}) {
+    const View view(eye, tilt);
     const GroundPicture ground(view.camera, view.to_clip, kWide, kTall, view.plane, {}, true);
     Image image;
     ground.draw({}, image);

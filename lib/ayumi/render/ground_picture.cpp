@@ -82,28 +82,27 @@ AYUMI_INLINE void add_lines(const Eight& p, const Eight& footprint, const Eight&
   larger(cover, share, cover);
 }
 
-/// Where pixels `at` of a row see the plane, and how wide a pixel is there.
+/// Where pixels see the plane, u or v, and how wide a pixel is there.
 struct Seen {
-  Eight u, v, wide_u, wide_v;
+  Eight place, wide;
 };
 
-AYUMI_INLINE void see(const GroundRow& row, const Eight& at, Seen& seen) {
-  const Eight least = at * 0.0f + 1e-6f;
-  const Eight far = 1.0f / (row.first[2] + row.along[2] * at);  // the distance
-  seen.u = (row.first[0] + row.along[0] * at) * far;
-  seen.v = (row.first[1] + row.along[1] * at) * far;
-  Eight a, b;
-  magnitude((row.along[0] - seen.u * row.along[2]) * far, a);
-  magnitude((row.down[0] - seen.u * row.down[2]) * far, b);
-  larger(a + b, least, seen.wide_u);
-  magnitude((row.along[1] - seen.v * row.along[2]) * far, a);
-  magnitude((row.down[1] - seen.v * row.down[2]) * far, b);
-  larger(a + b, least, seen.wide_v);
+AYUMI_INLINE void distance_of(const GroundRow& row, const Eight& at, Eight& far) {
+  far = 1.0f / (row.first[2] + row.along[2] * at);
 }
 
-/// Share of the horizon's colour there: far away the ground becomes the horizon.
-AYUMI_INLINE void near_share(const GroundRow& row, const Seen& seen, Eight& near) {
-  const Eight du = (seen.u - row.middle[0]) * row.fade, dv = (seen.v - row.middle[1]) * row.fade;
+AYUMI_INLINE void see(const GroundRow& row, size_t axis, const Eight& at, const Eight& far,
+                      Seen& seen) {
+  seen.place = (row.first[axis] + row.along[axis] * at) * far;
+  Eight across, down;
+  magnitude((row.along[axis] - seen.place * row.along[2]) * far, across);
+  magnitude((row.down[axis] - seen.place * row.down[2]) * far, down);
+  larger(across + down, at * 0.0f + 1e-6f, seen.wide);
+}
+
+/// Share of the ground's colour there: far away the ground becomes the horizon.
+AYUMI_INLINE void near_share(const GroundRow& row, const Eight& u, const Eight& v, Eight& near) {
+  const Eight du = (u - row.middle[0]) * row.fade, dv = (v - row.middle[1]) * row.fade;
   const Eight square = du * du + dv * dv;
   near = 1.0f / (1.0f + square * square);
 }
@@ -111,15 +110,15 @@ AYUMI_INLINE void near_share(const GroundRow& row, const Seen& seen, Eight& near
 /// Of eight stretches of the row, each from its first to its last pixel: whether a part of one of
 /// these lines may be in it. Where none is, add_lines() adds nothing. Along a row of pixels, the
 /// plane's coordinates only grow or only fall, and so does the width of a pixel there.
-AYUMI_INLINE void has_lines(const Eight& p, const Eight& q, const Eight& wide_p,
-                            const Eight& wide_q, const GridLines& lines, EightWhole& has) {
+AYUMI_INLINE void has_lines(const Seen& from, const Seen& to, const GridLines& lines,
+                            EightWhole& has) {
   Eight wide, low, high, first, last;
-  larger(wide_p, wide_q, wide);
+  larger(from.wide, to.wide, wide);
   Eight line = wide;
   line = line < lines.width ? line * 0.0f + lines.width : line;
   const Eight reach = 0.51f * (line + wide);
-  larger(p, q, high);
-  low = p + q - high;
+  larger(from.place, to.place, high);
+  low = from.place + to.place - high;
   floor_of((low - reach) * (1.0f / lines.spacing), first);
   floor_of((high + reach) * (1.0f / lines.spacing), last);
   has = (first != last) | (wide > 0.29f * lines.spacing);
@@ -138,58 +137,61 @@ AYUMI_INLINE void mix_colors(const Eight& fine, const Eight& bold, const Eight& 
   std::memcpy(pixels.data(), &packed, sizeof packed);
 }
 
-/// Which lines may be in a stretch: of a spacing, across u or v.
-constexpr int kFineU = 1, kFineV = 2, kBoldU = 4, kBoldV = 8;
+/// Which lines may be in a stretch: across u or v, the bold ones only beside fine ones.
+constexpr std::array<int, 2> kFineThere = {1, 2}, kBoldThere = {4, 8};
 
-AYUMI_INLINE void eight_colors(const GroundRow& row, int x, int lines,
+AYUMI_INLINE void eight_colors(const GroundRow& row, int x, int lines, float near_there,
                                std::array<std::int32_t, 8>& pixels) {
   const Eight step = {0, 1, 2, 3, 4, 5, 6, 7};
-  Seen seen;
-  see(row, step + float(x), seen);
-  Eight fine = step * 0.0f, bold = fine, near;
-  if (lines & (kFineU | kBoldU)) {
-    const Eight sharp = 1.0f / seen.wide_u;
-    add_lines(seen.u, seen.wide_u, sharp, kFine, fine);
-    if (lines & kBoldU) add_lines(seen.u, seen.wide_u, sharp, kBold, bold);
+  const Eight at = step + float(x);
+  Eight far, fine = step * 0.0f, bold = fine;
+  distance_of(row, at, far);
+  for (size_t axis = 0; axis < 2; ++axis) {
+    if (!(lines & (kFineThere[axis] | kBoldThere[axis]))) continue;
+    Seen seen;
+    see(row, axis, at, far, seen);
+    const Eight sharp = 1.0f / seen.wide;
+    add_lines(seen.place, seen.wide, sharp, kFine, fine);
+    if (lines & kBoldThere[axis]) add_lines(seen.place, seen.wide, sharp, kBold, bold);
   }
-  if (lines & (kFineV | kBoldV)) {
-    const Eight sharp = 1.0f / seen.wide_v;
-    add_lines(seen.v, seen.wide_v, sharp, kFine, fine);
-    if (lines & kBoldV) add_lines(seen.v, seen.wide_v, sharp, kBold, bold);
-  }
-  near_share(row, seen, near);
-  mix_colors(fine * kFine.share, bold * kBold.share, near, pixels);
+  mix_colors(fine * kFine.share, bold * kBold.share, step * 0.0f + near_there, pixels);
 }
 
 AYUMI_INLINE void draw_plane_row(const GroundRow& row, int begin, int end, std::uint8_t* rgb) {
   const Eight step = {0, 8, 16, 24, 32, 40, 48, 56};
   for (int block = begin; block < end; block += 64) {
     // The first and the last of eight pixels, eight times.
-    Seen first, last, middle;
-    see(row, step + float(block), first);
-    see(row, step + (float(block) + 7.0f), last);
-    see(row, step + (float(block) + 3.5f), middle);
+    const Eight first = step + float(block), last = step + (float(block) + 7.0f);
+    Eight far_first, far_last;
+    distance_of(row, first, far_first);
+    distance_of(row, last, far_last);
     EightWhole lines = {}, has;
-    has_lines(first.u, last.u, first.wide_u, last.wide_u, kFine, has);
-    lines |= has & kFineU;
-    has_lines(first.v, last.v, first.wide_v, last.wide_v, kFine, has);
-    lines |= has & kFineV;
-    has_lines(first.u, last.u, first.wide_u, last.wide_u, kBold, has);
-    lines |= has & kBoldU;
-    has_lines(first.v, last.v, first.wide_v, last.wide_v, kBold, has);
-    lines |= has & kBoldV;
-    // Without lines the colour changes by less than a step of it within eight pixels.
-    Eight near;
-    near_share(row, middle, near);
+    std::array<Seen, 2> from, to;
+    for (size_t axis = 0; axis < 2; ++axis) {
+      see(row, axis, first, far_first, from[axis]);
+      see(row, axis, last, far_last, to[axis]);
+      has_lines(from[axis], to[axis], kFine, has);
+      lines |= has & kFineThere[axis];
+      has_lines(from[axis], to[axis], kBold, has);
+      lines |= has & kBoldThere[axis];
+    }
+    // What the horizon adds changes by less than a step of colour within eight pixels. The last of
+    // them may be beyond the end of what is seen of the plane, even behind the camera.
+    Eight near, near_last;
+    near_share(row, from[0].place, from[1].place, near);
+    near_share(row, to[0].place, to[1].place, near_last);
+    near = (far_last > 0.0f) & (near_last >= 0.0f) ? 0.5f * (near + near_last) : near;
     std::array<std::int32_t, 8> plain, there;
+    std::array<float, 8> nears;
     mix_colors(step * 0.0f, step * 0.0f, near, plain);
     std::memcpy(there.data(), &lines, sizeof lines);
+    std::memcpy(nears.data(), &near, sizeof near);
     for (size_t part = 0; part < 8; ++part) {
       const int x = block + 8 * int(part), count = std::min(8, end - x);
       if (count <= 0) break;
       std::array<std::int32_t, 8> pixels;
       if (there[part])
-        eight_colors(row, x, there[part], pixels);
+        eight_colors(row, x, there[part], nears[part], pixels);
       else
         pixels.fill(plain[part]);
       // Each writes a byte beyond its own, which the next one overwrites.

@@ -132,25 +132,24 @@ std::vector<std::uint32_t> weld(const Triangles& surface) {
   return welded;
 }
 
-/// Every directed edge has exactly one opposite.
+/// Every edge is passed as often in one direction as in the other.
 bool is_closed(const Triangles& surface) {
   const std::vector<std::uint32_t> welded = weld(surface);
-  std::vector<std::uint64_t> edges, reversed;
-  edges.reserve(surface.indices.size());
-  reversed.reserve(surface.indices.size());
+  KeyNumbers<2> edges(surface.indices.size());
+  std::vector<std::int32_t> balance;  // of each edge
   for (size_t i = 0; i < surface.indices.size(); i += 3) {
     std::array<std::uint32_t, 3> corner;
     for (size_t k = 0; k < 3; ++k) corner[k] = welded[surface.indices[i + k]];
     if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) continue;
     for (size_t k = 0; k < 3; ++k) {
-      const std::uint64_t from = corner[k], to = corner[(k + 1) % 3];
-      edges.push_back(from << 32 | to);
-      reversed.push_back(to << 32 | from);
+      const std::uint32_t from = corner[k], to = corner[(k + 1) % 3];
+      const std::uint32_t edge = edges.number({std::min(from, to), std::max(from, to)});
+      if (edge == balance.size()) balance.push_back(0);
+      balance[edge] += from < to ? 1 : -1;
     }
   }
-  std::sort(edges.begin(), edges.end());
-  std::sort(reversed.begin(), reversed.end());
-  return !edges.empty() && edges == reversed;
+  return !balance.empty() &&
+         std::all_of(balance.begin(), balance.end(), [](std::int32_t sum) { return sum == 0; });
 }
 
 double signed_volume(const Triangles& surface) {
@@ -220,6 +219,9 @@ Triangles tessellate(const MeshPart& part, const Vector4f& color) {
   Triangles out;
   const bool with_normals = part.normals.size() == part.vertices.size();
   const bool with_uvs = part.uvs.size() == part.vertices.size();
+  out.indices.reserve(3 * part.triangles.size());
+  out.vertices.reserve(3 * part.triangles.size());
+  const auto bytes = to_bytes(color);
   for (const auto& triangle : part.triangles) {
     if (std::any_of(triangle.begin(), triangle.end(),
                     [&](std::uint32_t index) { return index >= part.vertices.size(); }))
@@ -231,7 +233,7 @@ Triangles tessellate(const MeshPart& part, const Vector4f& color) {
       Vector3f normal = with_normals ? part.normals[index] : face;
       if (!normal.allFinite() || normal.squaredNorm() == 0) normal = face;
       out.indices.push_back(static_cast<std::uint32_t>(out.vertices.size()));
-      out.vertices.push_back({part.vertices[index], normal.normalized(), to_bytes(color),
+      out.vertices.push_back({part.vertices[index], normal.normalized(), bytes,
                               with_uvs ? part.uvs[index] : Eigen::Vector2f(0, 0)});
     }
   }

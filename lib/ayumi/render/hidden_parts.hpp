@@ -1,0 +1,16 @@
+#pragma once
+// What no camera outside sees of a robot: triangles within a convex part of the same body, such as
+// the end of a tube that is put into a joint's housing.
+
+#include <vector>
+
+#include "ayumi/render/robot_surface.hpp"
+
+namespace ayumi {
+
+/// Leaves out triangles whose three corners are inside one convex, opaque, closed part of the same
+/// body's closed surface. Such a triangle is inside as a whole, so pictures stay what they are.
+/// Surfaces with holes, and what is inside parts that are not convex, stay.
+void leave_out_hidden(std::vector<BodySurface>& robot);
+
+}  // namespace ayumi
