@@ -13,9 +13,10 @@ fi
 out=${1:-out/paper_fig3_4}
 mkdir -p "$out"
 status=0
-"$ayumi" run patterns/hoap1_walk.json -o "$out/run" --force || status=$?
+"$ayumi" run patterns/hoap1_walk.json -o "$out/run" --no-pictures --force || status=$?
 [ "$status" -le 1 ] || exit "$status"
-cp "$out/run/snapshots.png" "$out/fig3_snapshots.png"
+"$ayumi" preview "$out/run" --log closed_loop --strip 8 --size 400x600 \
+  -o "$out/fig3_snapshots.png" --force
 "$ayumi" plot "$out/run" -o "$out/fig4_loci.svg" --force \
   --title "HOAP-1 walking, pushed to the left at 3 s: open loop and DTAD"
 "$ayumi" plot "$out/run" --top -o "$out/fig4_from_above.svg" --force

@@ -1,6 +1,6 @@
 #!/bin/bash
 # The jump of HOAP-1, Figs. 9 and 10 of the paper: a strip of snapshots, the curves of COG and ZMP, and
-# a clip at a fifth of the speed. The program must be built before. The variable AYUMI names it. Its
+# a clip of the same time at a fifth of the speed. The program must be built before. The variable AYUMI names it. Its
 # default is build/release/app/ayumi.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -15,5 +15,5 @@ out=${1:-out/hoap1_jump}
 "$ayumi" plot "$out" -o "$out/fig10_loci.svg" --force
 "$ayumi" preview "$out" -o "$out/fig9_snapshots.png" --strip 12 --from 1.0 --to 1.77 --columns 6 --view side \
   --size 320x360 --force
-"$ayumi" preview "$out" -o "$out/jump.mp4" --speed 0.2 --force
+"$ayumi" preview "$out" -o "$out/jump.mp4" --from 1.0 --to 1.77 --speed 0.2 --force
 echo "Figures in $out"

@@ -465,7 +465,9 @@ let driving;
 try {
   driving = await startDriver(driver, shots);
   const tab = await openPage(driving, 1280, 800);
-  await runTrials(tab, [looks, namesEverything, editsByKeyboard, addsPhasesAndKeys, makesWhatIsNotThere,
+  await runTrials(tab, [looks]);
+  await tab.coarsen();
+  await runTrials(tab, [namesEverything, editsByKeyboard, addsPhasesAndKeys, makesWhatIsNotThere,
     writesOptionalValues, movesKeysByTyping, locksWhatIsOld, dragsInTime, showsFindings, keepsBothVersions,
     poses, postures, pushesTheRobot, works, showsResults, keepsWhatIsBeingTyped, showsNoDeadControls]);
   await followsTheFile(driving, tab);

@@ -47,7 +47,11 @@ async function dragsTargets(tab) {
   expect(reached.every((x, i) => near(x, now[i], 1e-3)), `the hand is there: ${reached}`);
   await tab.after(() => tab.click("#undo"));
   expect(text() === JSON.stringify(before, null, 1), "undo gives every byte back");
-  // Between two keys of the target, a drag of the hand writes a key of the target, not of the joints.
+}
+
+/// Between two keys of the target, a drag of the hand writes a key of the target, not of the joints.
+async function dragsWhatFollows(tab) {
+  const before = data();
   const hand = await tab.run(`${page} page.show(3); return window.ayumiAuthor.pixelOf("left_hand");`);
   await tab.after(() => tab.drag(hand, [6, 0]));
   const made = frameAt(3);
@@ -131,11 +135,27 @@ async function twoPages(driver_, tab) {
   await other.end();
 }
 
+/// What takes as many changes on the first eleven seconds as on the minute, where each change is judged anew for
+/// a second.
+async function onAShortMotion(tab, trials) {
+  const minute = text(), short = JSON.parse(minute);
+  short.phases[0].until = 11;
+  short.keyframes = short.keyframes.filter((frame) => frame.t <= short.phases[0].until);
+  await tab.after(() => save(JSON.stringify(short, null, 1)));
+  await runTrials(tab, trials);
+  await tab.after(() => save(minute));
+  expect(near(await tab.run(`${page} return page.state.duration`), 60, 1e-6), "the whole minute again");
+}
+
 let driving;
 try {
   driving = await startDriver(driver, shots);
   const tab = await openPage(driving, 1280, 800);
-  await runTrials(tab, [showsTargets, dragsTargets, typesTargets, worksNarrow]);
+  await runTrials(tab, [showsTargets]);
+  await tab.coarsen();
+  await runTrials(tab, [dragsTargets]);
+  await onAShortMotion(tab, [dragsWhatFollows, typesTargets]);
+  await runTrials(tab, [worksNarrow]);
   await twoPages(driving, tab);
   await quiet(tab);
   await tab.end();
