@@ -342,24 +342,23 @@ void describe(AuthorMotion& motion, const StabilitySeries& stability) {
   if (motion.document.contains("postures"))
     for (const auto& [name, joints] : motion.document["postures"].items()) own.push_back(name);
   motion.parts = author_structure(task.pattern, motion.document);
-  motion.parts.update(
-      OrderedJson{{"robot", task.robot.name()},
-                  {"profile", task.profile},
-                  {"duration", task.series.duration()},
-                  {"dt", task.series.dt},
-                  {"angle_unit", task.pattern.degrees ? "deg" : "rad"},
-                  {"consistent", motion.judgement.good()},
-                  {"reason", motion.judgement.reason()},
-                  {"findings", findings},
-                  {"groups", groups_json(task.robot, motion.judgement.report)},
-                  {"joints", joints_json(task.robot)},
-                  {"handles", handles_json(task.robot)},
-                  {"targets", targets_json(motion)},
-                  {"postures", postures_of(motion)},
-                  {"own_postures", own},
-                  {"strip", strip_json(task, stability)},
-                  {"strip_dt", stability.dt},
-                  {"replay", OrderedJson::parse(live_config(task.robot, motion.plan, kPageRate))}});
+  motion.parts.update(OrderedJson{
+      {"robot", task.robot.name()},
+      {"profile", task.profile},
+      {"duration", task.series.duration()},
+      {"dt", task.series.dt},
+      {"angle_unit", task.pattern.degrees ? "deg" : "rad"},
+      {"consistent", motion.judgement.good()},
+      {"reason", motion.judgement.reason()},
+      {"findings", findings},
+      {"groups", groups_json(task.robot, motion.judgement.report)},
+      {"joints", joints_json(task.robot)},
+      {"handles", handles_json(task.robot)},
+      {"targets", targets_json(motion)},
+      {"postures", postures_of(motion)},
+      {"own_postures", own},
+      {"strips", {{"plan", {{"lanes", strip_json(task, stability)}, {"dt", stability.dt}}}}},
+      {"replay", OrderedJson::parse(live_config(task.robot, motion.plan, kPageRate))}});
 }
 
 }  // namespace

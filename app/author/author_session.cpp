@@ -290,11 +290,10 @@ std::string AuthorSession::state() {
         features.push_back(each);
       for (const std::string& kind : author_job_kinds()) features.push_back("job." + kind);
     }
-    OrderedJson motions = {"plan"}, strips = OrderedJson::object();
+    OrderedJson motions = {"plan"}, strips = shown->motion->parts["strips"];
     if (shown->ghost) {
       motions.push_back("ghost");
-      const OrderedJson& parts = shown->ghost->parts;
-      strips["ghost"] = {{"lanes", parts["strip"]}, {"dt", parts["strip_dt"]}};
+      strips["ghost"] = shown->ghost->parts["strips"]["plan"];
     }
     if (shown->result) {
       for (const auto& [which, series] : shown->result->series) motions.push_back(which);

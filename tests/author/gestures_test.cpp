@@ -1,6 +1,9 @@
 // Generated gestures on both robots: they do in metres and degrees what they are asked for.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "ayumi/author/generate/generate.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/check/consistency.hpp"
@@ -45,6 +48,25 @@ TEST_P(Gesture, BowLeansTheTrunk) {
   for (const CommandSample& sample : series.samples) most = std::max(most, pitch_of_trunk(sample));
   EXPECT_NEAR(most, 0.4, 1e-4);
   expect_closed(series, 1e-3);  // keys of the height are written to 0.1 mm
+}
+
+// An author reads and changes the angles: they are written in tenths of a degree, and what was
+// asked for stays as it was.
+TEST_P(Gesture, AnglesAreThoseThatAnAuthorWouldWrite) {
+  constexpr double degree = M_PI / 180;
+  BowParameters bow = bow_defaults(model);
+  bow.angle = 28.6 * degree;
+  const Pattern bent = bow_pattern(model, bow);
+  const bool there =
+      std::any_of(bent.keyframes.begin(), bent.keyframes.end(),
+                  [&](const auto& key) { return key.torso && key.torso->y() == 28.6 * degree; });
+  EXPECT_TRUE(there);
+  const Pattern wave = wave_pattern(model, wave_defaults(model));
+  for (const auto& [joint, angle] : wave.keyframes[3].joints) {
+    const double tenths = std::round(10 * angle / degree);
+    const bool at_home = angle == model.rest_state().theta[model.find_dof(joint)];
+    EXPECT_TRUE(at_home || angle == tenths / 10 * degree) << joint << " " << angle / degree;
+  }
 }
 
 // The whole hand is above its shoulder, and goes to and fro as often as asked.

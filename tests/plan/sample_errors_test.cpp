@@ -124,6 +124,16 @@ TEST(SampleErrors, FootKeysThatDragASupportingFoot) {
                }),
                {"phases/0", "left foot", "while it carries", "the key /keyframes/1 at ",
                 "is at [0.05, 0.05, 0] m, 50 mm away", "the place where the foot stands"});
+  // What rounding leaves of a place is no other place.
+  EXPECT_EQ(message_of([](Pattern& p) {
+              for (Phase& phase : p.phases) phase = {phase.until, Support::both, {}};
+              Foothold foot;
+              foot.position = {0, 0.05, 0};
+              foot.rpy = {0, 0, 3e-7};
+              p.keyframes[1].feet[0] = foot;
+              for (Keyframe& key : p.keyframes) key.zmp.reset();
+            }),
+            "");
   // A key that is missing where the foot leaves the ground: it moves before.
   expect_words(message_of([](Pattern& p) {
                  for (Phase& phase : p.phases) phase.swing.reset();

@@ -71,6 +71,40 @@ async function editsByKeyboard(tab) {
   await tab.after(() => tab.click("#undo"));
 }
 
+/// Real presses of keys alone: the focus is never lost, and never goes where nobody sent it.
+async function keepsTheFocus(tab) {
+  const keys = { Tab: "\uE004", Enter: "\uE007", Escape: "\uE00C", Right: "\uE014", Left: "\uE012" };
+  const press = (name) => tab.act([{ type: "key", id: "keyboard", actions: ["keyDown", "keyUp"].map((type) => ({ type, value: keys[name] ?? name })) }]);
+  const at = () => tab.run(`const e = document.activeElement;
+    return e === document.body ? "nothing" : (e.closest("#selected") ? "values: " : e.closest("#time") ? "timeline: " : "") + (e.dataset.id ?? e.id);`);
+  await tab.run("document.querySelector(arguments[0]).focus()", keySelector(0));
+  await press("Right");
+  expect(await at() === "timeline: /keyframes/1/zmp", "an arrow key stays on the timeline: " + await at());
+  const head = await tab.run("return document.querySelector('#selected h3').textContent");
+  expect(head.endsWith(`at ${data().keyframes[1].t} s`), "and selects: " + head);
+  await press("Enter");
+  expect((await at()).startsWith("values: /keyframes/1"), "Enter goes to the values: " + await at());
+  await press("Escape");
+  expect(await at() === "timeline: /keyframes/1/zmp", "Escape goes back: " + await at());
+  // What is added has the focus, and what is removed leaves it in the panel.
+  const buttonTo = (words) => tab.run("[...document.querySelectorAll('#selected button')].find((b) => b.textContent === arguments[0]).focus()", words);
+  await tab.click("#whole");
+  await buttonTo("Add a block to the ground");
+  await tab.after(() => press("Enter"));
+  expect((await at()).startsWith("values: /world/blocks/0/"), "a new block has the focus: " + await at());
+  await buttonTo("Remove this block");
+  await tab.after(() => press("Enter"));
+  expect(/selected|values/.test(await at()), "and gives it to the panel: " + await at());
+  for (let i = 0; i < 2; ++i) await tab.after(() => tab.click("#undo"));
+  // Cancel takes the focus from the button that it ends, and gives it back.
+  await tab.run("document.getElementById('job-push').focus()");
+  await press("Enter");
+  expect(await until(async () => await at() === "cancel"), "work that runs has the focus at Cancel: " + await at());
+  await press("Enter");
+  expect(await until(async () => await at() === "job-push"), "and gives it back: " + await at());
+  expect(await until(() => tab.run("return document.getElementById('said').textContent")) === "push: cancelled.", "the work is cancelled");
+}
+
 async function addsPhasesAndKeys(tab) {
   const before = data();
   await tab.click('[data-id="/phases/0"]');
@@ -378,9 +412,18 @@ async function showsResults(tab) {
   expect(await until(() => tab.run("return document.getElementById('which').value === 'closed_loop' && window.ayumiAuthor.page.viewer.last > arguments[0] + 0.5", whole), 60),
     "the run is shown: " + await tab.run("return document.getElementById('which').value"));
   const strip = await tab.run(`const p = window.ayumiAuthor.page, { lanes, dt } = p.strip();
-    return [lanes.map((one) => one.name).join() === p.state.strip.map((one) => one.name).join(), dt * lanes[0].values.length, p.state.strip[0].values.length * p.state.strip_dt,
+    const { plan } = p.state.strips;
+    return [lanes.map((one) => one.name).join() === plan.lanes.map((one) => one.name).join(), dt * lanes[0].values.length, plan.lanes[0].values.length * plan.dt,
       document.querySelector(".of-pattern").textContent];`);
   expect(strip[0] && strip[1] > strip[2] + 0.5 && /strip and curves show: run/.test(strip[3]), "and so is its strip: " + strip);
+  // One press is enough for a drag, which shows the pattern.
+  const first = data();
+  const hand = await tab.run("window.ayumiAuthor.page.show(2); return window.ayumiAuthor.pixelOf('left_hand')");
+  await tab.after(() => tab.drag(hand, [10, -14]));
+  expect(JSON.stringify(data()) !== JSON.stringify(first) && await tab.run("return window.ayumiAuthor.page.showsPlan()"), "a drag while a run is shown changes the pattern");
+  await tab.after(() => tab.click("#undo"));
+  await tab.click("#job-simulate");
+  expect(await until(() => tab.run("return document.getElementById('which').value === 'closed_loop'"), 60), "the run is shown");
   // A key is one of the pattern, whatever is shown.
   const planned = await tab.run("const p = window.ayumiAuthor.page; p.show(1); return p.planRow()[p.plan.columns['q.l_elbow']] * 180 / Math.PI");
   await tab.run("document.getElementById('to-edit').click(); document.getElementById('key-track').value = 'l_elbow';");
@@ -467,7 +510,7 @@ try {
   const tab = await openPage(driving, 1280, 800);
   await runTrials(tab, [looks]);
   await tab.coarsen();
-  await runTrials(tab, [namesEverything, editsByKeyboard, addsPhasesAndKeys, makesWhatIsNotThere,
+  await runTrials(tab, [namesEverything, editsByKeyboard, keepsTheFocus, addsPhasesAndKeys, makesWhatIsNotThere,
     writesOptionalValues, movesKeysByTyping, locksWhatIsOld, dragsInTime, showsFindings, keepsBothVersions,
     poses, postures, pushesTheRobot, works, showsResults, keepsWhatIsBeingTyped, showsNoDeadControls]);
   await followsTheFile(driving, tab);

@@ -9,6 +9,7 @@ import { largerPart, nearAxis } from "../../lib/ayumi/report/page/drag_parts.js"
 import { arrowsOf, wordsOfPush } from "../../lib/ayumi/report/page/push_parts.js";
 import * as edits from "../../lib/ayumi/report/page/edits.js";
 import { fieldsOf, missingFields, parsePattern, valueAt } from "../../lib/ayumi/report/page/fields.js";
+import { nameAmongOthers } from "../../lib/ayumi/report/page/inspector.js";
 import { strain, colorOf, heightOf, worstIn } from "../../lib/ayumi/report/page/strip_colors.js";
 import { sideBySide, nearDifferences } from "../../lib/ayumi/report/page/text_difference.js";
 
@@ -328,6 +329,11 @@ test("a push has its direction in words, and an arrow where it acts on the COG",
     [{ begin: 1, end: 1.02, from_cog: [0, 0, 0], direction: [0, 1, 0] }]);
 });
 
+test("a value that a keyframe may have says of what it is", () => {
+  const names = fieldsOf.keyframe({}, { postures: [] }).map(({ path }) => nameAmongOthers(path));
+  assert.deepEqual(names, ["interpolation", "posture", "ZMP", "COG forward", "COG left", "COG height", "vertical force", "trunk roll", "trunk pitch", "trunk yaw"]);
+});
+
 // Two phases on the right foot from 1 to 1.5 s, a last one, and keys; one key counts from another.
 const walk = () => {
   const document = { parameters: { i: 3 }, phases: [{ until: 1, support: "both" },
@@ -344,7 +350,7 @@ const walk = () => {
     return { from: ends[i], until: ends[i + 1], until_value: phase[key], until_pointer: `/phases/${i}/${key}`, pointer: `/phases/${i}`,
       support: phase.support, swing: phase.swing ?? null };
   });
-  return { document, state: { keyframes, phases } };
+  return { document, state: { keyframes, phases, disturbances: [] } };
 };
 
 test("phases and their keys become blocks that repeat, and what is later comes later", () => {
@@ -359,6 +365,48 @@ test("phases and their keys become blocks that repeat, and what is later comes l
     { kind: "set", pointer: "/phases/3/until", value: 4.2 },
     { kind: "repeat", pointer: "/phases/1", value: { items: 2, repeat: 3, count: "round" } },
     { kind: "repeat", pointer: "/keyframes/2", value: { items: 2, repeat: 3, count: "round" } }]);
+});
+
+test("disturbances after a block that repeats come later, and those within it stay in its first round", () => {
+  const { document, state } = walk();
+  document.world = { motion: [{ at: 0.5 }, { at: 2 }] };
+  state.disturbances = [0.2, 1.2, 1.5, "${push}"].map((at, i) => ({ from: typeof at === "number" ? at : 3, at_value: at, at_pointer: `/scenario/${i}/at` }));
+  const { edits: made, kept } = edits.repeatPhases(state, document, 1, 2, 3);
+  assert.deepEqual(made.filter((one) => /scenario|world/.test(one.pointer)), [
+    { kind: "set", pointer: "/scenario/2/at", value: 2.5 }, { kind: "set", pointer: "/scenario/3/at", value: 4 },
+    { kind: "set", pointer: "/world/motion/1/at", value: 3 }]);
+  assert.equal(kept, "The disturbance at 1.200 s");
+});
+
+// The walk with its second and third phase and their keys three times; each round lasts 0.5 s.
+const rounds = () => {
+  const { document, state } = walk();
+  const phases = [0, 1, 2].flatMap((round) => state.phases.slice(1, 3).map((phase, i) => ({ ...phase, from: phase.from + 0.5 * round, until: phase.until + 0.5 * round,
+    repeated: true, pointer: `/phases/1/phases/${i}`, until_pointer: `/phases/1/phases/${i}/until` })));
+  const keys = [0, 1, 2].flatMap((round) => [1.4, 1.45].map((t, i) => ({ time: t + 0.5 * round, time_value: "...", repeated: true,
+    pointer: `/keyframes/2/keyframes/${i}`, time_pointer: `/keyframes/2/keyframes/${i}/t` })));
+  const last = { ...state.phases[3], from: 2.5, until: 4.2, until_value: 4.2, pointer: "/phases/2", until_pointer: "/phases/2/until" };
+  const end = { time: 3.5, time_value: 3.5, time_base: 0, pointer: "/keyframes/3", time_pointer: "/keyframes/3/t" };
+  return { document: { phases: [document.phases[0], { repeat: 3, count: "i", phases: [] }, document.phases[3]],
+    keyframes: [{}, {}, { repeat: 3, count: "i", keyframes: [] }, {}] },
+  state: { phases: [state.phases[0], ...phases, last], keyframes: [...state.keyframes.slice(0, 2), ...keys, end],
+    disturbances: [{ from: 3, at_value: 3, at_pointer: "/scenario/0/at" }] } };
+};
+
+test("a block gets another number of rounds with its keys, and what is later moves", () => {
+  const { document, state } = rounds();
+  assert.deepEqual(edits.roundsOf(state, document, state.phases[3]), { pointer: "/phases/1", rounds: 3 });
+  const { edits: made, refused } = edits.setRounds(state, document, state.phases[3], 5);
+  assert.equal(refused, undefined);
+  assert.deepEqual(made, [
+    { kind: "set", pointer: "/phases/1/repeat", value: 5 }, { kind: "set", pointer: "/keyframes/2/repeat", value: 5 },
+    { kind: "set", pointer: "/phases/2/until", value: 5.2 }, { kind: "set", pointer: "/keyframes/3/t", value: 4.5 },
+    { kind: "set", pointer: "/scenario/0/at", value: 4 }]);
+  assert.equal(edits.setRounds(state, document, state.phases[3], 1).edits.find((one) => one.pointer === "/keyframes/3/t").value, 2.5);
+  assert.deepEqual(edits.setRounds(state, document, state.phases[3], 3).edits, []);
+  assert.ok(edits.setRounds(state, document, state.phases[3], 0).refused);
+  document.keyframes[2].repeat = 2;
+  assert.ok(edits.setRounds(state, document, state.phases[3], 5).refused);
 });
 
 test("a block that repeats is refused where every round would be at the same place", () => {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "ayumi/author/generate/generate.hpp"
 #include "ayumi/author/generate/pattern_builder.hpp"
@@ -120,6 +121,12 @@ namespace {
 
 double to_millimetre(double x) { return 1e-3 * std::round(1e3 * x); }
 
+// As a pattern in degrees is read, so that it is written with one digit.
+double to_tenth_degree(double radians) {
+  constexpr double degree = std::numbers::pi / 180;
+  return std::round(10 * radians / degree) / 10 * degree + 0.0;
+}
+
 double rest_time(const RobotModel& model) {
   return to_hundredth_second(std::sqrt(size_beside_hoap1(model)) * kGestureRestTime);
 }
@@ -127,7 +134,10 @@ double rest_time(const RobotModel& model) {
 Keyframe height_and_pitch(double height, double pitch) {
   Keyframe key;
   key.cog_height = to_tenth_millimetre(height);
-  key.torso = Vector3d(0, 1e-4 * std::round(1e4 * pitch), 0);
+  // What was asked for in tenths of a degree stays; the rest is written to 1e-4 rad.
+  const double asked = to_tenth_degree(pitch);
+  const bool exact = std::abs(asked - pitch) < 1e-9;
+  key.torso = Vector3d(0, exact ? asked : 1e-4 * std::round(1e4 * pitch), 0);
   return key;
 }
 
@@ -302,7 +312,7 @@ Pattern wave_pattern(const RobotModel& model, const WaveParameters& p) {
     for (const int dof : arm) {
       const bool still = theta[dof] == home[dof];  // not rounded, so that it ends where it began
       key.joints[model.dofs()[static_cast<size_t>(dof)].name] =
-          still ? theta[dof] : 1e-3 * std::round(1e3 * theta[dof]);
+          still ? theta[dof] : to_tenth_degree(theta[dof]);
     }
     writer.add(t, key);
   };

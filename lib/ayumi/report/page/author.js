@@ -29,7 +29,7 @@ const tabs = ["answers", "edit", "pose", "postures", "pushes", "text"];
 
 /// What a state has where the server says nothing of it.
 const nothing = { features: [], motions: ["plan"], findings: [], groups: [], phases: [], tracks: [], keyframes: [],
-  disturbances: [], joints: [], handles: [], targets: [], postures: [], own_postures: [], strip: [], strip_dt: 0.01, strips: {},
+  disturbances: [], joints: [], handles: [], targets: [], postures: [], own_postures: [], strips: {},
   result: null, error: null, stale: false };
 
 class Page {
@@ -116,8 +116,14 @@ class Page {
     document.documentElement.dataset.version = String(state.version);
   }
 
-  /// The selected key stays selected where keys before it have come or gone.
+  /// What is selected stays selected where things before it have come or gone.
   follow(before, now) {
+    const list = { phase: "phases", disturbance: "disturbances" }[this.selection?.kind];
+    if (list) {
+      const thing = before[list].find((one) => one.pointer === this.selection.pointer);
+      const same = thing && now[list].find((one) => Math.abs(one.from - thing.from) < 5e-4);
+      if (same) this.selection = { kind: this.selection.kind, pointer: same.pointer };
+    }
     if (this.selection?.kind !== "key") return;
     for (const track of before.tracks) {
       const key = track.keys.find((one) => one.pointer === this.selection.pointer);
@@ -219,8 +225,8 @@ class Page {
 
   /// The lanes of the strip for what is shown: of the pattern, a repaired motion, or a run.
   strip() {
-    const own = this.state.strips[byId("which").value];
-    return own ? { ...own, own: true } : { lanes: this.state.strip, dt: this.state.strip_dt, own: this.showsPlan() };
+    const { strips } = this.state, own = strips[byId("which").value];
+    return { ...own ?? strips.plan ?? { lanes: [], dt: 0.01 }, own: Boolean(own) };
   }
 
   show(t) {
@@ -490,7 +496,9 @@ class Page {
           return false;
         }
       }
-      if (status !== 200) this.say(value.message || `The server refuses this change (${status}). Please reload the page.`);
+      if (status !== 200) this.refusal = value.message || `The server refuses this change (${status}). Please reload the page.`;
+      if (status !== 200) this.say(this.refusal);
+      else if (byId("said").textContent === this.refusal) this.say("");  // it was about another change
       await this.load();
       if (status === 200 && moves) this.movedSince = this.state.version;
       if (status !== 200) this.timeline.render();
@@ -621,6 +629,11 @@ class Page {
     const at = event.target, typing = at.matches?.("input:not([type=checkbox]):not([type=range]), select, textarea");
     if (!this.viewer || document.querySelector("dialog[open]")) return;
     const step = event.shiftKey ? 0.1 : 1 / this.viewer.config.rate, key = event.key;
+    // What was being typed is given up.
+    if (key === "Escape" && byId("selected").contains(at)) {
+      if (at.dataset.written !== undefined) at.value = at.dataset.written;
+      this.timeline.focusSelected();
+    }
     if ((event.ctrlKey || event.metaKey) && key.toLowerCase() === "z" && !typing) this.history(event.shiftKey ? "redo" : "undo");
     else if (event.ctrlKey && key.toLowerCase() === "y" && !typing) this.history("redo");
     else if (event.ctrlKey || event.metaKey || event.altKey || typing) return;

@@ -27,12 +27,15 @@ export const fixed = (value, digits) => value.toFixed(digits).replace(/^-(0(\.0+
 
 export const seconds = (t) => t.toFixed(3).replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, "") + " s";
 
-/// Fills `parent` anew; what had the focus has it again where it is still there (by data-id).
+/// Fills `parent` anew; what had the focus has it again where it is still there (by data-id), else what
+/// stands at its place or before it.
 export function refill(parent, children) {
   const id = parent.contains(document.activeElement) ? document.activeElement.dataset.id : undefined;
+  const place = [...parent.querySelectorAll("[data-id]")].indexOf(document.activeElement);
   parent.replaceChildren(...children);
   if (id === undefined) return;
-  const same = [...parent.querySelectorAll("[data-id]")].find((one) => one.dataset.id === id);
+  const there = [...parent.querySelectorAll("[data-id]")];
+  const same = there.find((one) => one.dataset.id === id) ?? there[Math.min(place, there.length - 1)];
   if (!same) return;
   for (const one of same.parentElement.children) if (one.tabIndex === 0 && same.tabIndex < 0) one.tabIndex = -1;
   if (same.tabIndex < 0) same.tabIndex = 0;

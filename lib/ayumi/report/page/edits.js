@@ -253,6 +253,36 @@ export function putGoal(phase, name, angleUnit) {
 /// A time of each round: what is written, and the length of the rounds before.
 const inRounds = (value, length, count) => `${value} + ${length}*\${${count}}`;
 
+/// All that comes after a phase comes later by `shift`: phases, keyframes, disturbances, and motions of
+/// the floor. A keyframe that counts from the one before it follows that one, if it moves (`after`).
+function moveLater(state, document, last, shift, after) {
+  const edits = [], { until } = state.phases[last], set = (pointer, value) => edits.push({ kind: "set", pointer, value });
+  const refused = { refused: "A later block that repeats has times of its own. Change them in the text." };
+  for (const phase of state.phases.slice(last + 1)) {
+    if (!phase.until_pointer.endsWith("/until")) continue;
+    if (!canDrag(phase.until_value, phase)) return refused;
+    set(phase.until_pointer, roundedTime(phase.until + shift));
+  }
+  for (const [i, frame] of state.keyframes.filter((one) => one.time >= until + 5e-4).entries()) {
+    if (isRelative(frame) && (i > 0 || after)) continue;
+    if (!canDrag(frame.time_value, frame)) return refused;
+    set(frame.time_pointer, timeValue(frame.time + shift, frame.time_base));
+  }
+  for (const one of state.disturbances)
+    if (one.from >= until - 5e-4 && canDrag(one.at_value)) set(one.at_pointer, roundedTime(one.from + shift));
+  for (const [i, motion] of (document.world?.motion ?? []).entries()) {
+    if (typeof motion.at !== "number") return { refused: "A motion of the floor has an expression as its time. Change the rounds in the text." };
+    if (motion.at >= until - 5e-4) set(`/world/motion/${i}/at`, roundedTime(motion.at + shift));
+  }
+  return { edits };
+}
+
+/// Disturbances that stay in the first round of a block, in words; "" where there are none.
+function disturbancesWithin(state, from, until) {
+  const times = state.disturbances.filter((one) => one.from >= from - 5e-4 && one.from < until - 5e-4).map((one) => `${one.from.toFixed(3)} s`);
+  return times.length ? `The disturbance at ${times.join(" and at ")}` : "";
+}
+
 /// The phases from `first` to `last` and their keyframes as blocks that repeat, `times` rounds in all;
 /// what comes later comes later. { edits } or { refused: why }.
 export function repeatPhases(state, document, first, last, times) {
@@ -279,21 +309,36 @@ export function repeatPhases(state, document, first, last, times) {
       set(frame.pointer + "/t", inRounds(roundedTime(frame.time), length, count));
     }
   }
-  for (const phase of state.phases.slice(last + 1)) {
-    if (!phase.until_pointer.endsWith("/until")) continue;
-    if (!canDrag(phase.until_value, phase)) return { refused: "A later block that repeats has times of its own. Change them in the text." };
-    set(phase.until_pointer, roundedTime(phase.until + shift));
-  }
-  const later = state.keyframes.filter((frame) => frame.time >= until + 5e-4);
-  for (const [i, frame] of later.entries()) {
-    const moves = !isRelative(frame) || (i === 0 && !frames.length);
-    if (!moves) continue;
-    if (!canDrag(frame.time_value, frame)) return { refused: "A later block that repeats has times of its own. Change them in the text." };
-    set(frame.time_pointer, timeValue(frame.time + shift, frame.time_base));
-  }
+  const moved = moveLater(state, document, last, shift, frames.length > 0);
+  if (moved.refused) return moved;
+  edits.push(...moved.edits);
   edits.push({ kind: "repeat", pointer: phases[0].pointer, value: { items: phases.length, repeat: times, count } });
   if (frames.length) edits.push({ kind: "repeat", pointer: frames[0].pointer, value: { items: frames.length, repeat: times, count } });
-  return { edits };
+  return { edits, kept: disturbancesWithin(state, from, until) };
+}
+
+/// How often the block around a phase repeats: { pointer, rounds }.
+export function roundsOf(state, document, phase) {
+  return { pointer: phase.pointer.split("/").slice(0, -2).join("/"), rounds: state.phases.filter((one) => one.pointer === phase.pointer).length };
+}
+
+/// Another number of rounds of the block around a phase and of the keyframes that repeat with it; what
+/// comes later moves. { edits } or { refused: why }.
+export function setRounds(state, document, phase, rounds) {
+  const { pointer, rounds: now } = roundsOf(state, document, phase);
+  if (!(rounds >= 1 && Number.isInteger(rounds))) return { refused: "The number of rounds is a whole number above 0." };
+  if (pointer !== outermost(pointer)) return { refused: "This block stands in another one that repeats. Change its rounds in the text." };
+  const own = state.phases.filter((one) => one.pointer.startsWith(pointer + "/")), from = own[0].from, until = own.at(-1).until;
+  const within = (frame) => frame.time > from + 5e-4 && frame.time < until + 5e-4;
+  const frames = state.keyframes.filter(within), blocks = [...new Set(frames.map((frame) => outermost(frame.pointer)))];
+  const repeats = (block) => JSON.stringify(valueAt(document, block)?.repeat);
+  const other = state.keyframes.find((frame) => within(frame) ? !frame.repeated || repeats(outermost(frame.pointer)) !== repeats(pointer)
+    : blocks.includes(outermost(frame.pointer)));
+  if (other) return { refused: `The keyframe at ${other.time.toFixed(3)} s does not repeat with these phases. Change the rounds in the text.` };
+  if (rounds === now) return { edits: [] };
+  const moved = moveLater(state, document, state.phases.indexOf(own.at(-1)), (rounds - now) * (until - from) / now, frames.length > 0);
+  if (moved.refused) return moved;
+  return { edits: [...[pointer, ...blocks].map((block) => ({ kind: "set", pointer: block + "/repeat", value: rounds })), ...moved.edits] };
 }
 
 /// A block or a patch of the ground, ahead of the robot.

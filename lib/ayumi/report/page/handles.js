@@ -132,20 +132,28 @@ export class Handles {
     event.preventDefault();
     const { viewer } = this.page, stage = viewer.stage;
     viewer.play(false);
-    if (mark && !this.page.showsPlan()) {
-      this.page.showPlan().then(() => this.page.say("The pattern is shown now, because a drag changes the pattern. Drag again."));
-      return;
-    }
-    const drag = mark ? this.dragOf(mark, event) : this.arrowOf(event);
-    if (!drag) return;
+    let drag = null, latest = null, ended = false;
+    const begin = () => { drag = mark ? this.dragOf(mark, event) : this.arrowOf(event); };
+    // A drag changes the pattern, so that is shown first; the drag goes on from where its point is then.
+    if (mark && !this.page.showsPlan())
+      this.page.showPlan().then(() => {
+        if (ended) return;
+        begin();
+        if (latest) drag?.move(latest);
+      });
+    else begin();
     stage.setPointerCapture(event.pointerId);
-    const moved = (e) => drag.move(e);
+    const moved = (e) => {
+      latest = e;
+      drag?.move(e);
+    };
     const finish = (write) => {
+      ended = true;
       stage.removeEventListener("pointermove", moved);
       stage.removeEventListener("pointerup", up);
       stage.removeEventListener("pointercancel", cancel);
       removeEventListener("keydown", escape, true);
-      drag.end(write);
+      drag?.end(write);
     };
     const up = () => finish(true), cancel = () => finish(false);
     const escape = (e) => { if (e.key === "Escape") finish(false); };

@@ -1,7 +1,7 @@
 // What is selected on the timeline, with its values to be typed; and new keys at the cursor.
 
 import { byId, element, seconds } from "./dom.js";
-import { addSwing, addToGround, appendPhase, goalOf, goals, joinKeyframe, putGoal, putKey, putPart, putSupport, putTarget, removeKey, repeatPhases, roomOfKey, roundedTime, sameTime, splitPhase, valueFromRow, written } from "./edits.js";
+import { addSwing, addToGround, appendPhase, goalOf, goals, joinKeyframe, putGoal, putKey, putPart, putSupport, putTarget, removeKey, repeatPhases, roomOfKey, roundsOf, roundedTime, sameTime, setRounds, splitPhase, valueFromRow, written } from "./edits.js";
 import { isOptional, missingFields, token, valueAt } from "./fields.js";
 import { sampleAt } from "./series.js";
 import { nameOfTrack } from "./timeline.js";
@@ -39,6 +39,12 @@ export function nameOf(path) {
   const from = wholes.includes(path[0]) && path.length > 1 ? 1 : 0;
   return path.slice(from).map((name) => typeof name === "number" ? places[name] ?? String(name + 1)
     : words[name] || name).join(" ");
+}
+
+/// What a value is called among those of other tracks: "COG forward", "trunk pitch".
+export function nameAmongOthers(path) {
+  const track = { cog: "COG", torso: "trunk" }[path[0]];
+  return path[0] === "fz" ? "vertical force" : track && path.length > 1 ? `${track} ${nameOf(path)}` : nameOf(path);
 }
 
 const isTarget = (track) => track.kind === "hand" || track.kind === "gaze";
@@ -120,14 +126,15 @@ export class Inspector {
     return [element("h4", {}, "Not written"), ...fields.map(({ path, otherwise, choices, pointer }) => {
       const input = choices ? element("select", {}, element("option", { value: "" }, `(${otherwise})`),
         ...choices.map((one) => element("option", { value: one }, one)))
-        : element("input", { type: "text", spellcheck: "false", autocomplete: "off", placeholder: otherwise });
+        : element("input", { type: "text", spellcheck: "false", autocomplete: "off", placeholder: otherwise, title: `Without it: ${otherwise}` });
       input.dataset.id = pointer;
       input.dataset.written = "";
       input.addEventListener("change", () => {
         const next = written(input.value);
         if (next !== "") this.page.edit([{ kind: "set", pointer, value: next }]);
       });
-      return element("label", { class: "value missing" }, element("span", {}, nameOf(path)), input,
+      const name = there.kind === "keyframe" ? nameAmongOthers(path) : nameOf(path);
+      return element("label", { class: "value missing" }, element("span", {}, name), input,
         element("span", { class: "unit" }, choices ? "" : unitOf(path, this.page.state.angle_unit)));
     })];
   }
@@ -149,14 +156,15 @@ export class Inspector {
     return [...items.flatMap((item, i) => [element("h4", {}, `${one} ${i + 1}`),
       ...this.inputs(`/world/${list}/${i}`, item, ["world", list, i]),
       this.button(() => [{ kind: "remove", pointer: items.length > 1 ? `/world/${list}/${i}` : `/world/${list}` }], `Remove this ${list === "blocks" ? "block" : "patch"}`)]),
-    this.button(() => addToGround(list), { blocks: "Add a block to the ground", patches: "Add a patch of other friction" }[list])];
+    this.button(() => addToGround(list), { blocks: "Add a block to the ground", patches: "Add a patch of other friction" }[list],
+      () => this.focusValues(`/world/${list}/${items.length}/`))];
   }
 
   /// The parameters, and a new one: what is typed elsewhere as ${name} has its value.
   parameters(written) {
     const name = element("input", { type: "text", size: "10", required: true, pattern: "[A-Za-z_][A-Za-z0-9_]*", spellcheck: "false", autocomplete: "off",
-      "aria-label": "Name of the new parameter" });
-    const number = element("input", { type: "number", step: "any", required: true, "aria-label": "Value of the new parameter" });
+      placeholder: "name", "aria-label": "Name of the new parameter" });
+    const number = element("input", { type: "number", step: "any", required: true, placeholder: "value", "aria-label": "Value of the new parameter" });
     name.dataset.id = "new parameter";
     number.dataset.id = "new parameter value";
     return [element("h4", {}, "Parameters"), ...this.inputs("/parameters", written, ["parameters"]),
@@ -164,7 +172,11 @@ export class Inspector {
         event.preventDefault();
         if (written[name.value] !== undefined) return this.page.say(`There is a parameter ${name.value} already. Nothing was written.`);
         return this.page.edit([{ kind: "set", pointer: "/parameters" + token(name.value), value: Number(number.value) }])
-          .then((done) => { if (done) this.page.say(`In every field, \${${name.value}} is this number now.`); });
+          .then((done) => {
+            if (!done) return;
+            this.page.say(`In every field, \${${name.value}} is this number now.`);
+            this.emptied(["new parameter", "new parameter value"]);
+          });
       } }, name, number, element("button", { type: "submit" }, "New")) : null];
   }
 
@@ -215,27 +227,41 @@ export class Inspector {
 
   render() {
     const thing = this.selected(), box = byId("selected"), { selection, state } = this.page;
-    const active = document.activeElement, typed = box.contains(active) && active.matches("input") ? active.value : null;
+    const active = box.contains(document.activeElement) ? document.activeElement : null;
+    const typed = active?.matches("input") ? active.value : null;
     box.replaceChildren(...!thing ? [element("p", { class: "soft" },
       "Nothing is selected. Choose a key, a phase or a disturbance on the timeline, or the whole pattern.")]
       : [...this[selection.kind](thing, state), ...this.missing()]);
-    this.restore(box, active?.dataset?.id, typed !== active?.dataset?.written ? typed : null);
+    if (active) this.restore(box, active.dataset.id, typed !== active.dataset.written ? typed : null);
     byId("add-key").hidden = !this.page.can("edit");
     this.offerTracks(state);
     this.moved();
   }
 
-  /// What was being typed when a new version came is still there.
+  /// What was being typed when a new version came is still there; what went away leaves the focus here.
   restore(box, id, typed) {
     const same = id && [...box.querySelectorAll("[data-id]")].find((one) => one.dataset.id === id);
-    if (!same) return;
+    if (!same) return box.focus({ preventScroll: true });
     same.focus();
     if (typed !== null) same.value = typed;
   }
 
-  button(edits, words) {
-    return this.page.can("edit") ? element("button", { type: "button",
-      onclick: () => this.page.edit(edits()) }, words) : null;
+  /// The first value has the focus, or the first one below a pointer.
+  focusValues(pointer = "") {
+    const values = [...byId("selected").querySelectorAll("input, select")];
+    (values.find((one) => one.dataset.id?.startsWith(pointer)) ?? byId("selected")).focus();
+  }
+
+  /// What was typed there is written, so the fields are free for the next one.
+  emptied(ids) {
+    const fields = ids.map((id) => [...byId("selected").querySelectorAll("input")].find((one) => one.dataset.id === id));
+    for (const one of fields) if (one) one.value = "";
+    fields[0]?.focus();
+  }
+
+  button(edits, words, then = () => {}) {
+    return this.page.can("edit") ? element("button", { type: "button", "data-id": words,
+      onclick: () => this.page.edit(edits()).then((done) => { if (done) then(); }) }, words) : null;
   }
 
   key(key, state) {
@@ -259,11 +285,11 @@ export class Inspector {
       others.length ? element("p", { class: "soft" }, `This keyframe also has keys of: ${others.join(", ")}. All keys of a keyframe move together.`) : null,
       ...key.track.name === "zmp" && !named ? ["left", "center", "right"].map((place) =>
         this.button(() => [{ kind: "set", pointer: key.pointer, value: place }], zmpWords[place])) : [],
-      key.track.name === "zmp" && named && this.page.can("edit") ? element("button", { type: "button",
+      key.track.name === "zmp" && named && this.page.can("edit") ? element("button", { type: "button", "data-id": "point",
         title: "Write the point [x, y] in place of the name", onclick: () => this.page.edit([{ kind: "set", pointer: key.pointer,
           value: valueFromRow("zmp", this.page.planRow(), this.page.plan.columns, state.angle_unit) }]) }, "Write the point as numbers") : null,
       ...isTarget(key.track) ? this.targetButtons(key) : [],
-      frame && this.page.can("mirror") ? element("button", { type: "button", title: "Exchange left and right in this keyframe",
+      frame && this.page.can("mirror") ? element("button", { type: "button", "data-id": "mirror", title: "Exchange left and right in this keyframe",
         onclick: () => this.page.mirror(frame.pointer) }, "Mirror this keyframe") : null,
       this.button(() => removeKey(state, key.original), "Remove this key")].filter(Boolean);
   }
@@ -299,7 +325,7 @@ export class Inspector {
         { release: ["ref_z", "spring"] }),
       ...this.swingButtons(phase),
       this.splitter = this.button(() => splitPhase(phase, this.page.time), "Cut at the cursor"),
-      index === state.phases.length - 1 && this.page.can("edit") ? element("button", { type: "button", onclick: async () => {
+      index === state.phases.length - 1 && this.page.can("edit") ? element("button", { type: "button", "data-id": "append", onclick: async () => {
         if (await this.page.edit(appendPhase(state.phases))) this.page.select({ kind: "phase", pointer: this.page.state.phases.at(-1).pointer }, this.page.state.phases.at(-1).from);
       } }, "Add a phase after this one") : null,
       state.phases.length > 1 ? this.button(() => [{ kind: "remove", pointer: phase.pointer }], "Remove this phase") : null,
@@ -320,7 +346,7 @@ export class Inspector {
   /// This phase and those before it, with their keys, several times.
   repetition(phase, index) {
     if (!this.page.can("edit")) return null;
-    if (phase.repeated) return element("p", { class: "soft" }, "This phase is in a block that repeats. Change the number of rounds in the text.");
+    if (phase.repeated) return this.rounds(phase);
     const number = (value, most, words) => {
       const input = element("input", { type: "number", min: words === "rounds" ? "2" : "1", max: String(most), value: String(value), required: true, "aria-label": words });
       input.dataset.id = phase.pointer + " " + words;
@@ -329,10 +355,30 @@ export class Inspector {
     const phases = number(1, index + 1, "phases to repeat"), rounds = number(2, 1000, "rounds");
     return element("form", { class: "repeat", onsubmit: (event) => {
       event.preventDefault();
-      const { edits, refused } = repeatPhases(this.page.state, this.page.document, index + 1 - Number(phases.value), index, Number(rounds.value));
-      if (refused) this.page.say(refused + " Nothing was written.");
-      else this.page.edit(edits);
+      this.repeat(repeatPhases(this.page.state, this.page.document, index + 1 - Number(phases.value), index, Number(rounds.value)));
     } }, "Repeat the last ", phases, " phases, up to this one, ", rounds, " times in all ", element("button", { type: "submit" }, "Repeat"));
+  }
+
+  repeat({ edits, refused, kept }) {
+    if (refused) return this.page.say(refused + " Nothing was written.");
+    if (!edits.length) return null;
+    return this.page.edit(edits).then((done) => {
+      if (done && kept) this.page.say(`${kept} within these phases stays in the first round.`);
+    });
+  }
+
+  /// How often the block around a phase repeats.
+  rounds(phase) {
+    const now = roundsOf(this.page.state, this.page.document, phase);
+    const input = element("input", { type: "number", min: "1", max: "1000", step: "1", value: String(now.rounds) });
+    input.dataset.id = now.pointer + "/repeat";
+    input.dataset.written = String(now.rounds);
+    input.addEventListener("change", () => {
+      const { edits, refused } = setRounds(this.page.state, this.page.document, phase, Number(input.value));
+      if (refused) input.value = String(now.rounds);
+      this.repeat({ edits, refused });
+    });
+    return element("label", { class: "value" }, element("span", {}, "rounds of this block"), input, element("span", { class: "unit" }));
   }
 
   /// A flight brings the COG keys that it needs along, or is refused with what is missing.

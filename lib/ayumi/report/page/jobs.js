@@ -40,9 +40,18 @@ export class Jobs {
       : `${job.kind}: ${job.error}`);
   }
 
+  /// A button that is switched off or goes away hands its focus on: from the one that began the work to
+  /// Cancel, and back when it ends.
   show({ progress, text }) {
+    const at = document.activeElement, begun = kinds.find((kind) => at === byId("job-" + kind));
+    const within = at === byId("cancel");
     byId("job").hidden = !this.running;
     for (const kind of kinds) byId("job-" + kind).disabled = Boolean(this.running);
+    if (this.running && begun) {
+      this.begun = begun;
+      byId("cancel").focus();
+    }
+    if (!this.running && within) byId("job-" + (this.begun ?? "check")).focus();
     if (!this.running) return;
     byId("job-words").textContent = this.running.kind + (text ? ": " + text : "");
     const bar = byId("job-progress");

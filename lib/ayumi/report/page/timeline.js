@@ -128,12 +128,24 @@ export class Timeline {
     return this.lane(name, parts, "track");
   }
 
-  /// The Tab key stops at one thing of a lane, the arrow keys go from one to the next.
+  /// The thing of the timeline that is selected has the focus.
+  focusSelected() {
+    byId("time").querySelector(".plot > [aria-pressed=true]")?.focus();
+  }
+
+  /// The Tab key stops at one thing of a lane, the arrow keys go from one to the next, and Enter goes to
+  /// the values of what it selects.
   onestop(parts) {
     const first = parts.find((part) => part.getAttribute("aria-pressed") === "true") || parts[0];
     for (const part of parts) {
       part.tabIndex = part === first ? 0 : -1;
       part.addEventListener("keydown", (event) => {
+        if (event.key === "Enter" && part.hasAttribute("aria-pressed") && !event.ctrlKey) {
+          event.preventDefault();
+          part.click();
+          this.page.inspector.focusValues();
+          return;
+        }
         if (event.ctrlKey || !["ArrowLeft", "ArrowRight"].includes(event.key)) return;
         event.preventDefault();
         const next = event.key === "ArrowRight" ? part.nextElementSibling : part.previousElementSibling;
