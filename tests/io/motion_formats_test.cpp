@@ -105,10 +105,10 @@ TEST(MotionFormats, PlacesThatNoMotionReachesAreRefused) {
   ImportOptions options;
   options.by_order = true;
   options.rate = 30;
-  EXPECT_EQ(refusal_of(rows("12"), "m.csv", options), "");
+  EXPECT_EQ(refusal_of(rows("12"), "m.csv", options), "no error");
   const std::string refused = refusal_of(rows("1e30"), "m.csv", options);
   EXPECT_TRUE(
-      refused.starts_with("m.csv: row 5: the root is at 1e+30 m, but at most 10000 m from "
+      refused.starts_with("m.csv: row 5: the root is at 1e+30 m, but at most 10 km from "
                           "the origin are possible; correct the file"))
       << refused;
 }

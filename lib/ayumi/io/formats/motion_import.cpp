@@ -274,7 +274,7 @@ void refuse_absurd(const MotionFile& motion, const RobotModel& model, const std:
       if (std::abs(x) > most) most = std::abs(x);
     if (most > kFarthest)
       refuse(row, std::string("the ") + name + " is at " + text::brief(most) + " m, but at most " +
-                      text::brief(kFarthest) + " m from the origin are possible");
+                      text::brief(kFarthest / 1000) + " km from the origin are possible");
   };
   for (size_t k = 0; k < motion.base.size(); ++k) check(k, "root", motion.base[k].position);
   for (size_t k = 0; k < motion.cog.size(); ++k) check(k, "COG", motion.cog[k]);
@@ -283,8 +283,7 @@ void refuse_absurd(const MotionFile& motion, const RobotModel& model, const std:
   for (size_t k = 0; k < motion.fz.size(); ++k)
     if (std::abs(motion.fz[k]) > most)
       refuse(k, "the vertical force is " + text::brief(motion.fz[k]) + " N, but at most " +
-                    text::brief(most) + " N (" + text::brief(kMostWeights) +
-                    " times the weight) are possible");
+                    text::brief(kMostWeights) + " times the weight are possible");
 }
 
 bool is_joint_of(const RobotModel& model, const std::string& name) {
