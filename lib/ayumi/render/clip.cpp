@@ -95,11 +95,9 @@ std::vector<std::vector<Vector3d>> outlines(const std::vector<BodySurface>& surf
   return all;
 }
 
-/// The robot's surface, simplified where it is too fine; `notes` says so.
-std::vector<BodySurface> drawn_surface(const RobotModel& model, const ClipOptions& options,
-                                       std::vector<std::string>& notes) {
-  std::vector<BodySurface> surface = robot_surface(model);
-  const size_t before = triangle_count(surface);
+/// Simplifies a surface that is too fine; `notes` says so, and what is drawn instead of visuals.
+void simplify_if_needed(const RobotModel& model, const ClipOptions& options, size_t before,
+                        std::vector<BodySurface>& surface, std::vector<std::string>& notes) {
   const double cell = simplify(surface, options.max_triangles);
   if (!has_visuals(model))
     notes.push_back(
@@ -110,7 +108,6 @@ std::vector<BodySurface> drawn_surface(const RobotModel& model, const ClipOption
                     std::to_string(triangle_count(surface)) +
                     ", whose points are moved by at most " +
                     text::brief(1e3 * std::sqrt(3.0) * cell, 2) + " mm");
-  return surface;
 }
 
 /// What stands on the floor, and where a field takes the place of the plane.
@@ -317,9 +314,9 @@ std::shared_ptr<const ClipShape> clip_shape(const RobotModel& model, const Simul
                                             const ClipOptions& options, bool thin_surface) {
   check(model, log, options);
   auto shape = std::make_shared<ClipShape>();
-  std::vector<BodySurface> surface = drawn_surface(model, options, shape->notes);
+  std::vector<BodySurface> surface = robot_surface(model);
+  const size_t before = triangle_count(surface);
   shape->height = robot_height(surface, model, log);
-  shape->outline = outlines(surface);
   // At most so large is the robot in a picture that it fits into.
   const double pixel =
       shape->height / (options.picture.height * std::max(1.0, options.camera.zoom));
@@ -327,6 +324,8 @@ std::shared_ptr<const ClipShape> clip_shape(const RobotModel& model, const Simul
     leave_out_hidden(surface);
     thin(surface, kThinned * pixel);
   }
+  simplify_if_needed(model, options, before, surface, shape->notes);
+  shape->outline = outlines(surface);
   shape->robot = drawn_robot(surface);
   return shape;
 }
