@@ -1,7 +1,7 @@
 #!/bin/bash
 # The jump of HOAP-1, Figs. 9 and 10 of the paper: a strip of snapshots, the curves of COG and ZMP, and
-# a clip of the same time at a fifth of the speed. The program must be built before. The variable AYUMI names it. Its
-# default is build/release/app/ayumi.
+# a clip of the same time at a fifth of the speed. The program must be built before. The variable AYUMI
+# names it. Its default is build/release/app/ayumi.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

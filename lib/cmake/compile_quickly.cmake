@@ -36,6 +36,13 @@ function(ayumi_compile_together key size)
   endforeach()
 endfunction()
 
+# g++ looks for garbage from 128 MB on, and a group of sources has 500 MB and more that are in use:
+# from 1 GB on this is 6 to 9 % less time and 15 % more memory.
+function(ayumi_collect_less_garbage target)
+  target_compile_options(${target} PRIVATE
+    $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=1000000>)
+endfunction()
+
 # ayumi_compile_quickly(target headers...): headers in angle brackets, beyond the standard library; or
 # REUSE_FROM and a target that is compiled with the same options.
 function(ayumi_compile_quickly target)
@@ -48,10 +55,7 @@ function(ayumi_compile_quickly target)
   if(AYUMI_UNITY)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
   endif()
-  # g++ looks for garbage from 128 MB on, and a group of sources has 500 MB and more that are in use:
-  # from 1 GB on this is 6 to 9 % less time and 15 % more memory.
-  target_compile_options(${target} PRIVATE
-    $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=1000000>)
+  ayumi_collect_less_garbage(${target})
 endfunction()
 
 # The libraries are linked statically, so a function is the one that its own source defines, and may
