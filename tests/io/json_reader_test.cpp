@@ -150,6 +150,15 @@ TEST(JsonReader, TakesTimeThatIsLinearInTheNumberOfMembers) {
   EXPECT_EQ(document["p99999"]["a"][1], 2);
 }
 
+// A slip at the end of a long line, which may have any number of brackets.
+TEST(JsonReader, FindsASlipInTimeThatIsLinearInTheText) {
+  std::string text = "[";
+  for (int i = 0; i < 300'000; ++i) text += "[{\"a\": 1}], ";
+  const std::clock_t begin = std::clock();
+  EXPECT_NE(parse_error(text + "x]").find("the word x needs quotation marks"), std::string::npos);
+  EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 5.0);
+}
+
 TEST(JsonReader, KeepsEveryKindOfValue) {
   const std::string text =
       R"({"a":[null,true,-3,18446744073709551615,0.1,"x",[],{}],"b":{"c":{"d":[[1]]}}})";

@@ -86,6 +86,13 @@ async function keepsTheFocus(tab) {
   expect((await at()).startsWith("values: /keyframes/1"), "Enter goes to the values: " + await at());
   await press("Escape");
   expect(await at() === "timeline: /keyframes/1/zmp", "Escape goes back: " + await at());
+  // A move that is taken back before it is written leaves what was written before.
+  const written = text();
+  await tab.run("document.querySelector(arguments[0]).focus()", keySelector(1));
+  await tab.act([{ type: "key", id: "keyboard", actions: [["keyDown", "\uE009"], ["keyDown", keys.Right], ["keyUp", keys.Right],
+    ["keyDown", "z"], ["keyUp", "z"], ["keyUp", "\uE009"]].map(([type, value]) => ({ type, value })) }]);
+  await wait(900);
+  expect(text() === written, "Ctrl+Z takes back a move that is not written");
   // What is added has the focus, and what is removed leaves it in the panel.
   const buttonTo = (words) => tab.run("[...document.querySelectorAll('#selected button')].find((b) => b.textContent === arguments[0]).focus()", words);
   await tab.click("#whole");

@@ -292,14 +292,17 @@ class SlipFinder {
     return true;
   }
 
-  // Whether this bracket begins a line, farther to the left than the line of the one it closes.
+  // Whether this bracket begins a line, farther to the left than the line of the one it closes. A
+  // line is looked through only for a bracket that begins one: a long line may have many brackets.
   bool stands_left_of(size_t opening) const {
-    const auto indent = [&](size_t at) {
-      const size_t line = at == 0 ? 0 : text_.rfind('\n', at - 1) + 1;
-      return std::min(text_.find_first_not_of(" \t", line), text_.size()) - line;
-    };
-    const size_t line = text_.rfind('\n', at_) + 1;
-    return line + indent(at_) == at_ && indent(at_) < indent(opening);
+    const auto is_blank = [&](size_t at) { return text_[at] == ' ' || text_[at] == '\t'; };
+    size_t line = at_;
+    while (line > 0 && is_blank(line - 1)) --line;
+    if (line > 0 && text_[line - 1] != '\n') return false;
+    const size_t other = opening == 0 ? 0 : text_.rfind('\n', opening - 1) + 1;
+    size_t word = other;
+    while (is_blank(word)) ++word;
+    return at_ - line < word - other;
   }
 
   void take_item(bool after_comma) {

@@ -289,9 +289,13 @@ export class Timeline {
     });
     mark.addEventListener("keydown", (event) => {
       const way = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
-      if (event.key === "Escape" && timer) {
+      // A move that is not written yet is taken back, and nothing before it.
+      const back = event.key === "Escape" || (event.ctrlKey && !event.shiftKey && event.key.toLowerCase() === "z");
+      if (back && timer) {
         clearTimeout(timer);
         timer = 0;
+        event.preventDefault();
+        event.stopPropagation();
         end(false);
       }
       if (!way || !event.ctrlKey) return;
