@@ -29,8 +29,8 @@ struct Mistake {
 std::vector<Mistake> impossible_values(const RobotModel& model, const Pattern& pattern);
 
 /// Mistakes that a consistent pattern may contain: a single support without a swing among others
-/// with one, angles of a few degrees that look like radians, ground that is rougher than any, pushes
-/// that no robot survives, and disturbances after the end.
+/// with one, angles of a few degrees that look like radians, ground that is rougher than any,
+/// pushes that no robot survives, and disturbances after the end.
 std::vector<Mistake> doubtful_values(const RobotModel& model, const Pattern& pattern);
 
 /// What, put right, would make the pattern consistent; where nothing does, its impossible values.

@@ -180,7 +180,7 @@ AYUMI_INLINE void draw_plane_row(const GroundRow& row, int begin, int end, std::
     Eight near, near_last;
     near_share(row, from[0].place, from[1].place, near);
     near_share(row, to[0].place, to[1].place, near_last);
-    near = (far_last > 0.0f) & (near_last >= 0.0f) ? 0.5f * (near + near_last) : near;
+    near = ((far_last > 0.0f) & (near_last >= 0.0f)) ? 0.5f * (near + near_last) : near;
     std::array<std::int32_t, 8> plain, there;
     std::array<float, 8> nears;
     mix_colors(step * 0.0f, step * 0.0f, near, plain);
