@@ -227,7 +227,8 @@ std::vector<Broken> broken_patterns() {
          return {"p.json"};
        },
        "p.json: the file is empty"},
-      pattern("bad_json", "\"robot\": \"hoap1\",", "\"robot\": \"hoap1\"", "p.json:4:9: "),
+      pattern("bad_json", "\"robot\": \"hoap1\",", "\"robot\": \"hoap1\"",
+              "p.json:3:19: a comma is missing after \"hoap1\""),
       pattern("unknown_format", "ayumi.pattern/1", "ayumi.pattern/9", "/format"),
       pattern("unknown_robot", "hoap1", "hoap7", "p.json: /robot: robot 'hoap7': no such file"),
       pattern("missing_include", "\"phases\"", "\"include\": [\"a.json\"], \"phases\"",
