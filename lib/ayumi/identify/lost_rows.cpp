@@ -49,6 +49,13 @@ constexpr double kLeastNoise = 0.29, kLeastNoiseAngle = 1e-7;
 // that is far beyond what friction and load do to the mean of several windows.
 constexpr double kDelayWindow = 1.5, kDelayJump = 0.003;
 
+// Windows that are compared have at least this part of the information of the best one, there are
+// at least so many on each side, and the delays of both sides together may spread by this part of
+// the change. Chosen: a delay needs motion, a spread needs two values, and a change that is four
+// times the spread is no drift.
+constexpr double kLeastInformation = 0.1, kMostSpread = 0.25;
+constexpr int kLeastWindows = 2;
+
 // A change of delay around a rest is lost rows from this part of a row on. Chosen: between a whole
 // row and the delays of a recorded walk, which differ by 0.1 ms between windows.
 constexpr double kRestJump = 0.75;
@@ -314,7 +321,7 @@ LostRows change_of_delay(const AngleTable& command, const AngleTable& measured,
     most = std::max(most, window.weight);
     windows.push_back(std::move(window));
   }
-  if (windows.size() < 4) return {};
+  if (windows.size() < 2 * kLeastWindows) return {};
   // Both sides of a jump have delays of their own, which change little.
   struct Side {
     std::vector<Delay> delays;
@@ -324,7 +331,7 @@ LostRows change_of_delay(const AngleTable& command, const AngleTable& measured,
     Side result{std::vector<Delay>(dofs.size()), 0};
     int count = 0;
     for (size_t i = from; i < to; ++i) {
-      if (windows[i].weight <= 0.1 * most) continue;
+      if (windows[i].weight <= kLeastInformation * most) continue;
       ++count;
       for (size_t j = 0; j < dofs.size(); ++j) {
         const Delay& delay = windows[i].delays[j];
@@ -332,12 +339,12 @@ LostRows change_of_delay(const AngleTable& command, const AngleTable& measured,
         result.delays[j].weight += delay.weight;
       }
     }
-    if (count < 2) return std::nullopt;
+    if (count < kLeastWindows) return std::nullopt;
     for (Delay& delay : result.delays)
       if (delay.weight > 0) delay.value /= delay.weight;
     double square = 0;
     for (size_t i = from; i < to; ++i)
-      if (windows[i].weight > 0.1 * most) {
+      if (windows[i].weight > kLeastInformation * most) {
         double away = 0;
         for (size_t j = 0; j < dofs.size(); ++j)
           away +=
@@ -358,7 +365,7 @@ LostRows change_of_delay(const AngleTable& command, const AngleTable& measured,
     const double spread = before->spread + after->spread;
     const bool rest = std::abs(*change) >= kRestJump * measured.dt &&
                       rests_near(command, dofs, windows[split - 1].time, windows[split].time);
-    if ((std::abs(*change) < kDelayJump && !rest) || spread > 0.25 * std::abs(*change) ||
+    if ((std::abs(*change) < kDelayJump && !rest) || spread > kMostSpread * std::abs(*change) ||
         spread >= least)
       continue;
     least = spread;

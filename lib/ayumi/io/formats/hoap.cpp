@@ -74,6 +74,10 @@ class Reader {
     }
     if (result_.rows.empty())
       fail(ErrorCode::bad_file, file_ + ": the file has no row with targets for the motors");
+    const std::string &first = result_.first_words, &last = result_.last_words;
+    if (!last.empty() && last.size() < first.size() && first.starts_with(last))
+      stop("the row ends with '" + last + "', but the first row with '" + first +
+           "'; the file may be truncated");
     if (bare_) set_bare_times();
     set_tick();
     return std::move(result_);
@@ -149,10 +153,6 @@ class Reader {
       at = line.find(',', at == 0 ? 0 : at + 1);
     result_.last_words = at == std::string_view::npos ? "" : std::string(line.substr(at));
     if (result_.rows.empty()) result_.first_words = result_.last_words;
-    const std::string &first = result_.first_words, &last = result_.last_words;
-    if (last.size() < first.size() && first.starts_with(last))
-      stop("the row ends with '" + last + "', but the first row with '" + first +
-           "'; the file may be truncated");
     result_.rows.push_back(std::move(row));
   }
 

@@ -273,15 +273,16 @@ void refuse_absurd(const MotionFile& motion, const RobotModel& model, const std:
     for (const double x : place)
       if (std::abs(x) > most) most = std::abs(x);
     if (most > kFarthest)
-      refuse(row, std::string("the ") + name + " is at " + text::brief(most) + " m, but at most " +
-                      text::brief(kFarthest / 1000) + " km from the origin are possible");
+      refuse(row, std::string("a coordinate of the ") + name + " is " + text::brief(most) +
+                      " m; beyond " + text::brief(kFarthest / 1000) +
+                      " km it is no place of a motion");
   };
   for (size_t k = 0; k < motion.base.size(); ++k) check(k, "root", motion.base[k].position);
   for (size_t k = 0; k < motion.cog.size(); ++k) check(k, "COG", motion.cog[k]);
   for (size_t k = 0; k < motion.zmp.size(); ++k) check(k, "ZMP", motion.zmp[k]);
   const double most = kMostWeights * model.mass() * kGravity;
   for (size_t k = 0; k < motion.fz.size(); ++k)
-    if (std::abs(motion.fz[k]) > most)
+    if (most > 0 && std::abs(motion.fz[k]) > most)
       refuse(k, "the vertical force is " + text::brief(motion.fz[k]) + " N, but at most " +
                     text::brief(kMostWeights) + " times the weight are possible");
 }

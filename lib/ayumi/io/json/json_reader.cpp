@@ -134,14 +134,14 @@ Json parse_json(const std::string& bytes, const std::string& file, ErrorCode cod
   try {
     Json::sax_parse(bytes, &builder, Json::input_format_t::json, true, true);
   } catch (const Json::parse_error& error) {
-    if (const auto slip = find_json_slip(bytes))
-      fail_in_text(code, file, bytes, slip->at, slip->words);
     const size_t offset = error.byte > 0 ? error.byte - 1 : 0;
     const std::string reason = reason_of(error.what());
-    fail_in_text(code, file, bytes, offset,
-                 reason.find("UTF-8") == std::string::npos
-                     ? reason
-                     : "the text is not in the encoding UTF-8 here; save the file in UTF-8");
+    if (reason.find("UTF-8") != std::string::npos)
+      fail_in_text(code, file, bytes, offset,
+                   "the text is not in the encoding UTF-8 here; save the file in UTF-8");
+    if (const auto slip = find_json_slip(bytes))
+      fail_in_text(code, file, bytes, slip->at, slip->words);
+    fail_in_text(code, file, bytes, offset, reason);
   } catch (const Json::exception& error) {
     // A number beyond those of a double, which stands between quotes at the end of the message.
     const std::string reason = reason_of(error.what());

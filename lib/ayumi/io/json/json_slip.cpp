@@ -111,10 +111,10 @@ class SlipFinder {
   std::string_view from(size_t at) const { return std::string_view(text_).substr(at); }
 
   std::string quoted(size_t begin, size_t end) const {
-    std::string words = text_.substr(begin, std::min(end - begin, kQuoted));
-    while (!words.empty() && (words.back() & 0xc0) == 0x80 && end - begin > kQuoted)
-      words.pop_back();
-    return end - begin > kQuoted ? words + "..." : words;
+    if (end - begin <= kQuoted) return text_.substr(begin, end - begin);
+    size_t cut = begin + kQuoted;  // not within a letter of several bytes
+    while (cut > begin && (text_[cut] & 0xc0) == 0x80) --cut;
+    return text_.substr(begin, cut - begin) + "...";
   }
 
   std::string token_words() const { return quoted(at_, end_); }
