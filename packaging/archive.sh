@@ -65,9 +65,10 @@ exec "$here/lib/ayumi/ayumi" "$@"
 RUN
 chmod 755 "$root/bin/ayumi"
 
+# With ONLY, only this folder is packed.
 compress=${COMPRESS:-xz ${XZ_OPT:--T0 -1}}
 case $compress in cat) archive=$name.tar ;; *) archive=$name.tar.xz ;; esac
 tar --create --use-compress-program="$compress" --sort=name --owner=0 --group=0 --numeric-owner \
   --mtime="@${SOURCE_DATE_EPOCH:-$(stat -c %Y "$prefix/bin/ayumi")}" --directory "$tree" \
-  --file "$out/$archive" "$name"
+  --file "$out/$archive" "$name${ONLY:+/$ONLY}"
 echo "$out/$archive: $(du -m "$out/$archive" | cut -f1) MB, unpacked $(du -sm "$root" | cut -f1) MB"

@@ -359,6 +359,11 @@ def main():
                 walk = os.path.join(folder, "walk.json")
                 subprocess.run([program, "new", "walk", "--steps", str(options.steps), "-o", walk,
                                 "-q"], check=True, stdout=subprocess.DEVNULL)
+                with open(walk) as file:
+                    head, _, tail = file.read().rpartition("}")
+                with open(walk, "w") as file:
+                    file.write(head + ', "scenario": [{"type": "impulse", "at": 1.5, "duration": 0.02, '
+                               '"on": "cog", "direction": [0, 1, 0], "impulse": 0.3}]}' + tail)
             try_signals(program, walk, options.count, rng, report, only)
     print(f"{report.trials} trials, {report.failures} failed; seed {options.seed}; "
           f"the slowest stop took {report.slowest:.2f} s")

@@ -6,12 +6,20 @@ include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 
 set(folder ${SCRATCH}/archive)
 file(REMOVE_RECURSE ${folder})
-file(MAKE_DIRECTORY ${folder}/unpacked)
+file(MAKE_DIRECTORY ${folder}/unpacked ${folder}/small)
 # Not compressed: xz takes a minute for its libraries.
 run(${CMAKE_COMMAND} -E env COMPRESS=cat ${SOURCE}/packaging/archive.sh ${SCRATCH}/stage ${folder})
 file(GLOB archive ${folder}/ayumi-*-linux-*.tar)
 run(tar --extract --directory ${folder}/unpacked --file ${archive})
 file(GLOB root ${folder}/unpacked/ayumi-*)
+
+# The compressed archive that users get, of one small folder.
+run(${CMAKE_COMMAND} -E env ONLY=bin ${SOURCE}/packaging/archive.sh ${SCRATCH}/stage ${folder}/small)
+file(GLOB small ${folder}/small/ayumi-*-linux-*.tar.xz)
+run(tar --list --xz --file ${small})
+if(NOT output MATCHES "bin/ayumi")
+  message(FATAL_ERROR "the compressed archive has no program:\n${output}")
+endif()
 
 run(env -i PATH=/usr/bin:/bin ${root}/bin/ayumi check ${root}/share/ayumi/patterns/hoap1_walk.json)
 if(NOT output MATCHES "hoap1_walk.json: consistent")

@@ -223,6 +223,9 @@ TEST(AuthorPage, IsWorkedWithInABrowser) {
   std::string walk;
   for (std::string line; std::getline(lines, line);)
     if (!line.starts_with("//")) walk += line + "\n";
+  walk.insert(walk.rfind('}'), R"(, "scenario": [{ "type": "impulse", "at": 3, "duration": 0.02,
+    "on": "cog", "direction": [0, 1, 0], "impulse": 1.1 }]
+)");
   write(folder / "walk.json", walk);
   expect_page_works("author_browser.mjs", folder, "walk.json");
 }

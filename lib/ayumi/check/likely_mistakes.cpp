@@ -50,6 +50,9 @@ constexpr double kRoughest = 2;
 // ten times what walking robots survive; at half and at twice, units that are wrong by 1000 are
 // named as well.
 constexpr double kFastestPush = 2;
+// Time for which a force is not answered [s]. Chosen: about a step; against a force that lasts
+// longer, a robot leans.
+constexpr double kUnopposed = 0.5;
 // How long a simulation holds the last posture [s]. Definition: SimulateOptions.
 constexpr double kHeld = 1;
 // Mistakes of one kind that are named one by one.
@@ -162,14 +165,16 @@ class Suspicions {
       const auto* push = std::get_if<Push>(&d.what);
       if (!push || push->kind == PushKind::torque) continue;
       const bool impulse = push->kind == PushKind::impulse;
-      const double whole = push->magnitude * (impulse ? 1 : d.duration);
+      const double acts = std::min(d.duration, kUnopposed);
+      const double whole = push->magnitude * (impulse ? 1 : acts);
       const double speed = whole / model_.mass();
       if (!(speed > kFastestPush) || !std::isfinite(speed)) continue;
       const std::string unit = impulse ? "N s" : "N";
       std::string words = std::string(impulse ? "the impulse is " : "the force is ") +
                           text::brief(push->magnitude) + " " + unit + ", which gives " +
                           model_.name() + " (" + text::brief(model_.mass(), 3) +
-                          " kg) a speed of " + text::brief(speed, 3) + " m/s";
+                          " kg) a speed of " + text::brief(speed, 3) + " m/s" +
+                          (impulse ? "" : " within " + text::brief(acts) + " s");
       if (1e-3 * speed <= kFastestPush)
         words += "; if it is in m" + unit + ", write " + text::brief(1e-3 * push->magnitude);
       found.push_back({"/scenario/" + std::to_string(i), words});

@@ -76,12 +76,22 @@ bool same_place(const Isometry3d& a, const Isometry3d& b) {
   const double first = feet.begin(static_cast<int>(phase)), until = feet.phases()[phase].until;
   const Isometry3d stands = feet.pose(side, first);
   size_t dragging = 0;
+  bool by_curve = true, kept = false;  // no key is elsewhere; one at the end of the phase stands
   for (size_t i = 0; i < pattern.keyframes.size(); ++i) {
     const auto& key = pattern.keyframes[i].feet[index(side)];
     if (!key || pattern.keyframes[i].t < first - kInstant) continue;
     dragging = i;
-    if (!same_place(pose_of(*key), stands)) break;
+    if (!same_place(pose_of(*key), stands)) {
+      by_curve = kept;
+      break;
+    }
+    kept = kept || std::abs(pattern.keyframes[i].t - until) < kInstant;
   }
+  if (by_curve)
+    complain(pattern, pointer_of_phase(pattern, phase).substr(1),
+             std::string("the curve between the keys of the ") + name_of(side) +
+                 " foot leaves the place where it stands; give these keys the interpolation "
+                 "minimum_jerk, which does not overshoot");
   const auto place = [](const Vector3d& p) {
     const auto number = [](double value) {  // to the micrometre, and zero without a sign
       return text::brief(std::round(1e6 * value) * 1e-6 + 0.0);

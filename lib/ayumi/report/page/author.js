@@ -121,7 +121,10 @@ class Page {
     const list = { phase: "phases", disturbance: "disturbances" }[this.selection?.kind];
     if (list) {
       const thing = before[list].find((one) => one.pointer === this.selection.pointer);
-      const same = thing && now[list].find((one) => Math.abs(one.from - thing.from) < 5e-4);
+      // Several disturbances may begin at one time: the same one of them.
+      const at = (all) => all.filter((one) => thing && Math.abs(one.from - thing.from) < 5e-4);
+      const there = at(now[list]);
+      const same = now[list].length !== before[list].length && (there[at(before[list]).indexOf(thing)] ?? there.at(-1));
       if (same) this.selection = { kind: this.selection.kind, pointer: same.pointer };
     }
     if (this.selection?.kind !== "key") return;
