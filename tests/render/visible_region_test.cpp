@@ -128,6 +128,34 @@ TEST(CoveredTiles, TakesAllForWhatIsBehindTheCameraAndNothingForWhatIsOutside) {
   EXPECT_EQ(area({}), 0);
 }
 
+// A corner beside the camera is hundreds of pictures away; its edges keep their direction.
+TEST(CoveredTiles, ACornerFarOutsideDoesNotTurnItsEdges) {
+  const Camera camera = camera_at({1.2, -1, 0.7});
+  const Vector3d forward = (camera.target - camera.eye).normalized(),
+                 side = forward.cross(Vector3d::UnitZ()).normalized();
+  const std::vector<Vector3d> corners = {
+      {0.1, 0, 0}, {-0.3, 0.3, 0}, camera.eye + 0.004 * forward + 0.4 * side - 0.3 * camera.up};
+  CoveredTiles tiles(clip_of(camera), kWidth, kHeight, {0, 0, kWidth, kHeight});
+  tiles.add(corners);
+  const std::vector<PixelBox> runs = tiles.runs();
+  int seen = 0;
+  for (int i = 0; i <= 300; ++i)
+    for (int k = 0; i + k <= 300; ++k) {
+      const Vector3d point = (corners[0] * i + corners[1] * k + corners[2] * (300 - i - k)) / 300.0;
+      const Vector3d pixel = project(camera, kWidth, kHeight, point);
+      const double x = pixel.x(), y = kHeight - pixel.y();
+      if (!(pixel.z() > 0.01) || x < 0 || y < 0 || x >= kWidth || y >= kHeight) continue;
+      ++seen;
+      EXPECT_TRUE(std::any_of(runs.begin(), runs.end(),
+                              [&](const PixelBox& run) {
+                                return x >= run.x && x < run.x + run.width && y >= run.y &&
+                                       y < run.y + run.height;
+                              }))
+          << x << " " << y;
+    }
+  EXPECT_GT(seen, 1000);
+}
+
 TEST(Covered, BoundsWhatIsNotZero) {
   constexpr int kSize = 64;
   std::vector<std::uint8_t> image(size_t(kSize) * kSize);

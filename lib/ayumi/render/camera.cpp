@@ -26,6 +26,8 @@ constexpr NamedView kViews[] = {{"front", 0.0, 0.14},
                                 {"ortho-side", -1.5707963267948966, 0.0, true},
                                 {"ortho-front", 0.0, 0.0, true}};
 
+// Chosen: no picture needs more, and places stay numbers.
+constexpr double kLeastZoom = 1e-6, kMostZoom = 1e6;
 constexpr double kFieldOfView = 0.5;  // [rad] so narrow that lengths can be compared
 
 // The height of the picture's middle stays while the COG is between these shares of its first
@@ -142,9 +144,10 @@ CameraPath::CameraPath(const CameraOptions& options, std::vector<Vector3d> cog, 
     fail(ErrorCode::usage, "view: '" + options.view + "' is not one of " +
                                text::join(view_names(), ", ") +
                                text::suggestion(options.view, view_names()));
-  if (!(options.zoom > 0))
-    fail(ErrorCode::usage,
-         "zoom: " + text::exact(options.zoom) + " is not possible; give a number above 0");
+  if (!(options.zoom >= kLeastZoom && options.zoom <= kMostZoom))
+    fail(ErrorCode::usage, "zoom: " + text::exact(options.zoom) +
+                               " is not possible; give a number from " + text::brief(kLeastZoom) +
+                               " to " + text::brief(kMostZoom));
   require(!cog.empty() && dt > 0 && height > 0 && aspect > 0, "a camera path needs a motion");
   azimuth_ = view->azimuth;
   elevation_ = view->elevation;

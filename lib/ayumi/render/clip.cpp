@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
+#include <exception>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -105,8 +106,7 @@ void simplify_if_needed(const RobotModel& model, const ClipOptions& options, siz
         "between joints where a link has no collision shape");
   if (cell > 0)
     notes.push_back("the robot has " + std::to_string(before) + " triangles; it is drawn with " +
-                    std::to_string(triangle_count(surface)) +
-                    ", whose points are moved by at most " +
+                    std::to_string(triangle_count(surface)) + ", whose points are moved by about " +
                     text::brief(1e3 * std::sqrt(3.0) * cell, 2) + " mm");
 }
 
@@ -610,8 +610,16 @@ ClipSummary write_clip(const RobotModel& model, const SimulationLog& log, const 
   const auto time = [&](int k) { return options.begin + k * options.speed / options.fps; };
   std::once_flag shaped;
   std::shared_ptr<const ClipShape> shape;  // made by the first thread that needs it
+  std::exception_ptr unshaped;
   const auto make = [&] {
-    std::call_once(shaped, [&] { shape = clip_shape(model, log, options, count >= kThinFrames); });
+    std::call_once(shaped, [&] {  // an exception here would let the next thread try again
+      try {
+        shape = clip_shape(model, log, options, count >= kThinFrames);
+      } catch (...) {
+        unshaped = std::current_exception();
+      }
+    });
+    if (unshaped) std::rethrow_exception(unshaped);
     return std::make_unique<ClipRenderer>(model, log, options, shape);
   };
   std::vector<std::string> notes;

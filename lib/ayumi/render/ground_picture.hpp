@@ -30,7 +30,7 @@ struct ShadowPicture {
   std::vector<std::uint8_t> cover;      ///< kSize^2, along u then v of the plane; empty: no shadow
   Eigen::Vector4f dark = {0, 0, 0, 0};  ///< as covered() gives it
 
-  /// Between pixels; `at` 0..1 over the square, its edge beyond.
+  /// Interpolated between pixels. Both go from 0 to 1 over the square; outside it, its edge counts.
   float at(float along_u, float along_v) const;
 };
 
@@ -47,7 +47,7 @@ class GroundPicture {
   void draw(const ShadowPicture& shadow, Image& image) const;
 
  private:
-  /// Numbers above or equal 0 where a pixel is to be taken: a x + b y + c.
+  /// (a, b, c): pixels with a x + b y + c >= 0 are taken.
   using Line = Eigen::Vector3d;
   int width_, height_;
   GroundRectangle plane_;

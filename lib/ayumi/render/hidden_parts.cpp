@@ -20,6 +20,9 @@ constexpr double kFlat = 2e-4;
 // Planes times corners of a part that is examined. Chosen: a part of 1,150 triangles; at twice,
 // heavy meshes take longer to examine, at half, finely divided balls and tubes are left out.
 constexpr size_t kMostWork = 4'000'000;
+// Pairs of a piece and a triangle of a body, above which nothing is left out. Chosen: they take
+// about half a second; a body with so many pieces has screws and grilles, which hide little.
+constexpr size_t kMostTests = 200'000'000;
 
 /// Triangles that hang together.
 struct Piece {
@@ -88,15 +91,14 @@ void find_planes(const Triangles& surface, Piece& piece) {
 
 /// Whether a triangle is inside: its corners are.
 bool is_inside(const Piece& piece, const std::array<Vector3d, 3>& corners) {
+  if (piece.planes.empty() || !piece.box.contains(corners[0])) return false;
   const double flat = kFlat * piece.box.diagonal().norm();
-  return !piece.planes.empty() &&
-         std::all_of(corners.begin(), corners.end(), [&](const Vector3d& corner) {
-           return piece.box.contains(corner) &&
-                  std::all_of(piece.planes.begin(), piece.planes.end(),
-                              [&](const Eigen::Vector4d& plane) {
-                                return plane.dot(corner.homogeneous()) < -2 * flat;
-                              });
-         });
+  return std::all_of(corners.begin(), corners.end(), [&](const Vector3d& corner) {
+    return piece.box.contains(corner) &&
+           std::all_of(piece.planes.begin(), piece.planes.end(), [&](const Eigen::Vector4d& plane) {
+             return plane.dot(corner.homogeneous()) < -2 * flat;
+           });
+  });
 }
 
 /// Without those of its triangles that are inside one of the pieces, but not of their own.
@@ -132,6 +134,10 @@ void leave_out_hidden(std::vector<BodySurface>& robot) {
     if (std::none_of(pieces.begin(), pieces.end(),
                      [](const Piece& piece) { return !piece.planes.empty(); }))
       continue;
+    size_t triangles = body.closed.indices.size() / 3 + body.open.indices.size() / 3;
+    for (const TexturedSurface& part : body.textured)
+      triangles += part.triangles.indices.size() / 3;
+    if (pieces.size() * triangles > kMostTests) continue;
     leave_out(body.closed, pieces, own);
     leave_out(body.open, pieces, {});
     for (TexturedSurface& part : body.textured) leave_out(part.triangles, pieces, {});

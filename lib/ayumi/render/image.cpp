@@ -66,8 +66,12 @@ SurfacePointer render_text(const std::string& text, const TextStyle& style) {
 }
 
 // Texts that are kept drawn. Chosen: more than one frame has; at half, a legend of many marks is
-// drawn anew for every frame, at twice, memory of a clip's times is kept that no other frame shows.
+// drawn anew for every frame; at twice, memory holds the times of past frames, which none shows
+// again.
 constexpr size_t kMostTexts = 64;
+// Bytes of the longest text that is kept. Chosen: the words of the legend have about 50; a longer
+// title is shortened letter by letter, and all its lengths would displace the others.
+constexpr size_t kLongestKept = 100;
 
 /// render_text(), of which the last ones are kept: the frames of a clip have the same words, and
 /// each is asked for its width first.
@@ -80,8 +84,10 @@ std::shared_ptr<cairo_surface_t> text_surface(const std::string& text, const Tex
   key += text;
   const auto found = kept.find(key);
   if (found != kept.end()) return found->second;
+  std::shared_ptr<cairo_surface_t> drawn = render_text(text, style);
+  if (text.size() > kLongestKept) return drawn;
   if (kept.size() >= kMostTexts) kept.clear();
-  return kept[key] = render_text(text, style);
+  return kept[key] = std::move(drawn);
 }
 
 /// Lays a premultiplied ARGB surface over the picture with its top left corner at (left, top).

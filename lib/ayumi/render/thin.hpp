@@ -1,6 +1,6 @@
 #pragma once
 // Fewer triangles where nobody sees the difference: vertices move onto neighbours as long as the
-// surface stays within a fraction of a pixel of where it was.
+// surface moves, on average, by less than a fraction of a pixel.
 
 #include <vector>
 

@@ -13,6 +13,9 @@ namespace {
 
 constexpr int kSpare = 2;  // [pixel] around what is seen, for smoothed edges
 constexpr int kTile = 16;  // [pixel] edge
+// Half widths of the picture beyond which all tiles count as covered. Chosen: times 4096 pixels, a
+// whole number still holds it.
+constexpr double kFarOutside = 1e4;
 
 }  // namespace
 
@@ -62,8 +65,10 @@ void CoveredTiles::add(std::span<const Vector3d> points) {
   Eigen::AlignedBox2d all;
   for (const Vector3d& point : points) {
     const Eigen::Vector4d clip = view_projection_ * point.homogeneous();
-    if (clip.w() < 1e-6) return std::fill(covered_.begin(), covered_.end(), true);
-    const Vector2d place = (clip.head<2>() / clip.w()).cwiseMax(-100).cwiseMin(100);
+    // Too far outside for whole numbers: a nearer place would turn the edges that end there.
+    if (clip.w() < 1e-6 || !(clip.head<2>().cwiseAbs().maxCoeff() <= kFarOutside * clip.w()))
+      return std::fill(covered_.begin(), covered_.end(), true);
+    const Vector2d place = clip.head<2>() / clip.w();
     seen.emplace_back((0.5 + 0.5 * place.x()) * width_ - box_.x,
                       (0.5 + 0.5 * place.y()) * height_ - box_.y);
     all.extend(seen.back());

@@ -35,7 +35,7 @@ class VisibleRegion {
 class CoveredTiles {
  public:
   CoveredTiles(const Eigen::Matrix4f& view_projection, int width, int height, const PixelBox& box);
-  /// Of these points, the smallest convex body.
+  /// The smallest convex body that holds these points.
   void add(std::span<const Eigen::Vector3d> points);
   void add(const Eigen::AlignedBox3d& box, const Eigen::Isometry3d& pose);
   /// Beside and above each other, within the box.
