@@ -132,9 +132,9 @@ TEST(CoveredTiles, TakesAllForWhatIsBehindTheCameraAndNothingForWhatIsOutside) {
 TEST(CoveredTiles, ACornerFarOutsideDoesNotTurnItsEdges) {
   const Camera camera = camera_at({1.2, -1, 0.7});
   const Vector3d forward = (camera.target - camera.eye).normalized(),
-                 side = forward.cross(Vector3d::UnitZ()).normalized();
+                 side = forward.cross(Vector3d::UnitZ()).normalized(), up = side.cross(forward);
   const std::vector<Vector3d> corners = {
-      {0.1, 0, 0}, {-0.3, 0.3, 0}, camera.eye + 0.004 * forward + 0.4 * side - 0.3 * camera.up};
+      {0.1, 0, 0}, {-0.3, 0.3, 0}, camera.eye + 0.0006 * forward + 0.4 * side - 0.1 * up};
   CoveredTiles tiles(clip_of(camera), kWidth, kHeight, {0, 0, kWidth, kHeight});
   tiles.add(corners);
   const std::vector<PixelBox> runs = tiles.runs();
