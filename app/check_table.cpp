@@ -129,9 +129,8 @@ std::string check_table(const ConsistencyReport& report, const RobotModel& model
 
 std::string mistake_words(const std::vector<Mistake>& mistakes, const char* heading) {
   std::string words;
-  for (const Mistake& mistake : mistakes)
-    if (mistake.is_cause)
-      words += "  " + painted(Paint::caution, heading) + " " + mistake.text() + "\n";
+  for (const std::string& cause : cause_texts(mistakes))
+    words += "  " + painted(Paint::caution, heading) + " " + cause + "\n";
   return words;
 }
 

@@ -65,8 +65,7 @@ AuthorResult check_job(const AuthorMotion& motion, const Progress& progress) {
   std::vector<Mistake> mistakes;
   if (!judgement.good())
     mistakes = likely_causes(task, check_options(task), judgement.report, progress);
-  for (const Mistake& mistake : mistakes)
-    if (mistake.is_cause) lines.push_back("Likely cause: " + mistake.text());
+  for (const std::string& cause : cause_texts(mistakes)) lines.push_back("Likely cause: " + cause);
   const std::string& need = judgement.need().text;
   if (!need.empty()) lines.push_back(need);
   for (const std::string& reason : export_refusals(task, judgement))

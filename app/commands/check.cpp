@@ -249,9 +249,7 @@ Checked checked_one(const Context& context, const CheckCommand& options, const s
                        {"need", need.text.empty() ? Json(nullptr) : Json(need.text)},
                        {"sufficient_profiles", need.sufficient},
                        {"own", own.empty() ? Json(nullptr) : Json(own)}};
-  json["likely_mistakes"] = Json::array();
-  for (const Mistake& mistake : mistakes)
-    if (mistake.is_cause) json["likely_mistakes"].push_back(mistake.text());
+  json["likely_mistakes"] = cause_texts(mistakes);
   json["with_disturbances"] = disturbed;
   json["export_refuses"] = export_refusals(input, judgement);
   if (!options.plot.empty()) json["plot"] = {{"output", options.plot}, {"series", panels}};

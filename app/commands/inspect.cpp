@@ -13,6 +13,7 @@
 #include "ayumi/model/diagnose.hpp"
 #include "ayumi/model/outline.hpp"
 #include "ayumi/plan/foot_plan.hpp"
+#include "ayumi/plan/place_text.hpp"
 #include "ayumi/render/clip.hpp"
 #include "option_checks.hpp"
 #include "pattern_input.hpp"
@@ -373,12 +374,8 @@ std::string feet_line(const RobotModel& model) {
   if (!model.has_soles() || !model.has_posture("home")) return "";
   const auto feet = start_feet(model, {});
   const auto place = [&](Side side) {
-    const Eigen::Vector3d& p = feet[static_cast<size_t>(index(side))].translation();
-    const auto number = [](double value) {  // to the micrometre, and zero without a sign
-      return text::brief(std::round(1e6 * value) * 1e-6 + 0.0);
-    };
-    return "\"" + std::string(name_of(side)) + "\": [" + number(p.x()) + ", " + number(p.y()) +
-           ", " + number(p.z()) + "]";
+    return "\"" + std::string(name_of(side)) +
+           "\": " + place_text(feet[static_cast<size_t>(index(side))].translation());
   };
   return "Feet at home, as in keys [m]: " + place(Side::left) + ", " + place(Side::right) + "\n";
 }

@@ -412,9 +412,7 @@ void repair_pattern(Context& context, RepairCommand options) {
   json["parameters"] = in_json(singles);
   json["parameters_together"] = in_json(alone ? PassingValues() : values.front());
   json["slower"] = in_json(pace);
-  json["likely_mistakes"] = nlohmann::ordered_json::array();
-  for (const Mistake& mistake : mistakes)
-    if (mistake.is_cause) json["likely_mistakes"].push_back(mistake.text());
+  json["likely_mistakes"] = cause_texts(mistakes);
   json["wall_s"] = wall;
   json["output"] = written ? nlohmann::ordered_json(options.out) : nullptr;
   context.print_json(json.dump(2));

@@ -48,18 +48,19 @@ TEST(HiddenParts, WhatHidesMustBeConvexOpaqueAndOfTheSameBody) {
   const Triangles ball = tessellate(Shape(Sphere{0.05}), kGrey);
   const Triangles box = tessellate(Shape(Box{{0.2, 0.2, 0.2}}), kGrey);
   const Triangles glass = tessellate(Shape(Box{{0.2, 0.2, 0.2}}), {0.5f, 0.5f, 0.5f, 0.5f});
+  const auto expect_all_stays = [](std::vector<BodySurface> robot) {
+    const size_t before = count_of(robot);
+    leave_out_hidden(robot);
+    EXPECT_EQ(count_of(robot), before);
+  };
   std::vector<BodySurface> robot(1);
   append(robot[0].closed, glass);
   append(robot[0].closed, ball);
-  size_t before = count_of(robot);
-  leave_out_hidden(robot);
-  EXPECT_EQ(count_of(robot), before);
+  expect_all_stays(robot);
   robot.assign(2, {});
   append(robot[0].closed, box);
   append(robot[1].closed, ball);
-  before = count_of(robot);
-  leave_out_hidden(robot);
-  EXPECT_EQ(count_of(robot), before);
+  expect_all_stays(robot);
   // A box with a dent: one corner is drawn inwards.
   Triangles dented = box;
   for (RenderVertex& vertex : dented.vertices)
@@ -67,9 +68,7 @@ TEST(HiddenParts, WhatHidesMustBeConvexOpaqueAndOfTheSameBody) {
   robot.assign(1, {});
   append(robot[0].closed, dented);
   append(robot[0].closed, ball);
-  before = count_of(robot);
-  leave_out_hidden(robot);
-  EXPECT_EQ(count_of(robot), before);
+  expect_all_stays(robot);
 }
 
 // By a second route: pictures from all sides.

@@ -438,12 +438,17 @@ std::vector<Mistake> likely_mistakes(const RobotModel& model, const Pattern& pat
   return mistakes;
 }
 
-std::string with_mistakes(const std::string& message, const Pattern& pattern,
-                          const std::vector<Mistake>& mistakes) {
-  if (mistakes.empty()) return message;
+std::vector<std::string> cause_texts(const std::vector<Mistake>& mistakes) {
   std::vector<std::string> texts;
   for (const Mistake& mistake : mistakes)
     if (mistake.is_cause) texts.push_back(mistake.text());
+  return texts;
+}
+
+std::string with_mistakes(const std::string& message, const Pattern& pattern,
+                          const std::vector<Mistake>& mistakes) {
+  if (mistakes.empty()) return message;
+  const std::vector<std::string> texts = cause_texts(mistakes);
   if (texts.empty()) return message + "; " + mistakes.front().words;
   const std::string file = pattern.file.empty() ? "" : pattern.file + ": ";
   const bool in_file = !file.empty() && message.rfind(file, 0) == 0;

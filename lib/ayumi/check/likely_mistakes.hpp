@@ -39,6 +39,9 @@ std::vector<Mistake> doubtful_values(const RobotModel& model, const Pattern& pat
 std::vector<Mistake> likely_mistakes(const RobotModel& model, const Pattern& pattern,
                                      const CheckOptions& options, const Progress& progress = {});
 
+/// Those that are causes, in words.
+std::vector<std::string> cause_texts(const std::vector<Mistake>& mistakes);
+
 /// "likely cause: ...; the first thing that fails: MESSAGE", or MESSAGE where no mistake is
 /// likely. What a search tried that found no cause stands behind MESSAGE. The name of the pattern's
 /// file, where MESSAGE begins with it, stays in front.

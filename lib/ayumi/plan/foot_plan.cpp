@@ -9,6 +9,7 @@
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/motion/pattern_context.hpp"
+#include "ayumi/plan/place_text.hpp"
 
 namespace ayumi {
 
@@ -92,23 +93,18 @@ bool same_place(const Isometry3d& a, const Isometry3d& b) {
              std::string("the curve between the keys of the ") + name_of(side) +
                  " foot leaves the place where it stands; give these keys the interpolation "
                  "minimum_jerk, which does not overshoot");
-  const auto place = [](const Vector3d& p) {
-    const auto number = [](double value) {  // to the micrometre, and zero without a sign
-      return text::brief(std::round(1e6 * value) * 1e-6 + 0.0);
-    };
-    return "[" + number(p.x()) + ", " + number(p.y()) + ", " + number(p.z()) + "] m";
-  };
   const double t = pattern.keyframes[dragging].t;
   const Vector3d wanted = feet.pose(side, t).translation();
   const double far = (wanted - stands.translation()).norm();
   const std::string pointer = pointer_of_keyframe(pattern, dragging);
   const std::string message =
-      std::string("the ") + name_of(side) + " foot stands at " + place(stands.translation()) +
-      " until " + text::brief(until) +
+      std::string("the ") + name_of(side) + " foot stands at " + place_text(stands.translation()) +
+      " m" + " until " + text::brief(until) +
       " s, but its keys move it while it carries the robot: the key " + pointer + " at " +
       text::brief(t) + " s " +
-      (far > 1e-6 ? "is at " + place(wanted) + ", " + text::brief(1000 * far, 3) + " mm away"
-                  : "turns it") +
+      (far > 1e-6
+           ? "is at " + place_text(wanted) + " m" + ", " + text::brief(1000 * far, 3) + " mm away"
+           : "turns it") +
       (t > until + kInstant
            ? ". Give the foot a key at " + text::brief(until) + " s where it stands"
            : ". Give this key the place where the foot stands") +

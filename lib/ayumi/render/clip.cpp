@@ -317,7 +317,7 @@ std::shared_ptr<const ClipShape> clip_shape(const RobotModel& model, const Simul
   std::vector<BodySurface> surface = robot_surface(model);
   const size_t before = triangle_count(surface);
   shape->height = robot_height(surface, model, log);
-  // At most so large is the robot in a picture that it fits into.
+  // [m] Where the robot just fits into the picture, a pixel is this large.
   const double pixel =
       shape->height / (options.picture.height * std::max(1.0, options.camera.zoom));
   if (thin_surface) {

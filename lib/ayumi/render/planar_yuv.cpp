@@ -10,7 +10,7 @@
 
 // With R, G, B in 0..255 and L = 0.2126 R + 0.7152 G + 0.0722 B: Y = 16 + 219/255 L,
 // Cb = 128 + 224/255 (B - L) / 1.8556, Cr = 128 + 224/255 (R - L) / 1.5748; whole numbers, 2^16 the
-// unit. Of the sum of four pixels 2^18 is.
+// unit; for the sum of four pixels, the unit is 2^18.
 
 namespace ayumi {
 namespace {
@@ -115,7 +115,7 @@ AYUMI_AVX2 inline void store_chroma(const EightPixels& pixels, const std::array<
   const __m256i two = _mm256_hadd_epi32(sum, sum);
   const __m256i all = _mm256_add_epi32(two, _mm256_set1_epi32((128 << 18) + (1 << 17)));
   const std::uint64_t bytes = bytes_of(_mm256_srai_epi32(all, 18));
-  // Of each half twice two.
+  // Each half of the register holds its two sums twice.
   out[0] = static_cast<std::uint8_t>(bytes);
   out[1] = static_cast<std::uint8_t>(bytes >> 8);
   out[2] = static_cast<std::uint8_t>(bytes >> 32);

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "ayumi/io/json/json_text.hpp"
+
 namespace ayumi {
 
 namespace {
@@ -119,14 +121,9 @@ class SlipFinder {
 
   std::string token_words() const { return quoted(at_, end_); }
 
-  int line_of(size_t at) const {
-    int line = 1;
-    for (size_t i = 0; i < at; ++i) line += text_[i] == '\n';
-    return line;
-  }
-
   std::string bracket_words(const Open& open) const {
-    return std::string("the ") + open.bracket + " of line " + std::to_string(line_of(open.at));
+    return std::string("the ") + open.bracket + " of line " +
+           std::to_string(line_at(text_, open.at));
   }
 
   static char closing(char bracket) { return bracket == '{' ? '}' : ']'; }

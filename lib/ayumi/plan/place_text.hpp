@@ -1,0 +1,20 @@
+#pragma once
+// A place in the words of a key.
+
+#include <Eigen/Core>
+#include <cmath>
+#include <string>
+
+#include "ayumi/base/text.hpp"
+
+namespace ayumi {
+
+/// "[0.1, -0.039, 0]", in metres: to the micrometre, and zero without a sign.
+inline std::string place_text(const Eigen::Vector3d& place) {
+  const auto number = [](double value) {
+    return text::brief(std::round(1e6 * value) * 1e-6 + 0.0);
+  };
+  return "[" + number(place.x()) + ", " + number(place.y()) + ", " + number(place.z()) + "]";
+}
+
+}  // namespace ayumi
