@@ -18,6 +18,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <map>
 #include <mutex>
 #include <numeric>
@@ -119,17 +120,20 @@ Band place(int n, const Nonzeros& entries, std::vector<int>& place) {
   band.places = static_cast<int>(order.size());
   for (int p = 0; p < band.places; ++p) place[order[p]] = p;
 
-  std::vector<int> first(n, n), last(n, -1);  // places that meet in a row
+  // All places of a row meet when the row is eliminated; of an unknown in the band, only the
+  // entries of its own column count.
+  std::vector<int> first(n, n), last(n, -1);
   for_sides(entries, [&](int i, int j) {
     if (place[j] < 0 || place[i] == kSlack) return;
+    if (place[i] >= 0) {
+      band.width = std::max(band.width, std::abs(place[i] - place[j]));
+      return;
+    }
     first[i] = std::min(first[i], place[j]);
     last[i] = std::max(last[i], place[j]);
   });
   for (int i = 0; i < n; ++i)
-    if (last[i] >= 0)
-      band.width =
-          std::max({band.width, last[i] - first[i],
-                    place[i] >= 0 ? std::max(place[i] - first[i], last[i] - place[i]) : 0});
+    if (last[i] >= 0) band.width = std::max(band.width, last[i] - first[i]);
   return band;
 }
 
