@@ -88,17 +88,16 @@ namespace {
 
 double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-// The part of `polygon` on the left of the line from `point` along `direction`.
-std::vector<Vector2d> clip(const std::vector<Vector2d>& polygon, const Vector2d& point,
-                           const Vector2d& direction) {
-  std::vector<Vector2d> kept;
+// Fills `kept` with the part of `polygon` on the left of the line from `point` along `direction`.
+void clip(const std::vector<Vector2d>& polygon, const Vector2d& point, const Vector2d& direction,
+          std::vector<Vector2d>& kept) {
+  kept.clear();
   for (size_t j = 0; j < polygon.size(); ++j) {
     const Vector2d &p = polygon[j], &q = polygon[(j + 1) % polygon.size()];
     const double dp = cross(direction, p - point), dq = cross(direction, q - point);
     if (dp >= 0) kept.push_back(p);
     if ((dp >= 0) != (dq >= 0)) kept.push_back(p + dp / (dp - dq) * (q - p));
   }
-  return kept;
 }
 
 // Integral of |r| over the triangle (0, a, b): with h the distance of the line ab from the origin
@@ -119,11 +118,14 @@ double distance_integral(const Vector2d& a, const Vector2d& b) {
 double torsional_friction_arm(const ConvexPolygon& polygon, const Vector2d& zmp) {
   if (polygon.vertices().size() < 3 || polygon.margin(zmp) <= 0) return 0;
   // The part whose mirror image about the ZMP is inside too: clip by every mirrored edge.
-  std::vector<Vector2d> part;
+  std::vector<Vector2d> part, kept;
+  part.reserve(2 * polygon.vertices().size());
+  kept.reserve(2 * polygon.vertices().size());
   for (const Vector2d& v : polygon.vertices()) part.push_back(v - zmp);
   const std::vector<Vector2d> whole = part;
   for (size_t i = 0; i < whole.size(); ++i) {
-    part = clip(part, -whole[i], whole[i] - whole[(i + 1) % whole.size()]);
+    clip(part, -whole[i], whole[i] - whole[(i + 1) % whole.size()], kept);
+    part.swap(kept);
     if (part.empty()) return 0;
   }
   double area = 0, moment = 0;
@@ -151,7 +153,10 @@ std::vector<Vector2d> shadow(const ConvexPolygon& a, const ConvexPolygon& b, con
     if (cross(right, ray) < 0) right = ray;
     if (cross(left, ray) > 0) left = ray;
   }
-  return clip(clip(a.vertices(), zmp, right), zmp, -left);
+  std::vector<Vector2d> half, part;
+  clip(a.vertices(), zmp, right, half);
+  clip(half, zmp, -left, part);
+  return part;
 }
 
 // Middle of the part of b on the ray from `point` through `zmp`.
