@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "ayumi/motion/differentiate.hpp"
 
@@ -79,15 +80,28 @@ bool take_first_passing(RepairState& state, const PassingResult& passing, double
     state.track = wanted;
     return false;
   }
-  const CorrectionTrack farthest = state.track;
-  result = state.result;
+  // The least of the shares kFirstBack * kBackFactor^i that passes, by halving: what passes goes on
+  // to pass farther back.
+  std::vector<double> shares;
   for (double share = policy::tighten::kFirstBack; share < most_back;
-       share *= policy::tighten::kBackFactor) {
-    take(state, between(wanted, passing.track, share));
-    if (passes()) return true;
+       share *= policy::tighten::kBackFactor)
+    shares.push_back(share);
+  CorrectionTrack nearest = state.track;
+  result = state.result;
+  size_t first = 0, end = shares.size();
+  while (first < end) {
+    const size_t middle = (first + end) / 2;
+    take(state, between(wanted, passing.track, shares[middle]));
+    if (!passes()) {
+      first = middle + 1;
+      continue;
+    }
+    end = middle;
+    nearest = state.track;
+    result = state.result;
   }
   state.result = std::move(result);
-  state.track = farthest;
+  state.track = nearest;
   return true;
 }
 

@@ -230,7 +230,8 @@ void set_options(Ipopt::OptionsList& list, const NlpOptions& options) {
   for (const char* name : {"bound_push", "bound_frac", "slack_bound_push", "slack_bound_frac"})
     list.SetNumericValue(name, options.start_push);
   list.SetNumericValue("constr_mult_init_max", 0);  // multipliers start at 0, without a solve
-  list.SetNumericValue("tol", options.tolerance);
+  list.SetNumericValue("tol", std::max(options.tolerance, repair_policy::solver::kTolerance));
+  list.SetNumericValue("compl_inf_tol", options.tolerance);
   list.SetNumericValue("constr_viol_tol", options.constraint_tolerance);
   list.SetIntegerValue("max_iter", options.max_iterations);
   list.SetNumericValue("bound_relax_factor", 0);

@@ -54,7 +54,9 @@ double violation_at_start(const Nlp& nlp);
 
 struct NlpOptions {
   int max_iterations = repair_policy::rounds::kMostIterations;
-  double tolerance = repair_policy::solver::kTolerance;  ///< of the optimality conditions
+  /// Of the optimality conditions. A smaller one than the default holds for complementarity alone,
+  /// which says how far the limits push the solution away; the gradient has the default.
+  double tolerance = repair_policy::solver::kTolerance;
   /// Initial barrier, and distance to which the start is pushed from its bounds; both are smaller
   /// for a warm start.
   double start_barrier = repair_policy::solver::kStartBarrier;
