@@ -235,6 +235,7 @@ void set_options(Ipopt::OptionsList& list, const NlpOptions& options) {
   list.SetNumericValue("constr_viol_tol", options.constraint_tolerance);
   list.SetIntegerValue("max_iter", options.max_iterations);
   list.SetNumericValue("bound_relax_factor", 0);
+  list.SetIntegerValue("min_refinement_steps", 0);
 }
 
 NlpStatus status_of(Ipopt::ApplicationReturnStatus status) {
