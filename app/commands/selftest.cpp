@@ -85,7 +85,7 @@ const std::array<Job, 5> kJobs = {{
     {"viip", "a walk by VIIP", viip_text,
      "a87c0184cfa0b6153244b2fa9be994925fa0918e778f6a53998919d5d29b58de"},
     {"repair", "a repaired walk", repair_text,
-     "25d4131c5e871d06919d81441e1aab94eed84262cbf7fdef7be675d9fbc6c33d"},
+     "16a496a391adf500cd5316e5b640ab9626fce3f2cea47a77d8aa2ad8a57cf4d8"},
     {"push", "limits of pushes", push_text,
      "0bcf10d7962e156ad391cb66afce103f989daec720ee909b72e3ec6195b0f6a7"},
 }};
