@@ -210,7 +210,7 @@ def write_if_other(path, text):
 
 def build():
     TREE.mkdir(parents=True, exist_ok=True)
-    for part in ("lib", "app", "robots", "patterns"):
+    for part in ("lib", "app", "robots", "patterns", "packaging"):
         shutil.rmtree(TREE / part, ignore_errors=True)
         shutil.copytree(ROOT / part, TREE / part, symlinks=True)  # keeps times of files
     for part in ("CMakeLists.txt", "CMakePresets.json"):
