@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any, Callable, Optional, Union
 
 import numpy
+from numpy.typing import NDArray
 
 __version__: str
 __all__: list[str]
@@ -29,10 +30,13 @@ TYPES = [
     (r"plant: object", "plant: Union[str, Callable[..., Any]]"),
     (r"ayumi\.", ""),
     (r"os\.PathLike", "Union[str, PathLike[str]]"),
-    (r"numpy\.ndarray\[[^\]]*\[[^\]]*\](, flags\.\w+)?\]", "numpy.ndarray"),
-    (r"numpy\.ndarray\[[^\]]*\]", "numpy.ndarray"),
+    (r"numpy\.ndarray\[(numpy\.\w+)(\[[^\]]*\](, flags\.\w+)?)?\]", r"NDArray[\1]"),
+    (r"numpy\.ndarray\b", "NDArray[Any]"),
     (r"\bDict\b", "dict"), (r"\bList\b", "list"), (r"\bTuple\b", "tuple"),
     (r"Annotated\[(list\[\w+\]), FixedSize\(\d+\)\]", r"\1"),
+    (r"\blist\[(\w+)\[\d+\]\]", r"list[\1]"),
+    (r"\btuple\b(?!\[)", "tuple[Any, ...]"), (r"\b(list|dict)\b(?!\[)", r"\1[Any]"),
+    (r"(\w+): (\w+) = None", r"\1: Optional[\2] = None"),
     (r"\bobject\b", "Any"), (r"\bhandle\b", "Any"),
     (r"<[^<>]*>", "..."), (r"array\([^()]*\)", "..."),
 ]

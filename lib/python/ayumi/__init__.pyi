@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any, Callable, Optional, Union
 
 import numpy
+from numpy.typing import NDArray
 
 __version__: str
 __all__: list[str]
@@ -16,15 +17,15 @@ class Actuators:
         """Name of the profile."""
 
     @property
-    def speed(self) -> numpy.ndarray:
+    def speed(self) -> NDArray[numpy.float64]:
         """Largest speeds [rad/s, m/s], shape (dof,); inf where there is no limit."""
 
     @property
-    def peak_torque(self) -> numpy.ndarray:
+    def peak_torque(self) -> NDArray[numpy.float64]:
         """Largest torques [N m, N], shape (dof,)."""
 
     @property
-    def continuous_torque(self) -> numpy.ndarray:
+    def continuous_torque(self) -> NDArray[numpy.float64]:
         """Largest torques for any length of time [N m, N], shape (dof,)."""
 
 class Command:
@@ -35,15 +36,15 @@ class Command:
         """Planned base and joints."""
 
     @property
-    def cog(self) -> numpy.ndarray:
+    def cog(self) -> NDArray[numpy.float64]:
         """COG [m], shape (3,)."""
 
     @property
-    def dcog(self) -> numpy.ndarray:
+    def dcog(self) -> NDArray[numpy.float64]:
         """Its velocity [m/s], shape (3,)."""
 
     @property
-    def zmp(self) -> numpy.ndarray:
+    def zmp(self) -> NDArray[numpy.float64]:
         """ZMP [m], shape (3,)."""
 
     @property
@@ -70,7 +71,7 @@ class Contact:
         """End of the contact [s]."""
 
     @property
-    def position(self) -> numpy.ndarray:
+    def position(self) -> NDArray[numpy.float64]:
         """Place of the sole in the world [m], shape (3,)."""
 
     @property
@@ -92,15 +93,15 @@ class Estimate:
         """Estimated state of the robot."""
 
     @property
-    def cog(self) -> numpy.ndarray:
+    def cog(self) -> NDArray[numpy.float64]:
         """COG [m], shape (3,)."""
 
     @property
-    def dcog(self) -> numpy.ndarray:
+    def dcog(self) -> NDArray[numpy.float64]:
         """Its velocity [m/s], shape (3,)."""
 
     @property
-    def zmp(self) -> numpy.ndarray:
+    def zmp(self) -> NDArray[numpy.float64]:
         """ZMP [m], shape (3,); held in flight."""
 
     @property
@@ -108,7 +109,7 @@ class Estimate:
         """Vertical ground force [N]."""
 
     @property
-    def foot_fz(self) -> tuple:
+    def foot_fz(self) -> tuple[Any, ...]:
         """Vertical force on the left and the right foot [N]."""
 
     @property
@@ -201,7 +202,7 @@ class GainStudy:
         """Largest short-term gain with which the loop is stable."""
 
     @property
-    def reaches(self) -> list:
+    def reaches(self) -> list[Any]:
         """(support, direction, largest error of the DCM that needs no step [m], impulse of this error [N s])."""
 
 class Identification:
@@ -334,7 +335,7 @@ class LocalPace:
         """The same for the fastest uniform pace, whose postures the motion has."""
 
     @property
-    def binding(self) -> list:
+    def binding(self) -> list[Any]:
         """(limit, share of the duration for which it binds), the longest first; '' where no limit binds, 'pace' for the largest pace, 'pause' for pauses that are kept."""
 
     @property
@@ -355,7 +356,7 @@ class Log:
     def __len__(self) -> int:
         """Number of samples."""
 
-    def __getitem__(self, name: str) -> numpy.ndarray:
+    def __getitem__(self, name: str) -> NDArray[Any]:
         """The quantity of this name as a view that cannot be written: one row per sample, shape (n,) for a number, (n, 3) for a vector, (n, 4) for a unit quaternion x y z w, (n, dof) for joints, (n, 4, 4) for a pose."""
 
     @property
@@ -377,7 +378,7 @@ class Log:
         """Time between two samples [s]."""
 
     @property
-    def t(self) -> numpy.ndarray:
+    def t(self) -> NDArray[numpy.float64]:
         """Times of the samples [s], shape (n,), computed as k dt."""
 
     @property
@@ -515,7 +516,7 @@ class Plant:
     def set_state(self, state: RobotState) -> None:
         """Puts the robot in this state and forgets the contacts."""
 
-    def step(self, targets: numpy.ndarray, input: StepInput, dt: float) -> StepReport:
+    def step(self, targets: NDArray[numpy.float64], input: StepInput, dt: float) -> StepReport:
         """Advances by `dt` [s]. The servo targets [rad, m], shape (dof,), are held during this time."""
 
 class PushCase:
@@ -633,11 +634,11 @@ class Robot:
         """Names of the links."""
 
     @property
-    def lower(self) -> numpy.ndarray:
+    def lower(self) -> NDArray[Any]:
         """Lower position limits [rad, m], shape (dof,); -inf without a limit."""
 
     @property
-    def upper(self) -> numpy.ndarray:
+    def upper(self) -> NDArray[Any]:
         """Upper position limits [rad, m], shape (dof,); inf without a limit."""
 
     @property
@@ -647,7 +648,7 @@ class Robot:
     def actuators(self, profile: str = '') -> Actuators:
         """Limits of the motors of a profile; '' is the default one."""
 
-    def posture(self, name: str = 'home') -> numpy.ndarray:
+    def posture(self, name: str = 'home') -> NDArray[numpy.float64]:
         """Joint angles of a named posture [rad, m], shape (dof,)."""
 
     def rest_state(self, posture: str = 'home') -> RobotState:
@@ -661,43 +662,43 @@ class Robot:
     def assumptions(self) -> list[str]:
         """What the files of the robot do not say and was inferred."""
 
-    def cog(self, state: RobotState) -> numpy.ndarray:
+    def cog(self, state: RobotState) -> NDArray[numpy.float64]:
         """Centre of gravity in the world [m], shape (3,)."""
 
-    def link_pose(self, state: RobotState, link: str) -> numpy.ndarray:
+    def link_pose(self, state: RobotState, link: str) -> NDArray[numpy.float64]:
         """Pose of a link in the world [m], shape (4, 4)."""
 
-    def sole_pose(self, state: RobotState, foot: str) -> numpy.ndarray:
+    def sole_pose(self, state: RobotState, foot: str) -> NDArray[numpy.float64]:
         """Pose of a sole, 'left' or 'right', in the world [m], shape (4, 4)."""
 
 class RobotState:
     """State of a robot: base pose and velocity in the world, joint angles and rates."""
 
-    def __init__(self, theta: numpy.ndarray, dtheta: Optional[numpy.ndarray] = None, position: numpy.ndarray = ..., attitude: numpy.ndarray = ..., velocity: numpy.ndarray = ..., angular_velocity: numpy.ndarray = ...) -> None:
+    def __init__(self, theta: NDArray[numpy.float64], dtheta: Optional[NDArray[numpy.float64]] = None, position: NDArray[numpy.float64] = ..., attitude: NDArray[numpy.float64] = ..., velocity: NDArray[numpy.float64] = ..., angular_velocity: NDArray[numpy.float64] = ...) -> None:
         ...
 
     @property
-    def theta(self) -> numpy.ndarray:
+    def theta(self) -> NDArray[numpy.float64]:
         """Joint positions, shape (dof,): angles [rad], or displacements of sliding joints [m]."""
 
     @property
-    def dtheta(self) -> numpy.ndarray:
+    def dtheta(self) -> NDArray[numpy.float64]:
         """Joint rates [rad/s, m/s], shape (dof,)."""
 
     @property
-    def position(self) -> numpy.ndarray:
+    def position(self) -> NDArray[numpy.float64]:
         """Position of the base in the world [m], shape (3,)."""
 
     @property
-    def attitude(self) -> numpy.ndarray:
+    def attitude(self) -> NDArray[numpy.float64]:
         """Attitude of the base in the world, unit quaternion x y z w, shape (4,)."""
 
     @property
-    def velocity(self) -> numpy.ndarray:
+    def velocity(self) -> NDArray[numpy.float64]:
         """Velocity of the base, world axes [m/s], shape (3,)."""
 
     @property
-    def angular_velocity(self) -> numpy.ndarray:
+    def angular_velocity(self) -> NDArray[numpy.float64]:
         """Angular velocity of the base, world axes [rad/s], shape (3,)."""
 
 class SafeTable:
@@ -724,7 +725,7 @@ class Series:
     def __len__(self) -> int:
         """Number of samples."""
 
-    def __getitem__(self, name: str) -> numpy.ndarray:
+    def __getitem__(self, name: str) -> NDArray[Any]:
         """The quantity of this name as a view that cannot be written: one row per sample, shape (n,) for a number, (n, 3) for a vector, (n, 4) for a unit quaternion x y z w, (n, dof) for joints, (n, 4, 4) for a pose."""
 
     @property
@@ -746,7 +747,7 @@ class Series:
         """Time between two samples [s]."""
 
     @property
-    def t(self) -> numpy.ndarray:
+    def t(self) -> NDArray[numpy.float64]:
         """Times of the samples [s], shape (n,), computed as k dt."""
 
     @property
@@ -779,15 +780,15 @@ class ServoEstimate:
 class SoleForce:
     """Ground force at one vertex of a sole."""
 
-    def __init__(self, position: numpy.ndarray, force: numpy.ndarray, gap: float = 0.0) -> None:
+    def __init__(self, position: NDArray[numpy.float64], force: NDArray[numpy.float64], gap: float = 0.0) -> None:
         ...
 
     @property
-    def position(self) -> numpy.ndarray:
+    def position(self) -> NDArray[numpy.float64]:
         """Place of the vertex in the world [m], shape (3,)."""
 
     @property
-    def force(self) -> numpy.ndarray:
+    def force(self) -> NDArray[numpy.float64]:
         """Force of the ground on the robot, in world axes [N], shape (3,)."""
 
     @property
@@ -811,11 +812,11 @@ class StepInput:
 class StepReport:
     """Forces of a step, as means over the duration of the step."""
 
-    def __init__(self, torque: numpy.ndarray, left: list[SoleForce], right: list[SoleForce], body_contact: bool = False) -> None:
+    def __init__(self, torque: NDArray[numpy.float64], left: list[SoleForce], right: list[SoleForce], body_contact: bool = False) -> None:
         ...
 
     @property
-    def torque(self) -> numpy.ndarray:
+    def torque(self) -> NDArray[numpy.float64]:
         """Torques of the servos [N m, N], shape (dof,)."""
 
     @property
@@ -836,7 +837,7 @@ class Table:
     def __len__(self) -> int:
         """Number of samples."""
 
-    def __getitem__(self, name: str) -> numpy.ndarray:
+    def __getitem__(self, name: str) -> NDArray[Any]:
         """The quantity of this name as a view that cannot be written: one row per sample, shape (n,) for a number, (n, 3) for a vector, (n, 4) for a unit quaternion x y z w, (n, dof) for joints, (n, 4, 4) for a pose."""
 
     @property
@@ -858,7 +859,7 @@ class Table:
         """Time between two samples [s]."""
 
     @property
-    def t(self) -> numpy.ndarray:
+    def t(self) -> NDArray[numpy.float64]:
         """Times of the samples [s], shape (n,), computed as k dt."""
 
     def csv(self) -> str:
@@ -1007,15 +1008,15 @@ class Wrench:
         """Index of the body; -1: through the COG."""
 
     @property
-    def point(self) -> numpy.ndarray:
+    def point(self) -> NDArray[numpy.float64]:
         """Point of attack in the world [m], shape (3,)."""
 
     @property
-    def force(self) -> numpy.ndarray:
+    def force(self) -> NDArray[numpy.float64]:
         """World [N], shape (3,)."""
 
     @property
-    def torque(self) -> numpy.ndarray:
+    def torque(self) -> NDArray[numpy.float64]:
         """World [N m], shape (3,)."""
 
 def check(task: Task, *, tolerances: dict[str, float] = {}) -> Verdict:
@@ -1033,10 +1034,10 @@ def fastest_local_pace(task: Task, *, table: str = 'retimed.csv', margin: Option
 def fastest_pace(task: Task, *, resolution: float = 0.002, progress: Optional[Callable[[str, float, str], Any]] = None) -> Pace:
     """The fastest uniform time scaling of the pattern that passes the check."""
 
-def gains(robot: Robot, *, poles: Optional[list[complex[2]]] = None, absorb: Optional[float] = None, return_time: Optional[float] = None, zmp_filter: Optional[float] = None, forget: Optional[float] = None, set: dict[str, float] = {}, latency: Optional[float] = None) -> GainStudy:
+def gains(robot: Robot, *, poles: Optional[list[complex]] = None, absorb: Optional[float] = None, return_time: Optional[float] = None, zmp_filter: Optional[float] = None, forget: Optional[float] = None, set: dict[str, float] = {}, latency: Optional[float] = None) -> GainStudy:
     """Gains of DTAD: two `poles` of the COG [1/s], the share of a ZMP error that is absorbed at once, the times [s] of the return to the command and of the filter of the ZMP, and the time [s] until a lasting offset of the ZMP is accepted; `set` gives gains by name, and `latency` [s] is the latency of the sensors."""
 
-def identify(robot: Robot, command: Union[Union[str, PathLike[str]], tuple[float, numpy.ndarray]], measured: Union[Union[str, PathLike[str]], tuple[float, numpy.ndarray]], *, loads: Optional[Union[str, PathLike[str]]] = None, per_type: bool = False, stand: str = 'auto', rate: float = 0.0, degrees: bool = False, longest_lag: float = 0.0, threads: int = 0, progress: Optional[Callable[[str, float, str], Any]] = None) -> Identification:
+def identify(robot: Robot, command: Union[Union[str, PathLike[str]], tuple[float, NDArray[numpy.float64]]], measured: Union[Union[str, PathLike[str]], tuple[float, NDArray[numpy.float64]]], *, loads: Optional[Union[str, PathLike[str]]] = None, per_type: bool = False, stand: str = 'auto', rate: float = 0.0, degrees: bool = False, longest_lag: float = 0.0, threads: int = 0, progress: Optional[Callable[[str, float, str], Any]] = None) -> Identification:
     """The servo constants with which the simulated servos come nearest to what was measured. `command` and `measured` are files, or (dt, angles) with the time between two rows [s] and an array of angles [rad, m], shape (n, dof). `loads` is a file of load cells; `per_type`: one set for all joints of one motor type; `stand`: 'feet', 'fixed' (the root is held upright) or 'auto'; `rate` [1/s] and `degrees` are of files that do not state them; `longest_lag` [s]: an answer that comes later is refused (0: 30 ms, or twice the lag of the slowest servo)."""
 
 def import_motion(path: Union[str, PathLike[str]], robot: Robot, *, format: str = '', rate: float = 0.0, degrees: bool = False, order: bool = False, joints: list[str] = [], motion: str = '', commands: bool = False, smooth: Optional[float] = None, ground: bool = False, ramp: float = 0.0, contact_height: Optional[float] = None, contact_speed: Optional[float] = None, contact_load: Optional[float] = None) -> Import:
@@ -1057,7 +1058,7 @@ def loci(robot: Robot, logs: dict[str, Log], *, title: str = '', scale: float = 
 def loci_svg(robot: Robot, logs: dict[str, Log], *, title: str = '') -> str:
     """The same plot as loci(), as the text of an SVG file."""
 
-def make_safe(task: Task, table: Table, log: Log = None, *, ramp: float = 2.0, hold: float = 0.5, start: str = 'home') -> SafeTable:
+def make_safe(task: Task, table: Table, log: Optional[Log] = None, *, ramp: float = 2.0, hold: float = 0.5, start: str = 'home') -> SafeTable:
     """Adds an approach of `ramp` s from the posture `start` before a table and a hold of `hold` s after it, and judges what the servos would receive; with a log, also the torques of that run."""
 
 def mirrored(robot: Robot, pattern: Pattern) -> Pattern:
@@ -1093,7 +1094,7 @@ def repair(task: Task, *, lock_joints: list[str] = [], lock_feet: list[str] = []
 def retimed(robot: Robot, pattern: Pattern, scale: float) -> Pattern:
     """The pattern with all times multiplied by `scale`."""
 
-def robot_picture(robot: Robot, *, posture: str = 'home', theta: Optional[numpy.ndarray] = None, view: str = 'iso', marks: bool = True) -> bytes:
+def robot_picture(robot: Robot, *, posture: str = 'home', theta: Optional[NDArray[numpy.float64]] = None, view: str = 'iso', marks: bool = True) -> bytes:
     """The robot on the ground, in a named posture or at the joint angles `theta` [rad, m], shape (dof,), as the bytes of a PNG file. `marks`: with the outlines of the soles, the axes of the joints and an arrow in the direction that the robot faces."""
 
 def robots(path: list[Union[str, PathLike[str]]] = []) -> list[str]:
@@ -1120,7 +1121,7 @@ def support_plot(robot: Robot, logs: dict[str, Log], *, title: str = '', scale: 
 def sway_pattern(robot: Robot, *, side: Optional[float] = None, forward: Optional[float] = None, period: Optional[float] = None, cycles: Optional[int] = None) -> Pattern:
     """The COG moves to and fro over both feet by `side` and `forward` m, one cycle in `period` s."""
 
-def table(task: Task, log: Log = None, *, content: str = 'lead') -> Table:
+def table(task: Task, log: Optional[Log] = None, *, content: str = 'lead') -> Table:
     """The table of a run, or of the pattern itself if no log is given. `content`: 'ideal' (the posture), 'lead' (ahead of the posture by the lag of the servos) or 'lead+sag'."""
 
 def tune(task: Task, *, start: dict[str, float] = {}, times: list[float] = [], directions: int = 4, level: float = 0.9, gains: Optional[list[str]] = None, rounds: int = 3, seed: int = 1, threads: int = 0, progress: Optional[Callable[[str, float, str], Any]] = None) -> Tuning:
