@@ -251,6 +251,12 @@ TEST(Loci, FootholdsAreNumberedAndTheirLabelsStandApart) {
                                    std::to_string((n - 1) % 10) + "0 s"))
           << n << " " << stride;
     EXPECT_EQ(words_over_each_other(drawing), "") << stride;
+    // What lands after a fall is no foothold.
+    log.result.outcome = Outcome::fell;
+    log.result.fell_at = 0.45;
+    const Drawing fallen = draw_support(runs.model, {{"DTAD", &log}}, {});
+    EXPECT_TRUE(has(fallen, "5 L 0.40 s")) << stride;
+    EXPECT_FALSE(has(fallen, "6 R 0.50 s")) << stride;
   }
 }
 

@@ -563,6 +563,8 @@ void LinkPlan::complain(const Group& group, double t, const std::vector<Aim>& ai
   const bool in_trunk = key.target && key.target->frame == LinkTarget::Frame::trunk;
   // Where the trunk moves until then, the reach at the time of the key is not known here.
   const bool trunk_waits = in_trunk || !trunk_moves(*pattern_, t, key.t);
+  const bool only_way = under_way && !trunk_waits;
+  if (only_way && t < forgiven_before_ - kSameMoment) return;
   // On the way to a key the limb is at the end of its reach; what counts is how far the key is.
   if (under_way && key.target && trunk_waits) {
     RobotState there = state;
@@ -597,10 +599,9 @@ void LinkPlan::complain(const Group& group, double t, const std::vector<Aim>& ai
     what = "the " + target.name + " is out of reach by " + millimetres(missing);
     remedy = "the " + target.name + " reaches only " +
              numbers(in_trunk ? Vector3d(trunk.inverse() * end) : end, 4) + in_frame +
-             (under_way && !trunk_waits
-                  ? "; the trunk is on its way, too: let the hand set out when the trunk has "
-                    "arrived, with a key \"free\" of the hand there, or move the target"
-                  : "; move the target, or move or tilt the trunk");
+             (only_way ? "; the trunk is on its way, too: let the hand set out when the trunk has "
+                         "arrived, with a key \"free\" of the hand there, or move the target"
+                       : "; move the target, or move or tilt the trunk");
   } else {
     what = "the " + target.name + " is at its place but points " + degrees(angle) +
            " away from its direction (allowed " + degrees(kAligned) + ")";
@@ -609,12 +610,14 @@ void LinkPlan::complain(const Group& group, double t, const std::vector<Aim>& ai
              numbers(in_trunk ? Vector3d(trunk.linear().transpose() * along) : along, 3) +
              in_frame + "; give this direction, or leave the direction out";
   }
-  throw PlacedError(
-      ErrorCode::bad_pattern,
+  const std::string message =
       in_file(*pattern_, pattern_->keyframes[key.keyframe].place + "/" + target.key) +
-          ": t = " + text::fixed(t, 3) + " s" + (under_way ? ", on the way to this key" : "") +
-          ": " + what + limits + "; " + remedy,
-      {pattern_->file, pointer_of_keyframe(*pattern_, key.keyframe) + "/" + target.key});
+      ": t = " + text::fixed(t, 3) + " s" + (under_way ? ", on the way to this key" : "") + ": " +
+      what + limits + "; " + remedy;
+  const SourcePlace place = {pattern_->file,
+                             pointer_of_keyframe(*pattern_, key.keyframe) + "/" + target.key};
+  if (only_way) throw MissedOnTheWay(message, place, key.t);
+  throw PlacedError(ErrorCode::bad_pattern, message, place);
 }
 
 }  // namespace ayumi

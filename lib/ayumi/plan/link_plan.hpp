@@ -9,11 +9,24 @@
 #include <string>
 #include <vector>
 
+#include "ayumi/base/placed_error.hpp"
 #include "ayumi/dynamics/robot_data.hpp"
 #include "ayumi/math/track.hpp"
 #include "ayumi/motion/pattern.hpp"
 
 namespace ayumi {
+
+/// A target is out of reach before the time of its key, while the trunk moves: whether the limb
+/// reaches it at that time is not known there.
+class MissedOnTheWay : public PlacedError {
+ public:
+  MissedOnTheWay(const std::string& message, SourcePlace place, double key_time)
+      : PlacedError(ErrorCode::bad_pattern, message, std::move(place)), key_time_(key_time) {}
+  double key_time() const { return key_time_; }  ///< [s]
+
+ private:
+  double key_time_;
+};
 
 class LinkPlan {
  public:
@@ -32,8 +45,12 @@ class LinkPlan {
 
   /// Moves the joints that targets lead at t; `keyed` are the angles of the joints' own keys, and
   /// the base and all other joints stay. Returns the largest change of a joint [rad, m]. Throws
-  /// Error(bad_pattern) for a target that is out of reach, and by how much.
+  /// Error(bad_pattern) for a target that is out of reach, and by how much; MissedOnTheWay where
+  /// only the way to its key is known to be.
   double solve(double t, const Eigen::VectorXd& keyed, RobotState& state, RobotData& data) const;
+
+  /// From now on a limb comes as near as it can where MissedOnTheWay would be thrown before `t`.
+  void forgive_before(double t) { forgiven_before_ = t; }
 
   /// "hands", "gaze" or both, as what leads joints; empty: nothing does.
   std::string origin() const;
@@ -88,14 +105,14 @@ class LinkPlan {
   double minimize(const Group& group, const std::vector<Aim>& aims, const Eigen::VectorXd& keyed,
                   RobotState& state, RobotData& data) const;
   bool reached(const std::vector<Aim>& aims, const RobotData& data) const;
-  [[noreturn]] void complain(const Group& group, double t, const std::vector<Aim>& aims,
-                             const Eigen::VectorXd& keyed, RobotState& state,
-                             RobotData& data) const;
+  void complain(const Group& group, double t, const std::vector<Aim>& aims,
+                const Eigen::VectorXd& keyed, RobotState& state, RobotData& data) const;
   double bound(int dof, double keyed, bool upper) const;
 
   const RobotModel* model_;
   const Pattern* pattern_;
   std::vector<Group> groups_;
+  double forgiven_before_ = 0;  ///< [s]
 };
 
 }  // namespace ayumi

@@ -66,15 +66,17 @@ CommandSeries sample_carried(const SampleJob& job) {
 
 enum class Posture { solved, carried };
 
-CommandSeries sample_keys(const RobotModel& model, const Pattern& pattern,
-                          const SampleOptions& options, const Progress& progress,
-                          Posture posture = Posture::solved) {
+/// Targets of hands and gaze may be missed on the way to keys before `forgiven` [s].
+CommandSeries sample_posture(const RobotModel& model, const Pattern& pattern,
+                             const SampleOptions& options, const Progress& progress,
+                             Posture posture, double forgiven) {
   const FootPlan feet(model, pattern);
   const InverseKinematics ik(model, default_posture(model, pattern));
   std::vector<bool> solved(model.dof_count());
   for (int dof = 0; dof < model.dof_count(); ++dof) solved[dof] = ik.solves(dof);
   const PatternTracks tracks = read_tracks(model, pattern, feet, solved);
-  const LinkPlan links(model, pattern, solved);
+  LinkPlan links(model, pattern, solved);
+  links.forgive_before(forgiven);
   const SampleJob job{
       model,           pattern, feet,       ik,
       tracks,          links,   options.dt, sample_count(pattern, feet.duration(), options.dt),
@@ -87,6 +89,24 @@ CommandSeries sample_keys(const RobotModel& model, const Pattern& pattern,
   for (const auto& [t, weight] : tracks.weight)
     series.joint_weight.push_back({std::lround(t / options.dt), weight});
   return series;
+}
+
+CommandSeries sample_keys(const RobotModel& model, const Pattern& pattern,
+                          const SampleOptions& options, const Progress& progress,
+                          Posture posture = Posture::solved) {
+  try {
+    return sample_posture(model, pattern, options, progress, posture, 0);
+  } catch (const MissedOnTheWay& on_the_way) {
+    // Where the trunk is at the time of the key, only the motion until then tells.
+    try {
+      sample_posture(model, pattern, options, progress, posture, on_the_way.key_time());
+    } catch (const PlacedError& at_key) {
+      if (at_key.place().pointer == on_the_way.place().pointer) throw;
+    } catch (const Error& other) {
+      if (other.code() != ErrorCode::bad_pattern) throw;
+    }
+    throw;
+  }
 }
 
 void require_soles(const RobotModel& model) {

@@ -54,6 +54,13 @@ std::vector<PlacedSole> footholds(const RobotModel& model, const SimulationLog& 
   return out;
 }
 
+/// The part of these times before the robot falls. Where its soles and its ZMP are after that,
+/// nobody plans.
+Interval before_fall(const SimulationLog& log, Interval time) {
+  if (has_fallen(log)) time.high = std::clamp(log.result.fell_at, time.low, time.high);
+  return time;
+}
+
 std::vector<Vector2d> path_of(const SimulationLog& log, const Interval& time,
                               Vector3d SimulationSample::*quantity) {
   std::vector<Vector2d> points;
@@ -199,18 +206,20 @@ Drawing draw_support(const RobotModel& model, const std::vector<LociRun>& as_log
   entries.emplace_back("COG command", kCommandStyle);
   entries.emplace_back("reference ZMP", kReferenceStyle);
   const SimulationLog& last = *runs.back().log;
-  const std::vector<PlacedSole> feet = footholds(model, last, time);
+  const std::vector<PlacedSole> feet = footholds(model, last, before_fall(last, time));
   const double top = draw_legend(drawing, entries, 44) + 12;
   const Axes axes = make_axes(drawing, runs, time, feet, top);
   draw_axes(drawing, axes, "y [mm]", true);
   for (const PlacedSole& foot : feet) draw_foothold(drawing, axes, foot);
   for (size_t i = 0; i < runs.size(); ++i) {
-    draw_line(drawing, axes, path_of(*runs[i].log, time, &SimulationSample::zmp),
+    const Interval shown = before_fall(*runs[i].log, time);
+    draw_line(drawing, axes, path_of(*runs[i].log, shown, &SimulationSample::zmp),
               entries[2 * i + 1].second);
-    draw_line(drawing, axes, path_of(*runs[i].log, time, &SimulationSample::cog),
+    draw_line(drawing, axes, path_of(*runs[i].log, shown, &SimulationSample::cog),
               entries[2 * i].second);
   }
-  draw_line(drawing, axes, path_of(last, time, &SimulationSample::reference_zmp), kReferenceStyle);
+  draw_line(drawing, axes, path_of(last, before_fall(last, time), &SimulationSample::reference_zmp),
+            kReferenceStyle);
   draw_line(drawing, axes, path_of(last, time, &SimulationSample::command_cog), kCommandStyle);
   label_footholds(drawing, axes, feet);
   drawing.items.push_back(
