@@ -75,6 +75,52 @@ TEST(Simulator, WithoutSamplesTheVerdictIsTheSame) {
   EXPECT_EQ(kept.take_log().samples.size(), 801u);
 }
 
+// Every tenth tick is looked at, and the robot that is pushed hard falls.
+TEST(Simulator, GatheringTheVerdictAloneIsTheSameRun) {
+  Stand stand;
+  for (const ControllerKind controller : {ControllerKind::dtad, ControllerKind::none})
+    for (const double impulse : {0.3, 6.0}) {
+      stand.options.controller.type = controller;
+      stand.options.scenario = {Stand::push(impulse)};
+      Simulator whole(stand.model, stand.series, stand.options);
+      Simulator verdict = whole;
+      whole.keep_samples(false);
+      verdict.gather_verdict_only();
+      for (bool more = true; more;) {
+        more = whole.advance(10);
+        ASSERT_EQ(verdict.advance(10), more);
+        ASSERT_EQ(verdict.tick(), whole.tick());
+        ASSERT_EQ(verdict.fell(), whole.fell());
+        ASSERT_EQ(verdict.state().theta, whole.state().theta) << whole.time();
+        ASSERT_EQ(verdict.state().base.position, whole.state().base.position);
+        ASSERT_EQ(verdict.plan().cog, whole.plan().cog);
+        ASSERT_EQ(verdict.plan().state.theta, whole.plan().state.theta);
+        const Estimate &a = verdict.last_estimate(), &b = whole.last_estimate();
+        ASSERT_EQ(a.cog, b.cog);
+        ASSERT_EQ(a.dcog, b.dcog);
+        ASSERT_EQ(a.zmp, b.zmp);
+        ASSERT_EQ(a.fz, b.fz);
+        ASSERT_EQ(a.stance, b.stance);
+        ASSERT_EQ(a.foot_tilt, b.foot_tilt);
+        ASSERT_EQ(a.state.theta, b.state.theta);
+        const SimulationSample &c = verdict.last_sample(), &d = whole.last_sample();
+        ASSERT_EQ(c.cog, d.cog);
+        ASSERT_EQ(c.zmp, d.zmp);
+        ASSERT_EQ(c.fz, d.fz);
+        ASSERT_EQ(c.reference_base.position, d.reference_base.position);
+        ASSERT_EQ(c.reference_theta, d.reference_theta);
+      }
+      const SimulationResult a = verdict.result(), b = whole.result();
+      EXPECT_EQ(a.outcome, b.outcome);
+      EXPECT_EQ(a.outcome == Outcome::fell, impulse > 1) << name_of(controller);
+      EXPECT_EQ(a.fell_at, b.fell_at);
+      EXPECT_EQ(a.max_tilt, b.max_tilt);
+      EXPECT_EQ(a.final_cog_error, b.final_cog_error);
+      EXPECT_EQ(a.final_speed, b.final_speed);
+      EXPECT_EQ(a.zmp_amplitude, b.zmp_amplitude);
+    }
+}
+
 TEST(Simulator, RefusesAnUnknownLinkWhenTheScenarioIsReplaced) {
   const Stand stand;
   Simulator simulator(stand.model, stand.series, stand.options);

@@ -84,24 +84,23 @@ void CommandPlan::move_footholds(const RobotModel& model, const FootholdParams& 
 }
 
 const CommandSample& CommandPlan::look_ahead(const Estimate& estimate) {
+  if (is_sampled()) return sampled(tick_ + 1);
   if (footholds_) {
     if (footholds_->advance(estimate)) now_.feet = footholds_->plan().feet;
     next_ = footholds_->plan();
-  } else if (placement_.moved) {
+  } else {
     for (Side side : {Side::left, Side::right})
       if (!supports(sampled(tick_ + 1).support, side)) {
         double& share = placement_.share[static_cast<size_t>(side)];
         share = std::max(0.0, share - dt() / kFootBlend);
       }
     next_ = at(tick_ + 1);
-  } else {
-    next_ = sampled(tick_ + 1);
   }
   return next_;
 }
 
 void CommandPlan::advance() {
-  std::swap(now_, next_);
+  if (!is_sampled()) std::swap(now_, next_);
   ++tick_;
 }
 

@@ -19,7 +19,10 @@ class CommandPlan {
   const CommandSeries& series() const { return *series_; }
 
   /// The command of the coming tick.
-  const CommandSample& now() const { return now_; }
+  const CommandSample& now() const { return is_sampled() ? sampled(tick_) : now_; }
+
+  /// Whether what is measured changes the command.
+  bool measures() const { return footholds_.has_value(); }
 
   /// The command of tick k where the feet are; after the end of the series its last posture, at
   /// rest.
@@ -62,13 +65,14 @@ class CommandPlan {
     bool moved = false;
   };
   const CommandSample& sampled(long k) const;
+  bool is_sampled() const { return !footholds_ && !placement_.moved; }
 
   const CommandSeries* series_;
   Placement placement_;
   std::optional<FootholdShift> footholds_;
-  CommandSample rest_;  // after the end
-  CommandSample now_, next_;
-  long tick_ = 0;  // of now_
+  CommandSample rest_;        // after the end
+  CommandSample now_, next_;  // of a plan that has moved
+  long tick_ = 0;             // of now_
 };
 
 }  // namespace ayumi

@@ -33,6 +33,12 @@ class Controller {
     return std::visit([](const auto& law) -> const CommandSample& { return law.plan(); }, law_);
   }
 
+  /// Whether the coming tick depends on what is measured.
+  bool measures() const {
+    const auto* open = std::get_if<OpenLoop>(&law_);
+    return !open || open->measures();
+  }
+
   /// How the robot stands before the first tick: as planned; where the plan's joints are what
   /// servos receive, as they give way under the weight.
   const RobotState& start() const { return start_; }

@@ -65,7 +65,7 @@ Estimator::Estimator(const RobotModel& model, double dt)
   }
 }
 
-const Estimate& Estimator::update(const Measurement& m, const std::array<Isometry3d, 2>& feet) {
+void Estimator::follow_loads(const Measurement& m, const std::array<Isometry3d, 2>& feet) {
   const double weight = model_->mass() * kGravity;
   Estimate& e = last_;
   for (int i = 0; i < 2; ++i) load_[i] += (first_ ? 1.0 : filter_) * (m.feet[i].fz - load_[i]);
@@ -74,6 +74,22 @@ const Estimate& Estimator::update(const Measurement& m, const std::array<Isometr
   if (total > kContactShare * weight)
     for (Side side : {Side::left, Side::right})
       if (load_[static_cast<int>(side)] > kStanceShare * total) e.stance = side;
+  e.fz = m.feet[0].fz + m.feet[1].fz;
+  e.foot_fz = {m.feet[0].fz, m.feet[1].fz};
+  e.contact = e.fz > kContactShare * weight;
+  if (e.contact) {
+    Vector3d moment = Vector3d::Zero();
+    for (int i = 0; i < 2; ++i)
+      moment += m.feet[i].fz * (feet[i] * Vector3d(m.feet[i].cop.x(), m.feet[i].cop.y(), 0));
+    e.zmp = moment / e.fz;
+  }
+  first_ = false;
+}
+
+const Estimate& Estimator::update(const Measurement& m, const std::array<Isometry3d, 2>& feet) {
+  follow_loads(m, feet);
+  const double weight = model_->mass() * kGravity;
+  Estimate& e = last_;
 
   // All in base axes first (base at the origin, at rest), one pass over the tree.
   RobotState& s = e.state;
@@ -121,17 +137,6 @@ const Estimate& Estimator::update(const Measurement& m, const std::array<Isometr
   e.foot_tilt -= feet[stance].linear() * yielding;
   e.foot_tilt.z() = 0;
   e.stance_inside = std::clamp(sole_[stance].margin(cop) / widest_[stance], 0.0, 1.0);
-
-  e.fz = m.feet[0].fz + m.feet[1].fz;
-  e.foot_fz = {m.feet[0].fz, m.feet[1].fz};
-  e.contact = e.fz > kContactShare * weight;
-  if (e.contact) {
-    Vector3d moment = Vector3d::Zero();
-    for (int i = 0; i < 2; ++i)
-      moment += m.feet[i].fz * (feet[i] * Vector3d(m.feet[i].cop.x(), m.feet[i].cop.y(), 0));
-    e.zmp = moment / e.fz;
-  }
-  first_ = false;
   return e;
 }
 

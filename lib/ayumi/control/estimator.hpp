@@ -51,6 +51,13 @@ class Estimator {
   const Estimate& update(const Measurement& measurement,
                          const std::array<Eigen::Isometry3d, 2>& feet);
 
+  /// In place of update() where nobody reads the estimate of this tick: only what later ones go on
+  /// from, the loads and the ZMP. Later estimates are the same to the last bit.
+  void follow_loads(const Measurement& measurement, const std::array<Eigen::Isometry3d, 2>& feet);
+
+  /// Of the last update().
+  const Estimate& last() const { return last_; }
+
  private:
   const RobotModel* model_;
   RobotData data_;

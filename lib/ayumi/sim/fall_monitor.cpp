@@ -111,66 +111,81 @@ const char* name_of(Outcome outcome) {
 
 FallMonitor::FallMonitor(const RobotModel& model, const ActuatorLimits& limits, const World& world)
     : model_(&model), limits_(limits) {
-  ground_.linear() = exp_rotation({world.slope.x(), world.slope.y(), 0}).toRotationMatrix();
+  Isometry3d ground = Isometry3d::Identity();
+  ground.linear() = exp_rotation({world.slope.x(), world.slope.y(), 0}).toRotationMatrix();
+  set_ground(ground);
   events_.reserve(kReservedEvents);
 }
 
 bool FallMonitor::observe(double t, const CommandSample& command, const SimulationSample& sample,
                           const RobotData& truth, const StepReport& report, double dt) {
+  if (result_.fell_at < 0) observe_figures(t, command, sample, truth, report, dt);
+  return observe_verdict(t, command, sample, truth, report, dt);
+}
+
+void FallMonitor::observe_figures(double t, const CommandSample& command,
+                                  const SimulationSample& sample, const RobotData& truth,
+                                  const StepReport& report, double dt) {
+  const double weight = model_->mass() * kGravity;
+  SimulationResult& r = result_;
+  // In flight the command rises too; the apex is relative to the height at lift-off.
+  if (command.support != Support::none) level_ = command.cog.z();
+  r.max_penetration = std::max(r.max_penetration, report.max_penetration);
+  r.max_contact_residual = std::max(r.max_contact_residual, report.contact_residual);
+  r.max_contact_iterations = std::max(r.max_contact_iterations, report.contact_iterations);
+  iterations_ += static_cast<double>(report.contact_iterations);
+  r.mean_contact_iterations = iterations_ / static_cast<double>(++ticks_);
+  for (int j = 0; j < model_->dof_count(); ++j) {
+    r.max_speed_ratio =
+        std::max(r.max_speed_ratio, std::abs(sample.state.dtheta[j]) / limits_.speed[j]);
+    r.max_torque_ratio =
+        std::max(r.max_torque_ratio, std::abs(sample.torque[j]) / limits_.peak_torque[j]);
+  }
+  if (sample.fz > kTouchLoad * weight) {
+    zmp_square_sum_ += (sample.measured_zmp - sample.reference_zmp).head<2>().squaredNorm();
+    ++zmp_count_;
+    airborne_ = flight_apex_ = 0;
+  } else {
+    const bool counted = airborne_ > kMinFlight;
+    airborne_ += dt;
+    flight_apex_ = std::max(flight_apex_, sample.cog.z() - level_);
+    if (airborne_ > kMinFlight) {
+      r.flight += counted ? dt : airborne_;
+      r.apex = std::max(r.apex, flight_apex_);
+    }
+  }
+  observe_feet(t, command, truth, report, dt);
+}
+
+bool FallMonitor::observe_verdict(double t, const CommandSample& command,
+                                  const SimulationSample& sample, const RobotData& truth,
+                                  const StepReport& report, double dt) {
+  SimulationResult& r = result_;
+  if (r.fell_at >= 0) return false;
   const double weight = model_->mass() * kGravity;
   const Vector3d up = truth.rotation[model_->trunk_body()].col(2);
   const double upright = std::clamp(up.dot(normal()), -1.0, 1.0);
-  SimulationResult& r = result_;
-  const bool fallen_before = r.fell_at >= 0;
-  if (!fallen_before) {
-    if (upright < least_upright_) {
-      least_upright_ = upright;
-      r.max_tilt = elementary::acos(upright);
-    }
-    // In flight the command rises too; the apex is relative to the height at lift-off.
-    if (command.support != Support::none) level_ = command.cog.z();
-    r.max_penetration = std::max(r.max_penetration, report.max_penetration);
-    r.max_contact_residual = std::max(r.max_contact_residual, report.contact_residual);
-    r.max_contact_iterations = std::max(r.max_contact_iterations, report.contact_iterations);
-    iterations_ += static_cast<double>(report.contact_iterations);
-    r.mean_contact_iterations = iterations_ / static_cast<double>(++ticks_);
-    for (int j = 0; j < model_->dof_count(); ++j) {
-      r.max_speed_ratio =
-          std::max(r.max_speed_ratio, std::abs(sample.state.dtheta[j]) / limits_.speed[j]);
-      r.max_torque_ratio =
-          std::max(r.max_torque_ratio, std::abs(sample.torque[j]) / limits_.peak_torque[j]);
-    }
-    if (sample.fz > kTouchLoad * weight) {
-      tick_ = dt;
-      const auto kept = static_cast<size_t>(std::lround(kRestTime / dt));
-      if (last_zmp_.capacity() < kept) last_zmp_.reserve(kept);
-      if (last_zmp_.size() < kept)
-        last_zmp_.push_back(sample.zmp.head<2>());
-      else
-        last_zmp_[next_zmp_] = sample.zmp.head<2>();
-      next_zmp_ = (next_zmp_ + 1) % kept;
-      zmp_square_sum_ += (sample.measured_zmp - sample.reference_zmp).head<2>().squaredNorm();
-      ++zmp_count_;
-      airborne_ = flight_apex_ = 0;
-    } else {
-      const bool counted = airborne_ > kMinFlight;
-      airborne_ += dt;
-      flight_apex_ = std::max(flight_apex_, sample.cog.z() - level_);
-      if (airborne_ > kMinFlight) {
-        r.flight += counted ? dt : airborne_;
-        r.apex = std::max(r.apex, flight_apex_);
-      }
-    }
-    observe_feet(t, command, truth, report, dt);
+  if (upright < least_upright_) {
+    least_upright_ = upright;
+    r.max_tilt = elementary::acos(upright);
   }
-
-  if (fallen_before) return false;
+  if (sample.fz > kTouchLoad * weight) {
+    tick_ = dt;
+    const auto kept = static_cast<size_t>(std::lround(kRestTime / dt));
+    if (last_zmp_.capacity() < kept) last_zmp_.reserve(kept);
+    if (last_zmp_.size() < kept)
+      last_zmp_.push_back(sample.zmp.head<2>());
+    else
+      last_zmp_[next_zmp_] = sample.zmp.head<2>();
+    next_zmp_ = (next_zmp_ + 1) % kept;
+  }
   std::string reason;
   const double tilt = upright > kSurelyUpright ? 0.0 : elementary::acos(upright);
+  const auto height = [&] { return (to_ground_ * sample.cog).z(); };
   if (tilt > kFallTilt)
     reason = "trunk tilt " + text::fixed(tilt * 180 / EIGEN_PI, 1) + " deg";
-  else if ((ground_.inverse() * sample.cog).z() < kFallHeight * (command.cog.z() - command.zmp.z()))
-    reason = "COG at " + text::fixed((ground_.inverse() * sample.cog).z(), 3) + " m";
+  else if (height() < kFallHeight * (command.cog.z() - command.zmp.z()))
+    reason = "COG at " + text::fixed(height(), 3) + " m";
   else if (report.body_contact)
     reason = report.touching_body < 0
                  ? "a part other than a foot touched the ground"
@@ -207,7 +222,7 @@ void FallMonitor::observe_feet(double t, const CommandSample& command, const Rob
     // Slip is measured from the place where the foot first carried load in its stance.
     const bool stance = supports(command.support, side) && loaded;
     const Isometry3d sole = sole_pose(*model_, truth, side);
-    const Vector3d place = ground_.inverse() * sole.translation();
+    const Vector3d place = to_ground_ * sole.translation();
     if (stance && !in_stance_[i]) stance_start_[i] = place;
     if (stance) {
       const double slip = (place - stance_start_[i]).head<2>().norm();

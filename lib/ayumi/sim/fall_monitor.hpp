@@ -27,13 +27,21 @@ class FallMonitor {
   FallMonitor(const RobotModel& model, const ActuatorLimits& limits, const World& world);
 
   /// Pose of the floor from now on; the initial one is that of the world.
-  void set_ground(const Eigen::Isometry3d& pose) { ground_ = pose; }
+  void set_ground(const Eigen::Isometry3d& pose) {
+    ground_ = pose;
+    to_ground_ = pose.inverse();
+  }
 
   /// Takes one control tick: the plan, the true state and the last step's report. `sample` is the
   /// log entry of this tick, and `truth` holds the positions of its state. Returns true once, at
   /// the tick of the fall.
   bool observe(double t, const CommandSample& command, const SimulationSample& sample,
                const RobotData& truth, const StepReport& report, double dt);
+
+  /// The same for the verdict alone: of the result, the outcome with its time, the largest tilt,
+  /// and the figures of the end. Of `sample` only the COG and the true ZMP with its force are read.
+  bool observe_verdict(double t, const CommandSample& command, const SimulationSample& sample,
+                       const RobotData& truth, const StepReport& report, double dt);
 
   /// The verdict after the last tick; `command` is the end of the plan.
   SimulationResult conclude(const CommandSample& command, const RobotState& state);
@@ -43,6 +51,8 @@ class FallMonitor {
 
  private:
   void judge_zmp();
+  void observe_figures(double t, const CommandSample& command, const SimulationSample& sample,
+                       const RobotData& truth, const StepReport& report, double dt);
   void observe_feet(double t, const CommandSample& command, const RobotData& truth,
                     const StepReport& report, double dt);
 
@@ -51,6 +61,7 @@ class FallMonitor {
   Eigen::Vector3d normal() const { return ground_.linear().col(2); }
 
   Eigen::Isometry3d ground_ = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d to_ground_ = Eigen::Isometry3d::Identity();  // from the world
   SimulationResult result_;
   LargestErrors largest_;
   double least_upright_ = 1;  // cosine of result_.max_tilt

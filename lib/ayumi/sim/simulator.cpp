@@ -178,12 +178,17 @@ double Simulator::energy() const {
   return 0.5 * twice;
 }
 
-/// The true state in the world in place of the estimate in the plan frame.
+/// The true state in the world in place of the estimate in the plan frame. The ZMP keeps its value
+/// in flight.
 void Simulator::replace_estimate_by_truth() {
   const RobotData& data = plant_.data();
-  estimate_.state = plant_.state();
-  estimate_.cog = data.cog;
-  estimate_.dcog = data.dcog;
+  Estimate& e = true_estimate_;
+  const Vector3d zmp_before = e.zmp;
+  e = estimator_.last();
+  e.zmp = zmp_before;
+  e.state = plant_.state();
+  e.cog = data.cog;
+  e.dcog = data.dcog;
   double fz = 0;
   Vector3d moment = Vector3d::Zero();
   for (const std::vector<SoleForce>& sole : report_.soles)
@@ -191,13 +196,13 @@ void Simulator::replace_estimate_by_truth() {
       fz += cell.force.z();
       moment += cell.force.z() * cell.position;
     }
-  estimate_.fz = fz;
-  if (fz > kZmpMinLoad * model_->mass() * kGravity) estimate_.zmp = moment / fz;
+  e.fz = fz;
+  if (fz > kZmpMinLoad * model_->mass() * kGravity) e.zmp = moment / fz;
 }
 
 const ControlOutput& Simulator::with_targets_of_caller(double t, const ControlOutput& law) {
   changed_ = law;
-  changed_.target = options_.targets(t, estimate_, plan_, law.target);
+  changed_.target = options_.targets(t, estimate(), plan_, law.target);
   if (changed_.target.size() != law.target.size())
     fail(ErrorCode::usage, "the targets at t = " + text::fixed(t, 3) +
                                " s: " + std::to_string(changed_.target.size()) +
@@ -250,7 +255,13 @@ void Simulator::take_sample(const CommandSample& cmd, const Estimate& estimate,
   s.measured_cog = estimate.cog;
   s.measured_zmp = estimate.zmp;
   s.measured_fz = estimate.fz;
-  take_forces(cmd);
+  take_forces();
+  for (const Side side : {Side::left, Side::right}) {
+    const auto i = static_cast<size_t>(side);
+    if (!(s.foot_force[i].z() > 0))
+      s.foot_cop[i] = sole_pose(*model_, plant_.data(), side).translation();
+    s.planned_contact[i] = supports(cmd.support, side);
+  }
   s.push_force.setZero();
   s.push_point.setZero();
   for (const ExternalWrench& x : input_.wrenches) {
@@ -263,24 +274,21 @@ void Simulator::take_sample(const CommandSample& cmd, const Estimate& estimate,
   s.work = work_;
 }
 
-void Simulator::take_forces(const CommandSample& cmd) {
+/// Forces and true ZMP of last_; the centre of pressure of a foot without load is left as it is.
+void Simulator::take_forces() {
   SimulationSample& s = last_;
   s.fz = 0;
   Vector3d moment = Vector3d::Zero();
   for (int side = 0; side < 2; ++side) {
     Vector3d weighted = Vector3d::Zero();
-    double vertical = 0;
-    s.foot_force[side].setZero();
+    Vector3d& force = s.foot_force[side];
+    force.setZero();
     for (const SoleForce& cell : report_.soles[side]) {
-      s.foot_force[side] += cell.force;
+      force += cell.force;
       weighted += cell.force.z() * cell.position;
-      vertical += cell.force.z();
     }
-    s.foot_cop[side] =
-        vertical > 0 ? Vector3d(weighted / vertical)
-                     : sole_pose(*model_, plant_.data(), static_cast<Side>(side)).translation();
-    s.planned_contact[side] = supports(cmd.support, static_cast<Side>(side));
-    s.fz += vertical;
+    if (force.z() > 0) s.foot_cop[side] = weighted / force.z();
+    s.fz += force.z();
     moment += weighted;
   }
   if (s.fz > kZmpMinLoad * model_->mass() * kGravity) zmp_ = moment / s.fz;
@@ -292,33 +300,46 @@ void Simulator::note(double t, const std::vector<std::string>& texts) {
     if (noted_.insert(text).second) events_.push_back({t, "saturation", text});
 }
 
+const Measurement& Simulator::measure(long step) {
+  return corrected(options_.true_state
+                       ? sensors_.read(plant_.state(), plant_.data(), report_)
+                       : sensors_.read(plant_.state(), plant_.data(), report_,
+                                       schedule_.sensor_fault(step), input_.joints));
+}
+
+void Simulator::check_finite(double t) const {
+  if (!plant_.state().theta.allFinite() || !plant_.state().base.position.allFinite())
+    fail(ErrorCode::internal,
+         "the state of the simulation is not finite at t = " + text::fixed(t, 3) + " s");
+}
+
+void Simulator::end_soon_after_fall() {
+  fell_ = true;
+  end_ = std::min(planned_, tick_ + std::lround(kAfterFall / series_->dt));
+}
+
+void Simulator::move(long step, const VectorXd& target) {
+  for (int i = 0; i < options_.substeps; ++i) {
+    if (i > 0) schedule_.fill(step + i, plant_.data(), input_);
+    report_ = plant_.step(target, input_, h_);
+    work_ += report_.work;
+  }
+}
+
 void Simulator::step_once() {
   const double t = time();
   const long step = tick_ * options_.substeps;
   schedule_.fill(step, plant_.data(), input_);
   plan_ = controller_.plan();
   const CommandSample& cmd = plan_;
-  const Measurement& measurement = options_.true_state
-                                       ? sensors_.read(plant_.state(), plant_.data(), report_)
-                                       : sensors_.read(plant_.state(), plant_.data(), report_,
-                                                       schedule_.sensor_fault(step), input_.joints);
-  const Vector3d zmp_before = estimate_.zmp;
-  estimate_ = estimator_.update(corrected(measurement), cmd.feet);
-  if (options_.true_state) {
-    estimate_.zmp = zmp_before;  // keeps its value in flight
-    replace_estimate_by_truth();
-  }
-  const ControlOutput& law = controller_.update(estimate_);
+  estimator_.update(measure(step), cmd.feet);
+  if (options_.true_state) replace_estimate_by_truth();
+  const ControlOutput& law = controller_.update(estimate());
   const ControlOutput& out = in_counts(options_.targets ? with_targets_of_caller(t, law) : law);
-  take_sample(cmd, estimate_, out);
-  if (!last_.state.theta.allFinite() || !last_.state.base.position.allFinite())
-    fail(ErrorCode::internal,
-         "the state of the simulation is not finite at t = " + text::fixed(t, 3) + " s");
+  take_sample(cmd, estimate(), out);
+  check_finite(t);
   if (input_.floor) monitor_.set_ground(input_.floor->pose);
-  if (monitor_.observe(t, cmd, last_, plant_.data(), report_, series_->dt)) {
-    fell_ = true;
-    end_ = std::min(planned_, tick_ + std::lround(kAfterFall / series_->dt));
-  }
+  if (monitor_.observe(t, cmd, last_, plant_.data(), report_, series_->dt)) end_soon_after_fall();
   note(t, out.notes);
   for (int j : report_.saturated) {
     if (saturated_[static_cast<size_t>(j)]) continue;
@@ -326,11 +347,7 @@ void Simulator::step_once() {
     note(t, {"torque limit of " + model_->dofs()[j].name + " reached"});
   }
 
-  for (int i = 0; i < options_.substeps; ++i) {
-    if (i > 0) schedule_.fill(step + i, plant_.data(), input_);
-    report_ = plant_.step(out.target, input_, h_);
-    work_ += report_.work;
-  }
+  move(step, out.target);
   if (report_.self_contact[0] >= 0 && !touched_) {
     touched_ = true;
     events_.push_back({t, "contact",
@@ -345,13 +362,46 @@ void Simulator::step_once() {
   ++tick_;
 }
 
+/// step_once() where only the verdict counts. The plan is judged before the law goes on to the
+/// next, so that it need not be copied, and a law that measures nothing needs no estimate. `last`:
+/// the last of these ticks, after which plan and estimate are read.
+void Simulator::step_for_verdict(bool last) {
+  const double t = time();
+  const long step = tick_ * options_.substeps;
+  schedule_.fill(step, plant_.data(), input_);
+  const CommandSample& cmd = controller_.plan();
+  if (last) plan_ = cmd;
+  const Measurement& measurement = measure(step);
+  if (last || controller_.measures())
+    estimator_.update(measurement, cmd.feet);
+  else
+    estimator_.follow_loads(measurement, cmd.feet);
+  last_.cog = plant_.data().cog;
+  take_forces();
+  check_finite(t);
+  if (input_.floor) monitor_.set_ground(input_.floor->pose);
+  if (monitor_.observe_verdict(t, cmd, last_, plant_.data(), report_, series_->dt))
+    end_soon_after_fall();
+  const ControlOutput& out = in_counts(controller_.update(estimate()));
+  if (last) {
+    last_.reference_base = out.reference.base;
+    last_.reference_theta = out.reference.theta;
+  }
+  move(step, out.target);
+  ++tick_;
+}
+
 bool Simulator::advance(long ticks, const Progress& progress) {
+  const bool for_verdict = verdict_only_ && !options_.true_state && !options_.targets;
   for (; ticks > 0 && tick_ < end_; --ticks) {
     if (tick_ % 100 == 0)
       ayumi::report(progress,
                     {"simulate", static_cast<double>(tick_) / static_cast<double>(planned_),
                      name_of(options_.controller.type)});
-    step_once();
+    if (for_verdict)
+      step_for_verdict(ticks == 1 || tick_ + 1 == end_);
+    else
+      step_once();
   }
   return tick_ < end_;
 }

@@ -30,6 +30,16 @@ class Simulator {
   /// energy is not computed.
   void keep_samples(bool keep) { keep_samples_ = keep; }
 
+  /// From now on gathers the verdict alone: of result() the outcome with its time, the largest tilt
+  /// and the figures of the end. The robot moves as otherwise, to the last bit. After each
+  /// advance() plan() and last_estimate() are there, of last_sample() the COG, the true ZMP with
+  /// its force and the reference posture; samples, events and the other figures are no longer
+  /// complete.
+  void gather_verdict_only() {
+    verdict_only_ = true;
+    keep_samples_ = false;
+  }
+
   /// Advances by at most `ticks` control ticks. Returns false once the run is over: the series and
   /// its settling time have passed, or the robot fell some time ago.
   bool advance(long ticks, const Progress& progress = {});
@@ -39,7 +49,7 @@ class Simulator {
   bool fell() const { return fell_; }
   const RobotState& state() const { return plant_.state(); }     ///< true state
   const SimulationSample& last_sample() const { return last_; }  ///< of the last tick done
-  const Estimate& last_estimate() const { return estimate_; }
+  const Estimate& last_estimate() const { return estimate(); }
   /// The controller's plan for the last tick done: the command relative to the feet, or VIIP's own
   /// motion.
   const CommandSample& plan() const { return plan_; }
@@ -56,14 +66,22 @@ class Simulator {
 
  private:
   void step_once();
+  void step_for_verdict(bool last);
+  const Measurement& measure(long step);
+  void move(long step, const Eigen::VectorXd& target);
+  void check_finite(double t) const;
+  void end_soon_after_fall();
   double energy() const;
+  const Estimate& estimate() const {
+    return options_.true_state ? true_estimate_ : estimator_.last();
+  }
   void replace_estimate_by_truth();
   void calibrate_ankles();
   const Measurement& corrected(const Measurement& measurement);
   const ControlOutput& in_counts(const ControlOutput& out);
   const ControlOutput& with_targets_of_caller(double t, const ControlOutput& law);
   void take_sample(const CommandSample& cmd, const Estimate& estimate, const ControlOutput& out);
-  void take_forces(const CommandSample& cmd);
+  void take_forces();
   void note(double t, const std::vector<std::string>& texts);
 
   const RobotModel* model_;      // of the robot that is simulated
@@ -91,9 +109,9 @@ class Simulator {
   std::vector<char> saturated_;  // by dof: an event exists
   std::vector<SimulationEvent> events_;
   SimulationSample last_;
-  Estimate estimate_;
+  Estimate true_estimate_;  // in place of the estimator's, where the law knows the true state
   std::vector<SimulationSample> samples_;
-  bool keep_samples_ = true, fell_ = false;
+  bool keep_samples_ = true, verdict_only_ = false, fell_ = false;
   bool touched_ = false;  // itself: an event exists
   EnergyBalance work_;
   long tick_ = 0, planned_ = 0, end_ = 0;  // ticks done, ticks without a fall, last tick

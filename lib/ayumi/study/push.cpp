@@ -127,6 +127,7 @@ class Search {
 
 Simulator Search::pushed(double impulse, const Variation& variation) const {
   Simulator run = *baseline_.simulator;
+  run.gather_verdict_only();
   const double angle = case_.direction + variation.angle;
   const Push push{.magnitude = impulse,
                   .direction = {elementary::cos(angle), elementary::sin(angle), 0}};

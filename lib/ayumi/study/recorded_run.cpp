@@ -53,15 +53,19 @@ double largest(const Eigen::VectorXd& values) { return values.lpNorm<Eigen::Infi
 
 RecordedRun::RecordedRun(const World& world) : same_everywhere_(is_same_everywhere(world)) {}
 
-RecordedRun::State RecordedRun::state_of(const Simulator& run) {
+void RecordedRun::take_dcm(const Simulator& run, State& s) {
   const CommandSample& plan = run.plan();
+  const Estimate& e = run.last_estimate();
+  s.height = plan.cog.z() - plan.zmp.z();
+  s.dcm = (e.cog + e.dcog / std::sqrt(kGravity / s.height)).head<2>();
+}
+
+RecordedRun::State RecordedRun::state_of(const Simulator& run) {
   const Estimate& e = run.last_estimate();
   const SimulationSample& sample = run.last_sample();
   State s;
-  s.tick = run.tick();
+  take_dcm(run, s);
   s.time = run.time();
-  s.height = plan.cog.z() - plan.zmp.z();
-  s.dcm = (e.cog + e.dcog / std::sqrt(kGravity / s.height)).head<2>();
   s.zmp = e.zmp.head<2>();
   s.tilt =
       log_rotation(e.state.base.attitude * sample.reference_base.attitude.conjugate()).head<2>();
@@ -74,18 +78,23 @@ RecordedRun::State RecordedRun::state_of(const Simulator& run) {
   return s;
 }
 
-void RecordedRun::record(const Simulator& run) { states_.push_back(state_of(run)); }
+void RecordedRun::record(const Simulator& run) {
+  ticks_.push_back(run.tick());
+  states_.push_back(state_of(run));
+}
 
 const RecordedRun::State* RecordedRun::state_at(long tick) const {
-  const auto found =
-      std::lower_bound(states_.begin(), states_.end(), tick,
-                       [](const State& state, long wanted) { return state.tick < wanted; });
-  return found == states_.end() || found->tick != tick ? nullptr : &*found;
+  const auto found = std::lower_bound(ticks_.begin(), ticks_.end(), tick);
+  if (found == ticks_.end() || *found != tick) return nullptr;
+  return &states_[static_cast<size_t>(found - ticks_.begin())];
+}
+
+double RecordedRun::dcm_drift(const State& here, const State& there) {
+  return (here.dcm - there.dcm).norm() / (kDcm * there.height);
 }
 
 double RecordedRun::drift(const State& here, const State& there) {
-  return std::max({(here.dcm - there.dcm).norm() / (kDcm * there.height),
-                   (here.tilt - there.tilt).norm() / kTilt,
+  return std::max({dcm_drift(here, there), (here.tilt - there.tilt).norm() / kTilt,
                    (here.foot_tilt - there.foot_tilt).norm() / kTilt});
 }
 
@@ -111,8 +120,13 @@ double RecordedRun::deviation(const Simulator& run) const {
 }
 
 bool RecordedRun::contains(const Simulator& run, double share) const {
-  return !states_.empty() && states_.back().time - run.time() >= kTimeLeft &&
-         deviation(run) <= share;
+  if (states_.empty() || states_.back().time - run.time() < kTimeLeft) return false;
+  // The DCM comes back last in most runs, and costs least to compare.
+  const State* const there = state_at(run.tick());
+  if (!there) return false;
+  State here;
+  take_dcm(run, here);
+  return dcm_drift(here, *there) <= share && deviation(run) <= share;
 }
 
 double RecordedRun::reference_turn(const Simulator& run) const {

@@ -39,7 +39,6 @@ class RecordedRun {
  private:
   /// In the plan frame, thus without the place and the heading in the world.
   struct State {
-    long tick = 0;
     double time = 0;             // [s]
     double height = 0;           // of the planned COG over the planned ZMP [m]
     Eigen::Vector2d dcm, zmp;    // estimated [m]
@@ -52,11 +51,14 @@ class RecordedRun {
     Eigen::Quaterniond attitude;      // of the base in the world
   };
   static State state_of(const Simulator& run);
+  static void take_dcm(const Simulator& run, State& state);
+  static double dcm_drift(const State& here, const State& there);
   static double drift(const State& here, const State& there);
   const State* state_at(long tick) const;
 
   std::vector<State> states_;
-  bool same_everywhere_;  // the ground, in every direction
+  std::vector<long> ticks_;  // of the states
+  bool same_everywhere_;     // the ground, in every direction
 };
 
 }  // namespace ayumi

@@ -20,6 +20,9 @@ class OpenLoop {
   /// The command of the coming tick.
   const CommandSample& plan() const { return command_.now(); }
 
+  /// Whether what is measured changes what it sends: only where the command's footholds move.
+  bool measures() const { return command_.measures(); }
+
   void update(const Estimate& estimate, ControlOutput& out);
 
   Handover handover() const { return {plan().state, plan().dcog, target_, plan(), command_}; }
