@@ -147,12 +147,6 @@ SimulateOptions simulation_options(const Context& context, const Task& input,
   return options;
 }
 
-SimulationLog simulate_once(const Context& context, const Task& input,
-                            const SimulationChoice& choice) {
-  return simulate(input, simulation_options(context, input, choice), context.progress(),
-                  context.command_line);
-}
-
 TableCaution table_caution(const Task& input, const SimulationLog& log,
                            const std::vector<std::string>& unfit) {
   TableCaution caution = {words_of(log.scenario), text::join(unfit, "; ")};
@@ -168,7 +162,9 @@ Eigen::MatrixXd torques_of(const SimulationLog& log) {
   return torque;
 }
 
-std::string outcome_text(const SimulationLog& log) {
+std::string outcome_text(const SimulationLog& log) { return outcome_text(log, log.samples.size()); }
+
+std::string outcome_text(const SimulationLog& log, size_t rows) {
   const SimulationResult& r = log.result;
   std::string text =
       (log.controller == ControllerKind::none ? "open loop" : name_of(log.controller.value())) +
@@ -186,7 +182,7 @@ std::string outcome_text(const SimulationLog& log) {
   text += ", largest trunk tilt " + text::fixed(r.max_tilt * 180 / std::numbers::pi, 1) +
           " deg, joint speed " + text::fixed(100 * r.max_speed_ratio, 0) + " % and torque " +
           text::fixed(100 * r.max_torque_ratio, 0) + " % of the limits";
-  const double end = log.dt * static_cast<double>(log.samples.size() - 1);
+  const double end = log.dt * static_cast<double>(rows - 1);
   std::vector<Disturbance> late;
   for (const Disturbance& disturbance : log.scenario)
     if (disturbance.at > end) late.push_back(disturbance);

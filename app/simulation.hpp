@@ -42,10 +42,6 @@ ControllerSpec chosen_controller(const Task& input, const SimulationChoice& choi
 SimulateOptions simulation_options(const Context& context, const Task& input,
                                    const SimulationChoice& choice);
 
-/// Runs the pattern; the log carries its provenance. Throws as refuse_unstable_gains().
-SimulationLog simulate_once(const Context& context, const Task& input,
-                            const SimulationChoice& choice);
-
 /// What the head of the table of a run has to say: its disturbances and those that the pattern's
 /// own table is from, and why the run is `unfit` for a robot.
 TableCaution table_caution(const Task& input, const SimulationLog& log,
@@ -56,5 +52,7 @@ Eigen::MatrixXd torques_of(const SimulationLog& log);
 
 /// "DTAD stands: final COG error 0.2 mm, largest trunk tilt 1.3 deg, ..."
 std::string outcome_text(const SimulationLog& log);
+/// The same of a log whose `rows` samples are elsewhere.
+std::string outcome_text(const SimulationLog& about, size_t rows);
 
 }  // namespace ayumi::app

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
@@ -32,6 +33,7 @@
 #include "repairing.hpp"
 #include "report_input.hpp"
 #include "simulation.hpp"
+#include "streamed_run.hpp"
 #include "terminal.hpp"
 
 namespace ayumi::app {
@@ -86,17 +88,17 @@ class MainJob {
   void repair_pattern(Task& input, bool goals_reachable);
   void simulate(const Task& input);
   void export_tables(const Task& input);
-  void write_hoap(const Task& input, const SimulationLog& log);
+  StreamedRun run_streamed(const Task& input, const std::string& name,
+                           const SimulationChoice& choice, const StreamedParts& parts);
+  void write_hoap(const Task& input);
+  void read_back();
   void draw(const RobotModel& model, const std::string& title);
   void write_report(const RobotModel& model, const std::string& title);
   std::vector<std::string> file_names() const;
 
-  const SimulationLog& judged_log() const { return folder_.logs.at("closed_loop"); }
+  const StreamedRun& judged_run() const { return closed_loop_; }
   /// The run from which the table for the robot comes: the one without the disturbances.
-  const SimulationLog& table_log() const {
-    const auto undisturbed = folder_.logs.find("undisturbed");
-    return undisturbed == folder_.logs.end() ? judged_log() : undisturbed->second;
-  }
+  const StreamedRun& table_run() const { return undisturbed_ ? *undisturbed_ : closed_loop_; }
 
   Context& context_;
   const RunCommand& options_;
@@ -105,6 +107,8 @@ class MainJob {
       output_;                // opened when the input has been read: bad input leaves nothing
   std::string inconsistent_;  // why the pattern, repaired where asked, is; empty: it is not
   RunFolder folder_;
+  StreamedRun closed_loop_;
+  std::optional<StreamedRun> undisturbed_;  // where the pattern has disturbances
   Json summary_ = Json::object();
 };
 
@@ -197,60 +201,74 @@ void MainJob::repair_pattern(Task& input, bool goals_reachable) {
   note_file("repaired.json");
 }
 
+StreamedRun MainJob::run_streamed(const Task& input, const std::string& name,
+                                  const SimulationChoice& choice, const StreamedParts& parts) {
+  StreamedRun run = simulate_streamed(context_, input, simulation_options(context_, input, choice),
+                                      output_->file(log_file_name(name)), parts);
+  folder_.written[name] = run.log;
+  return run;
+}
+
 void MainJob::simulate(const Task& input) {
-  const auto run = [&](const char* name, const SimulationChoice& choice) -> const SimulationLog& {
-    return folder_.logs[name] = simulate_once(context_, input, choice);
-  };
   SimulationChoice open = options_.choice;
   open.controller = name_of(ControllerKind::none);
   open.gains.clear();
-  say("simulate", outcome_text(run("open_loop", open)));
-  const SimulationLog& closed = run("closed_loop", options_.choice);
+  const WrittenLog open_log = run_streamed(input, "open_loop", open, {}).log;
+  say("simulate", outcome_text(open_log));
+  closed_loop_ =
+      run_streamed(input, "closed_loop", options_.choice, {.postures = true, .torque = true});
+  const WrittenLog& closed = closed_loop_.log;
   say("", outcome_text(closed));
   const std::vector<std::string> worse =
-      worse_than_open_loop(folder_.logs["open_loop"].result, closed.result);
+      worse_than_open_loop(open_log.about.result, closed.about.result);
   if (!worse.empty())
     say("", painted(Paint::caution, "some figures are worse with control than in open loop") +
                 ": " + text::join(worse, "; "));
   summary_["worse_than_open_loop"] = worse;
-  folder_.provenance = closed.provenance;
+  folder_.provenance = closed.about.provenance;
   Json both;
-  for (const char* name : {"open_loop", "closed_loop"})
-    both[name] = Json::parse(simulation_json(folder_.logs[name]));
+  both["open_loop"] = Json::parse(simulation_json(open_log));
+  both["closed_loop"] = Json::parse(simulation_json(closed));
   summary_["simulate"] = both;
   summary_["undisturbed"] = nullptr;
   folder_.sections.emplace_back("simulate", both.dump());
-  if (closed.scenario.empty()) return;
+  if (closed.about.scenario.empty()) return;
+  closed_loop_.torque.resize(0, 0);  // the table for the robot is of the other run
   SimulationChoice calm = options_.choice;
   calm.scenario = "none";
-  const SimulationLog& undisturbed = run("undisturbed", calm);
-  say("", "without disturbances " + outcome_text(undisturbed));
-  summary_["undisturbed"] = Json::parse(simulation_json(undisturbed));
-  folder_.sections.emplace_back("undisturbed", simulation_json(undisturbed));
+  undisturbed_ = run_streamed(input, "undisturbed", calm, {.postures = true, .torque = true});
+  say("", "without disturbances " + outcome_text(undisturbed_->log));
+  summary_["undisturbed"] = Json::parse(simulation_json(undisturbed_->log));
+  folder_.sections.emplace_back("undisturbed", simulation_json(undisturbed_->log));
 }
 
 void MainJob::export_tables(const Task& input) {
-  folder_.reference = table_of_log(input.robot, input.profile, table_log(), ServoContent::lead);
-  folder_.reference_caution = table_caution(input, table_log(), folder_.unfit);
+  const SimulationLog& table = table_run().log.about;
+  folder_.reference = table_of_postures(input.robot, input.profile, table, table_run().postures);
+  folder_.reference_caution = table_caution(input, table, folder_.unfit);
   if (!options_.light) {
     write_file(output_->file("reference.json"),
                reference_json(*folder_.reference, folder_.reference_caution));
     note_file("reference.json");
   }
-  if (&table_log() != &judged_log()) {
-    folder_.pushed = table_of_log(input.robot, input.profile, judged_log(), ServoContent::lead);
-    folder_.pushed_caution = table_caution(input, judged_log(), folder_.unfit);
+  if (undisturbed_) {
+    const SimulationLog& judged = judged_run().log.about;
+    folder_.pushed = table_of_postures(input.robot, input.profile, judged,
+                                       std::exchange(closed_loop_.postures, {}));
+    folder_.pushed_caution = table_caution(input, judged, folder_.unfit);
   }
-  write_hoap(input, table_log());
+  write_hoap(input);
 }
 
 // What goes to the robot is judged by its own actuators, not by those a study has assumed.
-void MainJob::write_hoap(const Task& input, const SimulationLog& log) {
+void MainJob::write_hoap(const Task& input) {
   SafetyOptions safety;
   safety.profile = input.robot.limits().name;
-  const ReferenceTrajectory table =
-      table_of_log(input.robot, safety.profile, log, ServoContent::lead);
-  const SafeTable safe = make_safe_run(input.robot, table, torques_of(log), safety);
+  StreamedRun& run = undisturbed_ ? *undisturbed_ : closed_loop_;
+  const SafeTable safe = make_safe_run(input.robot,
+                                       table_of_postures(input.robot, safety.profile, run.log.about,
+                                                         std::exchange(run.postures, {})),
+                                       std::exchange(run.torque, {}), safety);
   folder_.sections.emplace_back("export", safety_json(safe.report));
   std::string text = options_.light ? "the logs contain the tables; ayumi export writes them"
                                     : "reference.csv, reference.json";
@@ -279,9 +297,15 @@ void MainJob::write_hoap(const Task& input, const SimulationLog& log) {
   say("export", text);
 }
 
+// Pictures and report need the samples of the logs that they are of.
+void MainJob::read_back() {
+  for (const char* name : {"open_loop", "closed_loop"})
+    folder_.logs[name] = with_samples(folder_.written.at(name), output_->file(log_file_name(name)));
+}
+
 void MainJob::draw(const RobotModel& model, const std::string& title) {
   // Pictures show the plan where the robot is; curves do so by themselves.
-  const SimulationLog closed = in_frame(model, judged_log(), Frame::world);
+  const SimulationLog closed = in_frame(model, folder_.logs.at("closed_loop"), Frame::world);
   const std::vector<LociRun> runs = {{"open loop", &folder_.logs.at("open_loop")},
                                      {name_of(closed.controller.value()), &closed}};
   LociOptions loci;
@@ -328,7 +352,7 @@ std::vector<std::string> MainJob::file_names() const {
   names.emplace_back("run.json");
   if (!folder_.light) names.emplace_back("reference.csv");
   if (folder_.pushed && !folder_.light) names.emplace_back("reference_pushed.csv");
-  for (const auto& [name, log] : folder_.logs) names.push_back(log_file_name(name));
+  for (const auto& [name, log] : folder_.written) names.push_back(log_file_name(name));
   std::sort(names.begin(), names.end());
   return names;
 }
@@ -341,10 +365,11 @@ bool MainJob::run(const std::string& file) {
   output_.emplace(target_, context_.force);
   check(input);
   simulate(input);
-  const bool disturbed = &table_log() != &judged_log();
-  folder_.unfit = unfit_reasons(inconsistent_, judged_log(), disturbed ? &table_log() : nullptr);
+  folder_.unfit = unfit_reasons(inconsistent_, judged_run().log.about,
+                                undisturbed_ ? &undisturbed_->log.about : nullptr);
   export_tables(input);
   if (options_.pictures) {
+    read_back();
     draw(input.robot, input.pattern.name);
     write_report(input.robot, input.pattern.name);
   }

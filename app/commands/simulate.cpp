@@ -1,8 +1,8 @@
 // One closed-loop run in Ayumi's own integrator under the pattern's scenario.
 
-#include <chrono>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 
 #include "ayumi/base/text.hpp"
@@ -14,11 +14,14 @@
 #include "option_checks.hpp"
 #include "pattern_input.hpp"
 #include "simulation.hpp"
+#include "streamed_run.hpp"
 #include "uncertain_input.hpp"
 
 namespace ayumi::app {
 
 namespace {
+
+namespace fs = std::filesystem;
 
 struct SimulateCommand {
   std::string pattern, out;
@@ -28,9 +31,21 @@ struct SimulateCommand {
   long number = -1;  // of a case of `certify`; negative: none
 };
 
+// The file of the log in the making; empty: no run is written.
+fs::path log_file(const std::optional<RunOutput>& output) {
+  return output ? output->file(log_file_name("closed_loop")) : fs::path();
+}
+
+StreamedRun simulate_pattern_once(const Context& context, const Task& input,
+                                  const SimulateCommand& options,
+                                  const std::optional<RunOutput>& output) {
+  return simulate_streamed(context, input, simulation_options(context, input, options.choice),
+                           log_file(output), {.postures = output.has_value()});
+}
+
 /// One case of `certify`: the robot, ground and pushes that it draws.
-SimulationLog simulate_case(const Context& context, const Task& input,
-                            const SimulateCommand& options) {
+StreamedRun simulate_case(const Context& context, const Task& input, const SimulateCommand& options,
+                          const std::optional<RunOutput>& output) {
   Study study = load_study(input, options.study);
   const bool stated = !options.study.empty() || !input.pattern.uncertainty.empty();
   context.print(fit_to_plant(study, options.choice.plant, stated));
@@ -42,28 +57,29 @@ SimulationLog simulate_case(const Context& context, const Task& input,
   const RobotUnit robot = task.unit(drawn);
   SimulateOptions simulate_options = task.options(numbers, drawn);
   simulate_options.unit = &robot;
-  SimulationLog log = simulate(input, simulate_options, context.progress(), context.command_line);
   std::string values;
   for (size_t i = 0; i < drawn.size(); ++i)
     values += (i == 0 ? ": " : ", ") + task.value_text(i, drawn[i]);
-  log.events.insert(log.events.begin(),
-                    {0, "case", "case " + std::to_string(options.number) + values});
-  return log;
+  return simulate_streamed(
+      context, input, simulate_options, log_file(output),
+      {.postures = output.has_value(),
+       .first_events = {{0, "case", "case " + std::to_string(options.number) + values}}});
 }
 
-RunFolder run_of(const Task& input, SimulationLog simulated) {
+RunFolder run_of(const Task& input, StreamedRun simulated) {
   RunFolder run;
-  const SimulationLog& log = run.logs["closed_loop"] = std::move(simulated);
-  run.provenance = log.provenance;
+  const WrittenLog& log = run.written["closed_loop"] = std::move(simulated.log);
+  run.provenance = log.about.provenance;
   const Judgement judged = judge(input, check_options(input));
   run.sections.emplace_back("sampled_from", nlohmann::ordered_json(input.series.origin).dump());
   run.sections.emplace_back("check", check_json(judged.report));
   run.sections.emplace_back("simulate", simulation_json(log));
-  run.unfit = unfit_reasons(judged, log);
-  const bool pushed = !log.scenario.empty();
+  run.unfit = unfit_reasons(judged, log.about);
+  const bool pushed = !log.about.scenario.empty();
   (pushed ? run.pushed : run.reference) =
-      table_of_log(input.robot, input.profile, log, ServoContent::lead);
-  (pushed ? run.pushed_caution : run.reference_caution) = table_caution(input, log, run.unfit);
+      table_of_postures(input.robot, input.profile, log.about, std::move(simulated.postures));
+  (pushed ? run.pushed_caution : run.reference_caution) =
+      table_caution(input, log.about, run.unfit);
   return run;
 }
 
@@ -77,22 +93,22 @@ void simulate_pattern(Context& context, const SimulateCommand& options) {
         options.out, context.force,
         {"run.json", "log_closed_loop.bin", "reference.csv", "reference_pushed.csv"});
   const Task input = load_pattern(context, options.pattern, options.input);
-  const auto begin = std::chrono::steady_clock::now();
-  SimulationLog log = options.number < 0 ? simulate_once(context, input, options.choice)
-                                         : simulate_case(context, input, options);
-  const double wall =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-
+  refuse_unstable_gains(input, chosen_controller(input, options.choice), options.choice.unstable);
+  std::optional<RunOutput> output;  // opened when the input has been read: bad input leaves nothing
+  if (!options.out.empty()) output.emplace(options.out, context.force);
+  StreamedRun simulated = options.number < 0
+                              ? simulate_pattern_once(context, input, options, output)
+                              : simulate_case(context, input, options, output);
+  const WrittenLog& log = simulated.log;
   context.print(options.pattern + ": " + outcome_text(log) + "\n");
-  if (options.number >= 0) context.print("  " + log.events.front().text + "\n");
+  if (options.number >= 0) context.print("  " + log.about.events.front().text + "\n");
   nlohmann::ordered_json json = nlohmann::ordered_json::parse(simulation_json(log));
-  json["realtime_factor"] = static_cast<double>(log.samples.size()) * log.dt / wall;
-  context.exit_code = log.result.outcome == Outcome::stands ? 0 : 1;
-  if (!options.out.empty()) {
-    const RunFolder run = run_of(input, std::move(log));
-    RunOutput output(options.out, context.force);
-    write_run(output.folder(), run);
-    output.deliver();
+  json["realtime_factor"] = static_cast<double>(log.rows) * log.about.dt / simulated.wall;
+  context.exit_code = log.about.result.outcome == Outcome::stands ? 0 : 1;
+  if (output) {
+    const RunFolder run = run_of(input, std::move(simulated));
+    write_run(output->folder(), run);
+    output->deliver();
     for (const std::string& reason : run.unfit)
       context.print("  no table for a robot: " + reason + "\n");
     context.print("  written to " + options.out + "\n");

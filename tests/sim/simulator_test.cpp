@@ -42,6 +42,19 @@ TEST(Simulator, WholeRunIsSimulate) {
   EXPECT_EQ(log_hash(simulator.take_log()), log_hash(whole));
 }
 
+TEST(Simulator, SamplesThatAreSentAreThoseOfTheLog) {
+  const Stand stand;
+  const SimulationLog whole = simulate(stand.model, stand.series, stand.options);
+  Simulator simulator(stand.model, stand.series, stand.options);
+  std::vector<SimulationSample> sent;
+  simulator.send_samples([&](const SimulationSample& sample) { sent.push_back(sample); });
+  simulator.advance(kAll);
+  SimulationLog log = simulator.take_log();
+  EXPECT_TRUE(log.samples.empty());
+  log.samples = std::move(sent);
+  EXPECT_EQ(log_hash(log), log_hash(whole));
+}
+
 TEST(Simulator, BranchGoesOnToTheSameBits) {
   const Stand stand;
   const std::string expected = log_hash(simulate(stand.model, stand.series, stand.options));

@@ -354,7 +354,9 @@ void Simulator::step_once() {
                        model_->bodies()[report_.self_contact[0]].name + " touches " +
                            model_->bodies()[report_.self_contact[1]].name});
   }
-  if (keep_samples_) {
+  if (keep_samples_ && sink_) {
+    sink_(last_);
+  } else if (keep_samples_) {
     if (samples_.empty())
       samples_.reserve(static_cast<size_t>(std::min(planned_, kReservedSamples)));
     samples_.push_back(last_);

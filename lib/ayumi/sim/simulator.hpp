@@ -4,7 +4,9 @@
 // so that many pushes can share the simulation up to the push. simulate() runs a Simulator to its
 // end.
 
+#include <functional>
 #include <set>
+#include <utility>
 
 #include "ayumi/base/progress.hpp"
 #include "ayumi/control/controller.hpp"
@@ -39,6 +41,11 @@ class Simulator {
     verdict_only_ = true;
     keep_samples_ = false;
   }
+
+  /// From now on gives each sample to `sink` in place of keeping it: the log then has none. Copies
+  /// of the simulator share the state of the function.
+  using SampleSink = std::function<void(const SimulationSample&)>;
+  void send_samples(SampleSink sink) { sink_ = std::move(sink); }
 
   /// Advances by at most `ticks` control ticks. Returns false once the run is over: the series and
   /// its settling time have passed, or the robot fell some time ago.
@@ -111,6 +118,7 @@ class Simulator {
   SimulationSample last_;
   Estimate true_estimate_;  // in place of the estimator's, where the law knows the true state
   std::vector<SimulationSample> samples_;
+  SampleSink sink_;  // empty: samples are kept
   bool keep_samples_ = true, verdict_only_ = false, fell_ = false;
   bool touched_ = false;  // itself: an event exists
   EnergyBalance work_;

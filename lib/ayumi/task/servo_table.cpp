@@ -1,6 +1,7 @@
 #include "ayumi/task/servo_table.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
@@ -20,6 +21,19 @@ std::string list_of(const ActuatorLimits& limits, const Value& value) {
   const bool equal = std::all_of(texts.begin(), texts.end(),
                                  [&](const std::string& text) { return text == texts.front(); });
   return equal && !texts.empty() ? texts.front() : text::join(texts, " ");
+}
+
+// A law that measures sends the posture that it has moved to in the tick, the next row's.
+size_t rows_ahead(const SimulationLog& log) {
+  return log.controller && log.controller->kind != ControllerKind::none ? 1 : 0;
+}
+
+// The rate of the posture sent(k) by its neighbours.
+template <class Sent>
+Eigen::VectorXd sent_rate(const Sent& sent, size_t k, size_t last, double dt) {
+  const size_t before = k > 0 ? k - 1 : 0, after = std::min(k + 1, last);
+  if (after == before) return Eigen::VectorXd::Zero(sent(k).size());
+  return (sent(after) - sent(before)) / (static_cast<double>(after - before) * dt);
 }
 
 }  // namespace
@@ -59,8 +73,50 @@ ReferenceTrajectory table_of_series(const RobotModel& model, const std::string& 
   return reference;
 }
 
+void append_posture(const SimulationSample& sample, ReferenceTrajectory& postures) {
+  ReferenceRow row;
+  row.theta = sample.reference_theta;
+  row.base = sample.reference_base;
+  row.cog = sample.reference_cog;
+  row.zmp = sample.reference_zmp;
+  row.fz = sample.reference_fz;
+  row.contact = sample.planned_contact;
+  postures.rows.push_back(std::move(row));
+}
+
+ReferenceTrajectory table_of_postures(const RobotModel& model, const std::string& profile,
+                                      const SimulationLog& about, ReferenceTrajectory postures) {
+  ReferenceTrajectory table = std::move(postures);
+  table.dt = about.dt;
+  table.joints = model.dof_names();
+  table.provenance = about.provenance;
+  table.servo = table_servo(model, profile, ServoContent::lead);
+  const Eigen::VectorXd lead = velocity_lead(model.limits(profile));
+  std::vector<ReferenceRow>& rows = table.rows;
+  const size_t ahead = rows_ahead(about), last = rows.empty() ? 0 : rows.size() - 1;
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(lead.size());
+  Eigen::VectorXd before, here;  // postures of the rows k - 1 and k, whose targets are made
+  for (size_t k = 0; k < rows.size(); ++k) {
+    before = std::exchange(here, rows[k].theta);
+    const auto posture = [&](size_t i) -> const Eigen::VectorXd& {
+      return i == k ? here : i < k ? before : rows[i].theta;
+    };
+    const auto sent = [&](size_t i) -> const Eigen::VectorXd& {
+      return posture(std::min(i + ahead, last));
+    };
+    // The zero makes 0 of a target of -0, as a sag of 0 does.
+    rows[k].theta = sent(k) + lead.cwiseProduct(sent_rate(sent, k, last, about.dt)) + zero;
+  }
+  return table;
+}
+
 ReferenceTrajectory table_of_log(const RobotModel& model, const std::string& profile,
                                  const SimulationLog& log, ServoContent content) {
+  if (content == ServoContent::lead) {
+    ReferenceTrajectory postures;
+    for (const SimulationSample& sample : log.samples) append_posture(sample, postures);
+    return table_of_postures(model, profile, log, std::move(postures));
+  }
   ReferenceTrajectory table = extract_reference(model, log);
   table.servo = table_servo(model, profile, content);
   const ActuatorLimits& limits = model.limits(profile);
@@ -69,8 +125,7 @@ ReferenceTrajectory table_of_log(const RobotModel& model, const std::string& pro
   if (content == ServoContent::lead_and_sag && same) return table;
   const Eigen::VectorXd lead = velocity_lead(limits), own_lead = velocity_lead(own);
   const size_t last = log.samples.empty() ? 0 : log.samples.size() - 1;
-  // A law that measures sends the posture that it has moved to in the tick, the next row's.
-  const size_t ahead = log.controller && log.controller->kind != ControllerKind::none ? 1 : 0;
+  const size_t ahead = rows_ahead(log);
   const auto sent = [&](size_t k) -> const Eigen::VectorXd& {
     return log.samples[std::min(k + ahead, last)].reference_theta;
   };
@@ -81,18 +136,14 @@ ReferenceTrajectory table_of_log(const RobotModel& model, const std::string& pro
       continue;
     }
     const Eigen::VectorXd& theta = sent(k);
-    const size_t before = k > 0 ? k - 1 : 0, after = std::min(k + 1, last);
-    Eigen::VectorXd rate = Eigen::VectorXd::Zero(theta.size());
-    if (after > before)
-      rate = (sent(after) - sent(before)) / (static_cast<double>(after - before) * log.dt);
+    const Eigen::VectorXd rate = sent_rate(sent, k, last, log.dt);
     Eigen::VectorXd sag = Eigen::VectorXd::Zero(theta.size());
-    if (content == ServoContent::lead_and_sag)
-      for (Eigen::Index j = 0; j < sag.size(); ++j) {
-        const double kp = limits.servo[static_cast<size_t>(j)].kp;
-        if (kp > 0)
-          sag[j] = (target[j] - theta[j] - own_lead[j] * rate[j]) *
-                   own.servo[static_cast<size_t>(j)].kp / kp;
-      }
+    for (Eigen::Index j = 0; j < sag.size(); ++j) {
+      const double kp = limits.servo[static_cast<size_t>(j)].kp;
+      if (kp > 0)
+        sag[j] = (target[j] - theta[j] - own_lead[j] * rate[j]) *
+                 own.servo[static_cast<size_t>(j)].kp / kp;
+    }
     target = theta + lead.cwiseProduct(rate) + sag;
   }
   return table;

@@ -26,6 +26,15 @@ TableServo table_servo(const RobotModel& model, const std::string& profile, Serv
 ReferenceTrajectory table_of_series(const RobotModel& model, const std::string& profile,
                                     const CommandSeries& series, ServoContent content);
 
+/// What a table of a run with its posture or with the lead is made of, taken sample by sample: the
+/// rows have the reference posture in place of the target. The rest is to be filled in.
+void append_posture(const SimulationSample& sample, ReferenceTrajectory& postures);
+
+/// The postures of a run, ahead by the lag of the servos of the profile, as table_of_log() with
+/// `lead` makes them. `about` is the log of the run, whose samples are not needed.
+ReferenceTrajectory table_of_postures(const RobotModel& model, const std::string& profile,
+                                      const SimulationLog& about, ReferenceTrajectory postures);
+
 /// The reference posture of a run. Its rates are differences of neighbouring samples. With the sag
 /// and the profile of the run, these are the targets that the servos received in the run.
 ReferenceTrajectory table_of_log(const RobotModel& model, const std::string& profile,

@@ -149,36 +149,47 @@ std::string repair_json(const RepairResult& result) {
   return dumped(json);
 }
 
-std::string simulation_json(const SimulationLog& log) {
+namespace {
+
+OrderedJson json_of_run(const SimulationLog& log, size_t rows, const std::string& log_hash) {
   const SimulationResult& r = log.result;
   OrderedJson events = OrderedJson::array();
   for (const SimulationEvent& event : log.events)
     events.push_back({{"t_s", event.t}, {"kind", event.kind}, {"text", event.text}});
-  const double duration =
-      log.samples.empty() ? 0 : log.dt * static_cast<double>(log.samples.size() - 1);
-  return dumped({{"controller", log.controller ? name_of(*log.controller) : ""},
-                 {"plant", log.plant},
-                 {"outcome", name_of(r.outcome)},
-                 {"fell_at_s", figure(r.fell_at, r.fell_at >= 0)},
-                 {"duration_s", duration},
-                 {"max_tilt_rad", figure(r.max_tilt)},
-                 {"final_cog_error_m", figure(r.final_cog_error)},
-                 {"final_speed_m_s", figure(r.final_speed)},
-                 {"zmp_tracking_rms_m", figure(r.zmp_tracking_rms)},
-                 {"zmp_amplitude_m", figure(r.zmp_amplitude)},
-                 {"zmp_frequency_Hz", figure(r.zmp_frequency, r.zmp_amplitude > 0)},
-                 {"flight_s", figure(r.flight)},
-                 {"apex_m", figure(r.apex, r.flight > 0)},
-                 {"steps", r.steps},
-                 {"max_joint_speed_ratio", figure(r.max_speed_ratio)},
-                 {"max_torque_ratio", figure(r.max_torque_ratio)},
-                 {"max_penetration_m", figure(r.max_penetration)},
-                 {"max_foot_slip_m", figure(r.max_slip)},
-                 {"max_contact_residual_m_s", figure(r.max_contact_residual)},
-                 {"max_contact_iterations", r.max_contact_iterations},
-                 {"mean_contact_iterations", figure(r.mean_contact_iterations)},
-                 {"events", events},
-                 {"log_hash", log_hash(log)}});
+  const double duration = rows == 0 ? 0 : log.dt * static_cast<double>(rows - 1);
+  return {{"controller", log.controller ? name_of(*log.controller) : ""},
+          {"plant", log.plant},
+          {"outcome", name_of(r.outcome)},
+          {"fell_at_s", figure(r.fell_at, r.fell_at >= 0)},
+          {"duration_s", duration},
+          {"max_tilt_rad", figure(r.max_tilt)},
+          {"final_cog_error_m", figure(r.final_cog_error)},
+          {"final_speed_m_s", figure(r.final_speed)},
+          {"zmp_tracking_rms_m", figure(r.zmp_tracking_rms)},
+          {"zmp_amplitude_m", figure(r.zmp_amplitude)},
+          {"zmp_frequency_Hz", figure(r.zmp_frequency, r.zmp_amplitude > 0)},
+          {"flight_s", figure(r.flight)},
+          {"apex_m", figure(r.apex, r.flight > 0)},
+          {"steps", r.steps},
+          {"max_joint_speed_ratio", figure(r.max_speed_ratio)},
+          {"max_torque_ratio", figure(r.max_torque_ratio)},
+          {"max_penetration_m", figure(r.max_penetration)},
+          {"max_foot_slip_m", figure(r.max_slip)},
+          {"max_contact_residual_m_s", figure(r.max_contact_residual)},
+          {"max_contact_iterations", r.max_contact_iterations},
+          {"mean_contact_iterations", figure(r.mean_contact_iterations)},
+          {"events", events},
+          {"log_hash", log_hash}};
+}
+
+}  // namespace
+
+std::string simulation_json(const SimulationLog& log) {
+  return dumped(json_of_run(log, log.samples.size(), log_hash(log)));
+}
+
+std::string simulation_json(const WrittenLog& log) {
+  return dumped(json_of_run(log.about, log.rows, log.log_hash));
 }
 
 std::string safety_json(const SafetyReport& report) {

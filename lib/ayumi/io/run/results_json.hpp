@@ -5,6 +5,7 @@
 #include <string>
 
 #include "ayumi/check/consistency.hpp"
+#include "ayumi/io/run/written_log.hpp"
 #include "ayumi/limits/table_safety.hpp"
 #include "ayumi/repair/repair.hpp"
 #include "ayumi/sim/simulation_log.hpp"
@@ -25,6 +26,7 @@ std::string repair_json(const RepairResult& result);
 
 /// controller, outcome, fell_at_s, max_tilt_rad, ..., steps, events[], log_hash
 std::string simulation_json(const SimulationLog& log);
+std::string simulation_json(const WrittenLog& log);
 
 /// safe, ramp_s, hold_s, max_step_ratio, worst_joint, worst_at_s, ..., violations[]
 std::string safety_json(const SafetyReport& report);

@@ -59,10 +59,17 @@ OrderedJson summary_of(const RunFolder& run, const std::map<std::string, std::st
     json[kLightKey] = {{"reference", json_of(run.reference_caution)},
                        {"reference_pushed", json_of(run.pushed_caution)}};
   json["logs"] = OrderedJson::object();
+  const auto entry = [](const std::string& name, const SimulationLog& log,
+                        const std::string& hash) -> OrderedJson {
+    return {{"file", log_file_name(name)},
+            {"controller", log.controller ? name_of(*log.controller) : ""},
+            {"log_hash", hash}};
+  };
+  std::map<std::string, OrderedJson> logs;  // in the order of their names
+  for (const auto& [name, log] : run.written) logs[name] = entry(name, log.about, log.log_hash);
   for (const auto& [name, log] : run.logs)
-    json["logs"][name] = {{"file", log_file_name(name)},
-                          {"controller", log.controller ? name_of(*log.controller) : ""},
-                          {"log_hash", log_hash(log)}};
+    if (!run.written.contains(name)) logs[name] = entry(name, log, log_hash(log));
+  for (const auto& [name, log] : logs) json["logs"][name] = log;
   json["files"] = hashes;
   return json;
 }
@@ -147,7 +154,9 @@ void write_run(const fs::path& folder, const RunFolder& run) {
     write_file(folder / name, bytes);
     hashes[name] = sha256(bytes);
   };
-  for (const auto& [name, log] : run.logs) write(log_file_name(name), log_bytes(log));
+  for (const auto& [name, log] : run.written) hashes[log_file_name(name)] = log.file_hash;
+  for (const auto& [name, log] : run.logs)
+    if (!run.written.contains(name)) write(log_file_name(name), log_bytes(log));
   if (run.reference && !run.light)
     write(kReferenceFile, reference_csv(*run.reference, run.reference_caution));
   if (run.pushed && !run.light) write(kPushedFile, reference_csv(*run.pushed, run.pushed_caution));

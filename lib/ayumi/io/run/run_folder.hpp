@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "ayumi/io/run/written_log.hpp"
 #include "ayumi/motion/table_caution.hpp"
 #include "ayumi/sim/simulation_log.hpp"
 
@@ -19,7 +20,9 @@ struct RunFolder {
   Provenance provenance;
   /// Further members of run.json: key and JSON text, in order ("check", check_json(report)).
   std::vector<std::pair<std::string, std::string>> sections;
-  std::map<std::string, SimulationLog> logs;     ///< "open_loop", "closed_loop", "undisturbed"
+  std::map<std::string, SimulationLog> logs;  ///< "open_loop", "closed_loop", "undisturbed"
+  /// Logs whose files are in the folder already, with their samples or without them in `logs`.
+  std::map<std::string, WrittenLog> written = {};
   std::optional<ReferenceTrajectory> reference;  ///< reference.csv, of an undisturbed run
   std::optional<ReferenceTrajectory> pushed;     ///< reference_pushed.csv, of a disturbed run
   TableCaution reference_caution = {}, pushed_caution = {};  ///< heads of these tables

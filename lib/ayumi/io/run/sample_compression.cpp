@@ -305,16 +305,26 @@ std::string compress_samples(std::string rows, size_t columns, const ColumnSourc
   return zstd_frame(std::string_view(bytes).substr(begin - head.size()));
 }
 
+std::vector<std::string_view> sample_frames(std::string_view bytes, size_t count,
+                                            const std::string& file) {
+  std::vector<std::string_view> frames;
+  for (size_t i = 0; i < count; ++i) {
+    const size_t whole = ZSTD_findFrameCompressedSize(bytes.data(), bytes.size());
+    if (ZSTD_isError(whole) != 0)
+      fail(ErrorCode::bad_file,
+           file + ": the file is truncated or damaged, because the samples (zstd) are incomplete");
+    frames.push_back(bytes.substr(0, whole));
+    bytes.remove_prefix(whole);
+  }
+  if (!bytes.empty())
+    fail(ErrorCode::bad_file, file + ": the file is damaged: there are " +
+                                  std::to_string(bytes.size()) + " bytes after the samples");
+  return frames;
+}
+
 std::string decompress_samples(std::string_view bytes, size_t columns, size_t rows,
                                const std::string& file) {
-  const size_t whole = ZSTD_findFrameCompressedSize(bytes.data(), bytes.size());
-  if (ZSTD_isError(whole) != 0)
-    fail(ErrorCode::bad_file,
-         file + ": the file is truncated or damaged, because the samples (zstd) are incomplete");
-  if (whole != bytes.size())
-    fail(ErrorCode::bad_file, file + ": the file is damaged: there are " +
-                                  std::to_string(bytes.size() - whole) +
-                                  " bytes after the samples");
+  sample_frames(bytes, 1, file);
   const auto stop = [&](const std::string& what) {
     fail(ErrorCode::bad_file, file + ": the file is damaged: " + what);
   };

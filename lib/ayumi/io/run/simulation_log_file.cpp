@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <type_traits>
+#include <utility>
 
 #include "ayumi/base/file.hpp"
 #include "ayumi/io/compression.hpp"
@@ -16,7 +17,7 @@
 #include "ayumi/io/run/log_fields.hpp"
 #include "ayumi/io/run/provenance_fields.hpp"
 #include "ayumi/io/run/sample_compression.hpp"
-#include "ayumi/io/run/sha256.hpp"
+#include "ayumi/io/run/sha256_stream.hpp"
 
 namespace ayumi {
 
@@ -26,11 +27,12 @@ static_assert(std::endian::native == std::endian::little, "logs are little-endia
 
 constexpr char kMagic[] = "AYUMILOG";
 constexpr std::uint32_t kPlain = 1;  // Definition: the version with rows as they are
-// Definition: the version with compressed rows. In version 2 no column is predicted from others;
-// it is read like this one.
+// Definition: the version with compressed rows in one block. In version 2 no column is predicted
+// from others; it is read like this one.
 constexpr std::uint32_t kCompressed = 3;
-constexpr size_t kPrefix = 16;   // magic, version, header length
-constexpr size_t kChecksum = 4;  // of the header, where the rows are compressed
+constexpr std::uint32_t kInBlocks = 4;  // Definition: the version with several blocks
+constexpr size_t kPrefix = 16;          // magic, version, header length
+constexpr size_t kChecksum = 4;         // of the header, where the rows are compressed
 // [bytes] Chosen: the samples of half an hour at 1 kHz have less.
 constexpr size_t kMostBytes = size_t{4} << 30;
 constexpr const char* kOutcomes[] = {"stands", "unsettled", "fell"};
@@ -131,7 +133,7 @@ SimulationResult result_of(const JsonNode& node) {
   return result;
 }
 
-std::string header_of(const SimulationLog& log, const std::string& command_line,
+std::string header_of(const SimulationLog& log, size_t rows, const std::string& command_line,
                       std::uint32_t version_of_file) {
   OrderedJson header = {{"format", "ayumi.log/" + std::to_string(version_of_file)}};
   header.update(about_log(log));
@@ -150,7 +152,8 @@ std::string header_of(const SimulationLog& log, const std::string& command_line,
   header["result"] = json_of(log.result);
   header["joints"] = log.joints;
   header["columns"] = columns_of(log.joints);
-  header["rows"] = log.samples.size();
+  header["rows"] = rows;
+  if (version_of_file == kInBlocks) header["block_rows"] = kLogBlockRows;
   return header.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
 }
 
@@ -179,14 +182,15 @@ void read_header(const JsonNode& header, SimulationLog& log) {
 }
 
 // Whatever reads a log may trust its numbers.
-void require_finite(std::string_view values, const std::vector<std::string>& columns,
+void require_finite(std::string_view values, size_t first_row,
+                    const std::vector<std::string>& columns,
                     const std::function<void(const std::string&)>& stop) {
   for (size_t i = 0; i < values.size() / sizeof(double); ++i) {
     double value = 0;
     std::memcpy(&value, values.data() + i * sizeof value, sizeof value);
     if (!std::isfinite(value))
-      stop("the file is damaged: row " + std::to_string(i / columns.size()) + ", column '" +
-           columns[i % columns.size()] + "' is not a finite number");
+      stop("the file is damaged: row " + std::to_string(first_row + i / columns.size()) +
+           ", column '" + columns[i % columns.size()] + "' is not a finite number");
   }
 }
 
@@ -200,13 +204,6 @@ void append_word(std::string& bytes, std::uint32_t word) {
   bytes.append(reinterpret_cast<const char*>(&word), sizeof word);
 }
 
-std::string rows_of(const SimulationLog& log) {
-  std::string rows;
-  rows.reserve(log.samples.size() * columns_of(log.joints).size() * sizeof(double));
-  for (const SimulationSample& sample : log.samples) append_values(sample, log.joints.size(), rows);
-  return rows;
-}
-
 std::string prefix_of(std::uint32_t version_of_file, const std::string& header) {
   std::string bytes = kMagic;
   append_word(bytes, version_of_file);
@@ -214,23 +211,85 @@ std::string prefix_of(std::uint32_t version_of_file, const std::string& header) 
   return bytes;
 }
 
-std::string plain_bytes(const SimulationLog& log, const std::string& command_line) {
-  const std::string header = header_of(log, command_line, kPlain);
-  return prefix_of(kPlain, header) + header + rows_of(log);
+std::string plain_head(const SimulationLog& log, size_t rows, const std::string& command_line) {
+  const std::string header = header_of(log, rows, command_line, kPlain);
+  return prefix_of(kPlain, header) + header;
+}
+
+// Rows that are converted at a time where a log is read or hashed. Chosen: they stay in the cache.
+constexpr size_t kRowsAtATime = 64;
+
+// The rows of a log of version 1, some at a time.
+void for_rows_of(const SimulationLog& log, const std::function<void(const std::string&)>& visit) {
+  std::string rows;
+  for (size_t k = 0; k < log.samples.size(); ++k) {
+    append_values(log.samples[k], log.joints.size(), rows);
+    if ((k + 1) % kRowsAtATime != 0 && k + 1 < log.samples.size()) continue;
+    visit(rows);
+    rows.clear();
+  }
+}
+
+// Appends the rows, which have been read.
+void append_samples(std::string_view values, size_t joints, size_t rows,
+                    std::vector<SimulationSample>& samples) {
+  const char* at = values.data();
+  const size_t before = samples.size();
+  samples.resize(before + rows);
+  for (size_t k = before; k < samples.size(); ++k)
+    for_each_field(samples[k], TakeValues(joints, at));
 }
 
 }  // namespace
 
-std::string log_bytes(const SimulationLog& log) {
-  const std::string header = header_of(log, log.provenance.command_line, kCompressed);
-  std::string bytes = prefix_of(kCompressed, header);
+size_t log_columns(const std::vector<std::string>& joints) { return columns_of(joints).size(); }
+
+LogBlocks::LogBlocks(const std::vector<std::string>& joints, Write write)
+    : joints_(joints.size()),
+      columns_(log_columns(joints)),
+      sources_(log_sources(joints)),
+      write_(std::move(write)) {}
+
+void LogBlocks::add(const SimulationSample& sample) {
+  // A further block begins only where it has a row: the last one is not empty.
+  if (rows_in_block_ == kLogBlockRows) write_block();
+  if (block_.empty()) block_.reserve(kLogBlockRows * columns_ * sizeof(double));
+  append_values(sample, joints_, block_);
+  ++rows_;
+  ++rows_in_block_;
+}
+
+void LogBlocks::finish() { write_block(); }
+
+void LogBlocks::write_block() {
+  const size_t rows = std::exchange(rows_in_block_, 0);
+  write_(compress_samples(std::exchange(block_, {}), columns_, sources_), rows);
+}
+
+std::string log_head(const SimulationLog& about, size_t rows) {
+  const std::uint32_t version_of_file = rows > kLogBlockRows ? kInBlocks : kCompressed;
+  const std::string header = header_of(about, rows, about.provenance.command_line, version_of_file);
+  std::string bytes = prefix_of(version_of_file, header);
   append_word(bytes, crc32_of(header));
-  return bytes + header +
-         compress_samples(rows_of(log), columns_of(log.joints).size(), log_sources(log.joints));
+  return bytes + header;
+}
+
+std::string hashed_log_head(const SimulationLog& about, size_t rows) {
+  return plain_head(about, rows, "");
+}
+
+std::string log_bytes(const SimulationLog& log) {
+  std::string bytes = log_head(log, log.samples.size());
+  LogBlocks blocks(log.joints, [&](const std::string& block, size_t) { bytes += block; });
+  for (const SimulationSample& sample : log.samples) blocks.add(sample);
+  blocks.finish();
+  return bytes;
 }
 
 std::string plain_log_bytes(const SimulationLog& log) {
-  return plain_bytes(log, log.provenance.command_line);
+  std::string bytes = plain_head(log, log.samples.size(), log.provenance.command_line);
+  for_rows_of(log, [&](const std::string& rows) { bytes += rows; });
+  return bytes;
 }
 
 SimulationLog parse_log(const std::string& bytes, const std::string& file) {
@@ -241,9 +300,9 @@ SimulationLog parse_log(const std::string& bytes, const std::string& file) {
   if (bytes.size() < kPrefix || bytes.compare(0, 8, kMagic) != 0)
     stop("this is not a simulation log; name a run folder or one of its .bin files");
   const std::uint32_t version_of_file = word_at(bytes, 8);
-  if (version_of_file < kPlain || version_of_file > kCompressed)
+  if (version_of_file < kPlain || version_of_file > kInBlocks)
     stop("log version " + std::to_string(version_of_file) + " cannot be read; this " +
-         "version of Ayumi reads " + std::to_string(kPlain) + " to " + std::to_string(kCompressed));
+         "version of Ayumi reads " + std::to_string(kPlain) + " to " + std::to_string(kInBlocks));
   const bool is_compressed = version_of_file != kPlain;
   const size_t begin = kPrefix + (is_compressed ? kChecksum : 0);
   const size_t length = word_at(bytes, 12);
@@ -266,22 +325,32 @@ SimulationLog parse_log(const std::string& bytes, const std::string& file) {
   if (rows > kMostBytes / row_bytes)
     header.at("rows").complain("this is more than a log may have (" +
                                std::to_string(kMostBytes / row_bytes) + ")");
-  std::string_view values = std::string_view(bytes).substr(begin + length);
-  std::string decompressed;
-  if (is_compressed) {
-    decompressed = decompress_samples(values, columns.size(), rows, file);
-    values = decompressed;
+  const std::string_view values = std::string_view(bytes).substr(begin + length);
+  const auto take = [&](std::string_view block, size_t count) {
+    require_finite(block, log.samples.size(), columns, stop);
+    append_samples(block, log.joints.size(), count, log.samples);
+  };
+  if (!is_compressed) {
+    if (rows * row_bytes != values.size())
+      stop(std::string("the file is ") +
+           (rows * row_bytes > values.size() ? "truncated" : "damaged") + ": it has " +
+           std::to_string(values.size()) + " bytes of samples, but the header announces " +
+           std::to_string(rows) + " rows of " + std::to_string(row_bytes) + " bytes");
+    take(values, rows);
+    return log;
   }
-  if (rows * row_bytes != values.size())
-    stop(std::string("the file is ") +
-         (rows * row_bytes > values.size() ? "truncated" : "damaged") + ": it has " +
-         std::to_string(values.size()) + " bytes of samples, but the header announces " +
-         std::to_string(rows) + " rows of " + std::to_string(row_bytes) + " bytes");
-  require_finite(values, columns, stop);
-  const char* at = values.data();
-  log.samples.resize(rows);
-  for (SimulationSample& sample : log.samples)
-    for_each_field(sample, TakeValues(log.joints.size(), at));
+  size_t block_rows = rows;
+  if (version_of_file == kInBlocks) {
+    const JsonNode stated = header.at("block_rows");
+    block_rows = static_cast<size_t>(stated.unsigned_integer());
+    if (block_rows == 0) stated.complain("a block must have at least 1 row");
+  }
+  const size_t blocks = rows <= block_rows ? 1 : (rows + block_rows - 1) / block_rows;
+  for (const std::string_view frame : sample_frames(values, blocks, file)) {
+    const size_t count = std::min(block_rows, rows - log.samples.size());
+    log.samples.reserve(std::min(rows, 2 * (log.samples.size() + count)));
+    take(decompress_samples(frame, columns.size(), count, file), count);
+  }
   return log;
 }
 
@@ -303,6 +372,11 @@ void write_log(const std::filesystem::path& path, const SimulationLog& log) {
   write_file(path, log_bytes(log));
 }
 
-std::string log_hash(const SimulationLog& log) { return sha256(plain_bytes(log, "")); }
+std::string log_hash(const SimulationLog& log) {
+  Sha256Stream hash;
+  hash.add(hashed_log_head(log, log.samples.size()));
+  for_rows_of(log, [&](const std::string& rows) { hash.add(rows); });
+  return hash.digits();
+}
 
 }  // namespace ayumi

@@ -1,15 +1,53 @@
 #pragma once
-// SimulationLog as one binary file ("ayumi.log/2"): 8 bytes "AYUMILOG", a 32-bit version, a 32-bit
+// SimulationLog as one binary file ("ayumi.log/3"): 8 bytes "AYUMILOG", a 32-bit version, a 32-bit
 // header length and CRC-32, the header as JSON text (columns with units, joints, events, result,
 // provenance), then rows of 64-bit floats as compress_samples() writes them, all little-endian.
-// Every number survives bit for bit. Version 1 has no CRC, and its rows are not compressed.
+// Every number survives bit for bit. A log of more than kLogBlockRows rows ("ayumi.log/4") has them
+// in blocks of that many, one after the other, so that it can be written while it grows. Version 1
+// has no CRC, and its rows are not compressed.
 
 #include <filesystem>
+#include <functional>
 #include <string>
+#include <vector>
 
 #include "ayumi/sim/simulation_log.hpp"
 
 namespace ayumi {
+
+/// Rows of a block. Chosen: the longest log of a bundled pattern (20.5 s at 1 kHz) is one block. To
+/// write a block takes about three times its rows before compression, 250 MB for HOAP-1. At half,
+/// that is half; at twice, that is twice. A log of 80 s is 0.7 % larger than in one block.
+inline constexpr size_t kLogBlockRows = size_t{1} << 15;
+
+/// Numbers in a row of a log with these joints.
+size_t log_columns(const std::vector<std::string>& joints);
+
+/// The samples of a log as they stand in its file, block by block.
+class LogBlocks {
+ public:
+  /// Receives the bytes of a block and the number of its rows.
+  using Write = std::function<void(const std::string& bytes, size_t rows)>;
+  LogBlocks(const std::vector<std::string>& joints, Write write);
+  /// Throws Error(internal) when a joint vector has another size than the joints.
+  void add(const SimulationSample& sample);
+  /// Writes what is left; nothing may be added after it. A log without samples has one empty block.
+  void finish();
+  size_t rows() const { return rows_; }
+
+ private:
+  void write_block();
+  size_t joints_, columns_;
+  std::vector<std::vector<size_t>> sources_;
+  Write write_;
+  std::string block_;  // rows that were not written yet
+  size_t rows_ = 0, rows_in_block_ = 0;
+};
+
+/// The file without its samples, of which there are `rows`; those of `about` do not count.
+std::string log_head(const SimulationLog& about, size_t rows);
+/// The same of the file whose SHA-256 is log_hash().
+std::string hashed_log_head(const SimulationLog& about, size_t rows);
 
 /// The bytes of the file. Throws Error(internal) when a sample's joint vectors have another size
 /// than `joints`.
@@ -18,7 +56,7 @@ std::string log_bytes(const SimulationLog& log);
 /// The same log as a file of version 1.
 std::string plain_log_bytes(const SimulationLog& log);
 
-/// Reads both versions. Throws Error(bad_file) naming the file: not a log, another version,
+/// Reads all versions. Throws Error(bad_file) naming the file: not a log, another version,
 /// damaged, truncated.
 SimulationLog parse_log(const std::string& bytes, const std::string& file);
 /// Whether the file is there and begins as a log does.

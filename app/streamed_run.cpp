@@ -1,0 +1,76 @@
+#include "streamed_run.hpp"
+
+#include <chrono>
+#include <optional>
+#include <utility>
+
+#include "ayumi/io/run/log_writer.hpp"
+#include "ayumi/task/servo_table.hpp"
+#include "ayumi/task/streamed_simulation.hpp"
+
+namespace ayumi::app {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Where files without a name may be.
+std::filesystem::path scratch_folder() {
+  std::error_code none;
+  const std::filesystem::path folder = std::filesystem::temp_directory_path(none);
+  return none ? std::filesystem::path(".") : folder;
+}
+
+Eigen::MatrixXd matrix_of(const std::vector<double>& rows, size_t columns) {
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const auto width = static_cast<Eigen::Index>(columns);
+  const auto height = width == 0 ? 0 : static_cast<Eigen::Index>(rows.size()) / width;
+  return Eigen::Map<const Rows>(rows.data(), height, width);
+}
+
+}  // namespace
+
+StreamedRun simulate_streamed(const Context& context, const Task& input,
+                              const SimulateOptions& options, const std::filesystem::path& file,
+                              const StreamedParts& parts) {
+  const std::vector<std::string> joints = input.robot.dof_names();
+  std::optional<LogWriter> writer;
+  std::optional<LogHash> hash;
+  if (file.empty())
+    hash.emplace(scratch_folder(), joints.size());
+  else
+    writer.emplace(file.parent_path(), joints);
+  StreamedRun run;
+  std::vector<double> torque;
+  Clock::duration writing = Clock::duration::zero();
+  const auto take = [&](const SimulationSample& sample) {
+    if (parts.postures) append_posture(sample, run.postures);
+    if (parts.torque) torque.insert(torque.end(), sample.torque.begin(), sample.torque.end());
+    const Clock::time_point begin = Clock::now();
+    if (writer)
+      writer->add(sample);
+    else
+      hash->add(sample);
+    writing += Clock::now() - begin;
+  };
+  const Clock::time_point begin = Clock::now();
+  SimulationLog about =
+      ayumi::simulate_streamed(input, options, take, context.progress(), context.command_line);
+  run.wall = std::chrono::duration<double>(Clock::now() - begin - writing).count();
+  about.events.insert(about.events.begin(), parts.first_events.begin(), parts.first_events.end());
+  if (parts.torque) run.torque = matrix_of(torque, joints.size());
+  torque = {};
+  run.log = writer ? writer->finish(std::move(about), file, context.progress())
+                   : hash->finish(std::move(about));
+  return run;
+}
+
+SimulationLog with_samples(const WrittenLog& log, const std::filesystem::path& file) {
+  SimulationLog whole = log.about;
+  whole.samples = read_log(file).samples;
+  return whole;
+}
+
+std::string outcome_text(const WrittenLog& log) { return outcome_text(log.about, log.rows); }
+
+}  // namespace ayumi::app

@@ -1,0 +1,61 @@
+#pragma once
+// A log that is written while the simulation runs, so that its samples need not be held in memory.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ayumi/base/progress.hpp"
+#include "ayumi/base/scratch_file.hpp"
+#include "ayumi/io/run/simulation_log_file.hpp"
+#include "ayumi/io/run/written_log.hpp"
+
+namespace ayumi {
+
+/// Writes one log. The header, which stands at the beginning of the file, is known at the end only.
+/// So the blocks of samples first go to a scratch file. The file appears when it is complete.
+class LogWriter {
+ public:
+  /// The scratch file is made in `folder`, which is that of the log. Throws as ScratchFile.
+  LogWriter(const std::filesystem::path& folder, const std::vector<std::string>& joints);
+
+  /// Throws Error(bad_file) when the disk is full.
+  void add(const SimulationSample& sample) { blocks_.add(sample); }
+
+  /// Writes the file `path`; nothing may be added after it. The samples of `about` do not count.
+  /// The bytes are those of write_log() with all samples. Throws as write_file_with(), and
+  /// Interrupted.
+  WrittenLog finish(SimulationLog about, const std::filesystem::path& path,
+                    const Progress& progress = {});
+
+ private:
+  struct Block {
+    size_t begin, size, rows;  // bytes in the scratch file, rows
+  };
+  ScratchFile scratch_;
+  std::vector<Block> written_;
+  LogBlocks blocks_;
+  size_t columns_;
+};
+
+/// The hash of a log that is not kept. Its rows are in a scratch file, because they are hashed
+/// after the header. The first block of them stays in memory: short logs need no file.
+class LogHash {
+ public:
+  /// `folder` is where the scratch file is made when it is needed.
+  LogHash(std::filesystem::path folder, size_t joints);
+  /// Throws as ScratchFile.
+  void add(const SimulationSample& sample);
+  /// Nothing may be added after it. The samples of `about` do not count.
+  WrittenLog finish(SimulationLog about);
+
+ private:
+  std::filesystem::path folder_;
+  size_t joints_;
+  std::optional<ScratchFile> scratch_;
+  std::string rows_;  // that are not in the scratch file
+  size_t count_ = 0;
+};
+
+}  // namespace ayumi

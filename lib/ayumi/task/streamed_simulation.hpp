@@ -1,0 +1,16 @@
+#pragma once
+// The simulation of a task whose samples are not held in memory.
+
+#include <string>
+
+#include "ayumi/sim/simulator.hpp"
+#include "ayumi/task/task.hpp"
+
+namespace ayumi {
+
+/// As simulate() of a task, but each sample goes to `sink`, and the log has none.
+SimulationLog simulate_streamed(const Task& task, const SimulateOptions& options,
+                                const Simulator::SampleSink& sink, const Progress& progress = {},
+                                const std::string& command_line = "");
+
+}  // namespace ayumi
