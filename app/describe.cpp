@@ -200,7 +200,9 @@ std::string bash_completion(const CLI::App& app) {
          "  if [[ -n $kind && $kind != files && $word != -* ]]; then\n"
          "    names=$(ayumi --names $kind \"${COMP_WORDS[@]:1:COMP_CWORD-1}\" 2>/dev/null)\n"
          "    mapfile -t COMPREPLY < <(compgen -W \"$names\" -- \"$word\")\n"
-         "    [[ $kind == robots* || $kind == equations ]] && mapfile -t -O ${#COMPREPLY[@]} "
+         "    [[ $kind == robots || $kind == equations || ( $kind == robots,* && $names == "
+         "\"$(ayumi "
+         "--names robots 2>/dev/null)\" ) ]] && mapfile -t -O ${#COMPREPLY[@]} "
          "COMPREPLY < <(compgen -f -- "
          "\"$word\")\n"
          "  elif [[ $word == -* ]]; then\n"
@@ -263,7 +265,8 @@ std::string zsh_completion(const CLI::App& app) {
       "  local -a known\n"
       "  known=(${(f)\"$(ayumi --names $1 ${words[2,CURRENT-1]} 2>/dev/null)\"})\n"
       "  compadd -a known\n"
-      "  [[ $1 == robots* || $1 == equations ]] && _files\n"
+      "  [[ $1 == robots || $1 == equations || ( $1 == robots,* && \"${(F)known}\" == \"$(ayumi "
+      "--names robots 2>/dev/null)\" ) ]] && _files\n"
       "}\n"
       "# The variable path of zsh is the search path of programs.\n"
       "_ayumi() {\n  local command= word\n  local -a names\n"
@@ -294,7 +297,8 @@ std::string fish_names(const std::string& kind) {
          " (commandline -opc)[2..] 2>/dev/null | string replace -r \\$ \\t)'";
 }
 
-// Robots, patterns and runs are also files.
+// Robots, patterns and runs are also files; what belongs to a robot that is named before it is
+// none.
 bool may_be_file(const std::string& kind) {
   return kind.empty() || kind.starts_with("robots") || kind == "equations";
 }
@@ -343,8 +347,13 @@ std::string fish_completion(const CLI::App& app) {
     if (level.words == "help")
       text += "complete -c ayumi -f -n '" + within + "' -a '" + names_below(app) + "'\n";
     text += fish_options(*level.app, " -n '" + within + "'");
-    if (const std::string kind = word_kinds(*level.app); !kind.empty())
-      text += "complete -c ayumi -n '" + within + "'" + fish_names(kind) + "\n";
+    const std::string kind = word_kinds(*level.app);
+    if (kind.empty()) continue;
+    text += "complete -c ayumi -n '" + within + "'" + fish_names(kind) + "\n";
+    if (kind.starts_with("robots,"))
+      text +=
+          "complete -c ayumi -f -n '" + within + "; and test \"$(ayumi --names " + kind +
+          " (commandline -opc)[2..] 2>/dev/null)\" != \"$(ayumi --names robots 2>/dev/null)\"'\n";
   }
   return text;
 }

@@ -120,6 +120,8 @@ const std::vector<Completed> kCompleted = {
     {"ayumi edit mir", "mirror", "loop"},
     {"ayumi help rep", "repair", "check"},
     {"ayumi posture draw --robot huma", "humanoid30", "hoap1"},
+    {"ayumi posture draw hoap1 ", "home", "w.json"},
+    {"ayumi posture draw ", "hoap1", "home"},
     {"ayumi check w", "w.json", "other.csv"}};
 
 /// The folder with w.json, a walk, and the completion for a shell.
@@ -195,13 +197,20 @@ TEST(Names, CompleteInBash) {
   const Folder folder;
   write(folder / "complete.sh", described("bash") +
                                     "COMP_WORDS=(ayumi repair w.json --lock l_k); COMP_CWORD=4\n"
-                                    "_ayumi; echo \"${COMPREPLY[@]}\"\n");
+                                    "_ayumi; echo \"${COMPREPLY[@]}\"\n"
+                                    // A robot may be a file, its postures are none.
+                                    "touch a.json; for robot in '' hoap1; do\n"
+                                    "COMP_WORDS=(ayumi posture draw $robot ''); COMPREPLY=()\n"
+                                    "COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _ayumi\n"
+                                    "[[ \" ${COMPREPLY[*]} \" == *' a.json '* ]] && echo file\n"
+                                    "echo ${COMPREPLY[0]}; done\n");
   const fs::path program = program_under_test();
-  const std::string command = "PATH=" + program.parent_path().string() + ":$PATH bash '" +
+  const std::string command = "cd '" + folder.path().string() +
+                              "' && PATH=" + program.parent_path().string() + ":$PATH bash '" +
                               (folder / "complete.sh").string() + "' > '" +
                               (folder / "out").string() + "'";
   ASSERT_EQ(std::system(command.c_str()), 0);
-  EXPECT_EQ(contents(folder / "out"), "l_knee\n");
+  EXPECT_EQ(contents(folder / "out"), "l_knee\nfile\nhoap1\nhome\n");
 }
 
 // OSMesa brings a compiler, which takes longer to load than all other libraries together.
