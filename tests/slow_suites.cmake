@@ -8,7 +8,8 @@ set(ayumi_slow_suites
   cli.Replay cli.RobotPath cli.Run cli.Selftest cli.Stopping cli.SweepCommand cli.SweepOnSlurm
   cli.TuneCommand control.FootholdShift docs.CommandsOfPage identify.Compare
   identify.ExciteBacklash identify.ExciteRoundTrip identify.Identify identify.IdentifyHoap3
-  identify.IdentifyIntervals io.UnreadableMotions model.Diagnose plan.Sample
+  identify.IdentifyIntervals io.LogInBlocks io.LogWriter io.UnreadableMotions model.Diagnose
+  plan.Sample
   plant_mujoco.MujocoDisturbance plant_mujoco.MujocoGround plant_mujoco.MujocoJump
   plant_mujoco.MujocoPlant plant_mujoco.MujocoWalk plant_mujoco.PushAgreement
   plant_mujoco.RepairedWalk plant_mujoco.ServoAgreement render.Batch render.Clip render.Commands

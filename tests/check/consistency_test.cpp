@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <set>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/demand/contact_plan.hpp"
+#include "ayumi/demand/motion_demand.hpp"
 #include "ayumi/io/run/results_json.hpp"
 #include "tests/support/check_report.hpp"
 #include "tests/support/faults.hpp"
@@ -150,6 +152,34 @@ TEST(Consistency, MotorTooWeak) {
   EXPECT_EQ(find(r, "joint_torque").where, "l_knee");
   EXPECT_EQ(find(r, "continuous_torque").where, "r_knee");
   EXPECT_EQ(find(r, "continuous_torque").severity, Severity::warning);
+}
+
+// The sums of squares are kept for one window only. Second route: each window summed by itself.
+TEST(Consistency, MeanTorqueOfAWindowShorterThanTheMotion) {
+  RobotDescription d = limited_biped_description();
+  d.profiles[0].thermal_window = 0.3;
+  const RobotModel model(d);
+  const CommandSeries series = good_walk();
+  const ConsistencyReport r = check_consistency(model, series);
+  const ContactPlan plan = contact_plan(series);
+  MotionDynamics motion(model, model.limits(), series, plan);
+  const int count = static_cast<int>(series.samples.size());
+  const int window = static_cast<int>(std::lround(0.3 / series.dt));
+  ASSERT_GT(count, 3 * window);
+  Eigen::MatrixXd given = Eigen::MatrixXd::Zero(model.dof_count(), count);
+  for (int k = 0; k < count; ++k)
+    if (!at_flight_edge(series, k))
+      given.col(k) = motion.at(k).torque.cwiseAbs().cwiseMin(model.limits().peak_torque);
+  double lasting = 0, at = 0;
+  for (int i = 0; i < model.dof_count(); ++i)
+    for (int begin = 0; begin + window <= count; ++begin) {
+      const double rms = std::sqrt(given.row(i).segment(begin, window).squaredNorm() / window);
+      const double share = rms / model.limits().continuous_torque[i];
+      if (share > lasting) at = (begin + window - 1) * series.dt;
+      lasting = std::max(lasting, share);
+    }
+  EXPECT_NEAR(r.summary[FindingKind::continuous_torque], lasting, 1e-9);
+  EXPECT_NEAR(r.summary_at[FindingKind::continuous_torque].at, at, 2 * series.dt);
 }
 
 TEST(Consistency, StanceFootSlips) {

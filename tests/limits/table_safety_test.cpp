@@ -2,9 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "ayumi/base/error.hpp"
 #include "tests/support/bus_robot.hpp"
 #include "tests/support/degree.hpp"
+#include "tests/support/error_message.hpp"
+#include "tests/support/random_robot.hpp"
 
 namespace ayumi {
 namespace {
@@ -49,6 +54,65 @@ TEST(ExportSafety, RampGrowsWithTheDistance) {
   EXPECT_GT(safe.report.ramp, 1.875 * 70 * kDegree / 2.38 - 1e-9);
   EXPECT_LE(safe.report.max_step_ratio, 0.55);
   EXPECT_EQ(safe.report.worst_joint, "a");
+}
+
+// The report on the targets alone is that on the table with ramp and hold, which a plain loop over
+// its rows confirms.
+TEST(ExportSafety, TargetsAloneGiveTheReportOfTheirTable) {
+  const RobotModel robot = test::bus_robot();
+  test::Random random(5);
+  ReferenceTrajectory table = still(40, {0, 0, 0});
+  table.joints = {"c", "a", "b"};
+  for (ReferenceRow& row : table.rows) row.theta = random.vector(3, 1.7);
+  TargetRows targets;
+  targets.dt = table.dt;
+  targets.joints = table.joints;
+  targets.count = table.rows.size();
+  targets.row = [&](size_t k, Eigen::VectorXd& theta) { theta = table.rows[k].theta; };
+  const SafetyReport alone = safety_of_targets(robot, targets, {});
+  const SafeTable safe = make_safe(robot, table, {});
+  EXPECT_EQ(alone.safe, safe.report.safe);
+  EXPECT_EQ(alone.ramp, safe.report.ramp);
+  EXPECT_EQ(alone.worst_joint, safe.report.worst_joint);
+  EXPECT_EQ(alone.worst_at, safe.report.worst_at);
+  EXPECT_EQ(alone.max_step_ratio, safe.report.max_step_ratio);
+  EXPECT_EQ(alone.end_speed, safe.report.end_speed);
+  EXPECT_EQ(alone.violations.size(), safe.report.violations.size());
+  EXPECT_EQ(alone.rows.size(), safe.report.rows.size());
+  const Eigen::MatrixXi counts =
+      encoder_counts(robot, safe.table, count_step_limits(robot, table.dt, {}));
+  const Eigen::VectorXd largest = count_step_limits(robot, table.dt, {});
+  double ratio = 0, margin = 1e9;
+  size_t steps = 0;
+  for (Eigen::Index k = 0; k < counts.rows(); ++k)
+    for (int dof = 0; dof < robot.dof_count(); ++dof) {
+      const Dof& joint = robot.dofs()[static_cast<size_t>(dof)];
+      const double theta = safe.table.rows[static_cast<size_t>(k)].theta[(dof + 1) % 3];
+      if (joint.limited) margin = std::min({margin, theta - joint.lower, joint.upper - theta});
+      if (k == 0 || !std::isfinite(largest[dof])) continue;
+      const double step = std::abs(counts(k, dof) - counts(k - 1, dof)) / largest[dof];
+      ratio = std::max(ratio, step);
+      steps += step > 1 ? 1 : 0;
+    }
+  EXPECT_EQ(alone.max_step_ratio, ratio);
+  EXPECT_DOUBLE_EQ(alone.min_limit_margin + robot.description().soft_limit_margin, margin);
+  const auto is_step = [](const SafetyViolation& v) { return v.kind == "step"; };
+  EXPECT_EQ(std::count_if(alone.rows.begin(), alone.rows.end(), is_step),
+            static_cast<std::ptrdiff_t>(steps));
+  EXPECT_GT(steps, 10u);
+}
+
+TEST(ExportSafety, ARampThatIsTooLongIsRefused) {
+  const RobotModel robot = test::bus_robot();
+  const std::string message = test::error_message(
+      [&] {
+        make_safe(robot, still(2, {1e9, 0, 0}), {});
+      },
+      ErrorCode::bad_pattern);
+  EXPECT_NE(message.find("begins so far from posture 'home' that the ramp to its first row would "
+                         "take "),
+            std::string::npos)
+      << message;
 }
 
 TEST(ExportSafety, FindsTheStepThatIsTooLarge) {

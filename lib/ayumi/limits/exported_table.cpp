@@ -45,12 +45,20 @@ void make_table(JudgedMotion& motion) {
   options.beyond_range = least(FindingKind::table_position, kExport.beyond_range);
   options.rest_speed = least(FindingKind::table_rest, kExport.rest_speed);
   const std::optional<ReferenceTrajectory>& kept = motion.series.kept;
-  SafeTable safe =
-      kept ? make_safe(motion.model, *kept, as_it_is(options))
-           : make_safe(motion.model,
-                       leading_targets(motion.model, motion.series, velocity_lead(motion.limits)),
-                       options);
-  motion.safety = std::move(safe.report);
+  // The table is as long as the motion, so it is judged without being made.
+  const Eigen::VectorXd lead = velocity_lead(motion.limits);
+  TargetRows targets;
+  if (kept) {
+    targets = {kept->dt, kept->joints, kept->rows.size(),
+               [&](size_t k, Eigen::VectorXd& theta) { theta = kept->rows[k].theta; }};
+    options = as_it_is(options);
+  } else {
+    targets = {motion.series.dt, motion.model.dof_names(), motion.series.samples.size(),
+               [&](size_t k, Eigen::VectorXd& theta) {
+                 theta = leading_target(motion.series.samples[k], lead);
+               }};
+  }
+  motion.safety = safety_of_targets(motion.model, targets, options);
 }
 
 void judge_table(JudgedMotion& motion) {

@@ -20,34 +20,47 @@ constexpr double kWholeContinuousTorque = 1;
 // from half to twice (constants.md).
 constexpr int kThermalLooks = 100;
 
-void note_square_sum(JudgedMotion& motion, const JudgedSample& s) {
-  for (int i = 0; i < motion.model.dof_count(); ++i) {
-    const double torque = s.known ? s.demand.torque[i] : 0;
-    const double given = std::min(std::abs(torque), motion.limits.peak_torque[i]);
-    motion.square_sum(i, s.k + 1) = motion.square_sum(i, s.k) + given * given;
-  }
-}
-
 int thermal_samples(const JudgedMotion& motion) {
   return static_cast<int>(std::lround(motion.limits.thermal_window / motion.series.dt));
 }
 
-void judge_heat(JudgedMotion& motion) {
+// Judges the mean over the window that ends with this sample.
+void judge_heat_at(JudgedMotion& motion, const JudgedSample& s) {
   const int whole = thermal_samples(motion);
   const int window = std::clamp(whole, 1, motion.count());
   const Severity severity = motion.count() >= whole ? Severity::error : Severity::warning;
   const double most = motion.tolerance(FindingKind::continuous_torque);
+  // Sums of the samples before this one, of all with it, and of those before the window: columns
+  // of a ring.
+  const int columns = window + 1, end = s.k + 1;
+  Heat& heat = motion.heat;
+  if (heat.square_sum.size() == 0) {
+    heat.square_sum.setZero(motion.model.dof_count(), columns);
+    heat.largest.assign(static_cast<size_t>(motion.model.dof_count()), {});
+  }
   for (int i = 0; i < motion.model.dof_count(); ++i) {
+    const double torque = s.known ? s.demand.torque[i] : 0;
+    const double given = std::min(std::abs(torque), motion.limits.peak_torque[i]);
+    const double sum = heat.square_sum(i, s.k % columns) + given * given;
+    heat.square_sum(i, end % columns) = sum;
     const double limit = motion.limits.continuous_torque[i];
-    if (!std::isfinite(limit)) continue;
-    for (int end = window; end <= motion.count(); ++end) {
-      const double mean = (motion.square_sum(i, end) - motion.square_sum(i, end - window)) / window;
-      const double rms = std::sqrt(std::max(0.0, mean));
-      motion.raise(FindingKind::continuous_torque, rms / limit, end - 1, i);
-      if (rms > most * limit)
-        motion.add(FindingKind::continuous_torque, i, end - 1, rms, most * limit, rms / limit, 0,
-                   severity);
-    }
+    if (!std::isfinite(limit) || end < window) continue;
+    const double mean = (sum - heat.square_sum(i, (end - window) % columns)) / window;
+    const double rms = std::sqrt(std::max(0.0, mean));
+    Heat::Largest& largest = heat.largest[static_cast<size_t>(i)];
+    if (rms / limit > largest.share) largest = {rms / limit, s.k};
+    if (rms > most * limit)
+      motion.add(FindingKind::continuous_torque, i, s.k, rms, most * limit, rms / limit, 0,
+                 severity);
+  }
+}
+
+// Of equal figures that of the first joint counts.
+void note_heat(JudgedMotion& motion) {
+  for (size_t i = 0; i < motion.heat.largest.size(); ++i) {
+    const auto& [share, sample] = motion.heat.largest[i];
+    if (sample >= 0)
+      motion.raise(FindingKind::continuous_torque, share, sample, static_cast<int>(i));
   }
 }
 
@@ -105,8 +118,8 @@ const Limit& heat_limit() {
                     .advice = heat_advice,
                     .infeasibility = heat_infeasibility,
                     .holds_at = heat_holds}},
-      .judge_sample = note_square_sum,
-      .judge_motion = judge_heat};
+      .judge_sample = judge_heat_at,
+      .judge_motion = note_heat};
   return limit;
 }
 

@@ -24,6 +24,17 @@ inline constexpr double kRounding = 1e-7;
 /// not 2 error joint_speed.
 inline constexpr double kWindowGap = 0.020;
 
+/// What the limit of the heat of motors keeps from sample to sample.
+struct Heat {
+  struct Largest {
+    double share = 0;  ///< of the limit
+    int sample = -1;   ///< where; -1: nowhere yet
+  };
+  /// Sums of squares of the torques before a sample, a ring as long as the thermal window, by dof.
+  Eigen::MatrixXd square_sum = {};
+  std::vector<Largest> largest = {};  ///< by dof
+};
+
 struct JudgedMotion {
   JudgedMotion(const RobotModel& model, const CommandSeries& series, const CheckOptions& options);
   JudgedMotion(const JudgedMotion&) = delete;
@@ -71,7 +82,7 @@ struct JudgedMotion {
   CheckSummary summary;
 
   // What the samples demand, as far as limits of the whole motion and attribution ask for it.
-  Eigen::MatrixXd square_sum;                   ///< of torques before a sample, dof x (samples + 1)
+  Heat heat;
   std::vector<Eigen::Vector3d> flight_moment;   ///< about the COG, by sample; 0 on the ground [N m]
   std::vector<Eigen::Vector3d> cog;             ///< of the posture, by sample [m]
   std::vector<double> cog_deviation;            ///< of the posture from the command, by sample [m]

@@ -29,6 +29,9 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // count in it is 0.004 rad/s, far below the limit of 0.1 rad/s; from row to row one count is
 // 0.08 rad/s. At half and at twice the value the recorded HOAP-3 motions begin and end at rest too.
 constexpr double kRestWindow = 0.02;
+// Longest ramp that is judged and written [s]. Chosen: as long as a motion may be; even a motor of
+// 1 rad/s turns its joint by 960 rad in it. At half, that is 480 rad; at twice, 1920 rad.
+constexpr double kLongestRamp = 3600;
 constexpr int kLargestCount = 32767;  // Source: docs/formats.md, signed numbers of 16 bits
 
 double counts_per_radian(const Dof& dof) {
@@ -51,20 +54,21 @@ TargetRange count_limits(const RobotModel& model, const Dof& dof) {
   return {std::ceil(std::min(a, b) - kCountSlack), std::floor(std::max(a, b) + kCountSlack)};
 }
 
-// Columns of the table in the robot's joint order.
-std::vector<Eigen::Index> columns_of(const RobotModel& model, const ReferenceTrajectory& table) {
-  if (table.rows.empty()) fail(ErrorCode::bad_pattern, "the joint table has no rows");
+// Columns of a table with these joints and that many rows, in the robot's joint order.
+std::vector<Eigen::Index> columns_of(const RobotModel& model,
+                                     const std::vector<std::string>& joints, size_t rows) {
+  if (rows == 0) fail(ErrorCode::bad_pattern, "the joint table has no rows");
   const std::vector<std::string> names = model.dof_names();
   std::vector<Eigen::Index> columns;
   for (const std::string& name : names) {
-    const auto found = std::find(table.joints.begin(), table.joints.end(), name);
-    if (found == table.joints.end())
+    const auto found = std::find(joints.begin(), joints.end(), name);
+    if (found == joints.end())
       fail(ErrorCode::bad_pattern, "the joint table has no column for joint '" + name +
                                        "' of robot '" + model.name() + "'");
-    columns.push_back(found - table.joints.begin());
+    columns.push_back(found - joints.begin());
   }
-  if (table.joints.size() != names.size())
-    fail(ErrorCode::bad_pattern, "the joint table has " + std::to_string(table.joints.size()) +
+  if (joints.size() != names.size())
+    fail(ErrorCode::bad_pattern, "the joint table has " + std::to_string(joints.size()) +
                                      " joints, but the robot '" + model.name() + "' has " +
                                      std::to_string(names.size()));
   return columns;
@@ -82,6 +86,27 @@ int nearest_count(double x, const TargetRange& range, double previous, double st
   return static_cast<int>(std::clamp(nearest, -1e9, 1e9));
 }
 
+// The encoder counts of one joint, row after row.
+class CountRounder {
+ public:
+  CountRounder(const RobotModel& model, const Dof& dof, double step)
+      : scale_(counts_per_radian(dof)), range_(count_limits(model, dof)), step_(step) {}
+  int next(double theta) {
+    const double x = theta * scale_;
+    const double previous = first_ ? x : previous_;
+    previous_ = nearest_count(x, range_, previous, first_ ? kInfinity : step_);
+    first_ = false;
+    return previous_;
+  }
+
+ private:
+  double scale_;  // counts per rad
+  TargetRange range_;
+  double step_;  // largest one in counts
+  int previous_ = 0;
+  bool first_ = true;
+};
+
 // Keeps the worst of each kind and joint, and all of them.
 class Violations {
  public:
@@ -98,6 +123,11 @@ class Violations {
     list_.push_back(found);
     list_.back().rows = 1;
   }
+  /// Those of another joint.
+  void append(const Violations& other) {
+    list_.insert(list_.end(), other.list_.begin(), other.list_.end());
+    every_.insert(every_.end(), other.every_.begin(), other.every_.end());
+  }
   const std::vector<SafetyViolation>& list() const { return list_; }
   const std::vector<SafetyViolation>& every() const { return every_; }
 
@@ -105,7 +135,7 @@ class Violations {
   std::vector<SafetyViolation> list_, every_;
 };
 
-// Judges one joint of a finished table.
+// Judges one joint of a table, row after row.
 class JointJudge {
  public:
   JointJudge(const RobotModel& model, int dof, const SafetyOptions& options, double dt)
@@ -115,64 +145,101 @@ class JointJudge {
         beyond_(options.beyond_range),
         share_(options.step_share),
         step_(scale_ > 0 ? count_step_limits(model, dt, options)[dof]
-                         : largest_steps(model, dt, options)[dof]) {}
+                         : largest_steps(model, dt, options)[dof]),
+        rounder_(model, dof_, step_) {}
 
-  void position(double theta, double t, SafetyReport& report, Violations& violations) const {
-    const double margin = std::min(theta - soft_.lower, soft_.upper - theta);
-    if (margin < report.min_limit_margin) {
-      report.min_limit_margin = margin;
+  void next(double theta, double t) {
+    position(theta, t);
+    // Where the joint has an encoder, its steps are whole counts.
+    const double target = scale_ > 0 ? rounder_.next(theta) : theta;
+    if (scale_ > 0) range(static_cast<int>(target), t);
+    if (!first_) step(target - before_, t);
+    before_ = target;
+    first_ = false;
+  }
+
+  /// What the joints before this one gave, and this one.
+  void add_to(SafetyReport& report, Violations& violations) const {
+    if (margin_ < report.min_limit_margin) {
+      report.min_limit_margin = margin_;
       report.margin_joint = dof_.name;
     }
-    const double limit = theta < soft_.lower ? soft_.lower : soft_.upper;
-    if (margin < -beyond_) violations.add({"position", dof_.name, t, theta, limit, "rad", 0});
+    if (ratio_ > report.max_step_ratio) {
+      report.max_step_ratio = ratio_;
+      report.worst_joint = dof_.name;
+      report.worst_at = ratio_at_;
+    }
+    violations.append(violations_);
   }
 
-  /// `change` in counts where the joint has an encoder, else in rad.
-  void step(double change, double t, SafetyReport& report, Violations& violations) const {
+ private:
+  void position(double theta, double t) {
+    const double margin = std::min(theta - soft_.lower, soft_.upper - theta);
+    margin_ = std::min(margin_, margin);
+    const double limit = theta < soft_.lower ? soft_.lower : soft_.upper;
+    if (margin < -beyond_) violations_.add({"position", dof_.name, t, theta, limit, "rad", 0});
+  }
+
+  // `change` in counts where the joint has an encoder, else in rad.
+  void step(double change, double t) {
     const double ratio = std::abs(change) / step_;
-    if (ratio > report.max_step_ratio) {
-      report.max_step_ratio = ratio;
-      report.worst_joint = dof_.name;
-      report.worst_at = t;
+    if (ratio > ratio_) {
+      ratio_ = ratio;
+      ratio_at_ = t;
     }
     if (ratio > share_ + kStepSlack)
-      violations.add({"step", dof_.name, t, std::abs(change), share_ * step_,
-                      scale_ > 0 ? "counts" : "rad", 0});
+      violations_.add({"step", dof_.name, t, std::abs(change), share_ * step_,
+                       scale_ > 0 ? "counts" : "rad", 0});
   }
 
-  void range(int count, double t, Violations& violations) const {
+  void range(int count, double t) {
     if (std::abs(count) > kLargestCount)
-      violations.add(
+      violations_.add(
           {"range", dof_.name, t, static_cast<double>(count), kLargestCount, "counts", 0});
   }
 
-  bool has_encoder() const { return scale_ > 0; }
-  const std::string& name() const { return dof_.name; }
-
- private:
   const Dof& dof_;
   TargetRange soft_;
   double scale_;   // counts per rad, 0 without encoder
   double beyond_;  // [rad]
   double share_;   // of step_
   double step_;    // per tick, counts or rad
+  CountRounder rounder_;
+  Violations violations_;
+  bool first_ = true;
+  double before_ = 0;          // the target of the row before, counts or rad
+  double margin_ = kInfinity;  // least so far [rad]
+  double ratio_ = 0;           // largest share of step_ so far
+  double ratio_at_ = 0;        // its time [s]
 };
 
-// The motion of `count` rows between ramp and hold.
-void judge_ends(const SafeTable& safe, size_t count, const SafetyOptions& options,
-                SafetyReport& report, Violations& violations) {
-  const ReferenceTrajectory& motion = safe.table;
-  const size_t last = count - 1;
+// A motion with a ramp before and a hold after it.
+struct LaidMotion {
+  size_t ramp = 0, motion = 0, hold = 0;  // rows
+  Eigen::VectorXd from, target;           // of the ramp, columns of the table
+
+  size_t count() const { return ramp + motion + hold; }
+};
+
+// The motion between ramp and hold.
+void judge_ends(const TargetRows& motion, const SafetyOptions& options, SafetyReport& report,
+                Violations& violations) {
+  const size_t last = motion.count - 1;
   if (last == 0) return;
   const auto window = static_cast<size_t>(std::lround(options.rest_window / motion.dt));
   const size_t span = std::clamp<size_t>(window, 1, last);
   const double time = static_cast<double>(span) * motion.dt;
+  const auto at = [&](size_t k) {
+    Eigen::VectorXd theta;
+    motion.row(k, theta);
+    return theta;
+  };
+  const Eigen::VectorXd first = at(0), after = at(span), before = at(last - span),
+                        end_at = at(last);
   for (size_t j = 0; j < motion.joints.size(); ++j) {
-    const auto at = [&](size_t k) {
-      return motion.rows[safe.first + k].theta[static_cast<Eigen::Index>(j)];
-    };
-    const double start = std::abs(at(span) - at(0)) / time;
-    const double end = std::abs(at(last) - at(last - span)) / time;
+    const auto i = static_cast<Eigen::Index>(j);
+    const double start = std::abs(after[i] - first[i]) / time;
+    const double end = std::abs(end_at[i] - before[i]) / time;
     report.start_speed = std::max(report.start_speed, start);
     report.end_speed = std::max(report.end_speed, end);
     if (start > options.rest_speed)
@@ -182,29 +249,6 @@ void judge_ends(const SafeTable& safe, size_t count, const SafetyOptions& option
       violations.add({"end_speed", motion.joints[j],
                       report.ramp + static_cast<double>(last) * motion.dt, end, options.rest_speed,
                       "rad/s", 0});
-  }
-}
-
-void judge_rows(const RobotModel& model, const ReferenceTrajectory& table,
-                const SafetyOptions& options, SafetyReport& report, Violations& violations) {
-  const std::vector<Eigen::Index> columns = columns_of(model, table);
-  const Eigen::MatrixXi counts =
-      encoder_counts(model, table, count_step_limits(model, table.dt, options));
-  report.min_limit_margin = kInfinity;
-  for (int dof = 0; dof < model.dof_count(); ++dof) {
-    const JointJudge judge(model, dof, options, table.dt);
-    const Eigen::Index column = columns[static_cast<size_t>(dof)];
-    for (size_t k = 0; k < table.rows.size(); ++k) {
-      const double t = static_cast<double>(k) * table.dt;
-      const double theta = table.rows[k].theta[column];
-      const auto row = static_cast<Eigen::Index>(k);
-      judge.position(theta, t, report, violations);
-      if (judge.has_encoder()) judge.range(counts(row, dof), t, violations);
-      if (k == 0) continue;
-      judge.step(judge.has_encoder() ? counts(row, dof) - counts(row - 1, dof)
-                                     : theta - table.rows[k - 1].theta[column],
-                 t, report, violations);
-    }
   }
 }
 
@@ -218,6 +262,12 @@ size_t ramp_rows(const Eigen::VectorXd& distance, const Eigen::VectorXd& speed, 
   double duration = options.ramp;
   for (Eigen::Index j = 0; j < distance.size(); ++j)
     duration = std::max(duration, 1.875 * std::abs(distance[j]) / (0.5 * speed[j]));
+  if (duration > std::max(options.ramp, kLongestRamp))
+    fail(ErrorCode::bad_pattern,
+         "the joint table begins so far from posture '" + options.from +
+             "' that the ramp to its first row would take " + text::brief(duration) + " s (limit " +
+             text::brief(kLongestRamp) +
+             " s); correct the angles of the first row, which may be in another unit");
   return static_cast<size_t>(std::ceil(duration / dt - 1e-9));
 }
 
@@ -232,6 +282,69 @@ Eigen::VectorXd speed_limits(const RobotModel& model, const std::vector<Eigen::I
     speed[columns[static_cast<size_t>(dof)]] = limit;
   }
   return speed;
+}
+
+void add_to_report(SafetyReport& report, const std::vector<SafetyViolation>& violations) {
+  for (const SafetyViolation& violation : violations) {
+    report.violations.push_back(violation);
+    report.violations.back().begin = report.ramp;
+    report.violations.back().end = report.ramp + report.motion;
+  }
+  report.safe = report.violations.empty();
+}
+
+// The ramp and the hold that the options ask for.
+LaidMotion laid(const RobotModel& model, const TargetRows& targets, const SafetyOptions& options) {
+  const std::vector<Eigen::Index> columns = columns_of(model, targets.joints, targets.count);
+  LaidMotion plan;
+  targets.row(0, plan.target);
+  plan.from = plan.target;
+  if (options.from != "first") {
+    const Eigen::VectorXd posture = model.posture(options.from);
+    for (int dof = 0; dof < model.dof_count(); ++dof)
+      plan.from[columns[static_cast<size_t>(dof)]] = posture[dof];
+  }
+  plan.ramp = ramp_rows(plan.target - plan.from, speed_limits(model, columns, options), targets.dt,
+                        options);
+  plan.motion = targets.count;
+  plan.hold = static_cast<size_t>(std::ceil(std::max(0.0, options.hold) / targets.dt - 1e-9));
+  return plan;
+}
+
+// Row k of the ramp.
+Eigen::VectorXd ramp_at(const LaidMotion& plan, size_t k) {
+  const double s = static_cast<double>(k) / static_cast<double>(plan.ramp);
+  return plan.from + ramp_share(s) * (plan.target - plan.from);
+}
+
+SafetyReport report_on(const RobotModel& model, const TargetRows& targets, const LaidMotion& plan,
+                       const SafetyOptions& options) {
+  const std::vector<Eigen::Index> columns = columns_of(model, targets.joints, targets.count);
+  SafetyReport report;
+  report.ramp = static_cast<double>(plan.ramp) * targets.dt;
+  report.hold = static_cast<double>(plan.hold) * targets.dt;
+  report.motion = static_cast<double>(plan.motion - 1) * targets.dt;
+  std::vector<JointJudge> judges;
+  for (int dof = 0; dof < model.dof_count(); ++dof)
+    judges.emplace_back(model, dof, options, targets.dt);
+  Eigen::VectorXd theta;
+  for (size_t k = 0; k < plan.count(); ++k) {
+    if (k < plan.ramp)
+      theta = ramp_at(plan, k);
+    else if (k < plan.ramp + plan.motion)  // and then the last row is held
+      targets.row(k - plan.ramp, theta);
+    if (!theta.allFinite())
+      fail(ErrorCode::bad_pattern, "the joint table contains an angle that is not a finite number");
+    const double t = static_cast<double>(k) * targets.dt;
+    for (size_t dof = 0; dof < judges.size(); ++dof) judges[dof].next(theta[columns[dof]], t);
+  }
+  report.min_limit_margin = kInfinity;
+  Violations violations;
+  for (const JointJudge& judge : judges) judge.add_to(report, violations);
+  judge_ends(targets, options, report, violations);
+  add_to_report(report, violations.list());
+  report.rows = violations.every();
+  return report;
 }
 
 }  // namespace
@@ -303,79 +416,51 @@ Eigen::VectorXd largest_steps(const RobotModel& model, double dt, const SafetyOp
 
 Eigen::MatrixXi encoder_counts(const RobotModel& model, const ReferenceTrajectory& table,
                                const Eigen::VectorXd& step_limits) {
-  const std::vector<Eigen::Index> columns = columns_of(model, table);
+  const std::vector<Eigen::Index> columns = columns_of(model, table.joints, table.rows.size());
   Eigen::MatrixXi counts =
       Eigen::MatrixXi::Zero(static_cast<Eigen::Index>(table.rows.size()), model.dof_count());
   for (int dof = 0; dof < model.dof_count(); ++dof) {
     const Dof& joint = model.dofs()[static_cast<size_t>(dof)];
-    const double scale = counts_per_radian(joint);
-    if (scale == 0) continue;
-    const TargetRange range = count_limits(model, joint);
-    for (Eigen::Index k = 0; k < counts.rows(); ++k) {
-      const double x =
-          table.rows[static_cast<size_t>(k)].theta[columns[static_cast<size_t>(dof)]] * scale;
-      const double previous = k > 0 ? counts(k - 1, dof) : x;
-      counts(k, dof) = nearest_count(x, range, previous, k > 0 ? step_limits[dof] : kInfinity);
-    }
+    if (counts_per_radian(joint) == 0) continue;
+    CountRounder rounder(model, joint, step_limits[dof]);
+    const Eigen::Index column = columns[static_cast<size_t>(dof)];
+    for (Eigen::Index k = 0; k < counts.rows(); ++k)
+      counts(k, dof) = rounder.next(table.rows[static_cast<size_t>(k)].theta[column]);
   }
   return counts;
 }
 
+SafetyReport safety_of_targets(const RobotModel& model, const TargetRows& targets,
+                               const SafetyOptions& options) {
+  return report_on(model, targets, laid(model, targets, options), options);
+}
+
 SafeTable make_safe(const RobotModel& model, ReferenceTrajectory reference,
                     const SafetyOptions& options) {
-  const std::vector<Eigen::Index> columns = columns_of(model, reference);
-  for (const ReferenceRow& row : reference.rows)
-    if (!row.theta.allFinite())
-      fail(ErrorCode::bad_pattern, "the joint table contains an angle that is not a finite number");
-  const Eigen::VectorXd target = reference.rows.front().theta;
-  Eigen::VectorXd from = target;
-  if (options.from != "first") {
-    const Eigen::VectorXd posture = model.posture(options.from);
-    for (int dof = 0; dof < model.dof_count(); ++dof)
-      from[columns[static_cast<size_t>(dof)]] = posture[dof];
-  }
+  const TargetRows targets = {
+      reference.dt, reference.joints, reference.rows.size(),
+      [&](size_t k, Eigen::VectorXd& theta) { theta = reference.rows[k].theta; }};
+  const LaidMotion plan = laid(model, targets, options);
   SafeTable result;
-  result.first =
-      ramp_rows(target - from, speed_limits(model, columns, options), reference.dt, options);
-  const auto hold =
-      static_cast<size_t>(std::ceil(std::max(0.0, options.hold) / reference.dt - 1e-9));
-  const size_t count = reference.rows.size();
-  {
-    // The rows of a long motion take most of the memory of a check, so none is there twice.
-    std::vector<ReferenceRow> motion = std::move(reference.rows);
-    result.table = std::move(reference);
-    std::vector<ReferenceRow>& rows = result.table.rows;
-    rows.clear();
-    rows.reserve(result.first + count + hold);
-    for (size_t k = 0; k < result.first; ++k) {
-      const double s = static_cast<double>(k) / static_cast<double>(result.first);
-      rows.push_back(motion.front());
-      rows.back().theta = from + ramp_share(s) * (target - from);
-    }
-    std::move(motion.begin(), motion.end(), std::back_inserter(rows));
-    for (size_t k = 0; k < hold; ++k) rows.push_back(ReferenceRow(rows.back()));
+  result.first = plan.ramp;
+  result.report = report_on(model, targets, plan, options);
+  // The rows of a long motion take much memory, so none is there twice.
+  std::vector<ReferenceRow> motion = std::move(reference.rows);
+  result.table = std::move(reference);
+  std::vector<ReferenceRow>& rows = result.table.rows;
+  rows.clear();
+  rows.reserve(plan.count());
+  for (size_t k = 0; k < plan.ramp; ++k) {
+    rows.push_back(motion.front());
+    rows.back().theta = ramp_at(plan, k);
   }
-
-  SafetyReport& report = result.report;
-  report.ramp = static_cast<double>(result.first) * result.table.dt;
-  report.hold = static_cast<double>(hold) * result.table.dt;
-  report.motion = static_cast<double>(count - 1) * result.table.dt;
-  Violations violations;
-  judge_rows(model, result.table, options, report, violations);
-  judge_ends(result, count, options, report, violations);
-  add_violations(result, violations.list());
-  report.rows = violations.every();
+  std::move(motion.begin(), motion.end(), std::back_inserter(rows));
+  for (size_t k = 0; k < plan.hold; ++k) rows.push_back(ReferenceRow(rows.back()));
   return result;
 }
 
 void add_violations(SafeTable& safe, const std::vector<SafetyViolation>& violations) {
-  std::vector<SafetyViolation>& list = safe.report.violations;
-  for (const SafetyViolation& violation : violations) {
-    list.push_back(violation);
-    list.back().begin = safe.report.ramp;
-    list.back().end = safe.report.ramp + safe.report.motion;
-  }
-  safe.report.safe = list.empty();
+  add_to_report(safe.report, violations);
 }
 
 SafeTable make_safe_run(const RobotModel& model, const ReferenceTrajectory& reference,

@@ -3,6 +3,7 @@
 // servos would receive, on whole encoder counts where the robot has them. Servos jump to whatever
 // the next row says, so the table has to be harmless by itself.
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -73,6 +74,18 @@ struct SafeTable {
 /// are not the robot's, Error(bad_model) for an unknown posture or profile.
 SafeTable make_safe(const RobotModel& model, ReferenceTrajectory reference,
                     const SafetyOptions& options = {});
+
+/// The servo targets of a table, row by row, where the table itself need not be there.
+struct TargetRows {
+  double dt = 0.001;                ///< [s]
+  std::vector<std::string> joints;  ///< order of the targets
+  size_t count = 0;
+  std::function<void(size_t row, Eigen::VectorXd& theta)> row;  ///< fills in the targets of a row
+};
+
+/// The report of make_safe() for a table with these targets. It takes no memory for them.
+SafetyReport safety_of_targets(const RobotModel& model, const TargetRows& targets,
+                               const SafetyOptions& options = {});
 
 /// Where motor torques (rows x dof of the robot, the first at `begin` [s] of a table) are beyond
 /// the peaks of a profile: the worst of every joint. A table tells nothing of forces; a log does.

@@ -37,6 +37,10 @@ DenseTable postures_of(const RobotModel& model, const ActuatorLimits& actuators,
   return table;
 }
 
+Eigen::VectorXd leading_target(const CommandSample& sample, const Eigen::VectorXd& lead) {
+  return sample.state.theta + lead.cwiseProduct(sample.state.dtheta);
+}
+
 ReferenceTrajectory leading_targets(const RobotModel& model, const CommandSeries& series,
                                     const Eigen::VectorXd& lead) {
   ReferenceTrajectory reference;
@@ -45,7 +49,7 @@ ReferenceTrajectory leading_targets(const RobotModel& model, const CommandSeries
   reference.rows.reserve(series.samples.size());
   for (const CommandSample& sample : series.samples) {
     ReferenceRow row;
-    row.theta = sample.state.theta + lead.cwiseProduct(sample.state.dtheta);
+    row.theta = leading_target(sample, lead);
     row.base = sample.state.base;
     row.cog = sample.cog;
     row.zmp = sample.zmp;

@@ -17,6 +17,9 @@ Eigen::VectorXd velocity_lead(const ActuatorLimits& actuators);
 /// the model does not have keep their values.
 DenseTable postures_of(const RobotModel& model, const ActuatorLimits& actuators, DenseTable table);
 
+/// The targets that lead the posture of a sample by `lead` [s, dof].
+Eigen::VectorXd leading_target(const CommandSample& sample, const Eigen::VectorXd& lead);
+
 /// The targets that lead the postures of a series by `lead` [s, dof], one row per sample.
 ReferenceTrajectory leading_targets(const RobotModel& model, const CommandSeries& series,
                                     const Eigen::VectorXd& lead);

@@ -15,7 +15,7 @@ namespace ayumi {
 
 namespace {
 
-// [bytes] Rows that wait for the scratch file. Chosen: 12 s of HOAP-1 at 1 kHz, so that most runs
+// [bytes] Rows that wait for the scratch file. Chosen: 14 s of HOAP-1 at 1 kHz, so that most runs
 // write none.
 constexpr size_t kWaitingBytes = size_t{32} << 20;
 
