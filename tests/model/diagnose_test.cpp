@@ -68,6 +68,33 @@ TEST(Diagnose, NamesImplausibleInertias) {
                        "link l_foot", "above that of lead"));
 }
 
+// Without a sidecar the mass of the root is a common trap.
+TEST(Diagnose, NamesTheMassOfTheRoot) {
+  EXPECT_TRUE(mentions(findings([](auto& r) { r.sidecar_file.clear(); }), "link torso",
+                       "some URDF readers ignore it"));
+}
+
+TEST(Diagnose, NamesShapesThatDoNotFitTheRobot) {
+  // A mesh in millimetres.
+  EXPECT_TRUE(
+      mentions(findings([](auto& r) {
+                 link(r, "l_shank").visuals.push_back({.name = "shin", .shape = Box{{30, 40, 0}}});
+               }),
+               "link l_shank", "the shape is far larger than the robot"));
+  // No shape says how large the link is, but the robot is 0.5 m high.
+  const auto bare = [](double gyration) {
+    return findings([&](auto& r) {
+      LinkDescription& shank = link(r, "l_shank");
+      shank.visuals.clear();
+      shank.collisions.clear();
+      shank.inertia.about_com =
+          Eigen::Matrix3d::Identity() * shank.inertia.mass * 2 / 3 * gyration * gyration;
+    });
+  };
+  EXPECT_TRUE(mentions(bare(5), "link l_shank", "a body larger than the robot"));
+  EXPECT_FALSE(mentions(bare(0.05), "link l_shank", "a body larger than the robot"));
+}
+
 TEST(Diagnose, NamesAsymmetry) {
   EXPECT_TRUE(mentions(findings([](auto& r) { link(r, "l_foot").inertia.mass *= 1.1; }),
                        "links l_foot, r_foot", "left and right masses differ"));
@@ -76,6 +103,9 @@ TEST(Diagnose, NamesAsymmetry) {
   EXPECT_TRUE(
       mentions(findings([](auto& r) { joint(r, "l_hip_yaw").origin.translation().y() = 0.059; }),
                "joints l_hip_yaw, r_hip_yaw", "are not mirror images"));
+  EXPECT_TRUE(
+      mentions(findings([](auto& r) { joint(r, "l_hip_yaw").axis = Eigen::Vector3d(0.3, 0, 1); }),
+               "joints l_hip_yaw, r_hip_yaw", "their axes are not mirror images"));
 }
 
 TEST(Diagnose, NamesAnEncoderWhoseSignDisagrees) {
@@ -88,6 +118,20 @@ TEST(Diagnose, NamesAnEncoderWhoseSignDisagrees) {
 TEST(Diagnose, NamesMissingAndPlaceholderLimits) {
   EXPECT_TRUE(mentions(findings([](auto& r) { joint(r, "l_knee").has_limits = false; }),
                        "joint l_knee", "no position limits"));
+  EXPECT_TRUE(mentions(findings([](auto& r) { joint(r, "l_shoulder_pitch").upper = 20; }),
+                       "joint l_shoulder_pitch", "more than two turns"));
+  EXPECT_TRUE(mentions(findings([](auto& r) {
+                         JointDescription& elbow = joint(r, "l_elbow");
+                         elbow.lower = elbow.upper = r.postures["home"]["l_elbow"];
+                       }),
+                       "joint l_elbow", "make the joint fixed"));
+  EXPECT_TRUE(mentions(findings([](auto& r) {
+                         joint(r, "l_knee").velocity = 0;
+                         r.profiles[0].speed.erase("l_knee");
+                       }),
+                       "joint l_knee", "no speed limit is stated"));
+  EXPECT_TRUE(mentions(findings([](auto& r) { r.profiles[0].peak_torque["l_knee"] = 5000; }),
+                       "limits", "a torque limit of 5000 N m could throw the robot"));
   EXPECT_TRUE(mentions(findings([](auto& r) { r.profiles[0].speed["l_knee"] = 1000; }),
                        "joint l_knee", "faster than servos are"));
   EXPECT_TRUE(mentions(findings([](auto& r) {

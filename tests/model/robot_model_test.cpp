@@ -238,6 +238,13 @@ TEST(RobotModel, NamesWhatIsWrongInTheUrdf) {
               r.links[2].inertia.about_com(0, 0) = -0.01;
             }).find("link l_shank: its inertia tensor has the negative principal moment -0.01"),
             std::string::npos);
+  EXPECT_EQ(error_of([](auto& r) { r.links[2].inertia.com.x() = 2e4; }),
+            "biped.urdf: link l_shank: its centre of mass lies farther than 10000 m away; URDF "
+            "lengths are in metres");
+  EXPECT_EQ(error_of([](auto& r) { r.joints[0].damping = std::nan(""); }),
+            "biped.urdf: joint l_knee: a number of this joint is not finite; correct it");
+  EXPECT_EQ(error_of([](auto& r) { r.joints[0].friction = -1; }),
+            "biped.urdf: joint l_knee: velocity, effort, damping and friction cannot be negative");
   EXPECT_EQ(error_of([](auto& r) { r.joints[0].axis.setZero(); }),
             "biped.urdf: joint l_knee: its axis has length zero; give it a direction");
   EXPECT_EQ(error_of([](auto& r) { r.joints[0].lower = 3; }),
@@ -287,6 +294,80 @@ TEST(RobotModel, NamesWhatIsWrongInTheSidecar) {
               r.control.joint_weight = {{"l_knee", 0.0}};
             }),
             "robot.json: /control/joint_weight: the weight of 'l_knee' is 0; it must be above 0");
+  EXPECT_EQ(error_of([](auto& r) {
+              r.joint_order = {"l_hip", "l_kne", "r_hip", "r_knee"};
+            }),
+            "robot.json: /joint_order/1: 'l_kne' is not a moving joint of the URDF; did you mean "
+            "'l_knee'?");
+  EXPECT_EQ(error_of([](auto& r) {
+              r.joint_order = {"l_hip", "l_hip", "r_hip", "r_knee"};
+            }),
+            "robot.json: /joint_order: 'l_hip' appears twice");
+  EXPECT_EQ(error_of([](auto& r) { r.trunk_link = "trunc"; }),
+            "robot.json: /trunk_link: the link 'trunc' does not exist; did you mean 'trunk'?");
+  EXPECT_EQ(error_of([](auto& r) { r.sensors.imu_link = "trunc"; }),
+            "robot.json: /sensors/imu_link: the link 'trunc' does not exist; did you mean "
+            "'trunk'?");
+  EXPECT_EQ(error_of([](auto& r) {
+              r.collision_ignore = {{"trunk", "l_shank"}, {"trunk", "l_shnk"}};
+            }),
+            "robot.json: /collision_ignore/1/1: the link 'l_shnk' does not exist; did you mean "
+            "'l_shank'?");
+  EXPECT_EQ(error_of([](auto& r) { r.encoders["l_kne"] = {}; }),
+            "robot.json: /encoders: 'l_kne' is not a moving joint of the robot; did you mean "
+            "'l_knee'?");
+}
+
+TEST(RobotModel, NamesNumbersThatTheSidecarCannotHave) {
+  EXPECT_EQ(error_of([](auto& r) { r.servos["l_knee"].kp = -1; }),
+            "robot.json: /servos/l_knee: servo constants cannot be negative");
+  EXPECT_EQ(error_of([](auto& r) { r.servo_period = 0; }),
+            "robot.json: /servo_period: the value must be above 0 s");
+  EXPECT_EQ(error_of([](auto& r) { r.soft_limit_margin = -0.01; }),
+            "robot.json: /soft_limit_margin: the value cannot be negative");
+  const auto in_profile = [](const std::function<void(ActuatorProfile&)>& change) {
+    return error_of([&](RobotDescription& robot) {
+      robot.profiles.resize(1);
+      robot.profiles[0].name = "strong";
+      change(robot.profiles[0]);
+    });
+  };
+  EXPECT_EQ(in_profile([](auto& p) { p.thermal_window = 0; }),
+            "robot.json: profile 'strong': thermal_window must be above 0 s");
+  EXPECT_EQ(in_profile([](auto& p) { p.speed["l_knee"] = 0; }),
+            "robot.json: profile 'strong': the speed of 'l_knee' is 0; it must be above 0");
+  EXPECT_EQ(in_profile([](auto& p) { p.peak_torque["l_kne"] = 1; }),
+            "robot.json: profile 'strong': 'l_kne' is not a moving joint of the robot; did you "
+            "mean 'l_knee'?");
+}
+
+TEST(RobotModel, NamesSolesThatCannotBe) {
+  EXPECT_EQ(error_of([](auto& r) { r.soles["middle"] = r.soles["left"]; }),
+            "robot.json: /soles/middle: unknown foot; the two feet are 'left' and 'right'");
+  EXPECT_EQ(error_of([](auto& r) { r.soles["left"].polygon.resize(2); }),
+            "robot.json: /soles/left/polygon: too few corners; give at least three corners of a "
+            "convex polygon, counter-clockwise seen from above");
+  const auto round = [](RobotDescription& robot, int corners) {
+    auto& polygon = robot.soles["left"].polygon;
+    polygon.clear();
+    for (int i = 0; i < corners; ++i) {
+      const double turn = 2 * M_PI * i / corners;
+      polygon.emplace_back(0.05 * std::cos(turn), 0.05 * std::sin(turn));
+    }
+  };
+  EXPECT_EQ(error_of([&](auto& r) { round(r, 32); }), "no error");
+  EXPECT_EQ(error_of([&](auto& r) { round(r, 33); }),
+            "robot.json: /soles/left/polygon: the sole has 33 corners, but at most 32 are "
+            "possible; leave out corners between which the outline is almost straight");
+  EXPECT_EQ(error_of([](auto& r) { r.soles["left"].damping_time = -1; }),
+            "robot.json: /soles/left: stiffness and damping_time cannot be negative");
+  EXPECT_EQ(error_of([](auto& r) { r.sensors.force_cells["middle"].resize(1); }),
+            "robot.json: /sensors/force_cells/middle: the robot has no such sole");
+  for (const size_t cells : {1, 4})
+    EXPECT_EQ(error_of([&](auto& r) { r.sensors.force_cells["left"].resize(cells); }), "no error");
+  EXPECT_EQ(error_of([](auto& r) { r.sensors.force_cells["left"].resize(3); }),
+            "robot.json: /sensors/force_cells/left: there are 3 load cells, but the sole has 4 "
+            "corners; give one load cell for each corner, or one for all");
 }
 
 // What no motor of a robot of this mass and size can have is refused, in a profile too. Two links

@@ -150,5 +150,68 @@ TEST(SampleErrors, FootKeysThatDragASupportingFoot) {
                 "Give the foot a key at ", " s where it stands"});
 }
 
+// A walk with a table of one arm, 10 ms between its rows.
+std::string message_of_table(const std::function<void(DenseTable&)>& change) {
+  return message_of([&](Pattern& p) {
+    for (Keyframe& key : p.keyframes) key.joints.clear();
+    DenseTable& table = p.table.emplace();
+    table.file = "arm.csv";
+    table.dt = 0.01;
+    table.joints = {"l_shoulder"};
+    table.theta = Eigen::MatrixXd::Constant(20, 1, 0.1);
+    change(table);
+  });
+}
+
+TEST(SampleErrors, Tables) {
+  EXPECT_EQ(message_of_table([](DenseTable&) {}), "");
+  expect_words(message_of_table([](DenseTable& t) { t.theta.conservativeResize(1, 1); }),
+               {"walk.json: table arm.csv", "fewer than two rows"});
+  expect_words(message_of_table([](DenseTable& t) { t.dt = 0; }), {"time step is not above 0"});
+  expect_words(message_of_table([](DenseTable& t) { t.theta(3, 0) = NAN; }),
+               {"a joint angle is not a finite number"});
+  expect_words(message_of_table([](DenseTable& t) { t.dt = 10; }),
+               {"the table ends at 190 s, after the last phase", "extend the phases"});
+  expect_words(message_of_table([](DenseTable& t) { t.joints.push_back("r_shoulder"); }),
+               {"has 1 joint columns, but 2 joint names"});
+  expect_words(message_of_table([](DenseTable& t) { t.joints = {"l_shouldr"}; }),
+               {"table arm.csv", "l_shouldr", "did you mean 'l_shoulder'"});
+  expect_words(message_of_table([](DenseTable& t) { t.fz.resize(3); }),
+               {"the columns differ in length"});
+  expect_words(message_of([](Pattern& p) {
+                 for (Keyframe& key : p.keyframes) key.joints = {{"l_shoulder", 0.1}};
+                 DenseTable& table = p.table.emplace();
+                 table.file = "arm.csv";
+                 table.dt = 0.01;
+                 table.joints = {"l_shoulder"};
+                 table.theta = Eigen::MatrixXd::Constant(20, 1, 0.1);
+               }),
+               {"'l_shoulder' has keys too; keep the keys or the column"});
+}
+
+TEST(SampleErrors, TimesAndWeightsOfKeys) {
+  expect_words(message_of([](Pattern& p) { p.keyframes[0].t = -0.5; }),
+               {"/keyframes/0", "the key is at -0.5 s, but key times begin at 0 s"});
+  for (const double weight : {0.0, -1.0, static_cast<double>(INFINITY), static_cast<double>(NAN)})
+    expect_words(message_of([&](Pattern& p) { p.keyframes[1].weights["l_shoulder"] = weight; }),
+                 {"/keyframes/1", "weight of l_shoulder must be above 0"});
+}
+
+TEST(SampleErrors, SamplingStep) {
+  const RobotModel model = test::biped();
+  const Pattern pattern = stand_pattern(model, 1);
+  for (const double dt : {0.0, -0.005, static_cast<double>(NAN)}) {
+    try {
+      sample(model, pattern, {.dt = dt});
+      ADD_FAILURE() << dt;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::usage);
+      expect_words(error.what(), {"sampling step", "must be above 0"});
+    }
+  }
+  expect_words(message_of([](Pattern& p) { p.phases.back().until = 1e9; }),
+               {"phases", "only 5 to 4e6 are possible"});
+}
+
 }  // namespace
 }  // namespace ayumi
