@@ -325,6 +325,12 @@ OrderedJson strip_json(const Task& task, const StabilitySeries& s) {
                 s.torque_dof)};
 }
 
+std::vector<std::string> links_of(const RobotModel& model) {
+  std::vector<std::string> names;
+  for (const Link& link : model.links()) names.push_back(link.name);
+  return names;
+}
+
 std::vector<std::string> postures_of(const AuthorMotion& motion) {
   std::vector<std::string> names;
   for (const auto& [name, joints] : motion.task.robot.description().postures) names.push_back(name);
@@ -353,6 +359,7 @@ void describe(AuthorMotion& motion, const StabilitySeries& stability) {
       {"findings", findings},
       {"groups", groups_json(task.robot, motion.judgement.report)},
       {"joints", joints_json(task.robot)},
+      {"links", links_of(task.robot)},
       {"handles", handles_json(task.robot)},
       {"targets", targets_json(motion)},
       {"postures", postures_of(motion)},

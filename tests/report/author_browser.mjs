@@ -170,6 +170,47 @@ async function makesWhatIsNotThere(tab) {
   expect(text() === before, "and all is as before");
 }
 
+/// A height field, motions of the floor, weights, what is uncertain, and disturbances that are no pushes.
+async function makesEveryPart(tab) {
+  const before = text(), at = (pointer) => `#selected [data-id="${pointer}"]`;
+  let made = 0;
+  const make = async (how, what, seen) => {
+    await tab.after(how);
+    made += 1;
+    const error = await tab.run("return window.ayumiAuthor.page.state.error?.message ?? ''");
+    expect(seen(data()) && !error, `${what}: ${error}`);
+  };
+  const press = (words) => tab.run("[...document.querySelectorAll('#selected button')].find((b) => b.textContent === arguments[0]).click();", words);
+  const submit = (id, value) => tab.run("const e = document.querySelector(`#selected [data-id=\"${arguments[0]}\"]`); e.value = arguments[1]; e.form.requestSubmit();", id, value);
+  await tab.click("#whole");
+  await make(() => press("Add a height field to the ground"), "a height field", ({ world }) => world.field.heights.length === 7);
+  await make(() => press("One more row of nodes to the left"), "more nodes", ({ world }) => world.field.heights[6].length === 8);
+  expect((await tab.run("return document.querySelectorAll('#selected table.grid input').length")) === 56, "each node has a number");
+  await make(() => tab.type(at("/world/field/heights/3/2"), 0.004), "a height", ({ world }) => world.field.heights[3][2] === 0.004);
+  await make(() => press("Remove the height field"), "no field", ({ world }) => !world?.field);
+  await make(() => press("Add a motion of the floor at the cursor"), "a motion of the floor", ({ world }) => world.motion[0].shape === "half_sine");
+  await make(() => tab.type(at("/world/motion/0/shape"), "sine"), "a sine", ({ world }) => world.motion[0].frequency === 1);
+  await make(() => press("Give its shift"), "a shift", ({ world }) => world.motion[0].shift.length === 3);
+  await make(() => press("Remove this motion of the floor"), "no motion", ({ world }) => !world?.motion);
+  const joint = await tab.run("return window.ayumiAuthor.page.state.joints.at(-1).name");
+  await make(() => submit("/repair/weights joint", joint), "a weight of a joint in a repair", ({ repair }) => repair.weights[joint] === 10);
+  await make(() => tab.type(at("/repair/weights/" + joint), ""), "no weight", ({ repair }) => repair.weights[joint] === undefined);
+  await make(() => submit("new quantity", "friction"), "an uncertain quantity", ({ uncertainty }) => uncertainty.quantities[0].uniform[1] === 0.9);
+  await make(() => press("Add an uncertain push"), "an uncertain push", ({ uncertainty }) => uncertainty.pushes[0].size === 0.5);
+  await make(() => press("Remove this uncertain push"), "no push", ({ uncertainty }) => !uncertainty.pushes);
+  await make(() => press("Remove this uncertain quantity"), "nothing uncertain", ({ uncertainty }) => !uncertainty);
+  await tab.click(keySelector(2));
+  await make(() => submit("/keyframes/2/weights joint", joint), "a weight from a key on", ({ keyframes }) => keyframes[2].weights[joint] === 10);
+  const types = await tab.run("return [...document.getElementById('other-type').options].map((o) => o.value)"), first = data().scenario?.length ?? 0;
+  for (const [i, type] of types.entries()) {
+    await make(() => tab.run("document.getElementById('other-type').value = arguments[0]; document.getElementById('new-other').requestSubmit();", type), type,
+      ({ scenario }) => scenario[first + i].type === type);
+    expect(await tab.run("return window.ayumiAuthor.page.selection.pointer") === `/scenario/${first + i}`, "it is selected");
+  }
+  for (; made > 0; --made) await tab.after(() => tab.click("#undo"));
+  expect(text() === before, "and all is as before");
+}
+
 /// Values that are not written can be written, and taken away again: nothing else changes.
 async function writesOptionalValues(tab) {
   const before = text(), i = data().phases.findIndex((phase) => phase.swing && phase.swing.lift === undefined);
@@ -517,7 +558,7 @@ try {
   const tab = await openPage(driving, 1280, 800);
   await runTrials(tab, [looks]);
   await tab.coarsen();
-  await runTrials(tab, [namesEverything, editsByKeyboard, keepsTheFocus, addsPhasesAndKeys, makesWhatIsNotThere,
+  await runTrials(tab, [namesEverything, editsByKeyboard, keepsTheFocus, addsPhasesAndKeys, makesWhatIsNotThere, makesEveryPart,
     writesOptionalValues, movesKeysByTyping, locksWhatIsOld, dragsInTime, showsFindings, keepsBothVersions,
     poses, postures, pushesTheRobot, works, showsResults, keepsWhatIsBeingTyped, showsNoDeadControls]);
   await followsTheFile(driving, tab);

@@ -7,6 +7,7 @@ import { test } from "node:test";
 import { TimeAxis, snapped } from "../../lib/ayumi/report/page/time_axis.js";
 import { largerPart, nearAxis } from "../../lib/ayumi/report/page/drag_parts.js";
 import { arrowsOf, wordsOfPush } from "../../lib/ayumi/report/page/push_parts.js";
+import * as parts from "../../lib/ayumi/report/page/parts.js";
 import * as edits from "../../lib/ayumi/report/page/edits.js";
 import { fieldsOf, missingFields, parsePattern, valueAt } from "../../lib/ayumi/report/page/fields.js";
 import { nameAmongOthers } from "../../lib/ayumi/report/page/inspector.js";
@@ -436,15 +437,88 @@ test("a phase gets a goal of VIIP in place of its support and its swing, and bac
     assert.equal(edits.goalOf(last.value), name);
   }
   assert.equal(edits.goalOf(null), "none");
+  // Its keys go first, from the last one on, so that no pointer moves; those at its ends stay.
+  const frames = [1, 1.5, 2, 2.5].map((time, i) => ({ time, pointer: `/keyframes/${i}`, time_pointer: `/keyframes/${i}/t`, time_value: time }));
+  assert.deepEqual(edits.keysWithin({ from: 1, until: 2.5 }, frames).map(({ time }) => time), [1.5, 2]);
+  const away = edits.putGoal({ pointer: "/phases/1", support: "both", from: 1, until: 2.5 }, "jump", "deg", frames);
+  assert.deepEqual(away.filter(({ pointer }) => pointer.startsWith("/keyframes")).map(({ kind, pointer }) => [kind, pointer]),
+    [["remove", "/keyframes/1"], ["remove", "/keyframes/2"]]);
   assert.deepEqual(edits.putGoal({ pointer: "/phases/1", support: null }, "none", "deg").map((one) => one.pointer), ["/phases/1/viip", "/phases/1/support"]);
 });
 
-test("a block of the ground has what the schema asks for", () => {
-  const { block, patch } = JSON.parse(readFileSync(new URL("../../docs/schemas/pattern-1.schema.json", import.meta.url))).$defs;
-  for (const [list, { properties, required }] of [["blocks", block], ["patches", patch]]) {
-    const { value, pointer } = edits.addToGround(list)[0];
-    assert.equal(pointer, `/world/${list}/-`);
-    for (const name of Object.keys(value)) assert.ok(properties[name], name);
-    for (const name of required) assert.ok(value[name] !== undefined, name);
+/// A value of the page has what the schema asks for, and nothing else; words among choices are known.
+function fits(value, node) {
+  const { properties, required = [], oneOf } = definition(node);
+  for (const [name, one] of Object.entries(value)) {
+    assert.ok(properties[name], name);
+    const known = definition(properties[name]).enum;
+    if (known) assert.ok(known.includes(one), `${name}: ${one}`);
   }
+  for (const name of required) assert.ok(value[name] !== undefined, name);
+  const own = value.type && oneOf?.find((way) => way.properties?.type?.const === value.type);
+  for (const name of own?.required ?? []) assert.ok(value[name] !== undefined, `${value.type}: ${name}`);
+  for (const name of Object.keys(own ? value : {})) assert.ok(own.propertyNames.enum.includes(name), `${value.type}: ${name}`);
+  if (oneOf?.every((way) => Object.keys(way).join() === "required"))
+    assert.equal(oneOf.filter((way) => way.required?.every((name) => value[name] !== undefined)).length, 1, JSON.stringify(value));
+}
+
+test("what the page adds to a pattern has what the schema asks for", () => {
+  const { block, patch, field, motion, disturbance, quantity, uncertain_push: push } = schema.$defs;
+  for (const [list, node] of [["blocks", block], ["patches", patch]]) {
+    const { value, pointer } = parts.addToGround(list)[0];
+    assert.equal(pointer, `/world/${list}/-`);
+    fits(value, node);
+  }
+  fits(parts.addField()[0].value, field);
+  for (const unit of ["deg", "rad"]) {
+    fits(parts.addFloorMotion(1.23456, unit)[0].value, motion);
+    fits(parts.addUncertainPush(unit)[0].value, push);
+    for (const { what } of parts.quantities) fits(parts.addQuantity(what, unit)[0].value, quantity);
+    const state = { angle_unit: unit, joints: [{ name: "l_knee" }], links: ["torso"] };
+    for (const { type } of parts.disturbances) fits(parts.addOther(type, 1, state)[0].value, disturbance);
+  }
+  // All kinds that there are.
+  assert.deepEqual(parts.quantities.map(({ what }) => what).sort(), [...quantity.properties.what.enum].sort());
+  assert.deepEqual([...parts.disturbances.map(({ type }) => type), "impulse", "force", "torque"].sort(), [...disturbance.properties.type.enum].sort());
+});
+
+test("a new part of the ground lies where no other one is", () => {
+  const block = parts.addToGround("blocks")[0].value, patch = parts.addToGround("patches", { blocks: [block] })[0].value;
+  assert.deepEqual([block.x, patch.x], [[0.1, 0.3], [0.3, 0.5]]);
+  const field = parts.addField({ blocks: [block], patches: [patch] })[0].value;
+  assert.equal(field.origin[0], 0.5);
+  assert.ok(field.heights[0].every((height) => height === 0) && field.heights.flat().some((height) => height > 0));
+  assert.deepEqual(parts.addToGround("blocks", { field, blocks: [{ position: [1, 0], radius: 0.1 }] })[0].value.x, [1.1, 1.3]);
+  assert.equal(parts.freeGround({ blocks: [{ x: ["${a}", "${b}"] }] }), 0.1);
+});
+
+test("a field grows by a copy of its last nodes", () => {
+  const field = { heights: [[1, 2], [3, 4]] };
+  assert.deepEqual(parts.growField(field, "x"), [{ kind: "insert", pointer: "/world/field/heights/-", value: [3, 4] }]);
+  assert.deepEqual(parts.growField(field, "y").map(({ pointer, value }) => [pointer, value]),
+    [["/world/field/heights/0/-", 2], ["/world/field/heights/1/-", 4]]);
+});
+
+test("the first angle of a pattern brings its unit", () => {
+  const trunk = { kind: "set", pointer: "/keyframes/0/torso/pitch", value: 0.1 }, height = { kind: "set", pointer: "/keyframes/0/cog/height", value: 0.2 };
+  assert.deepEqual(parts.withUnits({}, [trunk], "rad"), [trunk, { kind: "set", pointer: "/units/angle", value: "rad" }]);
+  assert.equal(parts.withUnits({}, parts.addFloorMotion(0, "rad"), "rad").length, 2);
+  assert.equal(parts.withUnits({}, parts.addQuantity("slope", "rad"), "rad").length, 2);
+  assert.equal(parts.withUnits({}, [height], "rad").length, 1);
+  assert.equal(parts.withUnits({ units: { angle: "deg" } }, [trunk], "deg").length, 1);
+});
+
+test("only a sine has a frequency", () => {
+  const kinds = (motion, shape) => parts.putShape("/world/motion/0", motion, shape).map(({ kind, pointer }) => `${kind} ${pointer.split("/").at(-1)}`);
+  assert.deepEqual(kinds({}, "sine"), ["set shape", "set frequency"]);
+  assert.deepEqual(kinds({ frequency: 2 }, "ramp"), ["set shape", "remove frequency"]);
+  assert.deepEqual(kinds({ frequency: 2 }, "sine"), ["set shape"]);
+});
+
+test("the last item of a list takes the list along", () => {
+  const document = { world: { motion: [{}, {}], blocks: [{}] }, uncertainty: { quantities: [{}] } };
+  const pointer = (path, i) => parts.removeItem(document, path, i)[0].pointer;
+  assert.equal(pointer(["world", "motion"], 1), "/world/motion/1");
+  assert.equal(pointer(["world", "blocks"], 0), "/world/blocks");
+  assert.equal(pointer(["uncertainty", "quantities"], 0), "/uncertainty");
 });

@@ -11,6 +11,7 @@ import { parsePattern } from "./fields.js";
 import { Handles } from "./handles.js";
 import { Inspector } from "./inspector.js";
 import { Jobs } from "./jobs.js";
+import { withUnits } from "./parts.js";
 import { Pose } from "./pose.js";
 import { Postures } from "./postures.js";
 import { arrowsOf } from "./push_parts.js";
@@ -475,7 +476,8 @@ class Page {
   /// True where the edit is in the file. Edits go one after the other, each on the text that the last
   /// one has left.
   edit(edits) {
-    return this.post("edit", (hash) => ({ hash, edits }), edits.some((one) => one.kind !== "set"));
+    const all = withUnits(this.document, edits, this.state.angle_unit);
+    return this.post("edit", (hash) => ({ hash, edits: all }), all.some((one) => one.kind !== "set"));
   }
 
   write(text) {

@@ -240,12 +240,21 @@ export function goalOf(viip) {
   return goals.map((one) => one.name).find((name) => viip[name] !== undefined) ?? "velocity";
 }
 
-/// Another goal of VIIP for a phase, or keys again. The other values of the phase stay.
-export function putGoal(phase, name, angleUnit) {
+/// The keyframes inside a phase. VIIP allows none there.
+export function keysWithin(phase, keyframes) {
+  return keyframes.filter(({ time }) => time > phase.from + 5e-4 && time < phase.until - 5e-4);
+}
+
+/// Another goal of VIIP for a phase, without those of `keyframes` that lie inside it, or keys again. The
+/// other values of the phase stay.
+export function putGoal(phase, name, angleUnit, keyframes = []) {
   const pointer = phase.pointer, goal = goals.find((one) => one.name === name);
   if (!goal.value)
     return phase.support ? [] : [{ kind: "remove", pointer: pointer + "/viip" }, { kind: "set", pointer: pointer + "/support", value: "both" }];
-  return [...phase.swing ? [{ kind: "remove", pointer: pointer + "/swing" }] : [],
+  const away = keysWithin(phase, keyframes), next = keyframes[keyframes.indexOf(away.at(-1)) + 1];
+  return [...away.map((frame) => ({ kind: "remove", pointer: frame.pointer })),
+    ...away.length ? follow(next, keyframes[keyframes.indexOf(away[0]) - 1]?.time ?? 0) : [],
+    ...phase.swing ? [{ kind: "remove", pointer: pointer + "/swing" }] : [],
     ...phase.support ? [{ kind: "remove", pointer: pointer + "/support" }] : [],
     { kind: "set", pointer: pointer + "/viip", value: goal.value(angleUnit) }];
 }
@@ -341,12 +350,6 @@ export function setRounds(state, document, phase, rounds) {
   const moved = moveLater(state, document, state.phases.indexOf(own.at(-1)), (rounds - now) * (until - from) / now, frames.length > 0);
   if (moved.refused) return moved;
   return { edits: [...[pointer, ...blocks].map((block) => ({ kind: "set", pointer: block + "/repeat", value: rounds })), ...moved.edits] };
-}
-
-/// A block or a patch of the ground, ahead of the robot.
-export function addToGround(list) {
-  const value = { x: [0.1, 0.3], y: [-0.2, 0.2], ...list === "blocks" ? { height: 0.005 } : { friction: 0.4 } };
-  return [{ kind: "insert", pointer: `/world/${list}/-`, value }];
 }
 
 /// A phase behind the last one, as long as it takes to look at.

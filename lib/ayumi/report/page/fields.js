@@ -6,6 +6,9 @@ const interpolation = ["linear", "cubic", "minimum_jerk", "hold", "spline"];
 const field = (path, otherwise) => ({ path, otherwise });
 const turns = ["roll", "pitch", "yaw"];
 
+/// Weights that are written may be taken away.
+const weighted = (path, written) => Object.keys(written ?? {}).map((joint) => ({ path: [...path, joint], otherwise: "1" }));
+
 /// What a member is, by the kind of thing: { path, otherwise, choices }. `value` is what is written
 /// there, `state` the page's state.
 export const fieldsOf = {
@@ -22,6 +25,9 @@ export const fieldsOf = {
     { path: ["controller", "type"], otherwise: "dtad", choices: ["none", "dtad", "viip", "preview",
       "foot-guided", "dcm-step", "dtad-literal", "viip-landings", "viip-nofeedback"] },
     { path: ["repair", "trust"], otherwise: "posture", choices: ["posture", "cog", "zmp"] },
+    { path: ["repair", "margin"], otherwise: "that of the command" },
+    { path: ["repair", "safety"], otherwise: "that of the command" },
+    ...weighted(["repair", "weights"], value.repair?.weights),
   ],
   phase: (value) => [
     ...value.swing ? [field(["swing", "lift"], "0.02")] : [],
@@ -40,11 +46,17 @@ export const fieldsOf = {
     ...["x", "y", "height"].map((name) => ({ path: ["cog", name], otherwise: "no key" })),
     { path: ["fz"], otherwise: "no key" },
     ...turns.map((name) => ({ path: ["torso", name], otherwise: value.torso ? "0" : "no key" })),
+    ...weighted(["weights"], value.weights),
   ],
-  disturbance: (value) => [
+  disturbance: (value, state) => [
     { path: ["duration"], otherwise: ["impulse", "bump"].includes(value.type) ? "a short time" : "to the end" },
-    ...["impulse", "force", "torque"].includes(value.type) ? [{ path: ["on"], otherwise: "cog" },
+    ...["impulse", "force", "torque"].includes(value.type) ? [{ path: ["on"], otherwise: "cog", choices: state.links },
       { path: ["frame"], otherwise: "world", choices: ["world", "link"] }] : [],
+    ...["floor", "sensor_bias"].includes(value.type) ? ["roll", "pitch"].map((name) => ({ path: [name], otherwise: "0" })) : [],
+    ...value.type === "sensor_bias" ? [{ path: ["load"], otherwise: "0" }] : [],
+    ...value.type === "bump" ? [{ path: ["radius"], otherwise: "0.01" }] : [],
+    ...["encoder_offset", "joint_friction", "gain_loss"].includes(value.type)
+      ? [{ path: ["joint"], otherwise: "all joints", choices: state.joints?.map((one) => one.name) }] : [],
   ],
 };
 

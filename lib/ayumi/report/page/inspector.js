@@ -1,8 +1,9 @@
 // What is selected on the timeline, with its values to be typed; and new keys at the cursor.
 
 import { byId, element, seconds } from "./dom.js";
-import { addSwing, addToGround, appendPhase, goalOf, goals, joinKeyframe, putGoal, putKey, putPart, putSupport, putTarget, removeKey, repeatPhases, roomOfKey, roundsOf, roundedTime, sameTime, setRounds, splitPhase, valueFromRow, written } from "./edits.js";
+import { addSwing, appendPhase, goalOf, goals, joinKeyframe, keysWithin, putGoal, putKey, putPart, putSupport, putTarget, removeKey, repeatPhases, roomOfKey, roundsOf, roundedTime, sameTime, setRounds, splitPhase, valueFromRow, written } from "./edits.js";
 import { isOptional, missingFields, token, valueAt } from "./fields.js";
+import { addField, addFloorMotion, addQuantity, addToGround, addUncertainPush, growField, putShape, quantities, removeItem, shapes } from "./parts.js";
 import { sampleAt } from "./series.js";
 import { nameOfTrack } from "./timeline.js";
 
@@ -14,14 +15,21 @@ export function unitOf(path, angle) {
   if (path.includes("velocity") || path.includes("cog_velocity")) return "m/s";
   if (["x", "y", "z", "height", "cog_height", "lift", "stoop", "radius", "forward", "side", "up"].includes(name)) return "m";
   if (["blocks", "patches"].includes(path[1]) && ["x", "y", "position"].includes(path[3])) return "m";
+  if (path[1] === "field" || path.includes("shift")) return "m";
+  if (path[0] === "uncertainty") return unitOfUncertain(path, angle);
   if (track === "viip" && path[1] === "cog") return "m";
   if (["roll", "pitch", "yaw", "turn"].includes(name) || track === "joints" || track === "joint" ||
     (track === "posture" && path.length > 1)) return angle;
   if (track === "zmp" || track === "cog" || name === "to" || path.includes("to") || track === "position" || track === "point")
     return path.includes("to") && path.at(-1) === 3 ? angle : "m";
   if (track === "feet" || track === "foot") return path.at(-1) === 3 ? angle : "m";
-  return { fz: "N", impulse: "N s", force: "N", torque: "N m", mass: "kg", latency: "s", coulomb: "N m" }[name] || "";
+  return { fz: "N", impulse: "N s", force: "N", torque: "N m", mass: "kg", latency: "s", coulomb: "N m", frequency: "Hz", offset: angle,
+    load: "N", viscous: "N m s/" + (angle === "deg" ? "rad" : angle), margin: "m" }[name] || "";
 }
+
+/// Of the numbers of a distribution, the unit of what is uncertain is behind its name.
+const unitOfUncertain = (path, angle) => path.includes("direction") && path.includes("choice") ? angle : "";
+const bounds = { uniform: ["from", "to"], normal: ["mean", "standard deviation"], truncated: ["mean", "standard deviation", "from", "to"] };
 
 const places = ["forward", "left", "up", "yaw"];
 const millimetre = (value) => Number(value.toFixed(4));
@@ -35,7 +43,11 @@ export function nameOf(path) {
   // The sides of a block or a patch: { "x": [from, to], "y": [from, to] }.
   if (["blocks", "patches"].includes(path[1]) && path.length === 5)
     return `${words[path[3]] ?? path[3]} ${path[3] === "position" ? places[path[4]] : ["from", "to"][path[4]] ?? path[4] + 1}`;
-  if (["blocks", "patches"].includes(path[1]) && path.length === 4) return path[3];
+  if (["blocks", "patches", "motion"].includes(path[1]) && path.length === 4) return words[path[3]] ?? path[3];
+  if (path[1] === "motion" && path.length === 5) return `${path[3]} ${places[path[4]]}`;
+  if (path[1] === "field") return `${path[2]} ${places[path[3]] ?? ""}`.trim();
+  if (path[0] === "uncertainty")
+    return path.slice(3).map((name, i, all) => typeof name === "number" ? bounds[all[i - 1]]?.[name] ?? String(name + 1) : name).join(" ");
   const from = wholes.includes(path[0]) && path.length > 1 ? 1 : 0;
   return path.slice(from).map((name) => typeof name === "number" ? places[name] ?? String(name + 1)
     : words[name] || name).join(" ");
@@ -72,9 +84,7 @@ export class Inspector {
   /// One input for each value of a JSON text; a change is an edit of that value alone, or what
   /// `edits` makes of it.
   inputs(pointer, value, path, choices = {}, edits = null) {
-    // The height field of a ground is no list to be typed.
-    if (Array.isArray(value) && Array.isArray(value[0]))
-      return [element("p", { class: "soft" }, `${nameOf(path)}: ${value.length} × ${value[0].length} numbers, to be changed in the text`)];
+    if (Array.isArray(value) && Array.isArray(value[0])) return [this.grid(pointer, value, path)];
     if (value && typeof value === "object")
       return Object.entries(value).flatMap(([name, part]) => this.inputs(pointer + token(name),
         part, [...path, Array.isArray(value) ? Number(name) : name], choices, edits));
@@ -101,6 +111,19 @@ export class Inspector {
     });
     return [element("label", { class: "value" }, element("span", {}, name), input,
       element("span", { class: "unit" }, options ? "" : unit))];
+  }
+
+  /// The heights of a field as a table of numbers; a field with too many of them stays in the text.
+  grid(pointer, rows, path) {
+    if (rows.length * rows[0].length > 100)
+      return element("p", { class: "soft" }, `${nameOf(path)}: ${rows.length} × ${rows[0].length} numbers, to be changed in the text`);
+    // Ahead is up and left is left, as in a picture from above.
+    return element("table", { class: "grid" }, element("caption", {}, "Heights in m, ahead upwards, left to the left"),
+      element("tbody", {}, ...rows.map((row, i) => element("tr", {}, ...row.map((value, j) => {
+        const [input] = this.inputs(`${pointer}/${i}/${j}`, value, ["world", "field", "height"]).map((one) => one.querySelector("input"));
+        input.setAttribute("aria-label", `height of node ${i + 1} ahead, ${j + 1} to the left, in m`);
+        return element("td", {}, input);
+      }).reverse())).reverse()));
   }
 
   /// The thing of the text that the selection is in: { kind, pointer, value }.
@@ -142,22 +165,90 @@ export class Inspector {
   pattern() {
     const value = this.page.document || {}, shown = ["name", "profile", "defaults", "start", "world", "controller", "repair", "tolerances"];
     const parts = shown.filter((name) => value[name] !== undefined);
-    const ground = ["blocks", "patches"], without = (name) => name !== "world" ? value[name]
+    const ground = ["blocks", "patches", "field", "motion"], without = (name) => name !== "world" ? value[name]
       : Object.fromEntries(Object.entries(value.world).filter(([part]) => !ground.includes(part)));
     return [element("h3", {}, "The whole pattern"),
       ...parts.flatMap((name) => this.inputs("/" + name, without(name), [name], this.choicesOf("pattern"))),
-      ...ground.flatMap((list) => this.onGround(list, value.world?.[list] ?? [])),
-      ...this.parameters(value.parameters ?? {})];
+      this.weights("/repair/weights", value.repair?.weights, "Weight of a joint in a repair", 10),
+      ...this.onGround("blocks", value), ...this.onGround("patches", value), ...this.field(value.world), ...this.motions(value),
+      ...this.parameters(value.parameters ?? {}), ...this.uncertainty(value)].filter(Boolean);
   }
 
-  /// Blocks and patches of the ground, which can be added and removed.
-  onGround(list, items) {
-    const one = { blocks: "Block", patches: "Patch of other friction" }[list];
-    return [...items.flatMap((item, i) => [element("h4", {}, `${one} ${i + 1}`),
-      ...this.inputs(`/world/${list}/${i}`, item, ["world", list, i]),
-      this.button(() => [{ kind: "remove", pointer: items.length > 1 ? `/world/${list}/${i}` : `/world/${list}` }], `Remove this ${list === "blocks" ? "block" : "patch"}`)]),
-    this.button(() => addToGround(list), { blocks: "Add a block to the ground", patches: "Add a patch of other friction" }[list],
-      () => this.focusValues(`/world/${list}/${items.length}/`))];
+  /// Items of a list that can be added and removed; `words` are those of one item.
+  items(path, words, inputs = (item, i, pointer) => this.inputs(pointer, item, [...path, i])) {
+    const document = this.page.document, list = path.reduce((value, name) => value?.[name], document) ?? [];
+    return list.flatMap((item, i) => [element("h4", {}, `${words} ${i + 1}`), ...inputs(item, i, `/${path.join("/")}/${i}`),
+      this.button(() => removeItem(document, path, i), `Remove this ${words[0].toLowerCase()}${words.slice(1)}`, () => {}, `remove ${path.join(" ")} ${i}`)]);
+  }
+
+  /// The button that adds an item, which then has the focus.
+  adder(path, edits, words) {
+    const count = path.reduce((value, name) => value?.[name], this.page.document)?.length ?? 0;
+    return this.button(edits, words, () => this.focusValues(`/${path.join("/")}/${count}/`));
+  }
+
+  /// Blocks and patches of the ground.
+  onGround(list, value) {
+    return [...this.items(["world", list], { blocks: "Block", patches: "Patch of other friction" }[list]),
+      this.adder(["world", list], () => addToGround(list, value.world), { blocks: "Add a block to the ground", patches: "Add a patch of other friction" }[list])];
+  }
+
+  /// The height field of the ground: one, with as many nodes as are wanted.
+  field(world) {
+    if (!world?.field)
+      return [this.button(() => addField(world), "Add a height field to the ground", () => this.focusValues("/world/field/"))];
+    return [element("h4", {}, "Height field"), ...this.inputs("/world/field", world.field, ["world", "field"]),
+      this.button(() => growField(world.field, "x"), "One more row of nodes ahead"),
+      this.button(() => growField(world.field, "y"), "One more row of nodes to the left"),
+      this.button(() => [{ kind: "remove", pointer: "/world/field" }], "Remove the height field")];
+  }
+
+  /// Motions of the whole floor, at the time of the cursor.
+  motions(value) {
+    const unit = this.page.state.angle_unit;
+    return [...this.items(["world", "motion"], "Motion of the floor", (item, i, pointer) =>
+      [...this.inputs(pointer + "/shape", item.shape ?? "ramp", ["shape"], { shape: shapes }, (next) => putShape(pointer, item, next)),
+        ...Object.entries(item).filter(([name]) => name !== "shape").flatMap(([name, one]) => this.inputs(`${pointer}/${name}`, one, ["world", "motion", i, name])),
+        ...["roll", "pitch"].filter((name) => item[name] === undefined).map((name) =>
+          this.button(() => [{ kind: "set", pointer: `${pointer}/${name}`, value: 0 }], `Give its ${name}`, () => this.focusValues(`${pointer}/${name}`), `${pointer} ${name}`)),
+        item.shift === undefined ? this.button(() => [{ kind: "set", pointer: pointer + "/shift", value: [0, 0, 0] }], "Give its shift",
+          () => this.focusValues(pointer + "/shift"), pointer + " shift") : null]),
+    this.adder(["world", "motion"], () => addFloorMotion(this.page.time, unit), "Add a motion of the floor at the cursor")];
+  }
+
+  /// What is uncertain, for `ayumi certify`.
+  uncertainty() {
+    const unit = this.page.state.angle_unit, kind = element("select", { "aria-label": "What is uncertain" },
+      ...quantities.map((one) => element("option", { value: one.what }, one.words)));
+    kind.dataset.id = "new quantity";
+    const words = (what) => quantities.find((one) => one.what === what)?.words ?? what;
+    const count = this.page.document?.uncertainty?.quantities?.length ?? 0;
+    return [element("h4", {}, "Uncertainty (for ayumi certify)"),
+      ...this.items(["uncertainty", "quantities"], "Uncertain quantity", (item, i, pointer) =>
+        [element("p", { class: "soft" }, words(item.what)), ...this.inputs(pointer, item, ["uncertainty", "quantities", i], { axis: ["x", "y", "z"], each: ["true", "false"] })]),
+      ...this.items(["uncertainty", "pushes"], "Uncertain push", (item, i, pointer) =>
+        this.inputs(pointer, item, ["uncertainty", "pushes", i], { unit: ["B", "N s"] })),
+      ...this.page.can("edit") ? [element("form", { class: "value", onsubmit: (event) => {
+        event.preventDefault();
+        return this.page.edit(addQuantity(kind.value, unit)).then((done) => { if (done) this.focusValues(`/uncertainty/quantities/${count}/`); });
+      } }, kind, element("button", { type: "submit" }, "Add"))] : [],
+      this.adder(["uncertainty", "pushes"], () => addUncertainPush(unit), "Add an uncertain push")];
+  }
+
+  /// The weight of one more joint: a joint is chosen, and a number typed.
+  weights(pointer, written, words, otherwise) {
+    if (!this.page.can("edit")) return null;
+    const joint = element("select", { "aria-label": words }, ...this.page.state.joints.filter((one) => written?.[one.name] === undefined)
+      .map((one) => element("option", { value: one.name }, one.name)));
+    const number = element("input", { type: "number", min: "0.001", step: "any", value: String(otherwise), required: true, "aria-label": `${words}: the weight` });
+    joint.dataset.id = pointer + " joint";
+    number.dataset.id = pointer + " weight";
+    number.dataset.written = String(otherwise);
+    return element("form", { class: "value", onsubmit: (event) => {
+      event.preventDefault();
+      return this.page.edit([{ kind: "set", pointer: pointer + token(joint.value), value: Number(number.value) }])
+        .then((done) => { if (done) this.focusValues(pointer + token(joint.value)); });
+    } }, element("span", {}, words), joint, number, element("button", { type: "submit" }, "Add"));
   }
 
   /// The parameters, and a new one: what is typed elsewhere as ${name} has its value.
@@ -259,8 +350,8 @@ export class Inspector {
     fields[0]?.focus();
   }
 
-  button(edits, words, then = () => {}) {
-    return this.page.can("edit") ? element("button", { type: "button", "data-id": words,
+  button(edits, words, then = () => {}, id = words) {
+    return this.page.can("edit") ? element("button", { type: "button", "data-id": id,
       onclick: () => this.page.edit(edits()).then((done) => { if (done) then(); }) }, words) : null;
   }
 
@@ -282,6 +373,7 @@ export class Inspector {
         const value = valueAt(this.page.document, `${frame.pointer}/${more}`);
         return value === undefined ? [] : this.inputs(`${frame.pointer}/${more}`, value, [more], this.choicesOf("keyframe"));
       }) : [],
+      frame ? this.weights(frame.pointer + "/weights", valueAt(this.page.document, frame.pointer)?.weights, "Weight of a joint from here on", 10) : null,
       others.length ? element("p", { class: "soft" }, `This keyframe also has keys of: ${others.join(", ")}. All keys of a keyframe move together.`) : null,
       ...key.track.name === "zmp" && !named ? ["left", "center", "right"].map((place) =>
         this.button(() => [{ kind: "set", pointer: key.pointer, value: place }], zmpWords[place])) : [],
@@ -339,8 +431,28 @@ export class Inspector {
     const select = element("select", {}, ...goals.map((one) => element("option", { value: one.name }, one.words)));
     select.value = now;
     select.dataset.id = phase.pointer + " goal";
-    select.addEventListener("change", () => this.page.edit(putGoal(phase, select.value, state.angle_unit)).then((done) => { if (!done) select.value = now; }));
-    return element("label", { class: "value" }, element("span", {}, "VIIP goal"), select, element("span", { class: "unit" }));
+    select.addEventListener("change", () => {
+      const within = keysWithin(phase, state.keyframes);
+      if (select.value !== "none" && within.length) {
+        this.wanted = { pointer: phase.pointer, name: select.value };
+        return this.render();
+      }
+      return this.page.edit(putGoal(phase, select.value, state.angle_unit)).then((done) => { if (!done) select.value = now; });
+    });
+    return element("div", {}, element("label", { class: "value" }, element("span", {}, "VIIP goal"), select, element("span", { class: "unit" })),
+      this.goalWithoutKeys(phase, state));
+  }
+
+  /// VIIP plans the whole phase: with a goal, the keys inside it go.
+  goalWithoutKeys(phase, state) {
+    const within = keysWithin(phase, state.keyframes), wanted = this.wanted;
+    if (wanted?.pointer !== phase.pointer || !within.length) return null;
+    const times = within.map((frame) => seconds(frame.time)).join(", ");
+    if (within.some((frame) => frame.repeated))
+      return element("p", { class: "soft", role: "status" }, `VIIP plans the whole phase, so no key may lie inside it. The keyframes at ${times} do, and belong to a block that repeats. Remove them in the text.`);
+    return element("p", { role: "status" }, `VIIP plans the whole phase, so no key may lie inside it. Here are keyframes at ${times}. `,
+      this.button(() => putGoal(phase, wanted.name, state.angle_unit, state.keyframes), `Remove ${within.length > 1 ? "these keyframes" : "this keyframe"}, and give the goal`,
+        () => { this.wanted = null; }, phase.pointer + " goal without keys"));
   }
 
   /// This phase and those before it, with their keys, several times.
@@ -401,9 +513,17 @@ export class Inspector {
   }
 
   disturbance(one) {
-    return [element("h3", {}, `Disturbance at ${seconds(one.from)}`),
-      ...Object.entries(one.value || {}).flatMap(([name, value]) => this.inputs(`${one.pointer}/${name}`, value, [name], { frame: ["world", "link"] })),
+    return [element("h3", {}, `Disturbance at ${seconds(one.from)}: ${one.type.replace("_", " ")}`),
+      ...Object.entries(one.value || {}).filter(([name]) => name !== "type").flatMap(([name, value]) =>
+        this.inputs(`${one.pointer}/${name}`, value, [name], this.choicesOfDisturbance(one),
+          one.type === "floor" && name === "shape" ? (next) => putShape(one.pointer, one.value, next) : null)),
       this.button(() => [{ kind: "remove", pointer: one.pointer }], "Remove this disturbance")].filter(Boolean);
+  }
+
+  choicesOfDisturbance({ type }) {
+    const { links, joints } = this.page.state, joint = joints.map((one) => one.name);
+    return { frame: ["world", "link"], foot: ["left", "right"], joint, ...type === "payload" ? { on: links } : { on: ["cog", ...links] },
+      shape: type === "floor" ? shapes : ["rectangle", "half_sine"] };
   }
 
   offerTracks(state) {

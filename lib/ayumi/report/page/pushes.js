@@ -3,6 +3,7 @@
 import { Vector3 } from "three";
 import { byId, element, seconds } from "./dom.js";
 import { addDisturbance } from "./edits.js";
+import { addOther, disturbances } from "./parts.js";
 import { wordsOfPush } from "./push_parts.js";
 
 const units = { impulse: "N s", force: "N" };
@@ -24,6 +25,11 @@ export class Pushes {
       this.add();
     });
     byId("draw-push").addEventListener("click", () => this.draw(!this.page.drawing));
+    byId("other-type").replaceChildren(...disturbances.map((one) => element("option", { value: one.type }, one.words)));
+    byId("new-other").addEventListener("submit", (event) => {
+      event.preventDefault();
+      this.addOther();
+    });
     this.units();
   }
 
@@ -57,9 +63,16 @@ export class Pushes {
       duration: Number(byId("push-duration").value), size: Number(byId("push-size").value), direction }));
   }
 
+  /// Another disturbance, which is then shown with its values.
+  async addOther() {
+    const { page } = this, { length } = page.state.disturbances;
+    if (await page.edit(addOther(byId("other-type").value, page.time, page.state)))
+      page.select({ kind: "disturbance", pointer: `/scenario/${length}` });
+  }
+
   render() {
     const { state } = this.page;
-    byId("new-push").hidden = !this.page.can("edit");
+    for (const id of ["new-push", "new-other"]) byId(id).hidden = !this.page.can("edit");
     byId("pushes").replaceChildren(...state.disturbances.map((one) => element("li", {},
       element("button", { type: "button", class: "line",
         onclick: () => this.page.select({ kind: "disturbance", pointer: one.pointer }, one.from) },

@@ -1,0 +1,130 @@
+// Parts of a pattern that the page makes with sensible first values: what lies on the ground, motions
+// of the floor, disturbances other than pushes, weights of joints, and what is uncertain
+// (docs/formats.md).
+
+import { roundedTime } from "./edits.js";
+
+const inUnit = (degrees, unit) => unit === "deg" ? degrees : Number((degrees * Math.PI / 180).toFixed(4));
+
+/// Where the ground is free, ahead of all that lies on it [m]; an expression counts as nothing.
+export function freeGround(world = {}) {
+  const number = (value) => Number.isFinite(value) ? value : -Infinity;
+  const ends = [...world.blocks ?? [], ...world.patches ?? []].map((one) =>
+    one.position ? number(one.position[0]) + number(one.radius) : number(one.x?.[1]));
+  if (world.field) ends.push(number(world.field.origin?.[0]) + number(world.field.spacing) * (world.field.heights.length - 1));
+  return Number(Math.max(0.1, ...ends).toFixed(4));
+}
+
+/// A block or a patch of the ground, ahead of the robot and of what lies there.
+export function addToGround(list, world) {
+  const from = freeGround(world);
+  const value = { x: [from, Number((from + 0.2).toFixed(4))], y: [-0.2, 0.2], ...list === "blocks" ? { height: 0.005 } : { friction: 0.4 } };
+  return [{ kind: "insert", pointer: `/world/${list}/-`, value }];
+}
+
+/// A field of low waves that is level at its edges.
+export function addField(world) {
+  const nodes = 7, wave = (i, j) => Number((0.002 * Math.sin(Math.PI * i / (nodes - 1)) * Math.abs(Math.sin(Math.PI * j / 3))).toFixed(4));
+  const heights = Array.from({ length: nodes }, (_, i) => Array.from({ length: nodes }, (_, j) => wave(i, j)));
+  return [{ kind: "set", pointer: "/world/field", value: { origin: [freeGround(world), -0.15], spacing: 0.05, heights } }];
+}
+
+/// One more row ahead (along x) or column to the left (along y) of a field, as high as the last one.
+export function growField(field, along) {
+  if (along === "x") return [{ kind: "insert", pointer: "/world/field/heights/-", value: field.heights.at(-1) }];
+  return field.heights.map((row, i) => ({ kind: "insert", pointer: `/world/field/heights/${i}/-`, value: row.at(-1) }));
+}
+
+/// A tilt of the whole floor there and back, at a time.
+export function addFloorMotion(time, unit) {
+  return [{ kind: "insert", pointer: "/world/motion/-",
+    value: { shape: "half_sine", at: roundedTime(time), duration: 1, pitch: inUnit(2, unit) } }];
+}
+
+/// Another shape of a motion: only a sine has a frequency.
+export function putShape(pointer, motion, shape) {
+  const set = { kind: "set", pointer: pointer + "/shape", value: shape };
+  if (shape === "sine" && motion.frequency === undefined) return [set, { kind: "set", pointer: pointer + "/frequency", value: 1 }];
+  if (shape !== "sine" && motion.frequency !== undefined) return [set, { kind: "remove", pointer: pointer + "/frequency" }];
+  return [set];
+}
+
+export const shapes = ["ramp", "half_sine", "sine"];
+
+/// Disturbances other than pushes, each with what it has besides its time.
+export const disturbances = [
+  { type: "payload", words: "a payload on a link", value: (state) => ({ on: state.links?.at(-1) ?? "", mass: 0.1 }) },
+  { type: "floor", words: "a motion of the floor", value: (state) => ({ duration: 1, shape: "half_sine", pitch: inUnit(2, state.angle_unit) }) },
+  { type: "friction", words: "another friction of the ground", value: () => ({ friction: 0.3, duration: 1 }) },
+  { type: "bump", words: "a bump under a foot", value: () => ({ foot: "left", height: 0.003 }) },
+  { type: "latency", words: "later sensors", value: () => ({ latency: 0.005, duration: 1 }) },
+  { type: "sensor_bias", words: "an error of the attitude sensor", value: (state) => ({ pitch: inUnit(1, state.angle_unit) }) },
+  { type: "encoder_offset", words: "an offset of an encoder", value: (state) => ({ joint: state.joints[0].name, offset: inUnit(1, state.angle_unit) }) },
+  { type: "joint_friction", words: "friction of a joint", value: (state) => ({ joint: state.joints[0].name, coulomb: 0.2, viscous: 0.05 }) },
+  { type: "gain_loss", words: "a weak servo", value: (state) => ({ joint: state.joints[0].name, share: 0.3 }) },
+];
+
+export function addOther(type, time, state) {
+  const one = disturbances.find((each) => each.type === type);
+  return [{ kind: "insert", pointer: "/scenario/-", value: { type, at: roundedTime(time), ...one.value(state) } }];
+}
+
+const around = (share) => ({ uniform: [Number((1 - share).toFixed(4)), 1 + share] });
+const within = (most) => ({ uniform: [-most, most] });
+const upTo = (most) => ({ uniform: [0, most] });
+
+/// What may be uncertain, each with a range to begin with.
+export const quantities = [
+  { what: "mass", words: "masses of the links (factor)", value: () => ({ each: true, ...around(0.05) }) },
+  { what: "inertia", words: "inertias of the links (factor)", value: () => ({ each: true, ...around(0.1) }) },
+  { what: "cog", words: "centre of mass of the trunk", value: () => ({ on: "trunk", axis: "x", ...within(0.003) }) },
+  { what: "friction", words: "friction of the ground", value: () => ({ uniform: [0.5, 0.9] }) },
+  { what: "slope", words: "slope of the ground", value: (unit) => ({ axis: "y", ...within(inUnit(1, unit)) }) },
+  { what: "bumps", words: "hollows of the ground", value: () => upTo(0.001) },
+  { what: "sole_stiffness", words: "stiffness of the soles (factor)", value: () => around(0.3) },
+  { what: "sole_damping", words: "damping of the soles (factor)", value: () => around(0.3) },
+  { what: "servo_kp", words: "stiffness of the servos (factor)", value: () => around(0.1) },
+  { what: "servo_kd", words: "damping of the servos (factor)", value: () => around(0.1) },
+  { what: "servo_friction", words: "friction of the servos", value: () => upTo(0.05) },
+  { what: "encoder_offset", words: "offsets of the encoders", value: (unit) => ({ each: true, ...within(inUnit(0.2, unit)) }) },
+  { what: "servo_delay", words: "delay of the servos", value: () => upTo(0.002) },
+  { what: "backlash", words: "backlash of the gears", value: (unit) => upTo(inUnit(0.2, unit)) },
+  { what: "sensor_noise", words: "noise of the sensors (factor)", value: () => ({ uniform: [1, 2] }) },
+  { what: "attitude_bias", words: "error of the attitude sensor", value: (unit) => ({ axis: "y", ...within(inUnit(0.3, unit)) }) },
+  { what: "gyro_bias", words: "error of the gyro", value: (unit) => ({ axis: "y", ...within(inUnit(0.3, unit)) }) },
+  { what: "load_bias", words: "error of the load cells", value: () => within(0.5) },
+  { what: "sensor_latency", words: "latency of the sensors", value: () => ({ uniform: [0.002, 0.006] }) },
+  { what: "payload", words: "load on the trunk", value: () => ({ on: "trunk", ...upTo(0.2) }) },
+];
+
+const assumed = "assumed: a first range of the page";
+
+export function addQuantity(what, unit) {
+  const one = quantities.find((each) => each.what === what);
+  return [{ kind: "insert", pointer: "/uncertainty/quantities/-", value: { what, ...one.value(unit), source: assumed } }];
+}
+
+/// A push of half of what the robot can capture, from four sides, in a phase of the walk.
+export function addUncertainPush(unit) {
+  const choice = [0, 90, 180, 270].map((degrees) => inUnit(degrees, unit));
+  return [{ kind: "insert", pointer: "/uncertainty/pushes/-",
+    value: { unit: "B", size: 0.5, direction: { choice, source: assumed }, time: "phases", duration: 0.02 } }];
+}
+
+/// Without an item of a list. A list that would be empty goes as a whole, and "uncertainty" that holds nothing else, too.
+export function removeItem(document, path, index) {
+  const [part, list] = path;
+  if (document[part][list].length > 1) return [{ kind: "remove", pointer: `/${part}/${list}/${index}` }];
+  const alone = part === "uncertainty" && Object.keys(document[part]).length === 1;
+  return [{ kind: "remove", pointer: alone ? `/${part}` : `/${part}/${list}` }];
+}
+
+/// Names of values that are angles, or hold some. Foothold lists have a yaw behind three lengths.
+const angles = /(^|[/"])(roll|pitch|yaw|turn|rpy|offset|gyro|joints|posture|postures|torso|feet|to|direction|slope|backlash|attitude_bias|gyro_bias|encoder_offset)(["/]|$)/;
+
+/// The edits, and where a pattern without a unit of angles gets its first angle, the unit of the page.
+export function withUnits(document, edits, unit) {
+  if (!document || document.units?.angle !== undefined) return edits;
+  const angular = edits.some(({ kind, pointer, value }) => kind !== "remove" && angles.test(pointer + JSON.stringify(value ?? null)));
+  return angular ? [...edits, { kind: "set", pointer: "/units/angle", value: unit }] : edits;
+}
