@@ -4,7 +4,10 @@
 #include <optional>
 #include <utility>
 
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
 #include "ayumi/io/run/log_writer.hpp"
+#include "ayumi/io/run/simulation_log_file.hpp"
 #include "ayumi/task/servo_table.hpp"
 #include "ayumi/task/streamed_simulation.hpp"
 
@@ -19,6 +22,19 @@ std::filesystem::path scratch_folder() {
   std::error_code none;
   const std::filesystem::path folder = std::filesystem::temp_directory_path(none);
   return none ? std::filesystem::path(".") : folder;
+}
+
+// No reader takes a longer log, and a run is too long to be lost at its end.
+void require_readable_log(const Task& input, const std::vector<std::string>& joints) {
+  const size_t most = most_log_rows(joints);
+  const double margin = 10;  // [s] Chosen: more than a run goes on after its motion.
+  const size_t rows = input.series.samples.size() + static_cast<size_t>(margin / input.tick);
+  if (rows <= most) return;
+  const double longest = static_cast<double>(most) * input.tick - margin;
+  fail(ErrorCode::bad_pattern,
+       input.pattern.name + ": the motion lasts " + text::fixed(input.series.duration(), 1) +
+           " s, and the log of this robot can hold " + text::fixed(longest, 1) +
+           " s; divide the motion, or use ayumi simulate without -o, which keeps no log");
 }
 
 Eigen::MatrixXd matrix_of(const std::vector<double>& rows, size_t columns) {
@@ -36,10 +52,12 @@ StreamedRun simulate_streamed(const Context& context, const Task& input,
   const std::vector<std::string> joints = input.robot.dof_names();
   std::optional<LogWriter> writer;
   std::optional<LogHash> hash;
-  if (file.empty())
+  if (file.empty()) {
     hash.emplace(scratch_folder(), joints.size());
-  else
+  } else {
+    require_readable_log(input, joints);
     writer.emplace(file.parent_path(), joints);
+  }
   StreamedRun run;
   std::vector<double> torque;
   Clock::duration writing = Clock::duration::zero();

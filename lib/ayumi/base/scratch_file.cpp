@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <utility>
 
@@ -11,37 +12,28 @@
 
 namespace ayumi {
 
-namespace {
-
-// Chosen: of one process, two files are in this moment at a time at most.
-constexpr int kMostNames = 100;
-
-}  // namespace
-
-ScratchFile::ScratchFile(std::filesystem::path folder) : folder_(std::move(folder)) {
-  // A name is needed for a moment only, because not every file system has files without one.
-  // A process that was killed in this moment may have left one.
-  const std::string begin = ".ayumi_scratch_" + std::to_string(::getpid()) + "_";
-  for (int i = 0; i < kMostNames && descriptor_ < 0; ++i) {
-    const std::filesystem::path name = folder_ / (begin + std::to_string(i));
-    descriptor_ = ::open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-    if (descriptor_ >= 0)
-      ::unlink(name.c_str());
-    else if (errno != EEXIST)
-      break;
-  }
+ScratchFile::ScratchFile(std::filesystem::path folder)
+    : folder_(folder.empty() ? std::filesystem::path(".") : std::move(folder)) {
+  // Not every file system has files without a name, so it has one for a moment.
+  std::string name = (folder_ / ".ayumi_scratch_XXXXXX").string();
+  descriptor_ = ::mkostemp(name.data(), O_CLOEXEC);
   if (descriptor_ < 0) refuse("no file can be made in this folder");
+  if (::unlink(name.c_str()) != 0) name_ = std::move(name);  // as on some network file systems
 }
 
 ScratchFile::~ScratchFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
+  if (!name_.empty()) ::unlink(name_.c_str());
 }
 
 void ScratchFile::append(std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t done = ::write(descriptor_, bytes.data(), bytes.size());
     if (done < 0 && errno == EINTR) continue;
-    if (done < 0) refuse("the samples cannot be written to a file in this folder");
+    if (done < 0)
+      refuse(
+          "the samples of the run cannot be kept in a file in this folder; free some space on its "
+          "disk");
     bytes.remove_prefix(static_cast<size_t>(done));
     size_ += static_cast<size_t>(done);
   }

@@ -8,6 +8,7 @@
 namespace ayumi {
 
 /// An open file without a name: it ends with this object, and with the process, however that ends.
+/// Where the file system cannot take away the name of an open file, it ends with this object only.
 class ScratchFile {
  public:
   /// Makes the file on the disk of `folder`. Throws Error(bad_file) naming the folder.
@@ -25,6 +26,7 @@ class ScratchFile {
  private:
   [[noreturn]] void refuse(const std::string& what) const;
   std::filesystem::path folder_;
+  std::string name_;  // where the file system keeps the name of an open file; else empty
   int descriptor_ = -1;
   size_t size_ = 0;
 };

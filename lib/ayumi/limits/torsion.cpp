@@ -38,8 +38,8 @@ void judge_torsion(JudgedMotion& motion, const JudgedSample& s) {
       use.margin <= motion.tolerance(FindingKind::support_margin))
     return;
   const double most = motion.tolerance(FindingKind::yaw_moment);
-  if (torsion_ratio(use, motion.friction, least_arm(use)) <
-      std::min(most, motion.summary[FindingKind::yaw_moment]))
+  if (use.margin > 0 && torsion_ratio(use, motion.friction, least_arm(use)) <
+                            std::min(most, motion.summary[FindingKind::yaw_moment]))
     return;
   const double yaw = torsion_ratio(
       use, motion.friction, torsional_friction_arm(motion.dynamics.plane().polygon, use.zmp));

@@ -64,8 +64,8 @@ struct PassingResult {
   bool as_table;
 };
 
-// Takes the result itself, or the first motion between it and the passing one that passes, at most
-// a share of the way back. False where there is none; the result is then unchanged. Where the
+// Takes the result itself, or a motion that passes between it and the passing one, at most a share
+// of the way back. False where there is none; the result is then unchanged. Where the
 // farthest of these motions does not pass, the others are not tried: they are less far back.
 bool take_first_passing(RepairState& state, const PassingResult& passing, double most_back) {
   auto passes = [&] {
@@ -80,8 +80,8 @@ bool take_first_passing(RepairState& state, const PassingResult& passing, double
     state.track = wanted;
     return false;
   }
-  // The least of the shares kFirstBack * kBackFactor^i that passes, by halving: what passes goes on
-  // to pass farther back.
+  // A small one of the shares kFirstBack * kBackFactor^i that passes, by halving. It is the least
+  // one if every motion farther back passes, too.
   std::vector<double> shares;
   for (double share = policy::tighten::kFirstBack; share < most_back;
        share *= policy::tighten::kBackFactor)

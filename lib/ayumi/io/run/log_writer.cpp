@@ -40,8 +40,14 @@ WrittenLog LogWriter::finish(SimulationLog about, const std::filesystem::path& p
   write_file_with(path, [&](const std::filesystem::path& temporary) {
     errno = 0;
     std::ofstream stream(temporary, std::ios::binary);
+    const auto require_written = [&] {
+      if (!stream)
+        fail(ErrorCode::bad_file,
+             path.string() + ": the file cannot be written (" + std::strerror(errno) + ")");
+    };
     const auto write = [&](const std::string& bytes) {
       stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+      require_written();
       file_hash.add(bytes);
     };
     write(log_head(about, log.rows));
@@ -54,9 +60,7 @@ WrittenLog LogWriter::finish(SimulationLog about, const std::filesystem::path& p
       hash.add(decompress_samples(block, columns_, rows, path.string()));
     }
     stream.close();
-    if (!stream)
-      fail(ErrorCode::bad_file,
-           path.string() + ": the file cannot be written (" + std::strerror(errno) + ")");
+    require_written();
   });
   log.about = std::move(about);
   log.log_hash = hash.digits();
@@ -70,8 +74,13 @@ LogHash::LogHash(std::filesystem::path folder, size_t joints)
 void LogHash::add(const SimulationSample& sample) {
   append_values(sample, joints_, rows_);
   ++count_;
-  if (rows_.size() < kWaitingBytes) return;
-  if (!scratch_) scratch_.emplace(folder_);
+  if (rows_.size() < kWaitingBytes || in_memory_) return;
+  try {
+    if (!scratch_) scratch_.emplace(folder_);
+  } catch (const Error&) {
+    in_memory_ = true;
+    return;
+  }
   scratch_->append(rows_);
   rows_.clear();
 }

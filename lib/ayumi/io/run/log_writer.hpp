@@ -40,12 +40,13 @@ class LogWriter {
 };
 
 /// The hash of a log that is not kept. Its rows are in a scratch file, because they are hashed
-/// after the header. The first block of them stays in memory: short logs need no file.
+/// after the header. The first block of them stays in memory: short logs need no file. Where no
+/// scratch file can be made, all rows stay in memory.
 class LogHash {
  public:
-  /// `folder` is where the scratch file is made when it is needed.
+  /// `folder` is where the scratch file is made if it is needed.
   LogHash(std::filesystem::path folder, size_t joints);
-  /// Throws as ScratchFile.
+  /// Throws Error(bad_file) when the disk is full.
   void add(const SimulationSample& sample);
   /// Nothing may be added after it. The samples of `about` do not count.
   WrittenLog finish(SimulationLog about);
@@ -56,6 +57,7 @@ class LogHash {
   std::optional<ScratchFile> scratch_;
   std::string rows_;  // that are not in the scratch file
   size_t count_ = 0;
+  bool in_memory_ = false;
 };
 
 }  // namespace ayumi

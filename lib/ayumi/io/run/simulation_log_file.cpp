@@ -364,6 +364,10 @@ bool is_log_file(const std::filesystem::path& path) {
   return file.read(begin.data(), 8) && begin == kMagic;
 }
 
+size_t most_log_rows(const std::vector<std::string>& joints) {
+  return kMostBytes / (log_columns(joints) * sizeof(double));
+}
+
 SimulationLog read_log(const std::filesystem::path& path) {
   return parse_log(read_file(path, kMostBytes), path.string());
 }

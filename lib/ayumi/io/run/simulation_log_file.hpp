@@ -23,6 +23,9 @@ inline constexpr size_t kLogBlockRows = size_t{1} << 15;
 /// Numbers in a row of a log with these joints.
 size_t log_columns(const std::vector<std::string>& joints);
 
+/// Rows that a log of these joints may have at most: no reader takes more.
+size_t most_log_rows(const std::vector<std::string>& joints);
+
 /// The samples of a log as they stand in its file, block by block.
 class LogBlocks {
  public:
