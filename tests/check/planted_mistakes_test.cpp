@@ -29,6 +29,59 @@ Pattern walk(const RobotModel& robot) {
   return walk_pattern(robot, steps);
 }
 
+Keyframe& key_at(Pattern& pattern, double t) {
+  pattern.keyframes.emplace_back();
+  pattern.keyframes.back().t = t;
+  return pattern.keyframes.back();
+}
+
+/// A quarter turn to the left: the left foot leads by 30 deg in each of three pairs of steps, and
+/// the right foot follows. The robot stands on both feet for `both` [s] between the steps.
+Pattern quarter_turn(double both = 0.3) {
+  Pattern pattern;
+  pattern.degrees = true;
+  pattern.phases.push_back({.until = 1.1, .swing = {}});
+  key_at(pattern, 0.5).zmp = ZmpKey{ZmpKey::Place::center};
+  double t = 1.1;
+  for (int step = 0; step < 6; ++step) {
+    const Side foot = step % 2 == 0 ? Side::left : Side::right;
+    const auto under = foot == Side::left ? ZmpKey::Place::right : ZmpKey::Place::left;
+    const RelativeStep to =
+        foot == Side::left ? RelativeStep{.side = 0.01, .turn = 30 * kDegree} : RelativeStep{};
+    key_at(pattern, t).zmp = ZmpKey{under};
+    key_at(pattern, t += 0.6).zmp = ZmpKey{under};
+    pattern.phases.push_back({.until = t,
+                              .support = foot == Side::left ? Support::right : Support::left,
+                              .swing = Swing{.foot = foot, .to = {}, .lift = 0.015, .step = to}});
+    pattern.phases.push_back({.until = t += both, .swing = {}});
+  }
+  pattern.phases.back().until = t + 0.8;
+  key_at(pattern, t + 0.3).zmp = ZmpKey{ZmpKey::Place::center};
+  return pattern;
+}
+
+/// A kick to the right with a foot that turns with its leg.
+Pattern side_kick() {
+  Pattern pattern;
+  pattern.degrees = true;
+  pattern.phases = {{.until = 1.5, .swing = {}},
+                    {.until = 3.5, .support = Support::left, .swing = {}},
+                    {.until = 5, .swing = {}}};
+  key_at(pattern, 0.5).zmp = ZmpKey{ZmpKey::Place::center};
+  pattern.keyframes.back().cog_height = 0.6;
+  key_at(pattern, 1.4).zmp = ZmpKey{ZmpKey::Place::left};
+  key_at(pattern, 1.5).feet[1] = Foothold{{0, -0.095, 0}};
+  key_at(pattern, 2.1).feet[1] = Foothold{{0, -0.15, 0.1}};
+  key_at(pattern, 2.5).feet[1] = Foothold{{0, -0.25, 0.12}, {-16 * kDegree, 0, 0}};
+  key_at(pattern, 3.5).feet[1] = Foothold{{0, -0.095, 0}};
+  pattern.keyframes.back().zmp = ZmpKey{ZmpKey::Place::left};
+  key_at(pattern, 4.3).zmp = ZmpKey{ZmpKey::Place::center};
+  pattern.keyframes.back().cog_height = 0.6;
+  for (size_t k = 2; k < 6; ++k)  // away from the leg
+    pattern.keyframes[k].joints["r_shoulder_roll"] = (k == 2 || k == 5 ? -10 : -45) * kDegree;
+  return pattern;
+}
+
 struct Mistaken {
   const char* name;
   const RobotModel& robot;
@@ -54,6 +107,7 @@ std::vector<Mistaken> make_list() {
   low.cog_height = 0.238;
   static const Pattern kick = kick_pattern(small(), low);
   static const Pattern wide_kick = kick_pattern(tall(), kick_defaults(tall()));
+  static const Pattern turn = quarter_turn(), side = side_kick();
   static const Pattern jump = [] {
     Pattern pattern = jump_pattern(small(), jump_defaults(small()));
     pattern.profile = "hoap1-strong";
@@ -219,6 +273,17 @@ std::vector<Mistaken> make_list() {
         for (Keyframe& key : p.keyframes)
           if (key.t >= until - 1e-9) key.t -= cut;
       });
+  add("a turn of both feet", small(), turn,
+      "/phases/3: the right foot's step turns by 30 deg after the left foot .* turn the robot by "
+      "180 deg; with \"turn\" 0 in the 3 steps",
+      [](Pattern& p) {
+        for (Phase& phase : p.phases)
+          if (phase.swing) phase.swing->step->turn = 30 * kDegree;
+      });
+  add("a level foot of a leg that leans", tall(), side,
+      "/keyframes/4: the right foot stays level while its leg leans by 1. deg to the side, .*"
+      "\"rpy\": \\[-1",
+      [](Pattern& p) { p.keyframes[4].feet[1]->rpy.setZero(); });
   return all;
 }
 
@@ -290,6 +355,33 @@ TEST(PlantedMistakes, AWeightThatIsNotShiftedIsNamed) {
       << found;
 }
 
+// Steps to places in the world that land too far apart, while one foot is turned: nearer and with
+// less of a turn, the pattern is consistent, and no key of the ZMP moves into a swing.
+TEST(PlantedMistakes, FootholdsTooFarApartAreNamed) {
+  Pattern pattern = quarter_turn(0.25);
+  const std::vector<Foothold> places = {{{0, 0.055, 0}, {0, 0, 45 * kDegree}},
+                                        {{0.055, 0, 0}, {0, 0, 45 * kDegree}},
+                                        {{-0.02, 0.075, 0}, {0, 0, 90 * kDegree}},
+                                        {{0.058, 0.075, 0}, {0, 0, 90 * kDegree}}};
+  pattern.phases.resize(9);
+  pattern.phases.back().until += 1;
+  pattern.keyframes.resize(9);
+  key_at(pattern, pattern.phases.back().until - 0.5).zmp = ZmpKey{ZmpKey::Place::center};
+  for (size_t step = 0; step < places.size(); ++step) {
+    swing(pattern, 2 * step + 1).step.reset();
+    swing(pattern, 2 * step + 1).to = places[step];
+  }
+  const std::vector<Mistake> found = likely_mistakes(small(), pattern, options_of(pattern));
+  ASSERT_FALSE(found.empty());
+  EXPECT_NE(found.front().text().find("/phases/5: the left foot lands 106 mm from the right foot, "
+                                      "and at the beginning they are 78 mm apart; with \"to\" = ["),
+            std::string::npos)
+      << found.front().text();
+  EXPECT_TRUE(found.back().explains_all) << found.back().text();
+  for (const Mistake& mistake : found)
+    EXPECT_EQ(mistake.text().find("/keyframes/"), std::string::npos) << mistake.text();
+}
+
 // A motion that is too fast at the servo's period alone, where the table for the robot is judged.
 TEST(PlantedMistakes, WhatOnlyTheTableShowsIsNamed) {
   Pattern pattern = squat_pattern(small(), squat_defaults(small()));
@@ -314,7 +406,7 @@ TEST(PlantedMistakes, SoundPatternsHaveNone) {
         << mistaken.name;
     EXPECT_TRUE(doubtful_values(mistaken.robot, sound).empty()) << mistaken.name;
   }
-  EXPECT_EQ(seen.size(), 9u);
+  EXPECT_EQ(seen.size(), 11u);
 }
 
 // A torque that is a little too large, at one step or at every step, comes from no exchanged side,

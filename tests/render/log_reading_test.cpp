@@ -153,6 +153,21 @@ TEST(LogReading, ExtremesAreWorthShowing) {
       }
 }
 
+// Between its first and its last picture, a run of one short move at rest is shown while it moves.
+TEST(LogReading, NoPostureIsShownTwice) {
+  const SimulationLog log = nod(1.2, 1.2, 10);
+  const std::vector<double> times = telling_instants(log, 6);
+  ASSERT_EQ(times.size(), 6u);
+  for (size_t i = 1; i + 1 < times.size(); ++i)
+    for (size_t k = 0; k < times.size(); ++k)
+      if (i != k) {
+        EXPECT_GE(std::abs(sample_at(log, times[i]).state.theta[2] -
+                           sample_at(log, times[k]).state.theta[2]),
+                  0.05)
+            << times[i] << " " << times[k];
+      }
+}
+
 // A push in one part and a kick in another: both are shown.
 TEST(LogReading, AKickAndAPushAreWorthShowing) {
   SimulationLog log = nod(1.2, 1.2, 10);

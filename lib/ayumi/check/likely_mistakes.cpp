@@ -428,7 +428,14 @@ std::vector<Mistake> likely_mistakes(const RobotModel& model, const Pattern& pat
   std::vector<Mistake> mistakes;
   for (const Explanation& e : search.found)
     mistakes.push_back({e.place, e.written + "; " + e.instead, e.enough});
-  if (mistakes.empty()) mistakes = impossible_values(model, pattern);
+  const std::vector<Mistake> impossible = impossible_values(model, pattern);
+  if (mistakes.empty()) mistakes = impossible;
+  // Why a value that is wrong is impossible, before the one that would do.
+  if (!search.found.empty())
+    for (const Mistake& why : impossible)
+      if (const Explanation& e = search.found.front();
+          why.place == e.place && why.words.starts_with(e.written + ","))
+        mistakes.front().words = why.words + "; " + e.instead;
   if (search.complete) return mistakes;
   const std::string changes = std::to_string(search.trials) +
                               " trial changes of the pattern, after which the search stopped";

@@ -19,6 +19,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/check/consistency.hpp"
 #include "ayumi/check/written_values.hpp"
+#include "ayumi/math/elementary.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/motion/pattern_context.hpp"
 #include "ayumi/plan/folded_legs.hpp"
@@ -57,6 +58,9 @@ constexpr double kNoShare = 0.05;
 // length of a leg, half a radian; no step or swing of a joint within one segment is usually as
 // long.
 constexpr double kGrossSuspicion = 0.5;
+// A value without which another error comes is tried at this share of its way from there. Chosen:
+// feet that turn or land less far, but not beside each other.
+constexpr double kHalfWay = 0.5;
 // A small change is by less than this share of a value. Chosen: more than rounding, less than a
 // slip.
 constexpr double kSmallChange = 0.2;
@@ -87,6 +91,15 @@ constexpr long kManyKeys = 4;
 constexpr double kSameTime = 0.005;
 // A length below this is none [m]. Definition: what rounding leaves.
 constexpr double kNoLength = 1e-4;
+// An angle below this is none [rad]. Definition: what rounding leaves.
+constexpr double kNoAngle = 1e-6;
+// A level foot below a leg that leans by less than this is no reason [rad]. Chosen: five degrees,
+// which every ankle bends.
+constexpr double kNotedLean = 0.09;
+// A foot that turns less against the other one has no turn to speak of [rad]. Chosen: ten degrees.
+constexpr double kNotedTurn = 0.17;
+// Share of the length of a leg that its foot is at most aside. Definition: the sine of an angle.
+constexpr double kMostLean = 0.9;
 // A segment that lasts less than this share of its neighbour is too short before a value is out by
 // a power of ten. Chosen: keys of one motion are seldom so unequal.
 constexpr double kShortSegment = 0.15;
@@ -104,11 +117,14 @@ constexpr double kLeastMistake = 0.005;
 // A value that would have to change by more than this is wrong by much, whatever else is wrong; a
 // share of its unit, too. Chosen: 12 mm for a leg of 0.24 m, 3 deg.
 constexpr double kLargeChange = 0.05;
+// The change of a value by another sign or digit that mends only a part. Definition: more than all
+// others.
+constexpr double kGuessed = 1e3;
 // Errors of a motion that cannot be sampled. Definition: more than of any that can.
 constexpr int kUnsampled = std::numeric_limits<int>::max();
 
 /// How particular an explanation is.
-enum class Rank { unit, slip, exchange, sign, missing, amount, pace };
+enum class Rank { unit, geometry, slip, exchange, sign, missing, amount, pace };
 
 struct Window {
   double begin = 0, end = 0;
@@ -306,6 +322,9 @@ class Hypotheses {
 
   std::vector<Hypothesis> times() const {
     std::vector<Hypothesis> made;
+    turns(made);
+    level_feet(made);
+    crossed_footholds(made);
     key_times(made);
     phase_times(made);
     return made;
@@ -319,10 +338,12 @@ class Hypotheses {
     zmp_sides(made);
     zmp_keys(made);
     all_zmp_keys(made);
+    turns(made);
     swings(made);
     double_supports(made);
     leg_keys(made);
     interpolations(made);
+    level_feet(made);
     return made;
   }
 
@@ -348,11 +369,20 @@ class Hypotheses {
     return made;
   }
 
+  std::vector<Hypothesis> nearer() const {
+    std::vector<Hypothesis> made;
+    near_footholds(made);
+    lesser_turns(made);
+    return made;
+  }
+
   std::vector<Hypothesis> paces() const {
     std::vector<Hypothesis> made;
     cog_height(made);
     if (pattern_.table || pattern_.correction) return made;
-    const std::vector<double> usual = {1.25, 1.6, 2.0, 3.0, 5.0}, slight = {1.03, 1.1, 1.25};
+    // The COG sways less where the steps are quicker.
+    const std::vector<double> usual = {1.25, 1.6, 2.0, 3.0, 5.0},
+                              slight = {1.03, 0.9, 1.1, 0.8, 1.25};
     for (const double factor : found_.slight ? slight : usual)
       made.push_back({Rank::pace,
                       {"/phases", "the motion takes " + seconds(pattern_.duration()),
@@ -485,6 +515,14 @@ class Hypotheses {
     return false;
   }
 
+  // A key of the ZMP or of a foot at the end of a phase belongs to the change of the support.
+  bool belongs_to_phase(const Keyframe& key) const {
+    return (key.zmp || key.feet[0] || key.feet[1]) &&
+           std::any_of(pattern_.phases.begin(), pattern_.phases.end(), [&](const Phase& phase) {
+             return std::abs(phase.until - key.t) < kSameTime * phase.until;
+           });
+  }
+
   void key_times(std::vector<Hypothesis>& made) const {
     const auto& keys = pattern_.keyframes;
     for (size_t i = 0; i < keys.size(); ++i) {
@@ -507,7 +545,7 @@ class Hypotheses {
       for (const double t : number_slips(keys[i].t))
         if (std::min(t - before, after - t) >= std::min(in, out))
           add(Rank::slip, t, "", too_early ? -2 : 0);
-      if (i == 0) continue;
+      if (i == 0 || (!too_early && belongs_to_phase(keys[i]))) continue;
       const std::string lasts = ", so the segment before it lasts " + seconds(in) +
                                 " and the one after it " + seconds(out);
       // Between a short and a long neighbour, towards the long one.
@@ -546,7 +584,9 @@ class Hypotheses {
       if (usual && std::abs(until - begin - *usual) < kUsualShare * *usual) continue;
       std::vector<double> meant;
       if (usual) meant.push_back(std::round(1000 * (begin + *usual)) / 1000);
-      for (const double slip : number_slips(until)) meant.push_back(slip);
+      const auto unlike = [&](double t) { return usual ? std::abs(t - begin - *usual) : 0.0; };
+      for (const double slip : number_slips(until))
+        if (unlike(slip) <= unlike(until)) meant.push_back(slip);
       const std::string lasts = "the phase ends at " + seconds(until) + " and lasts " +
                                 seconds(until - begin) +
                                 (usual ? ", while similar phases last " + seconds(*usual) : "");
@@ -720,6 +760,18 @@ class Hypotheses {
     return way_of_feet(exchanged) < way_of_feet(pattern_) - kNoLength;
   }
 
+  // Whether the foot that swings in this phase swings in the steps before and after it, too.
+  bool swings_thrice(size_t phase) const {
+    const auto foot_of = [&](size_t i) -> std::optional<Side> {
+      if (!pattern_.phases[i].swing) return std::nullopt;
+      return pattern_.phases[i].swing->foot;
+    };
+    std::optional<Side> before, after;
+    for (size_t i = phase; i-- > 0 && !before;) before = foot_of(i);
+    for (size_t i = phase + 1; i < pattern_.phases.size() && !after; ++i) after = foot_of(i);
+    return foot_of(phase) && before == foot_of(phase) && after == before;
+  }
+
   void phase_sides(std::vector<Hypothesis>& made) const {
     for (size_t i = 0; i < pattern_.phases.size(); ++i) {
       const Phase& phase = pattern_.phases[i];
@@ -740,7 +792,8 @@ class Hypotheses {
                         p.phases[i].support = meant;
                         if (p.phases[i].swing)
                           p.phases[i].swing->foot = other(p.phases[i].swing->foot);
-                      }});
+                      },
+                      swings_thrice(i) ? -1.0 : 0.0});
       add_foothold_exchanges(i, made);
     }
   }
@@ -750,17 +803,38 @@ class Hypotheses {
       if (is_single(pattern_.phases[i].support) && reaches(i)) add_foothold_exchanges(i, made);
   }
 
+  // How far a foot lands on its own side of the other one [m].
+  double outwards(size_t phase) const {
+    const Swing& swing = *pattern_.phases[phase].swing;
+    const Eigen::Isometry3d stance = feet_->pose(other(swing.foot), pattern_.phases[phase].until);
+    return (swing.foot == Side::left ? 1 : -1) * (stance.inverse() * swing.to.position).y();
+  }
+
+  // Two feet that both land on the side of the other one: two footholds rather than two signs.
+  void crossed_footholds(std::vector<Hypothesis>& made) const {
+    if (!feet_) return;
+    std::vector<Hypothesis> exchanges;
+    for (size_t i = 0; i < pattern_.phases.size(); ++i)
+      if (has_place(i) && is_single(pattern_.phases[i].support) && reaches(i) && outwards(i) < 0)
+        add_foothold_exchanges(
+            i, exchanges, [&](size_t k) { return foot_of(k) != foot_of(i) && outwards(k) < 0; });
+    for (Hypothesis& exchange : exchanges) {
+      exchange.rank = Rank::geometry;
+      made.push_back(std::move(exchange));
+    }
+  }
+  Side foot_of(size_t phase) const { return pattern_.phases[phase].swing->foot; }
+
   // With one of the next two.
-  void add_foothold_exchanges(size_t phase, std::vector<Hypothesis>& made) const {
-    const auto has_place = [&](size_t i) {
-      return pattern_.phases[i].swing && !pattern_.phases[i].swing->step;
-    };
+  void add_foothold_exchanges(
+      size_t phase, std::vector<Hypothesis>& made,
+      const std::function<bool(size_t)>& with = [](size_t) { return true; }) const {
     if (!has_place(phase)) return;
     int later = 0;
     for (size_t k = phase + 1; k < pattern_.phases.size() && later < 2; ++k) {
       if (!has_place(k)) continue;
       ++later;
-      if (!exchange_shortens_way(phase, k)) continue;
+      if (!with(k) || !exchange_shortens_way(phase, k)) continue;
       made.push_back({Rank::exchange,
                       {phase_place(phase),
                        std::string("the footholds of this phase and of ") + phase_place(k) +
@@ -824,6 +898,197 @@ class Hypotheses {
             std::string("with these numbers read in ") + unit + ", which gives (" +
                 text::brief(meant.x()) + ", " + text::brief(meant.y()) + ") m,"},
            [key, factor = factor](Pattern& p) { p.keyframes[key].zmp->point *= factor; }});
+    }
+  }
+
+  // "turn" counts from the other foot. Who turns both feet by the same angle turns twice as far,
+  // with each second foot turned inwards.
+  void turns(std::vector<Hypothesis>& made) const {
+    const auto turn_of = [&](const Phase& phase) {
+      return phase.swing && phase.swing->step ? phase.swing->step->turn : 0.0;
+    };
+    size_t first = 0;
+    while (first < pattern_.phases.size() && std::abs(turn_of(pattern_.phases[first])) < kNoAngle)
+      ++first;
+    if (first == pattern_.phases.size()) return;
+    const double turn = turn_of(pattern_.phases[first]);
+    const Side leading = pattern_.phases[first].swing->foot;
+    double sum = 0;
+    std::vector<size_t> second;
+    for (size_t i = first; i < pattern_.phases.size(); ++i) {
+      const double here = turn_of(pattern_.phases[i]);
+      sum += here;
+      if (here * turn > 0 && pattern_.phases[i].swing->foot != leading) second.push_back(i);
+    }
+    if (second.empty()) return;
+    const std::string foot = name_of(other(leading)), ahead = name_of(leading);
+    const size_t n = second.size();
+    made.push_back(
+        {Rank::geometry,
+         {phase_place(second.front()),
+          "the " + foot + " foot's step turns by " + angle(turn_of(pattern_.phases[second[0]])) +
+              " after the " + ahead + " foot has turned by " + angle(turn) +
+              "; \"turn\" counts from the other foot, so all steps turn the robot by " + angle(sum),
+          "with \"turn\" 0 in " + (n > 1 ? "the " + std::to_string(n) + " steps" : "the step") +
+              " of the " + foot + " foot, which then " + (n > 1 ? "land" : "lands") +
+              " parallel to the " + ahead + " foot,"},
+         [second](Pattern& p) {
+           for (const size_t i : second) p.phases[i].swing->step->turn = 0;
+         }});
+  }
+
+  std::string angle(double radians) const {
+    return pattern_.degrees ? text::brief(radians * 180 / std::numbers::pi, 5) + " deg"
+                            : text::brief(radians, 5) + " rad";
+  }
+
+  bool has_place(size_t phase) const {
+    return phase < pattern_.phases.size() && pattern_.phases[phase].swing &&
+           !pattern_.phases[phase].swing->step;
+  }
+  bool has_later_place(size_t phase) const {
+    for (size_t k = phase + 1; k < pattern_.phases.size(); ++k)
+      if (has_place(k)) return true;
+    return false;
+  }
+
+  // A foothold nearer to the place beside the other foot, with all later ones.
+  void near_footholds(std::vector<Hypothesis>& made) const {
+    if (!feet_) return;
+    for (size_t i = 0; i < pattern_.phases.size(); ++i) {
+      if (!has_place(i) || !reaches(i)) continue;
+      const Swing& swing = *pattern_.phases[i].swing;
+      const Side side = swing.foot;
+      const Eigen::Isometry3d stance = feet_->pose(other(side), pattern_.phases[i].until);
+      const double apart =
+          (feet_->pose(other(side), 0).inverse() * feet_->pose(side, 0).translation()).y();
+      const Eigen::Vector3d from_stance = stance.inverse() * swing.to.position;
+      const Eigen::Vector3d away(from_stance.x(), from_stance.y() - apart, 0);
+      if (away.norm() < kLeastMistake * leg_length(model_)) continue;
+      for (const double share : {0.8, 0.6, 0.4, 0.2, 0.0}) {
+        const auto grid = [](double metres) { return std::round(1e4 * metres) / 1e4; };
+        Eigen::Vector3d place = swing.to.position + (share - 1) * (stance.linear() * away);
+        place = {grid(place.x()), grid(place.y()), swing.to.position.z()};
+        const Eigen::Vector3d moved = place - swing.to.position;
+        made.push_back({Rank::amount,
+                        {phase_place(i),
+                         std::string("the ") + name_of(side) + " foot lands " +
+                             text::fixed(1e3 * from_stance.head<2>().norm(), 0) + " mm from the " +
+                             name_of(other(side)) + " foot, and at the beginning they are " +
+                             text::fixed(1e3 * std::abs(apart), 0) + " mm apart",
+                         "with \"to\" = [" + text::brief(place.x()) + ", " +
+                             text::brief(place.y()) + ", ...]" +
+                             (has_later_place(i) ? ", and all later footholds moved by the same [" +
+                                                       text::brief(moved.x(), 3) + ", " +
+                                                       text::brief(moved.y(), 3) + "] m,"
+                                                 : "")},
+                        [i, moved](Pattern& p) {
+                          for (size_t k = i; k < p.phases.size(); ++k)
+                            if (p.phases[k].swing && !p.phases[k].swing->step)
+                              p.phases[k].swing->to.position += moved;
+                        },
+                        1 - share,
+                        moved.norm() / leg_length(model_)});
+      }
+    }
+  }
+
+  // A foot that turns less against the other one, and the later footholds with it.
+  void lesser_turns(std::vector<Hypothesis>& made) const {
+    if (!feet_) return;
+    for (size_t i = 0; i < pattern_.phases.size(); ++i) {
+      if (!has_place(i) || !reaches(i)) continue;
+      const Swing& swing = *pattern_.phases[i].swing;
+      const Eigen::Matrix3d turned =
+          (feet_->pose(other(swing.foot), pattern_.phases[i].until).inverse() * pose_of(swing.to))
+              .linear();
+      const double turn = elementary::atan2(turned(1, 0), turned(0, 0));
+      if (std::abs(turn) < kNotedTurn) continue;
+      for (const double share : {0.75, 0.5}) {
+        constexpr double degree = std::numbers::pi / 180;
+        const double less = std::round((share - 1) * turn / degree) * degree;
+        made.push_back(
+            {Rank::amount,
+             {phase_place(i),
+              std::string("the ") + name_of(swing.foot) + " foot turns by " + angle(turn) +
+                  " against the " + name_of(other(swing.foot)) + " foot",
+              "with a yaw of " + angle(swing.to.rpy.z() + less) +
+                  (has_later_place(i) ? ", and all later footholds turned about it by " +
+                                            angle(less) + " (more steps then make the turn),"
+                                      : "")},
+             [i, less](Pattern& p) {
+               const Eigen::Vector3d about = p.phases[i].swing->to.position;
+               const Eigen::AngleAxisd by(less, Eigen::Vector3d::UnitZ());
+               for (size_t k = i; k < p.phases.size(); ++k) {
+                 if (!p.phases[k].swing || p.phases[k].swing->step) continue;
+                 Foothold& to = p.phases[k].swing->to;
+                 to.position = about + by * (to.position - about);
+                 to.rpy.z() += less;
+               }
+             },
+             1 - share,
+             std::abs(less)});
+      }
+    }
+  }
+
+  // A foot that stays level while its leg leans, which the ankle has to make up for.
+  void level_feet(std::vector<Hypothesis>& made) const {
+    if (!feet_) return;
+    const double leg = leg_length(model_);
+    for (const Side side : {Side::left, Side::right}) {
+      const auto s = static_cast<size_t>(index(side));
+      const Eigen::Isometry3d from = feet_->pose(side, 0);
+      struct Lean {
+        size_t key;
+        double roll, pitch;
+      };
+      std::vector<Lean> leans;
+      for (size_t i = 0; i < pattern_.keyframes.size(); ++i) {
+        const auto& foot = pattern_.keyframes[i].feet[s];
+        if (!foot || foot->rpy.head<2>().norm() > kNoAngle) continue;
+        if (support_at(pattern_.keyframes[i].t) != on(other(side)) || !reaches_key(i)) continue;
+        const Eigen::Vector3d way = from.inverse() * foot->position;
+        if (way.z() < kNoLength) continue;
+        const auto lean = [leg](double across) {
+          return elementary::asin(std::clamp(across / leg, -kMostLean, kMostLean));
+        };
+        leans.push_back({i, lean(way.y()), -lean(way.x())});
+      }
+      if (leans.empty()) continue;
+      for (const bool roll : {true, false}) {
+        const auto amount = [roll](const Lean& lean) { return roll ? lean.roll : lean.pitch; };
+        const Lean most =
+            *std::max_element(leans.begin(), leans.end(), [&](const Lean& a, const Lean& b) {
+              return std::abs(amount(a)) < std::abs(amount(b));
+            });
+        if (std::abs(amount(most)) < kNotedLean) continue;
+        for (const double share : {1.0, 0.6}) {
+          const auto degrees = [share](double lean) {  // whole degrees
+            constexpr double degree = std::numbers::pi / 180;
+            return std::round(share * lean / degree) * degree;
+          };
+          made.push_back(
+              {Rank::geometry,
+               {key_place(most.key),
+                std::string("the ") + name_of(side) + " foot stays level while its leg leans by " +
+                    text::fixed(std::abs(amount(most)) * 180 / std::numbers::pi, 0) + " deg " +
+                    (roll               ? "to the side"
+                     : amount(most) < 0 ? "ahead"
+                                        : "back") +
+                    ", so the ankle bends by as much",
+                "with the foot turned with the leg (\"rpy\": [" +
+                    (roll ? angle(degrees(most.roll)) + ", 0, 0]"
+                          : "0, " + angle(degrees(most.pitch)) + ", 0]") +
+                    (leans.size() > 1 ? ", and as the leg leans in the other keys of this foot)"
+                                      : ")") +
+                    ","},
+               [leans, amount, degrees, roll, s](Pattern& p) {
+                 for (const Lean& lean : leans)
+                   p.keyframes[lean.key].feet[s]->rpy[roll ? 0 : 1] = degrees(amount(lean));
+               }});
+        }
+      }
     }
   }
 
@@ -1109,6 +1374,7 @@ class Search {
       if (enough(reached)) return chosen();
       reached = kind == *kinds.begin() ? Rank::slip : Rank::sign;
     }
+    if (!enough(Rank::amount)) test(hypotheses_.nearer());
     if (!enough(Rank::amount)) test(hypotheses_.paces());
     return chosen();
   }
@@ -1120,6 +1386,7 @@ class Search {
     if (enough(Rank::unit)) return chosen();
     values();
     test(hypotheses_.irregular());
+    if (!enough(Rank::amount)) test(hypotheses_.nearer());
     if (!enough(Rank::amount)) test(hypotheses_.paces());
     return chosen();
   }
@@ -1151,9 +1418,16 @@ class Search {
                        return a.suspicion(model_) > b.suspicion(model_);
                      });
     if (suspects.size() > kTriedValues) suspects.resize(kTriedValues);
+    if (!look_at_best(suspects, 0) || !enough(Rank::amount)) look_at_best(suspects, kHalfWay);
+    demote_slips();
+  }
+
+  // Whether a value is at fault that is pulled to `share` of the way from what would be there
+  // without it.
+  bool look_at_best(const std::vector<WrittenValue>& suspects, double share) {
     std::vector<Mend> mends;
     for (const WrittenValue& value : suspects)
-      mends.push_back([&value](Pattern& p) { value.pull(p, 0); });
+      mends.push_back([&value, share](Pattern& p) { value.pull(p, share); });
     const std::vector<Outcome> without = trials_.after(pattern_, mends);
     const auto fewer = [&](const Outcome& o) { return is_better(o, found_, Measure::errors); };
     const bool by_errors = std::any_of(without.begin(), without.end(), fewer);
@@ -1161,15 +1435,15 @@ class Search {
     Outcome least = found_;
     for (const Outcome& outcome : without)
       if (is_better(outcome, least, measure)) least = outcome;
-    if (!found_.slight) test_other_numbers(suspects, without);
-    if (!is_better(least, found_, measure)) return;
+    if (!found_.slight && share == 0) test_other_numbers(suspects, without);
+    if (!is_better(least, found_, measure)) return false;
     size_t looked_at = 0;
     for (size_t i = 0; i < suspects.size() && looked_at < kSuspects; ++i)
       if (!is_better(least, without[i], measure)) {
-        look_at(suspects[i], without[i], measure);
+        look_at(suspects[i], without[i], measure, share);
         ++looked_at;
       }
-    demote_slips();
+    return true;
   }
 
   // The other sign, and a tenth, of values without which the errors do not vanish.
@@ -1201,8 +1475,8 @@ class Search {
       }
   }
 
-  void look_at(const WrittenValue& value, const Outcome& without, Measure measure) {
-    double possible = 0, impossible = 1;
+  void look_at(const WrittenValue& value, const Outcome& without, Measure measure, double least) {
+    double possible = least, impossible = 1;
     for (int i = 0; i < kBisections; ++i) {
       const double share = 0.5 * (possible + impossible);
       const Outcome outcome = trials_.after(pattern_, [&](Pattern& p) { value.pull(p, share); });
@@ -1214,13 +1488,17 @@ class Search {
         (number.value > number.neutral ? "up to " : "down to ") + value.text(pattern_, limit);
     const std::string written = value.words + " is " + value.text(pattern_, number.value);
     if (std::abs(number.value - limit) < kLeastMistake * value.unit(model_)) return;
+    const double from = number.neutral + least * (number.value - number.neutral);
+    const std::string range =
+        least > 0 ? "from " + value.text(pattern_, from) + " to " + value.text(pattern_, limit)
+                  : up_to;
     tried_.push_back({{Rank::amount,
-                       {value.place, written, "with values " + up_to},
-                       [value](Pattern& p) { value.pull(p, 0); },
+                       {value.place, written, "with values " + range},
+                       [value, least](Pattern& p) { value.pull(p, least); },
                        number.value == 0 ? 1 : std::abs(1 - limit / number.value),
                        std::abs(number.value - limit) / value.unit(model_)},
                       without});
-    if (found_.slight) return;
+    if (found_.slight || least > 0) return;
     std::vector<Hypothesis> slips;
     // Almost no value of this sign is possible, and the size of this value is usual.
     const bool other_sign =
@@ -1299,12 +1577,14 @@ class Search {
         if (is_better(c.outcome, found_, measure) && is_believable(c)) sorted.push_back(c);
     }
     // Another sign or another digit counts as meant only where nothing is left to mend.
+    const auto is_guess = [](const Candidate& c) { return c.hypothesis.change == kGuessed; };
     for (Candidate& c : sorted)
       if ((c.hypothesis.rank == Rank::sign || c.hypothesis.rank == Rank::slip) &&
           !c.outcome.good()) {
         c.hypothesis.rank = Rank::amount;
-        c.hypothesis.change = 2;
+        c.hypothesis.change = kGuessed;
       }
+    if (!std::all_of(sorted.begin(), sorted.end(), is_guess)) std::erase_if(sorted, is_guess);
     std::stable_sort(sorted.begin(), sorted.end(), [](const Candidate& a, const Candidate& b) {
       return std::tie(a.outcome.errors, a.hypothesis.rank, a.hypothesis.change) <
              std::tie(b.outcome.errors, b.hypothesis.rank, b.hypothesis.change);

@@ -430,6 +430,22 @@ void ClipRenderer::frame_robot(const std::vector<double>& times) {
   framing_ = found;
 }
 
+namespace {
+
+/// "t = 0.00, 1.20, 2.40 s"; of many instants the first and the last. None of a single one.
+std::string instants_text(const std::vector<double>& times) {
+  constexpr size_t kNamed = 6;  // Chosen: as many as fit beside a title.
+  if (times.size() < 2) return "";
+  std::vector<std::string> each;
+  for (const double t : times) each.push_back(text::fixed(t, 2));
+  if (each.size() > kNamed)
+    return "t = " + each.front() + " to " + each.back() + " s, " + std::to_string(each.size()) +
+           " postures";
+  return "t = " + text::join(each, ", ") + " s";
+}
+
+}  // namespace
+
 Image ClipRenderer::exposures(const std::vector<double>& times) {
   if (times.empty()) fail(ErrorCode::usage, "a picture needs at least one time");
   shown_ = {{times.back(), times.back()}};
@@ -442,7 +458,7 @@ Image ClipRenderer::exposures(const std::vector<double>& times) {
                                Eigen::Vector4f::Zero(), 0.25 + 0.5 * share});
   }
   Image image = finished(scene, overlay, times.back());
-  if (options_.overlay.caption) write_caption(image, times.back());
+  if (options_.overlay.caption) write_caption(image, times.back(), instants_text(times));
   return image;
 }
 
@@ -485,7 +501,8 @@ double write_within(Image& image, double x, double y, std::string title, TextSty
 
 }  // namespace
 
-double ClipRenderer::write_title(Image& image, double top, double size, double t) const {
+double ClipRenderer::write_title(Image& image, double top, double size, double t,
+                                 const std::string& instants) const {
   const double margin = 0.6 * size, y = top + margin + 0.7 * size;
   const TextStyle plain = {.size = size, .plate = {1, 1, 1, 0.72f}};
   TextStyle bold = plain;
@@ -497,11 +514,14 @@ double ClipRenderer::write_title(Image& image, double top, double size, double t
   if (log_.controller)
     room -= drawn_width(law_name(*log_.controller), plain) +
             drawn_width(verdict_text(log_.result), bold);
-  if (!framing_) room -= drawn_width("t = " + text::fixed(duration(log_), 3) + " s", plain);
+  const auto when = [&](double at) {
+    return instants.empty() ? "t = " + text::fixed(at, 3) + " s" : instants;
+  };
+  if (!framing_) room -= drawn_width(when(duration(log_)), plain);
   double x = margin;
   x += write_within(image, x, y, title, bold, room);
   if (log_.controller) x += draw_text(image, x, y, law_name(*log_.controller), plain);
-  if (!framing_) draw_text(image, x, y, "t = " + text::fixed(t, 3) + " s", plain);
+  if (!framing_) draw_text(image, x, y, when(t), plain);
   if (log_.controller && t >= verdict_at_ - 1e-9) {  // a plan neither stands nor falls
     TextStyle verdict = bold;
     verdict.anchor = TextAnchor::right;
@@ -555,9 +575,9 @@ double ClipRenderer::write_legend(Image* image, int width, double top, double si
   return x > margin ? y + 0.5 * line - top : 0;
 }
 
-void ClipRenderer::write_caption(Image& image, double t) const {
+void ClipRenderer::write_caption(Image& image, double t, const std::string& instants) const {
   const double size = std::clamp(image.height / 36.0, 9.0, 54.0);
-  write_title(image, 0, size, t);
+  write_title(image, 0, size, t, instants);
   const double tall = write_legend(nullptr, image.width, 0, 0.8 * size);
   write_legend(&image, image.width, image.height - tall - 0.5 * size, 0.8 * size);
 }

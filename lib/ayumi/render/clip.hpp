@@ -80,7 +80,9 @@ class ClipRenderer {
   /// lines as they need. `size` of the letters [pixel]; (left, top) to the right edge. They return
   /// the height they take [pixel]; nothing is drawn without an image. A push is among the marks
   /// where the picture, the framed ones or the whole clip show one.
-  double write_title(Image& image, double top, double size, double t) const;
+  /// `instants` stand in place of t where a picture shows several.
+  double write_title(Image& image, double top, double size, double t,
+                     const std::string& instants = "") const;
   double write_legend(Image* image, int width, double top, double size) const;
   /// Several instants in one picture: the last in full, the others lighter the earlier they are.
   Image exposures(const std::vector<double>& times);
@@ -105,7 +107,7 @@ class ClipRenderer {
   void add_ghost(double t, Scene& scene) const;
   Image finished(const Scene& scene, const Overlay& overlay, double t);
   Image drawn(double t);
-  void write_caption(Image& image, double t) const;
+  void write_caption(Image& image, double t, const std::string& instants = "") const;
   void write_scale(Image& image, const Camera& camera, double t) const;
 };
 

@@ -139,9 +139,29 @@ double apex_of(const SimulationLog& log, const FlightRecord& flight) {
   return 0.5 * static_cast<double>(low + high + (high == last ? 1 : 0)) * log.dt;
 }
 
+/// How much two postures differ: the largest change of a joint [rad], or of the COG against half
+/// its height, as if that were a joint's arm.
+double difference(const SimulationLog& log, double a, double b) {
+  const SimulationSample &one = log.samples[tick_at(log, a)], &two = log.samples[tick_at(log, b)];
+  const double height = std::max(1e-3, std::abs(one.cog.z() - log.world.height));
+  double most = std::max(one.planned_contact != two.planned_contact ? kSeenMove : 0,
+                         2 * (one.cog - two.cog).norm() / height);
+  if (one.state.theta.size() > 0)
+    most = std::max(most, (one.state.theta - two.state.theta).cwiseAbs().maxCoeff());
+  return most;
+}
+
+/// The least difference of the posture at t from those at these times.
+double news_at(const SimulationLog& log, double t, const std::vector<double>& times) {
+  double least = INFINITY;
+  for (const double other : times) least = std::min(least, difference(log, t, other));
+  return least;
+}
+
 /// Takes candidates by weight, none nearer to another than `apart`, until there are `count` times;
-/// events may be as near as they are. Of those that weigh about the same it takes first what stands
-/// on other feet than the nearest time taken, then what is farthest from it.
+/// events may be as near as they are. No posture is taken twice. Of those that weigh about the same
+/// it takes first what stands on other feet than the nearest time taken, then what is farthest from
+/// it.
 void take(const SimulationLog& log, std::vector<Candidate> candidates, size_t count, double apart,
           std::vector<double>& times) {
   // Weights of the same power of this are alike. Chosen: the steps of a walk differ by less.
@@ -163,6 +183,7 @@ void take(const SimulationLog& log, std::vector<Candidate> candidates, size_t co
                          : kAlike * c.weight >= heaviest ? std::min(apart, kShortest)
                                                          : apart;
       if (away < gap) continue;
+      if (c.weight < kApexWeight && news_at(log, c.t, times) < kSeenMove) continue;
       const bool other = log.samples[tick_at(log, c.t)].planned_contact !=
                          log.samples[tick_at(log, nearest)].planned_contact;
       const std::tuple value(std::floor(std::log(c.weight) / std::log(kAlike)), other, away);
@@ -175,16 +196,47 @@ void take(const SimulationLog& log, std::vector<Candidate> candidates, size_t co
   }
 }
 
-/// Fills with the middle of the longest gap, again and again.
-void fill(size_t count, std::vector<double>& times) {
+/// Fills with postures that differ most from those at the times already taken; where none differs,
+/// with the middle of the longest gap.
+void fill(const SimulationLog& log, size_t count, std::vector<double>& times) {
+  // Instants that are looked at. Chosen: as many pictures of a run as a person tells apart.
+  constexpr int kLooked = 100;
+  // The least spacing, because joints of a robot that falls turn quickly: a share of an even one,
+  // and at most so long [s]. Chosen: a quarter, and half of a quick step.
+  constexpr double kApart = 0.25, kLongest = 0.1;
   std::sort(times.begin(), times.end());
+  const double begin = times.front(), length = times.back() - begin;
+  const double apart = std::min(kApart * length / static_cast<double>(count), kLongest);
   while (times.size() < count) {
+    double best = 0, most = kSeenMove;
+    for (int i = 1; i < kLooked; ++i) {
+      const double t = begin + length * i / kLooked;
+      const bool near = std::any_of(times.begin(), times.end(), [&](double other) {
+        return std::abs(other - t) < apart - 1e-9;
+      });
+      const double news = near ? 0 : news_at(log, t, times);
+      if (news <= most) continue;
+      best = t;
+      most = news;
+    }
     size_t widest = 0;
     for (size_t i = 1; i + 1 < times.size(); ++i)
       if (times[i + 1] - times[i] > times[widest + 1] - times[widest] + 1e-9) widest = i;
-    times.insert(times.begin() + static_cast<std::ptrdiff_t>(widest) + 1,
-                 0.5 * (times[widest] + times[widest + 1]));
+    if (most <= kSeenMove) best = 0.5 * (times[widest] + times[widest + 1]);
+    times.insert(std::upper_bound(times.begin(), times.end(), best), best);
   }
+}
+
+/// When a robot that has fallen is no longer seen [s]: links without collision shapes sink into the
+/// ground.
+double sunk_at(const SimulationLog& log) {
+  // Share of the height of the COG. Chosen: half of that of a robot that lies on the floor.
+  constexpr double kSunk = 0.1;
+  const double height = log.samples.front().cog.z() - log.world.height;
+  for (size_t k = tick_at(log, log.result.fell_at); k < log.samples.size(); ++k)
+    if (log.samples[k].cog.z() - log.world.height < kSunk * height)
+      return static_cast<double>(k) * log.dt;
+  return duration(log);
 }
 
 /// The part of a run around its pushes or flights [s]; all of it where it has none, or where the
@@ -218,6 +270,7 @@ FlightRecord shown_part(const SimulationLog& log) {
   if (largest(0, begin) > inside) part.begin = 0;
   if (log.result.outcome != Outcome::fell && largest(end, log.samples.size()) > inside)
     part.end = duration(log);
+  if (log.result.outcome == Outcome::fell) part.end = std::min(part.end, sunk_at(log));
   return part;
 }
 
@@ -366,7 +419,7 @@ std::vector<double> telling_instants(const SimulationLog& log, int count) {
     // Nearer to each other, pictures hardly differ.
     take(log, candidates, wanted, 0.4 * (part.end - part.begin) / std::max(1, count - 1), times);
     if (times.size() < wanted && times.size() == 1) times.push_back(part.end);
-    if (times.size() > 1) fill(wanted, times);
+    if (times.size() > 1) fill(log, wanted, times);
   }
   std::sort(times.begin(), times.end());
   while (times.size() < wanted) times.push_back(part.end);

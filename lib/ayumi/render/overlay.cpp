@@ -114,7 +114,7 @@ void add_pushes(Overlay& overlay, const std::vector<PushRecord>& pushed, double 
     const Vector3d direction = (push.impulse.norm() > 0 ? push.impulse : push.peak).normalized();
     // The arrow's tip touches the robot there; it goes on with the COG while it fades.
     const Vector3d tip = sample.cog + push.from_cog;
-    const Vector3d tail = tip - 0.6 * size * direction;
+    const Vector3d tail = tip - options.push_length * size * direction;
     add_arrow(overlay.triangles, tail, tip, 0.014 * size, faded(overlay_color::kPush, opacity));
     overlay.labels.push_back({tail + Vector3d::UnitZ() * (0.08 * size), push_text(push), opacity});
   }

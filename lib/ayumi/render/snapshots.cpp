@@ -60,6 +60,8 @@ Image draw_strip(const RobotModel& model, const SimulationLog& log, const StripO
     return ClipRenderer(model, log, clip).exposures(times);
   }
   clip.camera.smoothing = 0;  // every picture has the robot in its middle
+  // Half of a portrait that the robot fills is as wide as this share of the robot's height.
+  clip.overlay.push_length = std::min(clip.overlay.push_length, 0.34);
   ClipRenderer renderer(model, log, clip);
   renderer.frame_robot(times);
   std::vector<Image> tiles;

@@ -238,7 +238,10 @@ std::vector<Mistake> likely_causes(const Task& task, const CheckOptions& options
            foothold.place.starts_with(mistakes[0].place);
   };
   std::erase_if(causes, explained);
-  causes.insert(causes.end(), mistakes.begin(), mistakes.end());
+  // A collision on the way to what explains everything is said after it.
+  const bool enough = std::any_of(mistakes.begin(), mistakes.end(),
+                                  [](const Mistake& mistake) { return mistake.explains_all; });
+  causes.insert(enough ? causes.begin() : causes.end(), mistakes.begin(), mistakes.end());
   return causes;
 }
 
