@@ -113,6 +113,16 @@ TEST(ExportSafety, ARampThatIsTooLongIsRefused) {
                          "take "),
             std::string::npos)
       << message;
+  // A verdict is possible nevertheless.
+  TargetRows targets;
+  targets.joints = {"a", "b", "c"};
+  targets.count = 2;
+  targets.row = [](size_t, Eigen::VectorXd& theta) { theta = Eigen::Vector3d(1e9, 0, 0); };
+  const SafetyReport report = safety_of_targets(robot, targets, {});
+  EXPECT_FALSE(report.safe);
+  ASSERT_FALSE(report.violations.empty());
+  EXPECT_EQ(report.violations[0].joint, "a");
+  EXPECT_EQ(report.ramp, SafetyOptions().ramp);
 }
 
 TEST(ExportSafety, FindsTheStepThatIsTooLarge) {

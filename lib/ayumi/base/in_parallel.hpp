@@ -21,7 +21,9 @@ void in_parallel(size_t count, int threads, std::atomic<bool>& stop, const Job& 
   size_t failed = count;
   std::mutex mutex;
   const auto work = [&] {
-    for (size_t i = next++; i < count && !stop; i = next++) {
+    while (!stop) {
+      const size_t i = next++;  // a job that was taken is run, whatever happens meanwhile
+      if (i >= count) return;
       try {
         job(i);
       } catch (...) {

@@ -20,6 +20,7 @@
 #include "ayumi/check/consistency.hpp"
 #include "ayumi/check/written_values.hpp"
 #include "ayumi/math/elementary.hpp"
+#include "ayumi/math/rotation.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/motion/pattern_context.hpp"
 #include "ayumi/plan/folded_legs.hpp"
@@ -1018,7 +1019,7 @@ class Hypotheses {
                                       : "")},
              [i, less](Pattern& p) {
                const Eigen::Vector3d about = p.phases[i].swing->to.position;
-               const Eigen::AngleAxisd by(less, Eigen::Vector3d::UnitZ());
+               const Eigen::Quaterniond by = exp_rotation({0, 0, less});
                for (size_t k = i; k < p.phases.size(); ++k) {
                  if (!p.phases[k].swing || p.phases[k].swing->step) continue;
                  Foothold& to = p.phases[k].swing->to;

@@ -217,6 +217,7 @@ class JointJudge {
 struct LaidMotion {
   size_t ramp = 0, motion = 0, hold = 0;  // rows
   Eigen::VectorXd from, target;           // of the ramp, columns of the table
+  double duration = 0;                    // that the ramp needs [s]
 
   size_t count() const { return ramp + motion + hold; }
 };
@@ -255,20 +256,18 @@ void judge_ends(const TargetRows& motion, const SafetyOptions& options, SafetyRe
 double ramp_share(double s) { return s * s * s * (10 + s * (6 * s - 15)); }
 
 // Long enough that the peak of the minimum jerk, 1.875 distance / duration, stays below half the
-// speed any joint may have.
-size_t ramp_rows(const Eigen::VectorXd& distance, const Eigen::VectorXd& speed, double dt,
-                 const SafetyOptions& options) {
+// speed any joint may have [s].
+double ramp_duration(const Eigen::VectorXd& distance, const Eigen::VectorXd& speed,
+                     const SafetyOptions& options) {
   if (options.ramp <= 0) return 0;
   double duration = options.ramp;
   for (Eigen::Index j = 0; j < distance.size(); ++j)
     duration = std::max(duration, 1.875 * std::abs(distance[j]) / (0.5 * speed[j]));
-  if (duration > std::max(options.ramp, kLongestRamp))
-    fail(ErrorCode::bad_pattern,
-         "the joint table begins so far from posture '" + options.from +
-             "' that the ramp to its first row would take " + text::brief(duration) + " s (limit " +
-             text::brief(kLongestRamp) +
-             " s); correct the angles of the first row, which may be in another unit");
-  return static_cast<size_t>(std::ceil(duration / dt - 1e-9));
+  return duration;
+}
+
+bool is_too_long(double ramp, const SafetyOptions& options) {
+  return !(ramp <= std::max(options.ramp, kLongestRamp));
 }
 
 // Speed any joint may have, by column of the table: the profile's, or the motor board's cap.
@@ -293,7 +292,8 @@ void add_to_report(SafetyReport& report, const std::vector<SafetyViolation>& vio
   report.safe = report.violations.empty();
 }
 
-// The ramp and the hold that the options ask for.
+// The ramp and the hold that the options ask for. In place of a ramp that is too long there is the
+// shortest one, whose steps are then violations.
 LaidMotion laid(const RobotModel& model, const TargetRows& targets, const SafetyOptions& options) {
   const std::vector<Eigen::Index> columns = columns_of(model, targets.joints, targets.count);
   LaidMotion plan;
@@ -304,8 +304,10 @@ LaidMotion laid(const RobotModel& model, const TargetRows& targets, const Safety
     for (int dof = 0; dof < model.dof_count(); ++dof)
       plan.from[columns[static_cast<size_t>(dof)]] = posture[dof];
   }
-  plan.ramp = ramp_rows(plan.target - plan.from, speed_limits(model, columns, options), targets.dt,
-                        options);
+  plan.duration =
+      ramp_duration(plan.target - plan.from, speed_limits(model, columns, options), options);
+  const double judged = is_too_long(plan.duration, options) ? options.ramp : plan.duration;
+  plan.ramp = static_cast<size_t>(std::ceil(judged / targets.dt - 1e-9));
   plan.motion = targets.count;
   plan.hold = static_cast<size_t>(std::ceil(std::max(0.0, options.hold) / targets.dt - 1e-9));
   return plan;
@@ -441,6 +443,12 @@ SafeTable make_safe(const RobotModel& model, ReferenceTrajectory reference,
       reference.dt, reference.joints, reference.rows.size(),
       [&](size_t k, Eigen::VectorXd& theta) { theta = reference.rows[k].theta; }};
   const LaidMotion plan = laid(model, targets, options);
+  if (is_too_long(plan.duration, options))
+    fail(ErrorCode::bad_pattern,
+         "the joint table begins so far from posture '" + options.from +
+             "' that the ramp to its first row would take " + text::brief(plan.duration) +
+             " s (limit " + text::brief(kLongestRamp) +
+             " s); correct the angles of the first row, which may be in another unit");
   SafeTable result;
   result.first = plan.ramp;
   result.report = report_on(model, targets, plan, options);

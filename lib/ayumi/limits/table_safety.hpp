@@ -83,7 +83,8 @@ struct TargetRows {
   std::function<void(size_t row, Eigen::VectorXd& theta)> row;  ///< fills in the targets of a row
 };
 
-/// The report of make_safe() for a table with these targets. It takes no memory for them.
+/// The report of make_safe() for a table with these targets. It takes no memory for them. Where
+/// make_safe() refuses the ramp because it is too long, the steps of a short ramp are violations.
 SafetyReport safety_of_targets(const RobotModel& model, const TargetRows& targets,
                                const SafetyOptions& options = {});
 

@@ -100,6 +100,7 @@ CommandSeries sample_keys(const RobotModel& model, const Pattern& pattern,
     // Where the trunk is at the time of the key, only the motion until then tells.
     try {
       sample_posture(model, pattern, options, progress, posture, on_the_way.key_time());
+    } catch (const MissedOnTheWay&) {  // to a later key: the first message stays
     } catch (const PlacedError& at_key) {
       if (at_key.place().pointer == on_the_way.place().pointer) throw;
     } catch (const Error& other) {

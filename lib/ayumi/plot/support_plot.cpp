@@ -22,7 +22,7 @@ struct PlacedSole {
 std::vector<PlacedSole> footholds(const RobotModel& model, const SimulationLog& log,
                                   const Interval& time) {
   std::vector<PlacedSole> out;
-  if (!model.has_soles()) return out;
+  if (!model.has_soles() || time.high <= time.low) return out;
   const auto first = static_cast<size_t>(std::max(0.0, std::round(time.low / log.dt)));
   const auto last =
       std::min(log.samples.size(), static_cast<size_t>(std::round(time.high / log.dt)) + 1);
@@ -54,8 +54,8 @@ std::vector<PlacedSole> footholds(const RobotModel& model, const SimulationLog& 
   return out;
 }
 
-/// The part of these times before the robot falls. Where its soles and its ZMP are after that,
-/// nobody plans.
+/// The part of these times before the robot falls. After that, its soles and its ZMP say nothing
+/// about the motion.
 Interval before_fall(const SimulationLog& log, Interval time) {
   if (has_fallen(log)) time.high = std::clamp(log.result.fell_at, time.low, time.high);
   return time;
