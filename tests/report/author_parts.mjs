@@ -437,13 +437,31 @@ test("a phase gets a goal of VIIP in place of its support and its swing, and bac
     assert.equal(edits.goalOf(last.value), name);
   }
   assert.equal(edits.goalOf(null), "none");
-  // Its keys go first, from the last one on, so that no pointer moves; those at its ends stay.
+  // Its keys go, each by its place in the text before the edit; those at its ends stay.
   const frames = [1, 1.5, 2, 2.5].map((time, i) => ({ time, pointer: `/keyframes/${i}`, time_pointer: `/keyframes/${i}/t`, time_value: time }));
   assert.deepEqual(edits.keysWithin({ from: 1, until: 2.5 }, frames).map(({ time }) => time), [1.5, 2]);
   const away = edits.putGoal({ pointer: "/phases/1", support: "both", from: 1, until: 2.5 }, "jump", "deg", frames);
   assert.deepEqual(away.filter(({ pointer }) => pointer.startsWith("/keyframes")).map(({ kind, pointer }) => [kind, pointer]),
     [["remove", "/keyframes/1"], ["remove", "/keyframes/2"]]);
   assert.deepEqual(edits.putGoal({ pointer: "/phases/1", support: null }, "none", "deg").map((one) => one.pointer), ["/phases/1/viip", "/phases/1/support"]);
+});
+
+test("no keyframe goes that a block which repeats counts its time from", () => {
+  const at = (pointer, time, more) => ({ pointer, time, time_pointer: pointer + "/t", time_value: time, time_base: 0, ...more });
+  const counts = (pointer, time, time_base, repeated) => at(pointer, time, { time_pointer: pointer + "/after", time_value: time - time_base, time_base, repeated });
+  const inBlock = [1.5, 2.1].map((base) => counts("/keyframes/2/keyframes/0", base + 0.6, base, true));
+  const keyframes = [at("/keyframes/0", 0.5), at("/keyframes/1", 1.5), ...inBlock], phase = { pointer: "/phases/1", support: "both", from: 1, until: 2 };
+  assert.equal(edits.putGoal(phase, "jump", "deg", keyframes), null);
+  const tracks = [{ keys: [{ pointer: "/keyframes/1/fz" }, { pointer: "/keyframes/2/keyframes/0/fz" }] }];
+  for (const key of tracks[0].keys) assert.equal(edits.removeKey({ keyframes: [...keyframes.slice(0, 2), ...inBlock], tracks }, key) === null, key === tracks[0].keys[0]);
+  // One that counts from the last round stays where it is.
+  const later = counts("/keyframes/3", 3, 2.7, false);
+  assert.deepEqual(edits.removeKey({ keyframes: [...keyframes, later], tracks }, tracks[0].keys[1]),
+    [{ kind: "remove", pointer: "/keyframes/2/keyframes/0" }, { kind: "set", pointer: "/keyframes/3/after", value: 1.5 }]);
+  assert.equal(edits.joinKeyframe({ keyframes }, { keyframes: [{ t: 0.5, fz: 1 }, { t: 1.5, zmp: "left" }] }, keyframes[1], keyframes[0]), null);
+  // A later keyframe with a time of its own, or one outside of blocks, is no hindrance.
+  assert.ok(edits.putGoal(phase, "jump", "deg", [...keyframes.slice(0, 2), at("/keyframes/2/keyframes/0", 2.1, { repeated: true })]));
+  assert.deepEqual(edits.putGoal(phase, "jump", "deg", [...keyframes.slice(0, 2), counts("/keyframes/2", 2.1, 1.5)])[1], { kind: "set", pointer: "/keyframes/2/after", value: 1.6 });
 });
 
 /// A value of the page has what the schema asks for, and nothing else; words among choices are known.

@@ -1,7 +1,7 @@
 // What is selected on the timeline, with its values to be typed; and new keys at the cursor.
 
 import { byId, element, seconds } from "./dom.js";
-import { addSwing, appendPhase, goalOf, goals, joinKeyframe, keysWithin, putGoal, putKey, putPart, putSupport, putTarget, removeKey, repeatPhases, roomOfKey, roundsOf, roundedTime, sameTime, setRounds, splitPhase, valueFromRow, written } from "./edits.js";
+import { addSwing, appendPhase, countedFrom, goalOf, goals, joinKeyframe, keysWithin, putGoal, putKey, putPart, putSupport, putTarget, removeKey, repeatPhases, roomOfKey, roundsOf, roundedTime, sameTime, setRounds, splitPhase, valueFromRow, written } from "./edits.js";
 import { isOptional, missingFields, token, valueAt } from "./fields.js";
 import { addField, addFloorMotion, addQuantity, addToGround, addUncertainPush, growField, putShape, quantities, removeItem, shapes } from "./parts.js";
 import { sampleAt } from "./series.js";
@@ -293,7 +293,7 @@ export class Inspector {
       if (there) {
         this.page.say(frame.repeated || there.repeated
           ? "A keyframe of a block that repeats joins no other one, so nothing is written."
-          : `The keyframe at ${seconds(time)} has a value that this one has too, or another interpolation or other weights, so nothing is written.`);
+          : `The keyframe at ${seconds(time)} has a value that this one has too, or another interpolation or other weights, or a block that repeats counts its time from this one, so nothing is written.`);
         return null;
       }
       const [from, to] = roomOfKey(state.keyframes, key.pointer);
@@ -355,6 +355,12 @@ export class Inspector {
       onclick: () => this.page.edit(edits()).then((done) => { if (done) then(); }) }, words) : null;
   }
 
+  /// Without a key; says why where it has to stay.
+  remove(key) {
+    const edits = removeKey(this.page.state, key);
+    return edits ? this.page.edit(edits) : this.page.say(countedFrom);
+  }
+
   key(key, state) {
     const name = nameOfTrack(key.track);
     const named = typeof key.value === "string" && !key.value.includes("${");
@@ -383,7 +389,7 @@ export class Inspector {
       ...isTarget(key.track) ? this.targetButtons(key) : [],
       frame && this.page.can("mirror") ? element("button", { type: "button", "data-id": "mirror", title: "Exchange left and right in this keyframe",
         onclick: () => this.page.mirror(frame.pointer) }, "Mirror this keyframe") : null,
-      this.button(() => removeKey(state, key.original), "Remove this key")].filter(Boolean);
+      this.page.can("edit") ? element("button", { type: "button", "data-id": "Remove this key", onclick: () => this.remove(key.original) }, "Remove this key") : null].filter(Boolean);
   }
 
   /// The handle that a key of a hand or the gaze moves, if there is one.
@@ -450,6 +456,8 @@ export class Inspector {
     const times = within.map((frame) => seconds(frame.time)).join(", ");
     if (within.some((frame) => frame.repeated))
       return element("p", { class: "soft", role: "status" }, `VIIP plans the whole phase, so no key may lie inside it. The keyframes at ${times} do, and belong to a block that repeats. Remove them in the text.`);
+    if (!putGoal(phase, wanted.name, state.angle_unit, state.keyframes))
+      return element("p", { class: "soft", role: "status" }, `VIIP plans the whole phase, so no key may lie inside it. Here are keyframes at ${times}. ${countedFrom}`);
     return element("p", { role: "status" }, `VIIP plans the whole phase, so no key may lie inside it. Here are keyframes at ${times}. `,
       this.button(() => putGoal(phase, wanted.name, state.angle_unit, state.keyframes), `Remove ${within.length > 1 ? "these keyframes" : "this keyframe"}, and give the goal`,
         () => { this.wanted = null; }, phase.pointer + " goal without keys"));
