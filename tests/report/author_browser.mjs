@@ -183,7 +183,10 @@ async function makesEveryPart(tab) {
   const press = (words) => tab.run("[...document.querySelectorAll('#selected button')].find((b) => b.textContent === arguments[0]).click();", words);
   const submit = (id, value) => tab.run("const e = document.querySelector(`#selected [data-id=\"${arguments[0]}\"]`); e.value = arguments[1]; e.form.requestSubmit();", id, value);
   await tab.click("#whole");
-  await make(() => press("Add a height field to the ground"), "a height field", ({ world }) => world.field.heights.length === 7);
+  const toes = await tab.run("return Math.max(...window.ayumiAuthor.page.solesAtStart().map(([x]) => x))");
+  expect(toes > 0 && toes < 0.2, `the toes at the start are at ${toes} m`);
+  await make(() => press("Add a height field to the ground"), "a height field",
+    ({ world }) => world.field.heights.length === 7 && world.field.origin[0] >= toes + 0.02);
   await make(() => press("One more row of nodes to the left"), "more nodes", ({ world }) => world.field.heights[6].length === 8);
   expect((await tab.run("return document.querySelectorAll('#selected table.grid input').length")) === 56, "each node has a number");
   await make(() => tab.type(at("/world/field/heights/3/2"), 0.004), "a height", ({ world }) => world.field.heights[3][2] === 0.004);

@@ -510,6 +510,20 @@ test("a new part of the ground lies where no other one is", () => {
   assert.equal(parts.freeGround({ blocks: [{ x: ["${a}", "${b}"] }] }), 0.1);
 });
 
+test("a new part of the ground lies ahead of the soles", () => {
+  const robot = parsePattern(readFileSync(new URL("../../robots/humanoid30/robot.json", import.meta.url), "utf8"));
+  const corners = ["left", "right"].flatMap((side) => robot.soles[side].polygon);
+  const toes = Math.max(...corners.map(([x]) => x));
+  for (const at of [0, 1.23]) {
+    const soles = corners.map(([x, y]) => [x + at, y, 0]), from = parts.freeGround(undefined, soles);
+    assert.ok(from >= toes + at + 0.02 - 1e-9 && from < toes + at + 0.07, `${from}`);
+    for (const list of ["blocks", "patches"]) assert.equal(parts.addToGround(list, {}, soles)[0].value.x[0], from);
+    assert.equal(parts.addField({}, soles)[0].value.origin[0], from);
+  }
+  assert.equal(parts.freeGround({}, [[0.06, 0, 0]]), 0.1);
+  assert.equal(parts.freeGround({ blocks: [{ x: [0.1, 0.3] }] }, corners), 0.3);
+});
+
 test("a field grows by a copy of its last nodes", () => {
   const field = { heights: [[1, 2], [3, 4]] };
   assert.deepEqual(parts.growField(field, "x"), [{ kind: "insert", pointer: "/world/field/heights/-", value: [3, 4] }]);

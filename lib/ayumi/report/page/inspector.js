@@ -190,13 +190,13 @@ export class Inspector {
   /// Blocks and patches of the ground.
   onGround(list, value) {
     return [...this.items(["world", list], { blocks: "Block", patches: "Patch of other friction" }[list]),
-      this.adder(["world", list], () => addToGround(list, value.world), { blocks: "Add a block to the ground", patches: "Add a patch of other friction" }[list])];
+      this.adder(["world", list], () => addToGround(list, value.world, this.page.solesAtStart()), { blocks: "Add a block to the ground", patches: "Add a patch of other friction" }[list])];
   }
 
   /// The height field of the ground: one, with as many nodes as are wanted.
   field(world) {
     if (!world?.field)
-      return [this.button(() => addField(world), "Add a height field to the ground", () => this.focusValues("/world/field/"))];
+      return [this.button(() => addField(world, this.page.solesAtStart()), "Add a height field to the ground", () => this.focusValues("/world/field/"))];
     return [element("h4", {}, "Height field"), ...this.inputs("/world/field", world.field, ["world", "field"]),
       this.button(() => growField(world.field, "x"), "One more row of nodes ahead"),
       this.button(() => growField(world.field, "y"), "One more row of nodes to the left"),

@@ -6,27 +6,30 @@ import { roundedTime } from "./edits.js";
 
 const inUnit = (degrees, unit) => unit === "deg" ? degrees : Number((degrees * Math.PI / 180).toFixed(4));
 
-/// Where the ground is free, ahead of all that lies on it [m]; an expression counts as nothing.
-export function freeGround(world = {}) {
+/// Where the ground is free [m], ahead of all that lies on it and of the soles, whose corners at the start are
+/// `soles`; an expression counts as nothing.
+export function freeGround(world = {}, soles = []) {
   const number = (value) => Number.isFinite(value) ? value : -Infinity;
   const ends = [...world.blocks ?? [], ...world.patches ?? []].map((one) =>
     one.position ? number(one.position[0]) + number(one.radius) : number(one.x?.[1]));
   if (world.field) ends.push(number(world.field.origin?.[0]) + number(world.field.spacing) * (world.field.heights.length - 1));
-  return Number(Math.max(0.1, ...ends).toFixed(4));
+  // 20 mm of free ground before the toes, in steps of 50 mm.
+  const toes = soles.map(([x]) => 0.05 * Math.ceil((x + 0.02) / 0.05 - 1e-6));
+  return Number(Math.max(0.1, ...toes, ...ends).toFixed(4));
 }
 
 /// A block or a patch of the ground, ahead of the robot and of what lies there.
-export function addToGround(list, world) {
-  const from = freeGround(world);
+export function addToGround(list, world, soles) {
+  const from = freeGround(world, soles);
   const value = { x: [from, Number((from + 0.2).toFixed(4))], y: [-0.2, 0.2], ...list === "blocks" ? { height: 0.005 } : { friction: 0.4 } };
   return [{ kind: "insert", pointer: `/world/${list}/-`, value }];
 }
 
 /// A field of low waves that is level at its edges.
-export function addField(world) {
+export function addField(world, soles) {
   const nodes = 7, wave = (i, j) => Number((0.002 * Math.sin(Math.PI * i / (nodes - 1)) * Math.abs(Math.sin(Math.PI * j / 3))).toFixed(4));
   const heights = Array.from({ length: nodes }, (_, i) => Array.from({ length: nodes }, (_, j) => wave(i, j)));
-  return [{ kind: "set", pointer: "/world/field", value: { origin: [freeGround(world), -0.15], spacing: 0.05, heights } }];
+  return [{ kind: "set", pointer: "/world/field", value: { origin: [freeGround(world, soles), -0.15], spacing: 0.05, heights } }];
 }
 
 /// One more row ahead (along x) or column to the left (along y) of a field, as high as the last one.
