@@ -538,6 +538,23 @@ test("the first angle of a pattern brings its unit", () => {
   assert.equal(parts.withUnits({}, parts.addQuantity("slope", "rad"), "rad").length, 2);
   assert.equal(parts.withUnits({}, [height], "rad").length, 1);
   assert.equal(parts.withUnits({ units: { angle: "deg" } }, [trunk], "deg").length, 1);
+  const document = { uncertainty: { quantities: [{ what: "backlash" }, { what: "mass" }] } };
+  const brings = (pointer, value, kind = "set") => parts.withUnits(document, [{ kind, pointer, value }], "rad").length === 2;
+  const angles = [["/postures/turn/l_knee", 1], ["/postures/phases", { l_knee: "${bent}" }], ["/start/left", [0, 0.1, 0, 0.2]], ["/start/left/rpy/2", 1],
+    ["/phases/0/swing/to/3", 0.1], ["/phases/0/phases/1/swing", { foot: "left", to: { position: [0, 0, 0], rpy: [0, 0, 1] } }], ["/phases/1/swing/step/turn", 0],
+    ["/phases/1/viip", { turn: 0.1, steps: 2 }], ["/keyframes/0/keyframes/1/joints/l_knee", 1], ["/keyframes/0/posture", { l_knee: 1 }],
+    ["/keyframes/0/feet/left", [0, 0, 0, 1]], ["/world/ground/roll", 1], ["/scenario/0", { type: "sensor_bias", gyro: [0, 0, 1] }], ["/scenario/0/offset", 1],
+    ["/uncertainty/quantities/0/uniform/1", 1], ["/uncertainty/pushes/0/direction", 1], ["/uncertainty/pushes/0/direction/choice/2", 1]];
+  for (const [pointer, value] of angles) assert.ok(brings(pointer, value), pointer);
+  const others = [["/scenario/0/direction", [0, 1, 0]], ["/scenario/0/direction/1", 1], ["/phases/0/swing/to", [0.1, 0, 0]], ["/phases/0/swing/to/2", 0.1],
+    ["/start/right", { position: [0, 0, 0] }], ["/keyframes/0/feet/left", [0, 0.1]], ["/keyframes/0/posture", "home"], ["/defaults/posture", "turn"],
+    ["/keyframes/0/weights/yaw", 10], ["/repair/weights", { pitch: 10 }], ["/parameters/turn", 1], ["/keyframes/0/hands/left", [0, 0, 0.2]], ["/name", "slope"],
+    ["/uncertainty/quantities/1/uniform/1", 1], ["/uncertainty/quantities/0/source", "slope"], ["/uncertainty/pushes/0/direction/weights/0", 1]];
+  for (const [pointer, value] of others) assert.ok(!brings(pointer, value), pointer);
+  const push = edits.addDisturbance({ type: "impulse", at: 1, duration: 0.02, direction: [0, 1, 0], size: 2 });
+  assert.equal(parts.withUnits({}, push, "rad").length, 1);
+  assert.ok(!brings("/keyframes/0/torso/yaw", undefined, "remove") && !brings("/phases/0", { items: 2, repeat: 3, count: "turn" }, "repeat"));
+  assert.equal(parts.withUnits({}, parts.addUncertainPush("rad"), "rad").length, 2);
 });
 
 test("only a sine has a frequency", () => {

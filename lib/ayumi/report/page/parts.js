@@ -76,28 +76,32 @@ const around = (share) => ({ uniform: [Number((1 - share).toFixed(4)), 1 + share
 const within = (most) => ({ uniform: [-most, most] });
 const upTo = (most) => ({ uniform: [0, most] });
 
-/// What may be uncertain, each with a range to begin with.
+/// What a distribution is called.
+export const distributions = ["uniform", "normal", "truncated", "choice"];
+
+/// What may be uncertain, each with a range to begin with and the unit of its values ("angle" is that of the
+/// pattern); factors and coefficients have none.
 export const quantities = [
   { what: "mass", words: "masses of the links (factor)", value: () => ({ each: true, ...around(0.05) }) },
   { what: "inertia", words: "inertias of the links (factor)", value: () => ({ each: true, ...around(0.1) }) },
-  { what: "cog", words: "centre of mass of the trunk", value: () => ({ on: "trunk", axis: "x", ...within(0.003) }) },
+  { what: "cog", words: "centre of mass of the trunk", unit: "m", value: () => ({ on: "trunk", axis: "x", ...within(0.003) }) },
   { what: "friction", words: "friction of the ground", value: () => ({ uniform: [0.5, 0.9] }) },
-  { what: "slope", words: "slope of the ground", value: (unit) => ({ axis: "y", ...within(inUnit(1, unit)) }) },
-  { what: "bumps", words: "hollows of the ground", value: () => upTo(0.001) },
+  { what: "slope", words: "slope of the ground", unit: "angle", value: (unit) => ({ axis: "y", ...within(inUnit(1, unit)) }) },
+  { what: "bumps", words: "hollows of the ground", unit: "m", value: () => upTo(0.001) },
   { what: "sole_stiffness", words: "stiffness of the soles (factor)", value: () => around(0.3) },
   { what: "sole_damping", words: "damping of the soles (factor)", value: () => around(0.3) },
   { what: "servo_kp", words: "stiffness of the servos (factor)", value: () => around(0.1) },
   { what: "servo_kd", words: "damping of the servos (factor)", value: () => around(0.1) },
-  { what: "servo_friction", words: "friction of the servos", value: () => upTo(0.05) },
-  { what: "encoder_offset", words: "offsets of the encoders", value: (unit) => ({ each: true, ...within(inUnit(0.2, unit)) }) },
-  { what: "servo_delay", words: "delay of the servos", value: () => upTo(0.002) },
-  { what: "backlash", words: "backlash of the gears", value: (unit) => upTo(inUnit(0.2, unit)) },
+  { what: "servo_friction", words: "friction of the servos", unit: "N m", value: () => upTo(0.05) },
+  { what: "encoder_offset", words: "offsets of the encoders", unit: "angle", value: (unit) => ({ each: true, ...within(inUnit(0.2, unit)) }) },
+  { what: "servo_delay", words: "delay of the servos", unit: "s", value: () => upTo(0.002) },
+  { what: "backlash", words: "backlash of the gears", unit: "angle", value: (unit) => upTo(inUnit(0.2, unit)) },
   { what: "sensor_noise", words: "noise of the sensors (factor)", value: () => ({ uniform: [1, 2] }) },
-  { what: "attitude_bias", words: "error of the attitude sensor", value: (unit) => ({ axis: "y", ...within(inUnit(0.3, unit)) }) },
-  { what: "gyro_bias", words: "error of the gyro", value: (unit) => ({ axis: "y", ...within(inUnit(0.3, unit)) }) },
-  { what: "load_bias", words: "error of the load cells", value: () => within(0.5) },
-  { what: "sensor_latency", words: "latency of the sensors", value: () => ({ uniform: [0.002, 0.006] }) },
-  { what: "payload", words: "load on the trunk", value: () => ({ on: "trunk", ...upTo(0.2) }) },
+  { what: "attitude_bias", words: "error of the attitude sensor", unit: "angle", value: (unit) => ({ axis: "y", ...within(inUnit(0.3, unit)) }) },
+  { what: "gyro_bias", words: "error of the gyro", unit: "angle/s", value: (unit) => ({ axis: "y", ...within(inUnit(0.3, unit)) }) },
+  { what: "load_bias", words: "error of the load cells", unit: "N", value: () => within(0.5) },
+  { what: "sensor_latency", words: "latency of the sensors", unit: "s", value: () => ({ uniform: [0.002, 0.006] }) },
+  { what: "payload", words: "load on the trunk", unit: "kg", value: () => ({ on: "trunk", ...upTo(0.2) }) },
 ];
 
 const assumed = "assumed: a first range of the page";
@@ -122,12 +126,36 @@ export function removeItem(document, path, index) {
   return [{ kind: "remove", pointer: alone ? `/${part}` : `/${part}/${list}` }];
 }
 
-/// Names of values that are angles, or hold some. Foothold lists have a yaw behind three lengths.
-const angles = /(^|[/"])(roll|pitch|yaw|turn|rpy|offset|gyro|joints|posture|postures|torso|feet|to|direction|slope|backlash|attitude_bias|gyro_bias|encoder_offset)(["/]|$)/;
+/// What has an angle where a pattern may have one: the way to a part of the text, without the items of lists.
+/// Of a list, the last number of a foothold [x, y, z, yaw] is one.
+const angleWays = [
+  /^postures\/[^/]+\/[^/]+$/,
+  /^start\/(left|right)\/(3|rpy\/\d)$/,
+  /^(phases\/)+swing\/(step\/turn|to\/3|to\/rpy\/\d)$/,
+  /^(phases\/)+viip\/turn$/,
+  /^(keyframes\/)+((joints|posture)\/[^/]+|torso\/(roll|pitch|yaw)|feet\/(left|right)\/(3|rpy\/\d))$/,
+  /^world\/(ground|motion)\/(roll|pitch)$/,
+  /^scenario\/(roll|pitch|offset|gyro\/\d)$/,
+  /^uncertainty\/pushes\/direction(\/(uniform|normal|truncated|choice)\/\d+)?$/,
+];
+const lists = /^(phases|keyframes|motion|scenario|quantities|pushes)$/;
+
+/// Whether a value at a place of the pattern is an angle. `what` is that of the uncertain quantity that it is in.
+function isAngle(path, what) {
+  if (path[0] === "uncertainty" && path[1] === "quantities")
+    return /^angle/.test(quantities.find((one) => one.what === what)?.unit) && distributions.includes(path[3]);
+  return angleWays.some((way) => way.test(path.filter((name, i) => !(lists.test(path[i - 1]) && /^(\d+|-)$/.test(name))).join("/")));
+}
 
 /// The edits, and where a pattern without a unit of angles gets its first angle, the unit of the page.
 export function withUnits(document, edits, unit) {
   if (!document || document.units?.angle !== undefined) return edits;
-  const angular = edits.some(({ kind, pointer, value }) => kind !== "remove" && angles.test(pointer + JSON.stringify(value ?? null)));
+  const holdsAngle = (value, path, what) => value && typeof value === "object"
+    ? Object.entries(value).some(([name, part]) => holdsAngle(part, [...path, name], value.what ?? what)) : isAngle(path, what);
+  const angular = edits.some(({ kind, pointer, value }) => {
+    const path = pointer.split("/").slice(1);
+    const what = path[0] === "uncertainty" ? document.uncertainty?.[path[1]]?.[path[2]]?.what : undefined;
+    return (kind === "set" || kind === "insert") && holdsAngle(value, path, what);
+  });
   return angular ? [...edits, { kind: "set", pointer: "/units/angle", value: unit }] : edits;
 }
