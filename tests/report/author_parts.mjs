@@ -10,7 +10,7 @@ import { arrowsOf, wordsOfPush } from "../../lib/ayumi/report/page/push_parts.js
 import * as parts from "../../lib/ayumi/report/page/parts.js";
 import * as edits from "../../lib/ayumi/report/page/edits.js";
 import { fieldsOf, missingFields, parsePattern, valueAt } from "../../lib/ayumi/report/page/fields.js";
-import { nameAmongOthers } from "../../lib/ayumi/report/page/inspector.js";
+import { nameAmongOthers, unitOf } from "../../lib/ayumi/report/page/inspector.js";
 import { strain, colorOf, heightOf, worstIn } from "../../lib/ayumi/report/page/strip_colors.js";
 import { sideBySide, nearDifferences } from "../../lib/ayumi/report/page/text_difference.js";
 
@@ -555,6 +555,28 @@ test("the first angle of a pattern brings its unit", () => {
   assert.equal(parts.withUnits({}, push, "rad").length, 1);
   assert.ok(!brings("/keyframes/0/torso/yaw", undefined, "remove") && !brings("/phases/0", { items: 2, repeat: 3, count: "turn" }, "repeat"));
   assert.equal(parts.withUnits({}, parts.addUncertainPush("rad"), "rad").length, 2);
+});
+
+test("each number of an uncertain quantity or push has its unit", () => {
+  const units = { cog: "m", slope: "deg", bumps: "m", servo_friction: "N m", encoder_offset: "deg", servo_delay: "s", backlash: "deg", attitude_bias: "deg",
+    gyro_bias: "deg/s", load_bias: "N", sensor_latency: "s", payload: "kg" };
+  for (const { what, words } of parts.quantities) {
+    const document = { uncertainty: { quantities: [{ what }] } }, unit = (...path) => unitOf(["uncertainty", "quantities", 0, ...path], "deg", document);
+    for (const [name, i] of [["uniform", 0], ["normal", 1], ["truncated", 3], ["choice", 2]]) assert.equal(unit(name, i), units[what] ?? "", `${what} ${name}`);
+    assert.ok(units[what] || /[(]factor[)]/.test(words) || what === "friction", `${what} has no unit`);
+    for (const path of [["source"], ["weights", 0], ["correlation"], ["axis"], ["each"]]) assert.equal(unit(...path), "");
+    assert.equal(unit("point", 2), "m");
+  }
+  const document = { uncertainty: { pushes: [{ unit: "B", time: "phases" }, { unit: "N s", time: { uniform: [1, 2] } }] } };
+  const unit = (i, ...path) => unitOf(["uncertainty", "pushes", i, ...path], "rad", document);
+  assert.deepEqual([unit(0, "direction"), unit(0, "direction", "choice", 1), unit(0, "direction", "uniform", 0), unit(0, "direction", "weights", 0), unit(0, "direction", "source")],
+    ["rad", "rad", "rad", "", ""]);
+  assert.deepEqual([unit(0, "size"), unit(1, "size", "normal", 0), unit(0, "time"), unit(1, "time", "uniform", 1), unit(0, "duration"), unit(0, "unit"), unit(0, "on")],
+    ["B", "N s", "", "s", "s", "", ""]);
+});
+
+test("bias of a gyro is an angle in each second, and viscous friction counts in rad", () => {
+  assert.deepEqual([unitOf(["gyro", 1], "deg"), unitOf(["viscous"], "deg"), unitOf(["viscous"], "rad"), unitOf(["offset"], "deg")], ["deg/s", "N m s/rad", "N m s/rad", "deg"]);
 });
 
 test("only a sine has a frequency", () => {

@@ -3,20 +3,20 @@
 import { byId, element, seconds } from "./dom.js";
 import { addSwing, appendPhase, countedFrom, goalOf, goals, joinKeyframe, keysWithin, putGoal, putKey, putPart, putSupport, putTarget, removeKey, repeatPhases, roomOfKey, roundsOf, roundedTime, sameTime, setRounds, splitPhase, valueFromRow, written } from "./edits.js";
 import { isOptional, missingFields, token, valueAt } from "./fields.js";
-import { addField, addFloorMotion, addQuantity, addToGround, addUncertainPush, growField, putShape, quantities, removeItem, shapes } from "./parts.js";
+import { addField, addFloorMotion, addQuantity, addToGround, addUncertainPush, distributions, growField, putShape, quantities, removeItem, shapes } from "./parts.js";
 import { sampleAt } from "./series.js";
 import { nameOfTrack } from "./timeline.js";
 
-/// Unit of a value by the names that lead to it.
-export function unitOf(path, angle) {
+/// Unit of a value by the names that lead to it. `document` is the pattern as written.
+export function unitOf(path, angle, document) {
   const name = path.at(-1), track = path[0];
+  if (track === "uncertainty") return unitOfUncertain(path, angle, document?.uncertainty?.[path[1]]?.[path[2]]);
   if (["t", "after", "at", "until", "duration"].includes(name)) return "s";
   if (track === "viip" && name === "turn") return angle + "/s";
   if (path.includes("velocity") || path.includes("cog_velocity")) return "m/s";
   if (["x", "y", "z", "height", "cog_height", "lift", "stoop", "radius", "forward", "side", "up"].includes(name)) return "m";
   if (["blocks", "patches"].includes(path[1]) && ["x", "y", "position"].includes(path[3])) return "m";
   if (path[1] === "field" || path.includes("shift")) return "m";
-  if (path[0] === "uncertainty") return unitOfUncertain(path, angle);
   if (track === "viip" && path[1] === "cog") return "m";
   if (["roll", "pitch", "yaw", "turn"].includes(name) || track === "joints" || track === "joint" ||
     (track === "posture" && path.length > 1)) return angle;
@@ -24,11 +24,21 @@ export function unitOf(path, angle) {
     return path.includes("to") && path.at(-1) === 3 ? angle : "m";
   if (track === "feet" || track === "foot") return path.at(-1) === 3 ? angle : "m";
   return { fz: "N", impulse: "N s", force: "N", torque: "N m", mass: "kg", latency: "s", coulomb: "N m", frequency: "Hz", offset: angle,
-    load: "N", viscous: "N m s/" + (angle === "deg" ? "rad" : angle), margin: "m" }[name] || "";
+    load: "N", viscous: "N m s/rad", margin: "m" }[name] || (track === "gyro" ? angle + "/s" : "");
 }
 
-/// Of the numbers of a distribution, the unit of what is uncertain is behind its name.
-const unitOfUncertain = (path, angle) => path.includes("direction") && path.includes("choice") ? angle : "";
+/// Unit of a value of an uncertain quantity or push, `item`: of its numbers, not of weights and correlations.
+function unitOfUncertain(path, angle, item) {
+  const [, list, , part] = path, inUnit = (unit = "") => unit.replace("angle", angle);
+  if (list === "quantities") {
+    if (part === "point") return "m";
+    return distributions.includes(part) ? inUnit(quantities.find((one) => one.what === item?.what)?.unit) : "";
+  }
+  if (part === "duration") return "s";
+  if (path.length > 4 && !distributions.includes(path[4])) return "";
+  return { direction: angle, time: item?.time === "phases" ? "" : "s", size: item?.unit ?? "" }[part] ?? "";
+}
+
 const bounds = { uniform: ["from", "to"], normal: ["mean", "standard deviation"], truncated: ["mean", "standard deviation", "from", "to"] };
 
 const places = ["forward", "left", "up", "yaw"];
@@ -84,13 +94,13 @@ export class Inspector {
   /// One input for each value of a JSON text; a change is an edit of that value alone, or what
   /// `edits` makes of it.
   inputs(pointer, value, path, choices = {}, edits = null) {
-    if (Array.isArray(value) && Array.isArray(value[0])) return [this.grid(pointer, value, path)];
+    if (path[1] === "field" && Array.isArray(value) && Array.isArray(value[0])) return [this.grid(pointer, value, path)];
     if (value && typeof value === "object")
       return Object.entries(value).flatMap(([name, part]) => this.inputs(pointer + token(name),
         part, [...path, Array.isArray(value) ? Number(name) : name], choices, edits));
     // Where the robot cannot do what is written, the shown motion is older than the text.
     if (this.page.state.error) value = valueAt(this.page.document, pointer) ?? value;
-    const unit = unitOf(path, this.page.state.angle_unit), last = path.at(-1);
+    const unit = unitOf(path, this.page.state.angle_unit, this.page.document), last = path.at(-1);
     const name = nameOf(path);
     const options = choices[last];
     const input = options
