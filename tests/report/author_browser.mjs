@@ -209,6 +209,8 @@ async function makesEveryPart(tab) {
     await make(() => tab.run("document.getElementById('other-type').value = arguments[0]; document.getElementById('new-other').requestSubmit();", type), type,
       ({ scenario }) => scenario[first + i].type === type);
     expect(await tab.run("return window.ayumiAuthor.page.selection.pointer") === `/scenario/${first + i}`, "it is selected");
+    if (type === "gain_loss")
+      await make(() => tab.type(at(`/scenario/${first + i}/joint`), ""), "all joints", ({ scenario }) => scenario[first + i].joint === undefined);
   }
   for (; made > 0; --made) await tab.after(() => tab.click("#undo"));
   expect(text() === before, "and all is as before");

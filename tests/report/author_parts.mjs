@@ -9,7 +9,7 @@ import { largerPart, nearAxis } from "../../lib/ayumi/report/page/drag_parts.js"
 import { arrowsOf, wordsOfPush } from "../../lib/ayumi/report/page/push_parts.js";
 import * as parts from "../../lib/ayumi/report/page/parts.js";
 import * as edits from "../../lib/ayumi/report/page/edits.js";
-import { fieldsOf, missingFields, parsePattern, valueAt } from "../../lib/ayumi/report/page/fields.js";
+import { fieldsOf, missingFields, optionalField, optionsOf, parsePattern, valueAt } from "../../lib/ayumi/report/page/fields.js";
 import { nameAmongOthers, unitOf } from "../../lib/ayumi/report/page/inspector.js";
 import { strain, colorOf, heightOf, worstIn } from "../../lib/ayumi/report/page/strip_colors.js";
 import { sideBySide, nearDifferences } from "../../lib/ayumi/report/page/text_difference.js";
@@ -577,6 +577,22 @@ test("each number of an uncertain quantity or push has its unit", () => {
 
 test("bias of a gyro is an angle in each second, and viscous friction counts in rad", () => {
   assert.deepEqual([unitOf(["gyro", 1], "deg"), unitOf(["viscous"], "deg"), unitOf(["viscous"], "rad"), unitOf(["offset"], "deg")], ["deg/s", "N m s/rad", "N m s/rad", "deg"]);
+});
+
+test("what may be missing can be chosen to be missing, and what is written is always shown", () => {
+  const state = { joints: [{ name: "l_knee" }], links: ["torso"], postures: ["home"] };
+  const offered = (value, name, choices) => optionsOf(choices, value[name], optionalField("disturbance", "/scenario/0", value, state, "/scenario/0/" + name));
+  assert.deepEqual(offered({ type: "gain_loss", joint: "l_knee", share: 0.3 }, "joint", ["l_knee", "r_knee"]),
+    [["", "(all joints)"], ["l_knee", "l_knee"], ["r_knee", "r_knee"]]);
+  assert.deepEqual(offered({ type: "impulse", on: "torso" }, "on", ["cog", "torso"])[0], ["", "(cog)"]);
+  assert.deepEqual(offered({ type: "payload", on: "torso" }, "on", ["torso"]), [["torso", "torso"]], "a payload needs its link");
+  assert.deepEqual(offered({ type: "payload", on: "${link}" }, "on", ["torso"]), [["torso", "torso"], ["${link}", "${link}"]]);
+  assert.deepEqual(optionsOf(["true", "false"], false), [["true", "true"], ["false", "false"]]);
+});
+
+test("a slope and a bias of the attitude have no axis z", () => {
+  const axes = Object.fromEntries(parts.quantities.map(({ what, value }) => [what, value("deg").axis && parts.axesOf(what).join("")]).filter(([, one]) => one));
+  assert.deepEqual(axes, { cog: "xyz", slope: "xy", attitude_bias: "xy", gyro_bias: "xyz" });
 });
 
 test("only a sine has a frequency", () => {

@@ -2,8 +2,8 @@
 
 import { byId, element, seconds } from "./dom.js";
 import { addSwing, appendPhase, countedFrom, goalOf, goals, joinKeyframe, keysWithin, putGoal, putKey, putPart, putSupport, putTarget, removeKey, repeatPhases, roomOfKey, roundsOf, roundedTime, sameTime, setRounds, splitPhase, valueFromRow, written } from "./edits.js";
-import { isOptional, missingFields, token, valueAt } from "./fields.js";
-import { addField, addFloorMotion, addQuantity, addToGround, addUncertainPush, distributions, growField, putShape, quantities, removeItem, shapes } from "./parts.js";
+import { missingFields, optionalField, optionsOf, token, valueAt } from "./fields.js";
+import { addField, addFloorMotion, addQuantity, addToGround, addUncertainPush, axesOf, distributions, growField, putShape, quantities, removeItem, shapes } from "./parts.js";
 import { sampleAt } from "./series.js";
 import { nameOfTrack } from "./timeline.js";
 
@@ -104,7 +104,7 @@ export class Inspector {
     const name = nameOf(path);
     const options = choices[last];
     const input = options
-      ? element("select", {}, ...options.map((one) => element("option", { value: one }, one)))
+      ? element("select", {}, ...optionsOf(options, value, this.optional(pointer)).map(([one, words]) => element("option", { value: one }, words)))
       : element("input", { type: "text", inputmode: "decimal", spellcheck: "false", autocomplete: "off" });
     input.value = String(value);
     input.dataset.id = pointer;
@@ -112,7 +112,8 @@ export class Inspector {
     input.disabled = !this.page.can("edit");
     input.addEventListener("change", () => {
       const next = typeof value === "boolean" ? input.value === "true" : written(input.value);
-      if (next === "" && this.mayGo(pointer)) this.page.edit([{ kind: "remove", pointer }]);
+      if (next === "" && this.optional(pointer))
+        this.page.edit([{ kind: "remove", pointer }]).then((done) => { if (!done && options) input.value = String(value); });
       else if (next !== value && next !== "") {
         const list = edits ? edits(next) : [{ kind: "set", pointer, value: next }];
         if (list) this.page.edit(list);
@@ -145,9 +146,10 @@ export class Inspector {
     return value && typeof value === "object" ? { kind, pointer, value } : null;
   }
 
-  mayGo(pointer) {
+  /// The field at a pointer, if its value may be taken away.
+  optional(pointer) {
     const there = this.written();
-    return Boolean(there) && isOptional(there.kind, there.pointer, there.value, this.page.state, pointer);
+    return there ? optionalField(there.kind, there.pointer, there.value, this.page.state, pointer) : undefined;
   }
 
   /// What may be written there and is not, each with what holds without it.
@@ -157,8 +159,7 @@ export class Inspector {
     const fields = missingFields(there.kind, there.pointer, there.value, this.page.state);
     if (!fields.length) return [];
     return [element("h4", {}, "Not written"), ...fields.map(({ path, otherwise, choices, pointer }) => {
-      const input = choices ? element("select", {}, element("option", { value: "" }, `(${otherwise})`),
-        ...choices.map((one) => element("option", { value: one }, one)))
+      const input = choices ? element("select", {}, ...optionsOf(choices, undefined, { otherwise }).map(([one, words]) => element("option", { value: one }, words)))
         : element("input", { type: "text", spellcheck: "false", autocomplete: "off", placeholder: otherwise, title: `Without it: ${otherwise}` });
       input.dataset.id = pointer;
       input.dataset.written = "";
@@ -235,7 +236,7 @@ export class Inspector {
     const count = this.page.document?.uncertainty?.quantities?.length ?? 0;
     return [element("h4", {}, "Uncertainty (for ayumi certify)"),
       ...this.items(["uncertainty", "quantities"], "Uncertain quantity", (item, i, pointer) =>
-        [element("p", { class: "soft" }, words(item.what)), ...this.inputs(pointer, item, ["uncertainty", "quantities", i], { axis: ["x", "y", "z"], each: ["true", "false"] })]),
+        [element("p", { class: "soft" }, words(item.what)), ...this.inputs(pointer, item, ["uncertainty", "quantities", i], { axis: axesOf(item.what), each: ["true", "false"] })]),
       ...this.items(["uncertainty", "pushes"], "Uncertain push", (item, i, pointer) =>
         this.inputs(pointer, item, ["uncertainty", "pushes", i], { unit: ["B", "N s"] })),
       ...this.page.can("edit") ? [element("form", { class: "value", onsubmit: (event) => {

@@ -104,6 +104,9 @@ export const quantities = [
   { what: "payload", words: "load on the trunk", unit: "kg", value: () => ({ on: "trunk", ...upTo(0.2) }) },
 ];
 
+/// The axes that an uncertain quantity may have (docs/formats.md).
+export const axesOf = (what) => ["slope", "attitude_bias"].includes(what) ? ["x", "y"] : ["x", "y", "z"];
+
 const assumed = "assumed: a first range of the page";
 
 export function addQuantity(what, unit) {
