@@ -160,6 +160,27 @@ async function makesWhatIsNotThere(tab) {
   await tab.after(() => tab.click("#undo"));
   expect(text() === before, "and back");
 
+  const full = phases.findIndex(({ until }, i) => keyframes.some(({ t }) => t > (phases[i - 1]?.until ?? 0) + 0.001 && t < until - 0.001));
+  if (full >= 0) {
+    const goal = `#selected [data-id="/phases/${full} goal"]`, asks = () => tab.run("return Boolean(document.querySelector('#selected [role=status]'))");
+    const ask = async () => {
+      await tab.click(`[data-id="/phases/${full}"]`);
+      await tab.type(goal, "jump");
+      expect(await asks(), "the page asks about the keyframes in the phase");
+    };
+    await ask();
+    await tab.type(goal, "none");
+    expect(!(await asks()), "the choice can be taken back");
+    await ask();
+    await tab.run("document.querySelector(`#selected [data-id$='keep the keyframes']`).click();");
+    expect(!(await asks()), "the keyframes can be kept");
+    await ask();
+    await tab.click("#whole");
+    await tab.click(`[data-id="/phases/${full}"]`);
+    expect(!(await asks()), "the question ends with the selection");
+    expect(text() === before, "and nothing is written");
+  }
+
   await tab.click(`[data-id="/phases/${phases.length - 1}"]`);
   await tab.after(() => press("Add a phase after this one"));
   await tab.after(() => tab.type(`#selected [data-id="/phases/${phases.length} goal"]`, "cog"));

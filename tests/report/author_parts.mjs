@@ -446,6 +446,14 @@ test("a phase gets a goal of VIIP in place of its support and its swing, and bac
   assert.deepEqual(edits.putGoal({ pointer: "/phases/1", support: null }, "none", "deg").map((one) => one.pointer), ["/phases/1/viip", "/phases/1/support"]);
 });
 
+test("a goal waits for an answer while its phase is selected and the text is the same", () => {
+  const wanted = { pointer: "/phases/1", name: "jump", text: "a" }, phase = { kind: "phase", pointer: "/phases/1" };
+  assert.equal(edits.stillWanted(wanted, phase, "a"), wanted);
+  for (const [selection, text] of [[phase, "b"], [{ kind: "phase", pointer: "/phases/2" }, "a"], [{ kind: "key", pointer: "/keyframes/1/zmp" }, "a"], [null, "a"]])
+    assert.equal(edits.stillWanted(wanted, selection, text), null);
+  assert.equal(edits.stillWanted(null, phase, "a"), null);
+});
+
 test("no keyframe goes that a block which repeats counts its time from", () => {
   const at = (pointer, time, more) => ({ pointer, time, time_pointer: pointer + "/t", time_value: time, time_base: 0, ...more });
   const counts = (pointer, time, time_base, repeated) => at(pointer, time, { time_pointer: pointer + "/after", time_value: time - time_base, time_base, repeated });

@@ -264,6 +264,12 @@ export function keysWithin(phase, keyframes) {
   return keyframes.filter(({ time }) => time > phase.from + 5e-4 && time < phase.until - 5e-4);
 }
 
+/// A goal that waits for an answer about its keyframes, as long as the same phase of the same text is
+/// selected; otherwise null.
+export function stillWanted(wanted, selection, text) {
+  return wanted && selection?.kind === "phase" && selection.pointer === wanted.pointer && text === wanted.text ? wanted : null;
+}
+
 /// Another goal of VIIP for a phase, without those of `keyframes` that lie inside it, or keys again. The
 /// other values of the phase stay. null where a block that repeats would move with these keyframes.
 export function putGoal(phase, name, angleUnit, keyframes = []) {

@@ -1,7 +1,7 @@
 // What is selected on the timeline, with its values to be typed; and new keys at the cursor.
 
 import { byId, element, seconds } from "./dom.js";
-import { addSwing, appendPhase, countedFrom, goalOf, goals, joinKeyframe, keysWithin, putGoal, putKey, putPart, putSupport, putTarget, removeKey, repeatPhases, roomOfKey, roundsOf, roundedTime, sameTime, setRounds, splitPhase, valueFromRow, written } from "./edits.js";
+import { addSwing, appendPhase, countedFrom, goalOf, goals, joinKeyframe, keysWithin, putGoal, putKey, putPart, putSupport, putTarget, removeKey, repeatPhases, roomOfKey, roundsOf, roundedTime, sameTime, setRounds, splitPhase, stillWanted, valueFromRow, written } from "./edits.js";
 import { missingFields, optionalField, optionsOf, token, valueAt } from "./fields.js";
 import { addField, addFloorMotion, addQuantity, addToGround, addUncertainPush, axesOf, distributions, growField, putShape, quantities, removeItem, shapes } from "./parts.js";
 import { sampleAt } from "./series.js";
@@ -329,6 +329,7 @@ export class Inspector {
 
   render() {
     const thing = this.selected(), box = byId("selected"), { selection, state } = this.page;
+    this.wanted = stillWanted(this.wanted, selection, state.text);
     const active = box.contains(document.activeElement) ? document.activeElement : null;
     const typed = active?.matches("input") ? active.value : null;
     box.replaceChildren(...!thing ? [element("p", { class: "soft" },
@@ -446,32 +447,37 @@ export class Inspector {
     if (phase.repeated || !this.page.can("edit")) return null;
     const now = goalOf(phase.support ? null : valueAt(this.page.document, phase.pointer + "/viip"));
     const select = element("select", {}, ...goals.map((one) => element("option", { value: one.name }, one.words)));
-    select.value = now;
+    select.value = this.wanted?.name ?? now;
     select.dataset.id = phase.pointer + " goal";
     select.addEventListener("change", () => {
       const within = keysWithin(phase, state.keyframes);
-      if (select.value !== "none" && within.length) {
-        this.wanted = { pointer: phase.pointer, name: select.value };
-        return this.render();
-      }
+      if (select.value === now) return this.want(null);
+      if (select.value !== "none" && within.length) return this.want({ pointer: phase.pointer, name: select.value, text: state.text });
       return this.page.edit(putGoal(phase, select.value, state.angle_unit)).then((done) => { if (!done) select.value = now; });
     });
     return element("div", {}, element("label", { class: "value" }, element("span", {}, "VIIP goal"), select, element("span", { class: "unit" })),
       this.goalWithoutKeys(phase, state));
   }
 
+  /// A goal that the author has chosen for a phase with keys inside it; null lets the keys be.
+  want(goal) {
+    this.wanted = goal;
+    this.render();
+  }
+
   /// VIIP plans the whole phase: with a goal, the keys inside it go.
   goalWithoutKeys(phase, state) {
-    const within = keysWithin(phase, state.keyframes), wanted = this.wanted;
-    if (wanted?.pointer !== phase.pointer || !within.length) return null;
-    const times = within.map((frame) => seconds(frame.time)).join(", ");
-    if (within.some((frame) => frame.repeated))
-      return element("p", { class: "soft", role: "status" }, `VIIP plans the whole phase, so no key may lie inside it. The keyframes at ${times} do, and belong to a block that repeats. Remove them in the text.`);
-    if (!putGoal(phase, wanted.name, state.angle_unit, state.keyframes))
-      return element("p", { class: "soft", role: "status" }, `VIIP plans the whole phase, so no key may lie inside it. Here are keyframes at ${times}. ${countedFrom}`);
-    return element("p", { role: "status" }, `VIIP plans the whole phase, so no key may lie inside it. Here are keyframes at ${times}. `,
-      this.button(() => putGoal(phase, wanted.name, state.angle_unit, state.keyframes), `Remove ${within.length > 1 ? "these keyframes" : "this keyframe"}, and give the goal`,
-        () => { this.wanted = null; }, phase.pointer + " goal without keys"));
+    const within = keysWithin(phase, state.keyframes), { wanted } = this;
+    if (!wanted) return null;
+    const say = (words, remove = null) => element("p", { role: "status" },
+      `VIIP plans the whole phase, so no key may lie inside it. Here are keyframes at ${within.map((frame) => seconds(frame.time)).join(", ")}. ${words}`,
+      remove, element("button", { type: "button", "data-id": phase.pointer + " keep the keyframes", onclick: () => this.want(null) },
+        within.length > 1 ? "Keep the keyframes" : "Keep the keyframe"));
+    if (within.some((frame) => frame.repeated)) return say("They belong to a block that repeats. Remove them in the text. ");
+    const edits = putGoal(phase, wanted.name, state.angle_unit, state.keyframes);
+    if (!edits) return say(countedFrom + " ");
+    return say("", this.button(() => edits,
+      `Remove ${within.length > 1 ? "these keyframes" : "this keyframe"}, and give the goal`, () => {}, phase.pointer + " goal without keys"));
   }
 
   /// This phase and those before it, with their keys, several times.
