@@ -218,7 +218,7 @@ async function makesEveryPart(tab) {
   await make(() => press("Remove this motion of the floor"), "no motion", ({ world }) => !world?.motion);
   const joint = await tab.run("return window.ayumiAuthor.page.state.joints.at(-1).name");
   await make(() => submit("/repair/weights joint", joint), "a weight of a joint in a repair", ({ repair }) => repair.weights[joint] === 10);
-  await make(() => tab.type(at("/repair/weights/" + joint), ""), "no weight", ({ repair }) => repair.weights[joint] === undefined);
+  await make(() => tab.type(at("/repair/weights/" + joint), ""), "no weight", ({ repair }) => repair?.weights?.[joint] === undefined);
   await make(() => submit("new quantity", "friction"), "an uncertain quantity", ({ uncertainty }) => uncertainty.quantities[0].uniform[1] === 0.9);
   await make(() => press("Add an uncertain push"), "an uncertain push", ({ uncertainty }) => uncertainty.pushes[0].size === 0.5);
   await make(() => press("Remove this uncertain push"), "no push", ({ uncertainty }) => !uncertainty.pushes);
@@ -230,6 +230,7 @@ async function makesEveryPart(tab) {
     await make(() => tab.run("document.getElementById('other-type').value = arguments[0]; document.getElementById('new-other').requestSubmit();", type), type,
       ({ scenario }) => scenario[first + i].type === type);
     expect(await tab.run("return window.ayumiAuthor.page.selection.pointer") === `/scenario/${first + i}`, "it is selected");
+    if (type === "floor") await make(() => press("Give its shift"), "a shift of the floor", ({ scenario }) => scenario[first + i].shift.length === 3);
     if (type === "gain_loss")
       await make(() => tab.type(at(`/scenario/${first + i}/joint`), ""), "all joints", ({ scenario }) => scenario[first + i].joint === undefined);
   }

@@ -616,4 +616,23 @@ test("the last item of a list takes the list along", () => {
   assert.equal(pointer(["world", "motion"], 1), "/world/motion/1");
   assert.equal(pointer(["world", "blocks"], 0), "/world/blocks");
   assert.equal(pointer(["uncertainty", "quantities"], 0), "/uncertainty");
+  assert.equal(parts.removeItem({ world: { blocks: [{}] } }, ["world", "blocks"], 0)[0].pointer, "/world");
+});
+
+test("what would be left empty goes along, unless it says something when it is empty", () => {
+  const document = { repair: { weights: { l_knee: 10 } }, world: { ground: { roll: 1 }, friction: 0.5 }, parameters: { cog: 1 },
+    keyframes: [{ t: 0, cog: { height: 0.2 }, weights: { l_knee: 10, r_knee: 10 } }], phases: [{ swing: { foot: "left", step: { forward: 0.1 } } }] };
+  const gone = (pointer) => edits.removeValue(document, pointer).map((one) => one.pointer).join();
+  assert.equal(gone("/repair/weights/l_knee"), "/repair");
+  assert.equal(gone("/world/ground/roll"), "/world/ground");
+  assert.equal(gone("/keyframes/0/cog/height"), "/keyframes/0/cog");
+  for (const pointer of ["/keyframes/0/weights/l_knee", "/phases/0/swing/step/forward", "/world/friction", "/parameters/cog"]) assert.equal(gone(pointer), pointer);
+});
+
+test("a load is on the first link, and an offset is that of a joint that turns", () => {
+  const state = { angle_unit: "deg", joints: [{ name: "slide", prismatic: true }, { name: "l_knee", prismatic: false }], links: ["torso", "head"] };
+  assert.equal(parts.addOther("payload", 1, state)[0].value.on, "torso");
+  assert.equal(parts.addOther("encoder_offset", 1, state)[0].value.joint, "l_knee");
+  const { type, at, ...floor } = parts.addOther("floor", 1, state)[0].value, { at: time, ...motion } = parts.addFloorMotion(1, "deg")[0].value;
+  assert.deepEqual([type, at, floor], ["floor", time, motion]);
 });

@@ -14,6 +14,19 @@ export function written(words) {
   return text !== "" && Number.isFinite(Number(text)) ? Number(text) : text;
 }
 
+/// Members that say nothing when they are empty, or may not be empty.
+const fleeting = ["weights", "repair", "world", "ground", "defaults", "controller", "uncertainty", "cog", "torso"];
+
+/// Without the value at a pointer, and without what would be left empty around it. `document` is the pattern as written.
+export function removeValue(document, pointer) {
+  for (;;) {
+    const around = pointer.slice(0, pointer.lastIndexOf("/")), value = valueAt(document, around);
+    const alone = value && !Array.isArray(value) && Object.keys(value).length === 1;
+    if (!alone || !fleeting.includes(around.split("/").at(-1))) return [{ kind: "remove", pointer }];
+    pointer = around;
+  }
+}
+
 /// A time in a block that repeats stands for several times, so it is the author's to change. To an expression the server adds.
 export const canDrag = (value, thing = {}) => ["number", "string"].includes(typeof value) && !thing.repeated;
 

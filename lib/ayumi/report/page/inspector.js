@@ -1,7 +1,7 @@
 // What is selected on the timeline, with its values to be typed; and new keys at the cursor.
 
 import { byId, element, seconds } from "./dom.js";
-import { addSwing, appendPhase, countedFrom, goalOf, goals, joinKeyframe, keysWithin, putGoal, putKey, putPart, putSupport, putTarget, removeKey, repeatPhases, roomOfKey, roundsOf, roundedTime, sameTime, setRounds, splitPhase, stillWanted, valueFromRow, written } from "./edits.js";
+import { addSwing, appendPhase, countedFrom, goalOf, goals, joinKeyframe, keysWithin, putGoal, putKey, putPart, putSupport, putTarget, removeKey, removeValue, repeatPhases, roomOfKey, roundsOf, roundedTime, sameTime, setRounds, splitPhase, stillWanted, valueFromRow, written } from "./edits.js";
 import { missingFields, optionalField, optionsOf, token, valueAt } from "./fields.js";
 import { addField, addFloorMotion, addQuantity, addToGround, addUncertainPush, axesOf, distributions, growField, putShape, quantities, removeItem, shapes } from "./parts.js";
 import { sampleAt } from "./series.js";
@@ -113,7 +113,7 @@ export class Inspector {
     input.addEventListener("change", () => {
       const next = typeof value === "boolean" ? input.value === "true" : written(input.value);
       if (next === "" && this.optional(pointer))
-        this.page.edit([{ kind: "remove", pointer }]).then((done) => { if (!done && options) input.value = String(value); });
+        this.page.edit(removeValue(this.page.document, pointer)).then((done) => { if (!done && options) input.value = String(value); });
       else if (next !== value && next !== "") {
         const list = edits ? edits(next) : [{ kind: "set", pointer, value: next }];
         if (list) this.page.edit(list);
@@ -211,7 +211,7 @@ export class Inspector {
     return [element("h4", {}, "Height field"), ...this.inputs("/world/field", world.field, ["world", "field"]),
       this.button(() => growField(world.field, "x"), "One more row of nodes ahead"),
       this.button(() => growField(world.field, "y"), "One more row of nodes to the left"),
-      this.button(() => [{ kind: "remove", pointer: "/world/field" }], "Remove the height field")];
+      this.button(() => removeValue(this.page.document, "/world/field"), "Remove the height field")];
   }
 
   /// Motions of the whole floor, at the time of the cursor.
@@ -222,9 +222,14 @@ export class Inspector {
         ...Object.entries(item).filter(([name]) => name !== "shape").flatMap(([name, one]) => this.inputs(`${pointer}/${name}`, one, ["world", "motion", i, name])),
         ...["roll", "pitch"].filter((name) => item[name] === undefined).map((name) =>
           this.button(() => [{ kind: "set", pointer: `${pointer}/${name}`, value: 0 }], `Give its ${name}`, () => this.focusValues(`${pointer}/${name}`), `${pointer} ${name}`)),
-        item.shift === undefined ? this.button(() => [{ kind: "set", pointer: pointer + "/shift", value: [0, 0, 0] }], "Give its shift",
-          () => this.focusValues(pointer + "/shift"), pointer + " shift") : null]),
+        this.shift(pointer, item)]),
     this.adder(["world", "motion"], () => addFloorMotion(this.page.time, unit), "Add a motion of the floor at the cursor")];
+  }
+
+  /// The button that gives a motion of the floor a shift.
+  shift(pointer, motion) {
+    return motion.shift !== undefined ? null : this.button(() => [{ kind: "set", pointer: pointer + "/shift", value: [0, 0, 0] }], "Give its shift",
+      () => this.focusValues(pointer + "/shift"), pointer + " shift");
   }
 
   /// What is uncertain, for `ayumi certify`.
@@ -248,9 +253,9 @@ export class Inspector {
 
   /// The weight of one more joint: a joint is chosen, and a number typed.
   weights(pointer, written, words, otherwise) {
-    if (!this.page.can("edit")) return null;
-    const joint = element("select", { "aria-label": words }, ...this.page.state.joints.filter((one) => written?.[one.name] === undefined)
-      .map((one) => element("option", { value: one.name }, one.name)));
+    const others = this.page.state.joints.filter((one) => written?.[one.name] === undefined);
+    if (!this.page.can("edit") || !others.length) return null;
+    const joint = element("select", { "aria-label": words }, ...others.map((one) => element("option", { value: one.name }, one.name)));
     const number = element("input", { type: "number", min: "0.001", step: "any", value: String(otherwise), required: true, "aria-label": `${words}: the weight` });
     joint.dataset.id = pointer + " joint";
     number.dataset.id = pointer + " weight";
@@ -542,6 +547,7 @@ export class Inspector {
       ...Object.entries(one.value || {}).filter(([name]) => name !== "type").flatMap(([name, value]) =>
         this.inputs(`${one.pointer}/${name}`, value, [name], this.choicesOfDisturbance(one),
           one.type === "floor" && name === "shape" ? (next) => putShape(one.pointer, one.value, next) : null)),
+      one.type === "floor" ? this.shift(one.pointer, one.value) : null,
       this.button(() => [{ kind: "remove", pointer: one.pointer }], "Remove this disturbance")].filter(Boolean);
   }
 

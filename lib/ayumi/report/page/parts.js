@@ -2,7 +2,7 @@
 // of the floor, disturbances other than pushes, weights of joints, and what is uncertain
 // (docs/formats.md).
 
-import { roundedTime } from "./edits.js";
+import { removeValue, roundedTime } from "./edits.js";
 
 const inUnit = (degrees, unit) => unit === "deg" ? degrees : Number((degrees * Math.PI / 180).toFixed(4));
 
@@ -38,10 +38,11 @@ export function growField(field, along) {
   return field.heights.map((row, i) => ({ kind: "insert", pointer: `/world/field/heights/${i}/-`, value: row.at(-1) }));
 }
 
-/// A tilt of the whole floor there and back, at a time.
+/// A tilt of the whole floor there and back.
+const tilt = (unit) => ({ shape: "half_sine", duration: 1, pitch: inUnit(2, unit) });
+
 export function addFloorMotion(time, unit) {
-  return [{ kind: "insert", pointer: "/world/motion/-",
-    value: { shape: "half_sine", at: roundedTime(time), duration: 1, pitch: inUnit(2, unit) } }];
+  return [{ kind: "insert", pointer: "/world/motion/-", value: { at: roundedTime(time), ...tilt(unit) } }];
 }
 
 /// Another shape of a motion: only a sine has a frequency.
@@ -54,15 +55,18 @@ export function putShape(pointer, motion, shape) {
 
 export const shapes = ["ramp", "half_sine", "sine"];
 
+/// The first joint that turns; an offset of one that slides would be a length.
+const turning = (joints) => joints.find((one) => !one.prismatic) ?? joints[0];
+
 /// Disturbances other than pushes, each with what it has besides its time.
 export const disturbances = [
-  { type: "payload", words: "a payload on a link", value: (state) => ({ on: state.links?.at(-1) ?? "", mass: 0.1 }) },
-  { type: "floor", words: "a motion of the floor", value: (state) => ({ duration: 1, shape: "half_sine", pitch: inUnit(2, state.angle_unit) }) },
+  { type: "payload", words: "a payload on a link", value: (state) => ({ on: state.links?.[0] ?? "", mass: 0.1 }) },
+  { type: "floor", words: "a motion of the floor", value: (state) => tilt(state.angle_unit) },
   { type: "friction", words: "another friction of the ground", value: () => ({ friction: 0.3, duration: 1 }) },
   { type: "bump", words: "a bump under a foot", value: () => ({ foot: "left", height: 0.003 }) },
   { type: "latency", words: "later sensors", value: () => ({ latency: 0.005, duration: 1 }) },
   { type: "sensor_bias", words: "an error of the attitude sensor", value: (state) => ({ pitch: inUnit(1, state.angle_unit) }) },
-  { type: "encoder_offset", words: "an offset of an encoder", value: (state) => ({ joint: state.joints[0].name, offset: inUnit(1, state.angle_unit) }) },
+  { type: "encoder_offset", words: "an offset of an encoder", value: (state) => ({ joint: turning(state.joints).name, offset: inUnit(1, state.angle_unit) }) },
   { type: "joint_friction", words: "friction of a joint", value: (state) => ({ joint: state.joints[0].name, coulomb: 0.2, viscous: 0.05 }) },
   { type: "gain_loss", words: "a weak servo", value: (state) => ({ joint: state.joints[0].name, share: 0.3 }) },
 ];
@@ -121,12 +125,11 @@ export function addUncertainPush(unit) {
     value: { unit: "B", size: 0.5, direction: { choice, source: assumed }, time: "phases", duration: 0.02 } }];
 }
 
-/// Without an item of a list. A list that would be empty goes as a whole, and "uncertainty" that holds nothing else, too.
+/// Without an item of a list. A list that would be empty goes as a whole, and what holds nothing else, too.
 export function removeItem(document, path, index) {
   const [part, list] = path;
   if (document[part][list].length > 1) return [{ kind: "remove", pointer: `/${part}/${list}/${index}` }];
-  const alone = part === "uncertainty" && Object.keys(document[part]).length === 1;
-  return [{ kind: "remove", pointer: alone ? `/${part}` : `/${part}/${list}` }];
+  return removeValue(document, `/${part}/${list}`);
 }
 
 /// What has an angle where a pattern may have one: the way to a part of the text, without the items of lists.
