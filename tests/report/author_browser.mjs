@@ -160,6 +160,27 @@ async function makesWhatIsNotThere(tab) {
   await tab.after(() => tab.click("#undo"));
   expect(text() === before, "and back");
 
+  const full = phases.findIndex(({ until }, i) => keyframes.some(({ t }) => t > (phases[i - 1]?.until ?? 0) + 0.001 && t < until - 0.001));
+  if (full >= 0) {
+    const goal = `#selected [data-id="/phases/${full} goal"]`, asks = () => tab.run("return Boolean(document.querySelector('#selected [role=status]'))");
+    const ask = async () => {
+      await tab.click(`[data-id="/phases/${full}"]`);
+      await tab.type(goal, "jump");
+      expect(await asks(), "the page asks about the keyframes in the phase");
+    };
+    await ask();
+    await tab.type(goal, "none");
+    expect(!(await asks()), "the choice can be taken back");
+    await ask();
+    await tab.run("document.querySelector(`#selected [data-id$='keep the keyframes']`).click();");
+    expect(!(await asks()), "the keyframes can be kept");
+    await ask();
+    await tab.click("#whole");
+    await tab.click(`[data-id="/phases/${full}"]`);
+    expect(!(await asks()), "the question ends with the selection");
+    expect(text() === before, "and nothing is written");
+  }
+
   await tab.click(`[data-id="/phases/${phases.length - 1}"]`);
   await tab.after(() => press("Add a phase after this one"));
   await tab.after(() => tab.type(`#selected [data-id="/phases/${phases.length} goal"]`, "cog"));
@@ -183,7 +204,10 @@ async function makesEveryPart(tab) {
   const press = (words) => tab.run("[...document.querySelectorAll('#selected button')].find((b) => b.textContent === arguments[0]).click();", words);
   const submit = (id, value) => tab.run("const e = document.querySelector(`#selected [data-id=\"${arguments[0]}\"]`); e.value = arguments[1]; e.form.requestSubmit();", id, value);
   await tab.click("#whole");
-  await make(() => press("Add a height field to the ground"), "a height field", ({ world }) => world.field.heights.length === 7);
+  const toes = await tab.run("return Math.max(...window.ayumiAuthor.page.solesAtStart().map(([x]) => x))");
+  expect(toes > 0 && toes < 0.2, `the toes at the start are at ${toes} m`);
+  await make(() => press("Add a height field to the ground"), "a height field",
+    ({ world }) => world.field.heights.length === 7 && world.field.origin[0] >= toes + 0.02);
   await make(() => press("One more row of nodes to the left"), "more nodes", ({ world }) => world.field.heights[6].length === 8);
   expect((await tab.run("return document.querySelectorAll('#selected table.grid input').length")) === 56, "each node has a number");
   await make(() => tab.type(at("/world/field/heights/3/2"), 0.004), "a height", ({ world }) => world.field.heights[3][2] === 0.004);
@@ -194,7 +218,7 @@ async function makesEveryPart(tab) {
   await make(() => press("Remove this motion of the floor"), "no motion", ({ world }) => !world?.motion);
   const joint = await tab.run("return window.ayumiAuthor.page.state.joints.at(-1).name");
   await make(() => submit("/repair/weights joint", joint), "a weight of a joint in a repair", ({ repair }) => repair.weights[joint] === 10);
-  await make(() => tab.type(at("/repair/weights/" + joint), ""), "no weight", ({ repair }) => repair.weights[joint] === undefined);
+  await make(() => tab.type(at("/repair/weights/" + joint), ""), "no weight", ({ repair }) => repair?.weights?.[joint] === undefined);
   await make(() => submit("new quantity", "friction"), "an uncertain quantity", ({ uncertainty }) => uncertainty.quantities[0].uniform[1] === 0.9);
   await make(() => press("Add an uncertain push"), "an uncertain push", ({ uncertainty }) => uncertainty.pushes[0].size === 0.5);
   await make(() => press("Remove this uncertain push"), "no push", ({ uncertainty }) => !uncertainty.pushes);
@@ -206,6 +230,9 @@ async function makesEveryPart(tab) {
     await make(() => tab.run("document.getElementById('other-type').value = arguments[0]; document.getElementById('new-other').requestSubmit();", type), type,
       ({ scenario }) => scenario[first + i].type === type);
     expect(await tab.run("return window.ayumiAuthor.page.selection.pointer") === `/scenario/${first + i}`, "it is selected");
+    if (type === "floor") await make(() => press("Give its shift"), "a shift of the floor", ({ scenario }) => scenario[first + i].shift.length === 3);
+    if (type === "gain_loss")
+      await make(() => tab.type(at(`/scenario/${first + i}/joint`), ""), "all joints", ({ scenario }) => scenario[first + i].joint === undefined);
   }
   for (; made > 0; --made) await tab.after(() => tab.click("#undo"));
   expect(text() === before, "and all is as before");

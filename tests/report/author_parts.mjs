@@ -9,8 +9,8 @@ import { largerPart, nearAxis } from "../../lib/ayumi/report/page/drag_parts.js"
 import { arrowsOf, wordsOfPush } from "../../lib/ayumi/report/page/push_parts.js";
 import * as parts from "../../lib/ayumi/report/page/parts.js";
 import * as edits from "../../lib/ayumi/report/page/edits.js";
-import { fieldsOf, missingFields, parsePattern, valueAt } from "../../lib/ayumi/report/page/fields.js";
-import { nameAmongOthers } from "../../lib/ayumi/report/page/inspector.js";
+import { fieldsOf, missingFields, optionalField, optionsOf, parsePattern, valueAt } from "../../lib/ayumi/report/page/fields.js";
+import { nameAmongOthers, unitOf } from "../../lib/ayumi/report/page/inspector.js";
 import { strain, colorOf, heightOf, worstIn } from "../../lib/ayumi/report/page/strip_colors.js";
 import { sideBySide, nearDifferences } from "../../lib/ayumi/report/page/text_difference.js";
 
@@ -437,13 +437,39 @@ test("a phase gets a goal of VIIP in place of its support and its swing, and bac
     assert.equal(edits.goalOf(last.value), name);
   }
   assert.equal(edits.goalOf(null), "none");
-  // Its keys go first, from the last one on, so that no pointer moves; those at its ends stay.
+  // Its keys go, each by its place in the text before the edit; those at its ends stay.
   const frames = [1, 1.5, 2, 2.5].map((time, i) => ({ time, pointer: `/keyframes/${i}`, time_pointer: `/keyframes/${i}/t`, time_value: time }));
   assert.deepEqual(edits.keysWithin({ from: 1, until: 2.5 }, frames).map(({ time }) => time), [1.5, 2]);
   const away = edits.putGoal({ pointer: "/phases/1", support: "both", from: 1, until: 2.5 }, "jump", "deg", frames);
   assert.deepEqual(away.filter(({ pointer }) => pointer.startsWith("/keyframes")).map(({ kind, pointer }) => [kind, pointer]),
     [["remove", "/keyframes/1"], ["remove", "/keyframes/2"]]);
   assert.deepEqual(edits.putGoal({ pointer: "/phases/1", support: null }, "none", "deg").map((one) => one.pointer), ["/phases/1/viip", "/phases/1/support"]);
+});
+
+test("a goal waits for an answer while its phase is selected and the text is the same", () => {
+  const wanted = { pointer: "/phases/1", name: "jump", text: "a" }, phase = { kind: "phase", pointer: "/phases/1" };
+  assert.equal(edits.stillWanted(wanted, phase, "a"), wanted);
+  for (const [selection, text] of [[phase, "b"], [{ kind: "phase", pointer: "/phases/2" }, "a"], [{ kind: "key", pointer: "/keyframes/1/zmp" }, "a"], [null, "a"]])
+    assert.equal(edits.stillWanted(wanted, selection, text), null);
+  assert.equal(edits.stillWanted(null, phase, "a"), null);
+});
+
+test("no keyframe goes that a block which repeats counts its time from", () => {
+  const at = (pointer, time, more) => ({ pointer, time, time_pointer: pointer + "/t", time_value: time, time_base: 0, ...more });
+  const counts = (pointer, time, time_base, repeated) => at(pointer, time, { time_pointer: pointer + "/after", time_value: time - time_base, time_base, repeated });
+  const inBlock = [1.5, 2.1].map((base) => counts("/keyframes/2/keyframes/0", base + 0.6, base, true));
+  const keyframes = [at("/keyframes/0", 0.5), at("/keyframes/1", 1.5), ...inBlock], phase = { pointer: "/phases/1", support: "both", from: 1, until: 2 };
+  assert.equal(edits.putGoal(phase, "jump", "deg", keyframes), null);
+  const tracks = [{ keys: [{ pointer: "/keyframes/1/fz" }, { pointer: "/keyframes/2/keyframes/0/fz" }] }];
+  for (const key of tracks[0].keys) assert.equal(edits.removeKey({ keyframes: [...keyframes.slice(0, 2), ...inBlock], tracks }, key) === null, key === tracks[0].keys[0]);
+  // One that counts from the last round stays where it is.
+  const later = counts("/keyframes/3", 3, 2.7, false);
+  assert.deepEqual(edits.removeKey({ keyframes: [...keyframes, later], tracks }, tracks[0].keys[1]),
+    [{ kind: "remove", pointer: "/keyframes/2/keyframes/0" }, { kind: "set", pointer: "/keyframes/3/after", value: 1.5 }]);
+  assert.equal(edits.joinKeyframe({ keyframes }, { keyframes: [{ t: 0.5, fz: 1 }, { t: 1.5, zmp: "left" }] }, keyframes[1], keyframes[0]), null);
+  // A later keyframe with a time of its own, or one outside of blocks, is no hindrance.
+  assert.ok(edits.putGoal(phase, "jump", "deg", [...keyframes.slice(0, 2), at("/keyframes/2/keyframes/0", 2.1, { repeated: true })]));
+  assert.deepEqual(edits.putGoal(phase, "jump", "deg", [...keyframes.slice(0, 2), counts("/keyframes/2", 2.1, 1.5)])[1], { kind: "set", pointer: "/keyframes/2/after", value: 1.6 });
 });
 
 /// A value of the page has what the schema asks for, and nothing else; words among choices are known.
@@ -492,6 +518,20 @@ test("a new part of the ground lies where no other one is", () => {
   assert.equal(parts.freeGround({ blocks: [{ x: ["${a}", "${b}"] }] }), 0.1);
 });
 
+test("a new part of the ground lies ahead of the soles", () => {
+  const robot = parsePattern(readFileSync(new URL("../../robots/humanoid30/robot.json", import.meta.url), "utf8"));
+  const corners = ["left", "right"].flatMap((side) => robot.soles[side].polygon);
+  const toes = Math.max(...corners.map(([x]) => x));
+  for (const at of [0, 1.23]) {
+    const soles = corners.map(([x, y]) => [x + at, y, 0]), from = parts.freeGround(undefined, soles);
+    assert.ok(from >= toes + at + 0.02 - 1e-9 && from < toes + at + 0.07, `${from}`);
+    for (const list of ["blocks", "patches"]) assert.equal(parts.addToGround(list, {}, soles)[0].value.x[0], from);
+    assert.equal(parts.addField({}, soles)[0].value.origin[0], from);
+  }
+  assert.equal(parts.freeGround({}, [[0.06, 0, 0]]), 0.1);
+  assert.equal(parts.freeGround({ blocks: [{ x: [0.1, 0.3] }] }, corners), 0.3);
+});
+
 test("a field grows by a copy of its last nodes", () => {
   const field = { heights: [[1, 2], [3, 4]] };
   assert.deepEqual(parts.growField(field, "x"), [{ kind: "insert", pointer: "/world/field/heights/-", value: [3, 4] }]);
@@ -506,6 +546,61 @@ test("the first angle of a pattern brings its unit", () => {
   assert.equal(parts.withUnits({}, parts.addQuantity("slope", "rad"), "rad").length, 2);
   assert.equal(parts.withUnits({}, [height], "rad").length, 1);
   assert.equal(parts.withUnits({ units: { angle: "deg" } }, [trunk], "deg").length, 1);
+  const document = { uncertainty: { quantities: [{ what: "backlash" }, { what: "mass" }] } };
+  const brings = (pointer, value, kind = "set") => parts.withUnits(document, [{ kind, pointer, value }], "rad").length === 2;
+  const angles = [["/postures/turn/l_knee", 1], ["/postures/phases", { l_knee: "${bent}" }], ["/start/left", [0, 0.1, 0, 0.2]], ["/start/left/rpy/2", 1],
+    ["/phases/0/swing/to/3", 0.1], ["/phases/0/phases/1/swing", { foot: "left", to: { position: [0, 0, 0], rpy: [0, 0, 1] } }], ["/phases/1/swing/step/turn", 0],
+    ["/phases/1/viip", { turn: 0.1, steps: 2 }], ["/keyframes/0/keyframes/1/joints/l_knee", 1], ["/keyframes/0/posture", { l_knee: 1 }],
+    ["/keyframes/0/feet/left", [0, 0, 0, 1]], ["/world/ground/roll", 1], ["/scenario/0", { type: "sensor_bias", gyro: [0, 0, 1] }], ["/scenario/0/offset", 1],
+    ["/uncertainty/quantities/0/uniform/1", 1], ["/uncertainty/pushes/0/direction", 1], ["/uncertainty/pushes/0/direction/choice/2", 1]];
+  for (const [pointer, value] of angles) assert.ok(brings(pointer, value), pointer);
+  const others = [["/scenario/0/direction", [0, 1, 0]], ["/scenario/0/direction/1", 1], ["/phases/0/swing/to", [0.1, 0, 0]], ["/phases/0/swing/to/2", 0.1],
+    ["/start/right", { position: [0, 0, 0] }], ["/keyframes/0/feet/left", [0, 0.1]], ["/keyframes/0/posture", "home"], ["/defaults/posture", "turn"],
+    ["/keyframes/0/weights/yaw", 10], ["/repair/weights", { pitch: 10 }], ["/parameters/turn", 1], ["/keyframes/0/hands/left", [0, 0, 0.2]], ["/name", "slope"],
+    ["/uncertainty/quantities/1/uniform/1", 1], ["/uncertainty/quantities/0/source", "slope"], ["/uncertainty/pushes/0/direction/weights/0", 1]];
+  for (const [pointer, value] of others) assert.ok(!brings(pointer, value), pointer);
+  const push = edits.addDisturbance({ type: "impulse", at: 1, duration: 0.02, direction: [0, 1, 0], size: 2 });
+  assert.equal(parts.withUnits({}, push, "rad").length, 1);
+  assert.ok(!brings("/keyframes/0/torso/yaw", undefined, "remove") && !brings("/phases/0", { items: 2, repeat: 3, count: "turn" }, "repeat"));
+  assert.equal(parts.withUnits({}, parts.addUncertainPush("rad"), "rad").length, 2);
+});
+
+test("each number of an uncertain quantity or push has its unit", () => {
+  const units = { cog: "m", slope: "deg", bumps: "m", servo_friction: "N m", encoder_offset: "deg", servo_delay: "s", backlash: "deg", attitude_bias: "deg",
+    gyro_bias: "deg/s", load_bias: "N", sensor_latency: "s", payload: "kg" };
+  for (const { what, words } of parts.quantities) {
+    const document = { uncertainty: { quantities: [{ what }] } }, unit = (...path) => unitOf(["uncertainty", "quantities", 0, ...path], "deg", document);
+    for (const [name, i] of [["uniform", 0], ["normal", 1], ["truncated", 3], ["choice", 2]]) assert.equal(unit(name, i), units[what] ?? "", `${what} ${name}`);
+    assert.ok(units[what] || /[(]factor[)]/.test(words) || what === "friction", `${what} has no unit`);
+    for (const path of [["source"], ["weights", 0], ["correlation"], ["axis"], ["each"]]) assert.equal(unit(...path), "");
+    assert.equal(unit("point", 2), "m");
+  }
+  const document = { uncertainty: { pushes: [{ unit: "B", time: "phases" }, { unit: "N s", time: { uniform: [1, 2] } }] } };
+  const unit = (i, ...path) => unitOf(["uncertainty", "pushes", i, ...path], "rad", document);
+  assert.deepEqual([unit(0, "direction"), unit(0, "direction", "choice", 1), unit(0, "direction", "uniform", 0), unit(0, "direction", "weights", 0), unit(0, "direction", "source")],
+    ["rad", "rad", "rad", "", ""]);
+  assert.deepEqual([unit(0, "size"), unit(1, "size", "normal", 0), unit(0, "time"), unit(1, "time", "uniform", 1), unit(0, "duration"), unit(0, "unit"), unit(0, "on")],
+    ["B", "N s", "", "s", "s", "", ""]);
+});
+
+test("bias of a gyro is an angle in each second, and viscous friction counts in rad", () => {
+  assert.deepEqual([unitOf(["gyro", 1], "deg"), unitOf(["viscous"], "deg"), unitOf(["viscous"], "rad"), unitOf(["offset"], "deg")], ["deg/s", "N m s/rad", "N m s/rad", "deg"]);
+});
+
+test("what may be missing can be chosen to be missing, and what is written is always shown", () => {
+  const state = { joints: [{ name: "l_knee" }], links: ["torso"], postures: ["home"] };
+  const offered = (value, name, choices) => optionsOf(choices, value[name], optionalField("disturbance", "/scenario/0", value, state, "/scenario/0/" + name));
+  assert.deepEqual(offered({ type: "gain_loss", joint: "l_knee", share: 0.3 }, "joint", ["l_knee", "r_knee"]),
+    [["", "(all joints)"], ["l_knee", "l_knee"], ["r_knee", "r_knee"]]);
+  assert.deepEqual(offered({ type: "impulse", on: "torso" }, "on", ["cog", "torso"])[0], ["", "(cog)"]);
+  assert.deepEqual(offered({ type: "payload", on: "torso" }, "on", ["torso"]), [["torso", "torso"]], "a payload needs its link");
+  assert.deepEqual(offered({ type: "payload", on: "${link}" }, "on", ["torso"]), [["torso", "torso"], ["${link}", "${link}"]]);
+  assert.deepEqual(optionsOf(["true", "false"], false), [["true", "true"], ["false", "false"]]);
+});
+
+test("a slope and a bias of the attitude have no axis z", () => {
+  const axes = Object.fromEntries(parts.quantities.map(({ what, value }) => [what, value("deg").axis && parts.axesOf(what).join("")]).filter(([, one]) => one));
+  assert.deepEqual(axes, { cog: "xyz", slope: "xy", attitude_bias: "xy", gyro_bias: "xyz" });
 });
 
 test("only a sine has a frequency", () => {
@@ -521,4 +616,23 @@ test("the last item of a list takes the list along", () => {
   assert.equal(pointer(["world", "motion"], 1), "/world/motion/1");
   assert.equal(pointer(["world", "blocks"], 0), "/world/blocks");
   assert.equal(pointer(["uncertainty", "quantities"], 0), "/uncertainty");
+  assert.equal(parts.removeItem({ world: { blocks: [{}] } }, ["world", "blocks"], 0)[0].pointer, "/world");
+});
+
+test("what would be left empty goes along, unless it says something when it is empty", () => {
+  const document = { repair: { weights: { l_knee: 10 } }, world: { ground: { roll: 1 }, friction: 0.5 }, parameters: { cog: 1 },
+    keyframes: [{ t: 0, cog: { height: 0.2 }, weights: { l_knee: 10, r_knee: 10 } }], phases: [{ swing: { foot: "left", step: { forward: 0.1 } } }] };
+  const gone = (pointer) => edits.removeValue(document, pointer).map((one) => one.pointer).join();
+  assert.equal(gone("/repair/weights/l_knee"), "/repair");
+  assert.equal(gone("/world/ground/roll"), "/world/ground");
+  assert.equal(gone("/keyframes/0/cog/height"), "/keyframes/0/cog");
+  for (const pointer of ["/keyframes/0/weights/l_knee", "/phases/0/swing/step/forward", "/world/friction", "/parameters/cog"]) assert.equal(gone(pointer), pointer);
+});
+
+test("a load is on the first link, and an offset is that of a joint that turns", () => {
+  const state = { angle_unit: "deg", joints: [{ name: "slide", prismatic: true }, { name: "l_knee", prismatic: false }], links: ["torso", "head"] };
+  assert.equal(parts.addOther("payload", 1, state)[0].value.on, "torso");
+  assert.equal(parts.addOther("encoder_offset", 1, state)[0].value.joint, "l_knee");
+  const { type, at, ...floor } = parts.addOther("floor", 1, state)[0].value, { at: time, ...motion } = parts.addFloorMotion(1, "deg")[0].value;
+  assert.deepEqual([type, at, floor], ["floor", time, motion]);
 });

@@ -214,6 +214,19 @@ class Page {
     return this.showsPlan() && this.previewed ? this.previewed : sampleAt(this.plan, t);
   }
 
+  /// The corners of the soles at the start of the pattern, in the world.
+  solesAtStart() {
+    const [actor] = this.viewer.actors;
+    this.rig.place(sampleAt(this.plan, 0));
+    actor.root.updateMatrixWorld(true);
+    const corners = this.state.replay.soles.flatMap((sole) => {
+      const body = bodyOf(actor, sole.body);
+      return sole.corners.map((corner) => body.localToWorld(new Vector3(...corner)).toArray());
+    });
+    this.rig.place(this.row());
+    return corners;
+  }
+
   showsPlan() {
     return byId("which").value === "plan";
   }

@@ -14,6 +14,19 @@ export function written(words) {
   return text !== "" && Number.isFinite(Number(text)) ? Number(text) : text;
 }
 
+/// Members that say nothing when they are empty, or may not be empty.
+const fleeting = ["weights", "repair", "world", "ground", "defaults", "controller", "uncertainty", "cog", "torso"];
+
+/// Without the value at a pointer, and without what would be left empty around it. `document` is the pattern as written.
+export function removeValue(document, pointer) {
+  for (;;) {
+    const around = pointer.slice(0, pointer.lastIndexOf("/")), value = valueAt(document, around);
+    const alone = value && !Array.isArray(value) && Object.keys(value).length === 1;
+    if (!alone || !fleeting.includes(around.split("/").at(-1))) return [{ kind: "remove", pointer }];
+    pointer = around;
+  }
+}
+
 /// A time in a block that repeats stands for several times, so it is the author's to change. To an expression the server adds.
 export const canDrag = (value, thing = {}) => ["number", "string"].includes(typeof value) && !thing.repeated;
 
@@ -89,8 +102,30 @@ const isRelative = (frame) => frame.time_pointer.endsWith("/after");
 const follow = (frame, base) => frame && isRelative(frame) && canDrag(frame.time_value, frame)
   ? [{ kind: "set", pointer: frame.time_pointer, value: timeValue(frame.time, base) }] : [];
 
+/// Why no keyframe goes that a block which repeats counts its time from.
+export const countedFrom = "A block that repeats counts its time from there, and would move with it. Change it in the text.";
+
+/// Without the keyframes with these pointers, each in all its rounds: what counts from one of them stays at
+/// its time. null where it cannot, because it stands in a block that repeats.
+function withoutFrames(keyframes, pointers) {
+  const goes = (frame) => pointers.includes(frame.pointer);
+  const edits = pointers.map((pointer) => ({ kind: "remove", pointer }));
+  let base = 0, gap = false;
+  for (const frame of keyframes) {
+    if (!goes(frame)) {
+      const kept = gap ? follow(frame, base) : [];
+      if (gap && isRelative(frame) && !kept.length) return null;
+      edits.push(...kept);
+      base = frame.time;
+    }
+    gap = goes(frame);
+  }
+  return edits;
+}
+
 /// All of a keyframe in another one, which is at the time that was typed for it; null where both have
-/// the same key or one stands in a block that repeats. `document` is the pattern as written.
+/// the same key, or one stands in a block that repeats or is what such a block counts from. `document` is the
+/// pattern as written.
 export function joinKeyframe(state, document, frame, there) {
   if (frame.repeated || there.repeated) return null;
   const from = valueAt(document, frame.pointer), to = valueAt(document, there.pointer);
@@ -106,20 +141,17 @@ export function joinKeyframe(state, document, frame, there) {
       for (const [part, one] of Object.entries(value)) edits.push({ kind: "set", pointer: there.pointer + token(name) + token(part), value: one });
     else return null;
   }
-  const i = state.keyframes.indexOf(frame), next = state.keyframes[i + 1], before = i > 0 ? state.keyframes[i - 1].time : 0;
-  return [...edits, { kind: "remove", pointer: frame.pointer }, ...follow(next, before)];
+  const without = withoutFrames(state.keyframes, [frame.pointer]);
+  return without && [...edits, ...without];
 }
 
-/// A key without its keyframe's other tracks; a keyframe with nothing else goes as a whole.
+/// A key without its keyframe's other tracks; a keyframe with nothing else goes as a whole. null where a
+/// block that repeats would move with it.
 export function removeKey(state, key) {
   const frame = state.keyframes.find((one) => key.pointer.startsWith(one.pointer + "/"));
   const others = state.tracks.flatMap((track) => track.keys).filter((one) => one !== key &&
     frame && one.pointer.startsWith(frame.pointer + "/"));
-  if (frame && others.length === 0 && !frame.more) {
-    const i = state.keyframes.indexOf(frame);
-    return [{ kind: "remove", pointer: frame.pointer },
-      ...follow(state.keyframes[i + 1], i > 0 ? state.keyframes[i - 1].time : 0)];
-  }
+  if (frame && others.length === 0 && !frame.more) return withoutFrames(state.keyframes, [frame.pointer]);
   return [{ kind: "remove", pointer: key.pointer }];
 }
 
@@ -245,15 +277,20 @@ export function keysWithin(phase, keyframes) {
   return keyframes.filter(({ time }) => time > phase.from + 5e-4 && time < phase.until - 5e-4);
 }
 
+/// A goal that waits for an answer about its keyframes, as long as the same phase of the same text is
+/// selected; otherwise null.
+export function stillWanted(wanted, selection, text) {
+  return wanted && selection?.kind === "phase" && selection.pointer === wanted.pointer && text === wanted.text ? wanted : null;
+}
+
 /// Another goal of VIIP for a phase, without those of `keyframes` that lie inside it, or keys again. The
-/// other values of the phase stay.
+/// other values of the phase stay. null where a block that repeats would move with these keyframes.
 export function putGoal(phase, name, angleUnit, keyframes = []) {
   const pointer = phase.pointer, goal = goals.find((one) => one.name === name);
   if (!goal.value)
     return phase.support ? [] : [{ kind: "remove", pointer: pointer + "/viip" }, { kind: "set", pointer: pointer + "/support", value: "both" }];
-  const away = keysWithin(phase, keyframes), next = keyframes[keyframes.indexOf(away.at(-1)) + 1];
-  return [...away.map((frame) => ({ kind: "remove", pointer: frame.pointer })),
-    ...away.length ? follow(next, keyframes[keyframes.indexOf(away[0]) - 1]?.time ?? 0) : [],
+  const without = withoutFrames(keyframes, keysWithin(phase, keyframes).map((frame) => frame.pointer));
+  return without && [...without,
     ...phase.swing ? [{ kind: "remove", pointer: pointer + "/swing" }] : [],
     ...phase.support ? [{ kind: "remove", pointer: pointer + "/support" }] : [],
     { kind: "set", pointer: pointer + "/viip", value: goal.value(angleUnit) }];

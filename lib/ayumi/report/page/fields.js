@@ -88,7 +88,14 @@ export function missingFields(kind, pointer, value, state) {
     .map((field) => ({ ...field, pointer: pointer + joined(field.path) }));
 }
 
-/// Whether the value at a pointer may be taken away: it is one of the optional ones of its kind.
-export function isOptional(kind, pointer, value, state, at) {
-  return fieldsOf[kind](value, state).some(({ path }) => pointer + joined(path) === at);
+/// The optional field of its kind that the value at a pointer is, which may be taken away.
+export function optionalField(kind, pointer, value, state, at) {
+  return fieldsOf[kind](value, state).find(({ path }) => pointer + joined(path) === at);
+}
+
+/// What a select offers, as [value, words]: what holds without the value, where it may be taken away; the
+/// choices; and what is written, where it is none of them.
+export function optionsOf(choices, written, field) {
+  const names = choices.map(String), known = written === undefined || names.includes(String(written));
+  return [...field ? [["", `(${field.otherwise})`]] : [], ...[...names, ...known ? [] : [String(written)]].map((one) => [one, one])];
 }

@@ -1,22 +1,22 @@
 // What is selected on the timeline, with its values to be typed; and new keys at the cursor.
 
 import { byId, element, seconds } from "./dom.js";
-import { addSwing, appendPhase, goalOf, goals, joinKeyframe, keysWithin, putGoal, putKey, putPart, putSupport, putTarget, removeKey, repeatPhases, roomOfKey, roundsOf, roundedTime, sameTime, setRounds, splitPhase, valueFromRow, written } from "./edits.js";
-import { isOptional, missingFields, token, valueAt } from "./fields.js";
-import { addField, addFloorMotion, addQuantity, addToGround, addUncertainPush, growField, putShape, quantities, removeItem, shapes } from "./parts.js";
+import { addSwing, appendPhase, countedFrom, goalOf, goals, joinKeyframe, keysWithin, putGoal, putKey, putPart, putSupport, putTarget, removeKey, removeValue, repeatPhases, roomOfKey, roundsOf, roundedTime, sameTime, setRounds, splitPhase, stillWanted, valueFromRow, written } from "./edits.js";
+import { missingFields, optionalField, optionsOf, token, valueAt } from "./fields.js";
+import { addField, addFloorMotion, addQuantity, addToGround, addUncertainPush, axesOf, distributions, growField, putShape, quantities, removeItem, shapes } from "./parts.js";
 import { sampleAt } from "./series.js";
 import { nameOfTrack } from "./timeline.js";
 
-/// Unit of a value by the names that lead to it.
-export function unitOf(path, angle) {
+/// Unit of a value by the names that lead to it. `document` is the pattern as written.
+export function unitOf(path, angle, document) {
   const name = path.at(-1), track = path[0];
+  if (track === "uncertainty") return unitOfUncertain(path, angle, document?.uncertainty?.[path[1]]?.[path[2]]);
   if (["t", "after", "at", "until", "duration"].includes(name)) return "s";
   if (track === "viip" && name === "turn") return angle + "/s";
   if (path.includes("velocity") || path.includes("cog_velocity")) return "m/s";
   if (["x", "y", "z", "height", "cog_height", "lift", "stoop", "radius", "forward", "side", "up"].includes(name)) return "m";
   if (["blocks", "patches"].includes(path[1]) && ["x", "y", "position"].includes(path[3])) return "m";
   if (path[1] === "field" || path.includes("shift")) return "m";
-  if (path[0] === "uncertainty") return unitOfUncertain(path, angle);
   if (track === "viip" && path[1] === "cog") return "m";
   if (["roll", "pitch", "yaw", "turn"].includes(name) || track === "joints" || track === "joint" ||
     (track === "posture" && path.length > 1)) return angle;
@@ -24,11 +24,21 @@ export function unitOf(path, angle) {
     return path.includes("to") && path.at(-1) === 3 ? angle : "m";
   if (track === "feet" || track === "foot") return path.at(-1) === 3 ? angle : "m";
   return { fz: "N", impulse: "N s", force: "N", torque: "N m", mass: "kg", latency: "s", coulomb: "N m", frequency: "Hz", offset: angle,
-    load: "N", viscous: "N m s/" + (angle === "deg" ? "rad" : angle), margin: "m" }[name] || "";
+    load: "N", viscous: "N m s/rad", margin: "m" }[name] || (track === "gyro" ? angle + "/s" : "");
 }
 
-/// Of the numbers of a distribution, the unit of what is uncertain is behind its name.
-const unitOfUncertain = (path, angle) => path.includes("direction") && path.includes("choice") ? angle : "";
+/// Unit of a value of an uncertain quantity or push, `item`: of its numbers, not of weights and correlations.
+function unitOfUncertain(path, angle, item) {
+  const [, list, , part] = path, inUnit = (unit = "") => unit.replace("angle", angle);
+  if (list === "quantities") {
+    if (part === "point") return "m";
+    return distributions.includes(part) ? inUnit(quantities.find((one) => one.what === item?.what)?.unit) : "";
+  }
+  if (part === "duration") return "s";
+  if (path.length > 4 && !distributions.includes(path[4])) return "";
+  return { direction: angle, time: item?.time === "phases" ? "" : "s", size: item?.unit ?? "" }[part] ?? "";
+}
+
 const bounds = { uniform: ["from", "to"], normal: ["mean", "standard deviation"], truncated: ["mean", "standard deviation", "from", "to"] };
 
 const places = ["forward", "left", "up", "yaw"];
@@ -84,17 +94,17 @@ export class Inspector {
   /// One input for each value of a JSON text; a change is an edit of that value alone, or what
   /// `edits` makes of it.
   inputs(pointer, value, path, choices = {}, edits = null) {
-    if (Array.isArray(value) && Array.isArray(value[0])) return [this.grid(pointer, value, path)];
+    if (path[1] === "field" && Array.isArray(value) && Array.isArray(value[0])) return [this.grid(pointer, value, path)];
     if (value && typeof value === "object")
       return Object.entries(value).flatMap(([name, part]) => this.inputs(pointer + token(name),
         part, [...path, Array.isArray(value) ? Number(name) : name], choices, edits));
     // Where the robot cannot do what is written, the shown motion is older than the text.
     if (this.page.state.error) value = valueAt(this.page.document, pointer) ?? value;
-    const unit = unitOf(path, this.page.state.angle_unit), last = path.at(-1);
+    const unit = unitOf(path, this.page.state.angle_unit, this.page.document), last = path.at(-1);
     const name = nameOf(path);
     const options = choices[last];
     const input = options
-      ? element("select", {}, ...options.map((one) => element("option", { value: one }, one)))
+      ? element("select", {}, ...optionsOf(options, value, this.optional(pointer)).map(([one, words]) => element("option", { value: one }, words)))
       : element("input", { type: "text", inputmode: "decimal", spellcheck: "false", autocomplete: "off" });
     input.value = String(value);
     input.dataset.id = pointer;
@@ -102,7 +112,8 @@ export class Inspector {
     input.disabled = !this.page.can("edit");
     input.addEventListener("change", () => {
       const next = typeof value === "boolean" ? input.value === "true" : written(input.value);
-      if (next === "" && this.mayGo(pointer)) this.page.edit([{ kind: "remove", pointer }]);
+      if (next === "" && this.optional(pointer))
+        this.page.edit(removeValue(this.page.document, pointer)).then((done) => { if (!done && options) input.value = String(value); });
       else if (next !== value && next !== "") {
         const list = edits ? edits(next) : [{ kind: "set", pointer, value: next }];
         if (list) this.page.edit(list);
@@ -135,9 +146,10 @@ export class Inspector {
     return value && typeof value === "object" ? { kind, pointer, value } : null;
   }
 
-  mayGo(pointer) {
+  /// The field at a pointer, if its value may be taken away.
+  optional(pointer) {
     const there = this.written();
-    return Boolean(there) && isOptional(there.kind, there.pointer, there.value, this.page.state, pointer);
+    return there ? optionalField(there.kind, there.pointer, there.value, this.page.state, pointer) : undefined;
   }
 
   /// What may be written there and is not, each with what holds without it.
@@ -147,8 +159,7 @@ export class Inspector {
     const fields = missingFields(there.kind, there.pointer, there.value, this.page.state);
     if (!fields.length) return [];
     return [element("h4", {}, "Not written"), ...fields.map(({ path, otherwise, choices, pointer }) => {
-      const input = choices ? element("select", {}, element("option", { value: "" }, `(${otherwise})`),
-        ...choices.map((one) => element("option", { value: one }, one)))
+      const input = choices ? element("select", {}, ...optionsOf(choices, undefined, { otherwise }).map(([one, words]) => element("option", { value: one }, words)))
         : element("input", { type: "text", spellcheck: "false", autocomplete: "off", placeholder: otherwise, title: `Without it: ${otherwise}` });
       input.dataset.id = pointer;
       input.dataset.written = "";
@@ -190,17 +201,17 @@ export class Inspector {
   /// Blocks and patches of the ground.
   onGround(list, value) {
     return [...this.items(["world", list], { blocks: "Block", patches: "Patch of other friction" }[list]),
-      this.adder(["world", list], () => addToGround(list, value.world), { blocks: "Add a block to the ground", patches: "Add a patch of other friction" }[list])];
+      this.adder(["world", list], () => addToGround(list, value.world, this.page.solesAtStart()), { blocks: "Add a block to the ground", patches: "Add a patch of other friction" }[list])];
   }
 
   /// The height field of the ground: one, with as many nodes as are wanted.
   field(world) {
     if (!world?.field)
-      return [this.button(() => addField(world), "Add a height field to the ground", () => this.focusValues("/world/field/"))];
+      return [this.button(() => addField(world, this.page.solesAtStart()), "Add a height field to the ground", () => this.focusValues("/world/field/"))];
     return [element("h4", {}, "Height field"), ...this.inputs("/world/field", world.field, ["world", "field"]),
       this.button(() => growField(world.field, "x"), "One more row of nodes ahead"),
       this.button(() => growField(world.field, "y"), "One more row of nodes to the left"),
-      this.button(() => [{ kind: "remove", pointer: "/world/field" }], "Remove the height field")];
+      this.button(() => removeValue(this.page.document, "/world/field"), "Remove the height field")];
   }
 
   /// Motions of the whole floor, at the time of the cursor.
@@ -211,9 +222,14 @@ export class Inspector {
         ...Object.entries(item).filter(([name]) => name !== "shape").flatMap(([name, one]) => this.inputs(`${pointer}/${name}`, one, ["world", "motion", i, name])),
         ...["roll", "pitch"].filter((name) => item[name] === undefined).map((name) =>
           this.button(() => [{ kind: "set", pointer: `${pointer}/${name}`, value: 0 }], `Give its ${name}`, () => this.focusValues(`${pointer}/${name}`), `${pointer} ${name}`)),
-        item.shift === undefined ? this.button(() => [{ kind: "set", pointer: pointer + "/shift", value: [0, 0, 0] }], "Give its shift",
-          () => this.focusValues(pointer + "/shift"), pointer + " shift") : null]),
+        this.shift(pointer, item)]),
     this.adder(["world", "motion"], () => addFloorMotion(this.page.time, unit), "Add a motion of the floor at the cursor")];
+  }
+
+  /// The button that gives a motion of the floor a shift.
+  shift(pointer, motion) {
+    return motion.shift !== undefined ? null : this.button(() => [{ kind: "set", pointer: pointer + "/shift", value: [0, 0, 0] }], "Give its shift",
+      () => this.focusValues(pointer + "/shift"), pointer + " shift");
   }
 
   /// What is uncertain, for `ayumi certify`.
@@ -225,7 +241,7 @@ export class Inspector {
     const count = this.page.document?.uncertainty?.quantities?.length ?? 0;
     return [element("h4", {}, "Uncertainty (for ayumi certify)"),
       ...this.items(["uncertainty", "quantities"], "Uncertain quantity", (item, i, pointer) =>
-        [element("p", { class: "soft" }, words(item.what)), ...this.inputs(pointer, item, ["uncertainty", "quantities", i], { axis: ["x", "y", "z"], each: ["true", "false"] })]),
+        [element("p", { class: "soft" }, words(item.what)), ...this.inputs(pointer, item, ["uncertainty", "quantities", i], { axis: axesOf(item.what), each: ["true", "false"] })]),
       ...this.items(["uncertainty", "pushes"], "Uncertain push", (item, i, pointer) =>
         this.inputs(pointer, item, ["uncertainty", "pushes", i], { unit: ["B", "N s"] })),
       ...this.page.can("edit") ? [element("form", { class: "value", onsubmit: (event) => {
@@ -237,9 +253,9 @@ export class Inspector {
 
   /// The weight of one more joint: a joint is chosen, and a number typed.
   weights(pointer, written, words, otherwise) {
-    if (!this.page.can("edit")) return null;
-    const joint = element("select", { "aria-label": words }, ...this.page.state.joints.filter((one) => written?.[one.name] === undefined)
-      .map((one) => element("option", { value: one.name }, one.name)));
+    const others = this.page.state.joints.filter((one) => written?.[one.name] === undefined);
+    if (!this.page.can("edit") || !others.length) return null;
+    const joint = element("select", { "aria-label": words }, ...others.map((one) => element("option", { value: one.name }, one.name)));
     const number = element("input", { type: "number", min: "0.001", step: "any", value: String(otherwise), required: true, "aria-label": `${words}: the weight` });
     joint.dataset.id = pointer + " joint";
     number.dataset.id = pointer + " weight";
@@ -293,7 +309,7 @@ export class Inspector {
       if (there) {
         this.page.say(frame.repeated || there.repeated
           ? "A keyframe of a block that repeats joins no other one, so nothing is written."
-          : `The keyframe at ${seconds(time)} has a value that this one has too, or another interpolation or other weights, so nothing is written.`);
+          : `The keyframe at ${seconds(time)} has a value that this one has too, or another interpolation or other weights, or a block that repeats counts its time from this one, so nothing is written.`);
         return null;
       }
       const [from, to] = roomOfKey(state.keyframes, key.pointer);
@@ -318,6 +334,7 @@ export class Inspector {
 
   render() {
     const thing = this.selected(), box = byId("selected"), { selection, state } = this.page;
+    this.wanted = stillWanted(this.wanted, selection, state.text);
     const active = box.contains(document.activeElement) ? document.activeElement : null;
     const typed = active?.matches("input") ? active.value : null;
     box.replaceChildren(...!thing ? [element("p", { class: "soft" },
@@ -355,6 +372,12 @@ export class Inspector {
       onclick: () => this.page.edit(edits()).then((done) => { if (done) then(); }) }, words) : null;
   }
 
+  /// Without a key; says why where it has to stay.
+  remove(key) {
+    const edits = removeKey(this.page.state, key);
+    return edits ? this.page.edit(edits) : this.page.say(countedFrom);
+  }
+
   key(key, state) {
     const name = nameOfTrack(key.track);
     const named = typeof key.value === "string" && !key.value.includes("${");
@@ -383,7 +406,7 @@ export class Inspector {
       ...isTarget(key.track) ? this.targetButtons(key) : [],
       frame && this.page.can("mirror") ? element("button", { type: "button", "data-id": "mirror", title: "Exchange left and right in this keyframe",
         onclick: () => this.page.mirror(frame.pointer) }, "Mirror this keyframe") : null,
-      this.button(() => removeKey(state, key.original), "Remove this key")].filter(Boolean);
+      this.page.can("edit") ? element("button", { type: "button", "data-id": "Remove this key", onclick: () => this.remove(key.original) }, "Remove this key") : null].filter(Boolean);
   }
 
   /// The handle that a key of a hand or the gaze moves, if there is one.
@@ -429,30 +452,37 @@ export class Inspector {
     if (phase.repeated || !this.page.can("edit")) return null;
     const now = goalOf(phase.support ? null : valueAt(this.page.document, phase.pointer + "/viip"));
     const select = element("select", {}, ...goals.map((one) => element("option", { value: one.name }, one.words)));
-    select.value = now;
+    select.value = this.wanted?.name ?? now;
     select.dataset.id = phase.pointer + " goal";
     select.addEventListener("change", () => {
       const within = keysWithin(phase, state.keyframes);
-      if (select.value !== "none" && within.length) {
-        this.wanted = { pointer: phase.pointer, name: select.value };
-        return this.render();
-      }
+      if (select.value === now) return this.want(null);
+      if (select.value !== "none" && within.length) return this.want({ pointer: phase.pointer, name: select.value, text: state.text });
       return this.page.edit(putGoal(phase, select.value, state.angle_unit)).then((done) => { if (!done) select.value = now; });
     });
     return element("div", {}, element("label", { class: "value" }, element("span", {}, "VIIP goal"), select, element("span", { class: "unit" })),
       this.goalWithoutKeys(phase, state));
   }
 
+  /// A goal that the author has chosen for a phase with keys inside it; null lets the keys be.
+  want(goal) {
+    this.wanted = goal;
+    this.render();
+  }
+
   /// VIIP plans the whole phase: with a goal, the keys inside it go.
   goalWithoutKeys(phase, state) {
-    const within = keysWithin(phase, state.keyframes), wanted = this.wanted;
-    if (wanted?.pointer !== phase.pointer || !within.length) return null;
-    const times = within.map((frame) => seconds(frame.time)).join(", ");
-    if (within.some((frame) => frame.repeated))
-      return element("p", { class: "soft", role: "status" }, `VIIP plans the whole phase, so no key may lie inside it. The keyframes at ${times} do, and belong to a block that repeats. Remove them in the text.`);
-    return element("p", { role: "status" }, `VIIP plans the whole phase, so no key may lie inside it. Here are keyframes at ${times}. `,
-      this.button(() => putGoal(phase, wanted.name, state.angle_unit, state.keyframes), `Remove ${within.length > 1 ? "these keyframes" : "this keyframe"}, and give the goal`,
-        () => { this.wanted = null; }, phase.pointer + " goal without keys"));
+    const within = keysWithin(phase, state.keyframes), { wanted } = this;
+    if (!wanted) return null;
+    const say = (words, remove = null) => element("p", { role: "status" },
+      `VIIP plans the whole phase, so no key may lie inside it. Here are keyframes at ${within.map((frame) => seconds(frame.time)).join(", ")}. ${words}`,
+      remove, element("button", { type: "button", "data-id": phase.pointer + " keep the keyframes", onclick: () => this.want(null) },
+        within.length > 1 ? "Keep the keyframes" : "Keep the keyframe"));
+    if (within.some((frame) => frame.repeated)) return say("They belong to a block that repeats. Remove them in the text. ");
+    const edits = putGoal(phase, wanted.name, state.angle_unit, state.keyframes);
+    if (!edits) return say(countedFrom + " ");
+    return say("", this.button(() => edits,
+      `Remove ${within.length > 1 ? "these keyframes" : "this keyframe"}, and give the goal`, () => {}, phase.pointer + " goal without keys"));
   }
 
   /// This phase and those before it, with their keys, several times.
@@ -517,6 +547,7 @@ export class Inspector {
       ...Object.entries(one.value || {}).filter(([name]) => name !== "type").flatMap(([name, value]) =>
         this.inputs(`${one.pointer}/${name}`, value, [name], this.choicesOfDisturbance(one),
           one.type === "floor" && name === "shape" ? (next) => putShape(one.pointer, one.value, next) : null)),
+      one.type === "floor" ? this.shift(one.pointer, one.value) : null,
       this.button(() => [{ kind: "remove", pointer: one.pointer }], "Remove this disturbance")].filter(Boolean);
   }
 

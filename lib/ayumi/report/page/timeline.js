@@ -2,7 +2,7 @@
 // by dragging, or with Ctrl and the arrow keys.
 
 import { byId, element, refill, seconds } from "./dom.js";
-import { canDrag, moveKey, movePhase, removeKey, roomOfKey, roomOfPhase, roundedTime } from "./edits.js";
+import { canDrag, moveKey, movePhase, roomOfKey, roomOfPhase, roundedTime } from "./edits.js";
 import { snapped } from "./time_axis.js";
 
 const supportWords = { both: "both", left: "left", right: "right", none: "flight" };
@@ -121,7 +121,7 @@ export class Timeline {
         mark.addEventListener("keydown", (event) => {
           if (event.key !== "Delete") return;
           event.preventDefault();
-          this.page.edit(removeKey(this.page.state, key));
+          this.page.inspector.remove(key);
         });
       parts.push(mark);
     }
