@@ -298,10 +298,6 @@ def pushes_laws():
     strong = push_study(WALK, "--profile", "hoap1-strong")
     lines.append(push_row("HOAP-1 with `hoap1-strong`, DTAD", strong))
     lines.append(push_row("HOAP-1 with `hoap1-strong`, open loop", strong, "open_loop_Ns"))
-    for words, name in (([], "HOAP-1"), (["--profile", "hoap1-strong"], "HOAP-1 with `hoap1-strong`")):
-        other = push_study(WALK, "--plant", "mujoco", *words)
-        lines.append(push_row(f"{name}, DTAD, in MuJoCo", other))
-        lines.append(push_row(f"{name}, open loop, in MuJoCo", other, "open_loop_Ns"))
     return lines
 
 
