@@ -16,8 +16,8 @@
 namespace ayumi {
 
 /// Rows of a block. Chosen: the longest log of a bundled pattern (20.5 s at 1 kHz) is one block. To
-/// write a block takes about three times its rows before compression, which are 78 MB for HOAP-1. At
-/// half, that is half; at twice, that is twice. A log of 80 s is 0.7 % larger than in one block.
+/// write a block takes about three times its rows before compression, which are 78 MB for HOAP-1.
+/// At half, that is half; at twice, that is twice. A log of 80 s is 0.7 % larger than in one block.
 inline constexpr size_t kLogBlockRows = size_t{1} << 15;
 
 /// Numbers in a row of a log with these joints.
