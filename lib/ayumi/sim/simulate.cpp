@@ -1,7 +1,9 @@
 #include "ayumi/sim/simulate.hpp"
 
 #include <limits>
+#include <utility>
 
+#include "ayumi/sim/reference_row.hpp"
 #include "ayumi/sim/simulator.hpp"
 
 namespace ayumi {
@@ -19,14 +21,9 @@ ReferenceTrajectory extract_reference(const RobotModel& model, const SimulationL
   table.joints = model.dof_names();
   table.provenance = log.provenance;
   for (const SimulationSample& s : log.samples) {
-    ReferenceRow row;
+    ReferenceRow row = reference_row(s);
     row.theta = s.target;
-    row.base = s.reference_base;
-    row.cog = s.reference_cog;
-    row.zmp = s.reference_zmp;
-    row.fz = s.reference_fz;
-    row.contact = s.planned_contact;
-    table.rows.push_back(row);
+    table.rows.push_back(std::move(row));
   }
   return table;
 }

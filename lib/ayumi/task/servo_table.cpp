@@ -7,6 +7,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/control/torque_feedforward.hpp"
 #include "ayumi/motion/servo_feedforward.hpp"
+#include "ayumi/sim/reference_row.hpp"
 #include "ayumi/sim/simulate.hpp"
 
 namespace ayumi {
@@ -74,14 +75,7 @@ ReferenceTrajectory table_of_series(const RobotModel& model, const std::string& 
 }
 
 void append_posture(const SimulationSample& sample, ReferenceTrajectory& postures) {
-  ReferenceRow row;
-  row.theta = sample.reference_theta;
-  row.base = sample.reference_base;
-  row.cog = sample.reference_cog;
-  row.zmp = sample.reference_zmp;
-  row.fz = sample.reference_fz;
-  row.contact = sample.planned_contact;
-  postures.rows.push_back(std::move(row));
+  postures.rows.push_back(reference_row(sample));
 }
 
 ReferenceTrajectory table_of_postures(const RobotModel& model, const std::string& profile,
