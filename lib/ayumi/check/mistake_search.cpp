@@ -938,6 +938,12 @@ class Hypotheses {
          }});
   }
 
+  /// The nearest angle of whole degrees [rad].
+  static double whole_degrees(double radians) {
+    constexpr double degree = std::numbers::pi / 180;
+    return std::round(radians / degree) * degree;
+  }
+
   std::string angle(double radians) const {
     return pattern_.degrees ? text::brief(radians * 180 / std::numbers::pi, 5) + " deg"
                             : text::brief(radians, 5) + " rad";
@@ -1006,8 +1012,7 @@ class Hypotheses {
       const double turn = elementary::atan2(turned(1, 0), turned(0, 0));
       if (std::abs(turn) < kNotedTurn) continue;
       for (const double share : {0.75, 0.5}) {
-        constexpr double degree = std::numbers::pi / 180;
-        const double less = std::round((share - 1) * turn / degree) * degree;
+        const double less = whole_degrees((share - 1) * turn);
         made.push_back(
             {Rank::amount,
              {phase_place(i),
@@ -1065,10 +1070,7 @@ class Hypotheses {
             });
         if (std::abs(amount(most)) < kNotedLean) continue;
         for (const double share : {1.0, 0.6}) {
-          const auto degrees = [share](double lean) {  // whole degrees
-            constexpr double degree = std::numbers::pi / 180;
-            return std::round(share * lean / degree) * degree;
-          };
+          const auto degrees = [share](double lean) { return whole_degrees(share * lean); };
           made.push_back(
               {Rank::geometry,
                {key_place(most.key),
