@@ -119,7 +119,9 @@ std::string check_table(const ConsistencyReport& report, const RobotModel& model
   if (std::isnan(apart))
     out += "self-collisions are not checked, because the legs have no collision shapes";
   else
-    out += "nearest bodies " + mm_text(apart) + " apart" + place(FindingKind::self_collision);
+    out += (apart < 0 ? "bodies overlap by " + mm_text(-apart)
+                      : "nearest bodies " + mm_text(apart) + " apart") +
+           place(FindingKind::self_collision);
   if (!std::isnan(apart) && !bare.empty())
     out += "; self-collisions of " + text::join(bare, ", ") +
            " are not checked, because these bodies have no collision shapes";

@@ -955,7 +955,7 @@ void add_new(Command& app, Context& context) {
       ->capture_default_str();
   excite
       ->add_option("--cog-height", options.low,
-                   "COG height [m]; 0 = the usual one, or a lower one if the robot needs it.")
+                   "COG height [m]; 0 = the height that Ayumi chooses for the robot.")
       ->check(number_within(0.0, 100.0))
       ->capture_default_str()
       ->type_name("M");

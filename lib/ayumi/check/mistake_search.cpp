@@ -1083,8 +1083,9 @@ class Hypotheses {
                 "with the foot turned with the leg (\"rpy\": [" +
                     (roll ? angle(degrees(most.roll)) + ", 0, 0]"
                           : "0, " + angle(degrees(most.pitch)) + ", 0]") +
-                    (leans.size() > 1 ? ", and as the leg leans in the other keys of this foot)"
-                                      : ")") +
+                    (leans.size() > 1
+                         ? "; in the other keys of this foot, by the lean of the leg there)"
+                         : ")") +
                     ","},
                [leans, amount, degrees, roll, s](Pattern& p) {
                  for (const Lean& lean : leans)

@@ -171,10 +171,10 @@ class SlipFinder {
       token_ = Token::number;
       while (end_ < text_.size() && continues_number(text_[end_])) ++end_;
     } else if (other_quote(text_, at_) > 0) {
-      say(at_, "names and words stand in straight quotation marks: \"...\", not in " +
+      say(at_, "names and words need straight quotation marks: \"...\", not " +
                    text_.substr(at_, other_quote(text_, at_)));
     } else if (from(at_).starts_with("\xc2\xa0")) {
-      say(at_, "a no-break space stands here; write a usual one");
+      say(at_, "there is a no-break space here; write a normal space");
     } else if (is_word_char(c) || c == '$') {
       token_ = Token::word;
       read_word();
@@ -213,14 +213,14 @@ class SlipFinder {
       if (c == '\n' || c == '\r') break;
       if (static_cast<unsigned char>(c) < 0x20)
         return say(end_,
-                   "a tab or another invisible character stands between quotation marks; "
+                   "there is a tab or another invisible character between quotation marks; "
                    "write a space");
       if (c != '\\') continue;
       if (end_ + 1 < text_.size() &&
           std::string_view("\"\\/bfnrtu").find(text_[end_ + 1]) == std::string_view::npos)
         return say(end_,
-                   "a backslash between quotation marks is written twice: \\\\ (in the name "
-                   "of a file, / does as well)");
+                   "write a backslash between quotation marks twice: \\\\ (in the name of a "
+                   "file, you can write / instead)");
       ++end_;
     }
     say_unclosed(at_);
@@ -273,14 +273,15 @@ class SlipFinder {
   bool closes() {
     if (token_ != Token::close) return false;
     if (at_top()) {
-      say(at_, std::string("this ") + text_[at_] + " is too much: no bracket is open here");
+      say(at_, std::string("this ") + text_[at_] +
+                   " closes nothing, because no bracket is open; remove it");
       return true;
     }
     if (text_[at_] != closing(inside().bracket)) {
       const char wanted = closing(inside().bracket);
       say(at_, bracket_words(inside()) + " is not closed before this " + text_[at_] + ": a " +
-                   wanted + " is missing, or this " + text_[at_] + " is too much or should be a " +
-                   wanted);
+                   wanted + " is missing, or this " + text_[at_] +
+                   " must be removed or replaced by a " + wanted);
       return true;
     }
     if (!doubtful_ && stands_left_of(inside().at)) doubtful_ = inside().at;
@@ -305,12 +306,12 @@ class SlipFinder {
   void take_item(bool after_comma) {
     if (after_comma && token_ == Token::close) {
       const size_t comma = text_.rfind(',', at_);
-      return say(comma, std::string("this comma has nothing behind it but a ") + text_[at_] +
-                            "; remove the comma");
+      return say(comma,
+                 std::string("this comma is followed by a ") + text_[at_] + "; remove the comma");
     }
     if (token_ == Token::comma)
       return say(at_, after_comma ? "two commas stand in a row; remove one"
-                                  : "nothing stands before this comma; remove it");
+                                  : "there is nothing before this comma; remove it");
     if (inside().bracket == '[') return take_value();
     if (token_ == Token::string) {
       name_at_ = at_;
@@ -340,7 +341,7 @@ class SlipFinder {
     if (token_ == Token::number)
       return say(at_, token_words() +
                           " has no name: in { } every value has a name, as in "
-                          "\"t\": 0.5 (a list of values stands in [ ])");
+                          "\"t\": 0.5 (a list of values is written in [ ])");
     say_other();
   }
 
@@ -357,11 +358,11 @@ class SlipFinder {
     }
     const std::string name = quoted(name_at_, name_end_);
     if (token_ == Token::other && text_[at_] == '=')
-      return say(at_, "between the name " + name + " and its value stands a colon, not =");
+      return say(at_, "write a colon after the name " + name + ", not =");
     if (token_ == Token::comma || token_ == Token::close)
       return say(before_, "the name " + name +
                               " has no value: a colon and a value are missing "
-                              "behind it (a list of values stands in [ ])");
+                              "after it (a list of values is written in [ ])");
     say(before_, "a colon is missing after the name " + name);
   }
 
@@ -380,7 +381,7 @@ class SlipFinder {
       case Token::close:
         if (inside().bracket == '{')
           return say(before_, "the value of the name " + quoted(name_at_, name_end_) +
-                                  " is missing behind its colon");
+                                  " is missing after its colon");
         closes();
         return;
       case Token::colon:
@@ -394,23 +395,22 @@ class SlipFinder {
     const std::string number = token_words();
     if (is_json_number(std::string_view(text_).substr(at_, end_ - at_))) return completed();
     if (number.front() == '+')
-      return say(at_, "a number has no + before it: write " + number.substr(1));
+      return say(at_, "a number must not begin with +: write " + number.substr(1));
     if (number.front() == '.' || number.starts_with("-."))
-      return say(at_, "a number has a digit before its point: write " +
+      return say(at_, "a number needs a digit before its decimal point: write " +
                           (number.front() == '.' ? "0" + number : "-0" + number.substr(1)));
     if (number.back() == '.')
-      return say(at_, "a number has a digit behind its point: write " +
+      return say(at_, "a number needs a digit after its decimal point: write " +
                           number.substr(0, number.size() - 1) + " or " + number + "0");
     size_t unit = 0;
     while (unit < number.size() && !is_word_char(number[unit])) ++unit;
     if (unit > 0 && unit < number.size() && is_json_number(number.substr(0, unit)))
-      return say(at_, "'" + number + "' is no number: write " + number.substr(0, unit) +
-                          " without the " + number.substr(unit) +
-                          " (the units are those of the file, and an expression stands in "
-                          "quotation marks)");
+      return say(at_, "'" + number + "' is not a number: write " + number.substr(0, unit) +
+                          " without " + number.substr(unit) +
+                          " (the file states its units, and an expression needs quotation marks)");
     if (number.size() > 1 && number.front() == '0' && is_decimal(number[1]))
-      return say(at_, "a number does not begin with a further 0: " + number);
-    say(at_, "'" + number + "' is no number (an expression stands in quotation marks)");
+      return say(at_, "a number must not begin with an extra 0: " + number);
+    say(at_, "'" + number + "' is not a number (an expression needs quotation marks)");
   }
 
   void take_word() {
@@ -419,11 +419,11 @@ class SlipFinder {
     const std::string meant = json_word(word);
     if (!meant.empty()) return say(at_, token_words() + " is written as " + meant);
     if (word.find("${") != std::string::npos)
-      return say(at_, "an expression stands in quotation marks: \"" + token_words() + "\"");
+      return say(at_, "an expression needs quotation marks: \"" + token_words() + "\"");
     if (end_ < text_.size() && text_[end_] == '"')
       return say(at_, "a quotation mark is missing before " + token_words());
     if (word == "NaN" || word == "Infinity" || word == "inf" || word == "nan")
-      return say(at_, token_words() + " is no number");
+      return say(at_, token_words() + " is not a number");
     say(at_, "the word " + token_words() + " needs quotation marks: \"" + token_words() + "\"");
   }
 
@@ -435,18 +435,19 @@ class SlipFinder {
     if (at_top()) {
       if (token_ == Token::close)
         return say(at_, std::string("this ") + text_[at_] +
-                            " is too much: all brackets were closed before it");
+                            " closes nothing, because all brackets are closed; remove it");
       return say(at_,
-                 "the text goes on after its last bracket was closed: a bracket before this "
-                 "place is too much, or what follows is");
+                 "the text goes on after its last bracket is closed; remove one closing bracket "
+                 "before this place, or remove what follows");
     }
     if (token_ == Token::close) {
       closes();
       return;
     }
     if (token_ == Token::colon && inside().bracket == '[')
-      return say(at_, "a name with a value stands in { }, but the innermost open bracket is " +
-                          bracket_words(inside()) + ": its ] is missing before, or a {");
+      return say(at_, "a name with a value must be in { }, but the innermost open bracket is " +
+                          bracket_words(inside()) +
+                          ": a ] is missing before the name, or a { is missing");
     if (token_ == Token::colon) return say(at_, "a comma is meant here, not a colon");
     if (token_ == Token::other && text_[at_] == ';')
       return say(at_, "a comma is meant here, not a semicolon");
@@ -473,11 +474,11 @@ class SlipFinder {
     if (token_ == Token::other && text_[at_] == '#')
       return say(at_, "a comment begins with //, not with #");
     if (token_ == Token::other && text_[at_] == '(')
-      return say(at_, "a list stands in [ ], not in ( )");
+      return say(at_, "a list is written in [ ], not in ( )");
     if (token_ == Token::other && (text_[at_] == '*' || text_[at_] == '/'))
-      return say(at_, "an expression stands in quotation marks, as in \"${stride} * 2\"");
+      return say(at_, "an expression needs quotation marks, as in \"${stride} * 2\"");
     if (token_ == Token::other && std::iscntrl(static_cast<unsigned char>(text_[at_])) != 0)
-      return say(at_, "an invisible character stands here; remove it");
+      return say(at_, "there is an invisible character here; remove it");
     if (token_ == Token::other)
       return say(at_, "the character '" + token_words() + "' has no meaning here");
   }
@@ -488,10 +489,10 @@ class SlipFinder {
       return;
     }
     if (doubtful_ && open_.size() == 2)
-      return say(*doubtful_, std::string("the text ends too early: a ") +
-                                 closing(inside().bracket) + " is missing, probably for the " +
-                                 text_[*doubtful_] +
-                                 " of this line, for what closes it stands farther to the left");
+      return say(*doubtful_,
+                 std::string("the text ends too early: a ") + closing(inside().bracket) +
+                     " is missing, probably for the " + text_[*doubtful_] +
+                     " of this line, because the bracket that closes it is farther to the left");
     std::string words;
     for (size_t i = open_.size() - 1; i > 0; --i)
       words += (words.empty() ? "" : ", then ") + std::string(1, closing(open_[i].bracket)) +

@@ -209,7 +209,7 @@ class BodyReader {
     for (int i = 0; i < 3; ++i)
       if (text == std::string(1, "XYZ"[i]) || text == std::string(1, "xyz"[i]))
         return sign * Vector3d::Unit(i);
-    complain(node, "the axis '" + node.Scalar() + "' is none of X, Y, Z, -X, -Y and -Z");
+    complain(node, "the axis '" + node.Scalar() + "' is not one of X, Y, Z, -X, -Y and -Z");
   }
 
   void read_range(const YAML::Node& node, double unit, JointDescription& joint) const {

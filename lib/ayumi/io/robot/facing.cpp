@@ -17,7 +17,7 @@ Eigen::Vector3d facing_direction(const std::string& facing) {
   if (facing == "y") return Eigen::Vector3d::UnitY();
   if (facing == "-x") return -Eigen::Vector3d::UnitX();
   if (facing == "-y") return -Eigen::Vector3d::UnitY();
-  fail(ErrorCode::internal, "facing '" + facing + "' is none of x, y, -x and -y");
+  fail(ErrorCode::internal, "facing '" + facing + "' is not one of x, y, -x and -y");
 }
 
 void turn_to_face_x(RobotDescription& robot, const std::string& facing) {

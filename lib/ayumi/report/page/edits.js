@@ -373,7 +373,7 @@ export function roundsOf(state, document, phase) {
 export function setRounds(state, document, phase, rounds) {
   const { pointer, rounds: now } = roundsOf(state, document, phase);
   if (!(rounds >= 1 && Number.isInteger(rounds))) return { refused: "The number of rounds is a whole number above 0." };
-  if (pointer !== outermost(pointer)) return { refused: "This block stands in another one that repeats. Change its rounds in the text." };
+  if (pointer !== outermost(pointer)) return { refused: "This block is inside another block that repeats. Change its rounds in the text." };
   const own = state.phases.filter((one) => one.pointer.startsWith(pointer + "/")), from = own[0].from, until = own.at(-1).until;
   const within = (frame) => frame.time > from + 5e-4 && frame.time < until + 5e-4;
   const frames = state.keyframes.filter(within), blocks = [...new Set(frames.map((frame) => outermost(frame.pointer)))];

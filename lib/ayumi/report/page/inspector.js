@@ -129,7 +129,7 @@ export class Inspector {
     if (rows.length * rows[0].length > 100)
       return element("p", { class: "soft" }, `${nameOf(path)}: ${rows.length} × ${rows[0].length} numbers, to be changed in the text`);
     // Ahead is up and left is left, as in a picture from above.
-    return element("table", { class: "grid" }, element("caption", {}, "Heights in m, ahead upwards, left to the left"),
+    return element("table", { class: "grid" }, element("caption", {}, "Heights in m, seen from above: ahead is up"),
       element("tbody", {}, ...rows.map((row, i) => element("tr", {}, ...row.map((value, j) => {
         const [input] = this.inputs(`${pointer}/${i}/${j}`, value, ["world", "field", "height"]).map((one) => one.querySelector("input"));
         input.setAttribute("aria-label", `height of node ${i + 1} ahead, ${j + 1} to the left, in m`);
@@ -308,14 +308,14 @@ export class Inspector {
       }
       if (there) {
         this.page.say(frame.repeated || there.repeated
-          ? "A keyframe of a block that repeats joins no other one, so nothing is written."
-          : `The keyframe at ${seconds(time)} has a value that this one has too, or another interpolation or other weights, or a block that repeats counts its time from this one, so nothing is written.`);
+          ? "A keyframe of a block that repeats cannot join another keyframe. Nothing is written."
+          : `This keyframe cannot join the one at ${seconds(time)}: both have a key of the same track, or their interpolation or weights differ, or a block that repeats counts its time from this one. Nothing is written.`);
         return null;
       }
       const [from, to] = roomOfKey(state.keyframes, key.pointer);
       if (time >= from && time <= to) return [{ kind: "set", pointer: key.time_pointer, value: next }];
       this.page.say(`A keyframe stays between its neighbours: here from ${seconds(from)} to ${seconds(to)}. ` +
-        "To bring a key further, remove it and add it at the other time.");
+        "To move a key beyond them, remove it and add it at the other time.");
       return null;
     };
   }
