@@ -153,9 +153,9 @@ TEST(Documentation, TheMapOfEquationsLeadsToTheFunctionsThatRun) {
 
 const std::vector<std::string>& pages() {
   static const std::vector<std::string> names = {
-      "theory.md",       "theory_baselines.md", "theory_estimator.md", "theory_flight.md",
-      "theory_gains.md", "theory_plant.md",     "theory_repair.md",    "theory_timing.md",
-      "notation.md",     "architecture.md"};
+      "theory.md",        "theory_baselines.md", "theory_estimator.md", "theory_flight.md",
+      "theory_gains.md",  "theory_plant.md",     "theory_pushes.md",    "theory_repair.md",
+      "theory_timing.md", "notation.md",         "architecture.md"};
   return names;
 }
 
