@@ -33,6 +33,12 @@ struct RandomStart {
   std::uint64_t seed = 0;
 };
 
+/// The series is a plan (sample_plan) and no motion yet: the feet are moved where it has them, and
+/// the axes of the COG that count stay near it.
+struct Generation {
+  std::array<bool, 3> cog = {};  ///< x, y, z
+};
+
 struct RepairOptions {
   CheckOptions check;
   std::vector<std::string> locked_joints;  ///< joints that stay bit-identical
@@ -54,11 +60,6 @@ struct RepairOptions {
   double most_work = repair_policy::rounds::kMostWork;
   bool mumps = false;        ///< linear systems by MUMPS, to compare
   RandomStart random_start;  ///< of the first program, to see how little depends on the start
-  /// The series is a plan (sample_plan) and no motion yet: the feet are moved where it has them,
-  /// and the axes of the COG that count stay near it.
-  struct Generation {
-    std::array<bool, 3> cog = {};  ///< x, y, z
-  };
   std::optional<Generation> generate = {};
   /// Called with the check of the motion as it is given, and of every motion found after that: what
   /// is still wrong with it is what the repair works on. See remaining_errors().
