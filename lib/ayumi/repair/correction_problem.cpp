@@ -45,7 +45,6 @@ CorrectionProblem::CorrectionProblem(const RobotModel& model, const CommandSerie
                                      const CorrectionSpec& spec)
     : model_(model),
       actuators_(model.limits(spec.profile)),
-      series_(series),
       spec_(spec),
       plan_(contact_plan(series)),
       variables_(correction_variables(model, series, spec_)),

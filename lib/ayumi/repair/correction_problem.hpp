@@ -54,7 +54,6 @@ class CorrectionProblem {
 
   const RobotModel& model_;
   const ActuatorLimits& actuators_;
-  const CommandSeries& series_;
   CorrectionSpec spec_;
   ContactPlan plan_;
   CorrectionVariables variables_;

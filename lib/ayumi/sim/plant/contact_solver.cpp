@@ -125,8 +125,7 @@ bool eliminate(double* G, double* x, int m) {
     for (int j = k + 1; j < m; ++j) {
       const double factor = G[k + m * j];
       if (factor == 0) continue;
-      double* target = G + m * j;
-#pragma GCC ivdep  // two columns
+      double* __restrict target = G + m * j;  // not the column
       for (int i = k + 1; i < m; ++i) target[i] -= factor * column[i];
     }
     for (int i = k + 1; i < m; ++i) x[i] -= x[k] * column[i];
