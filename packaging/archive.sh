@@ -26,17 +26,17 @@ strip "$root/lib/ayumi/ayumi" "$root/lib/ayumi/ayumi-mesh-reader"
 # first picture loads OSMesa.
 osmesa=$(/sbin/ldconfig -p | awk '$1 ~ /^libOSMesa\.so\./ && !found++ { print $NF }')
 libc='/(ld-linux[^/]*|lib(c|m|dl|rt|pthread|resolv|util|nsl|anl|mvec|BrokenLocale)\.so\.[0-9]+)$'
-{ ldd "${programs[@]}" $osmesa | awk '$2 == "=>" && $3 ~ /^\// { print $3 }'; printf '%s' "$osmesa"; } |
-  sort -u | { grep -Ev "$libc" || true; } | while read -r library; do
-  cp -L "$library" "$root/lib/"
-  # Debian's licences of what is copied; a package may have none beside its links.
-  package=$(dpkg-query --search "$(readlink -f "$library")" 2>/dev/null | cut -d: -f1 || true)
-  notice=/usr/share/doc/$package/copyright
-  if [[ -n $package && -e $notice ]]; then
-    mkdir -p "$root/share/doc/ayumi/libraries"
-    cp -L "$notice" "$root/share/doc/ayumi/libraries/$package"
-  fi
-done
+mapfile -t libraries < <({ ldd "${programs[@]}" $osmesa | awk '$2 == "=>" && $3 ~ /^\// { print $3 }'; echo "$osmesa"; } |
+  sort -u | grep -Ev "^$|$libc")
+cp -L "${libraries[@]}" "$root/lib/"
+# Debian's licences of what is copied; a package may have none beside its links, and a library may be
+# of no package.
+mkdir -p "$root/share/doc/ayumi/libraries"
+{ readlink -f "${libraries[@]}" | xargs dpkg-query --search 2>/dev/null || true; } | cut -d: -f1 | sort -u |
+  while read -r package; do
+    notice=/usr/share/doc/$package/copyright
+    [[ ! -e $notice ]] || cp -L "$notice" "$root/share/doc/ayumi/libraries/$package"
+  done
 
 # The font of pictures and plots, and where fontconfig finds it.
 mkdir -p "$root/share/fonts"
