@@ -1,6 +1,7 @@
 #include "motion_search.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <set>
 
@@ -8,6 +9,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/check/consistency.hpp"
 #include "ayumi/control/gain_design.hpp"
+#include "ayumi/limits/amount_text.hpp"
 #include "ayumi/limits/limit.hpp"
 #include "ayumi/plan/sample.hpp"
 #include "ayumi/task/task.hpp"
@@ -19,7 +21,7 @@ namespace {
 
 // Most motions that are sampled, and most that are checked in full. Chosen: a sample of a walk of
 // 12 s at kCoarse takes 0.05 s and a full check 0.5 s.
-constexpr int kMostSampled = 45, kMostChecked = 8;
+constexpr int kMostSampled = 90, kMostChecked = 8;
 // Most motions that are simulated. Chosen: a walk of 12 s takes 0.3 to 1 s.
 constexpr int kMostSimulated = 5;
 // Sample period of the first look [s]. Chosen: postures are judged, 45 of them in a swing of 0.45
@@ -46,14 +48,33 @@ std::string wrong_posture(const RobotModel& model, const Pattern& pattern) {
   return "";
 }
 
+// What is wrong with a motion: its first error, and that which goes farthest beyond its limit.
+struct Wrong {
+  std::string first, worst;
+  double share = 0;  // of the worst value in its limit
+};
+
+double share_of(const Finding& finding) {
+  return finding.limit != 0 ? std::abs(finding.worst / finding.limit) : HUGE_VAL;
+}
+
 // The same for all limits, by the profile of the robot that bears most.
-std::string wrong_motion(const RobotModel& model, const Pattern& pattern) {
+Wrong wrong_motion(const RobotModel& model, const Pattern& pattern) {
   const Judgement judged = judge(make_task(pattern, model, "", {}));
-  if (judged.good() || !judged.motion_need.sufficient.empty()) return "";
-  for (const Finding& finding : judged.report.findings)
-    if (finding.severity == Severity::error) return text_of(finding);
-  return judged.report.findings.empty() ? "the motion does not pass the check"
-                                        : text_of(judged.report.findings.front());
+  if (judged.good() || !judged.motion_need.sufficient.empty()) return {};
+  Wrong wrong;
+  for (const Finding& finding : judged.report.findings) {
+    if (finding.severity != Severity::error) continue;
+    if (wrong.first.empty()) wrong.first = text_of(finding);
+    if (share_of(finding) <= wrong.share) continue;
+    wrong.share = share_of(finding);
+    wrong.worst = std::string(name_of(finding.kind)) + " " + finding.where + " at " +
+                  text::fixed(finding.at, 3) + " s: " + amount_text(finding);
+  }
+  if (wrong.first.empty())
+    wrong.first = judged.report.findings.empty() ? "the motion does not pass the check"
+                                                 : text_of(judged.report.findings.front());
+  return wrong;
 }
 
 // Places in the lists of values, by their sum.
@@ -98,6 +119,7 @@ SearchResult search_motion(const RobotModel& model, const std::vector<Dial>& dia
                            const Progress& progress, bool simulated) {
   SearchResult result;
   int checked = 0, runs = 0;
+  double nearest = HUGE_VAL;  // share of the worst value in its limit
   // Places of the other dials where postures passed, but not speeds, torques or ZMP: another
   // posture does not mend that.
   std::set<std::vector<size_t>> hopeless;
@@ -116,7 +138,13 @@ SearchResult search_motion(const RobotModel& model, const std::vector<Dial>& dia
       wrong = wrong_posture(model, pattern);
       if (wrong.empty()) {
         ++checked;
-        wrong = wrong_motion(model, pattern);
+        const Wrong motion = wrong_motion(model, pattern);
+        wrong = motion.first;
+        if (!motion.worst.empty() && motion.share < nearest) {
+          nearest = motion.share;
+          result.nearest = motion.worst;
+          result.nearest_values = values;
+        }
         if (wrong.empty() && simulated) {
           ++runs;
           wrong = end_in_simulation(model, pattern);
@@ -164,11 +192,11 @@ bool postures_pass(const RobotModel& model, const std::function<Pattern()>& make
   }
 }
 
-std::string changed_values(const std::vector<Dial>& dials, const SearchResult& result) {
+std::string changed_values(const std::vector<Dial>& dials, const std::vector<double>& values) {
   std::vector<std::string> changed;
   for (size_t i = 0; i < dials.size(); ++i)
-    if (result.values[i] != dials[i].values.front())
-      changed.push_back(dials[i].name + " " + text::brief(result.values[i]) + " " + dials[i].unit);
+    if (values[i] != dials[i].values.front())
+      changed.push_back(dials[i].name + " " + text::brief(values[i]) + " " + dials[i].unit);
   return text::join(changed, ", ");
 }
 

@@ -25,6 +25,10 @@ struct SearchResult {
   std::string limit;     ///< what is wrong with the default values; "" where nothing is
   bool refused = false;  ///< the robot cannot do the default values at all
   std::string falls;     ///< how the motion found ends in a simulation; "" where the robot stands
+  /// Where nothing was found: what is wrong with the motion that comes nearest to passing, of those
+  /// whose postures pass; "" where there is none.
+  std::string nearest;
+  std::vector<double> nearest_values;  ///< of the dials
 };
 
 /// How a motion ends in a simulation with the default controller, "dtad fell at 3.2 s ..."; ""
@@ -42,7 +46,7 @@ SearchResult search_motion(const RobotModel& model, const std::vector<Dial>& dia
                            const Progress& progress = {}, bool simulated = false);
 
 /// "--stride 0.02 m, --period 0.7 s": the values that are not the defaults.
-std::string changed_values(const std::vector<Dial>& dials, const SearchResult& result);
+std::string changed_values(const std::vector<Dial>& dials, const std::vector<double>& values);
 
 /// Whether the motion can be sampled, with every posture inside its limits. False where it cannot
 /// be made.

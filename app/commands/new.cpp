@@ -102,7 +102,7 @@ std::vector<double> values_that_pass(const Context& context, const RobotModel& m
   if (!model.has_soles()) return defaults;
   const SearchResult result = search_motion(model, dials, make, context.progress(), simulated);
   if (result.limit.empty()) return defaults;
-  const std::string changed = changed_values(dials, result);
+  const std::string changed = changed_values(dials, result.values);
   if (!result.falls.empty())
     context.print("the check accepts this motion" + (changed.empty() ? "" : " with " + changed) +
                   ", but the robot falls in a simulation: " + result.falls + "; " +
@@ -114,11 +114,18 @@ std::vector<double> values_that_pass(const Context& context, const RobotModel& m
         "\n"
         "  after " +
         std::to_string(result.tried) + " trials, these values were found: " + changed + "\n");
-  else if (result.tried > 1 && !result.refused)  // else the error says it
+  else if (result.tried > 1 && (!result.nearest.empty() || !result.refused)) {
     context.print("none of " + std::to_string(result.tried) +
-                  " combinations of height, length and time passes the check. First error with the "
-                  "default values: " +
-                  result.limit + "\n");
+                  " combinations of height, length and time passes the check. ");
+    if (!result.refused)  // else the error says it
+      context.print("First error with the default values: " + result.limit + "\n");
+    if (!result.nearest.empty()) {
+      const std::string nearest = changed_values(dials, result.nearest_values);
+      context.print("The nearest is that with " +
+                    (nearest.empty() ? "the default values" : nearest) + ", which " +
+                    "is limited by " + result.nearest + "\n");
+    }
+  }
   return result.values;
 }
 
@@ -141,8 +148,8 @@ void fit_steps(const Context& context, const RobotModel& model, const NewOptions
       inwards.values.push_back(rounded(share * half_sole_width(model), 1e-3));
   Dial height = height_dial(model, w.cog_height);
   if (lacking) {
-    height =
-        dial("--cog-height", "m", starting_height(model), 1e-3, w.cog_height == 0, {0.91, 0.88});
+    height = dial("--cog-height", "m", starting_height(model), 1e-3, w.cog_height == 0,
+                  {0.91, 0.88, 1.03});
     height.values.front() = w.cog_height;
   }
   const std::vector<double> paces =

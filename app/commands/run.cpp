@@ -92,8 +92,10 @@ class MainJob {
                            const SimulationChoice& choice, const StreamedParts& parts);
   void write_hoap(const Task& input);
   void read_back();
-  void draw(const RobotModel& model, const std::string& title);
-  void write_report(const RobotModel& model, const std::string& title);
+  void draw(const RobotModel& model, const std::shared_ptr<const RobotLook>& look,
+            const std::string& title);
+  void write_report(const RobotModel& model, const std::shared_ptr<const RobotLook>& look,
+                    const std::string& title);
   std::vector<std::string> file_names() const;
 
   const StreamedRun& judged_run() const { return closed_loop_; }
@@ -303,7 +305,8 @@ void MainJob::read_back() {
     folder_.logs[name] = with_samples(folder_.written.at(name), output_->file(log_file_name(name)));
 }
 
-void MainJob::draw(const RobotModel& model, const std::string& title) {
+void MainJob::draw(const RobotModel& model, const std::shared_ptr<const RobotLook>& look,
+                   const std::string& title) {
   // Pictures show the plan where the robot is; curves do so by themselves.
   const SimulationLog closed = in_frame(model, folder_.logs.at("closed_loop"), Frame::world);
   const std::vector<LociRun> runs = {{"open loop", &folder_.logs.at("open_loop")},
@@ -318,6 +321,7 @@ void MainJob::draw(const RobotModel& model, const std::string& title) {
   }
   StripOptions strip;
   strip.clip.title = title;
+  strip.clip.look = look;
   strip.clip.picture.width = 400;
   strip.clip.picture.height = 600;
   write_strip(model, closed, output_->file("snapshots.png"), strip);
@@ -325,6 +329,7 @@ void MainJob::draw(const RobotModel& model, const std::string& title) {
   say("plot", "loci.svg, loci.png, snapshots.png");
   ClipOptions clip;
   clip.title = title;
+  clip.look = look;
   clip.threads = context_.threads > 0
                      ? context_.threads
                      : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
@@ -335,10 +340,11 @@ void MainJob::draw(const RobotModel& model, const std::string& title) {
                      std::to_string(summary.width) + "x" + std::to_string(summary.height) + ")");
 }
 
-void MainJob::write_report(const RobotModel& model, const std::string& title) {
+void MainJob::write_report(const RobotModel& model, const std::shared_ptr<const RobotLook>& look,
+                           const std::string& title) {
   ReportInput input = report_input(folder_, target_.string());
   if (!title.empty()) input.title = title;
-  const Report made = make_report(model, input, {}, context_.progress());
+  const Report made = make_report(model, input, {.look = look}, context_.progress());
   write_file(output_->file("report.html"), made.html);
   note_file("report.html");
   say("report",
@@ -370,8 +376,9 @@ bool MainJob::run(const std::string& file) {
   export_tables(input);
   if (options_.pictures) {
     read_back();
-    draw(input.robot, input.pattern.name);
-    write_report(input.robot, input.pattern.name);
+    const std::shared_ptr<const RobotLook> look = robot_look(input.robot);
+    draw(input.robot, look, input.pattern.name);
+    write_report(input.robot, look, input.pattern.name);
   }
   write_run(output_->folder(), folder_);
   output_->deliver();

@@ -93,6 +93,20 @@ TEST_P(NewKinds, ATurnAndAWaveAreConsistent) {
   }
 }
 
+// A robot that finds no walk was told only that its legs do not reach, which no option mends.
+TEST(NewWalk, NamesTheWalkThatComesNearest) {
+  const std::filesystem::path robot =
+      AYUMI_SOURCE_DIR "/../shared/data/open_duck_mini_v2/open_duck_mini_v2.xml";
+  if (!std::filesystem::exists(robot)) GTEST_SKIP() << "no file " << robot;
+  Folder folder;
+  ASSERT_EQ(run_program({"init", "-q", robot.string(), "-o", "duck"}, folder.path()).exit_code, 0);
+  const Output out = made(folder, {"--robot", "duck"});
+  EXPECT_EQ(out.exit_code, 3);
+  EXPECT_NE(out.out.find("The nearest is that with --period"), std::string::npos) << out.out;
+  EXPECT_NE(out.out.find("which is limited by joint_torque"), std::string::npos) << out.out;
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "w.json"));
+}
+
 INSTANTIATE_TEST_SUITE_P(Robots, NewKinds,
                          testing::Values("choreonoid/SR1/SR1.urdf", "roki/mighty.ztk",
                                          "darwin_op/urdf/darwin.urdf"),

@@ -343,5 +343,27 @@ TEST(FirstSidecar, RefusesARobotThatHasOne) {
   EXPECT_THROW(first_sidecar(robot, robot), Error);
 }
 
+// With the meshes of the legs missing, the hands were taken for feet, and `init` failed because the
+// COG was below them. What is missing is on the list.
+TEST(FirstSidecar, HandsAreNoFeetWhereTheShapesOfTheFeetAreMissing) {
+  const TemporaryFolder folder;
+  std::string text = UrdfBiped{}.text();
+  for (const std::string side : {"l_", "r_"})
+    for (const std::string link : {"thigh", "shank", "foot"}) {
+      const size_t from = text.find("<link name=\"" + side + link);
+      const size_t shape = text.find("<visual>", from), end = text.find("</link>", from);
+      ASSERT_LT(shape, end);
+      text.replace(
+          shape, end - shape,
+          "<visual><geometry><mesh filename=\"" + side + link + ".stl\"/></geometry></visual>");
+    }
+  const FirstSidecar sidecar =
+      first_sidecar(folder.write("r.urdf", text).string(), folder.path() / "r");
+  EXPECT_TRUE(sidecar.robot.soles.empty());
+  EXPECT_TRUE(std::any_of(sidecar.to_do.begin(), sidecar.to_do.end(), [](const std::string& item) {
+    return item.find("6 meshes are missing and left out: ") != std::string::npos;
+  }));
+}
+
 }  // namespace
 }  // namespace ayumi::test

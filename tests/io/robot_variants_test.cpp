@@ -162,6 +162,18 @@ TEST(RobotVariants, AllMissingMeshesAreListedAtOnceAndLeftOut) {
   EXPECT_EQ(robot.soles.size(), 2u);
 }
 
+// The parser wants an effort wherever a joint states a limit, also of a joint that does not move.
+TEST(RobotVariants, FixedJointsMayStateLimitsWithoutEffort) {
+  const TemporaryFolder folder;
+  std::string text = test::UrdfBiped{}.text();
+  const size_t joint = text.find("<joint name=\"l_shoulder\" type=\"revolute\"");
+  ASSERT_NE(joint, std::string::npos);
+  text.replace(text.find("revolute", joint), 8, "fixed");
+  const size_t effort = text.find(" effort=", joint);
+  text.erase(effort, text.find("/>", effort) - effort);
+  EXPECT_EQ(message_of(folder.write("r.urdf", text)), "no error");
+}
+
 TEST(RobotVariants, JointsWithoutMassAreHeld) {
   const TemporaryFolder folder;
   const std::string hand =

@@ -20,8 +20,8 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/render/encoder.hpp"
 #include "ayumi/render/hidden_parts.hpp"
+#include "ayumi/render/robot_look.hpp"
 #include "ayumi/render/simplify.hpp"
-#include "ayumi/render/thin.hpp"
 
 namespace ayumi {
 namespace {
@@ -96,18 +96,19 @@ std::vector<std::vector<Vector3d>> outlines(const std::vector<BodySurface>& surf
   return all;
 }
 
-/// Simplifies a surface that is too fine; `notes` says so, and what is drawn instead of visuals.
-void simplify_if_needed(const RobotModel& model, const ClipOptions& options, size_t before,
-                        std::vector<BodySurface>& surface, std::vector<std::string>& notes) {
-  const double cell = simplify(surface, options.max_triangles);
+/// What is drawn otherwise than the robot's files say.
+std::vector<std::string> notes_of(const RobotModel& model, const RobotLook& look, size_t drawn,
+                                  double moved) {
+  std::vector<std::string> notes;
   if (!has_visuals(model))
-    notes.push_back(
+    notes.emplace_back(
         "the robot has no visual meshes: it is drawn with its collision shapes, and with sticks "
         "between joints where a link has no collision shape");
-  if (cell > 0)
-    notes.push_back("the robot has " + std::to_string(before) + " triangles; it is drawn with " +
-                    std::to_string(triangle_count(surface)) + ", whose points are moved by about " +
-                    text::brief(1e3 * std::sqrt(3.0) * cell, 2) + " mm");
+  if (moved > 0)
+    notes.push_back("the robot has " + std::to_string(look.triangles) +
+                    " triangles; it is drawn with " + std::to_string(drawn) +
+                    ", whose points are moved by about " + text::brief(1e3 * moved, 2) + " mm");
+  return notes;
 }
 
 /// What stands on the floor, and where a field takes the place of the plane.
@@ -139,10 +140,10 @@ std::string law_name(const ControllerType& law) {
 /// Name without folder and extension.
 std::string plain_name(const std::string& file) { return fs::path(file).stem().string(); }
 
-/// How far a thinned surface may be from the robot's [pixel of a picture that the robot fills].
-/// Chosen: the four samples of a pixel are a quarter of it apart; at half, more triangles of round
-/// parts stay, at twice, their outlines have corners of half a pixel.
-constexpr double kThinned = 0.3;
+/// Pixels of a clip for each triangle of the robot, at least. Chosen: a robot takes a tenth of a
+/// picture, and half of its triangles are behind; at half, frames of heavy robots take a third
+/// longer, at twice, a triangle has two pixels.
+constexpr size_t kPixelsOfTriangle = 8;
 /// The frames from which on a clip is thinned. Chosen: thinning a robot with 280,000 triangles
 /// takes 0.3 s, which about five frames save; at half, clips of half a second gain too, at twice,
 /// clips of a second gain nothing.
@@ -314,17 +315,21 @@ std::shared_ptr<const ClipShape> clip_shape(const RobotModel& model, const Simul
                                             const ClipOptions& options, bool thin_surface) {
   check(model, log, options);
   auto shape = std::make_shared<ClipShape>();
-  std::vector<BodySurface> surface = robot_surface(model);
-  const size_t before = triangle_count(surface);
+  const std::shared_ptr<const RobotLook> look = options.look ? options.look : robot_look(model);
+  std::vector<BodySurface> surface = look->surface;
   shape->height = robot_height(surface, model, log);
-  // [m] Where the robot just fits into the picture, a pixel is this large.
-  const double pixel =
-      shape->height / (options.picture.height * std::max(1.0, options.camera.zoom));
+  double moved = look->moved;
   if (thin_surface) {
-    leave_out_hidden(surface);
-    thin(surface, kThinned * pixel);
+    // [m] Where the robot just fits into the picture, a pixel is this large.
+    const double pixel =
+        shape->height / (options.picture.height * std::max(1.0, options.camera.zoom));
+    const size_t most = size_t(options.picture.width) * size_t(options.picture.height);
+    if (moved <= 0) leave_out_hidden(surface);
+    const double thinned = thin_to(surface, kThinned * pixel, most / kPixelsOfTriangle);
+    if (thinned > kThinned * pixel) moved = std::max(moved, thinned);
   }
-  simplify_if_needed(model, options, before, surface, shape->notes);
+  moved = std::max(moved, std::sqrt(3.0) * simplify(surface, options.max_triangles));
+  shape->notes = notes_of(model, *look, triangle_count(surface), moved);
   shape->outline = outlines(surface);
   shape->robot = drawn_robot(surface);
   return shape;

@@ -2,6 +2,7 @@
 // A run as a clip, a single picture or a folder of frames. Nothing is simulated again.
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "ayumi/render/camera.hpp"
 #include "ayumi/render/overlay.hpp"
 #include "ayumi/render/renderer.hpp"
+#include "ayumi/render/robot_look.hpp"
 #include "ayumi/render/scenery.hpp"
 #include "ayumi/sim/simulation_log.hpp"
 
@@ -29,6 +31,7 @@ struct ClipOptions {
   CameraOptions camera;
   OverlayOptions overlay;
   GhostOptions ghost;
+  std::shared_ptr<const RobotLook> look = {};  ///< of the robot; null: robot_look() of it
   size_t max_triangles = 400'000;  ///< of the robot; beyond it the surface is simplified
   double fps = 30;                 ///< frames per second of the clip
   double speed = 1;                ///< seconds of the run per second of the clip

@@ -11,7 +11,6 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/render/glb_writer.hpp"
 #include "ayumi/render/log_reading.hpp"
-#include "ayumi/render/robot_surface.hpp"
 #include "ayumi/render/simplify.hpp"
 
 // Nodes: 0 the world, whose z becomes glTF's y; 1 + i body i, the root below the world. Triangles
@@ -69,9 +68,9 @@ void add_batches(Writer& writer, const Triangles& surface, bool with_uvs, const 
 }
 
 /// Mesh of each body; -1 where there is nothing to see.
-std::vector<int> add_meshes(Writer& writer, const RobotModel& model, size_t max_triangles) {
-  std::vector<BodySurface> surface = robot_surface(model);
-  if (max_triangles > 0) simplify(surface, max_triangles);
+std::vector<int> add_meshes(Writer& writer, const RobotModel& model, const GltfOptions& options) {
+  std::vector<BodySurface> surface = options.look ? options.look->surface : robot_surface(model);
+  if (options.max_triangles > 0) simplify(surface, options.max_triangles);
   std::vector<int> meshes;
   for (const BodySurface& body : surface) {
     std::vector<std::string> primitives;
@@ -267,7 +266,7 @@ std::string glb_bytes(const RobotModel& model, const std::vector<Motion>& motion
                       const GltfOptions& options) {
   for (const Motion& motion : motions) check(model, motion);
   Writer writer;
-  const std::vector<int> meshes = add_meshes(writer, model, options.max_triangles);
+  const std::vector<int> meshes = add_meshes(writer, model, options);
   std::vector<std::string> animations;
   for (const Motion& motion : motions) animations.push_back(animation_text(writer, model, motion));
   const std::string nodes = nodes_text(model, motions.empty() ? nullptr : &motions.front(), meshes);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ayumi/model/robot_model.hpp"
+#include "ayumi/render/robot_look.hpp"
 #include "ayumi/sim/simulation_log.hpp"
 
 namespace ayumi {
@@ -33,7 +34,8 @@ Motion motion_of(const SimulationLog& log, MotionSource source, double rate, dou
 Motion motion_of(const ReferenceTrajectory& table, double rate);
 
 struct GltfOptions {
-  size_t max_triangles = 0;  ///< beyond it the surface is simplified; 0: never
+  const RobotLook* look = nullptr;  ///< drawn in place of the robot's own meshes
+  size_t max_triangles = 0;         ///< beyond it the surface is simplified; 0: never
 };
 
 /// The bytes of a .glb file. The same input gives the same bytes. Throws Error(usage) for a motion

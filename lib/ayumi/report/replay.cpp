@@ -162,16 +162,17 @@ std::string bumps_words(const RobotModel& model, const SimulationLog& log) {
   return list(words);
 }
 
-double height_of(const RobotModel& model, const SimulationLog& log) {
+double height_of(const RobotModel& model, const std::vector<BodySurface>& surface,
+                 const SimulationLog& log) {
   const Eigen::AlignedBox3d box =
-      robot_bounds(robot_surface(model), body_poses(model, log.samples.front().state));
+      robot_bounds(surface, body_poses(model, log.samples.front().state));
   return box.isEmpty() ? 1.0 : std::max(1e-3, box.sizes().maxCoeff());
 }
 
 /// What the script has to know of the robot and of the world, without braces.
-std::string common_words(const RobotModel& model, const SimulationLog& log, double rate,
-                         double start, const std::string& label) {
-  return "\"rate\":" + text::exact(rate) + ",\"height\":" + text::exact(height_of(model, log)) +
+std::string common_words(const RobotModel& model, double height, const SimulationLog& log,
+                         double rate, double start, const std::string& label) {
+  return "\"rate\":" + text::exact(rate) + ",\"height\":" + text::exact(height) +
          ",\"weight\":" + text::exact(9.80665 * model.mass()) +
          ",\"floor\":" + pose_words(floor_at(log, 0)) +
          ",\"ground_height\":" + text::exact(log.world.height) +
@@ -205,7 +206,8 @@ bool has_command(const SimulationLog& log) {
 
 }  // namespace
 
-ReplayData make_replay(const RobotModel& model, const ReportInput& input, const ReplayPlan& plan) {
+ReplayData make_replay(const RobotModel& model, const RobotLook& look, const ReportInput& input,
+                       const ReplayPlan& plan) {
   const SimulationLog& log = *input.runs.back().log;
   ReplayData data;
   std::vector<Motion> motions = {motion_of(log, MotionSource::run, plan.rate)};
@@ -217,13 +219,13 @@ ReplayData make_replay(const RobotModel& model, const ReportInput& input, const 
   for (size_t i = 1; i < motions.size(); ++i) data.ghosts.push_back(motions[i].name);
   data.duration = duration(log);
   data.start = telling_instant(log);
-  data.model = glb_bytes(model, motions, {.max_triangles = plan.triangles});
+  data.model = glb_bytes(model, motions, {.look = &look, .max_triangles = plan.triangles});
   data.series = series_bytes(log, motions.front().times);
   std::vector<std::string> columns = kColumns;
   if (floor_moves(log)) columns.insert(columns.end(), kFloorColumns.begin(), kFloorColumns.end());
   data.scenery = scenery_bytes(log.world);
   data.config = "{\"columns\":" + quoted_list(columns) + "," +
-                common_words(model, log, plan.rate, data.start,
+                common_words(model, height_of(model, look.surface, log), log, plan.rate, data.start,
                              "3-D replay of " + input.title +
                                  "; space plays, arrow keys step, Home and End go to the ends") +
                 "}";
@@ -243,7 +245,8 @@ std::string live_config(const RobotModel& model, const SimulationLog& log, doubl
   for (const char* const quantity : {"q.", "dq.", "tau."})
     for (const std::string& joint : model.dof_names()) columns.push_back(quantity + joint);
   return "{\"columns\":" + quoted_list(columns) + "," +
-         common_words(model, log, rate, 0, "The robot in 3-D") +
+         common_words(model, height_of(model, robot_surface(model), log), log, rate, 0,
+                      "The robot in 3-D") +
          ",\"joints\":" + quoted_list(model.dof_names()) + ",\"bodies\":" + bodies_words(model) +
          "}";
 }

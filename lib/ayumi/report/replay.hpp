@@ -22,7 +22,8 @@ struct ReplayData {
   double duration = 0, start = 0;  ///< [s]
 };
 
-ReplayData make_replay(const RobotModel& model, const ReportInput& input, const ReplayPlan& plan);
+ReplayData make_replay(const RobotModel& model, const RobotLook& look, const ReportInput& input,
+                       const ReplayPlan& plan);
 
 /// The live page places the bodies itself, by rows of a table: bytes of a .glb of the robot in the
 /// first posture of the log, with at most that many triangles.

@@ -7,8 +7,6 @@
 #include "ayumi/plot/com_zmp_plot.hpp"
 #include "ayumi/plot/com_zmp_plot_parts.hpp"
 #include "ayumi/render/log_reading.hpp"
-#include "ayumi/render/robot_surface.hpp"
-#include "ayumi/render/simplify.hpp"
 #include "ayumi/render/snapshots.hpp"
 #include "ayumi/report/html.hpp"
 #include "ayumi/report/page.hpp"
@@ -85,9 +83,11 @@ std::string picture(const Image& image, const std::string& words) {
          "\" src=\"data:image/png;base64," + html::base64(encode_png(image)) + "\">";
 }
 
-std::string poster(const RobotModel& model, const ReportInput& input) {
+std::string poster(const RobotModel& model, std::shared_ptr<const RobotLook> look,
+                   const ReportInput& input) {
   const SimulationLog& log = *input.runs.back().log;
   ClipOptions options;
+  options.look = std::move(look);
   options.picture.width = 1024;
   options.picture.height = 576;
   options.title = input.title;
@@ -97,8 +97,10 @@ std::string poster(const RobotModel& model, const ReportInput& input) {
                                                                  html::name_of(input.runs.back()));
 }
 
-std::string snapshots_section(const RobotModel& model, const ReportInput& input) {
+std::string snapshots_section(const RobotModel& model, std::shared_ptr<const RobotLook> look,
+                              const ReportInput& input) {
   StripOptions options;
+  options.clip.look = std::move(look);
   options.clip.title = input.title;
   options.clip.picture.width = 320;
   options.clip.picture.height = 480;
@@ -163,8 +165,8 @@ struct Plan {
   bool with_replay = true, with_snapshots = true;
 };
 
-std::string page(const RobotModel& model, const ReportInput& input, const Pieces& pieces,
-                 const Plan& plan, const std::vector<std::string>& caps) {
+std::string page(const RobotModel& model, const RobotLook& look, const ReportInput& input,
+                 const Pieces& pieces, const Plan& plan, const std::vector<std::string>& caps) {
   std::string head =
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
@@ -180,7 +182,7 @@ std::string page(const RobotModel& model, const ReportInput& input, const Pieces
       "<figure class=\"scene\"><div id=\"stage\">" + pieces.poster + "</div></figure>\n";
   std::string script;
   if (plan.with_replay) {
-    const ReplayData data = make_replay(model, input, plan.replay);
+    const ReplayData data = make_replay(model, look, input, plan.replay);
     scene += controls(data, plan.replay.rate) +
              "<p id=\"replay-state\" class=\"soft\" role=\"status\"></p>\n"
              "<noscript><p class=\"soft\">If JavaScript is on, this picture becomes a "
@@ -271,19 +273,20 @@ Report make_report(const RobotModel& model, const ReportInput& as_logged,
   Pieces pieces;
   pieces.loci = loci_section(model, input);
   report(progress, {"report", 0.2, "pictures"});
-  pieces.poster = poster(model, input);
-  pieces.snapshots = snapshots_section(model, input);
+  const std::shared_ptr<const RobotLook> look = options.look ? options.look : robot_look(model);
+  pieces.poster = poster(model, look, input);
+  pieces.snapshots = snapshots_section(model, look, input);
   report(progress, {"report", 0.7, "page"});
-  const size_t triangles = triangle_count(robot_surface(model));
+  const size_t triangles = look->triangles;
   size_t allowed = std::min(options.max_triangles, triangles);
   for (;;) {
     std::vector<std::string> caps = caps_of(plan, options, triangles, no_replay);
-    Report made = {page(model, input, pieces, plan, caps), caps};
+    Report made = {page(model, *look, input, pieces, plan, caps), caps};
     if (made.html.size() <= options.max_bytes) return made;
     if (!reduce(plan, allowed)) {
       caps.push_back("the page is larger than " + size_words(options) +
                      ", although only verdict, tables, curves and one picture are left");
-      return {page(model, input, pieces, plan, caps), caps};
+      return {page(model, *look, input, pieces, plan, caps), caps};
     }
     report(progress, {"report", 0.8, "smaller page"});
   }

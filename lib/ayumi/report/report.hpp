@@ -3,6 +3,7 @@
 // thresholds, provenance. It loads nothing from anywhere; without JavaScript the replay is a
 // picture and everything else is there.
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "ayumi/io/run/run_results.hpp"
 #include "ayumi/model/robot_model.hpp"
 #include "ayumi/render/frames.hpp"
+#include "ayumi/render/robot_look.hpp"
 #include "ayumi/sim/simulation_log.hpp"
 
 namespace ayumi {
@@ -32,6 +34,7 @@ struct ReportInput {
 };
 
 struct ReportOptions {
+  std::shared_ptr<const RobotLook> look = {};  ///< of the robot; null: robot_look() of it
   size_t max_bytes = 8'000'000;   ///< of the page; replay and pictures are reduced to keep it
   double rate = 50;               ///< of the replay [Hz]
   size_t max_triangles = 60'000;  ///< of the robot in the replay

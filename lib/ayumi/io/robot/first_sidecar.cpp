@@ -522,6 +522,7 @@ FirstSidecar first_sidecar(const std::string& robot, const std::filesystem::path
   namespace fs = std::filesystem;
   const fs::path urdf = fs::weakly_canonical(fs::absolute(stated.urdf_file));
   const std::string urdf_as_written = seen_from(folder, urdf);
+  const std::vector<std::string> read = stated.assumptions;  // nothing is guessed yet
   const std::vector<std::string> massless = hold_joints_without_mass(stated);
   const std::vector<std::string> play = hold_play_of_gears(stated);
   RobotGuess guess = guess_robot(std::move(stated));
@@ -529,6 +530,8 @@ FirstSidecar first_sidecar(const std::string& robot, const std::filesystem::path
   const RobotModel model(guess.robot);
   FirstSidecar result;
   result.to_do = to_do_list(model, guess);
+  for (const std::string& note : read)
+    result.to_do.push_back("Check what was assumed in reading the file: " + note + ".");
   if (!boxes.empty())
     result.to_do.push_back(
         "Replace the inertia of " + text::counted(boxes.size(), "link") + " (" +

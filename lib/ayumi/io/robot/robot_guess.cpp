@@ -172,13 +172,15 @@ bool is_above(const RobotModel& model, int body, int other) {
 }
 
 // The two lowest end bodies that are beside each other. A toe gives way to the foot that carries it
-// where that stands on more ground.
+// where that stands on more ground. None where an end body without any shape is lower: then the
+// shapes of the feet are missing, and others are not feet.
 std::vector<Foot> find_feet(const RobotModel& model, const std::vector<Isometry3d>& poses) {
   std::vector<bool> leaf(model.bodies().size(), true);
   for (const Body& body : model.bodies())
     if (body.parent >= 0) leaf[body.parent] = false;
   std::vector<Foot> ends;
   double highest = -std::numeric_limits<double>::infinity();
+  double bare = std::numeric_limits<double>::infinity();  // the lowest end body without a shape
   for (int body = 1; body < static_cast<int>(leaf.size()); ++body) {
     highest = std::max(highest, poses[body].translation().z());
     if (!leaf[body]) continue;
@@ -192,7 +194,10 @@ std::vector<Foot> find_feet(const RobotModel& model, const std::vector<Isometry3
         break;
       foot = {up, points, lowest};
     }
-    if (!foot.points.empty()) ends.push_back(foot);
+    if (!foot.points.empty())
+      ends.push_back(foot);
+    else
+      bare = std::min(bare, poses[body].translation().z());
   }
   std::stable_sort(ends.begin(), ends.end(),
                    [](const Foot& a, const Foot& b) { return a.lowest < b.lowest; });
@@ -204,7 +209,7 @@ std::vector<Foot> find_feet(const RobotModel& model, const std::vector<Isometry3
       if (between.head<2>().norm() < kApart || is_above(model, a.body, b.body) ||
           is_above(model, b.body, a.body))
         continue;
-      return {a, b};
+      return bare < a.lowest ? std::vector<Foot>{} : std::vector{a, b};
     }
   return {};
 }

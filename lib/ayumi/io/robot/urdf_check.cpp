@@ -194,7 +194,8 @@ class Checker {
           required(node, "link", owner);
     }
     numbers(element, owner);
-    if (type == "revolute" || type == "prismatic") limits(element, name, text);
+    if (type == "revolute" || type == "prismatic" || element->FirstChildElement("limit"))
+      limits(element, name, text);
     robot.joints.push_back(joint);
   }
 

@@ -1,0 +1,47 @@
+#include "ayumi/render/robot_look.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ayumi/render/hidden_parts.hpp"
+#include "ayumi/render/simplify.hpp"
+#include "ayumi/render/thin.hpp"
+
+namespace ayumi {
+namespace {
+
+/// Triangles of a robot beyond which nobody sees them all. Chosen: four for each pixel that a robot
+/// takes of a picture of 720 rows; at half, robots of makers would lose triangles, at twice,
+/// snapshots take twice as long.
+constexpr size_t kMostTriangles = 400'000;
+/// Rows of the picture in which a thinned robot looks like its meshes.
+constexpr double kRows = 720;
+/// By which a tolerance grows that left too many triangles, and how often. Chosen: at four times
+/// the first, outlines have corners of one pixel, and the cells of a grid are no coarser.
+constexpr double kGrowth = 2;
+constexpr int kTrials = 3;
+
+}  // namespace
+
+double thin_to(std::vector<BodySurface>& surface, double tolerance, size_t most) {
+  for (int trial = 0; trial < kTrials; ++trial, tolerance *= kGrowth) {
+    thin(surface, tolerance);
+    if (triangle_count(surface) <= most) return tolerance;
+  }
+  return std::max(tolerance / kGrowth, std::sqrt(3.0) * simplify(surface, most));
+}
+
+std::shared_ptr<const RobotLook> robot_look(const RobotModel& model) {
+  auto look = std::make_shared<RobotLook>();
+  look->surface = robot_surface(model);
+  look->triangles = triangle_count(look->surface);
+  if (look->triangles <= kMostTriangles) return look;
+  const Eigen::AlignedBox3d box =
+      robot_bounds(look->surface, body_poses(model, model.rest_state()));
+  const double height = box.isEmpty() ? 1.0 : box.sizes().maxCoeff();
+  leave_out_hidden(look->surface);
+  look->moved = thin_to(look->surface, kThinned * height / kRows, kMostTriangles);
+  return look;
+}
+
+}  // namespace ayumi

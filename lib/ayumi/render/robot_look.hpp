@@ -1,0 +1,31 @@
+#pragma once
+// What all pictures of a robot are drawn from: its surface, made of its meshes once, however many
+// clips, snapshots and pages show it.
+
+#include <memory>
+#include <vector>
+
+#include "ayumi/render/robot_surface.hpp"
+
+namespace ayumi {
+
+struct RobotLook {
+  std::vector<BodySurface> surface;  ///< as robot_surface(), but with fewer triangles if too many
+  size_t triangles = 0;              ///< of the robot's own meshes
+  double moved = 0;                  ///< about how far the surface is from theirs [m]; 0: theirs
+};
+
+/// It depends on the robot alone, so that all pictures of a robot show the same surface.
+std::shared_ptr<const RobotLook> robot_look(const RobotModel& model);
+
+/// How far a thinned surface may be from the robot's [pixel]. Chosen: the four samples of a pixel
+/// are a quarter of it apart; at half, more triangles of round parts stay, at twice, their outlines
+/// have corners of half a pixel.
+inline constexpr double kThinned = 0.3;
+
+/// Thins, first by `tolerance` [m] and then by multiples of it, until at most `most` triangles are
+/// left; joins them by a grid where that is not enough. Returns about how far the surface was moved
+/// [m]: `tolerance` where that sufficed.
+double thin_to(std::vector<BodySurface>& surface, double tolerance, size_t most);
+
+}  // namespace ayumi
