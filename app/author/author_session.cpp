@@ -161,7 +161,7 @@ void AuthorSession::follow() {
   while (true) {
     {
       std::unique_lock lock(state_);
-      if (changed_.wait_for(lock, kLook, [&] { return stopping_; })) return;
+      if (changed_.wait_for(lock, kLook, [&] { return stopping_.load(); })) return;
     }
     const std::lock_guard lock(reading_);
     if (is_gone()) continue;

@@ -589,6 +589,20 @@ TEST_F(AuthorServer, ADragOfTheTrunkLeansItOrMovesItUpAndDown) {
   EXPECT_EQ(rise.find("torso"), std::string::npos) << rise;
 }
 
+// An arm at its limits turns back there, and the targets of its servos lead it beyond them.
+TEST_F(AuthorServer, AnArmThatIsDraggedTooFarStaysWithinItsLimits) {
+  const Server server(file);
+  for (const double t : {2.0, 2.5, 3.0}) {
+    const double up = t == 2.5 ? -0.6 : 0.9;
+    const auto answer = server.post(
+        "pose", {{"time", t}, {"drag", "left_hand"}, {"to", {0.1, 0.4 + 0.3 * (t - 2), up}}});
+    ASSERT_FALSE(answer.second["message"].is_null());
+    ASSERT_EQ(server.edit(answer.second["edits"]).first, 200);
+  }
+  for (const OrderedJson& finding : server.state()["findings"])
+    EXPECT_NE(finding["kind"], "table_position") << finding;
+}
+
 TEST_F(AuthorServer, SaysWhatCannotBeReached) {
   const Server server(file);
   const auto far = server.post("pose", {{"time", 2.4}, {"drag", "left_hand"}, {"to", {3, 0, 0}}});
