@@ -99,6 +99,9 @@ constexpr double kNoAngle = 1e-6;
 constexpr double kNotedLean = 0.09;
 // A foot that turns less against the other one has no turn to speak of [rad]. Chosen: ten degrees.
 constexpr double kNotedTurn = 0.17;
+// A COG that is farther than this from the middle of the feet is beside them; a share of the length
+// of a leg. Chosen: more than half of a sole.
+constexpr double kNotedOffset = 0.25;
 // Share of the length of a leg that its foot is at most aside. Definition: the sine of an angle.
 constexpr double kMostLean = 0.9;
 // A segment that lasts less than this share of its neighbour is too short before a value is out by
@@ -367,6 +370,7 @@ class Hypotheses {
     leg_keys(made);
     interpolations(made);
     level_cog(made);
+    held_cog(made);
     return made;
   }
 
@@ -1038,6 +1042,14 @@ class Hypotheses {
     }
   }
 
+  // As the author can write it: "left": {"position": [0, 0.039, 0.03], "rpy": [0, -20, 0]}.
+  std::string turned_foot(Side side, const Eigen::Vector3d& at, double roll, double pitch) const {
+    const double unit = pattern_.degrees ? std::numbers::pi / 180 : 1;
+    return "\"" + std::string(name_of(side)) + "\": {\"position\": [" + text::brief(at.x()) + ", " +
+           text::brief(at.y()) + ", " + text::brief(at.z()) + "], \"rpy\": [" +
+           text::brief(roll / unit) + ", " + text::brief(pitch / unit) + ", 0]}";
+  }
+
   // A foot that stays level while its leg leans, which the ankle has to make up for.
   void level_feet(std::vector<Hypothesis>& made) const {
     if (!feet_) return;
@@ -1080,9 +1092,9 @@ class Hypotheses {
                      : amount(most) < 0 ? "ahead"
                                         : "back") +
                     ", so the ankle bends by as much",
-                "with the foot turned with the leg (\"rpy\": [" +
-                    (roll ? angle(degrees(most.roll)) + ", 0, 0]"
-                          : "0, " + angle(degrees(most.pitch)) + ", 0]") +
+                "with the foot turned with the leg (" +
+                    turned_foot(side, pattern_.keyframes[most.key].feet[s]->position,
+                                roll ? degrees(most.roll) : 0, roll ? 0 : degrees(most.pitch)) +
                     (leans.size() > 1 ? ", and as the leg leans in the other keys of this foot)"
                                       : ")") +
                     ","},
@@ -1309,6 +1321,37 @@ class Hypotheses {
            [height](Pattern& p) {
              for (Keyframe& key : p.keyframes) key.cog_height = height;
            }});
+    }
+  }
+
+  // Keys that hold the COG where the feet no longer are.
+  void held_cog(std::vector<Hypothesis>& made) const {
+    if (!feet_) return;
+    for (const auto& [axis, key_of] : {std::pair(0, &Keyframe::cog_x), {1, &Keyframe::cog_y}}) {
+      const double before = feet_->support_center(0)[axis];
+      size_t worst = 0;
+      double most = 0, feet_at = 0;
+      for (size_t i = 0; i < pattern_.keyframes.size(); ++i) {
+        const Keyframe& key = pattern_.keyframes[i];
+        if (!(key.*key_of)) continue;
+        const double center = feet_->support_center(key.t)[axis];
+        const double off = std::abs(*(key.*key_of) - center);
+        if (off <= most || std::abs(center - before) < 0.5 * off) continue;
+        most = off;
+        feet_at = center;
+        worst = i;
+      }
+      if (most < kNotedOffset * leg_length(model_)) continue;
+      const std::string words = axis == 0 ? "the COG's x" : "the COG's y";
+      made.push_back({Rank::missing,
+                      {key_place(worst),
+                       words + " is " + text::brief(*(pattern_.keyframes[worst].*key_of)) +
+                           " m, while the middle of the feet that stand is at " +
+                           text::brief(feet_at, 3) + " m",
+                       "without keys of " + words + " (the COG then follows the ZMP)"},
+                      [key_of = key_of](Pattern& p) {
+                        for (Keyframe& key : p.keyframes) (key.*key_of).reset();
+                      }});
     }
   }
 
