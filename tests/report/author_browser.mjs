@@ -396,10 +396,10 @@ async function showsFindings(tab) {
     const page = window.ayumiAuthor.page;
     return { place: document.getElementById("error-place").textContent, hidden: document.getElementById("error").hidden,
       shown: document.querySelector("#text .wrong")?.textContent, stale: page.state.stale,
-      grey: page.rig.meshes.every(({ mesh, material }) => mesh.material !== material) };`);
+      lanes: getComputedStyle(document.getElementById("strip")).filter, grey: page.rig.meshes.every(({ mesh, material }) => mesh.material !== material) };`);
   expect(!told.hidden && told.place === `Line ${line}:`, "the error's line: " + JSON.stringify(told));
   expect(/phases/.test(told.shown), "the line is shown: " + told.shown);
-  expect(told.stale && told.grey, "the old motion is grey");
+  expect(told.stale && told.grey && told.lanes === "grayscale(1)", "the old motion is grey, and so is its strip: " + told.lanes);
   await tab.shoot("error.png");
   await tab.after(() => save(good));
   expect(await tab.run("return document.getElementById('error').hidden"), "the error is gone");
