@@ -16,6 +16,7 @@ constexpr long kPatience = 700'000'000;  // [ns]
 volatile std::sig_atomic_t stop_signal = 0;
 timer_t impatience;
 bool has_timer = false;
+volatile std::sig_atomic_t is_stop_expected = 0;
 
 void on_signal(int signal) {
   stop_signal = 1;
@@ -26,6 +27,7 @@ void on_signal(int signal) {
 
 // Nothing is lost: files get their names when they are whole, and child processes end with us.
 void on_impatience(int) {
+  if (is_stop_expected) _exit(0);
   constexpr char kMessage[] = "ayumi: stopped\n";
   static_cast<void>(!write(STDERR_FILENO, kMessage, sizeof kMessage - 1));
   _exit(kStoppedExitCode);
@@ -43,6 +45,8 @@ void watch_for_signals() {
   std::signal(SIGTERM, on_signal);
   std::signal(SIGXFSZ, SIG_IGN);
 }
+
+void expect_to_be_stopped() { is_stop_expected = 1; }
 
 bool stop_requested() { return stop_signal != 0; }
 

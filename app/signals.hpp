@@ -11,6 +11,10 @@ constexpr int kStoppedExitCode = 130;
 /// (`ulimit -f`) does not end the process either: writing fails there as on a full disk.
 void watch_for_signals();
 
+/// A stop is how this command ends: what is still at work 0.7 s after it is ended with exit code 0
+/// and without a word.
+void expect_to_be_stopped();
+
 /// Whether Ctrl-C was pressed.
 bool stop_requested();
 

@@ -265,6 +265,7 @@ OrderedJson handles_json(const RobotModel& model) {
       one["point"] = list(handle.point);
     }
     if (!handle.link.empty()) one["link"] = handle.link;
+    if (handle.kind == AuthorHandle::Kind::foot) one["foot"] = name_of(handle.side);
     if (handle.kind == AuthorHandle::Kind::gaze) one["gaze"] = true;
     handles.push_back(one);
   }
@@ -344,6 +345,9 @@ void describe(AuthorMotion& motion, const StabilitySeries& stability) {
   OrderedJson findings = OrderedJson::array();
   for (const Finding& f : motion.judgement.report.findings)
     findings.push_back(finding_json(task.robot, f));
+  OrderedJson profiles = OrderedJson::array();
+  for (const ActuatorProfile& profile : task.robot.description().profiles)
+    profiles.push_back(profile.name);
   OrderedJson own = OrderedJson::array();
   if (motion.document.contains("postures"))
     for (const auto& [name, joints] : motion.document["postures"].items()) own.push_back(name);
@@ -351,6 +355,7 @@ void describe(AuthorMotion& motion, const StabilitySeries& stability) {
   motion.parts.update(OrderedJson{
       {"robot", task.robot.name()},
       {"profile", task.profile},
+      {"profiles", profiles},
       {"duration", task.series.duration()},
       {"dt", task.series.dt},
       {"angle_unit", task.pattern.degrees ? "deg" : "rad"},

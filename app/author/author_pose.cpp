@@ -43,6 +43,9 @@ constexpr double kDragTick = 0.005;
 constexpr double kInsideSole = 4e-3;
 // Rounds in which a dragged trunk comes to its place. Chosen: each takes half of the way or more.
 constexpr int kTrunkRounds = 5;
+// Room that a dragged limb leaves beside the soft limits of its joints [rad]. Chosen: what the lead
+// of the servos' targets needs where the limb turns back.
+constexpr double kLimbRoom = 0.02;
 
 // As text of that many decimals is read; zero has no sign.
 double rounded(double value, int decimals) { return std::stod(text::fixed(value, decimals)) + 0.0; }
@@ -592,8 +595,8 @@ class Drag {
     RobotState state = now_.state;
     std::vector<PatternEdit> edits;
     for (int round = 0; round < 3; ++round) {
-      const ReachSolution solution =
-          reach(robot, state, handle_.body, handle_.point, wish_.to, dofs);
+      const ReachSolution solution = reach(robot, state, handle_.body, handle_.point, wish_.to,
+                                           dofs, robot.description().soft_limit_margin + kLimbRoom);
       KeyEdits keys(motion_);
       for (const int dof : dofs)
         if (std::abs(solution.theta[dof] - now_.state.theta[dof]) > 1e-4)

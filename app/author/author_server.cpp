@@ -17,10 +17,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// How long requests may still run when the server ends. Chosen: below the second in which Ctrl-C
-// has to end the program.
-constexpr auto kGrace = 600ms;
-
 // 128 random bits that nobody guesses.
 std::string secret() {
   std::random_device random;
@@ -59,12 +55,9 @@ void serve_author(AuthorSession& session, const ServerOptions& options,
   });
   ready(std::string("http://") + kLoopbackAddress + ":" + std::to_string(port) + "/" + token + "/");
   while (!stopped() && !ended) std::this_thread::sleep_for(50ms);
+  session.stop();
   requests.stop();
   server->stop();
-  // A client that holds a connection without a word must not keep the program alive.
-  for (auto waited = 0ms; !ended && waited < kGrace; waited += 20ms)
-    std::this_thread::sleep_for(20ms);
-  if (!ended) std::_Exit(0);
   listening.join();
 }
 

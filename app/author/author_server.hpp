@@ -12,7 +12,8 @@ struct ServerOptions {
   int port = 0;  ///< 0: any that is free
 };
 
-/// Serves until `stopped` says so. `ready` receives the address with the secret. Throws
+/// Serves until `stopped` says so; a client that holds a connection without a word keeps the
+/// function for two seconds more. `ready` receives the address with the secret. Throws
 /// Error(bad_file) where the port is taken.
 void serve_author(AuthorSession& session, const ServerOptions& options,
                   const std::function<void(const std::string& address)>& ready,

@@ -89,13 +89,17 @@ AuthorSession::AuthorSession(const Context& context, AuthorSetting setting)
 }
 
 AuthorSession::~AuthorSession() {
+  stop();
+  if (worker_.joinable()) worker_.join();
+  follower_.join();
+}
+
+void AuthorSession::stop() {
   {
-    const std::lock_guard lock(state_);
+    const std::lock_guard lock(state_);  // whoever waits has seen it, or hears of it
     stopping_ = true;
   }
   changed_.notify_all();
-  stop_job();
-  follower_.join();
 }
 
 AuthorSession::Shown AuthorSession::view() {
@@ -157,7 +161,7 @@ void AuthorSession::follow() {
   while (true) {
     {
       std::unique_lock lock(state_);
-      if (changed_.wait_for(lock, kLook, [&] { return stopping_; })) return;
+      if (changed_.wait_for(lock, kLook, [&] { return stopping_.load(); })) return;
     }
     const std::lock_guard lock(reading_);
     if (is_gone()) continue;
@@ -549,7 +553,7 @@ void AuthorSession::work(std::uint64_t id, std::string kind, OrderedJson options
       news["text"] = event.detail.empty() ? event.stage : event.stage + ", " + event.detail;
       tell("job", news);
     }
-    return !job_stops_;
+    return !job_stops_ && !stopping_;
   };
   std::optional<AuthorResult> result;
   try {
@@ -587,12 +591,6 @@ AuthorAnswer AuthorSession::cancel_job(const std::string& id) {
     return {404, {{"message", "this job has already ended"}}};
   job_stops_ = true;
   return {};
-}
-
-void AuthorSession::stop_job() {
-  const std::lock_guard lock(jobs_);
-  job_stops_ = true;
-  if (worker_.joinable()) worker_.join();
 }
 
 }  // namespace ayumi::app

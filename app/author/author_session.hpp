@@ -43,10 +43,13 @@ class AuthorSession {
   /// Throws as read_file(); a pattern that cannot be read is shown with its error, but its robot
   /// must be loaded once. `context` must outlive the session.
   AuthorSession(const Context& context, AuthorSetting setting);
-  /// Stops the job and the thread that follows the file.
+  /// Stops, and waits for the job and the thread that follows the file.
   ~AuthorSession();
   AuthorSession(const AuthorSession&) = delete;
   AuthorSession& operator=(const AuthorSession&) = delete;
+
+  /// The job ends and the file is no longer followed, soon after.
+  void stop();
 
   /// What the page shows, as JSON.
   std::string state();
@@ -88,7 +91,6 @@ class AuthorSession {
   AuthorAnswer write(const std::string& seen, const std::string& text);
   AuthorAnswer conflict(const View& shown, const std::string& mine);
   void work(std::uint64_t id, std::string kind, OrderedJson options, Shown shown);
-  void stop_job();
 
   const Context& context_;
   AuthorSetting setting_;
@@ -106,7 +108,8 @@ class AuthorSession {
   std::string model_;
   std::deque<AuthorEvent> events_;
   std::uint64_t first_event_ = 0;
-  bool stopping_ = false;
+
+  std::atomic<bool> stopping_ = false;
 
   std::mutex jobs_;  ///< of the job
   std::thread worker_;

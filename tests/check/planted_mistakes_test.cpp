@@ -202,6 +202,10 @@ std::vector<Mistaken> make_list() {
       [](Pattern& p) { *p.keyframes[2].cog_y *= 1000; });
   add("a sway ten times too far", tall(), sway, "/keyframes/3: the COG's y is .*decimal point",
       [](Pattern& p) { *p.keyframes[3].cog_y *= 10; });
+  for (const auto& [robot, sound] : {std::pair(&small(), &steps), std::pair(&tall(), &strides)})
+    add("a COG that stays behind", *robot, *sound,
+        "/keyframes/\\d+: the COG's x is 0 m, while the middle of the feet .* consistent",
+        [](Pattern& p) { p.keyframes.front().cog_x = p.keyframes.back().cog_x = 0; });
   add("slippery ground", small(), steps, "/world/friction: .*0.05; with .*0.1",
       [](Pattern& p) { p.world.friction = 0.05; });
   add("a force in kg", small(), steps, "/keyframes/2: f_z is 6 N",

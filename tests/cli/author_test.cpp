@@ -92,10 +92,16 @@ class Server {
     }
     return now;
   }
-  /// Seconds from Ctrl-C to the end, and the exit code.
-  std::pair<double, int> interrupt() {
+  /// Seconds from Ctrl-C to the end, and the exit code. First the process rests for `held`.
+  std::pair<double, int> interrupt(std::chrono::milliseconds held = 0ms) {
     const auto begin = std::chrono::steady_clock::now();
     ::kill(process_, SIGINT);
+    if (held > 0ms) {
+      std::this_thread::sleep_for(10ms);  // it hears of Ctrl-C first
+      ::kill(process_, SIGSTOP);
+      std::this_thread::sleep_for(held);
+      ::kill(process_, SIGCONT);
+    }
     int status = 0;
     ::waitpid(process_, &status, 0);
     ended_ = true;
@@ -108,6 +114,24 @@ class Server {
   bool ended_ = false;
   int port_ = 0;
   std::string root_;
+};
+
+/// A connection on which nothing is said.
+class Connection {
+ public:
+  explicit Connection(int port) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
+    sockaddr_in to = {};
+    to.sin_family = AF_INET;
+    to.sin_port = htons(static_cast<std::uint16_t>(port));
+    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    EXPECT_EQ(::connect(socket_, reinterpret_cast<const sockaddr*>(&to), sizeof to), 0);
+  }
+  ~Connection() { ::close(socket_); }
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+
+ private:
+  int socket_;
 };
 
 struct AuthorServer : testing::Test {
@@ -565,6 +589,20 @@ TEST_F(AuthorServer, ADragOfTheTrunkLeansItOrMovesItUpAndDown) {
   EXPECT_EQ(rise.find("torso"), std::string::npos) << rise;
 }
 
+// An arm at its limits turns back there, and the targets of its servos lead it beyond them.
+TEST_F(AuthorServer, AnArmThatIsDraggedTooFarStaysWithinItsLimits) {
+  const Server server(file);
+  for (const double t : {2.0, 2.5, 3.0}) {
+    const double up = t == 2.5 ? -0.6 : 0.9;
+    const auto answer = server.post(
+        "pose", {{"time", t}, {"drag", "left_hand"}, {"to", {0.1, 0.4 + 0.3 * (t - 2), up}}});
+    ASSERT_FALSE(answer.second["message"].is_null());
+    ASSERT_EQ(server.edit(answer.second["edits"]).first, 200);
+  }
+  for (const OrderedJson& finding : server.state()["findings"])
+    EXPECT_NE(finding["kind"], "table_position") << finding;
+}
+
 TEST_F(AuthorServer, SaysWhatCannotBeReached) {
   const Server server(file);
   const auto far = server.post("pose", {{"time", 2.4}, {"drag", "left_hand"}, {"to", {3, 0, 0}}});
@@ -714,11 +752,33 @@ TEST_F(AuthorServer, AJobIsCancelledAndCtrlCEndsTheServerWithinASecond) {
     httplib::Client client = server.client();
     client.Get(server.root() + "events", [](const char*, size_t) { return true; });
   });
-  httplib::Client idle = server.client();
+  const Connection idle(server.port());
   std::this_thread::sleep_for(200ms);
   const auto [seconds, exit_code] = server.interrupt();
   listener.join();
   EXPECT_LT(seconds, 1.0);
+  EXPECT_EQ(exit_code, 0);
+}
+
+TEST_F(AuthorServer, CtrlCEndsEachJobWithinASecond) {
+  save(replaced(R"({ "t": 3.771, "zmp": "left" })",
+                R"({ "t": 3.771, "zmp": "left", "joints": { "l_elbow": -170 } })"));
+  for (const char* const kind : {"repair", "simulate", "push"}) {
+    Server server(file);
+    ASSERT_EQ(server.post("job", {{"kind", kind}, {"options", {{"law", "both"}}}}).first, 200);
+    std::this_thread::sleep_for(300ms);
+    const auto [seconds, exit_code] = server.interrupt();
+    EXPECT_LT(seconds, 1.0) << kind;
+    EXPECT_EQ(exit_code, 0) << kind;
+  }
+}
+
+// A busy machine lets a program wait for longer than the patience with it.
+TEST_F(AuthorServer, AServerThatEndsLateHasEndedAsItShould) {
+  Server server(file);
+  ASSERT_EQ(server.post("job", {{"kind", "push"}}).first, 200);
+  const auto [seconds, exit_code] = server.interrupt(900ms);
+  EXPECT_GT(seconds, 0.9);
   EXPECT_EQ(exit_code, 0);
 }
 

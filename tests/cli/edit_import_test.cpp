@@ -37,6 +37,25 @@ TEST_F(Edit, BakedMotionIsTheSameMotion) {
   EXPECT_EQ(ayumi({"edit", "bake", kWalk, "-o", "baked.json"}).exit_code, 3);
 }
 
+// Named from another folder, by a way that goes up: the table is found beside the new pattern.
+TEST_F(Edit, ATableIsFoundFromWhereverItsPatternWasMade) {
+  fs::create_directories(folder / "in");
+  fs::create_directories(folder / "out");
+  ASSERT_EQ(ayumi({"new", "squat", "-q", "-o", "in/squat.json"}).exit_code, 0);
+  const auto beside = [&](const std::vector<std::string>& arguments) {
+    return run_program(arguments, folder / "out");
+  };
+  const Output baked = beside({"edit", "bake", "../in/squat.json", "-o", "baked.json"});
+  ASSERT_EQ(baked.exit_code, 0) << baked.err;
+  EXPECT_EQ(beside({"check", "baked.json"}).exit_code, 0) << beside({"check", "baked.json"}).err;
+  EXPECT_NE(contents(folder / "out/baked.json").find(R"("table": "baked.csv")"), std::string::npos);
+  const Output again = beside({"edit", "mirror", "./baked.json", "-o", "../in/mirrored.json"});
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_EQ(ayumi({"check", "in/mirrored.json"}).exit_code, 0);
+  EXPECT_NE(contents(folder / "in/mirrored.json").find(R"("table": "mirrored.csv")"),
+            std::string::npos);
+}
+
 TEST_F(Edit, MirroredTwiceIsTheSameFile) {
   ASSERT_EQ(ayumi({"edit", "mirror", kWalk, "-o", "a.json"}).exit_code, 0);
   ASSERT_EQ(ayumi({"edit", "mirror", "a.json", "-o", "b.json"}).exit_code, 0);

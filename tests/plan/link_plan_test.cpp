@@ -223,6 +223,20 @@ TEST(LinkPlan, TheHeadLooksAtThePoint) {
             std::string::npos);
 }
 
+TEST(LinkPlan, APlaceInMillimetresIsNamed) {
+  for (const auto& [factor, words] :
+       {std::pair(1e3, "these numbers in mm are [0.1500, 0.2000, 0.3000] m"),
+        std::pair(1e2, "these numbers in cm are [0.1500, 0.2000, 0.3000] m"), std::pair(3.0, "")}) {
+    Pattern pattern = standing(2);
+    at(pattern, 0).zmp = ZmpKey{ZmpKey::Place::center};
+    at(pattern, 1).hands["left"] = place(factor * Vector3d(0.15, 0.2, 0.3));
+    const std::string message =
+        test::error_message([&] { sample(hoap1(), pattern); }, ErrorCode::bad_pattern);
+    EXPECT_NE(message.find(words), std::string::npos) << message;
+    EXPECT_EQ(message.find("in metres") != std::string::npos, factor > 10) << message;
+  }
+}
+
 TEST(LinkPlan, SaysByHowMuchAHandIsOutOfReach) {
   const RobotModel& model = hoap1();
   const int body = hand_body(model, Side::left);

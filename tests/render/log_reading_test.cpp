@@ -181,6 +181,19 @@ TEST(LogReading, AKickAndAPushAreWorthShowing) {
   EXPECT_TRUE(std::is_sorted(times.begin(), times.end()));
 }
 
+// A push while the leg of a kick comes back: the kick itself is shown, too.
+TEST(LogReading, AKickInWhichThePushFallsIsWorthShowing) {
+  SimulationLog log = nod(1.2, 1.2, 4);
+  for (size_t k = 350; k < 900; ++k) log.samples[k].planned_contact = {true, false};
+  for (size_t k = 770; k < 780; ++k) {
+    log.samples[k].push_force = {0, 20, 0};
+    log.samples[k].push_point = log.samples[k].cog;
+  }
+  const std::vector<double> times = telling_instants(log, 6);
+  EXPECT_TRUE(shows(times, 1.2, 0.06)) << times.front();
+  EXPECT_TRUE(shows(times, 1.55, 0.01));
+}
+
 TEST(LogReading, AVerdictHoldsFromWhenItIsSo) {
   SimulationLog log = nod(1.2, 1.2, 4);
   EXPECT_NEAR(verdict_instant(log), 1.7, 0.06) << "at rest again";

@@ -128,6 +128,36 @@ async function addsPhasesAndKeys(tab) {
   expect(JSON.stringify(data()) === JSON.stringify(before), "all is as before");
 }
 
+/// A foot that is free gets a key where it is, and keys at the ends of its freedom; one that stands or swings gets none.
+async function addsKeysOfFeet(tab) {
+  const before = data(), bare = Object.fromEntries(["format", "robot", "units", "profile", "defaults"].filter((name) => before[name] !== undefined).map((name) => [name, before[name]]));
+  const add = (side, time) => tab.run(`window.ayumiAuthor.page.show(arguments[1]); document.getElementById("to-edit").click();
+    document.getElementById("key-track").value = "foot " + arguments[0] + "_foot"; document.querySelector("#add-key button").click();`, side, time);
+  const says = async (words) => expect(await until(() => tab.run("return document.getElementById('said').textContent.includes(arguments[0])", words), 5), "the page says: " + words);
+  await add("left", (before.phases[0].until + 1e-3) / 2);
+  await says("the left foot carries the robot");
+  const swing = before.phases.findIndex((phase) => phase.swing);
+  await add(before.phases[swing].swing.foot, (before.phases[swing - 1].until + before.phases[swing].until) / 2);
+  await says("A swing leads the " + before.phases[swing].swing.foot + " foot");
+  expect(JSON.stringify(data()) === JSON.stringify(before), "nothing is written");
+  await tab.after(() => save(JSON.stringify({ ...bare, phases: [{ until: 1.2, support: "both" }, { until: 2.8, support: "left" }, { until: 4.2, support: "both" }],
+    keyframes: [{ t: 0.6, zmp: "center" }, { t: 1.1, zmp: "left" }, { t: 2.9, zmp: "left" }, { t: 3.4, zmp: "center" }] }, null, 1)));
+  await tab.after(() => add("right", 2));
+  const keys = () => data().keyframes.filter((frame) => frame.feet).map((frame) => [frame.t, ...frame.feet.right]);
+  expect(keys().map(([t]) => t).join() === "1.2,2,2.8" && new Set(keys().map(([, ...place]) => place.join())).size === 1, "keys where the foot stands: " + JSON.stringify(keys()));
+  const selected = await tab.run("return [window.ayumiAuthor.page.selection.pointer, document.activeElement.dataset.id]");
+  const i = data().keyframes.findIndex((frame) => frame.t === 2);
+  expect(selected[0] === `/keyframes/${i}/feet/right` && selected[1] === selected[0] + "/0", "the new key has the focus: " + selected);
+  await tab.after(() => tab.type(`#selected [data-id="/keyframes/${i}/feet/right/2"]`, 0.01));
+  expect(keys()[1][3] === 0.01 && keys()[0][3] === 0, "and is raised: " + JSON.stringify(keys()));
+  // Where the robot cannot do what is written, a further key has the place of the one before.
+  await tab.after(() => tab.type(`#selected [data-id="/keyframes/${i}/feet/right/2"]`, 2));
+  expect(await tab.run("return Boolean(window.ayumiAuthor.page.state.error)"), "out of reach");
+  await tab.after(() => add("right", 2.4));
+  expect(keys()[2][0] === 2.4 && keys()[2][3] === 2, "a copied key: " + JSON.stringify(keys()));
+  await tab.after(() => save(JSON.stringify(before, null, 1)));
+}
+
 /// Parameters, blocks of the ground, goals of VIIP and blocks that repeat are made, and taken back.
 async function makesWhatIsNotThere(tab) {
   const before = text();
@@ -155,10 +185,19 @@ async function makesWhatIsNotThere(tab) {
   expect(!last || (keys?.repeat === 3 && keys.keyframes.length === last), "and of its keys: " + JSON.stringify(keys));
   const later = data().phases.at(-1).until;
   expect(Math.abs(later - phases.at(-1).until - 2 * phases[0].until) < 1e-6, `what comes later comes later: ${later}`);
+  await tab.click('[data-id="/phases/0/phases/0"]');
+  expect(await tab.run("return !document.querySelector('#selected [data-id=append]')"), "no phase can be added after one that is not the last");
   const shown = await tab.run("const s = window.ayumiAuthor.page.state; return [s.phases.length, s.error?.message ?? '']");
   expect(shown[0] === phases.length + 2 && !shown[1], "the page shows its rounds: " + shown);
   await tab.after(() => tab.click("#undo"));
   expect(text() === before, "and back");
+  await tab.click(`[data-id="/phases/${phases.length - 1}"]`);
+  await tab.after(() => press("Repeat"));
+  await tab.click(`[data-id="/phases/${phases.length - 1}/phases/0"]`);
+  await tab.after(() => press("Add a phase after this one"));
+  expect(data().phases.length === phases.length + 1 && data().phases.at(-1).support === "both", "a phase after a block: " + JSON.stringify(data().phases.at(-1)));
+  for (let i = 0; i < 2; ++i) await tab.after(() => tab.click("#undo"));
+  expect(text() === before, "and back again");
 
   const full = phases.findIndex(({ until }, i) => keyframes.some(({ t }) => t > (phases[i - 1]?.until ?? 0) + 0.001 && t < until - 0.001));
   if (full >= 0) {
@@ -357,10 +396,10 @@ async function showsFindings(tab) {
     const page = window.ayumiAuthor.page;
     return { place: document.getElementById("error-place").textContent, hidden: document.getElementById("error").hidden,
       shown: document.querySelector("#text .wrong")?.textContent, stale: page.state.stale,
-      grey: page.rig.meshes.every(({ mesh, material }) => mesh.material !== material) };`);
+      lanes: getComputedStyle(document.getElementById("strip")).filter, grey: page.rig.meshes.every(({ mesh, material }) => mesh.material !== material) };`);
   expect(!told.hidden && told.place === `Line ${line}:`, "the error's line: " + JSON.stringify(told));
   expect(/phases/.test(told.shown), "the line is shown: " + told.shown);
-  expect(told.stale && told.grey, "the old motion is grey");
+  expect(told.stale && told.grey && told.lanes === "grayscale(1)", "the old motion is grey, and so is its strip: " + told.lanes);
   await tab.shoot("error.png");
   await tab.after(() => save(good));
   expect(await tab.run("return document.getElementById('error').hidden"), "the error is gone");
@@ -585,7 +624,7 @@ try {
   const tab = await openPage(driving, 1280, 800);
   await runTrials(tab, [looks]);
   await tab.coarsen();
-  await runTrials(tab, [namesEverything, editsByKeyboard, keepsTheFocus, addsPhasesAndKeys, makesWhatIsNotThere, makesEveryPart,
+  await runTrials(tab, [namesEverything, editsByKeyboard, keepsTheFocus, addsPhasesAndKeys, addsKeysOfFeet, makesWhatIsNotThere, makesEveryPart,
     writesOptionalValues, movesKeysByTyping, locksWhatIsOld, dragsInTime, showsFindings, keepsBothVersions,
     poses, postures, pushesTheRobot, works, showsResults, keepsWhatIsBeingTyped, showsNoDeadControls]);
   await followsTheFile(driving, tab);

@@ -360,12 +360,37 @@ test("phases and their keys become blocks that repeat, and what is later comes l
   assert.equal(refused, undefined);
   assert.deepEqual(made, [
     { kind: "set", pointer: "/phases/1/until", value: "1.4 + 0.5*${round}" },
-    { kind: "remove", pointer: "/keyframes/2/after" },
-    { kind: "set", pointer: "/keyframes/2/t", value: "1.4 + 0.5*${round}" },
+    { kind: "set", pointer: "/keyframes/1/t", value: "1 + 0.5*${round}" },
     { kind: "set", pointer: "/keyframes/3/t", value: "1.45 + 0.5*${round}" },
     { kind: "set", pointer: "/phases/3/until", value: 4.2 },
     { kind: "repeat", pointer: "/phases/1", value: { items: 2, repeat: 3, count: "round" } },
+    { kind: "repeat", pointer: "/keyframes/1", value: { items: 3, repeat: 3, count: "round" } }]);
+});
+
+test("where a round ends with a key, the one at its beginning stays outside", () => {
+  const { document, state } = walk();
+  document.keyframes[3].t = 1.5;
+  Object.assign(state.keyframes[3], { time: 1.5, time_value: 1.5 });
+  Object.assign(state.keyframes[4], { time: 2.5, time_base: 1.5 });
+  const { edits: made } = edits.repeatPhases(state, document, 1, 2, 3);
+  assert.deepEqual(made, [
+    { kind: "set", pointer: "/phases/1/until", value: "1.4 + 0.5*${round}" },
+    { kind: "remove", pointer: "/keyframes/2/after" },
+    { kind: "set", pointer: "/keyframes/2/t", value: "1.4 + 0.5*${round}" },
+    { kind: "set", pointer: "/keyframes/3/t", value: "1.5 + 0.5*${round}" },
+    { kind: "set", pointer: "/phases/3/until", value: 4.2 },
+    { kind: "repeat", pointer: "/phases/1", value: { items: 2, repeat: 3, count: "round" } },
     { kind: "repeat", pointer: "/keyframes/2", value: { items: 2, repeat: 3, count: "round" } }]);
+});
+
+test("a block whose rounds begin with a key gets another number of rounds, and a key at its end moves", () => {
+  const { document, state } = rounds();
+  const own = state.keyframes.filter((one) => one.repeated).map((one) => ({ ...one, time: one.time === 1.4 ? 1 : one.time }));
+  state.keyframes = [state.keyframes[0], ...[0, 1, 2].map((round) => ({ ...own[0], time: 1 + 0.5 * round })), { time: 2.5, time_value: 2.5, time_base: 0, pointer: "/keyframes/3", time_pointer: "/keyframes/3/t" }];
+  const { edits: made, refused } = edits.setRounds(state, document, state.phases[3], 5);
+  assert.equal(refused, undefined);
+  assert.deepEqual(made.filter(({ pointer }) => pointer.startsWith("/keyframes")), [
+    { kind: "set", pointer: "/keyframes/2/repeat", value: 5 }, { kind: "set", pointer: "/keyframes/3/t", value: 3.5 }]);
 });
 
 test("disturbances after a block that repeats come later, and those within it stay in its first round", () => {

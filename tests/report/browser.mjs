@@ -39,6 +39,7 @@ async function withScript(tab) {
   expect(later.cursor - first.cursor > 100, "scrubbing moves the cursor");
   expect(/seconds, /.test(later.said), "the scrub bar speaks: " + later.said);
   expect(later.readout.startsWith("t " + later.time.toFixed(3)), "the readout: " + later.readout);
+  for (const one of [first, later]) expect(!/-0\.?0*(?![.\d])/.test(one.readout), "no minus before zero: " + one.readout);
   const floors = [0, 0.6 * last].map((t) => `window.ayumiReplay.show(${t}),
     window.ayumiReplay.floor()`);
   const [still, tilted] = await tab.run(`return [(${floors[0]}), (${floors[1]})];`);

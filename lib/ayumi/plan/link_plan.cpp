@@ -77,6 +77,23 @@ std::string numbers(const Vector3d& v, int digits) {
          text::fixed(v.z(), digits) + "]";
 }
 
+// A place whose numbers are in another unit is farther than so many heights of the robot's COG, and
+// within so many in that unit. Chosen: arms and walks of a few metres reach less than the first and
+// more than the second.
+constexpr double kOtherUnit = 20, kSameUnit = 5;
+
+// What a place that is far away would be in mm or cm; empty where that is far away, too.
+std::string other_unit(const Vector3d& place, double height) {
+  if (place.norm() < kOtherUnit * height) return "";
+  for (const auto& [unit, factor] : {std::pair("cm", 1e-2), std::pair("mm", 1e-3)}) {
+    const Vector3d meant = factor * place;
+    if (meant.norm() < kSameUnit * height)
+      return std::string("lengths are in metres, and these numbers in ") + unit + " are " +
+             numbers(meant, 4) + " m; ";
+  }
+  return "";
+}
+
 }  // namespace
 
 LinkPlan::LinkPlan(const RobotModel& model, const Pattern& pattern, const std::vector<bool>& solved)
@@ -597,7 +614,9 @@ void LinkPlan::complain(const Group& group, double t, const std::vector<Aim>& ai
     remedy = "give a point nearer to straight ahead, or turn the torso";
   } else if (missing > 0) {
     what = "the " + target.name + " is out of reach by " + millimetres(missing);
-    remedy = "the " + target.name + " reaches only " +
+    remedy = other_unit(in_trunk ? Vector3d(trunk.inverse() * missed->place) : missed->place,
+                        data.cog.z()) +
+             "the " + target.name + " reaches only " +
              numbers(in_trunk ? Vector3d(trunk.inverse() * end) : end, 4) + in_frame +
              (only_way ? "; the trunk is on its way, too: let the hand set out when the trunk has "
                          "arrived, with a key \"free\" of the hand there, or move the target"

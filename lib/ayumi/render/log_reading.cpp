@@ -239,6 +239,16 @@ double sunk_at(const SimulationLog& log) {
   return duration(log);
 }
 
+/// When the step or kick began in which the robot stands on one foot at `t` [s]; `t` otherwise.
+double step_began(const SimulationLog& log, double t) {
+  constexpr double kSlow = 2;  // before t [s]. Chosen: a slow kick
+  size_t k = tick_at(log, t);
+  const std::array<bool, 2> feet = log.samples[k].planned_contact;
+  if (feet[0] == feet[1]) return t;
+  while (k > 0 && log.samples[k - 1].planned_contact == feet) --k;
+  return std::max(t - kSlow, static_cast<double>(k) * log.dt);
+}
+
 /// The part of a run around its pushes or flights [s]; all of it where it has none, or where the
 /// robot moves more elsewhere.
 FlightRecord shown_part(const SimulationLog& log) {
@@ -256,7 +266,8 @@ FlightRecord shown_part(const SimulationLog& log) {
     part.begin = std::max(part.begin, flown.front().begin - kBefore);
     part.end = std::min(part.end, flown.back().end + kAfter);
   } else if (!pushed.empty()) {
-    part.begin = std::max(part.begin, pushed.front().begin - kBefore);
+    const double first = pushed.front().begin;
+    part.begin = std::max(part.begin, std::min(step_began(log, first), first - kBefore));
     const double last = std::max(pushed.back().end, log.result.fell_at);
     part.end = std::min(part.end, last + kRecovery);
   }

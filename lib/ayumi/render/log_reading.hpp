@@ -59,7 +59,8 @@ double telling_instant(const SimulationLog& log);
 /// `count` instants worth showing [s], in the order of time: begin and end, pushes, the fall, the
 /// apex of each flight, then postures in which joints or the COG turn back or come to rest, the
 /// larger their move the sooner, and what fills the longest gaps; of a walk on both feet. They lie
-/// around pushes or flights, unless the robot moves more elsewhere.
+/// around pushes, with the step or kick in which the first one falls, or around flights, unless the
+/// robot moves more elsewhere.
 std::vector<double> telling_instants(const SimulationLog& log, int count);
 
 /// What happens at an instant: "push 1.1 N s", "apex", "falls"; empty for nothing special.

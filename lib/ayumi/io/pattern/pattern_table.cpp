@@ -46,7 +46,7 @@ void write_pattern_and_table(const fs::path& path, const Pattern& pattern,
   Pattern named = pattern;
   // Written as it holds from the pattern's old folder, which write_pattern turns into the new one.
   const fs::path from = fs::absolute(pattern.file.empty() ? path : fs::path(pattern.file));
-  named.table->file = fs::absolute(table).lexically_relative(from.parent_path()).string();
+  named.table->file = fs::relative(fs::absolute(table), from.parent_path()).string();
   std::optional<KeptSequence>& kept = named.table->sequence;
   std::vector<fs::path> written;
   try {
@@ -58,8 +58,8 @@ void write_pattern_and_table(const fs::path& path, const Pattern& pattern,
     } else if (kept && kept->theta_sha256 != theta_sha256(*named.table)) {
       kept.reset();
     } else if (kept) {
-      const fs::path folder = fs::absolute(table).lexically_normal().parent_path();
-      kept->file = fs::path(kept->file).lexically_relative(folder).string();
+      const fs::path folder = fs::absolute(table).parent_path();
+      kept->file = fs::relative(fs::absolute(kept->file), folder).string();
     }
     write_file(table, dense_table_csv(*named.table, caution));
     written.push_back(table);

@@ -394,6 +394,7 @@ class Page {
       byId(id).parentElement.hidden = !this.can("undo");
       byId(id).disabled = !count;
     }
+    byId("time").classList.toggle("stale", state.stale);
     byId("keys-along").parentElement.hidden = !this.can("edit");
     byId("show-handles").parentElement.hidden = !this.can("pose.drag");
     byId("mark-targets").parentElement.hidden = !state.targets.length;

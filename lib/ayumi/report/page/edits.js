@@ -299,9 +299,16 @@ export function putGoal(phase, name, angleUnit, keyframes = []) {
 /// A time of each round: what is written, and the length of the rounds before.
 const inRounds = (value, length, count) => `${value} + ${length}*\${${count}}`;
 
-/// All that comes after a phase comes later by `shift`: phases, keyframes, disturbances, and motions of
+/// The keyframes that belong to a block from `from` to `until`: those up to its end, or, where each round
+/// `begins` with one, those from its beginning on.
+const inBlock = (from, until, begins) => ({ time }) => begins ? time > from - 5e-4 && time < until - 5e-4 : time > from + 5e-4 && time < until + 5e-4;
+
+/// Those that are later than this block.
+const afterBlock = (until, begins) => ({ time }) => time >= until + (begins ? -5e-4 : 5e-4);
+
+/// All that comes after a phase comes later by `shift`: phases, keyframes (`isLater`), disturbances, and motions of
 /// the floor. A keyframe that counts from the one before it follows that one, if it moves (`after`).
-function moveLater(state, document, last, shift, after) {
+function moveLater(state, document, last, shift, after, isLater) {
   const edits = [], { until } = state.phases[last], set = (pointer, value) => edits.push({ kind: "set", pointer, value });
   const refused = { refused: "A later block that repeats has times of its own. Change them in the text." };
   for (const phase of state.phases.slice(last + 1)) {
@@ -309,7 +316,7 @@ function moveLater(state, document, last, shift, after) {
     if (!canDrag(phase.until_value, phase)) return refused;
     set(phase.until_pointer, roundedTime(phase.until + shift));
   }
-  for (const [i, frame] of state.keyframes.filter((one) => one.time >= until + 5e-4).entries()) {
+  for (const [i, frame] of state.keyframes.filter(isLater).entries()) {
     if (isRelative(frame) && (i > 0 || after)) continue;
     if (!canDrag(frame.time_value, frame)) return refused;
     set(frame.time_pointer, timeValue(frame.time + shift, frame.time_base));
@@ -334,13 +341,17 @@ function disturbancesWithin(state, from, until) {
 export function repeatPhases(state, document, first, last, times) {
   const phases = state.phases.slice(first, last + 1), from = phases[0].from, until = phases.at(-1).until;
   const length = Number((until - from).toFixed(6)), shift = (times - 1) * length;
-  const frames = state.keyframes.filter((frame) => frame.time > from + 5e-4 && frame.time < until + 5e-4);
+  const walks = phases.some(({ swing }) => swing), valueOf = (frame) => valueAt(document, frame.pointer) ?? {};
+  const isPlaced = ({ zmp, cog, feet, hands, gaze }) => (zmp && typeof zmp !== "string") || cog?.x !== undefined || cog?.y !== undefined || feet || hands || gaze;
+  // Where the first round begins with a keyframe and ends without one, each round begins as the first one does.
+  const frameAt = (time) => state.keyframes.find((frame) => sameTime(frame.time, time)), opening = frameAt(from);
+  const begins = Boolean(opening) && !frameAt(until) && !(walks && isPlaced(valueOf(opening)));
+  const frames = state.keyframes.filter(inBlock(from, until, begins));
   if (!(times >= 2 && Number.isInteger(times))) return { refused: "A block repeats at least two times." };
   if ([...phases, ...frames].some((one) => one.repeated)) return { refused: "A part of this is already in a block that repeats. Change the block in the text." };
   if (phases.some(({ swing }) => swing && !swing.step))
     return { refused: "A swing of these phases lands at a place in the world, so every round would land there. Write it as a step first." };
-  const walks = phases.some(({ swing }) => swing), values = frames.map((frame) => valueAt(document, frame.pointer) ?? {});
-  const placed = values.findIndex(({ zmp, cog, feet, hands, gaze }) => (zmp && typeof zmp !== "string") || cog?.x !== undefined || cog?.y !== undefined || feet || hands || gaze);
+  const placed = frames.findIndex((frame) => isPlaced(valueOf(frame)));
   if (walks && placed >= 0)
     return { refused: `The keyframe at ${frames[placed].time.toFixed(3)} s names a place in the world, and the robot is elsewhere in each round. ` +
       "Write its ZMP as left, center or right, and leave out places of the COG, the feet, the hands and the gaze." };
@@ -355,7 +366,7 @@ export function repeatPhases(state, document, first, last, times) {
       set(frame.pointer + "/t", inRounds(roundedTime(frame.time), length, count));
     }
   }
-  const moved = moveLater(state, document, last, shift, frames.length > 0);
+  const moved = moveLater(state, document, last, shift, frames.length > 0, afterBlock(until, begins));
   if (moved.refused) return moved;
   edits.push(...moved.edits);
   edits.push({ kind: "repeat", pointer: phases[0].pointer, value: { items: phases.length, repeat: times, count } });
@@ -375,16 +386,16 @@ export function setRounds(state, document, phase, rounds) {
   if (!(rounds >= 1 && Number.isInteger(rounds))) return { refused: "The number of rounds is a whole number above 0." };
   if (pointer !== outermost(pointer)) return { refused: "This block is inside another block that repeats. Change its rounds in the text." };
   const own = state.phases.filter((one) => one.pointer.startsWith(pointer + "/")), from = own[0].from, until = own.at(-1).until;
-  const within = (frame) => frame.time > from + 5e-4 && frame.time < until + 5e-4;
+  const repeats = (block) => JSON.stringify(valueAt(document, block)?.repeat), isOwn = (frame) => frame.repeated && repeats(outermost(frame.pointer)) === repeats(pointer);
+  const begins = state.keyframes.some((frame) => sameTime(frame.time, from) && isOwn(frame)), within = inBlock(from, until, begins);
   const frames = state.keyframes.filter(within), blocks = [...new Set(frames.map((frame) => outermost(frame.pointer)))];
-  const repeats = (block) => JSON.stringify(valueAt(document, block)?.repeat);
-  const other = state.keyframes.find((frame) => within(frame) ? !frame.repeated || repeats(outermost(frame.pointer)) !== repeats(pointer)
+  const other = state.keyframes.find((frame) => within(frame) ? !isOwn(frame)
     : blocks.includes(outermost(frame.pointer)));
   if (other) return { refused: `The keyframe at ${other.time.toFixed(3)} s does not repeat with these phases. Change the rounds in the text.` };
   if (rounds === now) return { edits: [] };
   const kept = disturbancesWithin(state, from + Math.min(rounds, now) * (until - from) / now, until);
   if (kept) return { refused: `${kept} is in a round that would go. Move or remove it first.` };
-  const moved = moveLater(state, document, state.phases.indexOf(own.at(-1)), (rounds - now) * (until - from) / now, frames.length > 0);
+  const moved = moveLater(state, document, state.phases.indexOf(own.at(-1)), (rounds - now) * (until - from) / now, frames.length > 0, afterBlock(until, begins));
   if (moved.refused) return moved;
   return { edits: [...[pointer, ...blocks].map((block) => ({ kind: "set", pointer: block + "/repeat", value: rounds })), ...moved.edits] };
 }

@@ -14,7 +14,7 @@ const weighted = (path, written) => Object.keys(written ?? {}).map((joint) => ({
 export const fieldsOf = {
   pattern: (value, state) => [
     { path: ["name"], otherwise: "none" },
-    { path: ["profile"], otherwise: "the first one of the robot" },
+    { path: ["profile"], otherwise: "the first one of the robot", choices: state.profiles },
     { path: ["defaults", "cog_height"], otherwise: "as in the posture" },
     { path: ["defaults", "posture"], otherwise: "home", choices: state.postures },
     { path: ["defaults", "interpolation"], otherwise: "minimum_jerk", choices: interpolation },

@@ -440,7 +440,8 @@ export class Inspector {
         { release: ["ref_z", "spring"] }),
       ...this.swingButtons(phase),
       this.splitter = this.button(() => splitPhase(phase, this.page.time), "Cut at the cursor"),
-      index === state.phases.length - 1 && this.page.can("edit") ? element("button", { type: "button", "data-id": "append", onclick: async () => {
+      // In a block that repeats, all rounds of a phase are written in one place.
+      phase.pointer === state.phases.at(-1).pointer && this.page.can("edit") ? element("button", { type: "button", "data-id": "append", onclick: async () => {
         if (await this.page.edit(appendPhase(state.phases))) this.page.select({ kind: "phase", pointer: this.page.state.phases.at(-1).pointer }, this.page.state.phases.at(-1).from);
       } }, "Add a phase after this one") : null,
       state.phases.length > 1 ? this.button(() => [{ kind: "remove", pointer: phase.pointer }], "Remove this phase") : null,
@@ -559,16 +560,44 @@ export class Inspector {
 
   offerTracks(state) {
     const select = byId("key-track"), chosen = select.value;
-    const targets = state.handles.filter((one) => one.link || one.gaze);
+    const targets = state.handles.filter((one) => one.link || one.gaze), feet = state.handles.filter((one) => one.foot);
     const known = [["zmp", "ZMP"], ["cog", "COG"], ["cog height", "COG height"], ["fz", "vertical force"], ["torso", "trunk"]];
     select.replaceChildren(...known.map(([value, label]) => element("option", { value }, label)),
+      ...feet.length ? [element("optgroup", { label: "Feet" }, ...feet.map((one) => element("option", { value: "foot " + one.name }, one.label)))] : [],
       ...targets.length ? [element("optgroup", { label: "Hands and gaze" }, ...targets.map((one) =>
         element("option", { value: "target " + one.name }, one.label)))] : [],
       element("optgroup", { label: "Joints" }, ...state.joints.map((one) => element("option", { value: one.name }, one.name))));
     if (chosen) select.value = chosen;
   }
 
+  /// A foot that is free gets a key where it is, and keys where its freedom begins and ends, as by a drag.
+  async addFootKey(handle) {
+    await this.page.showPlan();
+    const { state, time } = this.page, phase = state.phases.find((one) => time < one.until && !sameTime(time, one.until)) ?? state.phases.at(-1);
+    if (!phase.support || phase.support === "both" || phase.support === handle.foot)
+      return this.page.say(`At ${seconds(time)} the ${handle.label} carries the robot, so it has no key there. Choose a time at which it is in the air.`);
+    if (!this.page.can("pose.drag")) return this.copyFootKey(handle, time);
+    const place = this.page.handles.placeOf(handle, this.page.planRow()).toArray();
+    const { status, value } = await this.page.server.ask("POST", "pose", { time, drag: handle.name, from: place, to: place });
+    if (status !== 200) return this.page.say(value.message || "The foot cannot have a key. Please reload the page.");
+    const done = !value.edits.length || await this.page.edit(value.edits);
+    if (done && !this.selectNew("/feet/" + handle.foot, time))
+      this.page.say(`A swing leads the ${handle.label} at ${seconds(time)}: type where it lands, or drag the foot.`);
+    return done;
+  }
+
+  /// Where the robot cannot do what is written, the foot has the place of its key before.
+  async copyFootKey(handle, time) {
+    const { state, document } = this.page, keyOf = (frame) => valueAt(document, `${frame.pointer}/feet/${handle.foot}`);
+    const before = state.keyframes.filter((frame) => frame.time < time && keyOf(frame) !== undefined).at(-1);
+    if (!before) return this.page.say("The text of the pattern has an error; correct it first.");
+    const edits = putPart(state.keyframes, time, "feet", handle.foot, keyOf(before));
+    return edits.length > 0 && await this.page.edit(edits) && this.selectNew("/feet/" + handle.foot, time);
+  }
+
   async addKey() {
+    const foot = this.page.state.handles.find((one) => byId("key-track").value === "foot " + one.name);
+    if (foot) return this.addFootKey(foot);
     // The place of a hand is that of the robot in the picture.
     if (byId("key-track").value.startsWith("target ")) await this.page.showPlan();
     const { state } = this.page, track = byId("key-track").value, time = this.page.time, row = this.page.planRow();
@@ -584,14 +613,15 @@ export class Inspector {
       : track === "cog height" ? "/cog" : joint ? "/joints" + token(track) : "/" + track, time);
   }
 
-  /// The key that has just been added is selected, with the focus in its first value.
+  /// The key that has just been added is selected, with the focus in its first value; false where there is none.
   selectNew(inside, time) {
     const frame = this.page.state.keyframes.find((one) => sameTime(one.time, time));
-    if (!frame) return;
+    if (!frame) return false;
     const pointer = frame.pointer + inside;
-    if (!this.page.state.tracks.some((track) => track.keys.some((one) => one.pointer === pointer))) return;
+    if (!this.page.state.tracks.some((track) => track.keys.some((one) => one.pointer === pointer))) return false;
     this.page.select({ kind: "key", pointer }, frame.time);
     [...byId("selected").querySelectorAll("input, select")].find((one) => one.dataset.id?.startsWith(pointer))?.focus();
+    return true;
   }
 
   moved() {

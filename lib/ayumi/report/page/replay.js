@@ -3,6 +3,7 @@
 
 import { Vector3 } from "three";
 import { GLTFLoader } from "three/examples/jsm/loaders/GLTFLoader.js";
+import { fixed } from "./dom.js";
 import { rowAt } from "./series.js";
 import { Viewer, bodyOf } from "./viewer.js";
 
@@ -47,7 +48,7 @@ function drawCursors() {
 
 const cursors = drawCursors();
 /// Three digits, whole numbers above.
-const digits = (value) => value.toFixed(Math.abs(value) < 9.995 ? 2 : Math.abs(value) < 99.95 ? 1 : 0);
+const digits = (value) => fixed(value, Math.abs(value) < 9.995 ? 2 : Math.abs(value) < 99.95 ? 1 : 0);
 const millimetres = (value) => digits(1000 * value);
 const place = (name, row, axes) => axes.map((axis) => millimetres(row[columns[name + "." + axis]]))
   .join(", ") + " mm";

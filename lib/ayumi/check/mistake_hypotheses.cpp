@@ -1,0 +1,1180 @@
+#include "ayumi/check/mistake_hypotheses.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <numbers>
+#include <optional>
+
+#include "ayumi/author/edit/edit.hpp"
+#include "ayumi/author/generate/pattern_builder.hpp"
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/number_slips.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/math/elementary.hpp"
+#include "ayumi/math/rotation.hpp"
+#include "ayumi/motion/pattern_context.hpp"
+#include "ayumi/plan/folded_legs.hpp"
+#include "ayumi/plan/foot_plan.hpp"
+
+namespace ayumi {
+
+namespace {
+
+// Part of a swing that a missing double support takes. Chosen: that of the generated walks.
+constexpr double kDoubleSupport = 0.2;
+// A phase whose duration differs by less than this share from that of its like is as long as it was
+// meant to be. Chosen: generated walks differ by 1 %.
+constexpr double kUsualShare = 0.2;
+// No phase of a robot is shorter [s]. Chosen: ten times less than the shortest steps of small
+// robots; a time in seconds that is read in ms is below half of it, and steps are above twice.
+constexpr double kShortestPhase = 0.02;
+// So many keyframes that would be at ends of phases are no chance. Chosen: those of two steps.
+constexpr long kManyKeys = 4;
+// A time that is nearer to another than this share of it is meant to be the same. Chosen: times are
+// written in milliseconds, and a factor that is read off one of them is out by as much.
+constexpr double kSameTime = 0.005;
+// A length below this is none [m]. Definition: what rounding leaves.
+constexpr double kNoLength = 1e-4;
+// An angle below this is none [rad]. Definition: what rounding leaves.
+constexpr double kNoAngle = 1e-6;
+// A level foot below a leg that leans by less than this is no reason [rad]. Chosen: five degrees,
+// which every ankle bends.
+constexpr double kNotedLean = 0.09;
+// A foot that turns less against the other one has no turn to speak of [rad]. Chosen: ten degrees.
+constexpr double kNotedTurn = 0.17;
+// A COG that is farther than this from the middle of the feet is beside them; a share of the length
+// of a leg. Chosen: more than half of a sole.
+constexpr double kNotedOffset = 0.25;
+// Share of the length of a leg that its foot is at most aside. Definition: the sine of an angle.
+constexpr double kMostLean = 0.9;
+// A segment that lasts less than this share of its neighbour is too short before a value is out by
+// a power of ten. Chosen: keys of one motion are seldom so unequal.
+constexpr double kShortSegment = 0.15;
+
+std::string seconds(double t) { return text::brief(t, 5) + " s"; }
+
+Support opposite(Support support) {
+  return support == Support::left    ? Support::right
+         : support == Support::right ? Support::left
+                                     : support;
+}
+
+bool is_single(Support support) { return support == Support::left || support == Support::right; }
+
+Side stance_of(Support support) { return support == Support::left ? Side::left : Side::right; }
+
+}  // namespace
+
+class Hypotheses::Maker {
+ public:
+  Maker(const RobotModel& model, const Pattern& pattern, const Outcome& found)
+      : model_(model), pattern_(pattern), found_(found), values_(written_values(model, pattern)) {
+    try {
+      feet_.emplace(model, pattern);
+    } catch (const Error&) {  // the phases themselves are wrong
+    }
+  }
+
+  const std::vector<WrittenValue>& values() const { return values_; }
+
+  std::vector<Hypothesis> units() const {
+    std::vector<Hypothesis> made;
+    angle_units(made);
+    time_units(made);
+    stretched_keys(made);
+    length_units(made);
+    return made;
+  }
+
+  std::vector<Hypothesis> times() const {
+    std::vector<Hypothesis> made;
+    turns(made);
+    level_feet(made);
+    crossed_footholds(made);
+    key_times(made);
+    phase_times(made);
+    return made;
+  }
+
+  std::vector<Hypothesis> irregular() const {
+    std::vector<Hypothesis> made;
+    phase_times(made);
+    foothold_exchanges(made);
+    zmp_sides(made);
+    zmp_keys(made);
+    all_zmp_keys(made);
+    turns(made);
+    swings(made);
+    double_supports(made);
+    leg_keys(made);
+    interpolations(made);
+    level_feet(made);
+    return made;
+  }
+
+  std::vector<Hypothesis> exchanges() const {
+    std::vector<Hypothesis> made;
+    footholds(made);
+    zmp_sides(made);
+    zmp_keys(made);
+    all_zmp_keys(made);
+    phase_sides(made);
+    starts(made);
+    key_sides(made);
+    return made;
+  }
+
+  std::vector<Hypothesis> missing() const {
+    std::vector<Hypothesis> made;
+    swings(made);
+    double_supports(made);
+    leg_keys(made);
+    interpolations(made);
+    level_cog(made);
+    held_cog(made);
+    return made;
+  }
+
+  std::vector<Hypothesis> nearer() const {
+    std::vector<Hypothesis> made;
+    near_footholds(made);
+    lesser_turns(made);
+    return made;
+  }
+
+  std::vector<Hypothesis> paces() const {
+    std::vector<Hypothesis> made;
+    cog_height(made);
+    if (pattern_.table || pattern_.correction) return made;
+    // The COG sways less where the steps are quicker.
+    const std::vector<double> usual = {1.25, 1.6, 2.0, 3.0, 5.0},
+                              slight = {1.03, 0.9, 1.1, 0.8, 1.25};
+    for (const double factor : found_.slight ? slight : usual)
+      made.push_back({Rank::pace,
+                      {"/phases", "the motion takes " + seconds(pattern_.duration()),
+                       "with all times multiplied by " + text::brief(factor)},
+                      [this, factor](Pattern& p) { p = retimed(model_, p, factor); }});
+    return made;
+  }
+
+ private:
+  double begin_of(size_t phase) const { return phase > 0 ? pattern_.phases[phase - 1].until : 0.0; }
+  std::string phase_place(size_t i) const { return pointer_of_phase(pattern_, i); }
+  std::string key_place(size_t i) const { return pointer_of_keyframe(pattern_, i); }
+  /// Whether an error may come from this phase, or from that of the next step.
+  bool reaches(size_t phase) const {
+    const size_t last = std::min(phase + 4, pattern_.phases.size() - 1);
+    return found_.touches(begin_of(phase), pattern_.phases[last].until);
+  }
+  bool reaches_key(size_t key) const {
+    const auto& keys = pattern_.keyframes;
+    return found_.touches(key > 0 ? keys[key - 1].t : 0,
+                          key + 1 < keys.size() ? keys[key + 1].t : pattern_.duration());
+  }
+
+  void scale_all(Pattern& pattern, Quantity quantity, double factor) const {
+    for (const WrittenValue& value : values_)
+      if (value.quantity == quantity) value.scale(pattern, factor);
+  }
+
+  void angle_units(std::vector<Hypothesis>& made) const {
+    double most = 0;
+    for (const WrittenValue& value : values_)
+      for (const WrittenNumber& number : value.numbers)
+        if (value.quantity == Quantity::angle) most = std::max(most, std::abs(number.value));
+    constexpr double degree = std::numbers::pi / 180;
+    const bool small = most <= 2 * std::numbers::pi * degree;
+    if (most == 0 || (pattern_.degrees && !small)) return;
+    const std::string meant = pattern_.degrees ? "rad" : "deg",
+                      unit = pattern_.degrees ? "deg" : "rad";
+    made.push_back({Rank::unit,
+                    {"/units",
+                     "the angles are declared in " + unit + ", and the largest is " +
+                         text::brief(pattern_.degrees ? most / degree : most) + " " + unit,
+                     "with \"units\": {\"angle\": \"" + meant + "\"}"},
+                    [this, factor = pattern_.degrees ? 1 / degree : degree](Pattern& p) {
+                      scale_all(p, Quantity::angle, factor);
+                    }});
+  }
+
+  void time_units(std::vector<Hypothesis>& made) const {
+    for (const auto& [unit, factor] :
+         {std::pair("ms", 1e-3), std::pair("hundredths of a second", 1e-2)})
+      if (pattern_.duration() * factor > 0.1 && pattern_.duration() > 30)
+        made.push_back({Rank::unit,
+                        {"/phases", "the motion lasts " + seconds(pattern_.duration()),
+                         std::string("times are in seconds; with all times read as ") + unit},
+                        [factor = factor](Pattern& p) {
+                          for (Phase& phase : p.phases) phase.until *= factor;
+                          for (Keyframe& key : p.keyframes) key.t *= factor;
+                        }});
+  }
+
+  // Phases that were stretched while the keyframes were left, or the other way round.
+  void stretched_keys(std::vector<Hypothesis>& made) const {
+    const auto& keys = pattern_.keyframes;
+    const auto fitting = [&](double factor) {
+      return std::count_if(keys.begin(), keys.end(), [&](const Keyframe& key) {
+        return std::any_of(pattern_.phases.begin(), pattern_.phases.end(), [&](const Phase& phase) {
+          return std::abs(phase.until - factor * key.t) < kSameTime * phase.until;
+        });
+      });
+    };
+    const long now = fitting(1);
+    long most = now;
+    double best = 1;
+    for (const Keyframe& key : keys) {
+      if (key.t <= 0) continue;
+      const double factor = pattern_.phases.front().until / key.t;
+      if (const long fit = fitting(factor); fit > most) {
+        most = fit;
+        best = factor;
+      }
+    }
+    if (most < kManyKeys || most <= 2 * now || 2 * most < static_cast<long>(keys.size())) return;
+    made.push_back(
+        {Rank::unit,
+         {"/keyframes",
+          "the times of the keyframes do not fit those of the phases: " + std::to_string(now) +
+              " of " + std::to_string(keys.size()) + " keyframes are at the end of a phase",
+          "with the times of all keyframes multiplied by " + text::brief(best) + " (then " +
+              std::to_string(most) + " keyframes are at the end of a phase)"},
+         [best](Pattern& p) {
+           for (Keyframe& key : p.keyframes) key.t *= best;
+         }});
+  }
+
+  // Where most lengths are farther than three legs reach.
+  void length_units(std::vector<Hypothesis>& made) const {
+    const double leg = leg_length(model_);
+    int far = 0, all = 0;
+    for (const WrittenValue& value : values_) {
+      if (value.quantity != Quantity::length || value.suspicion(model_) == 0) continue;
+      ++all;
+      if (std::abs(value.numbers.front().value) > 3 * leg) ++far;
+    }
+    if (far < 2 || 2 * far < all) return;
+    for (const auto& [unit, factor] : {std::pair("mm", 1e-3), std::pair("cm", 1e-2)})
+      made.push_back(
+          {Rank::unit,
+           {"/units", "lengths are in metres", std::string("with all lengths read as ") + unit},
+           [this, factor = factor](Pattern& p) { scale_all(p, Quantity::length, factor); }});
+  }
+
+  // ---- times
+
+  // A key of a block that repeats has no time of its own in the file.
+  bool is_repeated(size_t key) const {
+    const std::string& pointer = pattern_.keyframes[key].pointer;
+    return !pointer.empty() &&
+           std::count_if(pattern_.keyframes.begin(), pattern_.keyframes.end(),
+                         [&](const Keyframe& other) { return other.pointer == pointer; }) > 1;
+  }
+
+  // Whether a time is within a flight, not at its ends.
+  bool flies(double t) const {
+    double from = 0;
+    for (const Phase& phase : pattern_.phases) {
+      if (phase.support == Support::none && !phase.viip && t > from && t < phase.until) return true;
+      from = phase.until;
+    }
+    return false;
+  }
+
+  // A key of the ZMP or of a foot at the end of a phase belongs to the change of the support.
+  bool belongs_to_phase(const Keyframe& key) const {
+    return (key.zmp || key.feet[0] || key.feet[1]) &&
+           std::any_of(pattern_.phases.begin(), pattern_.phases.end(), [&](const Phase& phase) {
+             return std::abs(phase.until - key.t) < kSameTime * phase.until;
+           });
+  }
+
+  void key_times(std::vector<Hypothesis>& made) const {
+    const auto& keys = pattern_.keyframes;
+    for (size_t i = 0; i < keys.size(); ++i) {
+      if (!reaches_key(i) || is_repeated(i)) continue;
+      const double before = i > 0 ? keys[i - 1].t : 0;
+      const double after = i + 1 < keys.size() ? keys[i + 1].t : pattern_.duration();
+      const auto add = [&](Rank rank, double t, const std::string& why, double change = 0) {
+        if (t <= before || t >= after || t == keys[i].t) return;
+        // In a flight the COG follows its parabola: a key of the COG there would be the next error.
+        if ((keys[i].cog_x || keys[i].cog_y || keys[i].cog_height) && flies(t)) return;
+        made.push_back(
+            {rank,
+             {key_place(i), "t is " + seconds(keys[i].t) + why, "with t = " + seconds(t)},
+             [i, t](Pattern& p) { p.keyframes[i].t = t; },
+             change});
+      };
+      const double in = keys[i].t - before, out = after - keys[i].t;
+      const bool too_early = in < kShortSegment * out;
+      // What was meant leaves no shorter segment than what is written.
+      for (const double t : number_slips(keys[i].t))
+        if (std::min(t - before, after - t) >= std::min(in, out))
+          add(Rank::slip, t, "", too_early ? -2 : 0);
+      if (i == 0 || (!too_early && belongs_to_phase(keys[i]))) continue;
+      const std::string lasts = ", so the segment before it lasts " + seconds(in) +
+                                " and the one after it " + seconds(out);
+      // Between a short and a long neighbour, towards the long one.
+      for (const double share : {0.35, 0.6, 0.8}) {
+        const double t = in < out ? keys[i].t + share * out : keys[i].t - share * in;
+        if (too_early)
+          add(Rank::slip, std::round(1000 * t) / 1000, lasts, -1);
+        else
+          add(Rank::amount, std::round(1000 * t) / 1000, lasts);
+        const double back = in < out ? keys[i].t - share * in : keys[i].t + share * out;
+        add(Rank::amount, std::round(1000 * back) / 1000, lasts);
+      }
+    }
+  }
+
+  /// The median of the durations of phases that are like this one; nothing without others.
+  std::optional<double> usual_duration(size_t phase) const {
+    std::vector<double> like;
+    for (size_t i = 0; i < pattern_.phases.size(); ++i)
+      if (i != phase &&
+          is_single(pattern_.phases[i].support) == is_single(pattern_.phases[phase].support) &&
+          pattern_.phases[i].swing.has_value() == pattern_.phases[phase].swing.has_value())
+        like.push_back(pattern_.phases[i].until - begin_of(i));
+    if (like.size() < 2) return std::nullopt;
+    std::sort(like.begin(), like.end());
+    return like[like.size() / 2];
+  }
+
+  void phase_times(std::vector<Hypothesis>& made) const {
+    for (size_t i = 0; i < pattern_.phases.size(); ++i) {
+      if (!reaches(i)) continue;
+      const double until = pattern_.phases[i].until, begin = begin_of(i);
+      const double after =
+          i + 1 < pattern_.phases.size() ? pattern_.phases[i + 1].until : until * 1e3;
+      const std::optional<double> usual = usual_duration(i);
+      if (usual && std::abs(until - begin - *usual) < kUsualShare * *usual) continue;
+      std::vector<double> meant;
+      if (usual) meant.push_back(std::round(1000 * (begin + *usual)) / 1000);
+      const auto unlike = [&](double t) { return usual ? std::abs(t - begin - *usual) : 0.0; };
+      for (const double slip : number_slips(until))
+        if (unlike(slip) <= unlike(until)) meant.push_back(slip);
+      const std::string lasts = "the phase ends at " + seconds(until) + " and lasts " +
+                                seconds(until - begin) +
+                                (usual ? ", while similar phases last " + seconds(*usual) : "");
+      // A motion that goes on so long has keys there.
+      const bool last = i + 1 == pattern_.phases.size();
+      const double keyed = pattern_.keyframes.empty() ? 0 : pattern_.keyframes.back().t;
+      const auto is_used = [&](double t) { return !last || t <= until || 2 * keyed > begin + t; };
+      for (const double t : meant)
+        if (t > begin + kShortestPhase && t < after && t != until && is_used(t))
+          made.push_back({Rank::slip,
+                          {phase_place(i), lasts, "with an end at " + seconds(t)},
+                          [i, t](Pattern& p) { p.phases[i].until = t; }});
+      if (!usual) continue;
+      made.push_back(
+          {Rank::slip,
+           {phase_place(i), lasts,
+            "with a duration of " + seconds(*usual) + ", and all times after this phase " +
+                seconds(std::abs(*usual - (until - begin))) +
+                (*usual > until - begin ? " later," : " earlier,")},
+           [i, until, later = *usual - (until - begin)](Pattern& p) {
+             for (size_t k = i; k < p.phases.size(); ++k) p.phases[k].until += later;
+             for (Keyframe& key : p.keyframes)
+               if (key.t >= until - 1e-9) key.t += later;
+           }});
+    }
+  }
+
+  // ---- sides
+
+  static ZmpKey::Place place_under(Support single) {
+    return single == Support::left ? ZmpKey::Place::left : ZmpKey::Place::right;
+  }
+
+  // Whether this key puts the ZMP under the foot on which the robot stands alone: at its place, or
+  // at a point on its sole.
+  bool is_under(const Keyframe& key, Support single) const {
+    if (key.zmp->place != ZmpKey::Place::point) return key.zmp->place == place_under(single);
+    if (!feet_) return false;
+    const Side side = stance_of(single);
+    Eigen::AlignedBox2d sole;
+    for (const Eigen::Vector2d& corner : model_.sole(side).polygon) sole.extend(corner);
+    const Eigen::Isometry3d place = feet_->pose(side, key.t);
+    const Eigen::Vector3d zmp(key.zmp->point.x(), key.zmp->point.y(), place.translation().z());
+    return sole.contains((place.inverse() * zmp).head<2>());
+  }
+
+  /// The keys that lead the ZMP while the robot stands on one foot, and put it elsewhere: those of
+  /// the phase, and where it begins or ends between keys, the nearest ones outside.
+  std::vector<size_t> wrong_zmp_keys(size_t phase) const {
+    const double begin = begin_of(phase), until = pattern_.phases[phase].until;
+    std::vector<size_t> keys, wrong;
+    std::optional<size_t> before, after;
+    for (size_t k = 0; k < pattern_.keyframes.size(); ++k) {
+      const Keyframe& key = pattern_.keyframes[k];
+      if (!key.zmp) continue;
+      if (key.t <= begin + 1e-9) before = k;
+      if (key.t >= until - 1e-9 && !after) after = k;
+      if (key.t > begin + 1e-9 && key.t < until - 1e-9) keys.push_back(k);
+    }
+    if (before) keys.insert(keys.begin(), *before);
+    if (after) keys.push_back(*after);
+    for (const size_t k : keys)
+      if (!is_under(pattern_.keyframes[k], pattern_.phases[phase].support)) wrong.push_back(k);
+    return wrong;
+  }
+
+  // The ZMP stays in the middle, or elsewhere, in several phases on one foot.
+  void all_zmp_keys(std::vector<Hypothesis>& made) const {
+    std::map<size_t, ZmpKey::Place> meant;
+    std::vector<size_t> phases;
+    for (size_t i = 0; i < pattern_.phases.size(); ++i) {
+      if (!is_single(pattern_.phases[i].support)) continue;
+      const std::vector<size_t> wrong = wrong_zmp_keys(i);
+      if (!wrong.empty()) phases.push_back(i);
+      for (const size_t k : wrong) meant[k] = place_under(pattern_.phases[i].support);
+    }
+    if (phases.size() < 2) return;
+    const Phase& first = pattern_.phases[phases.front()];
+    made.push_back({Rank::exchange,
+                    {phase_place(phases.front()),
+                     std::string("the robot stands on the ") + name_of(stance_of(first.support)) +
+                         " foot, but " + key_place(wrong_zmp_keys(phases.front()).front()) +
+                         " puts the ZMP " + zmp_words(wrong_zmp_keys(phases.front()).front()) +
+                         "; this is so in " + std::to_string(phases.size()) + " phases",
+                     "with the ZMP under the foot that carries the robot in each of these phases"},
+                    [meant](Pattern& p) {
+                      for (const auto& [k, place] : meant) p.keyframes[k].zmp->place = place;
+                    }});
+  }
+
+  std::string zmp_words(size_t key) const {
+    const ZmpKey::Place place = pattern_.keyframes[key].zmp->place;
+    return place == ZmpKey::Place::left     ? "under the left foot"
+           : place == ZmpKey::Place::right  ? "under the right foot"
+           : place == ZmpKey::Place::center ? "at \"center\""
+                                            : "at a point";
+  }
+
+  // All keys of the ZMP under the other foot.
+  void zmp_sides(std::vector<Hypothesis>& made) const {
+    size_t wrong = 0, single = 0;  // phases
+    for (size_t i = 0; i < pattern_.phases.size(); ++i) {
+      const Phase& phase = pattern_.phases[i];
+      if (!is_single(phase.support)) continue;
+      ++single;
+      const std::vector<size_t> keys = wrong_zmp_keys(i);
+      if (std::any_of(keys.begin(), keys.end(), [&](size_t k) {
+            return pattern_.keyframes[k].zmp->place == place_under(opposite(phase.support));
+          }))
+        ++wrong;
+    }
+    if (wrong < 2 || 2 * wrong <= single) return;
+    made.push_back({Rank::exchange,
+                    {"/keyframes",
+                     "the keys put the ZMP under the left foot where the robot stands on the right "
+                     "foot, or the other way round; perhaps left and right were exchanged",
+                     "with left and right exchanged in all ZMP keys"},
+                    [](Pattern& p) {
+                      for (Keyframe& key : p.keyframes) {
+                        if (!key.zmp) continue;
+                        if (key.zmp->place == ZmpKey::Place::left)
+                          key.zmp->place = ZmpKey::Place::right;
+                        else if (key.zmp->place == ZmpKey::Place::right)
+                          key.zmp->place = ZmpKey::Place::left;
+                      }
+                    }});
+  }
+
+  void zmp_keys(std::vector<Hypothesis>& made) const {
+    for (size_t i = 0; i < pattern_.phases.size(); ++i) {
+      const Phase& phase = pattern_.phases[i];
+      if (!is_single(phase.support) || !reaches(i)) continue;
+      const ZmpKey::Place meant = place_under(phase.support);
+      const std::vector<size_t> wrong = wrong_zmp_keys(i);
+      if (wrong.empty()) continue;
+      std::vector<std::string> places;
+      for (const size_t k : wrong) places.push_back(key_place(k));
+      const std::string foot = name_of(stance_of(phase.support));
+      const std::string at = zmp_words(wrong.front());
+      made.push_back(
+          {Rank::exchange,
+           {phase_place(i),
+            "the robot stands on the " + foot + " foot, but " + text::join(places, " and ") +
+                (places.size() > 1 ? " put" : " puts") + " the ZMP " + at,
+            "with \"zmp\": \"" + foot +
+                (places.size() > 1 ? "\" in these keyframes" : "\" in this keyframe")},
+           [wrong, meant](Pattern& p) {
+             for (const size_t k : wrong) p.keyframes[k].zmp->place = meant;
+           }});
+    }
+  }
+
+  /// What the feet go from foothold to foothold [m].
+  double way_of_feet(const Pattern& pattern) const {
+    double way = 0;
+    std::array<std::optional<Eigen::Vector3d>, 2> at;
+    for (const Phase& phase : pattern.phases) {
+      if (!phase.swing || phase.swing->step) continue;
+      auto& last = at[static_cast<size_t>(index(phase.swing->foot))];
+      if (last) way += (phase.swing->to.position - *last).norm();
+      last = phase.swing->to.position;
+    }
+    return way;
+  }
+
+  // Exchanged footholds lead the feet back and forth. Footholds in good order would do so after an
+  // exchange.
+  bool exchange_shortens_way(size_t one, size_t other) const {
+    Pattern exchanged = pattern_;
+    std::swap(exchanged.phases[one].swing->to, exchanged.phases[other].swing->to);
+    return way_of_feet(exchanged) < way_of_feet(pattern_) - kNoLength;
+  }
+
+  // Whether the foot that swings in this phase swings in the steps before and after it, too.
+  bool swings_thrice(size_t phase) const {
+    const auto foot_of = [&](size_t i) -> std::optional<Side> {
+      if (!pattern_.phases[i].swing) return std::nullopt;
+      return pattern_.phases[i].swing->foot;
+    };
+    std::optional<Side> before, after;
+    for (size_t i = phase; i-- > 0 && !before;) before = foot_of(i);
+    for (size_t i = phase + 1; i < pattern_.phases.size() && !after; ++i) after = foot_of(i);
+    return foot_of(phase) && before == foot_of(phase) && after == before;
+  }
+
+  void phase_sides(std::vector<Hypothesis>& made) const {
+    for (size_t i = 0; i < pattern_.phases.size(); ++i) {
+      const Phase& phase = pattern_.phases[i];
+      if (!is_single(phase.support) || !reaches(i)) continue;
+      const Support meant = opposite(phase.support);
+      made.push_back({Rank::exchange,
+                      {phase_place(i),
+                       std::string("support is ") + name_of(phase.support) +
+                           (phase.swing ? std::string(" and the ") + name_of(phase.swing->foot) +
+                                              " foot swings"
+                                        : "") +
+                           "; perhaps left and right were exchanged",
+                       std::string("with support ") + name_of(meant) +
+                           (phase.swing ? std::string(" and a swing of the ") +
+                                              name_of(other(phase.swing->foot)) + " foot"
+                                        : "")},
+                      [i, meant](Pattern& p) {
+                        p.phases[i].support = meant;
+                        if (p.phases[i].swing)
+                          p.phases[i].swing->foot = other(p.phases[i].swing->foot);
+                      },
+                      swings_thrice(i) ? -1.0 : 0.0});
+      add_foothold_exchanges(i, made);
+    }
+  }
+
+  void foothold_exchanges(std::vector<Hypothesis>& made) const {
+    for (size_t i = 0; i < pattern_.phases.size(); ++i)
+      if (is_single(pattern_.phases[i].support) && reaches(i)) add_foothold_exchanges(i, made);
+  }
+
+  // How far a foot lands on its own side of the other one [m].
+  double outwards(size_t phase) const {
+    const Swing& swing = *pattern_.phases[phase].swing;
+    const Eigen::Isometry3d stance = feet_->pose(other(swing.foot), pattern_.phases[phase].until);
+    return (swing.foot == Side::left ? 1 : -1) * (stance.inverse() * swing.to.position).y();
+  }
+
+  // Two feet that both land on the side of the other one: two footholds rather than two signs.
+  void crossed_footholds(std::vector<Hypothesis>& made) const {
+    if (!feet_) return;
+    std::vector<Hypothesis> exchanges;
+    for (size_t i = 0; i < pattern_.phases.size(); ++i)
+      if (has_place(i) && is_single(pattern_.phases[i].support) && reaches(i) && outwards(i) < 0)
+        add_foothold_exchanges(
+            i, exchanges, [&](size_t k) { return foot_of(k) != foot_of(i) && outwards(k) < 0; });
+    for (Hypothesis& exchange : exchanges) {
+      exchange.rank = Rank::geometry;
+      made.push_back(std::move(exchange));
+    }
+  }
+  Side foot_of(size_t phase) const { return pattern_.phases[phase].swing->foot; }
+
+  // With one of the next two.
+  void add_foothold_exchanges(
+      size_t phase, std::vector<Hypothesis>& made,
+      const std::function<bool(size_t)>& with = [](size_t) { return true; }) const {
+    if (!has_place(phase)) return;
+    int later = 0;
+    for (size_t k = phase + 1; k < pattern_.phases.size() && later < 2; ++k) {
+      if (!has_place(k)) continue;
+      ++later;
+      if (!with(k) || !exchange_shortens_way(phase, k)) continue;
+      made.push_back({Rank::exchange,
+                      {phase_place(phase),
+                       std::string("the footholds of this phase and of ") + phase_place(k) +
+                           " were perhaps exchanged",
+                       "with the two exchanged"},
+                      [phase, k](Pattern& p) {
+                        std::swap(p.phases[phase].swing->to, p.phases[k].swing->to);
+                      }});
+    }
+  }
+
+  // A whole foothold or foot key in another unit.
+  void footholds(std::vector<Hypothesis>& made) const {
+    const auto add = [&](const std::string& place, Side side, const Foothold& foot,
+                         const std::function<Foothold&(Pattern&)>& in) {
+      // A single number that is too large is no matter of the unit.
+      for (const double length : foot.position)
+        if (std::abs(length) > kNoLength && std::abs(length) < leg_length(model_)) return;
+      if (foot.position.norm() < leg_length(model_)) return;
+      for (const auto& [unit, factor] : {std::pair("mm", 1e-3), std::pair("cm", 1e-2)}) {
+        const Eigen::Vector3d meant = foot.position * factor;
+        made.push_back(
+            {Rank::slip,
+             {place,
+              std::string("the ") + name_of(side) + " foot is at (" +
+                  text::brief(foot.position.x()) + ", " + text::brief(foot.position.y()) + ", " +
+                  text::brief(foot.position.z()) + ") m; lengths are in metres",
+              std::string("with these numbers read in ") + unit + ", which gives (" +
+                  text::brief(meant.x()) + ", " + text::brief(meant.y()) + ", " +
+                  text::brief(meant.z()) + ") m,"},
+             [in, factor = factor](Pattern& p) { in(p).position *= factor; }});
+      }
+    };
+    for (size_t i = 0; i < pattern_.phases.size(); ++i) {
+      const auto& swing = pattern_.phases[i].swing;
+      if (swing && !swing->step && reaches(i))
+        add(phase_place(i), swing->foot, swing->to,
+            [i](Pattern& p) -> Foothold& { return p.phases[i].swing->to; });
+    }
+    for (size_t i = 0; i < pattern_.keyframes.size(); ++i)
+      for (const size_t side : {size_t(0), size_t(1)})
+        if (const auto& foot = pattern_.keyframes[i].feet[side]; foot && reaches_key(i))
+          add(key_place(i), static_cast<Side>(side), *foot,
+              [i, side](Pattern& p) -> Foothold& { return *p.keyframes[i].feet[side]; });
+    for (size_t i = 0; i < pattern_.keyframes.size(); ++i) zmp_point(i, made);
+  }
+
+  // A whole point of the ZMP in another unit.
+  void zmp_point(size_t key, std::vector<Hypothesis>& made) const {
+    const auto& zmp = pattern_.keyframes[key].zmp;
+    if (!zmp || zmp->place != ZmpKey::Place::point || zmp->point.norm() < leg_length(model_) ||
+        !reaches_key(key))
+      return;
+    for (const auto& [unit, factor] : {std::pair("mm", 1e-3), std::pair("cm", 1e-2)}) {
+      const Eigen::Vector2d meant = zmp->point.head<2>() * factor;
+      made.push_back(
+          {Rank::slip,
+           {key_place(key),
+            "the ZMP is at (" + text::brief(zmp->point.x()) + ", " + text::brief(zmp->point.y()) +
+                ") m; lengths are in metres",
+            std::string("with these numbers read in ") + unit + ", which gives (" +
+                text::brief(meant.x()) + ", " + text::brief(meant.y()) + ") m,"},
+           [key, factor = factor](Pattern& p) { p.keyframes[key].zmp->point *= factor; }});
+    }
+  }
+
+  // "turn" counts from the other foot. Who turns both feet by the same angle turns twice as far,
+  // with each second foot turned inwards.
+  void turns(std::vector<Hypothesis>& made) const {
+    const auto turn_of = [&](const Phase& phase) {
+      return phase.swing && phase.swing->step ? phase.swing->step->turn : 0.0;
+    };
+    size_t first = 0;
+    while (first < pattern_.phases.size() && std::abs(turn_of(pattern_.phases[first])) < kNoAngle)
+      ++first;
+    if (first == pattern_.phases.size()) return;
+    const double turn = turn_of(pattern_.phases[first]);
+    const Side leading = pattern_.phases[first].swing->foot;
+    double sum = 0;
+    std::vector<size_t> second;
+    for (size_t i = first; i < pattern_.phases.size(); ++i) {
+      const double here = turn_of(pattern_.phases[i]);
+      sum += here;
+      if (here * turn > 0 && pattern_.phases[i].swing->foot != leading) second.push_back(i);
+    }
+    if (second.empty()) return;
+    const std::string foot = name_of(other(leading)), ahead = name_of(leading);
+    const size_t n = second.size();
+    made.push_back(
+        {Rank::geometry,
+         {phase_place(second.front()),
+          "the " + foot + " foot's step turns by " + angle(turn_of(pattern_.phases[second[0]])) +
+              " after the " + ahead + " foot has turned by " + angle(turn) +
+              "; \"turn\" counts from the other foot, so all steps turn the robot by " + angle(sum),
+          "with \"turn\" 0 in " + (n > 1 ? "the " + std::to_string(n) + " steps" : "the step") +
+              " of the " + foot + " foot, which then " + (n > 1 ? "land" : "lands") +
+              " parallel to the " + ahead + " foot,"},
+         [second](Pattern& p) {
+           for (const size_t i : second) p.phases[i].swing->step->turn = 0;
+         }});
+  }
+
+  /// The nearest angle of whole degrees [rad].
+  static double whole_degrees(double radians) {
+    constexpr double degree = std::numbers::pi / 180;
+    return std::round(radians / degree) * degree;
+  }
+
+  std::string angle(double radians) const {
+    return pattern_.degrees ? text::brief(radians * 180 / std::numbers::pi, 5) + " deg"
+                            : text::brief(radians, 5) + " rad";
+  }
+
+  bool has_place(size_t phase) const {
+    return phase < pattern_.phases.size() && pattern_.phases[phase].swing &&
+           !pattern_.phases[phase].swing->step;
+  }
+  bool has_later_place(size_t phase) const {
+    for (size_t k = phase + 1; k < pattern_.phases.size(); ++k)
+      if (has_place(k)) return true;
+    return false;
+  }
+
+  // A foothold nearer to the place beside the other foot, with all later ones.
+  void near_footholds(std::vector<Hypothesis>& made) const {
+    if (!feet_) return;
+    for (size_t i = 0; i < pattern_.phases.size(); ++i) {
+      if (!has_place(i) || !reaches(i)) continue;
+      const Swing& swing = *pattern_.phases[i].swing;
+      const Side side = swing.foot;
+      const Eigen::Isometry3d stance = feet_->pose(other(side), pattern_.phases[i].until);
+      const double apart =
+          (feet_->pose(other(side), 0).inverse() * feet_->pose(side, 0).translation()).y();
+      const Eigen::Vector3d from_stance = stance.inverse() * swing.to.position;
+      const Eigen::Vector3d away(from_stance.x(), from_stance.y() - apart, 0);
+      if (away.norm() < kLeastMistake * leg_length(model_)) continue;
+      for (const double share : {0.8, 0.6, 0.4, 0.2, 0.0}) {
+        const auto grid = [](double metres) { return std::round(1e4 * metres) / 1e4; };
+        Eigen::Vector3d place = swing.to.position + (share - 1) * (stance.linear() * away);
+        place = {grid(place.x()), grid(place.y()), swing.to.position.z()};
+        const Eigen::Vector3d moved = place - swing.to.position;
+        made.push_back({Rank::amount,
+                        {phase_place(i),
+                         std::string("the ") + name_of(side) + " foot lands " +
+                             text::fixed(1e3 * from_stance.head<2>().norm(), 0) + " mm from the " +
+                             name_of(other(side)) + " foot, and at the beginning they are " +
+                             text::fixed(1e3 * std::abs(apart), 0) + " mm apart",
+                         "with \"to\" = [" + text::brief(place.x()) + ", " +
+                             text::brief(place.y()) + ", ...]" +
+                             (has_later_place(i) ? ", and all later footholds moved by the same [" +
+                                                       text::brief(moved.x(), 3) + ", " +
+                                                       text::brief(moved.y(), 3) + "] m,"
+                                                 : "")},
+                        [i, moved](Pattern& p) {
+                          for (size_t k = i; k < p.phases.size(); ++k)
+                            if (p.phases[k].swing && !p.phases[k].swing->step)
+                              p.phases[k].swing->to.position += moved;
+                        },
+                        1 - share,
+                        moved.norm() / leg_length(model_)});
+      }
+    }
+  }
+
+  // A foot that turns less against the other one, and the later footholds with it.
+  void lesser_turns(std::vector<Hypothesis>& made) const {
+    if (!feet_) return;
+    for (size_t i = 0; i < pattern_.phases.size(); ++i) {
+      if (!has_place(i) || !reaches(i)) continue;
+      const Swing& swing = *pattern_.phases[i].swing;
+      const Eigen::Matrix3d turned =
+          (feet_->pose(other(swing.foot), pattern_.phases[i].until).inverse() * pose_of(swing.to))
+              .linear();
+      const double turn = elementary::atan2(turned(1, 0), turned(0, 0));
+      if (std::abs(turn) < kNotedTurn) continue;
+      for (const double share : {0.75, 0.5}) {
+        const double less = whole_degrees((share - 1) * turn);
+        made.push_back(
+            {Rank::amount,
+             {phase_place(i),
+              std::string("the ") + name_of(swing.foot) + " foot turns by " + angle(turn) +
+                  " against the " + name_of(other(swing.foot)) + " foot",
+              "with a yaw of " + angle(swing.to.rpy.z() + less) +
+                  (has_later_place(i) ? ", and all later footholds turned about it by " +
+                                            angle(less) + " (more steps then make the turn),"
+                                      : "")},
+             [i, less](Pattern& p) {
+               const Eigen::Vector3d about = p.phases[i].swing->to.position;
+               const Eigen::Quaterniond by = exp_rotation({0, 0, less});
+               for (size_t k = i; k < p.phases.size(); ++k) {
+                 if (!p.phases[k].swing || p.phases[k].swing->step) continue;
+                 Foothold& to = p.phases[k].swing->to;
+                 to.position = about + by * (to.position - about);
+                 to.rpy.z() += less;
+               }
+             },
+             1 - share,
+             std::abs(less)});
+      }
+    }
+  }
+
+  // As the author can write it: "left": {"position": [0, 0.039, 0.03], "rpy": [0, -20, 0]}.
+  std::string turned_foot(Side side, const Eigen::Vector3d& at, double roll, double pitch) const {
+    const double unit = pattern_.degrees ? std::numbers::pi / 180 : 1;
+    return "\"" + std::string(name_of(side)) + "\": {\"position\": [" + text::brief(at.x()) + ", " +
+           text::brief(at.y()) + ", " + text::brief(at.z()) + "], \"rpy\": [" +
+           text::brief(roll / unit) + ", " + text::brief(pitch / unit) + ", 0]}";
+  }
+
+  // A foot that stays level while its leg leans, which the ankle has to make up for.
+  void level_feet(std::vector<Hypothesis>& made) const {
+    if (!feet_) return;
+    const double leg = leg_length(model_);
+    for (const Side side : {Side::left, Side::right}) {
+      const auto s = static_cast<size_t>(index(side));
+      const Eigen::Isometry3d from = feet_->pose(side, 0);
+      struct Lean {
+        size_t key;
+        double roll, pitch;
+      };
+      std::vector<Lean> leans;
+      for (size_t i = 0; i < pattern_.keyframes.size(); ++i) {
+        const auto& foot = pattern_.keyframes[i].feet[s];
+        if (!foot || foot->rpy.head<2>().norm() > kNoAngle) continue;
+        if (support_at(pattern_.keyframes[i].t) != on(other(side)) || !reaches_key(i)) continue;
+        const Eigen::Vector3d way = from.inverse() * foot->position;
+        if (way.z() < kNoLength) continue;
+        const auto lean = [leg](double across) {
+          return elementary::asin(std::clamp(across / leg, -kMostLean, kMostLean));
+        };
+        leans.push_back({i, lean(way.y()), -lean(way.x())});
+      }
+      if (leans.empty()) continue;
+      for (const bool roll : {true, false}) {
+        const auto amount = [roll](const Lean& lean) { return roll ? lean.roll : lean.pitch; };
+        const Lean most =
+            *std::max_element(leans.begin(), leans.end(), [&](const Lean& a, const Lean& b) {
+              return std::abs(amount(a)) < std::abs(amount(b));
+            });
+        if (std::abs(amount(most)) < kNotedLean) continue;
+        for (const double share : {1.0, 0.6}) {
+          const auto degrees = [share](double lean) { return whole_degrees(share * lean); };
+          made.push_back(
+              {Rank::geometry,
+               {key_place(most.key),
+                std::string("the ") + name_of(side) + " foot stays level while its leg leans by " +
+                    text::fixed(std::abs(amount(most)) * 180 / std::numbers::pi, 0) + " deg " +
+                    (roll               ? "to the side"
+                     : amount(most) < 0 ? "ahead"
+                                        : "back") +
+                    ", so the ankle bends by as much",
+                "with the foot turned with the leg (" +
+                    turned_foot(side, pattern_.keyframes[most.key].feet[s]->position,
+                                roll ? degrees(most.roll) : 0, roll ? 0 : degrees(most.pitch)) +
+                    (leans.size() > 1
+                         ? "; in the other keys of this foot, by the lean of the leg there)"
+                         : ")") +
+                    ","},
+               [leans, amount, degrees, roll, s](Pattern& p) {
+                 for (const Lean& lean : leans)
+                   p.keyframes[lean.key].feet[s]->rpy[roll ? 0 : 1] = degrees(amount(lean));
+               }});
+        }
+      }
+    }
+  }
+
+  void starts(std::vector<Hypothesis>& made) const {
+    if (!pattern_.start_feet[0] || !pattern_.start_feet[1]) return;
+    made.push_back(
+        {Rank::exchange,
+         {"/start", "the left and the right foot were perhaps exchanged", "with the two exchanged"},
+         [](Pattern& p) { std::swap(p.start_feet[0], p.start_feet[1]); }});
+  }
+
+  Support support_at(double t) const {
+    for (const Phase& phase : pattern_.phases)
+      if (t <= phase.until) return phase.support;
+    return Support::both;
+  }
+
+  void key_sides(std::vector<Hypothesis>& made) const {
+    std::optional<MirrorMap> map;
+    try {
+      map = mirror_map(model_);
+    } catch (const Error&) {  // the robot has no mirror image
+    }
+    for (size_t i = 0; i < pattern_.keyframes.size(); ++i) {
+      const Keyframe& key = pattern_.keyframes[i];
+      if (!reaches_key(i)) continue;
+      for (const Side side : {Side::left, Side::right}) {
+        const auto s = static_cast<size_t>(index(side)), o = 1 - s;
+        if (!key.feet[s] || key.feet[o] || support_at(key.t) != on(side)) continue;
+        made.push_back(
+            {Rank::exchange,
+             {key_place(i),
+              std::string("the key moves the ") + name_of(side) +
+                  " foot, which carries the robot; perhaps left and right were exchanged",
+              std::string("with the ") + name_of(other(side)) + " foot in its place"},
+             [i, s, o](Pattern& p) { std::swap(p.keyframes[i].feet[s], p.keyframes[i].feet[o]); }});
+      }
+      if (!map || key.joints.empty()) continue;
+      // No other key moves its joints.
+      const bool is_alone = std::none_of(
+          pattern_.keyframes.begin(), pattern_.keyframes.end(), [&](const Keyframe& k) {
+            return &k != &key &&
+                   std::any_of(key.joints.begin(), key.joints.end(),
+                               [&](const auto& e) { return k.joints.contains(e.first); });
+          });
+      made.push_back(
+          {is_alone ? Rank::slip : Rank::sign,
+           {key_place(i),
+            "the key moves " + key.joints.begin()->first +
+                (key.joints.size() > 1 ? " and others" : "") +
+                "; perhaps left and right were exchanged",
+            "with keys for the joints of the other side"},
+           [this, i, map](Pattern& p) {
+             std::map<std::string, double> joints;
+             for (const auto& [joint, angle] : p.keyframes[i].joints) {
+               const int dof = model_.find_dof(joint);
+               joints[dof < 0
+                          ? joint
+                          : model_.dofs()[static_cast<size_t>(map->dof[static_cast<size_t>(dof)])]
+                                .name] = angle;
+             }
+             p.keyframes[i].joints = joints;
+           }});
+    }
+  }
+
+  // ---- what is missing, or is too much
+
+  bool has_foot_key(Side side, double begin, double end) const {
+    return std::any_of(pattern_.keyframes.begin(), pattern_.keyframes.end(),
+                       [&](const Keyframe& key) {
+                         return key.t >= begin - 1e-9 && key.t <= end + 1e-9 &&
+                                key.feet[static_cast<size_t>(index(side))];
+                       });
+  }
+
+  void swings(std::vector<Hypothesis>& made) const {
+    if (!feet_) return;
+    for (size_t i = 0; i < pattern_.phases.size(); ++i) {
+      const Phase& phase = pattern_.phases[i];
+      if (phase.swing || phase.viip || !is_single(phase.support)) continue;
+      const Side idle = other(stance_of(phase.support));
+      if (has_foot_key(idle, begin_of(i), phase.until)) continue;
+      // Half the way of the other foot's next step ahead of it, or beside it.
+      RelativeStep step;
+      const Eigen::Isometry3d stance = feet_->pose(other(idle), phase.until);
+      for (size_t k = i + 1; k < pattern_.phases.size(); ++k)
+        if (pattern_.phases[k].swing && pattern_.phases[k].swing->foot == other(idle)) {
+          const Eigen::Vector3d way =
+              stance.inverse() * feet_->pose(other(idle), pattern_.phases[k].until).translation();
+          step.forward = 0.5 * way.x();
+          break;
+        }
+      double lift = Swing{}.lift;
+      for (const Phase& like : pattern_.phases)
+        if (like.swing) lift = like.swing->lift;
+      made.push_back({Rank::missing,
+                      {phase_place(i),
+                       std::string("the robot stands on the ") + name_of(other(idle)) +
+                           " foot alone, but the " + name_of(idle) +
+                           " foot stays on the ground; its swing may be missing",
+                       "with a swing to a place " + text::brief(step.forward, 3) +
+                           " m ahead of the other foot"},
+                      [i, idle, lift, step](Pattern& p) {
+                        p.phases[i].swing =
+                            Swing{.foot = idle, .to = {}, .lift = lift, .step = step};
+                      }});
+    }
+  }
+
+  void double_supports(std::vector<Hypothesis>& made) const {
+    for (size_t i = 1; i < pattern_.phases.size(); ++i) {
+      const Phase &before = pattern_.phases[i - 1], &phase = pattern_.phases[i];
+      if (!is_single(phase.support) || before.support != opposite(phase.support)) continue;
+      if (!reaches(i) && !reaches(i - 1)) continue;
+      double until = before.until + kDoubleSupport * (phase.until - before.until);
+      for (const Keyframe& key : pattern_.keyframes)
+        if (key.zmp && key.t > before.until + 1e-9 && key.t < phase.until - 1e-9) {
+          until = key.t;
+          break;
+        }
+      made.push_back(
+          {Rank::missing,
+           {phase_place(i),
+            std::string("the robot passes from the ") + name_of(before.support) + " foot to the " +
+                name_of(phase.support) +
+                " foot at once; a phase with support \"both\" may be missing before this phase",
+            "with such a phase until " + seconds(until)},
+           [i, until](Pattern& p) {
+             Phase both;
+             both.until = until;
+             p.phases.insert(p.phases.begin() + static_cast<long>(i), both);
+           }});
+    }
+  }
+
+  bool is_leg_joint(const std::string& joint) const {
+    const int dof = model_.find_dof(joint);
+    for (const Side side : {Side::left, Side::right}) {
+      const std::vector<int>& leg = model_.leg(side);
+      if (dof >= 0 && std::find(leg.begin(), leg.end(), dof) != leg.end()) return true;
+    }
+    return false;
+  }
+
+  void leg_keys(std::vector<Hypothesis>& made) const {
+    if (!model_.has_soles()) return;
+    for (size_t i = 0; i < pattern_.keyframes.size(); ++i)
+      for (const auto& entry : pattern_.keyframes[i].joints) {
+        if (!is_leg_joint(entry.first)) continue;
+        made.push_back(
+            {Rank::missing,
+             {key_place(i),
+              entry.first +
+                  " is a joint of a leg. As soon as one leg joint has a key, all leg joints follow "
+                  "only their keys, and the legs are not solved from the feet and the COG",
+              "without keys of leg joints (give the COG, the feet or the torso instead)"},
+             [this](Pattern& p) {
+               for (Keyframe& key : p.keyframes)
+                 std::erase_if(key.joints, [&](const auto& e) { return is_leg_joint(e.first); });
+             }});
+        return;
+      }
+  }
+
+  void interpolations(std::vector<Hypothesis>& made) const {
+    const auto jumps = [](Interpolation i) {
+      return i == Interpolation::hold || i == Interpolation::linear;
+    };
+    const auto add = [&](const std::string& place, Interpolation now, const Mend& mend) {
+      made.push_back({Rank::missing,
+                      {place,
+                       std::string("interpolation \"") + name_of(now) + "\" makes " +
+                           (now == Interpolation::hold ? "the angle jump" : "the speed jump"),
+                       "with \"minimum_jerk\""},
+                      mend});
+    };
+    if (jumps(pattern_.interpolation))
+      add("/defaults/interpolation", pattern_.interpolation,
+          [](Pattern& p) { p.interpolation = Interpolation::minimum_jerk; });
+    for (size_t i = 0; i < pattern_.keyframes.size(); ++i)
+      if (const auto& own = pattern_.keyframes[i].interpolation;
+          own && jumps(*own) && reaches_key(i))
+        add(key_place(i), *own,
+            [i](Pattern& p) { p.keyframes[i].interpolation = Interpolation::minimum_jerk; });
+  }
+
+  // The COG keeps its height above the mean of both soles, which a lifted foot raises by half.
+  void level_cog(std::vector<Hypothesis>& made) const {
+    const bool has_height = std::any_of(pattern_.keyframes.begin(), pattern_.keyframes.end(),
+                                        [](const Keyframe& key) { return key.cog_height; });
+    if (has_height) return;
+    size_t highest = 0;
+    double lift = 0;
+    Side lifted = Side::left;
+    for (size_t i = 0; i < pattern_.keyframes.size(); ++i)
+      for (const Side side : {Side::left, Side::right})
+        if (const auto& foot = pattern_.keyframes[i].feet[static_cast<size_t>(index(side))];
+            foot && foot->position.z() > lift) {
+          lift = foot->position.z();
+          lifted = side;
+          highest = i;
+        }
+    if (lift <= 0) return;
+    for (const double share : {1.0, 0.99, 0.97, 0.94}) {
+      const double height = std::round(1e4 * share * default_cog_height(model_, pattern_)) / 1e4;
+      made.push_back(
+          {Rank::missing,
+           {key_place(highest),
+            std::string("the ") + name_of(lifted) + " foot is " + text::fixed(1000 * lift, 0) +
+                " mm up, and the COG rises by half of this height, because the COG height without "
+                "keys is measured from the mean height of both soles",
+            "with keys of \"cog\": {\"height\": " + text::brief(height) +
+                "}, which keep the COG down,"},
+           [height](Pattern& p) {
+             for (Keyframe& key : p.keyframes) key.cog_height = height;
+           }});
+    }
+  }
+
+  // Keys that hold the COG where the feet no longer are.
+  void held_cog(std::vector<Hypothesis>& made) const {
+    if (!feet_) return;
+    for (const auto& [axis, key_of] : {std::pair(0, &Keyframe::cog_x), {1, &Keyframe::cog_y}}) {
+      const double before = feet_->support_center(0)[axis];
+      size_t worst = 0;
+      double most = 0, feet_at = 0;
+      for (size_t i = 0; i < pattern_.keyframes.size(); ++i) {
+        const Keyframe& key = pattern_.keyframes[i];
+        if (!(key.*key_of)) continue;
+        const double center = feet_->support_center(key.t)[axis];
+        const double off = std::abs(*(key.*key_of) - center);
+        if (off <= most || std::abs(center - before) < 0.5 * off) continue;
+        most = off;
+        feet_at = center;
+        worst = i;
+      }
+      if (most < kNotedOffset * leg_length(model_)) continue;
+      const std::string words = axis == 0 ? "the COG's x" : "the COG's y";
+      made.push_back({Rank::missing,
+                      {key_place(worst),
+                       words + " is " + text::brief(*(pattern_.keyframes[worst].*key_of)) +
+                           " m, while the middle of the feet that stand is at " +
+                           text::brief(feet_at, 3) + " m",
+                       "without keys of " + words + " (the COG then follows the ZMP)"},
+                      [key_of = key_of](Pattern& p) {
+                        for (Keyframe& key : p.keyframes) (key.*key_of).reset();
+                      }});
+    }
+  }
+
+  // Legs that are nearly straight at the height of home, or folded far below it.
+  void cog_height(std::vector<Hypothesis>& made) const {
+    const double height = default_cog_height(model_, pattern_);
+    if (legs_are_folded(model_, pattern_, height)) {
+      const double home = home_cog_height(model_, pattern_);
+      for (const double share : {0.97, 0.94, 0.9, 0.85, 0.75})
+        made.push_back({Rank::amount,
+                        {"/defaults/cog_height",
+                         "the COG height is " + text::brief(height) + " m, " +
+                             text::fixed(100 * height / home, 0) + " % of that of the home posture",
+                         "with " + text::brief(share * home, 3) + " m"},
+                        [higher = share * home](Pattern& p) { p.cog_height = higher; }});
+      return;
+    }
+    for (const double share : {0.99, 0.97, 0.94, 0.9, 0.85})
+      made.push_back({Rank::pace,
+                      {"/defaults/cog_height",
+                       "the COG height is " + text::brief(height) +
+                           " m, at which the legs are nearly straight",
+                       "with " + text::brief(share * height, 3) + " m"},
+                      [lower = share * height](Pattern& p) { p.cog_height = lower; }});
+  }
+
+  const RobotModel& model_;
+  const Pattern& pattern_;
+  const Outcome& found_;
+  std::vector<WrittenValue> values_;
+  std::optional<FootPlan> feet_ = {};
+};
+
+Hypotheses::Hypotheses(const RobotModel& model, const Pattern& pattern, const Outcome& found)
+    : maker_(std::make_unique<Maker>(model, pattern, found)) {}
+
+Hypotheses::~Hypotheses() = default;
+
+const std::vector<WrittenValue>& Hypotheses::values() const { return maker_->values(); }
+
+std::vector<Hypothesis> Hypotheses::of(Kind kind) const {
+  switch (kind) {
+    case Kind::units:
+      return maker_->units();
+    case Kind::times:
+      return maker_->times();
+    case Kind::irregular:
+      return maker_->irregular();
+    case Kind::exchanges:
+      return maker_->exchanges();
+    case Kind::missing:
+      return maker_->missing();
+    case Kind::nearer:
+      return maker_->nearer();
+    case Kind::paces:
+      return maker_->paces();
+  }
+  return {};
+}
+
+}  // namespace ayumi

@@ -1,0 +1,132 @@
+#include "ayumi/check/mistake_trials.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "ayumi/author/generate/pattern_builder.hpp"
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/in_parallel.hpp"
+#include "ayumi/check/consistency.hpp"
+#include "ayumi/model/gravity.hpp"
+#include "ayumi/plan/sample.hpp"
+
+namespace ayumi {
+
+namespace {
+
+// Samples of a trial. Chosen: a walk of 7 s then has a step of 5 ms, and 50 trials take a second of
+// processor time; the step is that of coarse servos.
+constexpr double kTrialSamples = 1500;
+// Joints of a leg whose posture has a solution in closed steps of Newton's method, and the trials
+// as which one counts where a leg has fewer. Measured: 1500 postures of Open Duck (five joints)
+// take 36 ms, of HOAP-1 (six) 14 ms.
+constexpr size_t kWholeLeg = 6;
+constexpr int kLackingCost = 2;
+// The longest step of a trial [s]. Chosen: twenty samples in a swing of 0.2 s.
+constexpr double kLongestStep = 0.01;
+// Trials after which a person may stop the search. Chosen: those of a walk take 0.1 s.
+constexpr size_t kTrialsBetweenReports = 4;
+// An error is slight where it is beyond its limit by less than this share of the limit, by less
+// than this share of the length of a leg [m], of the weight [N], of both [N m], or by less than
+// this angle [rad]. Chosen: a wrong unit, digit, sign, foot or side is wrong by the whole of what
+// was meant, and so are the errors that it brings about. A motion with slight errors alone is near
+// its limits.
+constexpr double kSlightShare = 0.25, kSlightLength = 0.015, kSlightForce = 0.05,
+                 kSlightAngle = 0.05;
+// Errors whose windows say where the mistake may be. Chosen: one mistake is beside the first error
+// that it brings about; the second is where the first lasts for the whole motion.
+constexpr int kFirstErrors = 2;
+
+// Findings about the table at the servo's own period, which a quick trial does not have.
+bool needs_servo_period(FindingKind kind) {
+  return kind == FindingKind::table_step || kind == FindingKind::table_position ||
+         kind == FindingKind::table_rest || kind == FindingKind::servo_step ||
+         kind == FindingKind::motor_acceleration;
+}
+
+bool is_slight(const RobotModel& model, const Finding& f) {
+  const double beyond = std::abs(f.worst - f.limit);
+  const double leg = leg_length(model), weight = model.mass() * kGravity;
+  if (spec_of(f.kind).is_ratio())
+    return std::abs(f.worst) <= (1 + kSlightShare) * std::abs(f.limit);
+  if (f.unit == "m") return beyond <= kSlightLength * leg;
+  if (f.unit == "rad") return beyond <= kSlightAngle;
+  if (f.unit == "N") return beyond <= kSlightForce * weight;
+  if (f.unit == "N m") return beyond <= kSlightForce * weight * leg;
+  return beyond <= kSlightShare * std::abs(f.limit);
+}
+
+}  // namespace
+
+Trials::Trials(const RobotModel& model, const Pattern& pattern, const CheckOptions& options,
+               const Progress& progress, int most)
+    : model_(model), options_(options), progress_(progress), most_(most) {
+  options_.threads = 1;
+  threads_ = options.threads;
+  const double step = std::min(pattern.duration() / kTrialSamples, kLongestStep);
+  const double period = model.description().servo_period;
+  ticks_ = static_cast<int>(std::max(1.0, std::floor(step / period)));
+  quick_cost_ = static_cast<int>(
+      std::max(1.0, std::floor(pattern.duration() / (ticks_ * period * kTrialSamples))));
+  for (const Side side : {Side::left, Side::right})
+    if (model.leg(side).size() < kWholeLeg) quick_cost_ = std::max(quick_cost_, kLackingCost);
+}
+
+Outcome Trials::exactly(Pattern pattern, const Mend& mend) const {
+  mend(pattern);
+  Outcome outcome = of(pattern, true);
+  outcome.table_alone = !outcome.good();
+  return outcome;
+}
+
+Outcome Trials::of(const Pattern& pattern, bool exact) const {
+  Outcome outcome;
+  const double dt = (exact ? 1 : ticks_) * model_.description().servo_period;
+  try {
+    CheckOptions options = options_;
+    options.friction = pattern.world.friction;
+    const ConsistencyReport report =
+        check_consistency(model_, sample(model_, pattern, {.dt = dt, .threads = 1}), options);
+    outcome.errors = outcome.findings = 0;
+    outcome.slight = true;
+    for (const Finding& f : report.findings) {  // errors come in order of time
+      if (!exact && needs_servo_period(f.kind)) continue;
+      if (f.severity != Severity::error && f.cause < 0) continue;
+      ++outcome.findings;
+      outcome.slight = outcome.slight && is_slight(model_, f);
+      if (f.severity != Severity::error) continue;
+      if (outcome.errors++ < kFirstErrors) outcome.windows.push_back({f.begin, f.end});
+    }
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::bad_pattern && error.code() != ErrorCode::usage) throw;
+  }
+  return outcome;
+}
+
+std::vector<Outcome> Trials::after(const Pattern& pattern, const std::vector<Mend>& mends) {
+  std::vector<Outcome> outcomes(mends.size());
+  const int cost = quick_cost_ * (exact_ ? ticks_ : 1);
+  const size_t tried = std::min(mends.size(), static_cast<size_t>((most_ - made_) / cost));
+  if (tried < mends.size()) ended_ = true;
+  made_ += cost * static_cast<int>(tried);
+  for (size_t begin = 0; begin < tried; begin += kTrialsBetweenReports) {
+    report(progress_, {"look for the cause", -1, ""});  // may stop the search
+    std::atomic<bool> stop = false;
+    in_parallel(std::min(kTrialsBetweenReports, tried - begin), threads_, stop,
+                [&](size_t i) { outcomes[begin + i] = outcome_after(pattern, mends[begin + i]); });
+  }
+  return outcomes;
+}
+
+Outcome Trials::outcome_after(const Pattern& pattern, const Mend& mend) const {
+  Pattern mended = pattern;
+  try {
+    mend(mended);
+  } catch (const Error&) {
+    return {};
+  }
+  return of(mended);
+}
+
+}  // namespace ayumi

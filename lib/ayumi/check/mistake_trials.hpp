@@ -1,0 +1,84 @@
+#pragma once
+// Versions of a pattern on trial: each is sampled and checked, quickly or exactly, and what is
+// wrong with it is counted.
+
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "ayumi/base/progress.hpp"
+#include "ayumi/limits/limit.hpp"
+#include "ayumi/model/robot_model.hpp"
+#include "ayumi/motion/pattern.hpp"
+
+namespace ayumi {
+
+// Errors of a motion that cannot be sampled. Definition: more than of any that can.
+inline constexpr int kUnsampled = std::numeric_limits<int>::max();
+
+struct Window {
+  double begin = 0, end = 0;
+};
+
+struct Outcome {
+  int errors = kUnsampled;
+  int findings = kUnsampled;         ///< these errors, and what follows from them
+  std::vector<Window> windows = {};  ///< of the errors that follow from no other one [s]
+
+  bool table_alone = false;  ///< a quick trial has none of these errors
+  bool slight = false;       ///< all errors and what follows from them are slight
+
+  bool good() const { return errors == 0; }
+  bool touches(double begin, double end) const {
+    return errors == kUnsampled ||
+           std::any_of(windows.begin(), windows.end(),
+                       [&](const Window& w) { return w.begin <= end && begin <= w.end; });
+  }
+};
+
+using Mend = std::function<void(Pattern&)>;
+
+/// Samples and checks versions of a pattern: quickly, without the findings that need the servo's
+/// period, or exactly.
+class Trials {
+ public:
+  /// At most `most` quick trials. The references must outlive the object.
+  Trials(const RobotModel& model, const Pattern& pattern, const CheckOptions& options,
+         const Progress& progress, int most);
+
+  /// From now on trials have the servo's period and all findings. Each counts as the quick ones
+  /// that take as long.
+  void make_exact() { exact_ = true; }
+  bool exact() const { return exact_; }
+  /// Whether exact trials differ from quick ones in the steps of time.
+  bool finer_when_exact() const { return ticks_ > 1; }
+
+  /// The outcome at the servo's period of what is good in a quick trial.
+  Outcome exactly(Pattern pattern, const Mend& mend) const;
+  Outcome of(const Pattern& pattern) const { return of(pattern, exact_); }
+  Outcome of(const Pattern& pattern, bool exact) const;
+  Outcome after(const Pattern& pattern, const Mend& mend) {
+    return after(pattern, std::vector<Mend>{mend}).front();
+  }
+  /// The outcomes in the same order. Those for which no trials are left are of no motion that can
+  /// be sampled.
+  std::vector<Outcome> after(const Pattern& pattern, const std::vector<Mend>& mends);
+
+  /// Whether there was something left to try when no trials were left.
+  bool ended() const { return ended_; }
+  int made() const { return made_; }
+
+ private:
+  Outcome outcome_after(const Pattern& pattern, const Mend& mend) const;
+
+  const RobotModel& model_;
+  CheckOptions options_;
+  const Progress& progress_;
+  int threads_ = 0, most_ = 0;
+  int ticks_ = 1;       ///< of the servo in a step of a quick trial
+  int quick_cost_ = 1;  ///< of a quick trial
+  int made_ = 0;
+  bool ended_ = false, exact_ = false;
+};
+
+}  // namespace ayumi
