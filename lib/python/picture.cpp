@@ -110,7 +110,9 @@ void bind_picture(py::module_& m) {
         options.times = times;
         options.count = count;
         options.columns = columns;
-        return png([&] { return draw_strip(robot, log.data(), options); });
+        return py::bytes(Watch(py::none()).run([&](const Progress& watched) {
+          return encode_png(draw_strip(robot, log.data(), options, watched));
+        }));
       },
       py::arg("robot"), py::arg("log"), py::kw_only(), py::arg("times") = std::vector<double>(),
       py::arg("count") = 8, py::arg("columns") = 4, py::arg("width") = 400, py::arg("height") = 600,

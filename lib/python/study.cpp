@@ -194,6 +194,7 @@ void bind_gains(py::module_& m) {
          std::optional<double> absorb, std::optional<double> return_time,
          std::optional<double> zmp_filter, std::optional<double> forget, const Gains& set,
          std::optional<double> latency) {
+        const py::gil_scoped_release release;
         return study_gains(robot, {poles, absorb, return_time, zmp_filter, forget},
                            {set.begin(), set.end()}, latency);
       },

@@ -175,6 +175,12 @@ TEST(MotionFormats, MistakesNameFileLineAndFormat) {
   EXPECT_EQ(told(refusal_of("0.02 3 ( 1 2 )\n")),
             "m.dat:1: the brackets hold 2 values, but n is 3 (read as mi-lib .zvs, because the "
             "rows have the form `dt n ( values )`");
+  EXPECT_EQ(told(refusal_of("0.02 2 ( 1 2 )\n0.02 2 ( 1 2\n")),
+            "m.dat:2: the bracket ( is not closed, so the row was cut; copy the file again (read "
+            "as mi-lib .zvs, because the rows have the form `dt n ( values )`");
+  EXPECT_NE(refusal_of(R"({"framerate": 50, "positions": {"0.0": {"l_knee": [1,5, 0]}}})")
+                .find("expected an angle, or [angle, speed], found 3 numbers"),
+            std::string::npos);
   const ImportOptions stated{.format = "webots"};
   EXPECT_EQ(
       refusal_of("#WEBOTS_MOTION,V3.0,l_knee\n", "m.dat", stated),

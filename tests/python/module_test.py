@@ -307,6 +307,19 @@ class LongWork(unittest.TestCase):
                 ayumi.simulate(task, substeps=20)
         timer.join()
 
+    def test_ctrl_c_stops_snapshots(self):
+        task = walk()
+        log = ayumi.simulate(task)
+        timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+        times = [0.05 * i for i in range(100)]
+        begin = time.monotonic()
+        timer.start()
+        with self.assertRaises(KeyboardInterrupt):
+            while time.monotonic() < begin + 60:
+                ayumi.strip(task.robot, log, times=times, columns=10, width=800, height=1200)
+        self.assertLess(time.monotonic() - begin, 5)  # all of them take longer
+        timer.join()
+
     def test_other_threads_run_during_a_simulation(self):
         task = walk()
         counted = [0]

@@ -49,7 +49,8 @@ Image draw_sheet(const std::vector<Image>& tiles, int columns) {
   return sheet;
 }
 
-Image draw_strip(const RobotModel& model, const SimulationLog& log, const StripOptions& options) {
+Image draw_strip(const RobotModel& model, const SimulationLog& log, const StripOptions& options,
+                 const Progress& progress) {
   const double last = duration(log);
   std::vector<double> times =
       options.times.empty() ? telling_instants(log, options.count) : options.times;
@@ -65,7 +66,10 @@ Image draw_strip(const RobotModel& model, const SimulationLog& log, const StripO
   ClipRenderer renderer(model, log, clip);
   renderer.frame_robot(times);
   std::vector<Image> tiles;
-  for (const double t : times) tiles.push_back(renderer.tile(t));
+  for (const double t : times) {
+    report(progress, {"snapshots", double(tiles.size()) / double(times.size()), ""});
+    tiles.push_back(renderer.tile(t));
+  }
   const Image tiled = draw_sheet(tiles, options.columns);
   return clip.overlay.caption ? with_lines(tiled, tiles.front().height, renderer, last) : tiled;
 }

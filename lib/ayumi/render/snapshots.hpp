@@ -20,8 +20,10 @@ struct StripOptions {
 Image draw_sheet(const std::vector<Image>& tiles, int columns);
 
 /// All snapshots in reading order, or over each other seen by a camera that stands still. Throws as
-/// ClipRenderer; Error(usage) for no snapshots or a picture beyond 16384 pixels.
-Image draw_strip(const RobotModel& model, const SimulationLog& log, const StripOptions& options);
+/// ClipRenderer; Error(usage) for no snapshots or a picture beyond 16384 pixels; Interrupted when
+/// `progress` says stop.
+Image draw_strip(const RobotModel& model, const SimulationLog& log, const StripOptions& options,
+                 const Progress& progress = {});
 
 /// The same as a PNG file, whole or not at all. Throws as draw_strip and write_png.
 void write_strip(const RobotModel& model, const SimulationLog& log,

@@ -110,6 +110,10 @@ MotionFile read_poppy_move(const MotionInput& source) {
   for (const auto& [key, motors] : root.at("positions").members()) {
     const double time = source.number(key, 0, "positions");
     for (const auto& [motor, value] : motors.members()) {
+      if (value.value().is_array() && value.size() > 2)
+        value.complain("expected an angle, or [angle, speed], found " +
+                       std::to_string(value.size()) +
+                       " numbers; write decimal points, not decimal commas");
       rows[time][motor] = value.value().is_array()
                               ? (value.size() > 0 ? value.items()[0].number() : value.number())
                               : value.number();

@@ -77,6 +77,8 @@ MotionFile read_zvs(const MotionInput& source) {
     if (text.empty()) continue;
     const std::vector<std::string_view> tokens = tokens_of(text);
     if (tokens.size() < 3) source.refuse(line, "the row must have the form `dt n ( values )`");
+    if (text.find('(') != std::string_view::npos && text.find(')') == std::string_view::npos)
+      source.refuse(line, "the bracket ( is not closed, so the row was cut; copy the file again");
     const double dt = source.number(tokens[0], line, "dt");
     const double count =
         source.number(tokens[1].substr(0, tokens[1].find('/')), line, "number of values");
