@@ -21,6 +21,9 @@ import ayumi
 WALK = ayumi.data_folder("patterns") / "hoap1_walk.json"
 PROGRAM = os.environ["AYUMI_PROGRAM"]
 
+# A shell starts its background jobs deaf to Ctrl-C, and Python then leaves it so.
+signal.signal(signal.SIGINT, signal.default_int_handler)
+
 
 def walk(**options):
     return ayumi.load_task(WALK, meshes=False, **options)
