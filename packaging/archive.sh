@@ -26,17 +26,24 @@ strip "$root/lib/ayumi/ayumi" "$root/lib/ayumi/ayumi-mesh-reader"
 # first picture loads OSMesa.
 osmesa=$(/sbin/ldconfig -p | awk '$1 ~ /^libOSMesa\.so\./ && !found++ { print $NF }')
 libc='/(ld-linux[^/]*|lib(c|m|dl|rt|pthread|resolv|util|nsl|anl|mvec|BrokenLocale)\.so\.[0-9]+)$'
-mapfile -t libraries < <({ ldd "${programs[@]}" $osmesa | awk '$2 == "=>" && $3 ~ /^\// { print $3 }'; echo "$osmesa"; } |
-  sort -u | grep -Ev "^$|$libc")
+listed=$(ldd "${programs[@]}" $osmesa | awk '$2 == "=>" && $3 ~ /^\// { print $3 }')
+mapfile -t libraries < <(printf '%s\n' "$listed" $osmesa | sort -u | grep -Ev "$libc")
 cp -L "${libraries[@]}" "$root/lib/"
-# Debian's licences of what is copied; a package may have none beside its links, and a library may be
-# of no package.
+# Debian's licences of what is copied. dpkg knows a file below /usr/lib also by its place in /lib.
 mkdir -p "$root/share/doc/ayumi/libraries"
-{ readlink -f "${libraries[@]}" | xargs dpkg-query --search 2>/dev/null || true; } | cut -d: -f1 | sort -u |
-  while read -r package; do
-    notice=/usr/share/doc/$package/copyright
-    [[ ! -e $notice ]] || cp -L "$notice" "$root/share/doc/ayumi/libraries/$package"
-  done
+owners=$(readlink -f "${libraries[@]}" | sed 'p; s|^/usr||' | xargs dpkg-query --search 2>/dev/null || true)
+for library in "${libraries[@]}"; do
+  file=$(readlink -f "$library")
+  package=$(awk -v a=" $file" -v b=" ${file#/usr}" \
+    'substr($0, index($0, ": ") + 1) == a || substr($0, index($0, ": ") + 1) == b { sub(/:.*/, ""); print; exit }' \
+    <<<"$owners")
+  notice=/usr/share/doc/$package/copyright
+  if [[ -z $package || ! -e $notice ]]; then
+    echo "$library: no package of Debian states its licence; install the library from Debian" >&2
+    exit 1
+  fi
+  cp -L "$notice" "$root/share/doc/ayumi/libraries/$package"
+done
 
 # The font of pictures and plots, and where fontconfig finds it.
 mkdir -p "$root/share/fonts"
