@@ -12,6 +12,7 @@
 #include "ayumi/limits/amount_text.hpp"
 #include "ayumi/limits/limit.hpp"
 #include "ayumi/plan/sample.hpp"
+#include "ayumi/repair/infeasibility_report.hpp"
 #include "ayumi/task/task.hpp"
 #include "simulation.hpp"
 
@@ -20,7 +21,8 @@ namespace ayumi::app {
 namespace {
 
 // Most motions that are sampled, and most that are checked in full. Chosen: a sample of a walk of
-// 12 s at kCoarse takes 0.05 s and a full check 0.5 s.
+// 12 s at kCoarse takes 0.05 s and a full check 0.5 s, so a search ends within ten seconds; at
+// half, robots whose legs differ much from HOAP-1's are given up too early.
 constexpr int kMostSampled = 90, kMostChecked = 8;
 // Most motions that are simulated. Chosen: a walk of 12 s takes 0.3 to 1 s.
 constexpr int kMostSimulated = 5;
@@ -51,12 +53,8 @@ std::string wrong_posture(const RobotModel& model, const Pattern& pattern) {
 // What is wrong with a motion: its first error, and that which goes farthest beyond its limit.
 struct Wrong {
   std::string first, worst;
-  double share = 0;  // of the worst value in its limit
+  double severity = 0;
 };
-
-double share_of(const Finding& finding) {
-  return finding.limit != 0 ? std::abs(finding.worst / finding.limit) : HUGE_VAL;
-}
 
 // The same for all limits, by the profile of the robot that bears most.
 Wrong wrong_motion(const RobotModel& model, const Pattern& pattern) {
@@ -66,8 +64,9 @@ Wrong wrong_motion(const RobotModel& model, const Pattern& pattern) {
   for (const Finding& finding : judged.report.findings) {
     if (finding.severity != Severity::error) continue;
     if (wrong.first.empty()) wrong.first = text_of(finding);
-    if (share_of(finding) <= wrong.share) continue;
-    wrong.share = share_of(finding);
+    const double severity = severity_of(finding);
+    if (severity <= wrong.severity) continue;
+    wrong.severity = severity;
     wrong.worst = std::string(name_of(finding.kind)) + " " + finding.where + " at " +
                   text::fixed(finding.at, 3) + " s: " + amount_text(finding);
   }
@@ -119,7 +118,7 @@ SearchResult search_motion(const RobotModel& model, const std::vector<Dial>& dia
                            const Progress& progress, bool simulated) {
   SearchResult result;
   int checked = 0, runs = 0;
-  double nearest = HUGE_VAL;  // share of the worst value in its limit
+  double nearest = HUGE_VAL;  // severity of its worst error
   // Places of the other dials where postures passed, but not speeds, torques or ZMP: another
   // posture does not mend that.
   std::set<std::vector<size_t>> hopeless;
@@ -140,8 +139,8 @@ SearchResult search_motion(const RobotModel& model, const std::vector<Dial>& dia
         ++checked;
         const Wrong motion = wrong_motion(model, pattern);
         wrong = motion.first;
-        if (!motion.worst.empty() && motion.share < nearest) {
-          nearest = motion.share;
+        if (!motion.worst.empty() && motion.severity < nearest) {
+          nearest = motion.severity;
           result.nearest = motion.worst;
           result.nearest_values = values;
         }

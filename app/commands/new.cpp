@@ -148,8 +148,8 @@ void fit_steps(const Context& context, const RobotModel& model, const NewOptions
       inwards.values.push_back(rounded(share * half_sole_width(model), 1e-3));
   Dial height = height_dial(model, w.cog_height);
   if (lacking) {
-    height = dial("--cog-height", "m", starting_height(model), 1e-3, w.cog_height == 0,
-                  {0.91, 0.88, 1.03});
+    height =
+        dial("--cog-height", "m", starting_height(model), 1e-3, w.cog_height == 0, {0.91, 0.88});
     height.values.front() = w.cog_height;
   }
   const std::vector<double> paces =

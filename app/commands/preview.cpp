@@ -166,9 +166,12 @@ ClipSummary draw_run(const PreviewOptions& options, const std::string& input, co
       fail(ErrorCode::usage,
            path.string() + ": --strip and --exposures need a file name that ends in .png");
     const StripOptions strip = strip_options(own, log);
-    const Image image = draw_strip(model, log, strip);
+    ClipSummary summary{strip.count, 0, 0, 0, {}};
+    const Image image = draw_strip(model, log, strip, progress, &summary.notes);
     write_png(path, image);
-    return {strip.count, image.width, image.height, 0, {}};
+    summary.width = image.width;
+    summary.height = image.height;
+    return summary;
   }
   return write_clip(model, log, path, own.clip, progress);
 }

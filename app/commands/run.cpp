@@ -338,6 +338,7 @@ void MainJob::draw(const RobotModel& model, const std::shared_ptr<const RobotLoo
   note_file("clip.mp4");
   say("preview", "clip.mp4 (" + std::to_string(summary.frames) + " frames, " +
                      std::to_string(summary.width) + "x" + std::to_string(summary.height) + ")");
+  for (const std::string& note : summary.notes) say("", note);
 }
 
 void MainJob::write_report(const RobotModel& model, const std::shared_ptr<const RobotLook>& look,

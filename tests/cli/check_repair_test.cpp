@@ -50,6 +50,14 @@ TEST_F(CheckRepair, TheWalkIsConsistent) {
   EXPECT_TRUE(folder.files().empty());
 }
 
+// The distance of bodies that overlap was a negative distance.
+TEST_F(CheckRepair, BodiesThatOverlapAreSaidTo) {
+  plant("arm.json", R"({ "t": 0, "zmp": "center" })",
+        R"({ "t": 0, "zmp": "center", "joints": { "l_shoulder_roll": -40 } })");
+  const Output out = ayumi({"check", "arm.json", "-q"});
+  EXPECT_NE(out.out.find("; bodies overlap by "), std::string::npos) << out.out;
+}
+
 // The mistake is what is said first, also where the motion cannot even be sampled.
 TEST_F(CheckRepair, TheMistakeIsNamedFirst) {
   plant("far.json", R"("to": [0.09, -0.039])", R"("to": [0.9, -0.039])");

@@ -365,5 +365,20 @@ TEST(FirstSidecar, HandsAreNoFeetWhereTheShapesOfTheFeetAreMissing) {
   }));
 }
 
+// A low link without a shape that is no leg, such as the end of a tether, hides no feet.
+TEST(FirstSidecar, ALowLinkWithoutAShapeHidesNoFeet) {
+  const TemporaryFolder folder;
+  std::string text = UrdfBiped{}.text();
+  text.insert(text.rfind("</robot>"),
+              "<link name=\"end\"><inertial><mass value=\"0.01\"/><inertia ixx=\"1e-6\" "
+              "ixy=\"0\" ixz=\"0\" iyy=\"1e-6\" iyz=\"0\" izz=\"1e-6\"/></inertial></link>"
+              "<joint name=\"tether\" type=\"revolute\"><parent link=\"trunk\"/><child "
+              "link=\"end\"/><origin xyz=\"0 0 -2\"/><axis xyz=\"0 1 0\"/><limit lower=\"-1\" "
+              "upper=\"1\" effort=\"1\" velocity=\"1\"/></joint>");
+  const FirstSidecar sidecar =
+      first_sidecar(folder.write("r.urdf", text).string(), folder.path() / "r");
+  EXPECT_EQ(sidecar.robot.soles.size(), 2u);
+}
+
 }  // namespace
 }  // namespace ayumi::test

@@ -237,6 +237,16 @@ TEST(LinkPlan, APlaceInMillimetresIsNamed) {
   }
 }
 
+// One wrong number among three in metres says nothing about the unit.
+TEST(LinkPlan, APlaceWithOneSlipIsInMetres) {
+  Pattern pattern = standing(2);
+  at(pattern, 0).zmp = ZmpKey{ZmpKey::Place::center};
+  at(pattern, 1).hands["left"] = place({0.15, 20, 0.3});
+  const std::string message =
+      test::error_message([&] { sample(hoap1(), pattern); }, ErrorCode::bad_pattern);
+  EXPECT_EQ(message.find("in metres"), std::string::npos) << message;
+}
+
 TEST(LinkPlan, SaysByHowMuchAHandIsOutOfReach) {
   const RobotModel& model = hoap1();
   const int body = hand_body(model, Side::left);

@@ -107,8 +107,20 @@ TEST(RobotLook, ThinsFurtherUntilFewEnoughAreLeft) {
   auto some = fine, few = fine, least = fine;
   EXPECT_EQ(thin_to(some, 1e-5, 1'000'000), 1e-5);
   EXPECT_EQ(thin_to(few, 1e-5, triangle_count(some) - 1), 2e-5);
-  EXPECT_GT(thin_to(least, 1e-5, 60), 4e-5) << "joined by a grid";
-  EXPECT_LE(triangle_count(least), 60u);
+  EXPECT_EQ(thin_to(least, 1e-5, 60), 4e-5);
+  EXPECT_LT(triangle_count(least), triangle_count(few));
+}
+
+// A small clip joined the triangles of every robot by a grid of many pixels.
+TEST(RobotLook, OfAnOrdinaryRobotIsMovedInNoClip) {
+  const RobotModel model = heavy_robot(60);
+  const SimulationLog log = still(model);
+  ClipOptions options;
+  options.picture.width = 64;
+  options.picture.height = 36;
+  EXPECT_TRUE(clip_shape(model, log, options, true)->notes.empty());
+  options.camera.zoom = 6;
+  EXPECT_TRUE(clip_shape(model, log, options, true)->notes.empty());
 }
 
 }  // namespace

@@ -81,10 +81,15 @@ std::string numbers(const Vector3d& v, int digits) {
 // within so many in that unit. Chosen: arms and walks of a few metres reach less than the first and
 // more than the second.
 constexpr double kOtherUnit = 20, kSameUnit = 5;
+// A number of such a place is 0, or at least this large. Chosen: nobody writes a tenth of a
+// millimetre; a smaller number beside a large one is in metres, and the large one is a slip.
+constexpr double kWholeUnits = 0.5;
 
 // What a place that is far away would be in mm or cm; empty where that is far away, too.
 std::string other_unit(const Vector3d& place, double height) {
   if (place.norm() < kOtherUnit * height) return "";
+  for (const double number : place)
+    if (number != 0 && std::abs(number) < kWholeUnits) return "";
   for (const auto& [unit, factor] : {std::pair("cm", 1e-2), std::pair("mm", 1e-3)}) {
     const Vector3d meant = factor * place;
     if (meant.norm() < kSameUnit * height)

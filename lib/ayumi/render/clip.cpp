@@ -104,10 +104,7 @@ std::vector<std::string> notes_of(const RobotModel& model, const RobotLook& look
     notes.emplace_back(
         "the robot has no visual meshes: it is drawn with its collision shapes, and with sticks "
         "between joints where a link has no collision shape");
-  if (moved > 0)
-    notes.push_back("the robot has " + std::to_string(look.triangles) +
-                    " triangles; it is drawn with " + std::to_string(drawn) +
-                    ", whose points are moved by about " + text::brief(1e3 * moved, 2) + " mm");
+  if (moved > 0) notes.push_back(words_of(look, drawn, moved));
   return notes;
 }
 
@@ -140,10 +137,10 @@ std::string law_name(const ControllerType& law) {
 /// Name without folder and extension.
 std::string plain_name(const std::string& file) { return fs::path(file).stem().string(); }
 
-/// Pixels of a clip for each triangle of the robot, at least. Chosen: a robot takes a tenth of a
-/// picture, and half of its triangles are behind; at half, frames of heavy robots take a third
-/// longer, at twice, a triangle has two pixels.
-constexpr size_t kPixelsOfTriangle = 8;
+/// Triangles of a robot beyond which a clip thins it further, by up to four times as much. Chosen:
+/// they take about 40 ms of a frame, so 1.2 s for each second of motion; at half, robots of makers
+/// lose triangles in large clips, at twice, clips of robots with noisy meshes take twice as long.
+constexpr size_t kMostOfClip = 100'000;
 /// The frames from which on a clip is thinned. Chosen: thinning a robot with 280,000 triangles
 /// takes 0.3 s, which about five frames save; at half, clips of half a second gain too, at twice,
 /// clips of a second gain nothing.
@@ -323,9 +320,8 @@ std::shared_ptr<const ClipShape> clip_shape(const RobotModel& model, const Simul
     // [m] Where the robot just fits into the picture, a pixel is this large.
     const double pixel =
         shape->height / (options.picture.height * std::max(1.0, options.camera.zoom));
-    const size_t most = size_t(options.picture.width) * size_t(options.picture.height);
     if (moved <= 0) leave_out_hidden(surface);
-    const double thinned = thin_to(surface, kThinned * pixel, most / kPixelsOfTriangle);
+    const double thinned = thin_to(surface, kThinned * pixel, kMostOfClip);
     if (thinned > kThinned * pixel) moved = std::max(moved, thinned);
   }
   moved = std::max(moved, std::sqrt(3.0) * simplify(surface, options.max_triangles));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ayumi/base/text.hpp"
 #include "ayumi/render/hidden_parts.hpp"
 #include "ayumi/render/simplify.hpp"
 #include "ayumi/render/thin.hpp"
@@ -17,18 +18,25 @@ constexpr size_t kMostTriangles = 400'000;
 /// Rows of the picture in which a thinned robot looks like its meshes.
 constexpr double kRows = 720;
 /// By which a tolerance grows that left too many triangles, and how often. Chosen: at four times
-/// the first, outlines have corners of one pixel, and the cells of a grid are no coarser.
+/// the first, outlines have corners of one pixel.
 constexpr double kGrowth = 2;
 constexpr int kTrials = 3;
 
 }  // namespace
 
 double thin_to(std::vector<BodySurface>& surface, double tolerance, size_t most) {
-  for (int trial = 0; trial < kTrials; ++trial, tolerance *= kGrowth) {
+  thin(surface, tolerance);
+  for (int trial = 1; trial < kTrials && triangle_count(surface) > most; ++trial) {
+    tolerance *= kGrowth;
     thin(surface, tolerance);
-    if (triangle_count(surface) <= most) return tolerance;
   }
-  return std::max(tolerance / kGrowth, std::sqrt(3.0) * simplify(surface, most));
+  return tolerance;
+}
+
+std::string words_of(const RobotLook& look, size_t drawn, double moved) {
+  return "the robot has " + std::to_string(look.triangles) + " triangles; it is drawn with " +
+         std::to_string(drawn) + ", whose points are moved by about " +
+         text::brief(1e3 * moved, 2) + " mm";
 }
 
 std::shared_ptr<const RobotLook> robot_look(const RobotModel& model) {
@@ -41,6 +49,7 @@ std::shared_ptr<const RobotLook> robot_look(const RobotModel& model) {
   const double height = box.isEmpty() ? 1.0 : box.sizes().maxCoeff();
   leave_out_hidden(look->surface);
   look->moved = thin_to(look->surface, kThinned * height / kRows, kMostTriangles);
+  look->moved = std::max(look->moved, std::sqrt(3.0) * simplify(look->surface, kMostTriangles));
   return look;
 }
 

@@ -3,6 +3,7 @@
 // clips, snapshots and pages show it.
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "ayumi/render/robot_surface.hpp"
@@ -23,9 +24,11 @@ std::shared_ptr<const RobotLook> robot_look(const RobotModel& model);
 /// have corners of half a pixel.
 inline constexpr double kThinned = 0.3;
 
-/// Thins, first by `tolerance` [m] and then by multiples of it, until at most `most` triangles are
-/// left; joins them by a grid where that is not enough. Returns about how far the surface was moved
-/// [m]: `tolerance` where that sufficed.
+/// Thins, first by `tolerance` [m] and then by multiples of it up to four, until at most `most`
+/// triangles are left. Returns the last tolerance; more triangles may be left then.
 double thin_to(std::vector<BodySurface>& surface, double tolerance, size_t most);
+
+/// "the robot has 500000 triangles; it is drawn with 4000, whose points are moved by ...".
+std::string words_of(const RobotLook& look, size_t drawn, double moved);
 
 }  // namespace ayumi

@@ -50,7 +50,7 @@ Image draw_sheet(const std::vector<Image>& tiles, int columns) {
 }
 
 Image draw_strip(const RobotModel& model, const SimulationLog& log, const StripOptions& options,
-                 const Progress& progress) {
+                 const Progress& progress, std::vector<std::string>* notes) {
   const double last = duration(log);
   std::vector<double> times =
       options.times.empty() ? telling_instants(log, options.count) : options.times;
@@ -58,12 +58,15 @@ Image draw_strip(const RobotModel& model, const SimulationLog& log, const StripO
   ClipOptions clip = options.clip;
   if (options.one_picture) {
     clip.camera.mode = CameraMode::fixed;
-    return ClipRenderer(model, log, clip).exposures(times);
+    ClipRenderer renderer(model, log, clip);
+    if (notes) *notes = renderer.notes();
+    return renderer.exposures(times);
   }
   clip.camera.smoothing = 0;  // every picture has the robot in its middle
   // Half of a portrait that the robot fills is as wide as this share of the robot's height.
   clip.overlay.push_length = std::min(clip.overlay.push_length, 0.34);
   ClipRenderer renderer(model, log, clip);
+  if (notes) *notes = renderer.notes();
   renderer.frame_robot(times);
   std::vector<Image> tiles;
   for (const double t : times) {

@@ -119,6 +119,8 @@ bool is_matter_of_time(const Finding& f) {
          (spec.limit_class == LimitClass::rate || spec.limit_class == LimitClass::force);
 }
 
+double severity_of(const Finding& finding) { return severity_of(cause_of(finding)); }
+
 double total_violation(const ConsistencyReport& report) {
   double sum = 0;
   for (const InfeasibilityCause& cause : worst_of(report, is_error))

@@ -25,6 +25,10 @@ double time_factor(const RobotModel& model, const CommandSeries& series, const F
 /// places, commands and means over a fixed time.
 bool is_matter_of_time(const Finding& finding);
 
+/// How far an error goes beyond its limit, comparable among errors of different kinds: in shares of
+/// the limit, centimetres or tenths of a radian.
+double severity_of(const Finding& finding);
+
 /// Sum of severities over the errors of a motion, the worst of each kind and place counted once:
 /// shares of a limit, centimetres, tenths of a radian. 0 when it passes.
 double total_violation(const ConsistencyReport& report);

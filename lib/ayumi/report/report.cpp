@@ -7,6 +7,8 @@
 #include "ayumi/plot/com_zmp_plot.hpp"
 #include "ayumi/plot/com_zmp_plot_parts.hpp"
 #include "ayumi/render/log_reading.hpp"
+#include "ayumi/render/robot_look.hpp"
+#include "ayumi/render/simplify.hpp"
 #include "ayumi/render/snapshots.hpp"
 #include "ayumi/report/html.hpp"
 #include "ayumi/report/page.hpp"
@@ -223,14 +225,15 @@ std::string size_words(const ReportOptions& options) {
   return text::brief(1e-6 * double(options.max_bytes)) + " MB";
 }
 
-std::vector<std::string> caps_of(const Plan& plan, const ReportOptions& options, size_t triangles,
-                                 const std::string& no_replay) {
+std::vector<std::string> caps_of(const Plan& plan, const ReportOptions& options,
+                                 const RobotLook& look, const std::string& no_replay) {
   std::vector<std::string> caps;
   if (!no_replay.empty()) caps.push_back(no_replay);
+  const size_t triangles = triangle_count(look.surface);
+  if (look.moved > 0) caps.push_back(words_of(look, triangles, look.moved));
   if (plan.with_replay && triangles > plan.replay.triangles)
-    caps.push_back("the robot has " + std::to_string(triangles) +
-                   " triangles, but the replay shows at most " +
-                   std::to_string(plan.replay.triangles));
+    caps.push_back("the replay shows at most " + std::to_string(plan.replay.triangles) +
+                   " of the robot's " + std::to_string(triangles) + " triangles");
   if (plan.with_replay)
     caps.push_back("the replay has " + text::brief(plan.replay.rate) +
                    " postures per second and interpolates between them");
@@ -277,10 +280,9 @@ Report make_report(const RobotModel& model, const ReportInput& as_logged,
   pieces.poster = poster(model, look, input);
   pieces.snapshots = snapshots_section(model, look, input);
   report(progress, {"report", 0.7, "page"});
-  const size_t triangles = look->triangles;
-  size_t allowed = std::min(options.max_triangles, triangles);
+  size_t allowed = std::min(options.max_triangles, triangle_count(look->surface));
   for (;;) {
-    std::vector<std::string> caps = caps_of(plan, options, triangles, no_replay);
+    std::vector<std::string> caps = caps_of(plan, options, *look, no_replay);
     Report made = {page(model, *look, input, pieces, plan, caps), caps};
     if (made.html.size() <= options.max_bytes) return made;
     if (!reduce(plan, allowed)) {

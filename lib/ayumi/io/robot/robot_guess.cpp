@@ -171,16 +171,22 @@ bool is_above(const RobotModel& model, int body, int other) {
   return false;
 }
 
+int joints_above(const RobotModel& model, int body) {
+  int count = 0;
+  for (int i = body; i > 0; i = model.bodies()[i].parent) ++count;
+  return count;
+}
+
 // The two lowest end bodies that are beside each other. A toe gives way to the foot that carries it
-// where that stands on more ground. None where an end body without any shape is lower: then the
-// shapes of the feet are missing, and others are not feet.
+// where that stands on more ground. None where an end body without any shape is lower and hangs on
+// as many joints as these: then the shapes of the feet are missing, and others are not feet.
 std::vector<Foot> find_feet(const RobotModel& model, const std::vector<Isometry3d>& poses) {
   std::vector<bool> leaf(model.bodies().size(), true);
   for (const Body& body : model.bodies())
     if (body.parent >= 0) leaf[body.parent] = false;
   std::vector<Foot> ends;
   double highest = -std::numeric_limits<double>::infinity();
-  double bare = std::numeric_limits<double>::infinity();  // the lowest end body without a shape
+  std::vector<int> bare;  // end bodies without a shape
   for (int body = 1; body < static_cast<int>(leaf.size()); ++body) {
     highest = std::max(highest, poses[body].translation().z());
     if (!leaf[body]) continue;
@@ -197,7 +203,7 @@ std::vector<Foot> find_feet(const RobotModel& model, const std::vector<Isometry3
     if (!foot.points.empty())
       ends.push_back(foot);
     else
-      bare = std::min(bare, poses[body].translation().z());
+      bare.push_back(body);
   }
   std::stable_sort(ends.begin(), ends.end(),
                    [](const Foot& a, const Foot& b) { return a.lowest < b.lowest; });
@@ -209,7 +215,11 @@ std::vector<Foot> find_feet(const RobotModel& model, const std::vector<Isometry3
       if (between.head<2>().norm() < kApart || is_above(model, a.body, b.body) ||
           is_above(model, b.body, a.body))
         continue;
-      return bare < a.lowest ? std::vector<Foot>{} : std::vector{a, b};
+      const int joints = std::min(joints_above(model, a.body), joints_above(model, b.body));
+      for (const int body : bare)
+        if (poses[body].translation().z() < a.lowest && joints_above(model, body) >= joints)
+          return {};
+      return {a, b};
     }
   return {};
 }
