@@ -53,6 +53,8 @@ void serve_author(AuthorSession& session, const ServerOptions& options,
     server->listen_after_bind();
     ended = true;
   });
+  // stop() is heard by a server that runs.
+  while (!server->is_running() && !ended) std::this_thread::sleep_for(1ms);
   ready(std::string("http://") + kLoopbackAddress + ":" + std::to_string(port) + "/" + token + "/");
   while (!stopped() && !ended) std::this_thread::sleep_for(50ms);
   session.stop();

@@ -48,11 +48,11 @@ void author(Context& context, const AuthorCommand& options) {
                                   "` writes a pattern to begin with, and `ayumi new --list` names "
                                   "other kinds of motion");
   if (missing) file = options.pattern;
-  expect_to_be_stopped();
   AuthorSession session(context, {file, read_pairs(options.set, "--set"), options.profile});
   serve_author(
       session, {options.port},
       [&](const std::string& address) {
+        expect_to_be_stopped();
         context.print(
             options.pattern + " is shown at\n  " + address +
             "\n  The page follows every change of the file, and can itself change the file. "

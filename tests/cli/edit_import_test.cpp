@@ -56,6 +56,25 @@ TEST_F(Edit, ATableIsFoundFromWhereverItsPatternWasMade) {
             std::string::npos);
 }
 
+// The name of a kept sequence was that from the folder itself, and was read from the link.
+TEST_F(Edit, AKeptSequenceIsFoundThroughALink) {
+  fs::create_directories(folder / "in");
+  fs::create_directories(folder / "deep/er");
+  fs::create_directory_symlink("deep/er", folder / "link");
+  ASSERT_EQ(ayumi({"new", "squat", "-q", "-o", "squat.json"}).exit_code, 0);
+  ASSERT_EQ(ayumi({"export", "squat.json", "--format", "hoap", "-o", "h.csv"}).exit_code, 0);
+  const Output in = ayumi({"import", "h.csv", "--robot", "hoap1", "-o", "in/i.json"});
+  ASSERT_EQ(in.exit_code, 0) << in.err;
+  ASSERT_EQ(ayumi({"edit", "retime", "in/i.json", "--scale", "1", "-o", "link/m.json"}).exit_code,
+            0);
+  for (const std::string from : {"link", "deep/er"}) {
+    const Output out =
+        ayumi({"export", from + "/m.json", "--format", "hoap", "-o", "back.csv", "--force"});
+    EXPECT_EQ(out.exit_code, 0) << from << ": " << out.err;
+    EXPECT_EQ(contents(folder / "back.csv"), contents(folder / "h.csv")) << from;
+  }
+}
+
 TEST_F(Edit, MirroredTwiceIsTheSameFile) {
   ASSERT_EQ(ayumi({"edit", "mirror", kWalk, "-o", "a.json"}).exit_code, 0);
   ASSERT_EQ(ayumi({"edit", "mirror", "a.json", "-o", "b.json"}).exit_code, 0);

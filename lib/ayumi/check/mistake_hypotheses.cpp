@@ -70,7 +70,7 @@ Side stance_of(Support support) { return support == Support::left ? Side::left :
 
 class Hypotheses::Maker {
  public:
-  Maker(const RobotModel& model, const Pattern& pattern, const Outcome& found)
+  Maker(const RobotModel& model, const Pattern& pattern, const TrialOutcome& found)
       : model_(model), pattern_(pattern), found_(found), values_(written_values(model, pattern)) {
     try {
       feet_.emplace(model, pattern);
@@ -807,11 +807,13 @@ class Hypotheses::Maker {
   }
 
   // As the author can write it: "left": {"position": [0, 0.039, 0.03], "rpy": [0, -20, 0]}.
-  std::string turned_foot(Side side, const Eigen::Vector3d& at, double roll, double pitch) const {
+  std::string turned_foot(Side side, const Foothold& foot, double roll, double pitch) const {
     const double unit = pattern_.degrees ? std::numbers::pi / 180 : 1;
-    return "\"" + std::string(name_of(side)) + "\": {\"position\": [" + text::brief(at.x()) + ", " +
-           text::brief(at.y()) + ", " + text::brief(at.z()) + "], \"rpy\": [" +
-           text::brief(roll / unit) + ", " + text::brief(pitch / unit) + ", 0]}";
+    const auto written = [](double value) { return text::brief(value, 9); };
+    return "\"" + std::string(name_of(side)) + "\": {\"position\": [" + written(foot.position.x()) +
+           ", " + written(foot.position.y()) + ", " + written(foot.position.z()) + "], \"rpy\": [" +
+           text::brief(roll / unit) + ", " + text::brief(pitch / unit) + ", " +
+           written(foot.rpy.z() / unit) + "]}";
   }
 
   // A foot that stays level while its leg leans, which the ankle has to make up for.
@@ -857,7 +859,7 @@ class Hypotheses::Maker {
                                         : "back") +
                     ", so the ankle bends by as much",
                 "with the foot turned with the leg (" +
-                    turned_foot(side, pattern_.keyframes[most.key].feet[s]->position,
+                    turned_foot(side, pattern_.keyframes[most.key].feet[s].value(),
                                 roll ? degrees(most.roll) : 0, roll ? 0 : degrees(most.pitch)) +
                     (leans.size() > 1
                          ? "; in the other keys of this foot, by the lean of the leg there)"
@@ -1101,7 +1103,8 @@ class Hypotheses::Maker {
         if (!(key.*key_of)) continue;
         const double center = feet_->support_center(key.t)[axis];
         const double off = std::abs(*(key.*key_of) - center);
-        if (off <= most || std::abs(center - before) < 0.5 * off) continue;
+        // Behind: nearer to where the feet were first.
+        if (off <= most || std::abs(*(key.*key_of) - before) >= off) continue;
         most = off;
         feet_at = center;
         worst = i;
@@ -1145,12 +1148,12 @@ class Hypotheses::Maker {
 
   const RobotModel& model_;
   const Pattern& pattern_;
-  const Outcome& found_;
+  const TrialOutcome& found_;
   std::vector<WrittenValue> values_;
   std::optional<FootPlan> feet_ = {};
 };
 
-Hypotheses::Hypotheses(const RobotModel& model, const Pattern& pattern, const Outcome& found)
+Hypotheses::Hypotheses(const RobotModel& model, const Pattern& pattern, const TrialOutcome& found)
     : maker_(std::make_unique<Maker>(model, pattern, found)) {}
 
 Hypotheses::~Hypotheses() = default;

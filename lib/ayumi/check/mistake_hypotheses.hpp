@@ -40,7 +40,7 @@ class Hypotheses {
   };
 
   /// The references must outlive the object.
-  Hypotheses(const RobotModel& model, const Pattern& pattern, const Outcome& found);
+  Hypotheses(const RobotModel& model, const Pattern& pattern, const TrialOutcome& found);
   ~Hypotheses();
 
   const std::vector<WrittenValue>& values() const;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <tuple>
 
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/text.hpp"
@@ -56,7 +57,7 @@ constexpr size_t kTriedOfOneKind = 64;
 
 struct Candidate {
   Hypothesis hypothesis;
-  Outcome outcome;
+  TrialOutcome outcome;
 };
 
 /// What makes one outcome better than another one. Where two mistakes move one joint, an error of
@@ -64,7 +65,7 @@ struct Candidate {
 /// some leave fewer findings.
 enum class Measure { errors, findings };
 
-bool is_better(const Outcome& a, const Outcome& b, Measure measure) {
+bool is_better(const TrialOutcome& a, const TrialOutcome& b, Measure measure) {
   if (measure == Measure::errors || a.errors != b.errors) return a.errors < b.errors;
   return a.findings < b.findings;
 }
@@ -73,7 +74,7 @@ bool is_better(const Outcome& a, const Outcome& b, Measure measure) {
 class Search {
  public:
   /// `rounds`: changes that may be named one after the other from now on.
-  Search(Trials& trials, const RobotModel& model, const Pattern& pattern, const Outcome& found,
+  Search(Trials& trials, const RobotModel& model, const Pattern& pattern, const TrialOutcome& found,
          int rounds)
       : trials_(trials),
         model_(model),
@@ -122,7 +123,7 @@ class Search {
     if (hypotheses.size() > kTriedOfOneKind) hypotheses.resize(kTriedOfOneKind);
     std::vector<Mend> mends;
     for (const Hypothesis& h : hypotheses) mends.push_back(h.mend);
-    const std::vector<Outcome> outcomes = trials_.after(pattern_, mends);
+    const std::vector<TrialOutcome> outcomes = trials_.after(pattern_, mends);
     for (size_t i = 0; i < hypotheses.size(); ++i)
       tried_.push_back({std::move(hypotheses[i]), outcomes[i]});
   }
@@ -149,12 +150,12 @@ class Search {
     std::vector<Mend> mends;
     for (const WrittenValue& value : suspects)
       mends.push_back([&value, share](Pattern& p) { value.pull(p, share); });
-    const std::vector<Outcome> without = trials_.after(pattern_, mends);
-    const auto fewer = [&](const Outcome& o) { return is_better(o, found_, Measure::errors); };
+    const std::vector<TrialOutcome> without = trials_.after(pattern_, mends);
+    const auto fewer = [&](const TrialOutcome& o) { return is_better(o, found_, Measure::errors); };
     const bool by_errors = std::any_of(without.begin(), without.end(), fewer);
     const Measure measure = by_errors ? Measure::errors : Measure::findings;
-    Outcome least = found_;
-    for (const Outcome& outcome : without)
+    TrialOutcome least = found_;
+    for (const TrialOutcome& outcome : without)
       if (is_better(outcome, least, measure)) least = outcome;
     if (!found_.slight && share == 0) test_other_numbers(suspects, without);
     if (!is_better(least, found_, measure)) return false;
@@ -169,7 +170,7 @@ class Search {
 
   // The other sign, and a tenth, of values without which the errors do not vanish.
   void test_other_numbers(const std::vector<WrittenValue>& suspects,
-                          const std::vector<Outcome>& without) {
+                          const std::vector<TrialOutcome>& without) {
     std::vector<Hypothesis> signs, tenths;
     for (size_t i = 0; i < suspects.size(); ++i) {
       if (without[i].errors == 0) continue;
@@ -196,11 +197,13 @@ class Search {
       }
   }
 
-  void look_at(const WrittenValue& value, const Outcome& without, Measure measure, double least) {
+  void look_at(const WrittenValue& value, const TrialOutcome& without, Measure measure,
+               double least) {
     double possible = least, impossible = 1;
     for (int i = 0; i < kBisections; ++i) {
       const double share = 0.5 * (possible + impossible);
-      const Outcome outcome = trials_.after(pattern_, [&](Pattern& p) { value.pull(p, share); });
+      const TrialOutcome outcome =
+          trials_.after(pattern_, [&](Pattern& p) { value.pull(p, share); });
       (is_better(without, outcome, measure) ? impossible : possible) = share;
     }
     const WrittenNumber& number = value.numbers.front();
@@ -327,13 +330,13 @@ class Search {
   Trials& trials_;
   const RobotModel& model_;
   const Pattern& pattern_;
-  const Outcome& found_;
+  const TrialOutcome& found_;
   int rounds_;
   Hypotheses hypotheses_;
   std::vector<Candidate> tried_;
 };
 
-std::string result_words(const Outcome& before, const Outcome& after) {
+std::string result_words(const TrialOutcome& before, const TrialOutcome& after) {
   if (after.good()) return " the pattern is consistent";
   if (before.errors == kUnsampled)
     return " the motion can be sampled, with " + text::counted(after.errors, "error");
@@ -353,7 +356,7 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
   if (pattern.table || pattern.phases.empty() || !model.has_soles()) return result;
   Trials trials(model, pattern, options, progress, most_trials);
   Pattern current = pattern;
-  Outcome found = trials.of(current);
+  TrialOutcome found = trials.of(current);
   if (found.good()) {  // what is wrong shows at the servo's period alone
     trials.make_exact();
     found = trials.of(current);
@@ -364,7 +367,7 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
     std::vector<Candidate> best = search->best();  // its corrections refer to the search
     if (best.empty() && !trials.exact() && trials.finer_when_exact()) {
       // Quick trials may have errors that are none.
-      const Outcome exact = trials.of(current, true);
+      const TrialOutcome exact = trials.of(current, true);
       if (exact.errors < found.errors) {
         trials.make_exact();
         found = exact;
@@ -391,7 +394,7 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
     }
     Pattern mended = current;
     best.front().hypothesis.mend(mended);
-    const Outcome left = best.front().outcome;
+    const TrialOutcome left = best.front().outcome;
     if (left.table_alone) trials.make_exact();
     current = std::move(mended);
     found = left;

@@ -73,15 +73,15 @@ Trials::Trials(const RobotModel& model, const Pattern& pattern, const CheckOptio
     if (model.leg(side).size() < kWholeLeg) quick_cost_ = std::max(quick_cost_, kLackingCost);
 }
 
-Outcome Trials::exactly(Pattern pattern, const Mend& mend) const {
+TrialOutcome Trials::exactly(Pattern pattern, const Mend& mend) const {
   mend(pattern);
-  Outcome outcome = of(pattern, true);
+  TrialOutcome outcome = of(pattern, true);
   outcome.table_alone = !outcome.good();
   return outcome;
 }
 
-Outcome Trials::of(const Pattern& pattern, bool exact) const {
-  Outcome outcome;
+TrialOutcome Trials::of(const Pattern& pattern, bool exact) const {
+  TrialOutcome outcome;
   const double dt = (exact ? 1 : ticks_) * model_.description().servo_period;
   try {
     CheckOptions options = options_;
@@ -104,8 +104,8 @@ Outcome Trials::of(const Pattern& pattern, bool exact) const {
   return outcome;
 }
 
-std::vector<Outcome> Trials::after(const Pattern& pattern, const std::vector<Mend>& mends) {
-  std::vector<Outcome> outcomes(mends.size());
+std::vector<TrialOutcome> Trials::after(const Pattern& pattern, const std::vector<Mend>& mends) {
+  std::vector<TrialOutcome> outcomes(mends.size());
   const int cost = quick_cost_ * (exact_ ? ticks_ : 1);
   const size_t tried = std::min(mends.size(), static_cast<size_t>((most_ - made_) / cost));
   if (tried < mends.size()) ended_ = true;
@@ -119,7 +119,7 @@ std::vector<Outcome> Trials::after(const Pattern& pattern, const std::vector<Men
   return outcomes;
 }
 
-Outcome Trials::outcome_after(const Pattern& pattern, const Mend& mend) const {
+TrialOutcome Trials::outcome_after(const Pattern& pattern, const Mend& mend) const {
   Pattern mended = pattern;
   try {
     mend(mended);

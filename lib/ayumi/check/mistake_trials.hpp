@@ -2,6 +2,7 @@
 // Versions of a pattern on trial: each is sampled and checked, quickly or exactly, and what is
 // wrong with it is counted.
 
+#include <algorithm>
 #include <functional>
 #include <limits>
 #include <vector>
@@ -20,7 +21,7 @@ struct Window {
   double begin = 0, end = 0;
 };
 
-struct Outcome {
+struct TrialOutcome {
   int errors = kUnsampled;
   int findings = kUnsampled;         ///< these errors, and what follows from them
   std::vector<Window> windows = {};  ///< of the errors that follow from no other one [s]
@@ -54,22 +55,22 @@ class Trials {
   bool finer_when_exact() const { return ticks_ > 1; }
 
   /// The outcome at the servo's period of what is good in a quick trial.
-  Outcome exactly(Pattern pattern, const Mend& mend) const;
-  Outcome of(const Pattern& pattern) const { return of(pattern, exact_); }
-  Outcome of(const Pattern& pattern, bool exact) const;
-  Outcome after(const Pattern& pattern, const Mend& mend) {
+  TrialOutcome exactly(Pattern pattern, const Mend& mend) const;
+  TrialOutcome of(const Pattern& pattern) const { return of(pattern, exact_); }
+  TrialOutcome of(const Pattern& pattern, bool exact) const;
+  TrialOutcome after(const Pattern& pattern, const Mend& mend) {
     return after(pattern, std::vector<Mend>{mend}).front();
   }
   /// The outcomes in the same order. Those for which no trials are left are of no motion that can
   /// be sampled.
-  std::vector<Outcome> after(const Pattern& pattern, const std::vector<Mend>& mends);
+  std::vector<TrialOutcome> after(const Pattern& pattern, const std::vector<Mend>& mends);
 
   /// Whether there was something left to try when no trials were left.
   bool ended() const { return ended_; }
   int made() const { return made_; }
 
  private:
-  Outcome outcome_after(const Pattern& pattern, const Mend& mend) const;
+  TrialOutcome outcome_after(const Pattern& pattern, const Mend& mend) const;
 
   const RobotModel& model_;
   CheckOptions options_;

@@ -174,8 +174,10 @@ void read_import(const std::map<std::string, std::string>& header,
   std::from_chars(interval.data(), interval.data() + interval.size(), dense.interval_ms);
   const std::string file = line("sequence");
   if (file.empty()) return;
-  dense.sequence = {std::filesystem::absolute(table.parent_path() / file).lexically_normal(),
-                    line("sequence_sha256"), line("theta_sha256")};
+  // As write_pattern_and_table() names it: where the folder is, whatever links lead there.
+  const std::filesystem::path named = std::filesystem::absolute(table).parent_path() / file;
+  dense.sequence = {std::filesystem::weakly_canonical(named), line("sequence_sha256"),
+                    line("theta_sha256")};
 }
 
 }  // namespace
