@@ -140,6 +140,13 @@ async function addsKeysOfFeet(tab) {
   await add(before.phases[swing].swing.foot, (before.phases[swing - 1].until + before.phases[swing].until) / 2);
   await says("A swing leads the " + before.phases[swing].swing.foot + " foot");
   expect(JSON.stringify(data()) === JSON.stringify(before), "nothing is written");
+  const later = { ...bare, phases: [{ until: 1.2, support: "both" }, { until: 2.2, support: "right" }, { until: 3.2, support: "both" },
+    { until: 4.2, support: "right", swing: { foot: "left", step: {} } }, { until: 5.2, support: "both" }],
+    keyframes: [{ t: 0.6, zmp: "center" }, { t: 1.1, zmp: "right" }, { t: 4.3, zmp: "right" }, { t: 4.8, zmp: "center" }] };
+  await tab.after(() => save(JSON.stringify(later, null, 1)));
+  await add("left", 1.7);
+  await says("A swing leads the left foot in this pattern");
+  expect(JSON.stringify(data()) === JSON.stringify(later), "nothing is written beside a later swing");
   await tab.after(() => save(JSON.stringify({ ...bare, phases: [{ until: 1.2, support: "both" }, { until: 2.8, support: "left" }, { until: 4.2, support: "both" }],
     keyframes: [{ t: 0.6, zmp: "center" }, { t: 1.1, zmp: "left" }, { t: 2.9, zmp: "left" }, { t: 3.4, zmp: "center" }] }, null, 1)));
   await tab.after(() => add("right", 2));

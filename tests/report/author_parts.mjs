@@ -435,6 +435,20 @@ test("a block gets another number of rounds with its keys, and what is later mov
   assert.ok(edits.setRounds(state, document, state.phases[3], 5).refused);
 });
 
+test("the last key of a block before is not the beginning of the next one", () => {
+  const { document, state } = rounds();
+  const from = state.phases[1].from;
+  document.keyframes[1] = { repeat: 3, count: "i", keyframes: [] };
+  const earlier = [from - 0.2, from - 0.1, from].map((time) => ({ time, time_value: "...", repeated: true, pointer: "/keyframes/1/keyframes/0", time_pointer: "/keyframes/1/keyframes/0/t" }));
+  state.keyframes.splice(1, 1, ...earlier);
+  const { edits: made, refused } = edits.setRounds(state, document, state.phases[3], 5);
+  assert.equal(refused, undefined);
+  assert.deepEqual(made.filter(({ pointer }) => pointer.endsWith("/repeat")).map(({ pointer }) => pointer), ["/phases/1/repeat", "/keyframes/2/repeat"]);
+  const plain = walk();
+  Object.assign(plain.state.keyframes[1], { repeated: true, pointer: "/keyframes/1/keyframes/0" });
+  assert.equal(edits.repeatPhases(plain.state, plain.document, 1, 2, 3).refused, undefined);
+});
+
 test("a block that repeats is refused where every round would be at the same place", () => {
   const places = [(one) => { one.document.keyframes[2].zmp = [0, 0.04]; }, (one) => { one.document.keyframes[3].cog = { x: 0.1 }; },
     (one) => { one.state.phases[1].swing = { foot: "left", to: [0.1, 0.04] }; }, (one) => { one.state.phases[2].repeated = true; }];

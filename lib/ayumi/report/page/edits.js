@@ -344,7 +344,7 @@ export function repeatPhases(state, document, first, last, times) {
   const walks = phases.some(({ swing }) => swing), valueOf = (frame) => valueAt(document, frame.pointer) ?? {};
   const isPlaced = ({ zmp, cog, feet, hands, gaze }) => (zmp && typeof zmp !== "string") || cog?.x !== undefined || cog?.y !== undefined || feet || hands || gaze;
   // Where the first round begins with a keyframe and ends without one, each round begins as the first one does.
-  const frameAt = (time) => state.keyframes.find((frame) => sameTime(frame.time, time)), opening = frameAt(from);
+  const frameAt = (time) => state.keyframes.find((frame) => !frame.repeated && sameTime(frame.time, time)), opening = frameAt(from);
   const begins = Boolean(opening) && !frameAt(until) && !(walks && isPlaced(valueOf(opening)));
   const frames = state.keyframes.filter(inBlock(from, until, begins));
   if (!(times >= 2 && Number.isInteger(times))) return { refused: "A block repeats at least two times." };
@@ -387,7 +387,9 @@ export function setRounds(state, document, phase, rounds) {
   if (pointer !== outermost(pointer)) return { refused: "This block is inside another block that repeats. Change its rounds in the text." };
   const own = state.phases.filter((one) => one.pointer.startsWith(pointer + "/")), from = own[0].from, until = own.at(-1).until;
   const repeats = (block) => JSON.stringify(valueAt(document, block)?.repeat), isOwn = (frame) => frame.repeated && repeats(outermost(frame.pointer)) === repeats(pointer);
-  const begins = state.keyframes.some((frame) => sameTime(frame.time, from) && isOwn(frame)), within = inBlock(from, until, begins);
+  // A key at the beginning may also be the last one of another block before.
+  const inside = new Set(state.keyframes.filter((frame) => inBlock(from, until, false)(frame) && !sameTime(frame.time, until) && isOwn(frame)).map((frame) => outermost(frame.pointer)));
+  const begins = state.keyframes.some((frame) => sameTime(frame.time, from) && inside.has(outermost(frame.pointer))), within = inBlock(from, until, begins);
   const frames = state.keyframes.filter(within), blocks = [...new Set(frames.map((frame) => outermost(frame.pointer)))];
   const other = state.keyframes.find((frame) => within(frame) ? !isOwn(frame)
     : blocks.includes(outermost(frame.pointer)));

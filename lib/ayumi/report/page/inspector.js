@@ -69,6 +69,7 @@ export function nameAmongOthers(path) {
   return path[0] === "fz" ? "vertical force" : track && path.length > 1 ? `${track} ${nameOf(path)}` : nameOf(path);
 }
 
+const noRoom = "Between the rounds of a block that repeats there is no room for a key.";
 const isTarget = (track) => track.kind === "hand" || track.kind === "gaze";
 
 export class Inspector {
@@ -574,16 +575,17 @@ export class Inspector {
   async addFootKey(handle) {
     await this.page.showPlan();
     const { state, time } = this.page, phase = state.phases.find((one) => time < one.until && !sameTime(time, one.until)) ?? state.phases.at(-1);
-    if (!phase.support || phase.support === "both" || phase.support === handle.foot)
+    if (!phase.support) return this.page.say(`At ${seconds(time)} a goal of VIIP leads the feet, so they have no keys there.`);
+    if (phase.support === "both" || phase.support === handle.foot)
       return this.page.say(`At ${seconds(time)} the ${handle.label} carries the robot, so it has no key there. Choose a time at which it is in the air.`);
+    if (state.phases.some(({ swing }) => swing?.foot === handle.foot))
+      return this.page.say(`A swing leads the ${handle.label} in this pattern: type where it lands, or drag the foot while it swings.`);
     if (!this.page.can("pose.drag")) return this.copyFootKey(handle, time);
     const place = this.page.handles.placeOf(handle, this.page.planRow()).toArray();
     const { status, value } = await this.page.server.ask("POST", "pose", { time, drag: handle.name, from: place, to: place });
     if (status !== 200) return this.page.say(value.message || "The foot cannot have a key. Please reload the page.");
     const done = !value.edits.length || await this.page.edit(value.edits);
-    if (done && !this.selectNew("/feet/" + handle.foot, time))
-      this.page.say(`A swing leads the ${handle.label} at ${seconds(time)}: type where it lands, or drag the foot.`);
-    return done;
+    return done && this.selectNew("/feet/" + handle.foot, time);
   }
 
   /// Where the robot cannot do what is written, the foot has the place of its key before.
@@ -592,7 +594,8 @@ export class Inspector {
     const before = state.keyframes.filter((frame) => frame.time < time && keyOf(frame) !== undefined).at(-1);
     if (!before) return this.page.say("The text of the pattern has an error; correct it first.");
     const edits = putPart(state.keyframes, time, "feet", handle.foot, keyOf(before));
-    return edits.length > 0 && await this.page.edit(edits) && this.selectNew("/feet/" + handle.foot, time);
+    if (!edits.length) return this.page.say(noRoom);
+    return await this.page.edit(edits) && this.selectNew("/feet/" + handle.foot, time);
   }
 
   async addKey() {
@@ -608,7 +611,7 @@ export class Inspector {
     const edits = handle ? putTarget(state.keyframes, time, handle, value)
       : track === "cog height" ? putPart(state.keyframes, time, "cog", "height", value.height)
         : joint ? putPart(state.keyframes, time, "joints", track, value) : putKey(state.keyframes, time, track, value);
-    if (!edits.length) return this.page.say("Between the rounds of a block that repeats there is no room for a key.");
+    if (!edits.length) return this.page.say(noRoom);
     if (await this.page.edit(edits)) this.selectNew(handle ? handle.gaze ? "/gaze" : "/hands" + token(handle.link)
       : track === "cog height" ? "/cog" : joint ? "/joints" + token(track) : "/" + track, time);
   }
