@@ -287,7 +287,9 @@ std::vector<Mistaken> make_list() {
   add("a level foot of a leg that leans", tall(), side,
       "/keyframes/4: the right foot stays level while its leg leans by 1. deg to the side, .*"
       "\"rpy\": \\[-1[0-9]*, 0, -5\\]",  // its yaw stays
-      [](Pattern& p) { p.keyframes[4].feet[1]->rpy = {0, 0, -5 * kDegree}; });
+      [](Pattern& p) {
+        p.keyframes[4].feet[1]->rpy = {0, 0, -5 * kDegree};
+      });
   return all;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 // A run without disturbances that stands, and the set of states around it from which another run of
-// the same plan stands too. docs/theory_pushes.md, "Early verdicts of pushes", has the proof and its
-// assumption.
+// the same plan stands too. docs/theory_pushes.md, "Early verdicts of pushes", has the proof and
+// its assumption.
 
 #include <vector>
 
