@@ -92,10 +92,9 @@ void tune(Context& context, TuneCommand& options) {
     out += std::string(first ? " \"" : ", \"") + name + "\": " + text::brief(value);
     first = false;
   }
-  out += " }\n  " + text::counted(result.choices, "choice") + " of gains were tried, and " +
-         std::to_string(result.refused) +
-         " were not tried, because their loop is unstable. Test the result with other pushes "
-         "(ayumi push)\n";
+  out += " }\n  sets of gains tried: " + std::to_string(result.choices) +
+         "; not tried, because their loop is unstable: " + std::to_string(result.refused) +
+         ". Test the result with other pushes (ayumi push)\n";
   if (!options.out.empty()) {
     write_file(options.out, text_with_gains(options, result));
     out += "  " + options.out + ": the pattern with these gains\n";
