@@ -44,9 +44,7 @@ std::shared_ptr<const RobotLook> robot_look(const RobotModel& model) {
   look->surface = robot_surface(model);
   look->triangles = triangle_count(look->surface);
   if (look->triangles <= kMostTriangles) return look;
-  const Eigen::AlignedBox3d box =
-      robot_bounds(look->surface, body_poses(model, model.rest_state()));
-  const double height = box.isEmpty() ? 1.0 : box.sizes().maxCoeff();
+  const double height = robot_extent(look->surface, model, model.rest_state());
   leave_out_hidden(look->surface);
   look->moved = thin_to(look->surface, kThinned * height / kRows, kMostTriangles);
   look->moved = std::max(look->moved, std::sqrt(3.0) * simplify(look->surface, kMostTriangles));

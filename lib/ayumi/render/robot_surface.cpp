@@ -101,4 +101,10 @@ Eigen::AlignedBox3d robot_bounds(const std::vector<BodySurface>& surface,
   return box;
 }
 
+double robot_extent(const std::vector<BodySurface>& surface, const RobotModel& model,
+                    const RobotState& state) {
+  const Eigen::AlignedBox3d box = robot_bounds(surface, body_poses(model, state));
+  return box.isEmpty() ? 1.0 : std::max(1e-3, box.sizes().maxCoeff());
+}
+
 }  // namespace ayumi

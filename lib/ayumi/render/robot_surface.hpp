@@ -45,4 +45,8 @@ std::vector<Eigen::Isometry3d> body_poses(const RobotModel& model, const RobotSt
 Eigen::AlignedBox3d robot_bounds(const std::vector<BodySurface>& surface,
                                  const std::vector<Eigen::Isometry3d>& poses);
 
+/// The largest edge of these bounds in a posture [m]; 1 where nothing is drawn.
+double robot_extent(const std::vector<BodySurface>& surface, const RobotModel& model,
+                    const RobotState& state);
+
 }  // namespace ayumi

@@ -162,13 +162,6 @@ std::string bumps_words(const RobotModel& model, const SimulationLog& log) {
   return list(words);
 }
 
-double height_of(const RobotModel& model, const std::vector<BodySurface>& surface,
-                 const SimulationLog& log) {
-  const Eigen::AlignedBox3d box =
-      robot_bounds(surface, body_poses(model, log.samples.front().state));
-  return box.isEmpty() ? 1.0 : std::max(1e-3, box.sizes().maxCoeff());
-}
-
 /// What the script has to know of the robot and of the world, without braces.
 std::string common_words(const RobotModel& model, double height, const SimulationLog& log,
                          double rate, double start, const std::string& label) {
@@ -225,7 +218,8 @@ ReplayData make_replay(const RobotModel& model, const RobotLook& look, const Rep
   if (floor_moves(log)) columns.insert(columns.end(), kFloorColumns.begin(), kFloorColumns.end());
   data.scenery = scenery_bytes(log.world);
   data.config = "{\"columns\":" + quoted_list(columns) + "," +
-                common_words(model, height_of(model, look.surface, log), log, plan.rate, data.start,
+                common_words(model, robot_extent(look.surface, model, log.samples.front().state),
+                             log, plan.rate, data.start,
                              "3-D replay of " + input.title +
                                  "; space plays, arrow keys step, Home and End go to the ends") +
                 "}";
@@ -245,8 +239,8 @@ std::string live_config(const RobotModel& model, const SimulationLog& log, doubl
   for (const char* const quantity : {"q.", "dq.", "tau."})
     for (const std::string& joint : model.dof_names()) columns.push_back(quantity + joint);
   return "{\"columns\":" + quoted_list(columns) + "," +
-         common_words(model, height_of(model, robot_surface(model), log), log, rate, 0,
-                      "The robot in 3-D") +
+         common_words(model, robot_extent(robot_surface(model), model, log.samples.front().state),
+                      log, rate, 0, "The robot in 3-D") +
          ",\"joints\":" + quoted_list(model.dof_names()) + ",\"bodies\":" + bodies_words(model) +
          "}";
 }
