@@ -31,12 +31,12 @@ mapfile -t libraries < <(printf '%s\n' "$listed" $osmesa | sort -u | grep -Ev "$
 cp -L "${libraries[@]}" "$root/lib/"
 # Debian's licences of what is copied. dpkg knows a file below /usr/lib also by its place in /lib.
 mkdir -p "$root/share/doc/ayumi/libraries"
-owners=$(readlink -f "${libraries[@]}" | sed 'p; s|^/usr||' | xargs dpkg-query --search 2>/dev/null || true)
+declare -A package_of  # "zlib1g:amd64: /lib/x86_64-linux-gnu/libz.so.1.2.13"
+while IFS= read -r line; do package_of[${line#*: }]=${line%%:*}; done < <(
+  readlink -f "${libraries[@]}" | sed 'p; s|^/usr||' | xargs dpkg-query --search 2>/dev/null)
 for library in "${libraries[@]}"; do
   file=$(readlink -f "$library")
-  package=$(awk -v a=" $file" -v b=" ${file#/usr}" \
-    'substr($0, index($0, ": ") + 1) == a || substr($0, index($0, ": ") + 1) == b { sub(/:.*/, ""); print; exit }' \
-    <<<"$owners")
+  package=${package_of[$file]:-${package_of[${file#/usr}]:-}}
   notice=/usr/share/doc/$package/copyright
   if [[ -z $package || ! -e $notice ]]; then
     echo "$library: no package of Debian states its licence; install the library from Debian" >&2
