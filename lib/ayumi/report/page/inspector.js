@@ -584,8 +584,7 @@ export class Inspector {
     const place = this.page.handles.placeOf(handle, this.page.planRow()).toArray();
     const { status, value } = await this.page.server.ask("POST", "pose", { time, drag: handle.name, from: place, to: place });
     if (status !== 200) return this.page.say(value.message || "The foot cannot have a key. Please reload the page.");
-    const done = !value.edits.length || await this.page.edit(value.edits);
-    return done && this.selectNew("/feet/" + handle.foot, time);
+    if (!value.edits.length || await this.page.edit(value.edits)) this.selectNew("/feet/" + handle.foot, time);
   }
 
   /// Where the robot cannot do what is written, the foot has the place of its key before.
@@ -595,7 +594,7 @@ export class Inspector {
     if (!before) return this.page.say("The text of the pattern has an error; correct it first.");
     const edits = putPart(state.keyframes, time, "feet", handle.foot, keyOf(before));
     if (!edits.length) return this.page.say(noRoom);
-    return await this.page.edit(edits) && this.selectNew("/feet/" + handle.foot, time);
+    if (await this.page.edit(edits)) this.selectNew("/feet/" + handle.foot, time);
   }
 
   async addKey() {
@@ -616,15 +615,14 @@ export class Inspector {
       : track === "cog height" ? "/cog" : joint ? "/joints" + token(track) : "/" + track, time);
   }
 
-  /// The key that has just been added is selected, with the focus in its first value; false where there is none.
+  /// The key that has just been added is selected, with the focus in its first value.
   selectNew(inside, time) {
     const frame = this.page.state.keyframes.find((one) => sameTime(one.time, time));
-    if (!frame) return false;
+    if (!frame) return;
     const pointer = frame.pointer + inside;
-    if (!this.page.state.tracks.some((track) => track.keys.some((one) => one.pointer === pointer))) return false;
+    if (!this.page.state.tracks.some((track) => track.keys.some((one) => one.pointer === pointer))) return;
     this.page.select({ kind: "key", pointer }, frame.time);
     [...byId("selected").querySelectorAll("input, select")].find((one) => one.dataset.id?.startsWith(pointer))?.focus();
-    return true;
   }
 
   moved() {
