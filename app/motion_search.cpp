@@ -21,8 +21,8 @@ namespace ayumi::app {
 namespace {
 
 // Most motions that are sampled, and most that are checked in full. Chosen: a sample of a walk of
-// 12 s at kCoarse takes 0.05 s and a full check 0.5 s, so a search ends within ten seconds; at
-// half, robots whose legs differ much from HOAP-1's are given up too early.
+// 12 s at kCoarse takes 0.05 s and a full check 0.5 s, so a search ends within ten seconds; on
+// 14 robots and 69 variants of them, the longest took 8 s.
 constexpr int kMostSampled = 90, kMostChecked = 8;
 // Most motions that are simulated. Chosen: a walk of 12 s takes 0.3 to 1 s.
 constexpr int kMostSimulated = 5;

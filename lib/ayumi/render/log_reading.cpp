@@ -242,7 +242,7 @@ double sunk_at(const SimulationLog& log) {
 /// When the step or kick began in which the robot stands on one foot at `t` [s]; `t` otherwise.
 double step_began(const SimulationLog& log, double t) {
   // The longest way back from t [s]. Chosen: longer than the kicks of the examples, and short
-  // beside a robot that stands on one foot; golden pictures do not depend on it.
+  // beside a robot that only stands on one foot.
   constexpr double kSlow = 2;
   size_t k = tick_at(log, t);
   const std::array<bool, 2> feet = log.samples[k].planned_contact;
