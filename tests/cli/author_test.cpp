@@ -198,6 +198,21 @@ TEST_F(AuthorServer, AnswersOnlyItsOwnPage) {
   EXPECT_NE(client.Put(server.root() + "state", "", "text/plain")->status, 200);
 }
 
+// Brotli at its highest level took longer than the change of the motion itself.
+TEST_F(AuthorServer, CompressesNothing) {
+  const Server server(file);
+  httplib::Client client = server.client();
+  for (const char* const path : {"", "state", "model.glb"}) {
+    const auto answer =
+        client.Get(server.root() + path, httplib::Headers{{"Accept-Encoding", "gzip, deflate, br"}});
+    ASSERT_TRUE(answer) << path;
+    EXPECT_EQ(answer->status, 200) << path;
+    EXPECT_FALSE(answer->has_header("Content-Encoding")) << path;
+    EXPECT_EQ(answer->get_header_value("Content-Length"), std::to_string(answer->body.size()))
+        << path;
+  }
+}
+
 // Before, such a request ended the server: its value was written by recursion.
 TEST_F(AuthorServer, RefusesRequestsThatAreNestedDeeply) {
   const Server server(file);
