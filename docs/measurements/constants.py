@@ -173,7 +173,7 @@ def rewrite(path, text, found):
         front_words = match["front"]
         if len(front_words) > 0 and not front_words.strip():
             front_words += "static "  # of a function: evaluated once
-        if "static" in front_words and re.search(r"\.hpp$", str(path)):
+        if "static" in match["front"]:
             front_words += "inline "  # a member
         return f"{front_words}const {kind} {', '.join(made)};"
 
