@@ -43,10 +43,12 @@ ServoConstants constants_of(const double* shared, double offset) {
           shared[3] * kUnit[3], shared[4] * kUnit[4], offset * kUnit[5]};
 }
 
-// Measured less simulated angle of one joint, in the unit of offsets.
+// Measured less simulated angle of one joint, in the unit of offsets. Derivatives by constants that
+// are held are zero.
 class JointError final : public ceres::CostFunction {
  public:
-  explicit JointError(const JointRecording& joint) : joint_(joint) {
+  JointError(const JointRecording& joint, const std::array<bool, kConstants>& held)
+      : joint_(joint), held_(held) {
     mutable_parameter_block_sizes()->assign({kConstants, 1});
     set_num_residuals(static_cast<int>(joint.compared.size()));
   }
@@ -56,30 +58,39 @@ class JointError final : public ceres::CostFunction {
     std::array<double, kConstants + 1> x;
     std::copy_n(parameters[0], kConstants, x.begin());
     x[kConstants] = parameters[1][0];
+    std::vector<ServoConstants> servos = {constants_of(x.data(), x[kConstants])};
+    std::vector<int> moved;
+    for (int i = 0; i <= kConstants && jacobians; ++i) {
+      const bool wanted =
+          i < kConstants ? jacobians[0] && !held_[static_cast<size_t>(i)] : jacobians[1] != nullptr;
+      if (!wanted) continue;
+      auto ahead = x;
+      ahead[static_cast<size_t>(i)] += kStep;
+      servos.push_back(constants_of(ahead.data(), ahead[kConstants]));
+      moved.push_back(i);
+    }
+    MatrixXd theta;
+    servo_responses(joint_, servos, theta);
+    const auto error = [&](Index servo) -> VectorXd {
+      return (joint_.measured - theta.col(servo))(joint_.compared) / kUnit[5];
+    };
     const Index count = num_residuals();
-    const VectorXd at = error(x);
+    const VectorXd at = error(0);
     Eigen::Map<VectorXd>(residuals, count) = at;
     if (!jacobians) return true;
     using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    for (int i = 0; i <= kConstants; ++i) {
-      double* const block = jacobians[i < kConstants ? 0 : 1];
-      if (!block) continue;
-      Eigen::Map<RowMajor> jacobian(block, count, i < kConstants ? kConstants : 1);
-      auto ahead = x;
-      ahead[static_cast<size_t>(i)] += kStep;
-      jacobian.col(i < kConstants ? i : 0) = (error(ahead) - at) / kStep;
+    if (jacobians[0]) Eigen::Map<RowMajor>(jacobians[0], count, kConstants).setZero();
+    for (size_t m = 0; m < moved.size(); ++m) {
+      const bool shared = moved[m] < kConstants;
+      Eigen::Map<RowMajor> jacobian(jacobians[shared ? 0 : 1], count, shared ? kConstants : 1);
+      jacobian.col(shared ? moved[m] : 0) = (error(static_cast<Index>(m) + 1) - at) / kStep;
     }
     return true;
   }
 
  private:
-  VectorXd error(const std::array<double, kConstants + 1>& x) const {
-    VectorXd theta;
-    servo_response(joint_, constants_of(x.data(), x[kConstants]), theta);
-    return (joint_.measured - theta)(joint_.compared) / kUnit[5];
-  }
-
   const JointRecording& joint_;
+  const std::array<bool, kConstants> held_;
 };
 
 // Rows after which the residuals are independent.
@@ -210,7 +221,7 @@ ServoFit fit_servo(const std::vector<JointRecording>& joints,
   for (const ServoConstants& each : start) offsets.push_back(each.offset / kUnit[5]);
   ceres::Problem problem;
   for (size_t j = 0; j < joints.size(); ++j)
-    problem.AddResidualBlock(new JointError(joints[j]), nullptr, shared.data(), &offsets[j]);
+    problem.AddResidualBlock(new JointError(joints[j], held), nullptr, shared.data(), &offsets[j]);
   for (int i = 0; i < kConstants; ++i) problem.SetParameterLowerBound(shared.data(), i, 0);
   problem.SetParameterUpperBound(shared.data(), 0, longest_delay / kUnit[0]);
   std::vector<int> constant;
@@ -236,18 +247,25 @@ ServoFit fit_servo(const std::vector<JointRecording>& joints,
     ceres::Solve(options, &problem, &summary);
     if (!summary.IsSolutionUsable())
       fail(ErrorCode::solver, "the constants of a servo were not found: " + summary.message);
-    double least = 0;
-    problem.Evaluate({}, &least, nullptr, nullptr, nullptr);
     const double found = shared[kDry];
-    double best = found;
-    for (const double factor : kOtherFriction) {
-      double cost = 0;
-      shared[kDry] = factor * std::max(found, 0.1);
-      problem.Evaluate({}, &cost, nullptr, nullptr, nullptr);
-      if (cost < least) least = cost, best = shared[kDry];
+    std::vector<double> tried = {found};
+    for (const double factor : kOtherFriction) tried.push_back(factor * std::max(found, 0.1));
+    VectorXd squares = VectorXd::Zero(static_cast<Index>(tried.size()));
+    for (size_t j = 0; j < joints.size(); ++j) {
+      std::vector<ServoConstants> servos;
+      for (const double dry : tried) {
+        shared[kDry] = dry;
+        servos.push_back(constants_of(shared.data(), offsets[j]));
+      }
+      MatrixXd theta;
+      servo_responses(joints[j], servos, theta);
+      theta.colwise() -= joints[j].measured;
+      squares += theta(joints[j].compared, Eigen::all).colwise().squaredNorm().transpose();
     }
-    shared[kDry] = best;
-    if (best == found) break;
+    Index best = 0;  // the first of equals
+    squares.minCoeff(&best);
+    shared[kDry] = tried[static_cast<size_t>(best)];
+    if (best == 0) break;
   }
 
   ServoFit fit;
@@ -272,7 +290,7 @@ ServoFit fit_servo(const std::vector<JointRecording>& joints,
   MatrixXd jacobian = MatrixXd::Zero(at, static_cast<Index>(free.size()));
   at = 0;
   for (size_t j = 0; j < joints.size(); ++j) {
-    const JointError error(joints[j]);
+    const JointError error(joints[j], held);
     const Index count = error.num_residuals();
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> by_shared(count,
                                                                                      kConstants),

@@ -1,6 +1,7 @@
 #include "ayumi/identify/servo_response.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace ayumi {
@@ -67,13 +68,21 @@ std::vector<Stretch> stretches(const JointRecording& recording) {
   return found;
 }
 
-}  // namespace
+// Servos of one joint that are simulated side by side. Each step of a servo waits for the one
+// before it, so that a processor does the steps of several servos in the time of one. Chosen: that
+// many keep it busy.
+constexpr Index kLanes = 4;
 
-void servo_response(const JointRecording& recording, const ServoConstants& c,
-                    Eigen::VectorXd& theta) {
-  theta = recording.measured;
-  const auto play = [&](Index k) {
-    return 0.5 * c.backlash * std::clamp(recording.torque[k] / kMeshTorque, -1.0, 1.0);
+/// Columns `first` to `first` + lanes - 1 of `theta`.
+template <size_t lanes>
+void respond(const JointRecording& recording, const ServoConstants* c, Eigen::MatrixXd& theta,
+             Index first_column) {
+  using Lanes = std::array<double, lanes>;
+  const auto play = [&](size_t l, Index k) {
+    return 0.5 * c[l].backlash * std::clamp(recording.torque[k] / kMeshTorque, -1.0, 1.0);
+  };
+  const auto set = [&](size_t l, Index k, double phi) {
+    theta(k, first_column + static_cast<Index>(l)) = phi + c[l].offset - play(l, k);
   };
   const bool stepped = recording.law == CommandLaw::stepped;
   const int steps =
@@ -83,47 +92,87 @@ void servo_response(const JointRecording& recording, const ServoConstants& c,
   const double h = recording.dt / steps;
   for (const Stretch& stretch : stretches(recording)) {
     const Index first = stretch.begin, few = std::min<Index>(5, recording.measured.size() - first);
-    double phi = recording.measured.segment(first, few).mean() - c.offset + play(first);
+    Lanes phi, rate, target;
+    for (size_t l = 0; l < lanes; ++l)
+      phi[l] = recording.measured.segment(first, few).mean() - c[l].offset + play(l, first);
     if (recording.at_once) {
       for (Index k = first; k <= stretch.end; ++k) {
         const double rotor = recording.inertia[k] - recording.link_inertia[k];
         const double load = recording.torque[k] + rotor * recording.acceleration[k];
-        const double target =
-            command_at(recording, recording.dt * static_cast<double>(k) - c.delay) -
-            c.compliance * load;
-        phi = std::clamp(phi, target - c.dry, target + c.dry);
-        theta[k] = phi + c.offset - play(k);
+        for (size_t l = 0; l < lanes; ++l) {
+          const double wanted =
+              command_at(recording, recording.dt * static_cast<double>(k) - c[l].delay) -
+              c[l].compliance * load;
+          phi[l] = std::clamp(phi[l], wanted - c[l].dry, wanted + c[l].dry);
+          set(l, k, phi[l]);
+        }
       }
       continue;
     }
-    double rate = recording.rate[first];
-    theta[first] = phi + c.offset - play(first);
+    for (size_t l = 0; l < lanes; ++l) {
+      rate[l] = recording.rate[first];
+      set(l, first, phi[l]);
+    }
     for (Index k = first; k < stretch.end; ++k) {
       // What loads the joint beside its own inertia, which the simulation moves itself.
       const double load0 =
           recording.torque[k] - recording.link_inertia[k] * recording.acceleration[k];
       const double load1 =
           recording.torque[k + 1] - recording.link_inertia[k + 1] * recording.acceleration[k + 1];
-      const double inertia = c.compliance * 0.5 * (recording.inertia[k] + recording.inertia[k + 1]);
-      const double drag = h * c.damping, spring = place * h * h;
-      const double whole = inertia + place * (drag + spring), friction = h * c.dry;
-      const double kept = inertia - (1 - place) * (drag + spring);
+      Lanes whole, kept;
+      for (size_t l = 0; l < lanes; ++l) {
+        const double inertia =
+            c[l].compliance * 0.5 * (recording.inertia[k] + recording.inertia[k + 1]);
+        const double drag = h * c[l].damping, spring = place * h * h;
+        whole[l] = inertia + place * (drag + spring);
+        kept[l] = inertia - (1 - place) * (drag + spring);
+      }
       for (int i = 0; i < steps; ++i) {
         const double share = (i + place) / steps;
-        const double begin =
-            recording.dt * (static_cast<double>(k) + static_cast<double>(i) / steps) - c.delay;
-        const double target = mean_command(recording, begin, begin + h);
-        const double load = c.compliance * ((1 - share) * load0 + share * load1);
-        const double momentum = kept * rate + h * (target - phi - load);
-        // Dry friction takes momentum until the joint rests.
-        const double taken = std::clamp(momentum, -friction, friction);
-        const double next = (momentum - taken) / whole;
-        phi += h * ((1 - place) * rate + place * next);
-        rate = next;
+        const double load = (1 - share) * load0 + share * load1;
+        const double row = static_cast<double>(k) + static_cast<double>(i) / steps;
+        for (size_t l = 0; l < lanes; ++l) {
+          const double begin = recording.dt * row - c[l].delay;
+          target[l] = l > 0 && c[l].delay == c[l - 1].delay
+                          ? target[l - 1]
+                          : mean_command(recording, begin, begin + h);
+        }
+        for (size_t l = 0; l < lanes; ++l) {
+          const double momentum =
+              kept[l] * rate[l] + h * (target[l] - phi[l] - c[l].compliance * load);
+          // Dry friction takes momentum until the joint rests.
+          const double friction = h * c[l].dry, taken = std::clamp(momentum, -friction, friction);
+          const double next = (momentum - taken) / whole[l];
+          phi[l] += h * ((1 - place) * rate[l] + place * next);
+          rate[l] = next;
+        }
       }
-      theta[k + 1] = phi + c.offset - play(k + 1);
+      for (size_t l = 0; l < lanes; ++l) set(l, k + 1, phi[l]);
     }
   }
+}
+
+}  // namespace
+
+void servo_responses(const JointRecording& recording, const std::vector<ServoConstants>& constants,
+                     Eigen::MatrixXd& theta) {
+  const auto count = static_cast<Index>(constants.size());
+  theta.resize(recording.measured.size(), count);
+  theta.colwise() = recording.measured;
+  Index at = 0;
+  for (; at + kLanes <= count; at += kLanes)
+    respond<kLanes>(recording, &constants[static_cast<size_t>(at)], theta, at);
+  const ServoConstants* const rest = constants.data() + at;
+  if (count - at == 3) respond<3>(recording, rest, theta, at);
+  if (count - at == 2) respond<2>(recording, rest, theta, at);
+  if (count - at == 1) respond<1>(recording, rest, theta, at);
+}
+
+void servo_response(const JointRecording& recording, const ServoConstants& constants,
+                    Eigen::VectorXd& theta) {
+  Eigen::MatrixXd column;
+  servo_responses(recording, {constants}, column);
+  theta = column.col(0);
 }
 
 }  // namespace ayumi

@@ -61,6 +61,11 @@ double command_at(const JointRecording& recording, double t);
 void servo_response(const JointRecording& recording, const ServoConstants& constants,
                     Eigen::VectorXd& theta);
 
+/// The same for several servos: one column of `theta` for each, with the numbers of
+/// servo_response(). Several together take less time than one after the other.
+void servo_responses(const JointRecording& recording, const std::vector<ServoConstants>& constants,
+                     Eigen::MatrixXd& theta);
+
 /// The angle of the joint at the torque `tau` at rest, against its command [rad].
 double sag(const ServoConstants& constants, double tau);
 
