@@ -35,10 +35,10 @@ export async function openPage(driver_, width, height) {
   const tab = await driver_.open(`${width},${height}`);
   tab.size = (w, h, deviceScaleFactor = 1) => tab.tool("Emulation.setDeviceMetricsOverride",
     { width: w, height: h, deviceScaleFactor, mobile: false });
-  /// From here on half as many pixels in each direction, with the same layout: a machine without a graphics card draws
+  /// From here on a quarter as many pixels in each direction, with the same layout: a machine without a graphics card draws
   /// them in less time.
   tab.coarsen = async () => {
-    await tab.size(width, height, 0.5);
+    await tab.size(width, height, 0.25);
     await tab.run("window.ayumiAuthor.page.viewer.renderer.setPixelRatio(devicePixelRatio);");
   };
   await tab.size(width, height);
