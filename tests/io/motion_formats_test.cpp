@@ -181,6 +181,9 @@ TEST(MotionFormats, MistakesNameFileLineAndFormat) {
   EXPECT_NE(refusal_of(R"({"framerate": 50, "positions": {"0.0": {"l_knee": [1,5, 0]}}})")
                 .find("expected an angle, or [angle, speed], found 3 numbers"),
             std::string::npos);
+  EXPECT_NE(refusal_of(R"({"framerate": 50, "positions": {"0.0": {"l_knee": [1, [2]]}}})")
+                .find("/positions/0.0/l_knee/1: expected "),
+            std::string::npos);
   const ImportOptions stated{.format = "webots"};
   EXPECT_EQ(
       refusal_of("#WEBOTS_MOTION,V3.0,l_knee\n", "m.dat", stated),

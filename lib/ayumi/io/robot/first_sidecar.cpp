@@ -522,9 +522,11 @@ FirstSidecar first_sidecar(const std::string& robot, const std::filesystem::path
   namespace fs = std::filesystem;
   const fs::path urdf = fs::weakly_canonical(fs::absolute(stated.urdf_file));
   const std::string urdf_as_written = seen_from(folder, urdf);
-  const std::vector<std::string> read = stated.assumptions;  // nothing is guessed yet
+  std::vector<std::string> read = stated.assumptions;  // nothing is guessed yet
   const std::vector<std::string> massless = hold_joints_without_mass(stated);
   const std::vector<std::string> play = hold_play_of_gears(stated);
+  constexpr size_t kMostNamed = 3;  // missing meshes in the to-do list
+  for (const std::string& gap : gaps_of_the_files(stated, kMostNamed)) read.push_back(gap);
   RobotGuess guess = guess_robot(std::move(stated));
   const std::vector<std::string> boxes = take_inertias_of_shapes(guess.robot);
   const RobotModel model(guess.robot);
