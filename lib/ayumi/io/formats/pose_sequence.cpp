@@ -49,6 +49,7 @@ class PoseSequenceReader {
                                      ": the robot has no soles; add the left and the right sole to "
                                      "\"soles\" in its sidecar");
     const YamlNode root = parse_yaml(source_.bytes, source_.file);
+    require_known(root);
     const YamlNode* refs = root.find("refs");
     if (!refs || !refs->is_list()) refuse(root, "`refs`, the list of key poses, is missing");
     if (refs->items.size() > kMostKeys)
@@ -81,6 +82,32 @@ class PoseSequenceReader {
     return node.numbers;
   }
 
+  // The format states its version in a comment above its keys; other files of Choreonoid have a
+  // key.
+  void require_known(const YamlNode& root) const {
+    const YamlNode* type = root.find("type");
+    if (!type || type->text != "PoseSeq")
+      refuse(type ? *type : root,
+             "type '" + (type ? type->text : "") + "' is unknown; " + "Ayumi reads PoseSeq");
+    if (const YamlNode* version = root.find("format_version", "formatVersion"))
+      require_version(version->text, static_cast<size_t>(version->line));
+    const std::string_view comment = "pose sequence format version ";
+    const std::string& text = source_.bytes;
+    const size_t first = text.find_first_not_of("\xef\xbb\xbf");
+    const size_t at = text.find(comment);
+    const size_t end = text.find_first_of("\r\n");
+    if (first != std::string::npos && text[first] == '#' && at < end)
+      require_version(
+          text.substr(at + comment.size(),
+                      text.find_first_of(" \t\r\n", at + comment.size()) - at - comment.size()),
+          1);
+  }
+
+  void require_version(const std::string& version, size_t line) const {
+    if (source_.number(version, line, "format version") != 1)
+      source_.refuse(line, "format version " + version + " is unknown; Ayumi reads version 1");
+  }
+
   static bool is_true(const YamlNode* node) {
     return node && (node->text == "true" || node->text == "True");
   }
@@ -103,12 +130,18 @@ class PoseSequenceReader {
     if (const YamlNode* most = ref.find("maxTransitionTime", "max_transition_time"))
       key.transition = std::max(number(*most, "maxTransitionTime"), 0.0);
     const YamlNode *ids = pose->find("joints"), *angles = pose->find("q", "displacements");
+    if ((ids != nullptr) != (angles != nullptr))
+      refuse(*pose, std::string("a pose with `") + (ids ? "joints" : "q") + "` needs `" +
+                        (ids ? "q" : "joints") + "`; the file may be truncated");
     if (ids && angles) {
       key.angles = numbers(*angles, "q", 0);
       for (const double id : numbers(*ids, "joints", key.angles.size())) {
         if (!(id >= 0 && id < 1e4) || id != std::floor(id))
           refuse(*ids, "joints: " + text::brief(id) +
                            " is not a joint id (a whole number from 0 to 9999)");
+        if (std::find(key.joints.begin(), key.joints.end(), static_cast<int>(id)) !=
+            key.joints.end())
+          refuse(*ids, "joints: the joint " + text::brief(id) + " is there twice; keep one");
         key.joints.push_back(static_cast<int>(id));
       }
     }
