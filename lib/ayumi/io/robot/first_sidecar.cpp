@@ -503,6 +503,20 @@ std::vector<std::string> to_do_list(const RobotModel& model, const RobotGuess& g
   for (const PlaceholderLimits& each : guess.placeholders)
     items.push_back("Replace the placeholders: " + each.what + " of " + each.value + " on " +
                     text::counted(each.joints.size(), "joint") + ".");
+  const ActuatorLimits& limits = model.limits();
+  const auto unlimited = [](const Eigen::VectorXd& values) {
+    return values.array().isInf().count();
+  };
+  const Eigen::Index fast = unlimited(limits.speed), strong = unlimited(limits.peak_torque);
+  if (fast + strong > 0)
+    items.push_back(
+        "State the limits of the motors in \"profiles\": the robot's file gives " +
+        (fast > 0 ? text::counted(static_cast<size_t>(fast), "joint") + " no speed limit"
+                  : std::string()) +
+        (fast > 0 && strong > 0 ? ", and " : "") +
+        (strong > 0 ? text::counted(static_cast<size_t>(strong), "joint") + " no torque limit"
+                    : std::string()) +
+        "; without them, check cannot say whether the motors can follow.");
   items.push_back(
       "State kp, kd and rotor inertia of the servos, or find them with `ayumi identify`.");
   items.push_back("State the continuous torque of the motors.");
