@@ -547,6 +547,11 @@ TEST(MotionFormats, KeyPosesOfAnotherVersionOrWithAJointTwiceAreRefused) {
   EXPECT_EQ(refusal(replaced(head + keys, "[0, 1], q: [0, 0.1]", "[1, 1], q: [0, 0.1]"))
                 .find("m.pseq:5: joints: the joint 1 is there twice; keep one"),
             0u);
+  std::string many = head + "refs:\n";
+  for (int i = 0; i <= 20'000; ++i) many += "  - {time: 0, refer: {type: Pose}}\n";
+  EXPECT_EQ(refusal(many).find(
+                "m.pseq: the file has 20001 key poses, but import reads at most 20000; cut the"),
+            0u);
   EXPECT_EQ(refusal(replaced(head + keys, "PoseSeq", "PoseSequel"))
                 .find("m.pseq:1: type 'PoseSequel' is unknown; Ayumi reads PoseSeq"),
             0u);

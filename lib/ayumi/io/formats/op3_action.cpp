@@ -73,7 +73,7 @@ MotionFile read_op3_action(const MotionInput& source) {
   if (bytes.size() != kPages * kPageBytes)
     source.refuse(0, "the file has " + std::to_string(bytes.size()) +
                          " bytes, but an action file has " + std::to_string(kPages * kPageBytes) +
-                         "; the file may be truncated, so copy it again");
+                         "; copy the file again");
   std::vector<size_t> full;
   std::vector<bool> follows(kPages, false);
   std::vector<std::string> damaged;

@@ -24,8 +24,9 @@ using Eigen::Vector3d;
 // Differences of a foot that stands still from key to key [m, rad]. Chosen: editors of key poses
 // print nine digits, and solvers of postures leave some micrometres.
 constexpr double kSamePlace = 1e-3, kSameTurn = 2e-3;
-// Keys of a file. Chosen: a motion edited by hand has some hundred.
-constexpr size_t kMostKeys = 100'000;
+// Keys of a file. Chosen: a motion edited by hand has some hundred; so many are refused in 0.1 s,
+// while YAML of twice as many takes half a second and 100 MB.
+constexpr size_t kMostKeys = 20'000;
 
 /// One key of the file.
 struct PoseKey {
@@ -48,13 +49,11 @@ class PoseSequenceReader {
       fail(ErrorCode::bad_model, model_.name() +
                                      ": the robot has no soles; add the left and the right sole to "
                                      "\"soles\" in its sidecar");
+    require_few();
     const YamlNode root = parse_yaml(source_.bytes, source_.file);
     require_known(root);
     const YamlNode* refs = root.find("refs");
     if (!refs || !refs->is_list()) refuse(root, "`refs`, the list of key poses, is missing");
-    if (refs->items.size() > kMostKeys)
-      refuse(*refs, "the file has " + std::to_string(refs->items.size()) +
-                        " key poses, but import reads at most " + std::to_string(kMostKeys));
     for (const YamlNode& ref : refs->items) read_key(ref);
     if (keys_.size() < 2) refuse(root, "a motion needs two key poses or more");
     map_ids(root);
@@ -80,6 +79,19 @@ class PoseSequenceReader {
                        (count == 1 ? " is" : " are") + " needed, found " +
                        std::to_string(node.numbers.size()));
     return node.numbers;
+  }
+
+  // Before the text is parsed.
+  void require_few() const {
+    const std::string_view key = "refer:";
+    size_t keys = 0;
+    for (size_t at = source_.bytes.find(key); at != std::string::npos;
+         at = source_.bytes.find(key, at + key.size()))
+      ++keys;
+    if (keys > kMostKeys)
+      source_.refuse(0, "the file has " + std::to_string(keys) +
+                            " key poses, but import reads at most " + std::to_string(kMostKeys) +
+                            "; cut the file");
   }
 
   // The format states its version in a comment above its keys; other files of Choreonoid have a
