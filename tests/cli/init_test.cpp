@@ -146,6 +146,20 @@ TEST(Init, LegsThatCannotTurnApartSaySo) {
   EXPECT_EQ(made.err.find("out of reach by"), std::string::npos) << made.err;
 }
 
+// A centre of mass far from its link was a warning of `inspect` alone, which a beginner never runs.
+TEST(Init, SuspiciousLinksAreOnTheList) {
+  Folder folder;
+  std::string text = UrdfBiped{}.text();
+  const size_t mass = text.find("<origin", text.find("<inertial>", text.find("name=\"l_shank\"")));
+  text.replace(mass, text.find("/>", mass) - mass, "<origin xyz=\"0 0 0.4\"");
+  write(folder / "robot.urdf", text);
+  const Output made = ayumi(folder, {"init", "robot.urdf", "-o", "bare"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_NE(made.out.find("Check link l_shank: the centre of mass lies outside the shape"),
+            std::string::npos)
+      << made.out;
+}
+
 // The motors of a robot whose file states no limits are on the list, and no share of them is given.
 TEST(Init, MotorsWithoutLimitsAreSaid) {
   Folder folder;

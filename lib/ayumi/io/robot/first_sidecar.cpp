@@ -14,6 +14,7 @@
 #include "ayumi/io/robot/robot_guess.hpp"
 #include "ayumi/math/elementary.hpp"
 #include "ayumi/math/rotation.hpp"
+#include "ayumi/model/diagnose.hpp"
 #include "ayumi/model/outline.hpp"
 
 namespace ayumi {
@@ -521,6 +522,9 @@ std::vector<std::string> to_do_list(const RobotModel& model, const RobotGuess& g
       "State kp, kd and rotor inertia of the servos, or find them with `ayumi identify`.");
   items.push_back("State the continuous torque of the motors.");
   items.push_back("State place, latency and noise of the sensors.");
+  for (const ModelWarning& warning : diagnose(model))
+    if (warning.kind == "link")
+      items.push_back("Check " + warning.where + ": " + warning.message + ".");
   return items;
 }
 
