@@ -88,13 +88,20 @@ std::string figure_place(const ConsistencyReport& report, FindingKind kind) {
 
 }  // namespace
 
+bool has_limit(const ConsistencyReport& report, FindingKind kind) {
+  const bool of_motor = kind == FindingKind::joint_speed || kind == FindingKind::joint_torque ||
+                        kind == FindingKind::continuous_torque;
+  return !of_motor || std::isfinite(report.summary_at[kind].at);
+}
+
 std::string shares_of_limits(const ConsistencyReport& report) {
   std::vector<std::string> shares;
   for (const FindingSpec* spec : summary_figures())
     if (spec->figure.share_name)
       shares.push_back(std::string(spec->figure.share_name) + " " +
-                       whole_percent(report.summary[spec->kind]) +
-                       figure_place(report, spec->kind));
+                       (has_limit(report, spec->kind) ? whole_percent(report.summary[spec->kind]) +
+                                                            figure_place(report, spec->kind)
+                                                      : "without limits"));
   return text::join(shares, ", ");
 }
 

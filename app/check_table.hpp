@@ -22,6 +22,9 @@ inline constexpr int kMostGroups = 10;
 std::string check_table(const ConsistencyReport& report, const RobotModel& model,
                         Shown shown = Shown::causes);
 
+/// False where the robot states no limit of this kind for any motor.
+bool has_limit(const ConsistencyReport& report, FindingKind kind);
+
 /// "joint speed 62 % (l_knee at 1.20 s), ...": the largest share of each limit.
 std::string shares_of_limits(const ConsistencyReport& report);
 

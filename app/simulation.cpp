@@ -162,6 +162,20 @@ Eigen::MatrixXd torques_of(const SimulationLog& log) {
   return torque;
 }
 
+namespace {
+
+// A robot that is simulated moves and bears its weight, so a share of exactly 0 has no limit.
+std::string shares_text(double speed, double torque) {
+  const auto percent = [](double share) { return text::fixed(100 * share, 0) + " %"; };
+  if (speed > 0 && torque > 0)
+    return "joint speed " + percent(speed) + " and torque " + percent(torque) + " of the limits";
+  if (speed > 0) return "joint speed " + percent(speed) + " of the limits, torque without limits";
+  if (torque > 0) return "torque " + percent(torque) + " of the limits, joint speed without limits";
+  return "joint speed and torque without limits";
+}
+
+}  // namespace
+
 std::string outcome_text(const SimulationLog& log) { return outcome_text(log, log.samples.size()); }
 
 std::string outcome_text(const SimulationLog& log, size_t rows) {
@@ -179,9 +193,8 @@ std::string outcome_text(const SimulationLog& log, size_t rows) {
       text += ", the ZMP oscillates by " + text::fixed(1e3 * r.zmp_amplitude, 1) + " mm at " +
               text::fixed(r.zmp_frequency, 1) + " Hz";
   }
-  text += ", largest trunk tilt " + text::fixed(r.max_tilt * 180 / std::numbers::pi, 1) +
-          " deg, joint speed " + text::fixed(100 * r.max_speed_ratio, 0) + " % and torque " +
-          text::fixed(100 * r.max_torque_ratio, 0) + " % of the limits";
+  text += ", largest trunk tilt " + text::fixed(r.max_tilt * 180 / std::numbers::pi, 1) + " deg, " +
+          shares_text(r.max_speed_ratio, r.max_torque_ratio);
   const double end = log.dt * static_cast<double>(rows - 1);
   std::vector<Disturbance> late;
   for (const Disturbance& disturbance : log.scenario)

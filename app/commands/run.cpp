@@ -117,10 +117,17 @@ class MainJob {
 std::string check_text(const ConsistencyReport& report, const RobotModel& model) {
   std::string text =
       report.consistent ? painted(Paint::good, "consistent") : painted(Paint::bad, "inconsistent");
-  text += ": ZMP margin " + text::fixed(1e3 * report.summary[FindingKind::support_margin], 1) +
-          " mm, joint speed " + text::fixed(100 * report.summary[FindingKind::joint_speed], 0) +
-          " %, torque " + text::fixed(100 * report.summary[FindingKind::joint_torque], 0) +
-          " % of the limits of " + report.profile;
+  text +=
+      ": ZMP margin " + text::fixed(1e3 * report.summary[FindingKind::support_margin], 1) + " mm";
+  std::string shares;
+  for (const auto& [kind, name] : {std::pair{FindingKind::joint_speed, "joint speed "},
+                                   std::pair{FindingKind::joint_torque, "torque "}}) {
+    if (has_limit(report, kind))
+      shares += std::string(", ") + name + text::fixed(100 * report.summary[kind], 0) + " %";
+    else
+      text += std::string(", ") + name + "without limits";
+  }
+  if (!shares.empty()) text += shares + " of the limits of " + report.profile;
   int causes = 0;
   for (const FindingGroup& group : finding_groups(report, model)) {
     const Finding& worst = report.findings[group.worst];

@@ -137,6 +137,7 @@ void bind_picture(py::module_& m) {
         LociOptions options;
         options.title = title;
         options.model = &robot;
+        const py::gil_scoped_release release;
         return to_svg(draw_loci(runs_of(logs), options));
       },
       py::arg("robot"), py::arg("logs"), py::kw_only(), py::arg("title") = "",

@@ -282,22 +282,24 @@ void bind_log(py::module_& m) {
           "Name of the control law.")
       .def_property_readonly(
           "plant", [](const Log& l) { return l.data().plant; }, "'ayumi', 'mujoco' or 'python'.")
-      .def_property_readonly(
-          "hash", [](const Log& l) { return log_hash(l.data()); },
-          "SHA-256 of the motion; the same for the same run.")
+      .def_property_readonly("hash",
+                             py::cpp_function([](const Log& l) { return log_hash(l.data()); },
+                                              py::call_guard<py::gil_scoped_release>()),
+                             "SHA-256 of the motion; the same for the same run.")
       .def(
           "to_dict", [](const Log& l) { return from_json(simulation_json(l.data())); },
           "The content of `ayumi simulate --json` as a dict.")
       .def(
           "write", [](const Log& l, const Path& path) { write_log(path, l.data()); },
-          py::arg("path"), "Writes the log as one binary file, whole or not at all.");
+          py::call_guard<py::gil_scoped_release>(), py::arg("path"),
+          "Writes the log as one binary file, whole or not at all.");
   m.def(
       "read_log",
       [](const Path& path, const std::string& name) {
         auto data = std::make_shared<const SimulationLog>(read_run_log(path, name));
         return std::make_shared<Log>(data, data->joints, std::vector<bool>());
       },
-      py::arg("path"), py::arg("name") = "",
+      py::call_guard<py::gil_scoped_release>(), py::arg("path"), py::arg("name") = "",
       "The log of a file or of the folder that `ayumi run` wrote: 'open_loop', 'closed_loop' (the "
       "default) or 'undisturbed'.");
 }

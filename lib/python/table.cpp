@@ -59,13 +59,14 @@ void bind_table(py::module_& m) {
                                  ? reference_json(t.data(), t.data().caution)
                                  : reference_csv(t.data(), t.data().caution));
           },
-          py::arg("path"), "Writes CSV, or JSON where the name ends in .json; whole or not at all.")
+          py::call_guard<py::gil_scoped_release>(), py::arg("path"),
+          "Writes CSV, or JSON where the name ends in .json; whole or not at all.")
       .def(
           "resampled",
           [](const Table& t, double dt) {
             return as_table(resampled(t.data(), dt), t.data().caution, {});
           },
-          py::arg("dt"),
+          py::call_guard<py::gil_scoped_release>(), py::arg("dt"),
           "The table at another rate, interpolated linearly between its rows; `dt` in s.")
       .def_property_readonly(
           "unfit", [](const Table& t) { return t.data().caution.unfit; },
@@ -94,7 +95,8 @@ void bind_table(py::module_& m) {
   m.def(
       "read_table",
       [](const Path& path) { return as_table(read_reference(path), read_table_caution(path), {}); },
-      py::arg("path"), "Reads a table that Ayumi wrote, CSV or JSON.");
+      py::call_guard<py::gil_scoped_release>(), py::arg("path"),
+      "Reads a table that Ayumi wrote, CSV or JSON.");
   m.def(
       "table",
       [](const PyTask& task, const std::shared_ptr<Log>& log, const std::string& content) {
@@ -122,6 +124,7 @@ void bind_table(py::module_& m) {
       [](const PyTask& task, const Table& given, const std::shared_ptr<Log>& log, double ramp,
          double hold, const std::string& start) {
         const Task& t = *task.task;
+        const py::gil_scoped_release release;
         SafetyOptions options = safety_options(t);
         options.ramp = ramp;
         options.hold = hold;

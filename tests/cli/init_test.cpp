@@ -1,5 +1,7 @@
 // `ayumi init`: from a bare URDF to a consistent motion in three commands.
 
+#include <regex>
+
 #include "tests/cli/program.hpp"
 #include "tests/support/urdf_biped.hpp"
 
@@ -125,6 +127,58 @@ TEST(Init, CoupledHipsTurn) {
   EXPECT_NE(made.out.find("one that moves both legs"), std::string::npos) << made.out;
   const Output check = ayumi(folder, {"check", "turn.json"});
   EXPECT_EQ(check.exit_code, 0) << check.out;
+}
+
+// A joint that turns both legs the same way: the sole reached its place, so the turn failed "by
+// 0.029 mm (allowed: 2.42 mm)".
+TEST(Init, LegsThatCannotTurnApartSaySo) {
+  Folder folder;
+  std::string text = UrdfBiped{}.text();
+  text.insert(text.find("</joint>", text.find("<joint name=\"r_hip_yaw\"")),
+              "<mimic joint=\"l_hip_yaw\"/>");
+  write(folder / "robot.urdf", text);
+  const Output made = ayumi(folder, {"new", "turn", "--robot", "robot.urdf", "-o", "turn.json"});
+  EXPECT_EQ(made.exit_code, 3);
+  EXPECT_NE(made.err.find("Both legs move with l_hip_yaw, so the feet cannot turn relative to each "
+                          "other"),
+            std::string::npos)
+      << made.err;
+  EXPECT_EQ(made.err.find("out of reach by"), std::string::npos) << made.err;
+}
+
+// A centre of mass far from its link was a warning of `inspect` alone, which a beginner never runs.
+TEST(Init, SuspiciousLinksAreOnTheList) {
+  Folder folder;
+  std::string text = UrdfBiped{}.text();
+  const size_t mass = text.find("<origin", text.find("<inertial>", text.find("name=\"l_shank\"")));
+  text.replace(mass, text.find("/>", mass) - mass, "<origin xyz=\"0 0 0.4\"");
+  write(folder / "robot.urdf", text);
+  const Output made = ayumi(folder, {"init", "robot.urdf", "-o", "bare"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_NE(made.out.find("Check link l_shank: the centre of mass lies outside the shape"),
+            std::string::npos)
+      << made.out;
+}
+
+// The motors of a robot whose file states no limits are on the list, and no share of them is given.
+TEST(Init, MotorsWithoutLimitsAreSaid) {
+  Folder folder;
+  std::string text = UrdfBiped{}.text();
+  text = std::regex_replace(text, std::regex(" (effort|velocity)=\"[^\"]*\""), " $1=\"0\"");
+  write(folder / "robot.urdf", text);
+  const Output made = ayumi(folder, {"init", "robot.urdf", "-o", "bare"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_NE(made.out.find(" no speed limit, and "), std::string::npos) << made.out;
+  EXPECT_NE(made.out.find(" no torque limit; "), std::string::npos) << made.out;
+  ASSERT_EQ(ayumi(folder, {"new", "stand", "--robot", "bare", "-o", "s.json"}).exit_code, 0);
+  const Output check = ayumi(folder, {"check", "s.json"});
+  EXPECT_NE(check.out.find("speed without limits, torque without limits"), std::string::npos)
+      << check.out;
+  const Output run = ayumi(folder, {"run", "s.json", "--no-pictures", "-o", "run"});
+  EXPECT_NE(run.out.find("joint speed without limits, torque without limits\n"), std::string::npos)
+      << run.out;
+  EXPECT_NE(run.out.find(" deg, joint speed and torque without limits"), std::string::npos)
+      << run.out;
 }
 
 // A sidecar whose home posture is straight: every motion crouches by itself.

@@ -30,6 +30,7 @@ const NotRun kNotRun[] = {
     {"git ", "needs the network or a repository"},
     {"PYTHONPATH=", "needs the Python module: tests/python"},
     {"python3 examples/python/", "needs the Python module: tests/python runs these examples"},
+    {"AYUMI_INSTALLED_PROGRAM=", "runs tests on an installed copy: tests/install"},
     {"PATH=", "the program is on the PATH already"},
 };
 

@@ -130,10 +130,13 @@ TEST(FirstSidecar, PlayOfGearsBecomesBacklash) {
   EXPECT_EQ(geared.joints[1].type, JointType::fixed);
   EXPECT_NEAR(geared.servos.at("motor").backlash, kRightAngle / 90, 1e-15);
   EXPECT_FALSE(geared.servos.contains("play"));
+  EXPECT_TRUE(gaps_of_the_files(geared, 0).empty());  // what is held is no passive joint
   RobotDescription across = robot(kRightAngle / 90, Eigen::Vector3d::UnitX());
   EXPECT_TRUE(hold_play_of_gears(across).empty());
   RobotDescription wide = robot(20 * kRightAngle / 90, Eigen::Vector3d::UnitZ());
   EXPECT_TRUE(hold_play_of_gears(wide).empty());
+  EXPECT_EQ(gaps_of_the_files(wide, 0),
+            std::vector<std::string>{"joints without an actuator are passive: play"});
 }
 
 TEST(FirstSidecar, HomeIsBalancedInsideTheLimits) {
@@ -361,8 +364,16 @@ TEST(FirstSidecar, HandsAreNoFeetWhereTheShapesOfTheFeetAreMissing) {
       first_sidecar(folder.write("r.urdf", text).string(), folder.path() / "r");
   EXPECT_TRUE(sidecar.robot.soles.empty());
   EXPECT_TRUE(std::any_of(sidecar.to_do.begin(), sidecar.to_do.end(), [](const std::string& item) {
-    return item.find("6 meshes are missing and left out: ") != std::string::npos;
+    return item.find("6 meshes are missing and left out: ") != std::string::npos &&
+           item.find("r_foot.stl") == std::string::npos &&
+           item.find(" and 3 more, which `ayumi inspect` lists; ") != std::string::npos;
   }));
+  const RobotDescription read = load_robot_description((folder.path() / "r.urdf").string());
+  EXPECT_TRUE(
+      std::any_of(read.assumptions.begin(), read.assumptions.end(), [](const std::string& all) {
+        return all.find("l_thigh.stl of link l_thigh") != std::string::npos &&
+               all.find("r_foot.stl of link r_foot") != std::string::npos;
+      }));
 }
 
 // A low link without a shape that is no leg, such as the end of a tether, hides no feet.

@@ -13,6 +13,7 @@
 #include "ayumi/base/file.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/io/robot/ztk.hpp"
+#include "ayumi/io/yaml/yaml_tree.hpp"
 #include "tests/io/moving_motion.hpp"
 #include "tests/support/error_message.hpp"
 #include "tests/support/hoap1.hpp"
@@ -180,6 +181,9 @@ TEST(MotionFormats, MistakesNameFileLineAndFormat) {
             "as mi-lib .zvs, because the rows have the form `dt n ( values )`");
   EXPECT_NE(refusal_of(R"({"framerate": 50, "positions": {"0.0": {"l_knee": [1,5, 0]}}})")
                 .find("expected an angle, or [angle, speed], found 3 numbers"),
+            std::string::npos);
+  EXPECT_NE(refusal_of(R"({"framerate": 50, "positions": {"0.0": {"l_knee": [1, [2]]}}})")
+                .find("/positions/0.0/l_knee/1: expected "),
             std::string::npos);
   const ImportOptions stated{.format = "webots"};
   EXPECT_EQ(
@@ -491,6 +495,91 @@ TEST(MotionFormats, OneOfSeveralMotionsIsChosen) {
   EXPECT_NE(said.find("the motion 9 'sit' is read; the file has 1 'nod', 9 'sit'"),
             std::string::npos)
       << said;
+}
+
+// A damaged page was played when another page led to it, and a file that was cut was of no known
+// format.
+TEST(MotionFormats, DamagedPagesOfAnActionFileAreRefused) {
+  MotionFile motion = moving(hoap1(), 15, 62.5);
+  motion.name = "nod";
+  const std::string bytes = find_motion_format("op3-action")->write(hoap1(), motion)[0].bytes;
+  constexpr size_t kPage = 512, kHead = 64, kSum = 31, kStepCount = 20;
+  const auto with = [&](size_t page, size_t at, int value, bool sums) {
+    std::string changed = bytes;
+    changed[page * kPage + at] = static_cast<char>(value);
+    unsigned sum = 0;
+    for (size_t i = 0; i < kPage; ++i)
+      if (i != kSum) sum += static_cast<unsigned char>(changed[page * kPage + i]);
+    if (sums) changed[page * kPage + kSum] = static_cast<char>(0xff - sum);
+    return refusal_of(changed, "a.bin");
+  };
+  const std::string damaged = "a.bin: page 2 of the motion is damaged (wrong checksum";
+  EXPECT_EQ(with(2, kHead, 1, false).find(damaged), 0u);
+  EXPECT_EQ(with(2, kStepCount, 9, true).find(damaged), 0u);
+  EXPECT_EQ(with(2, kHead + 3, 0x1f, true).find("a.bin: page 2, step 1, servo 1: the position "),
+            0u);
+  EXPECT_EQ(refusal_of(bytes.substr(0, 3000), "a.bin")
+                .find("a.bin: the file has 3000 bytes, but an action file has 131072; "),
+            0u);
+}
+
+TEST(MotionFormats, KeyPosesOfAnotherVersionOrWithAJointTwiceAreRefused) {
+  const std::string head = "type: PoseSeq\nname: a\n",
+                    keys =
+                        "refs:\n"
+                        "  - {time: 0, refer: {type: Pose, joints: [0, 1], q: [0, 0]}}\n"
+                        "  - {time: 1, refer: {type: Pose, joints: [0, 1], q: [0, 0.1]}}\n";
+  const ImportOptions by_order{.by_order = true};
+  const auto refusal = [&](const std::string& text) {
+    return error_message([&] { read_key_poses(text, "m.pseq", hoap1(), by_order); });
+  };
+  const auto replaced = [](std::string text, const std::string& from, const std::string& to) {
+    return text.replace(text.find(from), from.size(), to);
+  };
+  EXPECT_EQ(refusal("# Body pose sequence format version 1.0 defined by cnoid\n" + head + keys),
+            "no error");
+  EXPECT_EQ(refusal("# Body pose sequence format version 2.0 defined by cnoid\n" + head + keys)
+                .find("m.pseq:1: format version 2.0 is unknown; Ayumi reads version 1"),
+            0u);
+  EXPECT_EQ(
+      refusal(head + "format_version: 9\n" + keys).find("m.pseq:3: format version 9 is unknown"),
+      0u);
+  EXPECT_EQ(refusal(replaced(head + keys, "[0, 1], q: [0, 0.1]", "[1, 1], q: [0, 0.1]"))
+                .find("m.pseq:5: joints: the joint 1 is there twice; keep one"),
+            0u);
+  std::string many = head + "refs:\n";
+  for (int i = 0; i <= 20'000; ++i) many += "  - {time: 0, refer: {type: Pose}}\n";
+  EXPECT_EQ(refusal(many).find(
+                "m.pseq: the file has 20001 key poses, but import reads at most 20000; cut the"),
+            0u);
+  EXPECT_EQ(refusal(replaced(head + keys, "PoseSeq", "PoseSequel"))
+                .find("m.pseq:1: type 'PoseSequel' is unknown; Ayumi reads PoseSeq"),
+            0u);
+}
+
+// Lists of numbers are read past the parser; what only looks like one is a text as before.
+TEST(MotionFormats, ListsOfNumbersInYamlAreThoseOfTheParser) {
+  const YamlNode root = parse_yaml(
+      "a: [ 1, -2.5e-3 , +3 ]\n"
+      "b: text [1, 2]\n"
+      "c: [[ 1 ], [ 2, x ], []]\n"
+      "d: \"[1,\n  2]\"  # [3]\n"
+      "e: |\n  [1, 2]\n"
+      "f: [1 2]\n",
+      "m.yaml");
+  EXPECT_EQ(root.find("a")->numbers, (std::vector<double>{1, -2.5e-3, 3}));
+  EXPECT_EQ(root.find("b")->text, "text [1, 2]");
+  EXPECT_EQ(root.find("c")->items[0].numbers, std::vector<double>{1});
+  EXPECT_EQ(root.find("c")->items[1].items[0].text, "2");
+  EXPECT_TRUE(root.find("c")->items[2].is_list());
+  EXPECT_EQ(root.find("d")->text, "[1, 2]");
+  EXPECT_EQ(root.find("e")->text, "[1, 2]\n");
+  EXPECT_EQ(root.find("f")->items[0].text, "1 2");
+  const YamlNode lists = parse_yaml("a: [ 1, -2.5e-3 ]\nb:\n  - [ 3, 4 ]\nc: [ .nan, 1 ]\n", "m");
+  EXPECT_EQ(lists.find("a")->numbers, (std::vector<double>{1, -2.5e-3}));
+  EXPECT_EQ(lists.find("b")->items[0].numbers, (std::vector<double>{3, 4}));
+  EXPECT_EQ(lists.find("c")->items.size(), 2u);
+  EXPECT_EQ(lists.find("c")->line, 4);
 }
 
 TEST(MotionFormats, AChangeInTheLastRowMakesNoPhase) {

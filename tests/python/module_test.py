@@ -263,6 +263,10 @@ class Errors(unittest.TestCase):
         with self.assertRaises(ayumi.Error) as caught:
             ayumi.read_pattern("/nowhere/walk.json")
         self.assertEqual(caught.exception.code, "bad_file")
+        self.assertEqual(caught.exception.place, "/nowhere/walk.json")
+        with self.assertRaises(ayumi.Error) as caught:
+            ayumi.read_pattern("/no where/walk.json")
+        self.assertEqual(caught.exception.place, "/no where/walk.json")
         with self.assertRaises(ayumi.Error) as caught:
             ayumi.load_robot("no_such_robot")
         self.assertEqual(caught.exception.code, "bad_file")
@@ -272,6 +276,9 @@ class Errors(unittest.TestCase):
         with self.assertRaises(ayumi.Error) as caught:
             ayumi.simulate(task, controller="magic")
         self.assertEqual(caught.exception.code, "usage")
+        with self.assertRaises(ayumi.Error) as caught:
+            ayumi.push(task, times=[99])
+        self.assertEqual(caught.exception.place, "")  # "push: a push at 99 s ..." names no file
         with self.assertRaises(ayumi.Error) as caught:
             ayumi.simulate(task, gains={"ka": 50})
         self.assertIn("allow_unstable", str(caught.exception))
@@ -325,6 +332,22 @@ class LongWork(unittest.TestCase):
 
     def test_other_threads_run_during_a_simulation(self):
         task = walk()
+        self.assert_other_threads_run(lambda: ayumi.simulate(task, substeps=4))
+
+    def test_other_threads_run_while_files_are_written_and_read(self):
+        task = walk()
+        log = ayumi.simulate(task)
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "log.bin"
+
+            def write_and_read():
+                for _ in range(4):
+                    log.write(path)
+                    ayumi.read_log(path)
+
+            self.assert_other_threads_run(write_and_read)
+
+    def assert_other_threads_run(self, work):
         counted = [0]
         done = threading.Event()
 
@@ -336,11 +359,11 @@ class LongWork(unittest.TestCase):
         other = threading.Thread(target=count)
         other.start()
         before = counted[0]
-        ayumi.simulate(task, substeps=4)
+        work()
         during = counted[0] - before
         done.set()
         other.join()
-        # A simulation takes more than 0.1 s here; with the lock held the other thread stands still.
+        # The work takes more than 0.1 s; with the lock held the other thread stands still.
         self.assertGreater(during, 20)
 
 

@@ -72,6 +72,15 @@ TEST(RobotLook, OfAnOrdinaryRobotIsItsOwnSurface) {
   EXPECT_EQ(alone.rgb, ClipRenderer(model, log, options).frame(0.5).rgb);
 }
 
+// A stop was heard only after all triangles had been joined, several seconds later.
+TEST(RobotLook, WorkOnAHeavyRobotStopsWhenAsked) {
+  const RobotModel model = heavy_robot(460);
+  int heard = 0;
+  const auto stop = [&](const ProgressEvent&) { return ++heard < 3; };
+  EXPECT_THROW(robot_look(model, stop), Interrupted);
+  EXPECT_EQ(heard, 3);
+}
+
 // Snapshots, clip and page each read, joined and simplified all triangles for themselves.
 TEST(RobotLook, OfAHeavyRobotHasFewTrianglesThatLookTheSame) {
   const RobotModel model = heavy_robot(460);

@@ -544,16 +544,21 @@ PostureSolution InverseKinematics::solve(const PostureTarget& target, RobotState
     solution.error = e.largest();
     solution.lean = e.trunk.norm();
     solution.reached = e.cog.cwiseAbs().maxCoeff() <= tolerance(1);
-    std::array<double, 2> share;  // of what is allowed
+    std::array<double, 2> share, turned;  // of what is allowed; [rad]
     for (int s = 0; s < 2; ++s) {
       const double allowed = tolerance(target.hold[s]);
       solution.reached = solution.reached && e.foot[s].cwiseAbs().maxCoeff() <= allowed;
       solution.miss[s] = e.foot[s].head<3>().norm();
       share[s] = solution.miss[s] / allowed;
+      turned[s] = e.foot[s].tail<3>().norm();
     }
+    if (!solution.reached && std::max(share[0], share[1]) <= 1)  // the soles are at their places
+      for (int s = 0; s < 2; ++s) share[s] = turned[s] / tolerance(target.hold[s]);
     solution.foot = share[0] >= share[1] ? Side::left : Side::right;
-    solution.missing = solution.miss[static_cast<int>(solution.foot)];
-    for (const int dof : legs_[static_cast<int>(solution.foot)]) {
+    const auto foot = static_cast<size_t>(solution.foot);
+    solution.missing = solution.miss[foot];
+    if (!solution.reached) solution.turned = turned[foot];
+    for (const int dof : legs_[foot]) {
       const Dof& joint = model_->dofs()[dof];
       if (state.theta[dof] <= joint.lower || state.theta[dof] >= joint.upper)
         solution.at_limit = dof;

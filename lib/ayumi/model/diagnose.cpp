@@ -116,7 +116,7 @@ class Doctor {
                                      ? " (" + each.detail + ")"
                                      : " (most in " + each.worst + ": " + each.detail + ")";
       const bool named = count > 1 || !each.names[0].empty();
-      warnings.push_back({named ? where : each.kind, each.message + detail});
+      warnings.push_back({each.kind, named ? where : each.kind, each.message + detail});
     }
     return warnings;
   }

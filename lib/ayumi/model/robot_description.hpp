@@ -225,7 +225,8 @@ struct RobotDescription {
   double servo_period = 0.001;   ///< [s]
   std::string trunk_link;        ///< empty: the root link
   std::vector<std::pair<std::string, std::string>> collision_ignore;  ///< link pairs never checked
-  std::vector<std::string> assumptions;  ///< values that were inferred, in words
+  std::vector<std::string> missing_meshes;  ///< left out: each mesh file with its link, in words
+  std::vector<std::string> assumptions;     ///< values that were inferred, in words
 };
 
 }  // namespace ayumi

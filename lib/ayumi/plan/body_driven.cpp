@@ -60,9 +60,27 @@ namespace {
   const double ground = job.feet.ground(t);
   const std::string where = place_of_phase(job.pattern, job.feet.phase(t)) +
                             ": t = " + text::fixed(t, 3) + " s: the " + name_of(solution.foot);
+  // Coupled hips let a sole reach its place, but not its heading.
+  const double allowed = lacking_tolerance(job.feet.hold(solution.foot, t));
+  if (job.ik.lacks_joints() && !solution.knee_flipped && solution.missing <= allowed &&
+      solution.turned > allowed) {
+    const auto degrees = [](double radians) {
+      return text::brief(radians * 180 / std::numbers::pi, 2) + " deg";
+    };
+    std::vector<std::string> shared;
+    for (const int dof : job.ik.coupled()) shared.push_back(job.model.dofs()[dof].name);
+    throw in_phase(where + " foot is turned " + degrees(solution.turned) +
+                   " away from its attitude (allowed: " + degrees(allowed) +
+                   ", because a leg has fewer than six joints of its own). " +
+                   (shared.empty() ? "At this place, the legs cannot turn the sole as it is planned"
+                                   : "Both legs move with " + text::join(shared, ", ") +
+                                         ", so the feet cannot turn relative to each other") +
+                   ". Turn less in each step, or turn the trunk (\"torso\" of a key) over feet "
+                   "that stay");
+  }
   if (job.ik.lacks_joints() && !solution.knee_flipped)
     throw in_phase(where + " foot is out of reach by " + millimetres(solution.missing) +
-                   " (allowed: " + millimetres(lacking_tolerance(job.feet.hold(solution.foot, t))) +
+                   " (allowed: " + millimetres(allowed) +
                    ", because a leg has fewer than six joints). With level soles, such legs cannot "
                    "move the COG farther to the side. Make the COG sway less (shorten "
                    "the step period, or move the ZMP towards the other foot with new walk "

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <charconv>
 #include <chrono>
 #include <cmath>
@@ -309,10 +310,12 @@ void write_folder(const fs::path& path, bool overwrite,
 }  // namespace
 
 std::shared_ptr<const ClipShape> clip_shape(const RobotModel& model, const SimulationLog& log,
-                                            const ClipOptions& options, bool thin_surface) {
+                                            const ClipOptions& options, bool thin_surface,
+                                            const Progress& progress) {
   check(model, log, options);
   auto shape = std::make_shared<ClipShape>();
-  const std::shared_ptr<const RobotLook> look = options.look ? options.look : robot_look(model);
+  const std::shared_ptr<const RobotLook> look =
+      options.look ? options.look : robot_look(model, progress);
   std::vector<BodySurface> surface = look->surface;
   shape->height = robot_height(surface, model, log);
   double moved = look->moved;
@@ -321,7 +324,7 @@ std::shared_ptr<const ClipShape> clip_shape(const RobotModel& model, const Simul
     const double pixel =
         shape->height / (options.picture.height * std::max(1.0, options.camera.zoom));
     if (moved <= 0) leave_out_hidden(surface);
-    const double thinned = thin_to(surface, kThinned * pixel, kMostOfClip);
+    const double thinned = thin_to(surface, kThinned * pixel, kMostOfClip, progress);
     if (thinned > kThinned * pixel) moved = std::max(moved, thinned);
   }
   moved = std::max(moved, std::sqrt(3.0) * simplify(surface, options.max_triangles));
@@ -632,10 +635,12 @@ ClipSummary write_clip(const RobotModel& model, const SimulationLog& log, const 
   std::once_flag shaped;
   std::shared_ptr<const ClipShape> shape;  // made by the first thread that needs it
   std::exception_ptr unshaped;
+  std::atomic<bool> stopped = false;
   const auto make = [&] {
     std::call_once(shaped, [&] {  // an exception here would let the next thread try again
       try {
-        shape = clip_shape(model, log, options, count >= kThinFrames);
+        shape = clip_shape(model, log, options, count >= kThinFrames,
+                           [&](const ProgressEvent&) { return !stopped; });
       } catch (...) {
         unshaped = std::current_exception();
       }
@@ -648,7 +653,12 @@ ClipSummary write_clip(const RobotModel& model, const SimulationLog& log, const 
     FrameQueue queue(options.threads, count, make, time);
     for (int k = 0; k < count; ++k) {
       const auto alive = [&] {
-        report(progress, {"preview", double(k) / count, "frame " + std::to_string(k)});
+        try {
+          report(progress, {"preview", double(k) / count, "frame " + std::to_string(k)});
+        } catch (...) {
+          stopped = true;  // the threads that prepare the surface
+          throw;
+        }
       };
       alive();
       use(k, queue.take(k, alive));

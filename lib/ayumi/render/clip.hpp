@@ -59,9 +59,10 @@ struct ClipShape {
   std::vector<std::string> notes;
 };
 /// `thin`: triangles that a picture of this size cannot show are left out, which pays where many
-/// pictures are drawn.
+/// pictures are drawn. `progress` hears of the work on heavy meshes.
 std::shared_ptr<const ClipShape> clip_shape(const RobotModel& model, const SimulationLog& log,
-                                            const ClipOptions& options, bool thin);
+                                            const ClipOptions& options, bool thin,
+                                            const Progress& progress = {});
 
 /// One picture of the run at `t`, overlays and caption included.
 class ClipRenderer {

@@ -24,11 +24,12 @@ constexpr int kTrials = 3;
 
 }  // namespace
 
-double thin_to(std::vector<BodySurface>& surface, double tolerance, size_t most) {
-  thin(surface, tolerance);
+double thin_to(std::vector<BodySurface>& surface, double tolerance, size_t most,
+               const Progress& progress) {
+  thin(surface, tolerance, progress);
   for (int trial = 1; trial < kTrials && triangle_count(surface) > most; ++trial) {
     tolerance *= kGrowth;
-    thin(surface, tolerance);
+    thin(surface, tolerance, progress);
   }
   return tolerance;
 }
@@ -39,14 +40,14 @@ std::string words_of(const RobotLook& look, size_t drawn, double moved) {
          text::brief(1e3 * moved, 2) + " mm";
 }
 
-std::shared_ptr<const RobotLook> robot_look(const RobotModel& model) {
+std::shared_ptr<const RobotLook> robot_look(const RobotModel& model, const Progress& progress) {
   auto look = std::make_shared<RobotLook>();
   look->surface = robot_surface(model);
   look->triangles = triangle_count(look->surface);
   if (look->triangles <= kMostTriangles) return look;
   const double height = robot_extent(look->surface, model, model.rest_state());
   leave_out_hidden(look->surface);
-  look->moved = thin_to(look->surface, kThinned * height / kRows, kMostTriangles);
+  look->moved = thin_to(look->surface, kThinned * height / kRows, kMostTriangles, progress);
   look->moved = std::max(look->moved, std::sqrt(3.0) * simplify(look->surface, kMostTriangles));
   return look;
 }

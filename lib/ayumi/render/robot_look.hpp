@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "ayumi/base/progress.hpp"
 #include "ayumi/render/robot_surface.hpp"
 
 namespace ayumi {
@@ -17,7 +18,7 @@ struct RobotLook {
 };
 
 /// It depends on the robot alone, so that all pictures of a robot show the same surface.
-std::shared_ptr<const RobotLook> robot_look(const RobotModel& model);
+std::shared_ptr<const RobotLook> robot_look(const RobotModel& model, const Progress& progress = {});
 
 /// How far a thinned surface may be from the robot's [pixel]. Chosen: the four samples of a pixel
 /// are a quarter of it apart; at half, more triangles of round parts stay, at twice, their outlines
@@ -26,7 +27,8 @@ inline constexpr double kThinned = 0.3;
 
 /// Thins, first by `tolerance` [m] and then by multiples of it up to four, until at most `most`
 /// triangles are left. Returns the last tolerance; more triangles may be left then.
-double thin_to(std::vector<BodySurface>& surface, double tolerance, size_t most);
+double thin_to(std::vector<BodySurface>& surface, double tolerance, size_t most,
+               const Progress& progress = {});
 
 /// "the robot has 500000 triangles; it is drawn with 4000, whose points are moved by ...".
 std::string words_of(const RobotLook& look, size_t drawn, double moved);

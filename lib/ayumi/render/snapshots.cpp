@@ -65,7 +65,11 @@ Image draw_strip(const RobotModel& model, const SimulationLog& log, const StripO
   clip.camera.smoothing = 0;  // every picture has the robot in its middle
   // Half of a portrait that the robot fills is as wide as this share of the robot's height.
   clip.overlay.push_length = std::min(clip.overlay.push_length, 0.34);
-  ClipRenderer renderer(model, log, clip);
+  const auto alive = [&](const ProgressEvent&) {
+    report(progress, {"snapshots", 0, ""});
+    return true;
+  };
+  ClipRenderer renderer(model, log, clip, clip_shape(model, log, clip, false, alive));
   if (notes) *notes = renderer.notes();
   renderer.frame_robot(times);
   std::vector<Image> tiles;

@@ -70,9 +70,10 @@ class Thinning {
     measure();
   }
 
-  Triangles result() {
+  Triangles result(const Progress& progress) {
     size_t before = 0;
     for (int round = 1; round <= kRounds; ++round) {
+      report(progress, {"surface", -1, ""});
       const double share = double(round) / kRounds;
       before = facets_.size();
       go_through(tolerance_ * share * tolerance_ * share);
@@ -80,6 +81,7 @@ class Thinning {
     }
     // What the last bound still allows.
     for (int more = 0; more < kRounds && facets_.size() < before - before / 50; ++more) {
+      report(progress, {"surface", -1, ""});
       before = facets_.size();
       go_through(tolerance_ * tolerance_);
       std::erase_if(facets_, [](const Facet& facet) { return facet.gone; });
@@ -269,14 +271,14 @@ class Thinning {
 
 }  // namespace
 
-Triangles thinned(const Triangles& surface, double tolerance) {
-  return Thinning(surface, tolerance).result();
+Triangles thinned(const Triangles& surface, double tolerance, const Progress& progress) {
+  return Thinning(surface, tolerance).result(progress);
 }
 
-void thin(std::vector<BodySurface>& surface, double tolerance) {
+void thin(std::vector<BodySurface>& surface, double tolerance, const Progress& progress) {
   for (BodySurface& body : surface)
     for (Triangles* part : {&body.closed, &body.open})
-      if (!part->indices.empty()) *part = thinned(*part, tolerance);
+      if (!part->indices.empty()) *part = thinned(*part, tolerance, progress);
 }
 
 }  // namespace ayumi

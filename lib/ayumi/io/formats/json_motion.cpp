@@ -110,13 +110,13 @@ MotionFile read_poppy_move(const MotionInput& source) {
   for (const auto& [key, motors] : root.at("positions").members()) {
     const double time = source.number(key, 0, "positions");
     for (const auto& [motor, value] : motors.members()) {
-      if (value.value().is_array() && value.size() > 2)
+      const std::vector<double> numbers =
+          value.value().is_array() ? value.numbers() : std::vector<double>{value.number()};
+      if (numbers.empty() || numbers.size() > 2)
         value.complain("expected an angle, or [angle, speed], found " +
-                       std::to_string(value.size()) +
+                       std::to_string(numbers.size()) +
                        " numbers; write decimal points, not decimal commas");
-      rows[time][motor] = value.value().is_array()
-                              ? (value.size() > 0 ? value.items()[0].number() : value.number())
-                              : value.number();
+      rows[time][motor] = numbers.front();
       if (std::find(names.begin(), names.end(), motor) == names.end()) names.push_back(motor);
     }
   }

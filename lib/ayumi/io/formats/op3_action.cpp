@@ -44,6 +44,12 @@ std::string page_name(const std::string& bytes, size_t page) {
   return name;
 }
 
+bool is_sound(const std::string& bytes, size_t page) {
+  const size_t steps = byte_at(bytes, page * kPageBytes + kStepCount);
+  return steps > 0 && steps <= kSteps &&
+         byte_at(bytes, page * kPageBytes + kChecksum) == checksum_of(bytes, page);
+}
+
 int position_at(const std::string& bytes, size_t step, size_t servo) {
   return static_cast<int>(byte_at(bytes, step + 2 * servo) | byte_at(bytes, step + 2 * servo + 1)
                                                                  << 8);
@@ -52,23 +58,31 @@ int position_at(const std::string& bytes, size_t step, size_t servo) {
 }  // namespace
 
 std::string recognize_op3_action(const MotionInput& source) {
-  return source.bytes.size() == kPages * kPageBytes && source.bytes.find('\0') != std::string::npos
-             ? "the file has 256 pages of 512 bytes"
-             : "";
+  const std::string& bytes = source.bytes;
+  if (bytes.find('\0') == std::string::npos) return "";
+  if (bytes.size() == kPages * kPageBytes) return "the file has 256 pages of 512 bytes";
+  for (size_t page = 0; (page + 1) * kPageBytes <= std::min(bytes.size(), kPages * kPageBytes);
+       ++page)
+    if (is_sound(bytes, page) && !page_name(bytes, page).empty())
+      return "the file has a page of 512 bytes with steps and their checksum";
+  return "";
 }
 
 MotionFile read_op3_action(const MotionInput& source) {
   const std::string& bytes = source.bytes;
   if (bytes.size() != kPages * kPageBytes)
     source.refuse(0, "the file has " + std::to_string(bytes.size()) +
-                         " bytes, but an action file has " + std::to_string(kPages * kPageBytes));
+                         " bytes, but an action file has " + std::to_string(kPages * kPageBytes) +
+                         "; copy the file again");
   std::vector<size_t> full;
   std::vector<bool> follows(kPages, false);
+  std::vector<std::string> damaged;
   for (size_t page = 0; page < kPages; ++page) {
-    const size_t steps = byte_at(bytes, page * kPageBytes + kStepCount);
-    if (steps == 0 || steps > kSteps ||
-        byte_at(bytes, page * kPageBytes + kChecksum) != checksum_of(bytes, page))
+    if (!is_sound(bytes, page)) {
+      if (byte_at(bytes, page * kPageBytes + kStepCount) > 0)
+        damaged.push_back(std::to_string(page) + " '" + page_name(bytes, page) + "'");
       continue;
+    }
     full.push_back(page);
     const size_t next = byte_at(bytes, page * kPageBytes + kNext);
     if (next != page) follows[next] = true;
@@ -85,6 +99,9 @@ MotionFile read_op3_action(const MotionInput& source) {
   std::vector<std::string> names;
   for (const size_t page : starts) names.push_back(page_name(bytes, page));
   MotionFile motion;
+  if (!damaged.empty())
+    motion.notes.push_back(text::counted(damaged.size(), "damaged page") +
+                           " (wrong checksum, or more than 7 steps): " + text::join(damaged, ", "));
   const size_t start = starts[source.chosen_motion(names, starts, motion)];
   std::vector<std::array<int, kServos>> rows;
   std::array<bool, kServos> used = {};
@@ -93,8 +110,15 @@ MotionFile read_op3_action(const MotionInput& source) {
   size_t pages = 0;
   for (size_t page = start;;) {
     const size_t begin = page * kPageBytes, count = byte_at(bytes, begin + kStepCount);
-    if (played[page] || count == 0 || count > kSteps) break;
+    if (played[page] || count == 0) break;
+    if (!is_sound(bytes, page))
+      source.refuse(0, "page " + std::to_string(page) +
+                           " of the motion is damaged (wrong checksum, or more than 7 steps), so "
+                           "save the file again");
     played[page] = true;
+    if (const size_t times = byte_at(bytes, begin + kRepeat); times > 1)
+      motion.notes.push_back("page " + std::to_string(page) + " is read once; the robot plays it " +
+                             std::to_string(times) + " times");
     ++pages;
     const auto speed = static_cast<double>(std::max<size_t>(byte_at(bytes, begin + kSpeed), 1));
     for (size_t s = 0; s < count; ++s) {
@@ -108,6 +132,10 @@ MotionFile read_op3_action(const MotionInput& source) {
       for (size_t id = 0; id < kServos; ++id) {
         const int value = position_at(bytes, step, id);
         const bool set = id > 0 && (value & (kNotUsed | kTorqueOff)) == 0;
+        if (set && value >= 2 * kZero)
+          source.refuse(0, "page " + std::to_string(page) + ", step " + std::to_string(s + 1) +
+                               ", servo " + std::to_string(id) + ": the position " +
+                               std::to_string(value) + " is not one of 0 to 4095");
         row[id] = set ? value : -1;
         used[id] = used[id] || set;
       }

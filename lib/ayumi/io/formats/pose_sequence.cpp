@@ -24,8 +24,9 @@ using Eigen::Vector3d;
 // Differences of a foot that stands still from key to key [m, rad]. Chosen: editors of key poses
 // print nine digits, and solvers of postures leave some micrometres.
 constexpr double kSamePlace = 1e-3, kSameTurn = 2e-3;
-// Keys of a file. Chosen: a motion edited by hand has some hundred.
-constexpr size_t kMostKeys = 100'000;
+// Keys of a file. Chosen: a motion edited by hand has some hundred; so many are refused in 0.1 s,
+// while YAML of twice as many takes half a second and 100 MB.
+constexpr size_t kMostKeys = 20'000;
 
 /// One key of the file.
 struct PoseKey {
@@ -48,12 +49,11 @@ class PoseSequenceReader {
       fail(ErrorCode::bad_model, model_.name() +
                                      ": the robot has no soles; add the left and the right sole to "
                                      "\"soles\" in its sidecar");
+    require_few();
     const YamlNode root = parse_yaml(source_.bytes, source_.file);
+    require_known(root);
     const YamlNode* refs = root.find("refs");
     if (!refs || !refs->is_list()) refuse(root, "`refs`, the list of key poses, is missing");
-    if (refs->items.size() > kMostKeys)
-      refuse(*refs, "the file has " + std::to_string(refs->items.size()) +
-                        " key poses, but import reads at most " + std::to_string(kMostKeys));
     for (const YamlNode& ref : refs->items) read_key(ref);
     if (keys_.size() < 2) refuse(root, "a motion needs two key poses or more");
     map_ids(root);
@@ -81,6 +81,45 @@ class PoseSequenceReader {
     return node.numbers;
   }
 
+  // Before the text is parsed.
+  void require_few() const {
+    const std::string_view key = "refer:";
+    size_t keys = 0;
+    for (size_t at = source_.bytes.find(key); at != std::string::npos;
+         at = source_.bytes.find(key, at + key.size()))
+      ++keys;
+    if (keys > kMostKeys)
+      source_.refuse(0, "the file has " + std::to_string(keys) +
+                            " key poses, but import reads at most " + std::to_string(kMostKeys) +
+                            "; cut the file");
+  }
+
+  // The format states its version in a comment above its keys; other files of Choreonoid have a
+  // key.
+  void require_known(const YamlNode& root) const {
+    const YamlNode* type = root.find("type");
+    if (!type || type->text != "PoseSeq")
+      refuse(type ? *type : root,
+             "type '" + (type ? type->text : "") + "' is unknown; " + "Ayumi reads PoseSeq");
+    if (const YamlNode* version = root.find("format_version", "formatVersion"))
+      require_version(version->text, static_cast<size_t>(version->line));
+    const std::string_view comment = "pose sequence format version ";
+    const std::string& text = source_.bytes;
+    const size_t first = text.find_first_not_of("\xef\xbb\xbf");
+    const size_t at = text.find(comment);
+    const size_t end = text.find_first_of("\r\n");
+    if (first != std::string::npos && text[first] == '#' && at < end)
+      require_version(
+          text.substr(at + comment.size(),
+                      text.find_first_of(" \t\r\n", at + comment.size()) - at - comment.size()),
+          1);
+  }
+
+  void require_version(const std::string& version, size_t line) const {
+    if (source_.number(version, line, "format version") != 1)
+      source_.refuse(line, "format version " + version + " is unknown; Ayumi reads version 1");
+  }
+
   static bool is_true(const YamlNode* node) {
     return node && (node->text == "true" || node->text == "True");
   }
@@ -103,12 +142,18 @@ class PoseSequenceReader {
     if (const YamlNode* most = ref.find("maxTransitionTime", "max_transition_time"))
       key.transition = std::max(number(*most, "maxTransitionTime"), 0.0);
     const YamlNode *ids = pose->find("joints"), *angles = pose->find("q", "displacements");
+    if ((ids != nullptr) != (angles != nullptr))
+      refuse(*pose, std::string("a pose with `") + (ids ? "joints" : "q") + "` needs `" +
+                        (ids ? "q" : "joints") + "`; the file may be truncated");
     if (ids && angles) {
       key.angles = numbers(*angles, "q", 0);
       for (const double id : numbers(*ids, "joints", key.angles.size())) {
         if (!(id >= 0 && id < 1e4) || id != std::floor(id))
           refuse(*ids, "joints: " + text::brief(id) +
                            " is not a joint id (a whole number from 0 to 9999)");
+        if (std::find(key.joints.begin(), key.joints.end(), static_cast<int>(id)) !=
+            key.joints.end())
+          refuse(*ids, "joints: the joint " + text::brief(id) + " is there twice; keep one");
         key.joints.push_back(static_cast<int>(id));
       }
     }

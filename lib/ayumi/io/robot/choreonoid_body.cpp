@@ -76,6 +76,7 @@ class BodyReader {
     validate_links(robot_);
     validate_joints(robot_);
     for (const std::string& note : places_.notes()) robot_.assumptions.push_back(note);
+    robot_.missing_meshes = places_.missing();
     return std::move(robot_);
   }
 

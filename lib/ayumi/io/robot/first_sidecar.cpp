@@ -14,6 +14,7 @@
 #include "ayumi/io/robot/robot_guess.hpp"
 #include "ayumi/math/elementary.hpp"
 #include "ayumi/math/rotation.hpp"
+#include "ayumi/model/diagnose.hpp"
 #include "ayumi/model/outline.hpp"
 
 namespace ayumi {
@@ -503,10 +504,27 @@ std::vector<std::string> to_do_list(const RobotModel& model, const RobotGuess& g
   for (const PlaceholderLimits& each : guess.placeholders)
     items.push_back("Replace the placeholders: " + each.what + " of " + each.value + " on " +
                     text::counted(each.joints.size(), "joint") + ".");
+  const ActuatorLimits& limits = model.limits();
+  const auto unlimited = [](const Eigen::VectorXd& values) {
+    return values.array().isInf().count();
+  };
+  const Eigen::Index fast = unlimited(limits.speed), strong = unlimited(limits.peak_torque);
+  if (fast + strong > 0)
+    items.push_back(
+        "State the limits of the motors in \"profiles\": the robot's file gives " +
+        (fast > 0 ? text::counted(static_cast<size_t>(fast), "joint") + " no speed limit"
+                  : std::string()) +
+        (fast > 0 && strong > 0 ? ", and " : "") +
+        (strong > 0 ? text::counted(static_cast<size_t>(strong), "joint") + " no torque limit"
+                    : std::string()) +
+        "; without them, check cannot say whether the motors can follow.");
   items.push_back(
       "State kp, kd and rotor inertia of the servos, or find them with `ayumi identify`.");
   items.push_back("State the continuous torque of the motors.");
   items.push_back("State place, latency and noise of the sensors.");
+  for (const ModelWarning& warning : diagnose(model))
+    if (warning.kind == "link")
+      items.push_back("Check " + warning.where + ": " + warning.message + ".");
   return items;
 }
 
@@ -522,9 +540,11 @@ FirstSidecar first_sidecar(const std::string& robot, const std::filesystem::path
   namespace fs = std::filesystem;
   const fs::path urdf = fs::weakly_canonical(fs::absolute(stated.urdf_file));
   const std::string urdf_as_written = seen_from(folder, urdf);
-  const std::vector<std::string> read = stated.assumptions;  // nothing is guessed yet
+  std::vector<std::string> read = stated.assumptions;  // nothing is guessed yet
   const std::vector<std::string> massless = hold_joints_without_mass(stated);
   const std::vector<std::string> play = hold_play_of_gears(stated);
+  constexpr size_t kMostNamed = 3;  // missing meshes in the to-do list
+  for (const std::string& gap : gaps_of_the_files(stated, kMostNamed)) read.push_back(gap);
   RobotGuess guess = guess_robot(std::move(stated));
   const std::vector<std::string> boxes = take_inertias_of_shapes(guess.robot);
   const RobotModel model(guess.robot);

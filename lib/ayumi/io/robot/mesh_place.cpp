@@ -132,12 +132,6 @@ std::string MeshPlaces::find(const std::string& link, const std::string& name) {
 
 std::vector<std::string> MeshPlaces::notes() const {
   std::vector<std::string> notes;
-  if (!missing_.empty())
-    notes.push_back(
-        text::counted(missing_.size(), "mesh", "meshes") +
-        (missing_.size() == 1 ? " is missing and left out: " : " are missing and left out: ") +
-        text::join(missing_, ", ") +
-        "; add the files or correct the names; --package-path names the folder with the packages");
   if (!renamed_.empty())
     notes.push_back(
         "these mesh files were taken, although their names differ in upper and lower case: " +

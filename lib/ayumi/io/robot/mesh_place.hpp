@@ -26,9 +26,11 @@ class MeshPlaces {
   /// The folder "model://NAME" or "package://NAME"; empty where there is none.
   std::filesystem::path folder(const std::string& name) const { return named_file(name); }
 
-  /// What a person should know: every mesh that is missing, and every one that was taken although
-  /// its name differs. One sentence for each of the two.
+  /// What a person should know: every mesh that was taken although its name differs.
   std::vector<std::string> notes() const;
+
+  /// Every mesh that is missing, with its link.
+  const std::vector<std::string>& missing() const { return missing_; }
 
  private:
   std::filesystem::path named_file(const std::string& name) const;

@@ -180,6 +180,7 @@ class MjcfReader {
     validate_links(robot_);
     validate_joints(robot_);
     for (const std::string& note : places_.notes()) robot_.assumptions.push_back(note);
+    robot_.missing_meshes = places_.missing();
     for (const std::string& note : text_.notes) robot_.assumptions.push_back(note);
     return std::move(robot_);
   }
@@ -499,7 +500,6 @@ class MjcfReader {
         without_force.push_back(joint->name);
     }
     if (driven.empty()) return;
-    std::vector<std::string> passive;
     for (const auto& [id, index] : joint_index_) {
       const JointDescription& joint = robot_.joints[index];
       if (driven.contains(index) || joint.type == JointType::fixed || !joint.mimic.empty())
@@ -509,11 +509,7 @@ class MjcfReader {
       servo.viscous = joint.damping;
       servo.coulomb = joint.friction;
       robot_.servos[joint.name] = servo;
-      passive.push_back(joint.name);
     }
-    if (!passive.empty())
-      robot_.assumptions.push_back("joints without an actuator are passive: " +
-                                   text::join(passive, ", "));
     if (!without_force.empty())
       robot_.assumptions.push_back("these actuators have no limit of their force: " +
                                    text::join(without_force, ", "));

@@ -127,6 +127,8 @@ RobotDescription load_robot_description(const std::string& name_or_path, const R
     hold_joints_without_mass(robot);
     hold_play_of_gears(robot);
   }
+  for (const std::string& gap : gaps_of_the_files(robot, robot.missing_meshes.size()))
+    robot.assumptions.push_back(gap);
   return guess_robot(std::move(robot)).robot;
 }
 

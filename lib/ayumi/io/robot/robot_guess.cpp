@@ -868,23 +868,51 @@ std::vector<std::string> hold_joints_without_mass(RobotDescription& robot) {
   return held;
 }
 
+namespace {
+
+/// Whether a motor moves a joint whose actuator the files state.
+bool is_driven(const RobotDescription& robot, const JointDescription& joint) {
+  const auto servo = robot.servos.find(joint.name);
+  return servo != robot.servos.end() && (servo->second.kp > 0 || joint.effort > 0);
+}
+
+}  // namespace
+
+std::vector<std::string> gaps_of_the_files(const RobotDescription& robot, size_t most) {
+  std::vector<std::string> gaps, passive;
+  for (const JointDescription& joint : robot.joints)
+    if (joint.type != JointType::fixed && joint.mimic.empty() &&
+        robot.servos.contains(joint.name) && !is_driven(robot, joint))
+      passive.push_back(joint.name);
+  if (!passive.empty())
+    gaps.push_back("joints without an actuator are passive: " + text::join(passive, ", "));
+  const std::vector<std::string>& missing = robot.missing_meshes;
+  if (!missing.empty())
+    gaps.push_back(
+        text::counted(missing.size(), "mesh", "meshes") +
+        (missing.size() == 1 ? " is missing and left out: " : " are missing and left out: ") +
+        text::join({missing.begin(), missing.begin() + std::min(most, missing.size())}, ", ") +
+        (missing.size() > most ? " and " + std::to_string(missing.size() - most) +
+                                     " more, which `ayumi inspect` lists"
+                               : "") +
+        "; add the files or correct the names; --package-path names the folder with the packages");
+  return gaps;
+}
+
 std::vector<std::string> hold_play_of_gears(RobotDescription& robot) {
   // Largest range of a passive joint that is the play of a gear [rad]. Chosen: worn hobby servos
   // have 2 deg; toes and springs move by 10 deg and more.
   constexpr double kMostPlay = 4 * kOneDegree;
   // Cosine of the angle between parallel axes. Definition: what six digits leave.
   constexpr double kParallel = 1 - 1e-9;
-  const auto is_driven = [&](const JointDescription& joint) {
-    const auto servo = robot.servos.find(joint.name);
-    return servo != robot.servos.end() && (servo->second.kp > 0 || joint.effort > 0);
-  };
   std::vector<std::string> held, driven;
   for (JointDescription& play : robot.joints) {
     if (play.type != JointType::revolute || !play.has_limits || !play.mimic.empty() ||
-        play.upper - play.lower > kMostPlay || !robot.servos.contains(play.name) || is_driven(play))
+        play.upper - play.lower > kMostPlay || !robot.servos.contains(play.name) ||
+        is_driven(robot, play))
       continue;
     for (const JointDescription& motor : robot.joints) {
-      if (!is_driven(motor)) continue;
+      if (!is_driven(robot, motor)) continue;
       const bool above = motor.child == play.parent, below = motor.parent == play.child;
       const JointDescription &first = above ? motor : play, &second = above ? play : motor;
       if ((!above && !below) || std::abs(first.axis.normalized().dot(

@@ -53,6 +53,10 @@ std::vector<std::string> hold_joints_without_mass(RobotDescription& robot);
 /// `assumptions` says so. Returns their names.
 std::vector<std::string> hold_play_of_gears(RobotDescription& robot);
 
+/// What the files leave open beside what is guessed: joints without an actuator, and meshes that are
+/// missing, of which `most` are named. One sentence for each.
+std::vector<std::string> gaps_of_the_files(const RobotDescription& robot, size_t most);
+
 /// Limits that are placeholders. The same position limits on most joints, speeds above 60 rad/s,
 /// and efforts above five times m g z (mass, COG height) or the same on all joints.
 std::vector<PlaceholderLimits> placeholder_limits(const RobotModel& model);

@@ -194,6 +194,7 @@ RobotDescription parse_urdf(const std::string& bytes, const fs::path& path,
   sort_by_place(robot.links, text.link_place);
   sort_by_place(robot.joints, text.joint_place);
   robot.assumptions = meshes.notes();
+  robot.missing_meshes = meshes.missing();
   return robot;
 }
 

@@ -26,9 +26,68 @@ class TextBuffer : public std::streambuf {
   }
 };
 
+// Begins the number of a list in a text with marks. No YAML text may have this character.
+constexpr char kMark = '\x7f';
+
+/// A text in which each flow list of finite numbers on one line is replaced by its number,
+/// `[\x7f3]`. These lists are most of a motion, and the parser takes ten times as long for them.
+struct MarkedText {
+  std::string text;
+  std::vector<std::vector<double>> lists;
+};
+
+// Whether the flow list in `inside` holds finite numbers alone, which `numbers` then has.
+bool reads_numbers(std::string_view inside, std::vector<double>& numbers) {
+  numbers.clear();
+  const auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
+  while (true) {
+    while (!inside.empty() && is_blank(inside.front())) inside.remove_prefix(1);
+    double number = 0;
+    const auto [last, error] =
+        std::from_chars(inside.data(), inside.data() + inside.size(), number);
+    if (error != std::errc() || !std::isfinite(number)) return false;
+    numbers.push_back(number);
+    inside.remove_prefix(static_cast<size_t>(last - inside.data()));
+    while (!inside.empty() && is_blank(inside.front())) inside.remove_prefix(1);
+    if (inside.empty()) return true;
+    if (inside.front() != ',') return false;
+    inside.remove_prefix(1);
+  }
+}
+
+MarkedText with_marks(std::string_view text) {
+  MarkedText marked;
+  std::vector<double> numbers;
+  while (!text.empty()) {
+    const size_t end = std::min(text.find_first_of("\r\n"), text.size() - 1) + 1;
+    std::string_view line = text.substr(0, end);
+    text.remove_prefix(end);
+    // What is in quotes or in a comment is no list.
+    const bool plain = line.find_first_of("\"'#") == std::string_view::npos;
+    for (size_t open; plain && (open = line.find('[')) != std::string_view::npos;) {
+      const size_t next = line.find_first_of("[]", open + 1);
+      if (next == std::string_view::npos) break;
+      marked.text += line.substr(0, open + 1);
+      const std::string_view inside = line.substr(open + 1, next - open - 1);
+      if (line[next] == ']' && reads_numbers(inside, numbers)) {
+        marked.text += kMark + std::to_string(marked.lists.size());
+        marked.lists.push_back(numbers);
+      } else {
+        marked.text += inside;
+      }
+      line.remove_prefix(next);
+    }
+    marked.text += line;
+  }
+  return marked;
+}
+
 class TreeBuilder : public YAML::EventHandler {
  public:
+  explicit TreeBuilder(std::vector<std::vector<double>>& lists) : lists_(lists) {}
+
   YamlNode root;
+  bool mark_in_text = false;  ///< what was taken for a list is a part of a text
   std::string refused;
   int refused_line = 0;
 
@@ -64,6 +123,17 @@ class TreeBuilder : public YAML::EventHandler {
   };
 
   void scalar(const YAML::Mark& mark, const std::string& value) {
+    if (value.find(kMark) != std::string::npos) {
+      size_t place = lists_.size();
+      std::from_chars(value.data() + 1, value.data() + value.size(), place);
+      if (value.front() == kMark && place < lists_.size() && !open_.empty() &&
+          open_.back().node.is_list() && open_.back().node.numbers.empty() &&
+          open_.back().node.items.empty())
+        open_.back().node.numbers = std::move(lists_[place]);
+      else
+        mark_in_text = true;
+      return;
+    }
     if (!open_.empty() && open_.back().node.is_list()) {
       YamlNode& list = open_.back().node;
       double number = 0;
@@ -124,6 +194,7 @@ class TreeBuilder : public YAML::EventHandler {
     parent.node.items.push_back(std::move(node));
   }
 
+  std::vector<std::vector<double>>& lists_;
   std::vector<Open> open_;
 };
 
@@ -136,21 +207,30 @@ const YamlNode* YamlNode::find(std::string_view key, std::string_view other) con
 }
 
 YamlNode parse_yaml(const std::string& text, const std::string& file) {
-  TextBuffer buffer(text);
-  std::istream stream(&buffer);
-  TreeBuilder builder;
   const auto refuse = [&](int line, const std::string& reason) {
     fail(ErrorCode::bad_file, file + ":" + std::to_string(line) + ": " + reason);
   };
-  try {
-    YAML::Parser parser(stream);
-    if (!parser.HandleNextDocument(builder)) refuse(1, "there is no YAML document");
-  } catch (const YAML::Exception& error) {
-    refuse(error.mark.line + 1,
-           "this is not valid YAML: " + error.msg + "; the file may be truncated");
+  const auto parse = [&](const std::string& seen, std::vector<std::vector<double>> lists) {
+    TextBuffer buffer(seen);
+    std::istream stream(&buffer);
+    TreeBuilder builder(lists);
+    try {
+      YAML::Parser parser(stream);
+      if (!parser.HandleNextDocument(builder)) refuse(1, "there is no YAML document");
+    } catch (const YAML::Exception& error) {
+      refuse(error.mark.line + 1,
+             "this is not valid YAML: " + error.msg + "; the file may be truncated");
+    }
+    if (!builder.mark_in_text && !builder.refused.empty())
+      refuse(builder.refused_line, builder.refused);
+    return std::pair{std::move(builder.root), builder.mark_in_text};
+  };
+  if (text.find(kMark) == std::string::npos) {
+    MarkedText marked = with_marks(text);
+    auto [root, mark_in_text] = parse(marked.text, std::move(marked.lists));
+    if (!mark_in_text) return std::move(root);
   }
-  if (!builder.refused.empty()) refuse(builder.refused_line, builder.refused);
-  return std::move(builder.root);
+  return parse(text, {}).first;
 }
 
 }  // namespace ayumi
