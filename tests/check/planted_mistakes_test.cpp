@@ -317,6 +317,41 @@ TEST(PlantedMistakes, AreNamed) {
   }
 }
 
+// A reach of the left hand in three keys. Targets were tried in no other unit.
+TEST(PlantedMistakes, TargetsOfHandsInAnotherUnitAreNamed) {
+  for (const auto& [robot, size] : {std::pair(&small(), 1.0), {&tall(), 2.4}}) {
+    Pattern reach;
+    reach.phases = {{.until = 6.5, .swing = {}}};
+    key_at(reach, 0).zmp = ZmpKey{ZmpKey::Place::center};
+    for (const auto& [t, place] : {std::pair(1.5, Eigen::Vector3d(0.12, 0.14, 0.05)),
+                                   {2.5, {0.14, 0.1, 0.08}},
+                                   {3.5, {0.12, 0.14, 0.05}}})
+      key_at(reach, t).hands["left"] = {LinkTarget::Frame::trunk, size * place, std::nullopt};
+    const auto first_cause = [&robot = *robot](const Pattern& pattern) {
+      const std::vector<Mistake> found = likely_mistakes(robot, pattern, options_of(pattern));
+      return found.empty() ? "" : found.front().text();
+    };
+    const auto position = [](Pattern& pattern, size_t key) -> Eigen::Vector3d& {
+      return *pattern.keyframes[key].hands["left"].position;
+    };
+    for (const auto& [unit, factor] : {std::pair("mm", 1e3), std::pair("cm", 1e2)}) {
+      Pattern all = reach, one = reach;
+      for (const size_t key : {1, 2, 3}) position(all, key) *= factor;
+      position(one, 2) *= factor;
+      EXPECT_TRUE(std::regex_search(
+          first_cause(all), std::regex(std::string("^/keyframes/1/hands/left: the left hand is .*"
+                                                   "and there are 2 more targets .* read in ") +
+                                       unit + " the pattern is consistent$")))
+          << first_cause(all);
+      EXPECT_TRUE(std::regex_search(
+          first_cause(one), std::regex(std::string("^/keyframes/2/hands/left: the left hand is .*"
+                                                   "with these numbers read in ") +
+                                       unit + ", .* the pattern is consistent$")))
+          << first_cause(one);
+    }
+  }
+}
+
 // Neither of two is enough; both are named, one after the other.
 TEST(PlantedMistakes, TwoAreNamedInTurn) {
   Pattern pattern = walk(small());
