@@ -352,6 +352,36 @@ TEST(PlantedMistakes, TargetsOfHandsInAnotherUnitAreNamed) {
   }
 }
 
+// The y of all footholds counted to the right, or the words left and right exchanged throughout.
+// The height of the COG was named, and then one foothold after the other.
+TEST(PlantedMistakes, SidesThatAreAllExchangedAreNamed) {
+  for (const RobotModel* robot : {&small(), &tall()}) {
+    Pattern sides = walk(*robot), words = sides;
+    for (Phase& phase : sides.phases)
+      if (phase.swing) phase.swing->to.position.y() *= -1;
+    for (Phase& phase : words.phases) {
+      if (!phase.swing) continue;
+      phase.support = phase.support == Support::left ? Support::right : Support::left;
+      phase.swing->foot = other(phase.swing->foot);
+    }
+    for (Keyframe& key : words.keyframes) {
+      if (!key.zmp) continue;
+      const auto place = key.zmp->place;
+      if (place == ZmpKey::Place::left) key.zmp->place = ZmpKey::Place::right;
+      if (place == ZmpKey::Place::right) key.zmp->place = ZmpKey::Place::left;
+    }
+    for (const Pattern& pattern : {sides, words}) {
+      const std::vector<Mistake> found = likely_mistakes(*robot, pattern, options_of(pattern));
+      ASSERT_FALSE(found.empty());
+      EXPECT_TRUE(std::regex_search(
+          found.front().text(),
+          std::regex("^/phases/1: . of . footholds have the y of the other foot's side .* the "
+                     "pattern is consistent$")))
+          << found.front().text();
+    }
+  }
+}
+
 // Neither of two is enough; both are named, one after the other.
 TEST(PlantedMistakes, TwoAreNamedInTurn) {
   Pattern pattern = walk(small());

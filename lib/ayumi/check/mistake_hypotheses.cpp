@@ -97,6 +97,7 @@ class Hypotheses::Maker {
     std::vector<Hypothesis> made;
     turns(made);
     level_feet(made);
+    all_sides(made);
     crossed_footholds(made);
     key_times(made);
     phase_times(made);
@@ -596,6 +597,48 @@ class Hypotheses::Maker {
       made.push_back(std::move(exchange));
     }
   }
+
+  // Where most feet land beyond the other foot: y was counted to the right, or the words left and
+  // right were exchanged throughout.
+  void all_sides(std::vector<Hypothesis>& made) const {
+    if (!feet_) return;
+    std::vector<size_t> crossed;
+    size_t swings = 0;
+    for (size_t i = 0; i < pattern_.phases.size(); ++i) {
+      if (!has_place(i)) continue;
+      ++swings;
+      const Swing& swing = *pattern_.phases[i].swing;
+      const double start = feet_->pose(swing.foot, 0).translation().y();
+      if (start * swing.to.position.y() < 0) crossed.push_back(i);
+    }
+    if (crossed.size() < 2 || 2 * crossed.size() <= swings) return;
+    const auto add = [&](const std::string& instead, Mend mend) {
+      made.push_back({Rank::geometry,
+                      {phase_place(crossed.front()),
+                       std::to_string(crossed.size()) + " of " + std::to_string(swings) +
+                           " footholds have the y of the other foot's side (y is positive to the "
+                           "left); perhaps left and right were exchanged",
+                       instead},
+                      std::move(mend)});
+    };
+    add("with the other sign of y in these footholds", [crossed](Pattern& p) {
+      for (const size_t i : crossed) p.phases[i].swing->to.position.y() *= -1;
+    });
+    add("with left and right exchanged in all phases and keys", [](Pattern& p) {
+      for (Phase& phase : p.phases) {
+        phase.support = opposite(phase.support);
+        if (phase.swing) phase.swing->foot = other(phase.swing->foot);
+      }
+      for (Keyframe& key : p.keyframes) {
+        std::swap(key.feet[0], key.feet[1]);
+        if (!key.zmp) continue;
+        using Place = ZmpKey::Place;
+        Place& place = key.zmp->place;
+        place = place == Place::left ? Place::right : place == Place::right ? Place::left : place;
+      }
+    });
+  }
+
   Side foot_of(size_t phase) const { return pattern_.phases[phase].swing->foot; }
 
   // With one of the next two.
