@@ -116,6 +116,8 @@ AnswerPart warning_part(const ConsistencyReport& report,
   std::vector<std::string> forms = {full, brief};
   if (groups.size() > 1)
     forms.push_back(entry_of_many(report, members, *worst, names_of_places(places), true));
+  forms.push_back("  " + severity_word(worst->severity) + padded(name_of(worst->kind), 19) +
+                  text::counted(members.size(), "time") + "\n");
   return {worst->severity == Severity::warning ? Rank::warning : Rank::information, forms, kHang};
 }
 
