@@ -22,6 +22,9 @@ std::string seconds(const Finding& f) {
          text::fixed(f.at, 3) + " s";
 }
 
+// Where the hint below a finding begins.
+constexpr size_t kHang = 10;
+
 std::string whole_percent(double ratio) { return text::fixed(100 * ratio, 0) + " %"; }
 
 std::string severity_word(Severity severity) {
@@ -33,24 +36,41 @@ std::string severity_word(Severity severity) {
 
 std::string entry(const Finding& f, const std::string& where_and_when) {
   return "  " + severity_word(f.severity) + padded(name_of(f.kind), 19) + where_and_when + ": " +
-         amount_text(f) + "\n" + std::string(10, ' ') + f.hint + "\n";
+         amount_text(f) + "\n";
+}
+
+std::string hint(const Finding& f) { return std::string(kHang, ' ') + f.hint + "\n"; }
+
+// Several findings, of which one is the worst.
+std::string entry_of_many(const ConsistencyReport& report, const std::vector<int>& members,
+                          const Finding& worst, const std::string& places, bool name_worst) {
+  double begin = worst.begin, end = worst.end;
+  for (const int i : members) {
+    begin = std::min(begin, report.findings[i].begin);
+    end = std::max(end, report.findings[i].end);
+  }
+  return entry(worst, places + ", " + text::counted(members.size(), "time") + " within " +
+                          text::fixed(begin, 3) + "-" + text::fixed(end, 3) + " s, worst " +
+                          (name_worst ? worst.where + " " : "") + "at " + text::fixed(worst.at, 3) +
+                          " s");
+}
+
+// Chosen: more places than this are counted.
+constexpr size_t kPlacesNamed = 3;
+
+std::string names_of_places(const std::vector<std::string>& places) {
+  if (places.size() <= kPlacesNamed) return text::join(places, " and ");
+  return places.front() + " and " + std::to_string(places.size() - 1) + " more places";
 }
 
 std::string entry_of(const ConsistencyReport& report, const FindingGroup& group) {
   const Finding& worst = report.findings[group.worst];
-  std::string out;
-  if (group.members.size() == 1) {
-    out = entry(worst, worst.where + ", " + seconds(worst));
-  } else {
-    const Finding& first = report.findings[group.members.front()];
-    double end = first.end;
-    for (const int i : group.members) end = std::max(end, report.findings[i].end);
-    out = entry(worst, text::join(group.places, " and ") + ", " +
-                           text::counted(group.members.size(), "time") + " within " +
-                           text::fixed(first.begin, 3) + "-" + text::fixed(end, 3) + " s, worst " +
-                           (group.places.size() > 1 ? worst.where + " " : "") + "at " +
-                           text::fixed(worst.at, 3) + " s");
-  }
+  if (group.members.size() == 1) return entry(worst, worst.where + ", " + seconds(worst));
+  return entry_of_many(report, group.members, worst, names_of_places(group.places),
+                       group.places.size() > 1);
+}
+
+std::string consequences(const ConsistencyReport& report, const FindingGroup& group) {
   std::vector<std::string> parts;
   for (const GroupConsequence& c : group.consequences) {
     const Finding& f = report.findings[c.worst];
@@ -58,25 +78,81 @@ std::string entry_of(const ConsistencyReport& report, const FindingGroup& group)
                     (c.count > 1 ? text::counted(c.count, "time") + ", worst " : "") + f.where +
                     " at " + text::fixed(f.at, 3) + " s: " + amount_text(f) + ")");
   }
-  if (!parts.empty())
-    out += std::string(10, ' ') + "consequences: " + text::join(parts, ", ") + "\n";
-  return out;
+  if (parts.empty()) return "";
+  return std::string(kHang, ' ') + "consequences: " + text::join(parts, ", ") + "\n";
 }
 
-std::string all_findings(const ConsistencyReport& report) {
-  std::string out;
-  for (const Finding& f : report.findings) out += entry(f, f.where + ", " + seconds(f));
-  return out;
+std::string names_of_consequences(const FindingGroup& group) {
+  std::vector<std::string> names;
+  for (const GroupConsequence& c : group.consequences) names.emplace_back(name_of(c.kind));
+  if (names.empty()) return "";
+  return std::string(kHang, ' ') + "consequences: " + text::join(names, ", ") + "\n";
 }
 
-std::string causes(const ConsistencyReport& report, const RobotModel& model) {
+AnswerPart error_part(const ConsistencyReport& report, const FindingGroup& group) {
+  const Finding& worst = report.findings[group.worst];
+  const std::string words = entry_of(report, group);
+  return {Rank::error,
+          {words + hint(worst) + consequences(report, group),
+           words + hint(worst) + names_of_consequences(group), words + hint(worst), words},
+          kHang};
+}
+
+// Warnings of one kind.
+AnswerPart warning_part(const ConsistencyReport& report,
+                        const std::vector<const FindingGroup*>& groups) {
+  std::string full, brief;
+  std::vector<int> members;
+  std::vector<std::string> places;
+  const Finding* worst = nullptr;
+  for (const FindingGroup* group : groups) {
+    const Finding& here = report.findings[group->worst];
+    full += entry_of(report, *group) + hint(here) + consequences(report, *group);
+    brief += entry_of(report, *group);
+    members.insert(members.end(), group->members.begin(), group->members.end());
+    places.insert(places.end(), group->places.begin(), group->places.end());
+    if (!worst || is_further_beyond(here, *worst)) worst = &here;
+  }
+  std::vector<std::string> forms = {full, brief};
+  if (groups.size() > 1)
+    forms.push_back(entry_of_many(report, members, *worst, names_of_places(places), true));
+  forms.push_back("  " + severity_word(worst->severity) + padded(name_of(worst->kind), 19) +
+                  text::counted(members.size(), "time") + "\n");
+  return {worst->severity == Severity::warning ? Rank::warning : Rank::information, forms, kHang};
+}
+
+std::vector<AnswerPart> finding_parts(const ConsistencyReport& report, const RobotModel& model) {
   const std::vector<FindingGroup> groups = finding_groups(report, model);
+  const size_t shown = std::min(groups.size(), static_cast<size_t>(kMostGroups));
+  std::vector<AnswerPart> parts;
+  std::vector<std::vector<const FindingGroup*>> warnings;
+  for (size_t i = 0; i < shown; ++i) {
+    const Finding& f = report.findings[groups[i].worst];
+    if (f.severity == Severity::error) {
+      parts.push_back(error_part(report, groups[i]));
+      continue;
+    }
+    const auto same = std::find_if(warnings.begin(), warnings.end(), [&](const auto& known) {
+      const Finding& first = report.findings[known.front()->worst];
+      return first.kind == f.kind && first.severity == f.severity;
+    });
+    if (same == warnings.end())
+      warnings.push_back({&groups[i]});
+    else
+      same->push_back(&groups[i]);
+  }
+  for (const auto& kind : warnings) parts.push_back(warning_part(report, kind));
+  if (groups.size() > shown)
+    parts.push_back({Rank::verdict,
+                     {"  " + text::counted(groups.size() - shown, "more group") +
+                      " of findings; `ayumi check --all` prints every finding\n"}});
+  return parts;
+}
+
+AnswerPart all_findings(const ConsistencyReport& report) {
   std::string out;
-  for (size_t i = 0; i < groups.size() && i < kMostGroups; ++i) out += entry_of(report, groups[i]);
-  if (groups.size() > kMostGroups)
-    out += "  " + text::counted(groups.size() - kMostGroups, "more group") +
-           " of findings; `ayumi check --all` prints every finding\n";
-  return out;
+  for (const Finding& f : report.findings) out += entry(f, f.where + ", " + seconds(f)) + hint(f);
+  return {Rank::error, {out}, kHang};
 }
 
 // Where and when a figure is reached.
@@ -105,49 +181,84 @@ std::string shares_of_limits(const ConsistencyReport& report) {
   return text::join(shares, ", ");
 }
 
-std::string check_table(const ConsistencyReport& report, const RobotModel& model, Shown shown) {
-  std::string out = shown == Shown::findings ? all_findings(report) : causes(report, model);
+std::vector<AnswerPart> check_parts(const ConsistencyReport& report, const RobotModel& model,
+                                    Shown shown) {
+  std::vector<AnswerPart> parts;
+  if (shown == Shown::findings)
+    parts.push_back(all_findings(report));
+  else
+    parts = finding_parts(report, model);
   const auto at = [&](FindingKind kind) { return report.summary[kind]; };
   const auto place = [&](FindingKind kind) { return figure_place(report, kind); };
   const double margin = at(FindingKind::support_margin);
-  out += "  ZMP " + mm_text(std::abs(margin)) + (margin < 0 ? " outside" : " inside") +
-         " the support" + place(FindingKind::support_margin) +
-         "; the posture differs from the keys by " + mm_text(at(FindingKind::cog_residual)) +
-         " in COG, " + mm_text(at(FindingKind::zmp_residual)) + " in ZMP and " +
-         text::fixed(at(FindingKind::fz_residual), 2) +
-         " N in force; the ZMP of the point-mass model is " +
-         mm_text(at(FindingKind::point_mass_gap)) + " from the command\n";
-  out += "  share of the limits: " + shares_of_limits(report) + "\n";
-  out += "  feet: slip " + mm_text(at(FindingKind::foot_slip)) + ", sink " +
-         mm_text(at(FindingKind::foot_penetration)) + ", gap while standing " +
-         mm_text(at(FindingKind::foot_float)) + "; ";
+  parts.push_back(
+      {Rank::figure,
+       {"  ZMP " + mm_text(std::abs(margin)) + (margin < 0 ? " outside" : " inside") +
+        " the support" + place(FindingKind::support_margin) +
+        "; the posture differs from the keys by " + mm_text(at(FindingKind::cog_residual)) +
+        " in COG, " + mm_text(at(FindingKind::zmp_residual)) + " in ZMP and " +
+        text::fixed(at(FindingKind::fz_residual), 2) +
+        " N in force; the ZMP of the point-mass model is " +
+        mm_text(at(FindingKind::point_mass_gap)) + " from the command\n"}});
+  parts.push_back({Rank::figure, {"  share of the limits: " + shares_of_limits(report) + "\n"}});
+  std::string feet = "  feet: slip " + mm_text(at(FindingKind::foot_slip)) + ", sink " +
+                     mm_text(at(FindingKind::foot_penetration)) + ", gap while standing " +
+                     mm_text(at(FindingKind::foot_float)) + "; ";
   const std::vector<std::string> bare = bodies_without_collision_shapes(model);
   const double apart = at(FindingKind::self_collision);
   if (std::isnan(apart))
-    out += "self-collisions are not checked, because the legs have no collision shapes";
+    feet += "self-collisions are not checked, because the legs have no collision shapes";
   else
-    out += (apart < 0 ? "bodies overlap by " + mm_text(-apart)
-                      : "nearest bodies " + mm_text(apart) + " apart") +
-           place(FindingKind::self_collision);
+    feet += (apart < 0 ? "bodies overlap by " + mm_text(-apart)
+                       : "nearest bodies " + mm_text(apart) + " apart") +
+            place(FindingKind::self_collision);
+  std::vector<std::string> forms = {feet + "\n"};
   if (!std::isnan(apart) && !bare.empty())
-    out += "; self-collisions of " + text::join(bare, ", ") +
-           " are not checked, because these bodies have no collision shapes";
-  out += "\n";
-  return out;
+    forms = {
+        feet + "; self-collisions of " + text::join(bare, ", ") +
+            " are not checked, because these bodies have no collision shapes\n",
+        feet + "; " + text::counted(bare.size(), "body", "bodies") + " without collision shapes\n"};
+  parts.push_back({Rank::figure, forms});
+  return parts;
 }
 
-std::string mistake_words(const std::vector<Mistake>& mistakes, const char* heading) {
-  std::string words;
-  for (const std::string& cause : cause_texts(mistakes))
-    words += "  " + painted(Paint::caution, heading) + " " + cause + "\n";
-  return words;
+size_t rows_for(const ConsistencyReport& report) {
+  return report.consistent ? kRowsWhenGood : kRowsWhenBad;
 }
 
-std::string search_words(const std::vector<Mistake>& mistakes) {
-  std::string words;
+std::string where_more_is(const ConsistencyReport& report) {
+  return "  shortened; `ayumi check --all` prints everything" +
+         (report.findings.empty() ? std::string()
+                                  : ", with " + text::counted(report.findings.size(), "finding")) +
+         "\n";
+}
+
+std::vector<AnswerPart> remark_parts(const std::string& heading,
+                                     const std::vector<std::string>& sentences, Rank rank) {
+  std::vector<AnswerPart> parts;
+  for (const std::string& sentence : sentences) {
+    std::vector<std::string> forms = shortened_line("  " + heading + sentence);
+    if (!parts.empty()) forms.push_back("");
+    parts.push_back({rank, forms});
+  }
+  return parts;
+}
+
+std::vector<AnswerPart> mistake_parts(const std::vector<Mistake>& mistakes, bool consistent) {
+  if (consistent)
+    return remark_parts(painted(Paint::caution, "worth a look:") + " ", cause_texts(mistakes),
+                        Rank::remark);
+  std::vector<AnswerPart> parts = remark_parts(painted(Paint::caution, "likely cause:") + " ",
+                                               cause_texts(mistakes), Rank::error);
+  if (!parts.empty()) parts.front().forms.resize(1);
+  return parts;
+}
+
+std::vector<AnswerPart> search_parts(const std::vector<Mistake>& mistakes) {
+  std::vector<std::string> sentences;
   for (const Mistake& mistake : mistakes)
-    if (!mistake.is_cause) words += "  " + mistake.words + "\n";
-  return words;
+    if (!mistake.is_cause) sentences.push_back(mistake.words);
+  return remark_parts("", sentences, Rank::remark);
 }
 
 std::string tolerance_table() {

@@ -6,6 +6,7 @@
 
 #include "ayumi/check/consistency.hpp"
 #include "ayumi/check/likely_mistakes.hpp"
+#include "screen.hpp"
 
 namespace ayumi::app {
 
@@ -14,13 +15,19 @@ enum class Shown {
   findings  ///< every finding
 };
 
-/// Groups that fit on one screen with the figures below them. Chosen: two lines each, of 40.
+/// Chosen: more causes than this are corrected one after the other.
 inline constexpr int kMostGroups = 10;
 
 /// "  error    support_margin  left, 1.200-1.350 s, worst at 1.280 s: -9.8 mm, limit 0.0 mm" with
 /// its hint, and lines with the most important figures.
-std::string check_table(const ConsistencyReport& report, const RobotModel& model,
-                        Shown shown = Shown::causes);
+std::vector<AnswerPart> check_parts(const ConsistencyReport& report, const RobotModel& model,
+                                    Shown shown = Shown::causes);
+
+/// Rows that an answer with this report may take.
+size_t rows_for(const ConsistencyReport& report);
+
+/// The line below an answer that was shortened.
+std::string where_more_is(const ConsistencyReport& report);
 
 /// False where the robot states no limit of this kind for any motor.
 bool has_limit(const ConsistencyReport& report, FindingKind kind);
@@ -28,12 +35,16 @@ bool has_limit(const ConsistencyReport& report, FindingKind kind);
 /// "joint speed 62 % (l_knee at 1.20 s), ...": the largest share of each limit.
 std::string shares_of_limits(const ConsistencyReport& report);
 
-/// A line for each cause, with this heading.
-std::string mistake_words(const std::vector<Mistake>& mistakes,
-                          const char* heading = "likely cause:");
+/// A line for each sentence, with this heading. The first one is never left out.
+std::vector<AnswerPart> remark_parts(const std::string& heading,
+                                     const std::vector<std::string>& sentences,
+                                     Rank rank = Rank::remark);
+
+/// A line for each cause.
+std::vector<AnswerPart> mistake_parts(const std::vector<Mistake>& mistakes, bool consistent);
 
 /// What a search that found no cause tried.
-std::string search_words(const std::vector<Mistake>& mistakes);
+std::vector<AnswerPart> search_parts(const std::vector<Mistake>& mistakes);
 
 /// Names, default tolerances, units and meanings of all kinds.
 std::string tolerance_table();

@@ -7,6 +7,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/plot/com_zmp_plot.hpp"
 #include "ayumi/task/plan_log.hpp"
+#include "terminal.hpp"
 
 namespace ayumi::app {
 
@@ -82,9 +83,7 @@ std::string origin_words(const std::map<std::string, std::string>& origin) {
   for (const auto& [key, name] : kTracks) {
     const auto found = origin.find(key);
     if (found == origin.end()) continue;
-    std::string label = name;
-    label.resize(12, ' ');
-    out += "    " + label + found->second + "\n";
+    out += padded(std::string("    ") + name, kOriginHang) + found->second + "\n";
   }
   return out;
 }

@@ -33,6 +33,9 @@ struct MotionPlot {
 void plot_motions(const RobotModel& model, const CommandSeries& before, const CommandSeries& after,
                   const MotionPlot& plot, const std::filesystem::path& path);
 
+/// Where the second column of origin_words() begins.
+inline constexpr size_t kOriginHang = 16;
+
 /// Where each track of a sampled pattern comes from, a line each under a heading: what drives the
 /// joints (of the legs above all) and the base, and what the COG, the ZMP and f_z follow.
 std::string origin_words(const std::map<std::string, std::string>& origin);

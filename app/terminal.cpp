@@ -91,23 +91,28 @@ size_t terminal_columns() {
   return ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
 }
 
-std::string broken_at(const std::string& text, size_t columns) {
+std::string broken_line(std::string line, size_t indent, size_t columns) {
   // Chosen: a description needs this much room beside the names [characters].
   constexpr size_t kLeastRoom = 20;
+  if (columns == 0) return line;
+  indent = std::min(indent, columns > kLeastRoom ? columns - kLeastRoom : 0);
+  std::string broken;
+  while (line.size() > columns) {
+    const size_t end = break_of(line, indent, columns);
+    if (end == std::string::npos) break;
+    broken += line.substr(0, end) + "\n";
+    line = std::string(indent, ' ') + line.substr(line[end] == ' ' ? end + 1 : end);
+  }
+  return broken + line;
+}
+
+std::string broken_at(const std::string& text, size_t columns) {
   if (columns == 0) return text;
   std::string broken;
   std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line); broken += line + "\n") {
-    if (line.starts_with("  ayumi ")) continue;
-    const size_t indent =
-        std::min(indent_of(line), columns > kLeastRoom ? columns - kLeastRoom : 0);
-    while (line.size() > columns) {
-      const size_t end = break_of(line, indent, columns);
-      if (end == std::string::npos) break;
-      broken += line.substr(0, end) + "\n";
-      line = std::string(indent, ' ') + line.substr(line[end] == ' ' ? end + 1 : end);
-    }
-  }
+  for (std::string line; std::getline(lines, line);)
+    broken +=
+        (line.starts_with("  ayumi ") ? line : broken_line(line, indent_of(line), columns)) + "\n";
   return broken;
 }
 

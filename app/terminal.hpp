@@ -27,6 +27,9 @@ size_t terminal_columns();
 /// line. Commands of examples stay whole, so that they can be pasted. 0 columns: no line is broken.
 std::string broken_at(const std::string& text, size_t columns);
 
+/// A line without its end, broken in the same way; what follows is indented by `indent` columns.
+std::string broken_line(std::string line, size_t indent, size_t columns);
+
 /// The text with blanks behind it, at least `width` bytes long.
 std::string padded(std::string text, size_t width);
 

@@ -7,6 +7,7 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <map>
 
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
@@ -52,10 +53,11 @@ OrderedJson result_json(const std::string& kind, const std::string& verdict, boo
 }
 
 std::string counted_findings(const Judgement& judgement) {
-  int errors = 0, warnings = 0;
-  for (const Finding& f : judgement.report.findings)
-    ++(f.severity == Severity::error ? errors : warnings);
-  return text::counted(errors, "error") + ", " + text::counted(warnings, "warning");
+  std::map<Severity, int> count;
+  for (const Finding& f : judgement.report.findings) ++count[f.severity];
+  return text::counted(count[Severity::error], "error") + ", " +
+         text::counted(count[Severity::warning], "warning") + ", " +
+         text::counted(count[Severity::info], "note");
 }
 
 AuthorResult check_job(const AuthorMotion& motion, const Progress& progress) {

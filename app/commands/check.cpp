@@ -78,13 +78,10 @@ std::string own_need(const Task& input, CheckOptions judged) {
 }
 
 // Why `export` refuses the pattern, the findings apart.
-std::string refusal_words(const Task& input, const Judgement& judgement) {
+std::vector<AnswerPart> refusal_parts(const Task& input, const Judgement& judgement) {
   std::vector<std::string> reasons = export_refusals(input, judgement);
   std::erase(reasons, judgement.reason());
-  std::string words;
-  for (const std::string& reason : reasons)
-    words += "  `export` refuses the table: " + reason + "\n";
-  return words;
+  return remark_parts("`export` refuses the table: ", reasons);
 }
 
 // ---- the joints of a motion against their limits
@@ -156,13 +153,6 @@ std::vector<std::string> plot_joints_against_limits(const Task& task,
 
 // ---- what is printed
 
-std::string scenario_words(const std::vector<std::string>& sentences) {
-  std::string words;
-  for (const std::string& sentence : sentences)
-    words += "  " + painted(Paint::caution, "scenario:") + " " + sentence + "\n";
-  return words;
-}
-
 // A pattern that cannot be sampled: what, put right, would do, and the first thing that fails.
 [[noreturn]] void explain(const Context& context, const Error& error, const std::string& file,
                           const CheckCommand& options) {
@@ -202,7 +192,9 @@ struct Checked {
   int errors = 0;
 };
 
-Checked checked_one(const Context& context, const CheckCommand& options, const std::string& file) {
+// The line above it, with the time and the change, is a part of the answer, too.
+Checked checked_one(const Context& context, const CheckCommand& options, const std::string& file,
+                    size_t rows_above = 0) {
   const auto begin = std::chrono::steady_clock::now();
   const Task input = load_or_explain(context, file, options);
   const CheckOptions judged = check_options(input, options.tolerances);
@@ -219,27 +211,33 @@ Checked checked_one(const Context& context, const CheckCommand& options, const s
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   Checked checked;
-  checked.words =
-      file + ": " +
-      (report.consistent ? painted(Paint::good, "consistent")
-                         : painted(Paint::bad, "INCONSISTENT")) +
-      ", " + text::fixed(input.series.duration(), 2) + " s, actuators " + report.profile + "\n" +
-      mistake_words(mistakes, report.consistent ? "worth a look:" : "likely cause:") +
-      scenario_words(disturbed) + (need.text.empty() ? "" : "  " + need.text + "\n") +
-      (own.empty()
-           ? ""
-           : "  with the robot's own motors, " + own +
-                 (has_encoders(input.robot) ? " (`export --format hoap` judges by these motors)"
-                                            : "") +
-                 "\n") +
-      refusal_words(input, judgement) +
-      check_table(report, input.robot, options.all ? Shown::findings : Shown::causes) +
-      search_words(mistakes) + origin_words(input.series.origin);
+  std::vector<AnswerPart> parts = {{Rank::verdict,
+                                    {file + ": " +
+                                     (report.consistent ? painted(Paint::good, "consistent")
+                                                        : painted(Paint::bad, "INCONSISTENT")) +
+                                     ", " + text::fixed(input.series.duration(), 2) +
+                                     " s, actuators " + report.profile + "\n"}}};
+  append(parts, mistake_parts(mistakes, report.consistent));
+  append(parts, remark_parts(painted(Paint::caution, "scenario:") + " ", disturbed));
+  if (!need.text.empty()) append(parts, remark_parts("", {need.text}));
+  if (!own.empty())
+    append(parts, remark_parts("with the robot's own motors, ",
+                               {own + (has_encoders(input.robot)
+                                           ? " (`export --format hoap` judges by these motors)"
+                                           : "")}));
+  append(parts, refusal_parts(input, judgement));
+  append(parts, check_parts(report, input.robot, options.all ? Shown::findings : Shown::causes));
+  append(parts, search_parts(mistakes));
+  parts.push_back({Rank::origin, {origin_words(input.series.origin), ""}, kOriginHang});
   std::vector<std::string> panels;
   if (!options.plot.empty()) {
     panels = plot_joints_against_limits(input, report, options.plot);
-    checked.words += "  drawn in " + options.plot + ": " + text::join(panels, ", ") + "\n";
+    parts.push_back(
+        {Rank::verdict, {"  drawn in " + options.plot + ": " + text::join(panels, ", ") + "\n"}});
   }
+  Room room = room_of(rows_for(report));
+  room.rows -= rows_above;
+  checked.words = options.all ? in_full(parts) : fitted(parts, room, where_more_is(report));
   checked.errors = static_cast<int>(
       std::count_if(report.findings.begin(), report.findings.end(),
                     [](const Finding& f) { return f.severity == Severity::error; }));
@@ -302,7 +300,7 @@ void check_once(Context& context, const CheckCommand& options, const std::string
                 std::optional<int>& errors) {
   const std::string head = time_of_day();
   try {
-    Checked checked = checked_one(context, options, file);
+    Checked checked = checked_one(context, options, file, 1);
     if (!context.json) clear_screen();
     context.print(head + change_words(errors, checked.errors) + "\n" + checked.words);
     context.print_json(checked.json.dump());

@@ -71,6 +71,14 @@ struct Result {
   TableCaution caution;  ///< of the tables that went into it
 };
 
+// Lines above those of the check: the verdict, and what the edit did.
+constexpr size_t kLinesAbove = 3;
+
+std::string check_words(const ConsistencyReport& report, const RobotModel& model) {
+  return fitted(check_parts(report, model), room_of(rows_for(report) - kLinesAbove),
+                where_more_is(report));
+}
+
 Result check_edited(const Context& context, const EditCommand& options, const Task& input,
                     const Pattern& edited) {
   Result result;
@@ -78,7 +86,7 @@ Result check_edited(const Context& context, const EditCommand& options, const Ta
   result.series = sample(input.robot, edited, {.dt = input.series.dt}, context.progress());
   result.report =
       check_consistency(input.robot, result.series, check_options(input, options.tolerances));
-  result.words = check_table(result.report, input.robot);
+  result.words = check_words(result.report, input.robot);
   return result;
 }
 
@@ -195,7 +203,7 @@ void retime_locally(Context& context, const EditCommand& options, const Task& in
   result.caution = input.caution;
   result.series = std::move(pace.series);
   result.report = std::move(pace.report);
-  result.words = check_table(result.report, input.robot);
+  result.words = check_words(result.report, input.robot);
   const ForceRange force = force_range(result.series);
   Json limits = Json::array();
   for (const BindingLimit& limit : pace.binding)

@@ -126,9 +126,11 @@ std::string in_words(const RepairCommand& options, const Task& input, const Repa
          std::to_string(result.constraints) + " constraints, " + std::to_string(result.iterations) +
          " iterations, " + text::fixed(wall, 2) + " s\n";
   for (const std::string& reason : result.reasons) out += "  because " + reason + "\n";
-  out += mistake_words(mistakes) + search_words(mistakes);
-  if (result.status == RepairStatus::repaired) out += check_table(result.check, model);
-  return out;
+  std::vector<AnswerPart> parts = {{Rank::verdict, {out}}};
+  append(parts, mistake_parts(mistakes, false));
+  append(parts, search_parts(mistakes));
+  if (result.status == RepairStatus::repaired) append(parts, check_parts(result.check, model));
+  return fitted(parts, room_of(kRowsWhenBad), where_more_is(result.check));
 }
 
 std::string in_words(const std::vector<PassingValues>& all) {

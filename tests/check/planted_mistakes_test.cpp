@@ -317,6 +317,71 @@ TEST(PlantedMistakes, AreNamed) {
   }
 }
 
+// A reach of the left hand in three keys. Targets were tried in no other unit.
+TEST(PlantedMistakes, TargetsOfHandsInAnotherUnitAreNamed) {
+  for (const auto& [robot, size] : {std::pair(&small(), 1.0), {&tall(), 2.4}}) {
+    Pattern reach;
+    reach.phases = {{.until = 6.5, .swing = {}}};
+    key_at(reach, 0).zmp = ZmpKey{ZmpKey::Place::center};
+    for (const auto& [t, place] : {std::pair(1.5, Eigen::Vector3d(0.12, 0.14, 0.05)),
+                                   {2.5, {0.14, 0.1, 0.08}},
+                                   {3.5, {0.12, 0.14, 0.05}}})
+      key_at(reach, t).hands["left"] = {LinkTarget::Frame::trunk, size * place, std::nullopt};
+    const auto first_cause = [&robot = *robot](const Pattern& pattern) {
+      const std::vector<Mistake> found = likely_mistakes(robot, pattern, options_of(pattern));
+      return found.empty() ? "" : found.front().text();
+    };
+    const auto position = [](Pattern& pattern, size_t key) -> Eigen::Vector3d& {
+      return *pattern.keyframes[key].hands["left"].position;
+    };
+    for (const auto& [unit, factor] : {std::pair("mm", 1e3), std::pair("cm", 1e2)}) {
+      Pattern all = reach, one = reach;
+      for (const size_t key : {1, 2, 3}) position(all, key) *= factor;
+      position(one, 2) *= factor;
+      EXPECT_TRUE(std::regex_search(
+          first_cause(all), std::regex(std::string("^/keyframes/1/hands/left: the left hand is .*"
+                                                   "and there are 2 more targets .* read in ") +
+                                       unit + " the pattern is consistent$")))
+          << first_cause(all);
+      EXPECT_TRUE(std::regex_search(
+          first_cause(one), std::regex(std::string("^/keyframes/2/hands/left: the left hand is .*"
+                                                   "with these numbers read in ") +
+                                       unit + ", .* the pattern is consistent$")))
+          << first_cause(one);
+    }
+  }
+}
+
+// The y of all footholds counted to the right, or the words left and right exchanged throughout.
+// The height of the COG was named, and then one foothold after the other.
+TEST(PlantedMistakes, SidesThatAreAllExchangedAreNamed) {
+  for (const RobotModel* robot : {&small(), &tall()}) {
+    Pattern sides = walk(*robot), words = sides;
+    for (Phase& phase : sides.phases)
+      if (phase.swing) phase.swing->to.position.y() *= -1;
+    for (Phase& phase : words.phases) {
+      if (!phase.swing) continue;
+      phase.support = phase.support == Support::left ? Support::right : Support::left;
+      phase.swing->foot = other(phase.swing->foot);
+    }
+    for (Keyframe& key : words.keyframes) {
+      if (!key.zmp) continue;
+      const auto place = key.zmp->place;
+      if (place == ZmpKey::Place::left) key.zmp->place = ZmpKey::Place::right;
+      if (place == ZmpKey::Place::right) key.zmp->place = ZmpKey::Place::left;
+    }
+    for (const Pattern& pattern : {sides, words}) {
+      const std::vector<Mistake> found = likely_mistakes(*robot, pattern, options_of(pattern));
+      ASSERT_FALSE(found.empty());
+      EXPECT_TRUE(std::regex_search(
+          found.front().text(),
+          std::regex("^/phases/1: . of . footholds have the y of the other foot's side .* the "
+                     "pattern is consistent$")))
+          << found.front().text();
+    }
+  }
+}
+
 // Neither of two is enough; both are named, one after the other.
 TEST(PlantedMistakes, TwoAreNamedInTurn) {
   Pattern pattern = walk(small());

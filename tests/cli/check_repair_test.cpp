@@ -1,8 +1,10 @@
 // The commands check and repair on the HOAP-1 walk, whole and with faults put into its file.
 
 #include <algorithm>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <sstream>
 
 #include "tests/cli/program.hpp"
 
@@ -244,6 +246,84 @@ TEST_F(CheckRepair, HelpOfACommandIsThatOfItsOption) {
   const Output wrong = ayumi({"help", "new", "wlak"});
   EXPECT_EQ(wrong.exit_code, 2);
   EXPECT_EQ(wrong.err, "ayumi: help: ayumi new has no command 'wlak'; did you mean 'walk'?\n");
+}
+
+// Rows of an answer on a terminal of 80 columns.
+class ChecksOn80Columns : public CheckRepair {
+ protected:
+  ChecksOn80Columns() { ::setenv("COLUMNS", "80", 1); }
+  ~ChecksOn80Columns() override { ::unsetenv("COLUMNS"); }
+
+  static void expect_fits(const std::string& answer, long most) {
+    EXPECT_LE(std::count(answer.begin(), answer.end(), '\n'), most) << answer;
+    std::istringstream lines(answer);
+    for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 80u) << answer;
+  }
+
+  // The command above and the prompt below it take two of 24 rows.
+  static void expect_one_screen(const std::string& answer) { expect_fits(answer, 22); }
+};
+
+// A jump with seven kinds of warnings took 60 rows, so the verdict was out of sight.
+TEST_F(ChecksOn80Columns, WhatIsConsistentFitsOnOneScreen) {
+  std::vector<std::string> patterns;
+  for (const auto& entry : fs::directory_iterator(AYUMI_SOURCE_DIR "/patterns"))
+    patterns.push_back(entry.path().string());
+  for (const std::string robot : {"hoap1", "humanoid30"}) {
+    ASSERT_EQ(ayumi({"new", "jump", "--robot", robot, "-o", robot + ".json", "-q"}).exit_code, 0);
+    patterns.push_back(robot + ".json");
+  }
+  for (const std::string& pattern : patterns) {
+    SCOPED_TRACE(pattern);
+    const Output checked = ayumi({"check", pattern, "-q"});
+    EXPECT_EQ(checked.exit_code, 0) << checked.out;
+    expect_one_screen(checked.out);
+  }
+}
+
+TEST_F(ChecksOn80Columns, WhatIsShortenedIsPrintedWithAll) {
+  ASSERT_EQ(ayumi({"new", "jump", "-o", "jump.json", "-q"}).exit_code, 0);
+  const std::string brief = ayumi({"check", "jump.json", "-q"}).out;
+  EXPECT_TRUE(
+      std::regex_search(brief, std::regex("  shortened; `ayumi check --all` prints everything, "
+                                          "with \\d+ findings\n$")))
+      << brief;
+  EXPECT_EQ(brief.find("sampled from"), std::string::npos) << brief;
+  const std::string all = ayumi({"check", "jump.json", "-q", "--all"}).out;
+  EXPECT_EQ(all.find("shortened"), std::string::npos) << all;
+  EXPECT_NE(all.find("sampled from"), std::string::npos) << all;
+  EXPECT_NE(all.find("make the motion of r_knee smoother"), std::string::npos) << all;
+  // A line that is not for a terminal is not broken.
+  ::unsetenv("COLUMNS");
+  EXPECT_NE(ayumi({"check", "jump.json", "-q"}).out.find(" mm in ZMP and 0.00 N in force; the ZMP"),
+            std::string::npos);
+}
+
+// Twenty remarks of one kind, and errors at as many places.
+TEST_F(ChecksOn80Columns, ManyDisturbancesDoNotPushTheVerdictOutOfSight) {
+  Json late = Json::array(), heavy = Json::array();
+  for (int i = 0; i < 20; ++i) {
+    late.push_back({{"type", "impulse"},
+                    {"at", 20 + i},
+                    {"duration", 0.02},
+                    {"direction", {1, 0, 0}},
+                    {"impulse", 0.1}});
+    heavy.push_back({{"type", "payload"}, {"at", 0}, {"mass", 2 + 0.1 * i}, {"on", "l_forearm"}});
+  }
+  const auto with_scenario = [&](const std::string& name, const Json& scenario) {
+    Json pattern = Json::parse(contents(kWalk), nullptr, true, true);
+    pattern["scenario"] = scenario;
+    write(folder / name, pattern.dump());
+  };
+  with_scenario("late.json", late);
+  const Output consistent = ayumi({"check", "late.json", "-q"});
+  EXPECT_EQ(consistent.exit_code, 0) << consistent.out << consistent.err;
+  EXPECT_NE(consistent.out.find("worth a look: "), std::string::npos) << consistent.out;
+  expect_one_screen(consistent.out);
+  with_scenario("heavy.json", heavy);
+  const Output wrong = ayumi({"check", "heavy.json", "-q"});
+  EXPECT_EQ(wrong.exit_code, 1) << wrong.out << wrong.err;
+  expect_fits(wrong.out, 40);
 }
 
 // A terminal of the program `script`; without it, colours are not tried.

@@ -319,6 +319,32 @@ TEST(Loci, LandingForcesAreDrawnToTheirTop) {
     EXPECT_FALSE(text.ends_with(" N")) << text << ": nothing lands";
 }
 
+// Of a lift-off and a landing soon after it: the value of the first was under the second.
+TEST(Loci, ValuesOfForcesStandBesideTheCurves) {
+  TwoRuns runs;
+  SimulationLog log = runs.standing;
+  for (size_t k = 0; k < log.samples.size(); ++k) {
+    const auto top = [k](double at) {
+      return std::max(0.0, 1 - std::abs(static_cast<double>(k) - at) / 10);
+    };
+    log.samples[k].fz = 60 + 240 * std::max(top(200), 0.99 * top(215));
+  }
+  const Drawing drawing =
+      draw_loci({{"DTAD", &log}}, {.cog = false, .zmp = false, .command = false});
+  int values = 0;
+  for (const auto& item : drawing.items) {
+    const auto* text = std::get_if<DrawnText>(&item);
+    if (!text || !text->text.ends_with(" N")) continue;
+    ++values;
+    const Eigen::AlignedBox2d box(
+        text->position - Eigen::Vector2d(0, text->size),
+        text->position + Eigen::Vector2d(text_width(text->text, text->size), 0));
+    for (const Eigen::Vector2d& p : points_of(drawing, 1.6))
+      EXPECT_FALSE(box.contains(p)) << text->text << " at " << p.transpose();
+  }
+  EXPECT_GT(values, 0);
+}
+
 TEST(Loci, ThereIsNoZmpInFlight) {
   TwoRuns runs;
   SimulationLog log = runs.standing;

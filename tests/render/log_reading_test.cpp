@@ -141,6 +141,27 @@ bool shows(const std::vector<double>& times, double t, double near) {
                      [&](double shown) { return std::abs(shown - t) <= near; });
 }
 
+// The stoop and the landing of a jump look alike: only the stoop was shown.
+TEST(LogReading, TheLandingOfAJumpIsWorthShowing) {
+  SimulationLog log = nod(1.2, 1.2, 6);
+  const double home = log.samples.front().cog.z();
+  for (size_t k = 0; k < log.samples.size(); ++k) {
+    const double t = static_cast<double>(k) * log.dt;
+    const bool flies = t > 3.1 && t < 3.3;
+    if (flies) log.samples[k].planned_contact = {false, false};
+    // Deep from 2 to 3 s and from 3.4 to 4.4 s, and as high as at rest in between.
+    const double away = std::min(std::abs(t - 2.5), std::abs(t - 3.9));
+    const double depth = std::clamp((0.7 - away) / 0.2, 0.0, 1.0);
+    log.samples[k].cog.z() = home * (1 - 0.2 * depth);
+    log.samples[k].state.theta[1] = depth;
+  }
+  for (const int count : {6, 8}) {
+    const std::vector<double> times = telling_instants(log, count);
+    EXPECT_TRUE(shows(times, 3.4, 0.02)) << count;
+    EXPECT_TRUE(shows(times, 2.5, 0.55)) << count;
+  }
+}
+
 // Wherever in a run a joint turns back, and however long the run is.
 TEST(LogReading, ExtremesAreWorthShowing) {
   for (const double length : {4.0, 20.0})

@@ -388,6 +388,21 @@ async function showsFindings(tab) {
   expect(seen.curves.includes("q." + seen.joint), "its curve is shown");
   expect(seen.ghost, "the last consistent motion is the ghost");
   await tab.shoot("finding.png");
+  // What is no error is neither called a warning nor drawn as an error.
+  const note = await tab.run(`
+    const one = { ...window.ayumiAuthor.page.state.findings[0], severity: "info" };
+    const words = window.ayumiAuthor.page.answer.call({ state: { findings: [one] }, showFinding() {} },
+      { worst: 0, members: [0], places: one.where, consequences: [] }).textContent;
+    const color = (severity) => {
+      const mark = document.querySelector(".finding").cloneNode();
+      mark.className = "finding " + severity;
+      document.getElementById("lane-events").append(mark);
+      const found = getComputedStyle(mark).backgroundColor;
+      mark.remove();
+      return found;
+    };
+    return [words, color("info"), color("warning"), color("error")];`);
+  expect(note[0].startsWith("Note ") && new Set(note).size === 4, "a note: " + note);
   const sole = await tab.run(`
     const page = window.ayumiAuthor.page;
     page.showFinding(page.state.findings.find((one) => one.kind === "support_margin"));

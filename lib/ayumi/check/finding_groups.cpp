@@ -75,13 +75,15 @@ void note_consequence(FindingGroup& group, const ConsistencyReport& report, int 
   for (GroupConsequence& known : group.consequences) {
     if (known.kind != f.kind) continue;
     ++known.count;
-    if (excess(f) > excess(report.findings[known.worst])) known.worst = i;
+    if (is_further_beyond(f, report.findings[known.worst])) known.worst = i;
     return;
   }
   group.consequences.push_back({f.kind, 1, i});
 }
 
 }  // namespace
+
+bool is_further_beyond(const Finding& a, const Finding& b) { return excess(a) > excess(b); }
 
 std::vector<FindingGroup> finding_groups(const ConsistencyReport& report, const RobotModel& model) {
   if (report.findings.empty()) return {};
@@ -98,7 +100,7 @@ std::vector<FindingGroup> finding_groups(const ConsistencyReport& report, const 
     group_of[i] = entry->second;
     FindingGroup& group = groups[entry->second];
     group.members.push_back(i);
-    if (excess(f) > excess(report.findings[group.worst])) group.worst = i;
+    if (is_further_beyond(f, report.findings[group.worst])) group.worst = i;
     if (std::find(group.places.begin(), group.places.end(), f.where) == group.places.end())
       group.places.push_back(f.where);
   }

@@ -25,6 +25,9 @@ struct FindingGroup {
   std::vector<GroupConsequence> consequences = {};  ///< in the order of their first finding
 };
 
+/// Whether a value is further beyond its limit than another one of its kind.
+bool is_further_beyond(const Finding& a, const Finding& b);
+
 /// Every finding is a member of one group, or a consequence of a member. Groups are in the order of
 /// their first member: errors first, then by time. For a robot without a mirror image, left and
 /// right stay apart.

@@ -38,6 +38,9 @@ constexpr long kManyKeys = 4;
 constexpr double kSameTime = 0.005;
 // A length below this is none [m]. Definition: what rounding leaves.
 constexpr double kNoLength = 1e-4;
+// Numbers of a target that are written in cm or mm are at least this large [m]. Chosen: nobody
+// writes a tenth of a millimetre.
+constexpr double kLeastWritten = 0.5;
 // An angle below this is none [rad]. Definition: what rounding leaves.
 constexpr double kNoAngle = 1e-6;
 // A level foot below a leg that leans by less than this is no reason [rad]. Chosen: five degrees,
@@ -86,6 +89,7 @@ class Hypotheses::Maker {
     time_units(made);
     stretched_keys(made);
     length_units(made);
+    target_units(made);
     return made;
   }
 
@@ -93,6 +97,7 @@ class Hypotheses::Maker {
     std::vector<Hypothesis> made;
     turns(made);
     level_feet(made);
+    all_sides(made);
     crossed_footholds(made);
     key_times(made);
     phase_times(made);
@@ -592,6 +597,48 @@ class Hypotheses::Maker {
       made.push_back(std::move(exchange));
     }
   }
+
+  // Where most feet land beyond the other foot: y was counted to the right, or the words left and
+  // right were exchanged throughout.
+  void all_sides(std::vector<Hypothesis>& made) const {
+    if (!feet_) return;
+    std::vector<size_t> crossed;
+    size_t swings = 0;
+    for (size_t i = 0; i < pattern_.phases.size(); ++i) {
+      if (!has_place(i)) continue;
+      ++swings;
+      const Swing& swing = *pattern_.phases[i].swing;
+      const double start = feet_->pose(swing.foot, 0).translation().y();
+      if (start * swing.to.position.y() < 0) crossed.push_back(i);
+    }
+    if (crossed.size() < 2 || 2 * crossed.size() <= swings) return;
+    const auto add = [&](const std::string& instead, Mend mend) {
+      made.push_back({Rank::geometry,
+                      {phase_place(crossed.front()),
+                       std::to_string(crossed.size()) + " of " + std::to_string(swings) +
+                           " footholds have the y of the other foot's side (y is positive to the "
+                           "left); perhaps left and right were exchanged",
+                       instead},
+                      std::move(mend)});
+    };
+    add("with the other sign of y in these footholds", [crossed](Pattern& p) {
+      for (const size_t i : crossed) p.phases[i].swing->to.position.y() *= -1;
+    });
+    add("with left and right exchanged in all phases and keys", [](Pattern& p) {
+      for (Phase& phase : p.phases) {
+        phase.support = opposite(phase.support);
+        if (phase.swing) phase.swing->foot = other(phase.swing->foot);
+      }
+      for (Keyframe& key : p.keyframes) {
+        std::swap(key.feet[0], key.feet[1]);
+        if (!key.zmp) continue;
+        using Place = ZmpKey::Place;
+        Place& place = key.zmp->place;
+        place = place == Place::left ? Place::right : place == Place::right ? Place::left : place;
+      }
+    });
+  }
+
   Side foot_of(size_t phase) const { return pattern_.phases[phase].swing->foot; }
 
   // With one of the next two.
@@ -649,6 +696,83 @@ class Hypotheses::Maker {
           add(key_place(i), static_cast<Side>(side), *foot,
               [i, side](Pattern& p) -> Foothold& { return *p.keyframes[i].feet[side]; });
     for (size_t i = 0; i < pattern_.keyframes.size(); ++i) zmp_point(i, made);
+    for (const FarTarget& target : far_targets())
+      if (reaches_key(target.key)) target_unit(target, made);
+  }
+
+  // ---- what hands, other links and the gaze are aimed at
+
+  static constexpr const char* kGaze = "/gaze";
+
+  // A target that is farther from the origin of its frame than a leg is long, and whose numbers may
+  // be centimetres or millimetres.
+  struct FarTarget {
+    size_t key = 0;
+    std::string name;   // "the left hand"
+    std::string place;  // JSON pointer
+    bool gaze = false;
+    Eigen::Vector3d position = {};
+    std::function<Eigen::Vector3d&(Pattern&)> in;
+  };
+
+  std::vector<FarTarget> far_targets() const {
+    std::vector<FarTarget> far;
+    const auto look = [&](size_t key, const std::string& name, const std::string& pointer,
+                          const LinkTarget& target,
+                          const std::function<LinkTarget&(Pattern&)>& in) {
+      if (!target.position || target.position->norm() < leg_length(model_)) return;
+      // A single number that is too large is no matter of the unit.
+      for (const double length : *target.position)
+        if (std::abs(length) > kNoLength && std::abs(length) < kLeastWritten) return;
+      far.push_back({key, name, key_place(key) + pointer, pointer == kGaze, *target.position,
+                     [in](Pattern& p) -> Eigen::Vector3d& { return *in(p).position; }});
+    };
+    for (size_t i = 0; i < pattern_.keyframes.size(); ++i) {
+      const Keyframe& key = pattern_.keyframes[i];
+      for (const auto& [name, target] : key.hands)
+        look(i, name == "left" || name == "right" ? "the " + name + " hand" : name,
+             "/hands/" + name, target,
+             [i, name = name](Pattern& p) -> LinkTarget& { return p.keyframes[i].hands.at(name); });
+      if (key.gaze)
+        look(i, "the gaze", kGaze, *key.gaze,
+             [i](Pattern& p) -> LinkTarget& { return *p.keyframes[i].gaze; });
+    }
+    return far;
+  }
+
+  static std::string point(const Eigen::Vector3d& v) {
+    return "(" + text::brief(v.x()) + ", " + text::brief(v.y()) + ", " + text::brief(v.z()) + ") m";
+  }
+
+  void target_unit(const FarTarget& target, std::vector<Hypothesis>& made) const {
+    for (const auto& [unit, factor] : {std::pair("mm", 1e-3), std::pair("cm", 1e-2)})
+      made.push_back(
+          {Rank::slip,
+           {target.place,
+            target.name + " is aimed at " + point(target.position) + "; lengths are in metres",
+            std::string("with these numbers read in ") + unit + ", which gives " +
+                point(factor * target.position) + ","},
+           [in = target.in, factor = factor](Pattern& p) { in(p) *= factor; }});
+  }
+
+  // All targets of the hands and other links, or all of the gaze.
+  void target_units(std::vector<Hypothesis>& made) const {
+    for (const bool gaze : {false, true}) {
+      std::vector<FarTarget> far = far_targets();
+      std::erase_if(far, [gaze](const FarTarget& target) { return target.gaze != gaze; });
+      if (far.size() < 2) continue;
+      for (const auto& [unit, factor] : {std::pair("mm", 1e-3), std::pair("cm", 1e-2)})
+        made.push_back(
+            {Rank::unit,
+             {far.front().place,
+              far.front().name + " is aimed at " + point(far.front().position) + ", and there " +
+                  (far.size() > 2 ? "are " : "is ") + text::counted(far.size() - 1, "more target") +
+                  " at such a distance; lengths are in metres",
+              std::string("with these targets read in ") + unit},
+             [far, factor = factor](Pattern& p) {
+               for (const FarTarget& target : far) target.in(p) *= factor;
+             }});
+    }
   }
 
   // A whole point of the ZMP in another unit.

@@ -405,25 +405,40 @@ std::vector<Vector2d> force_peaks(const std::vector<Vector2d>& force) {
   return kept;
 }
 
-/// Values at the tops of the forces of runs that stand, as far as the words have room.
+/// Values at the tops of the forces of runs that stand, beside the curves and as far as the words
+/// have room.
 void draw_peaks(Drawing& drawing, const Axes& axes, const PanelPlan& panel,
                 const std::vector<LociRun>& runs) {
+  std::vector<std::vector<Vector2d>> curves;
+  for (const LociRun& run : runs) curves.push_back(series(*run.log, panel.run, axes.x));
+  const auto crossed = [&](const Eigen::AlignedBox2d& box) {
+    return std::any_of(curves.begin(), curves.end(), [&](const std::vector<Vector2d>& curve) {
+      return std::any_of(curve.begin(), curve.end(), [&](const Vector2d& point) {
+        return box.contains(Vector2d(axes.px(point.x()), axes.py(point.y())));
+      });
+    });
+  };
   std::vector<Eigen::AlignedBox2d> taken;
   for (size_t i = 0; i < runs.size(); ++i) {
     if (has_fallen(*runs[i].log)) continue;
-    for (const Vector2d& top : force_peaks(series(*runs[i].log, panel.run, axes.x))) {
+    for (const Vector2d& top : force_peaks(curves[i])) {
       const std::string words = text::fixed(top.y(), 0) + " N";
       const double wide = text_width(words, kSmallText);
-      const double right = axes.left + axes.width;
-      const double x =
-          axes.px(top.x()) + 4 + wide > right ? axes.px(top.x()) - 4 - wide : axes.px(top.x()) + 4;
       const double y = std::max(axes.py(top.y()) + 4, axes.top + kSmallText + 2);
-      const Eigen::AlignedBox2d box(Vector2d(x, y - kSmallText), Vector2d(x + wide, y));
+      const auto box_at = [&](double x) {
+        return Eigen::AlignedBox2d(Vector2d(x, y - kSmallText), Vector2d(x + wide, y));
+      };
+      const Eigen::AlignedBox2d before = box_at(axes.px(top.x()) - 4 - wide),
+                                after = box_at(axes.px(top.x()) + 4);
+      const bool too_late = after.max().x() > axes.left + axes.width,
+                 early_enough = before.min().x() >= axes.left;
+      const Eigen::AlignedBox2d& box =
+          too_late || (early_enough && crossed(after) && !crossed(before)) ? before : after;
       if (std::any_of(taken.begin(), taken.end(),
                       [&](const auto& other) { return other.intersects(box); }))
         continue;
       taken.push_back(box);
-      drawing.items.push_back(DrawnText{.position = {x, y},
+      drawing.items.push_back(DrawnText{.position = {box.min().x(), y},
                                         .text = words,
                                         .size = kSmallText,
                                         .color = run_style(i, runs.size()).color});

@@ -71,13 +71,15 @@ void draw_grid(Drawing& drawing, const Panel& panel, const PushMapPhase& phase,
     path.stroke = kMapGrid;
     drawing.items.push_back(path);
   }
+  // Between the last direction and the first one, where no line and no value of a curve is.
+  const double beside = phase.direction.size() > 1 ? 0.5 * (phase.direction.back() - 2 * M_PI) : 0;
   for (const double ring : rings)
     if (ring > 0)
-      drawing.items.push_back(
-          DrawnText{.position = panel.center + Vector2d(3, 3 - kRadius * ring / panel.most),
-                    .text = text::fixed(ring, digits),
-                    .size = kSmall,
-                    .color = kQuiet});
+      drawing.items.push_back(DrawnText{.position = panel.at(beside, ring) + Vector2d(0, 4),
+                                        .text = text::fixed(ring, digits),
+                                        .size = kSmall,
+                                        .anchor = TextAnchor::center,
+                                        .color = kQuiet});
   const auto name = [&](const Vector2d& at, const char* word, TextAnchor anchor) {
     drawing.items.push_back(DrawnText{.position = panel.center + at,
                                       .text = word,

@@ -38,8 +38,9 @@ std::vector<FlightRecord> stretches(const SimulationLog& log, const std::array<b
 
 /// An instant that a picture should show, the higher its weight the sooner.
 struct Candidate {
-  double t = 0;       ///< [s]
-  double weight = 0;  ///< of postures the size of the move [rad]; events have more
+  double t = 0;                     ///< [s]
+  double weight = 0;                ///< of postures the size of the move [rad]; events have more
+  bool looks_like_another = false;  ///< and is worth a picture all the same
 };
 
 // Weights of events, above every posture: a joint moves by less than 10 rad.
@@ -139,6 +140,27 @@ double apex_of(const SimulationLog& log, const FlightRecord& flight) {
   return 0.5 * static_cast<double>(low + high + (high == last ? 1 : 0)) * log.dt;
 }
 
+/// Where the robot has yielded most after each flight. The posture is that of the stoop before it.
+std::vector<Candidate> landings(const SimulationLog& log, const std::vector<FlightRecord>& flown) {
+  // A robot yields within this time [s]. Chosen: twice the time of a landing from 0.1 m.
+  constexpr double kYield = 0.5;
+  std::vector<Candidate> out;
+  for (size_t i = 0; i < flown.size(); ++i) {
+    const double next = i + 1 < flown.size() ? flown[i + 1].begin : duration(log);
+    const size_t first = tick_at(log, flown[i].end),
+                 last = tick_at(log, std::min(next, flown[i].end + kYield));
+    size_t low = first;
+    for (size_t k = first; k <= last; ++k)
+      if (log.samples[k].cog.z() < log.samples[low].cog.z() - 1e-9) low = k;
+    const SimulationSample& highest = log.samples[tick_at(log, apex_of(log, flown[i]))];
+    const double drop = highest.cog.z() - log.samples[low].cog.z();
+    const double height = std::max(1e-3, highest.cog.z() - log.world.height);
+    if (2 * drop / height >= kSeenMove)  // as the COG in turning_postures()
+      out.push_back({static_cast<double>(low) * log.dt, 2 * drop / height, true});
+  }
+  return out;
+}
+
 /// How much two postures differ: the largest change of a joint [rad], or of the COG against half
 /// its height, as if that were a joint's arm.
 double difference(const SimulationLog& log, double a, double b) {
@@ -179,11 +201,12 @@ void take(const SimulationLog& log, std::vector<Candidate> candidates, size_t co
       double away = INFINITY, nearest = c.t;
       for (const double t : times)
         if (std::abs(t - c.t) < away) away = std::abs((nearest = t) - c.t);
-      const double gap = c.weight >= kApexWeight         ? 1e-6
+      const double gap = c.weight >= kApexWeight || c.looks_like_another ? 1e-6
                          : kAlike * c.weight >= heaviest ? std::min(apart, kShortest)
                                                          : apart;
       if (away < gap) continue;
-      if (c.weight < kApexWeight && news_at(log, c.t, times) < kSeenMove) continue;
+      if (c.weight < kApexWeight && !c.looks_like_another && news_at(log, c.t, times) < kSeenMove)
+        continue;
       const bool other = log.samples[tick_at(log, c.t)].planned_contact !=
                          log.samples[tick_at(log, nearest)].planned_contact;
       const std::tuple value(std::floor(std::log(c.weight) / std::log(kAlike)), other, away);
@@ -413,6 +436,8 @@ std::vector<double> telling_instants(const SimulationLog& log, int count) {
   const size_t last = tick_at(log, fell ? log.result.fell_at : part.end) + 1;
   for (const Candidate& c : turning_postures(log, first, std::max(first, last)))
     candidates.push_back(c);
+  for (const Candidate& c : landings(log, flown))
+    if (within(c.t)) candidates.push_back(c);
   // Of a walk, the middle of every step.
   for (const std::array<bool, 2> feet : {std::array{true, false}, std::array{false, true}})
     for (const FlightRecord& step : stretches(log, feet)) {

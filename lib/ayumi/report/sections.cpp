@@ -127,6 +127,8 @@ std::string figure(double value, const std::string& unit, bool in_degrees = true
   if (unit == "m") return millimetres(value) + " mm";
   if (unit.starts_with("rad") && in_degrees)
     return degrees(value) + " deg" + escaped(unit.substr(3));
+  // What would be 0 with three digits behind the point is none: the rounding of the computation.
+  if (std::abs(value) < 5e-4) value = 0;
   return three_digits(value) + (unit == "1" ? "" : " " + escaped(unit));
 }
 

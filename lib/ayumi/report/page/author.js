@@ -421,9 +421,7 @@ class Page {
 
   renderFindings() {
     const { findings, error } = this.state;
-    const count = { error: 0, warning: 0 };
-    for (const one of findings) ++count[one.severity];
-    byId("to-answers").textContent = findings.length ? `Answers (${findings.length})` : "Answers";
+    byId("to-answers").textContent = findings.length ? `Answers (${this.groups().length})` : "Answers";
     const old = error && findings.length ? [element("p", { class: "soft" },
       "These findings are about the old motion, because the changed file cannot be read.")] : [];
     refill(byId("findings"), findings.length ? [...old, ...this.groups().map((group) => this.answer(group))]
@@ -442,7 +440,7 @@ class Page {
     const times = members.length > 1 ? `${members.length} times, worst at ${seconds(one.at)}` : `at ${seconds(one.at)}`;
     return element("button", { type: "button", class: "answer " + one.severity, "data-id": "answer " + worst,
       "aria-pressed": String(members.some((i) => findings[i] === this.finding)), onclick: () => this.showFinding(one) },
-    element("span", {}, element("strong", {}, one.severity === "error" ? "Error" : "Warning"), " " + times),
+    element("span", {}, element("strong", {}, { error: "Error", warning: "Warning", info: "Note" }[one.severity]), " " + times),
     element("span", {}, one.message),
     places !== one.where && members.length > 1 ? element("span", {}, `The same of: ${places}`) : null,
     one.hint ? element("span", { class: "soft" }, one.hint) : null,

@@ -3,7 +3,7 @@
 import { byId, element, fixed, refill, shape } from "./dom.js";
 import { rowAt } from "./series.js";
 
-const high = 84, top = 8, bottom = 6;
+const high = 84, top = 8, bottom = 6, letters = 10;
 const colors = ["#0b6fc2", "#c2570b", "#0a8754", "#9b2fae", "#b01e3c", "#6b6b00"];
 /// What an axis shows at least: smaller changes are noise of the computation.
 const leastRange = { mm: 1, deg: 0.1, "deg/s": 1, N: 1, "N m": 0.01 };
@@ -141,7 +141,9 @@ export class Curves {
       const y = (value) => top + (high - top - bottom) * (most - value) / (most - low);
       for (const value of levels(low, most)) {
         inner.append(shape("line", { class: "level", x1: 0, x2: wide, y1: y(value), y2: y(value) }));
-        inner.append(shape("text", { class: "scale", x: 3, y: y(value) - 2 }, `${value} ${list[0].unit}`));
+        // Above its line, or below it where the picture ends.
+        const place = y(value) < letters + 2 ? y(value) + letters : y(value) - 2;
+        inner.append(shape("text", { class: "scale", x: 3, y: place }, `${value} ${list[0].unit}`));
       }
       const joint = list[0].joint && state.joints.find((one) => one.name === list[0].joint);
       for (const limit of joint ? [joint.low, joint.high] : []) {

@@ -200,8 +200,9 @@ export class Timeline {
 
   findings(state) {
     const parts = [];
-    // Errors are drawn last, above the warnings of the same time.
-    const order = state.findings.map((finding, i) => [finding, i]).sort(([a], [b]) => (a.severity === "error") - (b.severity === "error"));
+    // Errors are drawn last, above the warnings and notes of the same time.
+    const rank = { info: 0, warning: 1, error: 2 };
+    const order = state.findings.map((finding, i) => [finding, i]).sort(([a], [b]) => rank[a.severity] - rank[b.severity]);
     order.forEach(([finding, i]) => {
       if (!this.visible(finding.begin, finding.end)) return;
       parts.push(element("button", { type: "button", class: "finding " + finding.severity,

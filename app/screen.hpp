@@ -1,0 +1,44 @@
+#pragma once
+// Answers that fit on a screen: what is worth least is shortened first.
+
+#include <string>
+#include <vector>
+
+namespace ayumi::app {
+
+/// A part of an answer. What is shortened first has the lowest rank.
+enum class Rank { origin, information, warning, remark, error, figure, verdict };
+
+struct AnswerPart {
+  Rank rank = Rank::verdict;
+  std::vector<std::string> forms = {};  ///< whole lines; each form is shorter than the one before
+  size_t hang = 4;                      ///< where the rest of a line that was broken begins
+};
+
+/// Room for an answer beside the command above it and the prompt below it.
+struct Room {
+  size_t rows = 22;
+  size_t columns = 80;
+};
+
+/// Chosen: the smallest terminal in use has 24 rows of 80 columns. A motion that is wrong may take
+/// as many rows as fit on the half of a large screen.
+inline constexpr size_t kRowsWhenGood = 22, kRowsWhenBad = 40;
+
+/// This many rows, as wide as standard output, or 80 columns where it is no terminal.
+Room room_of(size_t rows);
+
+/// The parts in this order, each in the longest form for which there is room. Where something was
+/// shortened, the text ends with the line `more`.
+std::string fitted(const std::vector<AnswerPart>& parts, const Room& room, const std::string& more);
+
+/// Adds parts behind others.
+void append(std::vector<AnswerPart>& parts, std::vector<AnswerPart> more);
+
+/// The parts in full.
+std::string in_full(const std::vector<AnswerPart>& parts);
+
+/// A line as it is, in two rows, and in one, for a terminal of 80 columns.
+std::vector<std::string> shortened_line(const std::string& line);
+
+}  // namespace ayumi::app
