@@ -363,6 +363,22 @@ def pushes_walks():
     return lines
 
 
+@table("pushes/plants")
+def pushes_plants():
+    lines = head("profile, plant", "DTAD, walking [B]", "DTAD, standing [B]",
+                 "open loop, walking [B]", "open loop, standing [B]",
+                 "cases lower than in open loop")
+    for profile in ("hoap1", "hoap1-strong"):
+        for plant in ("ayumi", "mujoco"):
+            study = push_study(WALK, *FOUR, "--profile", profile, "--plant", plant)
+            walking, still = cases(study, False), cases(study, True)
+            lower = sum(c["impulse_Ns"] < c["open_loop_Ns"] - 1e-9 for c in study)
+            lines.append(row(f"`{profile}`, {plant}", in_bounds(walking), in_bounds(still),
+                             in_bounds(walking, "open_loop_Ns"), in_bounds(still, "open_loop_Ns"),
+                             f"{lower} of {len(study)}"))
+    return lines
+
+
 def stepping(robot, profile):
     """Twelve steps in place by VIIP, as `hoap1_viip_step` without its push."""
     pattern = bundled("hoap1_viip_step")

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "ayumi/dynamics/kinematics.hpp"
@@ -142,6 +143,33 @@ TEST_P(UpperBody, StaysWithinRangeSpeedAndTorqueAndComesBack) {
                                           kHoapOmega, kMomentumTick);
   EXPECT_LT(last.lean.norm(), 0.01);
   EXPECT_LT(last.joints.norm(), 0.01);
+}
+
+// A robot whose file states no torques: no bound says how fast its trunk could be stopped.
+TEST_P(UpperBody, WhatStatesNoTorqueDoesNotTurn) {
+  AtHome b(GetParam());
+  for (const bool arms : {false, true}) {
+    SCOPED_TRACE(arms);
+    ActuatorLimits limits = b.limits();
+    limits.speed.setConstant(INFINITY);
+    const std::vector<int> carried = AngularMomentumTask(b.model, limits).joints();
+    for (int j = 0; j < b.model.dof_count(); ++j) {
+      const bool arm = std::find(carried.begin(), carried.end(), j) != carried.end();
+      if (!arms || !arm) limits.peak_torque[j] = INFINITY;
+    }
+    AngularMomentumTask task(b.model, limits);
+    for (int k = 0; k < 200; ++k) {
+      const UpperBodyTurn& turn =
+          task.update(5 * b.model.mass() * Vector3d(1, 1, 0), b.data, b.state.theta,
+                      Vector2d::Zero(), kHoapOmega, kMomentumTick);
+      ASSERT_EQ(turn.lean.norm(), 0);
+      if (!arms) {
+        ASSERT_EQ(turn.joints.norm(), 0);
+      } else if (k == 199) {
+        EXPECT_GT(turn.joints.norm(), 0.1);
+      }
+    }
+  }
 }
 
 // A trunk that the plan tilts is turned less far to this side: together not as far as a fall.

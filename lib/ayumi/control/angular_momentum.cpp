@@ -157,9 +157,14 @@ const Eigen::Matrix3Xd& AngularMomentumTask::matrix(const RobotData& data) {
   return matrix_;
 }
 
-// A coordinate may become as fast as lets its torque stop it at the end of its range.
+// A coordinate may become as fast as lets its torque stop it at the end of its range. Where no
+// torque is stated, nothing says how soon it stops, and it does not turn.
 void AngularMomentumTask::bound(const VectorXd& commanded, const Vector2d& tilt, double dt) {
   for (Eigen::Index i = 0; i < weight_.size(); ++i) {
+    if (!std::isfinite(torque_[i])) {
+      low_[i] = high_[i] = 0;
+      continue;
+    }
     double below = -kTrunkRange, above = kTrunkRange;
     if (i < 2) {
       const double other = tilt[1 - i] + turn_[1 - i];
