@@ -31,15 +31,16 @@ bool equal_secrets(const std::string& a, const std::string& b) {
   return difference == 0;
 }
 
-// Sends the bytes as they are. What set_content() takes would be compressed by Brotli at its highest
-// level where the browser accepts that, which takes longer than sending it within one machine.
+// Sends the bytes as they are. What set_content() takes would be compressed by Brotli at its
+// highest level where the browser accepts that, which takes longer than sending it within one
+// machine.
 void send(Response& response, std::string bytes, const char* type) {
   if (bytes.empty()) return response.set_content(bytes, type);
   const auto held = std::make_shared<const std::string>(std::move(bytes));
-  response.set_content_provider(
-      held->size(), type, [held](size_t begin, size_t length, httplib::DataSink& sink) {
-        return sink.write(held->data() + begin, length);
-      });
+  response.set_content_provider(held->size(), type,
+                                [held](size_t begin, size_t length, httplib::DataSink& sink) {
+                                  return sink.write(held->data() + begin, length);
+                                });
 }
 
 void set_json(Response& response, const AuthorAnswer& answer) {
