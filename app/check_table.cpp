@@ -92,7 +92,7 @@ std::string names_of_consequences(const FindingGroup& group) {
 AnswerPart error_part(const ConsistencyReport& report, const FindingGroup& group) {
   const Finding& worst = report.findings[group.worst];
   const std::string words = entry_of(report, group);
-  return {Rank::error,
+  return {Worth::error,
           {words + hint(worst) + consequences(report, group),
            words + hint(worst) + names_of_consequences(group), words + hint(worst), words},
           kHang};
@@ -118,7 +118,7 @@ AnswerPart warning_part(const ConsistencyReport& report,
     forms.push_back(entry_of_many(report, members, *worst, names_of_places(places), true));
   forms.push_back("  " + severity_word(worst->severity) + padded(name_of(worst->kind), 19) +
                   text::counted(members.size(), "time") + "\n");
-  return {worst->severity == Severity::warning ? Rank::warning : Rank::information, forms, kHang};
+  return {worst->severity == Severity::warning ? Worth::warning : Worth::information, forms, kHang};
 }
 
 std::vector<AnswerPart> finding_parts(const ConsistencyReport& report, const RobotModel& model) {
@@ -143,7 +143,7 @@ std::vector<AnswerPart> finding_parts(const ConsistencyReport& report, const Rob
   }
   for (const auto& kind : warnings) parts.push_back(warning_part(report, kind));
   if (groups.size() > shown)
-    parts.push_back({Rank::verdict,
+    parts.push_back({Worth::verdict,
                      {"  " + text::counted(groups.size() - shown, "more group") +
                       " of findings; `ayumi check --all` prints every finding\n"}});
   return parts;
@@ -152,7 +152,7 @@ std::vector<AnswerPart> finding_parts(const ConsistencyReport& report, const Rob
 AnswerPart all_findings(const ConsistencyReport& report) {
   std::string out;
   for (const Finding& f : report.findings) out += entry(f, f.where + ", " + seconds(f)) + hint(f);
-  return {Rank::error, {out}, kHang};
+  return {Worth::error, {out}, kHang};
 }
 
 // Where and when a figure is reached.
@@ -164,20 +164,24 @@ std::string figure_place(const ConsistencyReport& report, FindingKind kind) {
 
 }  // namespace
 
-bool has_limit(const ConsistencyReport& report, FindingKind kind) {
-  const bool of_motor = kind == FindingKind::joint_speed || kind == FindingKind::joint_torque ||
-                        kind == FindingKind::continuous_torque;
-  return !of_motor || std::isfinite(report.summary_at[kind].at);
+bool has_limit(const RobotModel& model, FindingKind kind) {
+  const auto is_stated = [](const Eigen::VectorXd& limits) {
+    return limits.size() == 0 || limits.array().isFinite().any();
+  };
+  const ActuatorLimits& limits = model.limits();
+  if (kind == FindingKind::joint_speed) return is_stated(limits.speed);
+  if (kind == FindingKind::joint_torque) return is_stated(limits.peak_torque);
+  return kind != FindingKind::continuous_torque || is_stated(limits.continuous_torque);
 }
 
-std::string shares_of_limits(const ConsistencyReport& report) {
+std::string shares_of_limits(const ConsistencyReport& report, const RobotModel& model) {
   std::vector<std::string> shares;
   for (const FindingSpec* spec : summary_figures())
     if (spec->figure.share_name)
       shares.push_back(std::string(spec->figure.share_name) + " " +
-                       (has_limit(report, spec->kind) ? whole_percent(report.summary[spec->kind]) +
-                                                            figure_place(report, spec->kind)
-                                                      : "without limits"));
+                       (has_limit(model, spec->kind) ? whole_percent(report.summary[spec->kind]) +
+                                                           figure_place(report, spec->kind)
+                                                     : "without limits"));
   return text::join(shares, ", ");
 }
 
@@ -192,7 +196,7 @@ std::vector<AnswerPart> check_parts(const ConsistencyReport& report, const Robot
   const auto place = [&](FindingKind kind) { return figure_place(report, kind); };
   const double margin = at(FindingKind::support_margin);
   parts.push_back(
-      {Rank::figure,
+      {Worth::figure,
        {"  ZMP " + mm_text(std::abs(margin)) + (margin < 0 ? " outside" : " inside") +
         " the support" + place(FindingKind::support_margin) +
         "; the posture differs from the keys by " + mm_text(at(FindingKind::cog_residual)) +
@@ -200,7 +204,8 @@ std::vector<AnswerPart> check_parts(const ConsistencyReport& report, const Robot
         text::fixed(at(FindingKind::fz_residual), 2) +
         " N in force; the ZMP of the point-mass model is " +
         mm_text(at(FindingKind::point_mass_gap)) + " from the command\n"}});
-  parts.push_back({Rank::figure, {"  share of the limits: " + shares_of_limits(report) + "\n"}});
+  parts.push_back(
+      {Worth::figure, {"  share of the limits: " + shares_of_limits(report, model) + "\n"}});
   std::string feet = "  feet: slip " + mm_text(at(FindingKind::foot_slip)) + ", sink " +
                      mm_text(at(FindingKind::foot_penetration)) + ", gap while standing " +
                      mm_text(at(FindingKind::foot_float)) + "; ";
@@ -218,7 +223,7 @@ std::vector<AnswerPart> check_parts(const ConsistencyReport& report, const Robot
         feet + "; self-collisions of " + text::join(bare, ", ") +
             " are not checked, because these bodies have no collision shapes\n",
         feet + "; " + text::counted(bare.size(), "body", "bodies") + " without collision shapes\n"};
-  parts.push_back({Rank::figure, forms});
+  parts.push_back({Worth::figure, forms});
   return parts;
 }
 
@@ -234,22 +239,26 @@ std::string where_more_is(const ConsistencyReport& report) {
 }
 
 std::vector<AnswerPart> remark_parts(const std::string& heading,
-                                     const std::vector<std::string>& sentences, Rank rank) {
-  std::vector<AnswerPart> parts;
-  for (const std::string& sentence : sentences) {
-    std::vector<std::string> forms = shortened_line("  " + heading + sentence);
-    if (!parts.empty()) forms.push_back("");
-    parts.push_back({rank, forms});
+                                     const std::vector<std::string>& sentences, Worth worth) {
+  if (sentences.empty()) return {};
+  std::vector<AnswerPart> parts = {{worth, shortened_line("  " + heading + sentences.front())}};
+  if (sentences.size() == 1) return parts;
+  std::vector<std::string> others(4);
+  for (auto sentence = sentences.begin() + 1; sentence != sentences.end(); ++sentence) {
+    const std::vector<std::string> forms = shortened_line("  " + heading + *sentence);
+    for (size_t i = 0; i < forms.size(); ++i) others[i] += forms[i];
   }
+  others.back() = "  " + heading + std::to_string(sentences.size() - 1) + " more\n";
+  parts.push_back({Worth::remark, others});
   return parts;
 }
 
 std::vector<AnswerPart> mistake_parts(const std::vector<Mistake>& mistakes, bool consistent) {
   if (consistent)
     return remark_parts(painted(Paint::caution, "worth a look:") + " ", cause_texts(mistakes),
-                        Rank::remark);
+                        Worth::remark);
   std::vector<AnswerPart> parts = remark_parts(painted(Paint::caution, "likely cause:") + " ",
-                                               cause_texts(mistakes), Rank::error);
+                                               cause_texts(mistakes), Worth::error);
   if (!parts.empty()) parts.front().forms.resize(1);
   return parts;
 }
@@ -258,7 +267,7 @@ std::vector<AnswerPart> search_parts(const std::vector<Mistake>& mistakes) {
   std::vector<std::string> sentences;
   for (const Mistake& mistake : mistakes)
     if (!mistake.is_cause) sentences.push_back(mistake.words);
-  return remark_parts("", sentences, Rank::remark);
+  return remark_parts("", sentences, Worth::remark);
 }
 
 std::string tolerance_table() {

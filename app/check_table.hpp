@@ -15,7 +15,7 @@ enum class Shown {
   findings  ///< every finding
 };
 
-/// Chosen: more causes than this are corrected one after the other.
+/// Chosen: an author corrects causes one after the other, and then checks again.
 inline constexpr int kMostGroups = 10;
 
 /// "  error    support_margin  left, 1.200-1.350 s, worst at 1.280 s: -9.8 mm, limit 0.0 mm" with
@@ -29,16 +29,17 @@ size_t rows_for(const ConsistencyReport& report);
 /// The line below an answer that was shortened.
 std::string where_more_is(const ConsistencyReport& report);
 
-/// False where the robot states no limit of this kind for any motor.
-bool has_limit(const ConsistencyReport& report, FindingKind kind);
+/// False where the robot's profile states no limit of this kind for any motor.
+bool has_limit(const RobotModel& model, FindingKind kind);
 
 /// "joint speed 62 % (l_knee at 1.20 s), ...": the largest share of each limit.
-std::string shares_of_limits(const ConsistencyReport& report);
+std::string shares_of_limits(const ConsistencyReport& report, const RobotModel& model);
 
-/// A line for each sentence, with this heading. The first one is never left out.
+/// A line for each sentence, with this heading. The first one is never left out; of the others, at
+/// least their number is stated.
 std::vector<AnswerPart> remark_parts(const std::string& heading,
                                      const std::vector<std::string>& sentences,
-                                     Rank rank = Rank::remark);
+                                     Worth worth = Worth::remark);
 
 /// A line for each cause.
 std::vector<AnswerPart> mistake_parts(const std::vector<Mistake>& mistakes, bool consistent);

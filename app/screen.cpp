@@ -57,7 +57,7 @@ class Choice {
     size_t found = parts_.size();
     const auto before = [&](size_t a, size_t b) {
       if (form_[a] != form_[b]) return form_[a] < form_[b];
-      return parts_[a].rank < parts_[b].rank;
+      return parts_[a].worth < parts_[b].worth;
     };
     // Of parts that are equally dear, the last one.
     for (size_t i = 0; i < parts_.size(); ++i)

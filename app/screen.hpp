@@ -6,24 +6,25 @@
 
 namespace ayumi::app {
 
-/// A part of an answer. What is shortened first has the lowest rank.
-enum class Rank { origin, information, warning, remark, error, figure, verdict };
+/// What a part of an answer is worth, the least first. Every part is shortened once before any part
+/// is shortened a second time. Each time, what is worth least comes first.
+enum class Worth { origin, information, warning, remark, error, figure, verdict };
 
 struct AnswerPart {
-  Rank rank = Rank::verdict;
+  Worth worth = Worth::verdict;
   std::vector<std::string> forms = {};  ///< whole lines; each form is shorter than the one before
   size_t hang = 4;                      ///< where the rest of a line that was broken begins
-};
-
-/// Room for an answer beside the command above it and the prompt below it.
-struct Room {
-  size_t rows = 22;
-  size_t columns = 80;
 };
 
 /// Chosen: the smallest terminal in use has 24 rows of 80 columns. A motion that is wrong may take
 /// as many rows as fit on the half of a large screen.
 inline constexpr size_t kRowsWhenGood = 22, kRowsWhenBad = 40;
+
+/// Room for an answer beside the command above it and the prompt below it.
+struct Room {
+  size_t rows = kRowsWhenGood;
+  size_t columns = 80;
+};
 
 /// This many rows, as wide as standard output, or 80 columns where it is no terminal.
 Room room_of(size_t rows);

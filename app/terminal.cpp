@@ -100,7 +100,7 @@ std::string broken_line(std::string line, size_t indent, size_t columns) {
   while (line.size() > columns) {
     const size_t end = break_of(line, indent, columns);
     if (end == std::string::npos) break;
-    broken += line.substr(0, end) + "\n";
+    broken += line.substr(0, line.find_last_not_of(' ', end - 1) + 1) + "\n";
     line = std::string(indent, ' ') + line.substr(line[end] == ' ' ? end + 1 : end);
   }
   return broken + line;

@@ -73,7 +73,7 @@ AuthorResult check_job(const AuthorMotion& motion, const Progress& progress) {
   for (const std::string& reason : export_refusals(task, judgement))
     if (reason != judgement.reason()) lines.push_back("ayumi export refuses the table: " + reason);
   lines.push_back(counted_findings(judgement) + ", actuators " + task.profile);
-  lines.push_back("Share of the limits: " + shares_of_limits(judgement.report));
+  lines.push_back("Share of the limits: " + shares_of_limits(judgement.report, task.robot));
   for (const Mistake& mistake : mistakes)
     if (!mistake.is_cause) lines.push_back("The search: " + mistake.words);
   return {result_json("check", judgement.good() ? "The pattern is consistent." : judgement.reason(),

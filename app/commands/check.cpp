@@ -192,7 +192,7 @@ struct Checked {
   int errors = 0;
 };
 
-// The line above it, with the time and the change, is a part of the answer, too.
+// `rows_above`: rows of the screen that other lines take above the answer.
 Checked checked_one(const Context& context, const CheckCommand& options, const std::string& file,
                     size_t rows_above = 0) {
   const auto begin = std::chrono::steady_clock::now();
@@ -211,7 +211,7 @@ Checked checked_one(const Context& context, const CheckCommand& options, const s
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   Checked checked;
-  std::vector<AnswerPart> parts = {{Rank::verdict,
+  std::vector<AnswerPart> parts = {{Worth::verdict,
                                     {file + ": " +
                                      (report.consistent ? painted(Paint::good, "consistent")
                                                         : painted(Paint::bad, "INCONSISTENT")) +
@@ -228,12 +228,12 @@ Checked checked_one(const Context& context, const CheckCommand& options, const s
   append(parts, refusal_parts(input, judgement));
   append(parts, check_parts(report, input.robot, options.all ? Shown::findings : Shown::causes));
   append(parts, search_parts(mistakes));
-  parts.push_back({Rank::origin, {origin_words(input.series.origin), ""}, kOriginHang});
+  parts.push_back({Worth::origin, {origin_words(input.series.origin), ""}, kOriginHang});
   std::vector<std::string> panels;
   if (!options.plot.empty()) {
     panels = plot_joints_against_limits(input, report, options.plot);
     parts.push_back(
-        {Rank::verdict, {"  drawn in " + options.plot + ": " + text::join(panels, ", ") + "\n"}});
+        {Worth::verdict, {"  drawn in " + options.plot + ": " + text::join(panels, ", ") + "\n"}});
   }
   Room room = room_of(rows_for(report));
   room.rows -= rows_above;
@@ -394,8 +394,10 @@ void add_check(Command& app, Context& context) {
       ->allow_extra_args(false);
   command->add_flag("--tolerances", options.list_tolerances,
                     "List all kinds of findings with their tolerances.");
-  command->add_flag("--all", options.all,
-                    "Print every finding. Without this option, each cause has one entry.");
+  command->add_flag(
+      "--all", options.all,
+      "Print every finding, and everything else in full. Without this option, each cause has one "
+      "entry, and the answer fits on a screen.");
   command
       ->add_option("--plot", options.plot, "Draw the joints against their limits (.svg or .png).")
       ->type_name("F");

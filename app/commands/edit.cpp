@@ -67,17 +67,9 @@ ForceRange force_range(const CommandSeries& series) {
 struct Result {
   CommandSeries series;
   ConsistencyReport report;
-  std::string words;     ///< the report for people
-  TableCaution caution;  ///< of the tables that went into it
+  std::vector<AnswerPart> check;  ///< the report for people
+  TableCaution caution;           ///< of the tables that went into it
 };
-
-// Lines above those of the check: the verdict, and what the edit did.
-constexpr size_t kLinesAbove = 3;
-
-std::string check_words(const ConsistencyReport& report, const RobotModel& model) {
-  return fitted(check_parts(report, model), room_of(rows_for(report) - kLinesAbove),
-                where_more_is(report));
-}
 
 Result check_edited(const Context& context, const EditCommand& options, const Task& input,
                     const Pattern& edited) {
@@ -86,7 +78,7 @@ Result check_edited(const Context& context, const EditCommand& options, const Ta
   result.series = sample(input.robot, edited, {.dt = input.series.dt}, context.progress());
   result.report =
       check_consistency(input.robot, result.series, check_options(input, options.tolerances));
-  result.words = check_words(result.report, input.robot);
+  result.check = check_parts(result.report, input.robot);
   return result;
 }
 
@@ -95,8 +87,12 @@ void write_edited(Context& context, const EditCommand& options, const Pattern& e
   refuse_overwriting(context, options.out);
   if (edited.table) refuse_overwriting(context, table_beside(options.out));
   write_pattern_and_table(options.out, edited, {}, result.caution);
-  context.print(options.out + ": " + (result.report.consistent ? "consistent" : "INCONSISTENT") +
-                ", " + text::fixed(result.series.duration(), 2) + " s\n" + words + result.words);
+  std::vector<AnswerPart> parts = {
+      {Worth::verdict,
+       {options.out + ": " + (result.report.consistent ? "consistent" : "INCONSISTENT") + ", " +
+        text::fixed(result.series.duration(), 2) + " s\n" + words}}};
+  append(parts, result.check);
+  context.print(fitted(parts, room_of(rows_for(result.report)), where_more_is(result.report)));
   json["output"] = options.out;
   json["table"] = edited.table ? Json(table_beside(options.out).string()) : Json(nullptr);
   json["duration_s"] = result.series.duration();
@@ -203,7 +199,7 @@ void retime_locally(Context& context, const EditCommand& options, const Task& in
   result.caution = input.caution;
   result.series = std::move(pace.series);
   result.report = std::move(pace.report);
-  result.words = check_words(result.report, input.robot);
+  result.check = check_parts(result.report, input.robot);
   const ForceRange force = force_range(result.series);
   Json limits = Json::array();
   for (const BindingLimit& limit : pace.binding)

@@ -126,11 +126,12 @@ std::string in_words(const RepairCommand& options, const Task& input, const Repa
          std::to_string(result.constraints) + " constraints, " + std::to_string(result.iterations) +
          " iterations, " + text::fixed(wall, 2) + " s\n";
   for (const std::string& reason : result.reasons) out += "  because " + reason + "\n";
-  std::vector<AnswerPart> parts = {{Rank::verdict, {out}}};
+  std::vector<AnswerPart> parts = {{Worth::verdict, {out}}};
   append(parts, mistake_parts(mistakes, false));
   append(parts, search_parts(mistakes));
   if (result.status == RepairStatus::repaired) append(parts, check_parts(result.check, model));
-  return fitted(parts, room_of(kRowsWhenBad), where_more_is(result.check));
+  return fitted(parts, room_of(kRowsWhenBad),
+                "  shortened; `ayumi check --all` of the pattern prints all of its findings\n");
 }
 
 std::string in_words(const std::vector<PassingValues>& all) {

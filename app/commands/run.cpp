@@ -122,7 +122,7 @@ std::string check_text(const ConsistencyReport& report, const RobotModel& model)
   std::string shares;
   for (const auto& [kind, name] : {std::pair{FindingKind::joint_speed, "joint speed "},
                                    std::pair{FindingKind::joint_torque, "torque "}}) {
-    if (has_limit(report, kind))
+    if (has_limit(model, kind))
       shares += std::string(", ") + name + text::fixed(100 * report.summary[kind], 0) + " %";
     else
       text += std::string(", ") + name + "without limits";

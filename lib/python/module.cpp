@@ -9,12 +9,12 @@ namespace ayumi::python {
 
 namespace {
 
-/// Whether the first part of a message is the name of a file. A name with blanks is one where it
-/// begins with a folder, as messages do not.
-bool is_file(const std::string& part) {
-  const bool begins = part.starts_with("/") || part.starts_with("./") || part.starts_with("../");
-  return begins ||
-         (part.find(' ') == std::string::npos && part.find_first_of("./") != std::string::npos);
+/// Whether the first part of a message, which `rest` follows, is the name of a file: it has the
+/// form of a path, or a place in the file comes next.
+bool is_file(const std::string& part, const std::string& rest) {
+  return part.find('/') != std::string::npos || rest.starts_with("/") ||
+         rest.starts_with("line ") ||
+         (part.find(' ') == std::string::npos && part.find('.') != std::string::npos);
 }
 
 /// Beginning of a message "file: place: what is wrong": the file and, where there is one, the line
@@ -25,7 +25,7 @@ std::string place_of(const std::string& message) {
     const size_t colon = message.find(": ", end);
     if (colon == std::string::npos) break;
     const std::string part = message.substr(end, colon - end);
-    const bool file = end == 0 && is_file(part);
+    const bool file = end == 0 && is_file(part, message.substr(colon + 2));
     const bool inside = end > 0 && (part.starts_with("/") || part.starts_with("line "));
     if (!file && !inside) break;
     end = colon + 2;

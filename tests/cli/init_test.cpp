@@ -168,8 +168,8 @@ TEST(Init, MotorsWithoutLimitsAreSaid) {
   write(folder / "robot.urdf", text);
   const Output made = ayumi(folder, {"init", "robot.urdf", "-o", "bare"});
   ASSERT_EQ(made.exit_code, 0) << made.err;
-  EXPECT_NE(made.out.find(" no speed limit, and "), std::string::npos) << made.out;
-  EXPECT_NE(made.out.find(" no torque limit; "), std::string::npos) << made.out;
+  EXPECT_NE(made.out.find(" no speed limit for "), std::string::npos) << made.out;
+  EXPECT_NE(made.out.find(" and no torque limit for "), std::string::npos) << made.out;
   ASSERT_EQ(ayumi(folder, {"new", "stand", "--robot", "bare", "-o", "s.json"}).exit_code, 0);
   const Output check = ayumi(folder, {"check", "s.json"});
   EXPECT_NE(check.out.find("speed without limits, torque without limits"), std::string::npos)

@@ -513,7 +513,8 @@ TEST(MotionFormats, DamagedPagesOfAnActionFileAreRefused) {
     if (sums) changed[page * kPage + kSum] = static_cast<char>(0xff - sum);
     return refusal_of(changed, "a.bin");
   };
-  const std::string damaged = "a.bin: page 2 of the motion is damaged (wrong checksum";
+  const std::string damaged =
+      "a.bin: page 2 of the file, to which the motion leads, is damaged (wrong checksum";
   EXPECT_EQ(with(2, kHead, 1, false).find(damaged), 0u);
   EXPECT_EQ(with(2, kStepCount, 9, true).find(damaged), 0u);
   EXPECT_EQ(with(2, kHead + 3, 0x1f, true).find("a.bin: page 2, step 1, servo 1: the position "),
@@ -539,10 +540,10 @@ TEST(MotionFormats, KeyPosesOfAnotherVersionOrWithAJointTwiceAreRefused) {
   EXPECT_EQ(refusal("# Body pose sequence format version 1.0 defined by cnoid\n" + head + keys),
             "no error");
   EXPECT_EQ(refusal("# Body pose sequence format version 2.0 defined by cnoid\n" + head + keys)
-                .find("m.pseq:1: format version 2.0 is unknown; Ayumi reads version 1"),
+                .find("m.pseq:1: format version '2.0' is unknown; Ayumi reads version 1.0"),
             0u);
   EXPECT_EQ(
-      refusal(head + "format_version: 9\n" + keys).find("m.pseq:3: format version 9 is unknown"),
+      refusal(head + "format_version: 9\n" + keys).find("m.pseq:3: format version '9' is unknown"),
       0u);
   EXPECT_EQ(refusal(replaced(head + keys, "[0, 1], q: [0, 0.1]", "[1, 1], q: [0, 0.1]"))
                 .find("m.pseq:5: joints: the joint 1 is there twice; keep one"),
@@ -550,8 +551,18 @@ TEST(MotionFormats, KeyPosesOfAnotherVersionOrWithAJointTwiceAreRefused) {
   std::string many = head + "refs:\n";
   for (int i = 0; i <= 20'000; ++i) many += "  - {time: 0, refer: {type: Pose}}\n";
   EXPECT_EQ(refusal(many).find(
-                "m.pseq: the file has 20001 key poses, but import reads at most 20000; cut the"),
+                "m.pseq: the file has 20001 key poses, but import reads at most 20000; export"),
             0u);
+  EXPECT_EQ(refusal("# Body pose sequence format version 1.0, by a program\n" + head + keys),
+            "no error");
+  // "refer:" in a name is no key.
+  std::string named = replaced(head, "PoseSeq\n", "PoseSeq\nnote: \"");
+  for (int i = 0; i <= 20'000; ++i) named += "prefer:";
+  EXPECT_EQ(refusal(named + "\"\n" + keys), "no error");
+  // The character that marks lists, as such and as an escape.
+  for (const std::string del : {"\x7f", "\\x7f"})
+    EXPECT_EQ(refusal(replaced(head, "PoseSeq\n", "PoseSeq\nlabel: \"a" + del + "\"\n") + keys),
+              "no error");
   EXPECT_EQ(refusal(replaced(head + keys, "PoseSeq", "PoseSequel"))
                 .find("m.pseq:1: type 'PoseSequel' is unknown; Ayumi reads PoseSeq"),
             0u);

@@ -38,8 +38,8 @@ constexpr long kManyKeys = 4;
 constexpr double kSameTime = 0.005;
 // A length below this is none [m]. Definition: what rounding leaves.
 constexpr double kNoLength = 1e-4;
-// Numbers of a target that are written in cm or mm are at least this large [m]. Chosen: nobody
-// writes a tenth of a millimetre.
+// Numbers of a target below this are taken for metres, whatever the others are. Chosen: half a
+// millimetre, or half a centimetre.
 constexpr double kLeastWritten = 0.5;
 // An angle below this is none [rad]. Definition: what rounding leaves.
 constexpr double kNoAngle = 1e-6;
@@ -598,8 +598,8 @@ class Hypotheses::Maker {
     }
   }
 
-  // Where most feet land beyond the other foot: y was counted to the right, or the words left and
-  // right were exchanged throughout.
+  // Where most feet land on the other side of the world's x axis than they start: y was counted to
+  // the right, or the words left and right were exchanged. The trial says whether it was so.
   void all_sides(std::vector<Hypothesis>& made) const {
     if (!feet_) return;
     std::vector<size_t> crossed;
@@ -624,19 +624,22 @@ class Hypotheses::Maker {
     add("with the other sign of y in these footholds", [crossed](Pattern& p) {
       for (const size_t i : crossed) p.phases[i].swing->to.position.y() *= -1;
     });
-    add("with left and right exchanged in all phases and keys", [](Pattern& p) {
-      for (Phase& phase : p.phases) {
-        phase.support = opposite(phase.support);
-        if (phase.swing) phase.swing->foot = other(phase.swing->foot);
-      }
-      for (Keyframe& key : p.keyframes) {
-        std::swap(key.feet[0], key.feet[1]);
-        if (!key.zmp) continue;
-        using Place = ZmpKey::Place;
-        Place& place = key.zmp->place;
-        place = place == Place::left ? Place::right : place == Place::right ? Place::left : place;
-      }
-    });
+    add("with left and right exchanged in all phases, and in the feet and the ZMP of all keys",
+        [](Pattern& p) {
+          for (Phase& phase : p.phases) {
+            phase.support = opposite(phase.support);
+            if (phase.swing) phase.swing->foot = other(phase.swing->foot);
+          }
+          for (Keyframe& key : p.keyframes) {
+            std::swap(key.feet[0], key.feet[1]);
+            if (!key.zmp) continue;
+            using Place = ZmpKey::Place;
+            Place& place = key.zmp->place;
+            place = place == Place::left    ? Place::right
+                    : place == Place::right ? Place::left
+                                            : place;
+          }
+        });
   }
 
   Side foot_of(size_t phase) const { return pattern_.phases[phase].swing->foot; }

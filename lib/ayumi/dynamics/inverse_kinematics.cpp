@@ -544,7 +544,9 @@ PostureSolution InverseKinematics::solve(const PostureTarget& target, RobotState
     solution.error = e.largest();
     solution.lean = e.trunk.norm();
     solution.reached = e.cog.cwiseAbs().maxCoeff() <= tolerance(1);
-    std::array<double, 2> share, turned;  // of what is allowed; [rad]
+    // Of each sole: its error in units of what is allowed, and how far it is turned [rad]. What is
+    // allowed is the same number of metres and of radians.
+    std::array<double, 2> share, turned;
     for (int s = 0; s < 2; ++s) {
       const double allowed = tolerance(target.hold[s]);
       solution.reached = solution.reached && e.foot[s].cwiseAbs().maxCoeff() <= allowed;

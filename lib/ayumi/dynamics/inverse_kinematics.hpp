@@ -26,7 +26,7 @@ struct PostureSolution {
   double lean = 0;         ///< of the trunk from its target; 0 unless legs lack joints [rad]
   Side foot = Side::left;  ///< that is out of reach when not reached, else the farthest off
   double missing = 0;      ///< of that foot, COG held [m]
-  double turned = 0;       ///< of that foot, from its attitude [rad]; 0 when reached
+  double turned = 0;       ///< angle of that foot from its planned attitude [rad]; 0 when reached
   std::array<double, 2> miss = {0, 0};  ///< of each sole, by Side [m]
   int at_limit = -1;          ///< joint of that leg that is at its position limit; -1: none
   bool knee_flipped = false;  ///< reached, but with a leg bent the other way

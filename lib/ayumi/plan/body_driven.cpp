@@ -70,8 +70,7 @@ namespace {
     std::vector<std::string> shared;
     for (const int dof : job.ik.coupled()) shared.push_back(job.model.dofs()[dof].name);
     throw in_phase(where + " foot is turned " + degrees(solution.turned) +
-                   " away from its attitude (allowed: " + degrees(allowed) +
-                   ", because a leg has fewer than six joints of its own). " +
+                   " away from its attitude (allowed: " + degrees(allowed) + "). " +
                    (shared.empty() ? "At this place, the legs cannot turn the sole as it is planned"
                                    : "Both legs move with " + text::join(shared, ", ") +
                                          ", so the feet cannot turn relative to each other") +

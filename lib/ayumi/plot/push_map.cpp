@@ -71,8 +71,13 @@ void draw_grid(Drawing& drawing, const Panel& panel, const PushMapPhase& phase,
     path.stroke = kMapGrid;
     drawing.items.push_back(path);
   }
-  // Between the last direction and the first one, where no line and no value of a curve is.
-  const double beside = phase.direction.size() > 1 ? 0.5 * (phase.direction.back() - 2 * M_PI) : 0;
+  // Between the last direction and the first one, where no line and no value of a curve is; with
+  // few directions, between "forward" and "right".
+  double beside = -M_PI / 4;
+  if (phase.direction.size() > 2) {
+    const auto [first, last] = std::minmax_element(phase.direction.begin(), phase.direction.end());
+    beside = 0.5 * (*first + *last) - M_PI;
+  }
   for (const double ring : rings)
     if (ring > 0)
       drawing.items.push_back(DrawnText{.position = panel.at(beside, ring) + Vector2d(0, 4),

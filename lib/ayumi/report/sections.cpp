@@ -127,8 +127,6 @@ std::string figure(double value, const std::string& unit, bool in_degrees = true
   if (unit == "m") return millimetres(value) + " mm";
   if (unit.starts_with("rad") && in_degrees)
     return degrees(value) + " deg" + escaped(unit.substr(3));
-  // What would be 0 with three digits behind the point is none: the rounding of the computation.
-  if (std::abs(value) < 5e-4) value = 0;
   return three_digits(value) + (unit == "1" ? "" : " " + escaped(unit));
 }
 
@@ -149,10 +147,15 @@ Table finding_table(const ConsistencyReport& check) {
 }
 
 Table summary_table(const CheckSummary& summary) {
+  // What is below this in the unit of its figure is the rounding of the computation. Chosen: no
+  // figure is judged by as little.
+  constexpr double kRounding = 1e-6;
   Table table = {"Figures of the check", {}, {}};
-  for (const FindingSpec* spec : summary_figures())
+  for (const FindingSpec* spec : summary_figures()) {
+    const double value = spec->figure.scale * summary[spec->kind];
     table.rows.push_back(
-        {spec->figure.label, figure(spec->figure.scale * summary[spec->kind], spec->figure.unit)});
+        {spec->figure.label, figure(std::abs(value) < kRounding ? 0 : value, spec->figure.unit)});
+  }
   return table;
 }
 

@@ -364,11 +364,11 @@ Pattern kick_pattern(const RobotModel& model, const KickParameters& p) {
     Keyframe key;
     Foothold foot;
     const Vector3d moved = place * Vector3d(ahead, 0, up);
-    // Where the foot stands it is in its place, but for what rounding leaves of the kinematics.
-    const auto to_nanometre = [](double x) { return std::round(1e9 * x) / 1e9; };
+    // Where the foot stands, the kinematics leave rounding errors beside its place [m, rad].
+    const auto without_rounding = [](double x) { return std::round(1e9 * x) / 1e9; };
     for (int i = 0; i < 3; ++i)
-      foot.position[i] = up == 0 ? to_nanometre(moved[i]) : to_tenth_millimetre(moved[i]);
-    foot.rpy.z() = to_nanometre(matrix_to_rpy(place.linear()).z());
+      foot.position[i] = up == 0 ? without_rounding(moved[i]) : to_tenth_millimetre(moved[i]);
+    foot.rpy.z() = without_rounding(matrix_to_rpy(place.linear()).z());
     key.feet[static_cast<size_t>(p.side)] = foot;
     if (share == 0 || share == 1) key.zmp = ZmpKey{under, Vector2d::Zero()};
     writer.add(rest + shift + share * p.period, key);

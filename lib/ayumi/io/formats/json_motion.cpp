@@ -110,13 +110,14 @@ MotionFile read_poppy_move(const MotionInput& source) {
   for (const auto& [key, motors] : root.at("positions").members()) {
     const double time = source.number(key, 0, "positions");
     for (const auto& [motor, value] : motors.members()) {
-      const std::vector<double> numbers =
-          value.value().is_array() ? value.numbers() : std::vector<double>{value.number()};
-      if (numbers.empty() || numbers.size() > 2)
+      const std::vector<JsonNode> parts =
+          value.value().is_array() ? value.items() : std::vector<JsonNode>{value};
+      if (parts.empty() || parts.size() > 2)
         value.complain("expected an angle, or [angle, speed], found " +
-                       std::to_string(numbers.size()) +
+                       std::to_string(parts.size()) +
                        " numbers; write decimal points, not decimal commas");
-      rows[time][motor] = numbers.front();
+      rows[time][motor] = parts.front().number();
+      if (!parts.back().value().is_null()) parts.back().number();  // the speed, which is not used
       if (std::find(names.begin(), names.end(), motor) == names.end()) names.push_back(motor);
     }
   }

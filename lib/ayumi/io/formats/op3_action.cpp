@@ -22,6 +22,8 @@ constexpr double kTick = 0.008;              // [s]
 constexpr double kCount = EIGEN_PI / kZero;  // [rad]
 // How long a page of one posture lasts [s]. Chosen: long enough to be judged, in units of 8 ms.
 constexpr double kHeld = 0.8;
+// Damaged pages that a note names. Chosen: they fit on a line.
+constexpr size_t kNamedPages = 5;
 
 size_t byte_at(const std::string& bytes, size_t at) {
   return static_cast<unsigned char>(bytes[at]);
@@ -61,11 +63,17 @@ std::string recognize_op3_action(const MotionInput& source) {
   const std::string& bytes = source.bytes;
   if (bytes.find('\0') == std::string::npos) return "";
   if (bytes.size() == kPages * kPageBytes) return "the file has 256 pages of 512 bytes";
+  // A file that was cut, or that goes on behind its pages: every whole page has to be right.
+  size_t sound = 0, others = 0;
   for (size_t page = 0; (page + 1) * kPageBytes <= std::min(bytes.size(), kPages * kPageBytes);
-       ++page)
+       ++page) {
     if (is_sound(bytes, page) && !page_name(bytes, page).empty())
-      return "the file has a page of 512 bytes with steps and their checksum";
-  return "";
+      ++sound;
+    else if (byte_at(bytes, page * kPageBytes + kStepCount) > 0)
+      ++others;
+  }
+  return sound > 0 && others == 0 ? "the file has pages of 512 bytes with steps and their checksums"
+                                  : "";
 }
 
 MotionFile read_op3_action(const MotionInput& source) {
@@ -73,14 +81,17 @@ MotionFile read_op3_action(const MotionInput& source) {
   if (bytes.size() != kPages * kPageBytes)
     source.refuse(0, "the file has " + std::to_string(bytes.size()) +
                          " bytes, but an action file has " + std::to_string(kPages * kPageBytes) +
-                         "; copy the file again");
+                         (bytes.size() < kPages * kPageBytes
+                              ? "; it was cut, so copy it again"
+                              : "; something stands behind its pages, so copy it again"));
   std::vector<size_t> full;
   std::vector<bool> follows(kPages, false);
   std::vector<std::string> damaged;
   for (size_t page = 0; page < kPages; ++page) {
     if (!is_sound(bytes, page)) {
+      const std::string name = page_name(bytes, page);
       if (byte_at(bytes, page * kPageBytes + kStepCount) > 0)
-        damaged.push_back(std::to_string(page) + " '" + page_name(bytes, page) + "'");
+        damaged.push_back(std::to_string(page) + (name.empty() ? "" : " '" + name + "'"));
       continue;
     }
     full.push_back(page);
@@ -99,9 +110,14 @@ MotionFile read_op3_action(const MotionInput& source) {
   std::vector<std::string> names;
   for (const size_t page : starts) names.push_back(page_name(bytes, page));
   MotionFile motion;
-  if (!damaged.empty())
-    motion.notes.push_back(text::counted(damaged.size(), "damaged page") +
-                           " (wrong checksum, or more than 7 steps): " + text::join(damaged, ", "));
+  if (!damaged.empty()) {
+    const size_t named = std::min(kNamedPages, damaged.size());
+    motion.notes.push_back(
+        text::counted(damaged.size(), "damaged page") +
+        " (wrong checksum, or more than 7 steps): " +
+        text::join({damaged.begin(), damaged.begin() + named}, ", ") +
+        (damaged.size() > named ? " and " + std::to_string(damaged.size() - named) + " more" : ""));
+  }
   const size_t start = starts[source.chosen_motion(names, starts, motion)];
   std::vector<std::array<int, kServos>> rows;
   std::array<bool, kServos> used = {};
@@ -112,9 +128,11 @@ MotionFile read_op3_action(const MotionInput& source) {
     const size_t begin = page * kPageBytes, count = byte_at(bytes, begin + kStepCount);
     if (played[page] || count == 0) break;
     if (!is_sound(bytes, page))
-      source.refuse(0, "page " + std::to_string(page) +
-                           " of the motion is damaged (wrong checksum, or more than 7 steps), so "
-                           "save the file again");
+      source.refuse(0,
+                    "page " + std::to_string(page) +
+                        " of the file, to which the motion leads, is damaged (wrong checksum, or "
+                        "more than 7 steps); save this page again in the action editor, or "
+                        "choose another motion with --motion");
     played[page] = true;
     if (const size_t times = byte_at(bytes, begin + kRepeat); times > 1)
       motion.notes.push_back("page " + std::to_string(page) + " is read once; the robot plays it " +
@@ -135,7 +153,8 @@ MotionFile read_op3_action(const MotionInput& source) {
         if (set && value >= 2 * kZero)
           source.refuse(0, "page " + std::to_string(page) + ", step " + std::to_string(s + 1) +
                                ", servo " + std::to_string(id) + ": the position " +
-                               std::to_string(value) + " is not one of 0 to 4095");
+                               std::to_string(value) +
+                               " is not one of 0 to 4095; correct it in the action editor");
         row[id] = set ? value : -1;
         used[id] = used[id] || set;
       }

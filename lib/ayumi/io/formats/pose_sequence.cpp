@@ -24,8 +24,8 @@ using Eigen::Vector3d;
 // Differences of a foot that stands still from key to key [m, rad]. Chosen: editors of key poses
 // print nine digits, and solvers of postures leave some micrometres.
 constexpr double kSamePlace = 1e-3, kSameTurn = 2e-3;
-// Keys of a file. Chosen: a motion edited by hand has some hundred; so many are refused in 0.1 s,
-// while YAML of twice as many takes half a second and 100 MB.
+// Keys of a file. Chosen: a motion edited by hand has some hundred. A file of 20,000 keys takes
+// half a second and 70 MB.
 constexpr size_t kMostKeys = 20'000;
 
 /// One key of the file.
@@ -49,11 +49,12 @@ class PoseSequenceReader {
       fail(ErrorCode::bad_model, model_.name() +
                                      ": the robot has no soles; add the left and the right sole to "
                                      "\"soles\" in its sidecar");
-    require_few();
+    require_few(words("refer:"));
     const YamlNode root = parse_yaml(source_.bytes, source_.file);
     require_known(root);
     const YamlNode* refs = root.find("refs");
     if (!refs || !refs->is_list()) refuse(root, "`refs`, the list of key poses, is missing");
+    require_few(refs->items.size());
     for (const YamlNode& ref : refs->items) read_key(ref);
     if (keys_.size() < 2) refuse(root, "a motion needs two key poses or more");
     map_ids(root);
@@ -81,26 +82,31 @@ class PoseSequenceReader {
     return node.numbers;
   }
 
-  // Before the text is parsed.
-  void require_few() const {
-    const std::string_view key = "refer:";
-    size_t keys = 0;
-    for (size_t at = source_.bytes.find(key); at != std::string::npos;
-         at = source_.bytes.find(key, at + key.size()))
-      ++keys;
+  // How often a word stands in the text, at the beginning of a line or behind a blank or a brace.
+  size_t words(std::string_view word) const {
+    const std::string& text = source_.bytes;
+    size_t count = 0;
+    for (size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1))
+      if (at == 0 || std::string_view(" \t\r\n{,").find(text[at - 1]) != std::string_view::npos)
+        ++count;
+    return count;
+  }
+
+  // Before the text is parsed, and afterwards.
+  void require_few(size_t keys) const {
     if (keys > kMostKeys)
       source_.refuse(0, "the file has " + std::to_string(keys) +
                             " key poses, but import reads at most " + std::to_string(kMostKeys) +
-                            "; cut the file");
+                            "; export the motion as body motion (.seq or .yaml) in Choreonoid");
   }
 
   // The format states its version in a comment above its keys; other files of Choreonoid have a
   // key.
   void require_known(const YamlNode& root) const {
     const YamlNode* type = root.find("type");
-    if (!type || type->text != "PoseSeq")
-      refuse(type ? *type : root,
-             "type '" + (type ? type->text : "") + "' is unknown; " + "Ayumi reads PoseSeq");
+    if (!type) refuse(root, "`type: PoseSeq` is missing; add it");
+    if (type->text != "PoseSeq")
+      refuse(*type, "type '" + type->text + "' is unknown; Ayumi reads PoseSeq");
     if (const YamlNode* version = root.find("format_version", "formatVersion"))
       require_version(version->text, static_cast<size_t>(version->line));
     const std::string_view comment = "pose sequence format version ";
@@ -109,15 +115,15 @@ class PoseSequenceReader {
     const size_t at = text.find(comment);
     const size_t end = text.find_first_of("\r\n");
     if (first != std::string::npos && text[first] == '#' && at < end)
-      require_version(
-          text.substr(at + comment.size(),
-                      text.find_first_of(" \t\r\n", at + comment.size()) - at - comment.size()),
-          1);
+      require_version(text.substr(at + comment.size(),
+                                  text.find_first_not_of("0123456789.", at + comment.size()) - at -
+                                      comment.size()),
+                      1);
   }
 
   void require_version(const std::string& version, size_t line) const {
-    if (source_.number(version, line, "format version") != 1)
-      source_.refuse(line, "format version " + version + " is unknown; Ayumi reads version 1");
+    if (version != "1" && version != "1.0")
+      source_.refuse(line, "format version '" + version + "' is unknown; Ayumi reads version 1.0");
   }
 
   static bool is_true(const YamlNode* node) {

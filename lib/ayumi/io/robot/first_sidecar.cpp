@@ -505,17 +505,24 @@ std::vector<std::string> to_do_list(const RobotModel& model, const RobotGuess& g
     items.push_back("Replace the placeholders: " + each.what + " of " + each.value + " on " +
                     text::counted(each.joints.size(), "joint") + ".");
   const ActuatorLimits& limits = model.limits();
-  const auto unlimited = [](const Eigen::VectorXd& values) {
-    return values.array().isInf().count();
+  const std::vector<std::string> passive = passive_joints(guess.robot);
+  const auto unlimited = [&](const Eigen::VectorXd& values) {
+    Eigen::Index count = 0;
+    for (Eigen::Index i = 0; i < values.size(); ++i)
+      if (std::isinf(values[i]) &&
+          std::find(passive.begin(), passive.end(), model.dofs()[static_cast<int>(i)].name) ==
+              passive.end())
+        ++count;
+    return count;
   };
   const Eigen::Index fast = unlimited(limits.speed), strong = unlimited(limits.peak_torque);
   if (fast + strong > 0)
     items.push_back(
-        "State the limits of the motors in \"profiles\": the robot's file gives " +
-        (fast > 0 ? text::counted(static_cast<size_t>(fast), "joint") + " no speed limit"
+        "State the limits of the motors in \"profiles\": the robot's file states " +
+        (fast > 0 ? "no speed limit for " + text::counted(static_cast<size_t>(fast), "joint")
                   : std::string()) +
         (fast > 0 && strong > 0 ? ", and " : "") +
-        (strong > 0 ? text::counted(static_cast<size_t>(strong), "joint") + " no torque limit"
+        (strong > 0 ? "no torque limit for " + text::counted(static_cast<size_t>(strong), "joint")
                     : std::string()) +
         "; without them, check cannot say whether the motors can follow.");
   items.push_back(

@@ -501,9 +501,10 @@ class MjcfReader {
     }
     if (driven.empty()) return;
     for (const auto& [id, index] : joint_index_) {
-      const JointDescription& joint = robot_.joints[index];
+      JointDescription& joint = robot_.joints[index];
       if (driven.contains(index) || joint.type == JointType::fixed || !joint.mimic.empty())
         continue;
+      joint.effort = 0;  // no motor acts there, whatever limits its force
       ServoDescription servo;
       servo.rotor_inertia = m_->dof_armature[m_->jnt_dofadr[id]];
       servo.viscous = joint.damping;

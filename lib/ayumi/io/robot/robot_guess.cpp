@@ -878,12 +878,18 @@ bool is_driven(const RobotDescription& robot, const JointDescription& joint) {
 
 }  // namespace
 
-std::vector<std::string> gaps_of_the_files(const RobotDescription& robot, size_t most) {
-  std::vector<std::string> gaps, passive;
+std::vector<std::string> passive_joints(const RobotDescription& robot) {
+  std::vector<std::string> passive;
   for (const JointDescription& joint : robot.joints)
     if (joint.type != JointType::fixed && joint.mimic.empty() &&
         robot.servos.contains(joint.name) && !is_driven(robot, joint))
       passive.push_back(joint.name);
+  return passive;
+}
+
+std::vector<std::string> gaps_of_the_files(const RobotDescription& robot, size_t most) {
+  std::vector<std::string> gaps;
+  const std::vector<std::string> passive = passive_joints(robot);
   if (!passive.empty())
     gaps.push_back("joints without an actuator are passive: " + text::join(passive, ", "));
   const std::vector<std::string>& missing = robot.missing_meshes;

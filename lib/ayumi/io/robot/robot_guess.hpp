@@ -53,8 +53,11 @@ std::vector<std::string> hold_joints_without_mass(RobotDescription& robot);
 /// `assumptions` says so. Returns their names.
 std::vector<std::string> hold_play_of_gears(RobotDescription& robot);
 
-/// What the files leave open beside what is guessed: joints without an actuator, and meshes that are
-/// missing, of which `most` are named. One sentence for each.
+/// Joints that a motor could move, but that have no actuator in files that state actuators.
+std::vector<std::string> passive_joints(const RobotDescription& robot);
+
+/// What the files leave open beside what is guessed: joints without an actuator, and meshes that
+/// are missing, of which `most` are named. One sentence for each.
 std::vector<std::string> gaps_of_the_files(const RobotDescription& robot, size_t most);
 
 /// Limits that are placeholders. The same position limits on most joints, speeds above 60 rad/s,

@@ -26,7 +26,7 @@ class TextBuffer : public std::streambuf {
   }
 };
 
-// Begins the number of a list in a text with marks. No YAML text may have this character.
+// Begins the number of a list in a text with marks. Texts that have this character get no marks.
 constexpr char kMark = '\x7f';
 
 /// A text in which each flow list of finite numbers on one line is replaced by its number,
@@ -123,7 +123,8 @@ class TreeBuilder : public YAML::EventHandler {
   };
 
   void scalar(const YAML::Mark& mark, const std::string& value) {
-    if (value.find(kMark) != std::string::npos) {
+    // Without lists there are no marks: the character is the text's own.
+    if (!lists_.empty() && value.find(kMark) != std::string::npos) {
       size_t place = lists_.size();
       std::from_chars(value.data() + 1, value.data() + value.size(), place);
       if (value.front() == kMark && place < lists_.size() && !open_.empty() &&
@@ -225,7 +226,8 @@ YamlNode parse_yaml(const std::string& text, const std::string& file) {
       refuse(builder.refused_line, builder.refused);
     return std::pair{std::move(builder.root), builder.mark_in_text};
   };
-  if (text.find(kMark) == std::string::npos) {
+  // The character, or an escape that may stand for it.
+  if (text.find(kMark) == std::string::npos && text.find('\\') == std::string::npos) {
     MarkedText marked = with_marks(text);
     auto [root, mark_in_text] = parse(marked.text, std::move(marked.lists));
     if (!mark_in_text) return std::move(root);
