@@ -203,8 +203,8 @@ TEST_F(AuthorServer, CompressesNothing) {
   const Server server(file);
   httplib::Client client = server.client();
   for (const char* const path : {"", "state", "model.glb"}) {
-    const auto answer =
-        client.Get(server.root() + path, httplib::Headers{{"Accept-Encoding", "gzip, deflate, br"}});
+    const auto answer = client.Get(server.root() + path,
+                                   httplib::Headers{{"Accept-Encoding", "gzip, deflate, br"}});
     ASSERT_TRUE(answer) << path;
     EXPECT_EQ(answer->status, 200) << path;
     EXPECT_FALSE(answer->has_header("Content-Encoding")) << path;
