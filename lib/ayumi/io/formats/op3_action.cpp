@@ -63,12 +63,12 @@ std::string recognize_op3_action(const MotionInput& source) {
   const std::string& bytes = source.bytes;
   if (bytes.find('\0') == std::string::npos) return "";
   if (bytes.size() == kPages * kPageBytes) return "the file has 256 pages of 512 bytes";
-  // A file that was cut, or that goes on behind its pages: every whole page has to be right.
+  // A file that was cut, or that goes on behind its pages: its whole pages are sound or empty.
   size_t sound = 0, others = 0;
   for (size_t page = 0; (page + 1) * kPageBytes <= std::min(bytes.size(), kPages * kPageBytes);
        ++page) {
-    if (is_sound(bytes, page) && !page_name(bytes, page).empty())
-      ++sound;
+    if (is_sound(bytes, page))
+      sound += page_name(bytes, page).empty() ? 0 : 1;
     else if (byte_at(bytes, page * kPageBytes + kStepCount) > 0)
       ++others;
   }
