@@ -281,7 +281,7 @@ TEST(Mjcf, IsReadAsMujocoCompilesIt) {
   EXPECT_NEAR(servo.kd, 1.2, 1e-12);
   EXPECT_EQ(servo.rotor_inertia, 0.01);
   EXPECT_EQ(robot.servos.at("e").kp, 0);  // no actuator
-  EXPECT_EQ(joint("c").effort, 0);  // neither, whatever limits its force
+  EXPECT_EQ(joint("c").effort, 0);        // neither, whatever limits its force
   EXPECT_EQ(robot.sensors.imu_link, "base");
   EXPECT_TRUE(robot.sensors.imu_position.isApprox(Eigen::Vector3d(0.01, 0, 0.02)));
   ASSERT_EQ(robot.collision_ignore.size(), 1u);
