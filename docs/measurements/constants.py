@@ -641,7 +641,7 @@ def differences(before, after):
 # Lists of numbers and kinds, such as "2 error joint_speed, 1 warning servo_step".
 COUNTED = {"findings": "{0} findings {1}", "causes": "causes {0}", "events": "{0} events"}
 MOST_KINDS = 2  # of such a list that are shown
-WIDEST_CELL = 200  # characters
+WIDEST_CELL = 72  # characters
 
 
 def counted(text):

@@ -5,6 +5,12 @@
 namespace ayumi {
 namespace {
 
+TEST(Text, FirstItemsOfAList) {
+  EXPECT_EQ(text::join_first({}, 2), "");
+  EXPECT_EQ(text::join_first({"a", "b"}, 2), "a, b");
+  EXPECT_EQ(text::join_first({"a", "b", "c", "d"}, 2), "a, b and 2 more");
+}
+
 TEST(PrintableText, KeepsWordsLinesAndTabsOfAnyLanguage) {
   for (const std::string text : {"", "a walk\n\tof 4.3 s, 0.5°", "歩み", "z̈ ≤ g, 𝜃"})
     EXPECT_EQ(text::printable(text), text);

@@ -10,6 +10,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/in_parallel.hpp"
 #include "ayumi/identify/recording_checks.hpp"
+#include "ayumi/identify/servo_response.hpp"
 #include "tests/identify/synthetic_servo.hpp"
 #include "tests/support/error_message.hpp"
 
@@ -49,6 +50,43 @@ SyntheticServo stiff() {
   servo.coulomb = 0.5;
   servo.delay = 0.0021;
   return servo;
+}
+
+// Seven servos, simulated side by side and one after the other.
+TEST(ServoResponse, SeveralServosGiveTheNumbersOfEach) {
+  constexpr Eigen::Index kRows = 400;
+  JointRecording joint;
+  joint.command.resize(kRows);
+  for (Eigen::Index k = 0; k < kRows; ++k) joint.command[k] = 0.3 * std::sin(0.02 * double(k));
+  joint.measured = joint.command;
+  joint.torque = 2 * joint.command;
+  joint.inertia = Eigen::VectorXd::Constant(kRows, 0.02);
+  joint.link_inertia = Eigen::VectorXd::Constant(kRows, 0.005);
+  joint.acceleration = -400 * joint.command;
+  joint.rate = Eigen::VectorXd::Zero(kRows);
+  for (Eigen::Index k = 0; k < kRows; k += 3) joint.compared.push_back(k);
+  std::vector<ServoConstants> servos(7, {0.004, 1e-3, 2e-3, 1e-3, 2e-3, 1e-3});
+  servos[1].delay = 0.006;
+  servos[2].compliance = 2e-3;
+  servos[3].damping = 4e-3;
+  servos[4].dry = 4e-3;
+  servos[5].backlash = 0;
+  servos[6].offset = -2e-3;
+  for (const bool at_once : {false, true})
+    for (const CommandLaw law : {CommandLaw::linear, CommandLaw::held, CommandLaw::stepped}) {
+      joint.at_once = at_once;
+      joint.law = law;
+      Eigen::MatrixXd together, alone;
+      servo_responses(joint, servos, together);
+      ASSERT_EQ(together.cols(), 7);
+      for (Eigen::Index i = 0; i < 7; ++i) {
+        servo_responses(joint, {servos[static_cast<size_t>(i)]}, alone);
+        EXPECT_EQ(together.col(i), alone.col(0)) << i;
+        if (i > 0 && !at_once) {  // which leaves the damping out
+          EXPECT_NE(together.col(i), together.col(0)) << i;
+        }
+      }
+    }
 }
 
 // Six seconds with noise and counts: the delay to half a millisecond, the others to 10 %.

@@ -117,6 +117,12 @@ std::string join(const std::vector<std::string>& items, std::string_view separat
   return result;
 }
 
+std::string join_first(const std::vector<std::string>& items, size_t most) {
+  if (items.size() <= most) return join(items, ", ");
+  const auto end = items.begin() + static_cast<std::ptrdiff_t>(most);
+  return join({items.begin(), end}, ", ") + " and " + std::to_string(items.size() - most) + " more";
+}
+
 std::string printable(std::string_view text) {
   std::string shown;
   shown.reserve(text.size());

@@ -25,6 +25,9 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& ca
 /// Items joined by `separator`.
 std::string join(const std::vector<std::string>& items, std::string_view separator);
 
+/// "a, b and 3 more": at most `most` items, and the number of the others.
+std::string join_first(const std::vector<std::string>& items, size_t most);
+
 /// Text for a terminal: lines and tabs stay, and every other control character (of ASCII and of
 /// Latin-1, the marks that turn the direction of writing, and bytes that are not UTF-8) is written
 /// out as "\\x1b" or "\\u202e". A name in a file can thus not move the cursor or hide what follows.

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -41,6 +42,8 @@ constexpr double kNoLength = 1e-4;
 // Numbers of a target below this are taken for metres, whatever the others are. Chosen: half a
 // millimetre, or half a centimetre.
 constexpr double kLeastWritten = 0.5;
+// What lengths in metres are written in by mistake.
+constexpr std::array kSmallerUnits = {std::pair("mm", 1e-3), std::pair("cm", 1e-2)};
 // An angle below this is none [rad]. Definition: what rounding leaves.
 constexpr double kNoAngle = 1e-6;
 // A level foot below a leg that leans by less than this is no reason [rad]. Chosen: five degrees,
@@ -58,12 +61,6 @@ constexpr double kMostLean = 0.9;
 constexpr double kShortSegment = 0.15;
 
 std::string seconds(double t) { return text::brief(t, 5) + " s"; }
-
-Support opposite(Support support) {
-  return support == Support::left    ? Support::right
-         : support == Support::right ? Support::left
-                                     : support;
-}
 
 bool is_single(Support support) { return support == Support::left || support == Support::right; }
 
@@ -262,7 +259,7 @@ class Hypotheses::Maker {
       if (std::abs(value.numbers.front().value) > 3 * leg) ++far;
     }
     if (far < 2 || 2 * far < all) return;
-    for (const auto& [unit, factor] : {std::pair("mm", 1e-3), std::pair("cm", 1e-2)})
+    for (const auto& [unit, factor] : kSmallerUnits)
       made.push_back(
           {Rank::unit,
            {"/units", "lengths are in metres", std::string("with all lengths read as ") + unit},
@@ -632,12 +629,7 @@ class Hypotheses::Maker {
           }
           for (Keyframe& key : p.keyframes) {
             std::swap(key.feet[0], key.feet[1]);
-            if (!key.zmp) continue;
-            using Place = ZmpKey::Place;
-            Place& place = key.zmp->place;
-            place = place == Place::left    ? Place::right
-                    : place == Place::right ? Place::left
-                                            : place;
+            if (key.zmp) key.zmp->place = opposite(key.zmp->place);
           }
         });
   }
@@ -673,7 +665,7 @@ class Hypotheses::Maker {
       for (const double length : foot.position)
         if (std::abs(length) > kNoLength && std::abs(length) < leg_length(model_)) return;
       if (foot.position.norm() < leg_length(model_)) return;
-      for (const auto& [unit, factor] : {std::pair("mm", 1e-3), std::pair("cm", 1e-2)}) {
+      for (const auto& [unit, factor] : kSmallerUnits) {
         const Eigen::Vector3d meant = foot.position * factor;
         made.push_back(
             {Rank::slip,
@@ -748,7 +740,7 @@ class Hypotheses::Maker {
   }
 
   void target_unit(const FarTarget& target, std::vector<Hypothesis>& made) const {
-    for (const auto& [unit, factor] : {std::pair("mm", 1e-3), std::pair("cm", 1e-2)})
+    for (const auto& [unit, factor] : kSmallerUnits)
       made.push_back(
           {Rank::slip,
            {target.place,
@@ -760,11 +752,12 @@ class Hypotheses::Maker {
 
   // All targets of the hands and other links, or all of the gaze.
   void target_units(std::vector<Hypothesis>& made) const {
+    const std::vector<FarTarget> all = far_targets();
     for (const bool gaze : {false, true}) {
-      std::vector<FarTarget> far = far_targets();
+      std::vector<FarTarget> far = all;
       std::erase_if(far, [gaze](const FarTarget& target) { return target.gaze != gaze; });
       if (far.size() < 2) continue;
-      for (const auto& [unit, factor] : {std::pair("mm", 1e-3), std::pair("cm", 1e-2)})
+      for (const auto& [unit, factor] : kSmallerUnits)
         made.push_back(
             {Rank::unit,
              {far.front().place,
@@ -784,7 +777,7 @@ class Hypotheses::Maker {
     if (!zmp || zmp->place != ZmpKey::Place::point || zmp->point.norm() < leg_length(model_) ||
         !reaches_key(key))
       return;
-    for (const auto& [unit, factor] : {std::pair("mm", 1e-3), std::pair("cm", 1e-2)}) {
+    for (const auto& [unit, factor] : kSmallerUnits) {
       const Eigen::Vector2d meant = zmp->point.head<2>() * factor;
       made.push_back(
           {Rank::slip,

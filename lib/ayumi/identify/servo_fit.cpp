@@ -198,13 +198,23 @@ std::vector<Index> telling_rows(const JointRecording& joint, const std::vector<c
   return telling;
 }
 
+namespace {
+
+/// Sum of the squared errors of one joint with each of these servos [rad^2].
+VectorXd squared_errors(const JointRecording& joint, const std::vector<ServoConstants>& servos) {
+  MatrixXd theta;
+  servo_responses(joint, servos, theta);
+  theta.colwise() -= joint.measured;
+  return theta(joint.compared, Eigen::all).colwise().squaredNorm().transpose();
+}
+
+}  // namespace
+
 double rms_error(const std::vector<JointRecording>& joints,
                  const std::vector<ServoConstants>& constants) {
   double sum = 0, count = 0;
-  VectorXd theta;
   for (size_t j = 0; j < joints.size(); ++j) {
-    servo_response(joints[j], constants[j], theta);
-    sum += (joints[j].measured - theta)(joints[j].compared).squaredNorm();
+    sum += squared_errors(joints[j], {constants[j]})[0];
     count += static_cast<double>(joints[j].compared.size());
   }
   return std::sqrt(sum / count);
@@ -257,10 +267,7 @@ ServoFit fit_servo(const std::vector<JointRecording>& joints,
         shared[kDry] = dry;
         servos.push_back(constants_of(shared.data(), offsets[j]));
       }
-      MatrixXd theta;
-      servo_responses(joints[j], servos, theta);
-      theta.colwise() -= joints[j].measured;
-      squares += theta(joints[j].compared, Eigen::all).colwise().squaredNorm().transpose();
+      squares += squared_errors(joints[j], servos);
     }
     Index best = 0;  // the first of equals
     squares.minCoeff(&best);

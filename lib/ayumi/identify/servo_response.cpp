@@ -168,11 +168,4 @@ void servo_responses(const JointRecording& recording, const std::vector<ServoCon
   if (count - at == 1) respond<1>(recording, rest, theta, at);
 }
 
-void servo_response(const JointRecording& recording, const ServoConstants& constants,
-                    Eigen::VectorXd& theta) {
-  Eigen::MatrixXd column;
-  servo_responses(recording, {constants}, column);
-  theta = column.col(0);
-}
-
 }  // namespace ayumi

@@ -56,13 +56,10 @@ inline constexpr double kSettle = 0.1;
 /// The command at time t, constant before its first and after its last row.
 double command_at(const JointRecording& recording, double t);
 
-/// The measured angle that the servo gives, one entry per measured row; rows far from those that
-/// are compared keep the measured angle. The joint starts anew after each such gap.
-void servo_response(const JointRecording& recording, const ServoConstants& constants,
-                    Eigen::VectorXd& theta);
-
-/// The same for several servos: one column of `theta` for each, with the numbers of
-/// servo_response(). Several together take less time than one after the other.
+/// The measured angle that each of these servos gives: one column for each, one row per measured
+/// row. Rows far from those that are compared keep the measured angle. The joint starts anew after
+/// each such gap. Several servos together take less time than one after the other, with the same
+/// numbers.
 void servo_responses(const JointRecording& recording, const std::vector<ServoConstants>& constants,
                      Eigen::MatrixXd& theta);
 

@@ -26,6 +26,12 @@ inline bool supports(Support support, Side side) {
   return support == Support::both ||
          support == (side == Side::left ? Support::left : Support::right);
 }
+/// Left for right and right for left.
+inline Support opposite(Support support) {
+  return support == Support::left    ? Support::right
+         : support == Support::right ? Support::left
+                                     : support;
+}
 
 const char* name_of(Interpolation interpolation);
 
@@ -65,6 +71,12 @@ struct ZmpKey {
   Place place = Place::point;  ///< left/right: centre of that sole at that time
   Eigen::Vector2d point = Eigen::Vector2d::Zero();  ///< world [m], for Place::point
 };
+/// Left for right and right for left.
+inline ZmpKey::Place opposite(ZmpKey::Place place) {
+  return place == ZmpKey::Place::left    ? ZmpKey::Place::right
+         : place == ZmpKey::Place::right ? ZmpKey::Place::left
+                                         : place;
+}
 
 /// Where the end of a link shall be, and which way it shall point; or what a head shall look at.
 struct LinkTarget {

@@ -179,10 +179,7 @@ class Mirror {
   }
 
   void mirror(Phase& phase) const {
-    if (phase.support == Support::left)
-      phase.support = Support::right;
-    else if (phase.support == Support::right)
-      phase.support = Support::left;
+    phase.support = opposite(phase.support);
     if (phase.viip) mirror(*phase.viip);
     if (!phase.swing) return;
     phase.swing->foot = other(phase.swing->foot);
@@ -206,9 +203,7 @@ class Mirror {
     key.joints = of(key.joints, key.place);
     key.weights = of(key.weights, key.place, false);
     if (key.zmp) {
-      using Place = ZmpKey::Place;
-      Place& place = key.zmp->place;
-      place = place == Place::left ? Place::right : place == Place::right ? Place::left : place;
+      key.zmp->place = opposite(key.zmp->place);
       key.zmp->point.y() *= -1;
     }
     if (key.cog_y) *key.cog_y *= -1;

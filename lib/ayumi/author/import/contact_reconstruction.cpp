@@ -98,12 +98,9 @@ class Grounding {
           " (--ground moves the robot up and down, so that the supporting soles touch the ground)");
     if (slides > kSaid) result.push_back("supporting soles slide by up to " + millimetres(slides));
     constexpr size_t kMost = 6;  // Chosen: a line that a person still reads
-    const size_t more = flights.size() > kMost ? flights.size() - kMost : 0;
-    flights.resize(flights.size() - more);
     if (flight > 0)
       result.push_back("no sole rests on the ground for " + text::brief(flight, 3) + " s (" +
-                       text::join(flights, ", ") +
-                       (more > 0 ? " and " + std::to_string(more) + " more" : std::string()) +
+                       text::join_first(flights, kMost) +
                        "). This time is taken as flight. --contact-height and --contact-speed "
                        "decide when a sole counts as resting");
     return result;

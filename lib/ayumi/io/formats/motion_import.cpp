@@ -26,9 +26,7 @@ using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMaj
 
 std::string shortened(const std::vector<std::string>& names) {
   constexpr size_t kMost = 40;  // Chosen: a line that a person still reads
-  if (names.size() <= kMost) return text::join(names, ", ");
-  return text::join({names.begin(), names.begin() + kMost}, ", ") + " and " +
-         std::to_string(names.size() - kMost) + " more";
+  return text::join_first(names, kMost);
 }
 
 // Text as the readers take it: no mark, lines end with a line feed.

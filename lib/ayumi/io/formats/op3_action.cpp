@@ -110,14 +110,10 @@ MotionFile read_op3_action(const MotionInput& source) {
   std::vector<std::string> names;
   for (const size_t page : starts) names.push_back(page_name(bytes, page));
   MotionFile motion;
-  if (!damaged.empty()) {
-    const size_t named = std::min(kNamedPages, damaged.size());
+  if (!damaged.empty())
     motion.notes.push_back(
         text::counted(damaged.size(), "damaged page") +
-        " (wrong checksum, or more than 7 steps): " +
-        text::join({damaged.begin(), damaged.begin() + named}, ", ") +
-        (damaged.size() > named ? " and " + std::to_string(damaged.size() - named) + " more" : ""));
-  }
+        " (wrong checksum, or more than 7 steps): " + text::join_first(damaged, kNamedPages));
   const size_t start = starts[source.chosen_motion(names, starts, motion)];
   std::vector<std::array<int, kServos>> rows;
   std::array<bool, kServos> used = {};

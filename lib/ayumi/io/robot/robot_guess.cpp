@@ -897,10 +897,8 @@ std::vector<std::string> gaps_of_the_files(const RobotDescription& robot, size_t
     gaps.push_back(
         text::counted(missing.size(), "mesh", "meshes") +
         (missing.size() == 1 ? " is missing and left out: " : " are missing and left out: ") +
-        text::join({missing.begin(), missing.begin() + std::min(most, missing.size())}, ", ") +
-        (missing.size() > most ? " and " + std::to_string(missing.size() - most) +
-                                     " more, which `ayumi inspect` lists"
-                               : "") +
+        text::join_first(missing, most) +
+        (missing.size() > most ? ", which `ayumi inspect` lists" : "") +
         "; add the files or correct the names; --package-path names the folder with the packages");
   return gaps;
 }
