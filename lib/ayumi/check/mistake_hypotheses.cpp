@@ -11,6 +11,7 @@
 
 #include "ayumi/author/edit/edit.hpp"
 #include "ayumi/author/generate/pattern_builder.hpp"
+#include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/number_slips.hpp"
 #include "ayumi/base/text.hpp"
