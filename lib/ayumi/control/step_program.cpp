@@ -4,6 +4,7 @@
 // c (g - 1) of it away. `offset` follows from the equation, so the unknowns are move, g / G, taken.
 #include "ayumi/control/step_program.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
