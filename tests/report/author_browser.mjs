@@ -109,7 +109,7 @@ async function keepsTheFocus(tab) {
   expect(await until(async () => await at() === "cancel"), "work that runs has the focus at Cancel: " + await at());
   await press("Enter");
   expect(await until(async () => await at() === "job-push"), "and gives it back: " + await at());
-  expect(await until(() => tab.run("return document.getElementById('said').textContent")) === "push: cancelled.", "the work is cancelled");
+  expect(await until(() => tab.run("return document.getElementById('said').textContent === 'push: cancelled.'")), "the work is cancelled");
 }
 
 async function addsPhasesAndKeys(tab) {
@@ -525,7 +525,7 @@ async function works(tab) {
   expect(await until(() => tab.run("return !document.getElementById('job').hidden")), "work shows its progress");
   await tab.click("#cancel");
   expect(await until(() => tab.run("return document.getElementById('job').hidden")), "work is cancelled");
-  expect(/cancelled/.test(await tab.run("return document.getElementById('said').textContent")), "and the page says so");
+  expect(await until(() => tab.run("return /cancelled/.test(document.getElementById('said').textContent)")), "and the page says so");
 }
 
 /// A repair is shown as a ghost and can be taken; a run is shown in the pattern's place.
