@@ -48,7 +48,7 @@ OrderedJson finding_json(const RobotModel& model, const Finding& f) {
       {"begin", f.begin},
       {"end", f.end},
       {"at", f.at},
-      {"message", words_of(name_of(f.kind)) + ", " + f.where + ": " + amount_text(f)},
+      {"message", words_of(name_of(f.kind)) + ", " + place_words(f.where) + ": " + amount_text(f)},
       // The page has a button in place of the command.
       {"hint", f.hint == f.remedy || f.remedy.empty() ? f.hint : f.remedy + ", or choose Repair"},
       {"bodies", OrderedJson::array()},
@@ -72,7 +72,8 @@ OrderedJson groups_json(const RobotModel& model, const ConsistencyReport& report
     OrderedJson consequences = OrderedJson::array();
     for (const GroupConsequence& c : group.consequences) {
       const Finding& f = report.findings[static_cast<size_t>(c.worst)];
-      consequences.push_back(words_of(name_of(c.kind)) + ", " + f.where + ": " + amount_text(f));
+      consequences.push_back(words_of(name_of(c.kind)) + ", " + place_words(f.where) + ": " +
+                             amount_text(f));
     }
     groups.push_back({{"worst", group.worst},
                       {"members", group.members},

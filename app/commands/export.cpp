@@ -385,7 +385,7 @@ std::string words_of(const TableServo& servo) {
   if (servo.content == "ideal") return "joint angles, not servo targets (--servo ideal)";
   const bool one = servo.lag.find(' ') == std::string::npos;
   return "the targets are ahead of the posture by the lag of the servos" +
-         (one ? " (" + servo.lag + " s)" : "") +
+         (one ? " (" + text::brief(1000 * std::atof(servo.lag.c_str()), 3) + " ms)" : "") +
          (servo.content == "lead" ? "" : ", and they also compensate for the sag");
 }
 

@@ -121,9 +121,9 @@ std::vector<double> values_that_pass(const Context& context, const RobotModel& m
       context.print("First error with the default values: " + result.limit + "\n");
     if (!result.nearest.empty()) {
       const std::string nearest = changed_values(dials, result.nearest_values);
-      context.print("The nearest is that with " +
-                    (nearest.empty() ? "the default values" : nearest) + ", which " +
-                    "is limited by " + result.nearest + "\n");
+      context.print("The combination that comes nearest has " +
+                    (nearest.empty() ? "the default values" : nearest) + ". Its limit is " +
+                    result.nearest + "\n");
     }
   }
   return result.values;
@@ -940,7 +940,7 @@ void add_new(Command& app, Context& context) {
   kick->callback([shared, &context] { new_kick(context, *shared); });
 
   Command* viip = command->add_subcommand(
-      "viip", "goals in place of keys: COG displacement or velocity, steps, a walk at a velocity");
+      "viip", "reach goals by VIIP: COG displacement, COG velocity, steps or a walk at a velocity");
   add_viip(*viip, options);
   viip->callback([shared, &context] { new_viip(context, *shared); });
   add_new_jump(*command, context);
@@ -953,7 +953,7 @@ void add_new(Command& app, Context& context) {
       ->type_name("S");
   stand->callback([shared, &context] { new_stand(context, *shared); });
   Command* excite = command->add_subcommand(
-      "excite", "slow sweeps, chirps and steps of every joint, for identify");
+      "excite", "move every joint by slow sweeps, chirps and steps, for a recording for identify");
   excite->footer("Examples:\n  ayumi new excite hoap1 -o excite.json");
   add_common(*excite, options);
   excite->add_option("ROBOT", options.robot, "Robot to excite. --robot does the same.");

@@ -134,8 +134,8 @@ std::string check_text(const ConsistencyReport& report, const RobotModel& model)
     if (worst.severity != Severity::error || ++causes > kMostGroups) continue;
     const size_t times = group.members.size();
     text += std::string("\n            ") + name_of(worst.kind) + " at " +
-            text::fixed(worst.at, 3) + " s, " + worst.where + ": " + amount_text(worst) + "; " +
-            worst.hint;
+            text::fixed(worst.at, 3) + " s, " + place_words(worst.where) + ": " +
+            amount_text(worst) + "; " + worst.hint;
     if (times > 1)
       text += " (" + text::join(group.places, " and ") + ", " + text::counted(times, "time") + ")";
   }
@@ -246,7 +246,7 @@ void MainJob::simulate(const Task& input) {
   SimulationChoice calm = options_.choice;
   calm.scenario = "none";
   undisturbed_ = run_streamed(input, "undisturbed", calm, {.postures = true, .torque = true});
-  say("", "without disturbances " + outcome_text(undisturbed_->log));
+  say("", "without disturbances, " + outcome_text(undisturbed_->log));
   summary_["undisturbed"] = Json::parse(simulation_json(undisturbed_->log));
   folder_.sections.emplace_back("undisturbed", simulation_json(undisturbed_->log));
 }

@@ -134,7 +134,8 @@ TEST(Identify, NamesWhatItCannotTellApart) {
   const IdentifiedJoint joint =
       identify(model, recorded(theta, kNoise, kCount, 1, slow), held_root(), "m.csv").joints.at(0);
   ASSERT_FALSE(joint.confounded.empty());
-  EXPECT_NE(joint.confounded[0].find("delay and damping are confounded"), std::string::npos)
+  EXPECT_NE(joint.confounded[0].find("delay and damping cannot be distinguished"),
+            std::string::npos)
       << joint.confounded[0];
   EXPECT_NEAR(joint.lag, servo.delay + (servo.kd + servo.viscous) / servo.kp, 0.001);
 }

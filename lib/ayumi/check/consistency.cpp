@@ -10,6 +10,7 @@
 #include "ayumi/base/in_parallel.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/check/attribution.hpp"
+#include "ayumi/limits/amount_text.hpp"
 #include "ayumi/limits/judged_motion.hpp"
 #include "ayumi/model/diagnose.hpp"
 
@@ -88,7 +89,7 @@ Finding finding_of(const JudgedMotion& motion, const std::vector<FindingWindow>&
   if (window.cause >= 0) {
     const Violation& cause = windows[window.cause].worst;
     f.cause = window.cause;
-    f.follows_from = std::string(name_of(cause.kind)) + " " + place_text(motion, cause) + " at " +
+    f.follows_from = kind_and_place(cause.kind, place_text(motion, cause)) + " at " +
                      text::fixed(cause.sample * dt, 3) + " s";
     f.hint = f.remedy = "follows from " + f.follows_from + ": correct that finding first";
   }

@@ -8,6 +8,7 @@
 
 #include "ayumi/author/edit/edit.hpp"
 #include "ayumi/base/error.hpp"
+#include "ayumi/limits/amount_text.hpp"
 
 namespace ayumi {
 
@@ -101,8 +102,9 @@ std::vector<FindingGroup> finding_groups(const ConsistencyReport& report, const 
     FindingGroup& group = groups[entry->second];
     group.members.push_back(i);
     if (is_further_beyond(f, report.findings[group.worst])) group.worst = i;
-    if (std::find(group.places.begin(), group.places.end(), f.where) == group.places.end())
-      group.places.push_back(f.where);
+    const std::string place = place_words(f.where);
+    if (std::find(group.places.begin(), group.places.end(), place) == group.places.end())
+      group.places.push_back(place);
   }
   for (int i = 0; i < count; ++i)
     if (report.findings[i].cause >= 0)

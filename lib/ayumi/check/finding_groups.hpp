@@ -21,7 +21,7 @@ struct GroupConsequence {
 struct FindingGroup {
   std::vector<int> members = {};         ///< indices into ConsistencyReport::findings, by time
   int worst = 0;                         ///< the one of them that is furthest beyond its limit
-  std::vector<std::string> places = {};  ///< Finding::where of all members, each once
+  std::vector<std::string> places = {};  ///< of all members, in words, each once
   std::vector<GroupConsequence> consequences = {};  ///< in the order of their first finding
 };
 

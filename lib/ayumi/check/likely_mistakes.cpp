@@ -176,13 +176,14 @@ class Suspicions {
                           " kg) a speed of " + text::brief(speed, 3) + " m/s" +
                           (impulse ? "" : " within " + text::brief(acts) + " s");
       if (1e-3 * speed <= kFastestPush)
-        words += "; if it is in m" + unit + ", write " + text::brief(1e-3 * push->magnitude);
+        words +=
+            "; if this number is in m" + unit + ", write " + text::brief(1e-3 * push->magnitude);
       found.push_back({"/scenario/" + std::to_string(i), words});
     }
     say(found);
   }
 
-  // A simulation holds the last posture for a while, and may be told to hold it longer.
+  // A simulation holds the last posture for a while.
   void late_disturbances() {
     if (!feet_) return;
     std::vector<Mistake> found;
@@ -191,8 +192,9 @@ class Suspicions {
         found.push_back({"/scenario/" + std::to_string(i),
                          "the disturbance begins at " + text::brief(pattern_.scenario[i].at) +
                              " s, but the motion ends at " + text::brief(feet_->duration()) +
-                             " s; it acts only if the simulation holds the last posture that long "
-                             "(--settle)"});
+                             " s. The simulation ends " + text::brief(kHeld) +
+                             " s after the motion, so the disturbance has no effect; let the "
+                             "disturbance begin earlier, or make the motion longer"});
     say(found);
   }
 

@@ -978,7 +978,7 @@ class Hypotheses::Maker {
                     (roll               ? "to the side"
                      : amount(most) < 0 ? "ahead"
                                         : "back") +
-                    ", so the ankle bends by as much",
+                    ", so the ankle bends by the same angle",
                 "with the foot turned with the leg (" +
                     turned_foot(side, pattern_.keyframes[most.key].feet[s].value(),
                                 roll ? degrees(most.roll) : 0, roll ? 0 : degrees(most.pitch)) +

@@ -337,14 +337,18 @@ class Search {
 };
 
 std::string result_words(const TrialOutcome& before, const TrialOutcome& after) {
-  if (after.good()) return " the pattern is consistent";
+  if (after.good()) return "the pattern is consistent";
   if (before.errors == kUnsampled)
-    return " the motion can be sampled, with " + text::counted(after.errors, "error");
+    return "the motion can be sampled, and " + text::counted(after.errors, "error") +
+           (after.errors == 1 ? " remains" : " remain");
   if (after.errors >= before.errors)
-    return " " + text::counted(after.findings, "finding") + " of " +
-           std::to_string(before.findings) + (after.findings == 1 ? " remains" : " remain");
-  return " " + text::counted(after.errors, "error") + " of " + std::to_string(before.errors) +
-         (after.errors == 1 ? " remains" : " remain");
+    return text::remaining(after.findings, before.findings, "finding");
+  return text::remaining(after.errors, before.errors, "error");
+}
+
+// "with t = 1 s" as the beginning of a sentence that goes on.
+std::string before_result(const std::string& instead) {
+  return instead + (instead.ends_with(',') ? " " : ", ");
 }
 
 }  // namespace
@@ -379,13 +383,15 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
     for (Candidate& c : best) {
       if (c.outcome.good() && !trials.exact()) {
         c.outcome = trials.exactly(current, c.hypothesis.mend);
-        c.hypothesis.says.instead += c.outcome.good()
-                                         ? result_words(found, c.outcome)
-                                         : " only " + text::counted(c.outcome.errors, "error") +
-                                               " of the table for the robot " +
-                                               (c.outcome.errors == 1 ? "remains" : "remain");
+        c.hypothesis.says.instead =
+            before_result(c.hypothesis.says.instead) +
+            (c.outcome.good() ? result_words(found, c.outcome)
+                              : "only " + text::counted(c.outcome.errors, "error") +
+                                    " of the table for the robot " +
+                                    (c.outcome.errors == 1 ? "remains" : "remain"));
       } else {
-        c.hypothesis.says.instead += result_words(found, c.outcome);
+        c.hypothesis.says.instead =
+            before_result(c.hypothesis.says.instead) + result_words(found, c.outcome);
       }
       c.hypothesis.says.enough = c.outcome.good();
       // The steps before this one are part of what is enough.

@@ -1,8 +1,10 @@
 #pragma once
-// A finding's value and its limit in words: lengths in mm, angles and their rates in the unit of
+// A finding's place, value and limit in words: lengths in mm, angles and their rates in the unit of
 // the pattern's angles.
 
 #include <Eigen/Core>
+#include <string>
+#include <string_view>
 
 #include "ayumi/base/text.hpp"
 #include "ayumi/limits/finding.hpp"
@@ -35,6 +37,33 @@ inline std::string amount_text(const Finding& finding) {
   while (more < kMostMoreDigits && quantity(finding.worst, more) == quantity(finding.limit, more))
     ++more;
   return quantity(finding.worst, more) + ", limit " + quantity(finding.limit, more);
+}
+
+/// The place of a finding for people: "left" as "left foot", "x" as "x axis", and what follows the
+/// name of the place as it is. Joints and bodies keep their names.
+inline std::string place_words(const std::string& where, bool with_article = false) {
+  struct Words {
+    std::string_view name, article, words;
+  };
+  constexpr Words kWords[] = {{"left", "the ", "left foot"}, {"right", "the ", "right foot"},
+                              {"both", "", "both feet"},     {"none", "", "no foot"},
+                              {"x", "the ", "x axis"},       {"y", "the ", "y axis"},
+                              {"z", "the ", "z axis"}};
+  for (const Words& each : kWords)
+    if (where == each.name || where.starts_with(std::string(each.name) + " with "))
+      return std::string(with_article ? each.article : "") + std::string(each.words) +
+             where.substr(each.name.size());
+  return where;
+}
+
+/// "joint_speed of l_knee", "friction of the left foot"
+inline std::string kind_and_place(FindingKind kind, const std::string& where) {
+  return name_of(kind) + (where.empty() ? "" : " of " + place_words(where, true));
+}
+
+/// "joint_speed of l_knee at 1.860 s"
+inline std::string kind_place_and_time(const Finding& finding) {
+  return kind_and_place(finding.kind, finding.where) + " at " + text::fixed(finding.at, 3) + " s";
 }
 
 }  // namespace ayumi

@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "ayumi/base/text.hpp"
+#include "ayumi/limits/amount_text.hpp"
 #include "ayumi/limits/judged_motion.hpp"
 #include "ayumi/limits/row_site.hpp"
 #include "ayumi/math/elementary.hpp"
@@ -102,8 +103,8 @@ Advice friction_advice(const JudgedMotion& motion, const FindingWindow& window) 
 }
 
 std::string friction_infeasibility(const Finding& f, double violation) {
-  return "the motion needs " + ratio_text(violation) + " times the available friction (" + f.where +
-         ")";
+  return "the motion needs " + ratio_text(violation) + " times the available friction (" +
+         place_words(f.where) + ")";
 }
 
 }  // namespace

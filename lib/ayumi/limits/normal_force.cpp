@@ -4,6 +4,7 @@
 // may.
 #include <algorithm>
 
+#include "ayumi/limits/amount_text.hpp"
 #include "ayumi/limits/judged_motion.hpp"
 #include "ayumi/limits/row_site.hpp"
 
@@ -57,7 +58,7 @@ Advice normal_force_advice(const JudgedMotion&, const FindingWindow&) {
 }
 
 std::string normal_force_infeasibility(const Finding& f, double) {
-  return "the ground would have to pull the robot down (" + f.where + ")";
+  return "the ground would have to pull the robot down (" + place_words(f.where) + ")";
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "ayumi/dynamics/inverse_dynamics.hpp"
+#include "ayumi/limits/amount_text.hpp"
 #include "ayumi/limits/judged_motion.hpp"
 #include "ayumi/limits/row_site.hpp"
 
@@ -123,7 +124,7 @@ Advice support_advice(const JudgedMotion&, const FindingWindow& window) {
 }
 
 std::string support_infeasibility(const Finding& f, double violation) {
-  return "the ZMP is " + in_mm(violation) + " outside the support (" + f.where + ")";
+  return "the ZMP is " + in_mm(violation) + " outside the support (" + place_words(f.where) + ")";
 }
 
 }  // namespace

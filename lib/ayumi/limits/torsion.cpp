@@ -4,6 +4,7 @@
 // support that is symmetric about it, a lower bound of what is possible (demand/ground_demand.hpp).
 #include <algorithm>
 
+#include "ayumi/limits/amount_text.hpp"
 #include "ayumi/limits/friction.hpp"
 #include "ayumi/limits/judged_motion.hpp"
 #include "ayumi/limits/row_site.hpp"
@@ -112,7 +113,7 @@ Advice torsion_advice(const JudgedMotion&, const FindingWindow& window) {
 
 std::string torsion_infeasibility(const Finding& f, double violation) {
   return "the foot would turn: the motion needs " + ratio_text(violation) +
-         " times the yaw moment that friction can resist (" + f.where + ")";
+         " times the yaw moment that friction can resist (" + place_words(f.where) + ")";
 }
 
 }  // namespace

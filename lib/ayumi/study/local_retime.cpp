@@ -344,8 +344,7 @@ class LocalSearch {
       if (f.severity == Severity::error && (!shown || (is_of_posture(f) && !is_of_posture(*shown))))
         shown = &f;
     if (!shown) return "the check";
-    return std::string(name_of(shown->kind)) + " " + shown->where + " at " +
-           text::fixed(shown->at, 3) + " s: " + amount_text(*shown) + " (motion of " +
+    return kind_place_and_time(*shown) + ": " + amount_text(*shown) + " (when the motion takes " +
            text::fixed(result_.series.duration(), 3) + " s)";
   }
 
