@@ -272,8 +272,8 @@ void refuse_absurd(const MotionFile& motion, const RobotModel& model, const std:
       if (std::abs(x) > most) most = std::abs(x);
     if (most > kFarthest)
       refuse(row, std::string("a coordinate of the ") + name + " is " + text::brief(most) +
-                      " m; beyond " + text::brief(kFarthest / 1000) +
-                      " km, no motion is possible; check the unit of this column");
+                      " m, but at most " + text::brief(kFarthest / 1000) +
+                      " km are possible");
   };
   for (size_t k = 0; k < motion.base.size(); ++k) check(k, "root", motion.base[k].position);
   for (size_t k = 0; k < motion.cog.size(); ++k) check(k, "COG", motion.cog[k]);
