@@ -158,15 +158,14 @@ AnswerPart all_findings(const ConsistencyReport& report) {
   return {Worth::error, {out}, kHang};
 }
 
-// Where and when a figure is reached.
+}  // namespace
+
 std::string figure_place(const ConsistencyReport& report, FindingKind kind) {
   const FigurePlace& p = report.summary_at[kind];
   if (!std::isfinite(p.at)) return {};
   return " (" + (p.where.empty() ? "" : place_words(p.where) + " ") + "at " + text::fixed(p.at, 2) +
          " s)";
 }
-
-}  // namespace
 
 bool has_limit(const RobotModel& model, FindingKind kind) {
   const auto is_stated = [](const Eigen::VectorXd& limits) {

@@ -13,7 +13,7 @@ enum class Worth { origin, information, warning, remark, error, figure, verdict 
 struct AnswerPart {
   Worth worth = Worth::verdict;
   std::vector<std::string> forms = {};  ///< whole lines; each form is shorter than the one before
-  size_t hang = 4;                      ///< where the rest of a line that was broken begins
+  size_t hang = 4;                      ///< column at which the rest of a broken line begins
 };
 
 /// Chosen: the smallest terminal in use has 24 rows of 80 columns. A motion that is wrong may take

@@ -313,7 +313,7 @@ class StruggleTeller {
       return;
     told_stage_ = stage;
     told_ = now;
-    say(stage + " takes a while." +
+    say("the step '" + stage + "' takes a while." +
         left_words(
             "The motion already passes the check, and the search looks for a smaller change") +
         " Ctrl-C stops the repair");

@@ -117,13 +117,14 @@ class MainJob {
 std::string check_text(const ConsistencyReport& report, const RobotModel& model) {
   std::string text =
       report.consistent ? painted(Paint::good, "consistent") : painted(Paint::bad, "inconsistent");
-  text +=
-      ": ZMP margin " + text::fixed(1e3 * report.summary[FindingKind::support_margin], 1) + " mm";
+  text += ": ZMP margin " + text::fixed(1e3 * report.summary[FindingKind::support_margin], 1) +
+          " mm" + figure_place(report, FindingKind::support_margin);
   std::string shares;
   for (const auto& [kind, name] : {std::pair{FindingKind::joint_speed, "joint speed "},
                                    std::pair{FindingKind::joint_torque, "torque "}}) {
     if (has_limit(model, kind))
-      shares += std::string(", ") + name + text::fixed(100 * report.summary[kind], 0) + " %";
+      shares += std::string(", ") + name + text::fixed(100 * report.summary[kind], 0) + " %" +
+                figure_place(report, kind);
     else
       text += std::string(", ") + name + "without limits";
   }
@@ -297,7 +298,12 @@ void MainJob::write_hoap(const Task& input) {
     write_file(output_->file("hoap.csv"), hoap_csv(input.robot, safe.table, safety));
     note_file("hoap.csv");
     text += ", hoap.csv (" + std::to_string(safe.table.rows.size()) + " rows, largest step " +
-            text::fixed(100 * safe.report.max_step_ratio, 0) + " % of the limit)";
+            text::fixed(100 * safe.report.max_step_ratio, 0) + " % of the limit" +
+            (safe.report.worst_joint.empty()
+                 ? ""
+                 : " (" + safe.report.worst_joint + " at " + text::fixed(safe.report.worst_at, 3) +
+                       " s of the table)") +
+            ")";
   } else if (encoders && !safe.report.safe) {
     text += (options_.light ? "; the table for the robot is unsafe: "
                             : "; hoap.csv is not written, because the table is unsafe: ") +

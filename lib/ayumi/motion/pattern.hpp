@@ -26,7 +26,7 @@ inline bool supports(Support support, Side side) {
   return support == Support::both ||
          support == (side == Side::left ? Support::left : Support::right);
 }
-/// Left for right and right for left.
+/// The mirror image: left and right are exchanged.
 inline Support opposite(Support support) {
   return support == Support::left    ? Support::right
          : support == Support::right ? Support::left
@@ -71,7 +71,7 @@ struct ZmpKey {
   Place place = Place::point;  ///< left/right: centre of that sole at that time
   Eigen::Vector2d point = Eigen::Vector2d::Zero();  ///< world [m], for Place::point
 };
-/// Left for right and right for left.
+/// The mirror image: left and right are exchanged.
 inline ZmpKey::Place opposite(ZmpKey::Place place) {
   return place == ZmpKey::Place::left    ? ZmpKey::Place::right
          : place == ZmpKey::Place::right ? ZmpKey::Place::left

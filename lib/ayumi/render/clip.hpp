@@ -59,7 +59,7 @@ struct ClipShape {
   std::vector<std::string> notes;
 };
 /// `thin`: triangles that a picture of this size cannot show are left out, which pays where many
-/// pictures are drawn. `progress` hears of the work on heavy meshes.
+/// pictures are drawn. `progress` is called during the work on heavy meshes.
 std::shared_ptr<const ClipShape> clip_shape(const RobotModel& model, const SimulationLog& log,
                                             const ClipOptions& options, bool thin,
                                             const Progress& progress = {});

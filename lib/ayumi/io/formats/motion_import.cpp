@@ -234,7 +234,7 @@ std::vector<std::string> column_names(const MotionFile& motion, const RobotModel
                         " of '" + model.name() + "' in the order of the robot (" + own.front() +
                         ", ..., " + own.back() + "), or name the columns with --joints A,B,..."
                   : ", but '" + model.name() + "' has " + text::counted(own.size(), "joint") +
-                        ", so that this may be a motion of another robot; --joints A,B,... names "
+                        ", so this may be a motion of another robot; --joints A,B,... names "
                         "the columns"));
   return motion.joints;
 }
@@ -272,8 +272,7 @@ void refuse_absurd(const MotionFile& motion, const RobotModel& model, const std:
       if (std::abs(x) > most) most = std::abs(x);
     if (most > kFarthest)
       refuse(row, std::string("a coordinate of the ") + name + " is " + text::brief(most) +
-                      " m, but at most " + text::brief(kFarthest / 1000) +
-                      " km are possible");
+                      " m, but at most " + text::brief(kFarthest / 1000) + " km are possible");
   };
   for (size_t k = 0; k < motion.base.size(); ++k) check(k, "root", motion.base[k].position);
   for (size_t k = 0; k < motion.cog.size(); ++k) check(k, "COG", motion.cog[k]);
