@@ -44,7 +44,7 @@ OrderedJson finding_json(const RobotModel& model, const Finding& f) {
   OrderedJson json = {
       {"kind", name_of(f.kind)},
       {"severity", name_of(f.severity)},
-      {"where", f.where},
+      {"where", place_words(f.where)},
       {"begin", f.begin},
       {"end", f.end},
       {"at", f.at},
