@@ -32,7 +32,7 @@ constexpr int kMostRounds = 10;
 // the third changes the duration by less than 0.1 %; a later round begins near its result.
 constexpr int kTimings = 3, kLaterTimings = 2;
 
-// Width of one of the three boxes that smooth a course of time [s]: s'' then has no jump and no
+// Width of one of the three boxes that smooth a timing [s]: s'' then has no jump and no
 // kink. Chosen: servos of small robots answer within 30 ms, and the motion gets 36 ms longer.
 constexpr double kBox = 0.013;
 

@@ -43,7 +43,7 @@ Pattern retimed(const RobotModel& model, const Pattern& pattern, double scale);
 Pattern stretched(const RobotModel& model, const Pattern& pattern, double begin, double end,
                   double factor);
 
-/// Another course of time along a motion of the same postures.
+/// Another timing along a motion of the same postures.
 struct TimeCourse {
   double dt = 0.001;       ///< of the new motion [s]
   std::vector<double> at;  ///< at its sample k: the time of the given motion; rises to its end [s]
@@ -53,10 +53,10 @@ struct TimeCourse {
   double time_of(double given) const;
 };
 
-/// The motion in another course of time, as a table of posture and base (COG, ZMP and f_z are those
+/// The motion with another timing, as a table of posture and base (COG, ZMP and f_z are those
 /// of the full model). `series` holds the samples of the pattern, between which the postures follow
 /// their rates and accelerations. Phases, pushes, weights and windows move along. The feet are
-/// planned where the joints have them, because a planned swing knows no other course of time.
+/// planned where the joints have them, because a planned swing knows no other timing.
 /// Throws as baked().
 Pattern with_course(const RobotModel& model, const Pattern& pattern, const CommandSeries& series,
                     const TimeCourse& course, const std::string& table);
