@@ -1,7 +1,6 @@
 #pragma once
-// A finding is what the check says about a motion: of what kind it is, where and when it occurs,
-// how large it is, and what to do about it. Kind and place are typed; their texts are for people
-// only.
+// A finding is one result of the check of a motion: its kind, its place and time, its size, and a
+// remedy. Kind and place are typed; their texts are for people only.
 
 #include <array>
 #include <optional>

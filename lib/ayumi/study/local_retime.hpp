@@ -27,7 +27,7 @@ struct LocalRetimeOptions {
 
 struct LocalPace {
   bool found = false;                 ///< a timing passes the check
-  Pattern pattern;                    ///< in this course, as a table
+  Pattern pattern;                    ///< with this timing, as a table
   CommandSeries series;               ///< its samples
   ConsistencyReport report;           ///< of them
   double scale = 1;                   ///< duration over that of the given pattern
