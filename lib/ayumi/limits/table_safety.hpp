@@ -97,13 +97,13 @@ std::vector<SafetyViolation> torque_violations(const RobotModel& model,
 /// Adds violations to the report of a table, which is then unsafe.
 void add_violations(SafeTable& safe, const std::vector<SafetyViolation>& violations);
 
-/// What a robot is to receive from a run: make_safe() and the torques that its motors gave in the
-/// run (rows of `reference` x dof), judged by the same profile.
+/// The table that a robot is to receive from a run: make_safe(), and the torques that its motors
+/// gave in the run (rows of `reference` x dof), judged by the same profile.
 SafeTable make_safe_run(const RobotModel& model, const ReferenceTrajectory& reference,
                         const Eigen::MatrixXd& torque, const SafetyOptions& options);
 
 /// Encoder counts of every row, rows x dof in the robot's joint order: the nearest whole count, or
-/// its neighbour (less than one count off) where only that one keeps the position limits and
+/// its neighbour (less than one count off) if only this neighbour keeps the position limits and
 /// `step_limits` (counts per tick, by dof). Joints without an encoder give 0.
 Eigen::MatrixXi encoder_counts(const RobotModel& model, const ReferenceTrajectory& table,
                                const Eigen::VectorXd& step_limits);
