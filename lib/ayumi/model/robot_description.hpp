@@ -160,7 +160,7 @@ struct CellResponse {
   double dead_zone = 0;  ///< largest force at which the cell reads 0; larger forces are reduced by
                          ///< it [N]
   double hysteresis = 0;  ///< difference of the reading between unloading and loading [N]
-  double gain = 1;        ///< reading divided by the force after these two [1]
+  double gain = 1;        ///< reading divided by the force that is left [1]
   double saturation = 0;  ///< largest reading [N]; 0: no bound
   bool operator==(const CellResponse&) const = default;
 };

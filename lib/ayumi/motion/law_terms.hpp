@@ -38,9 +38,9 @@ struct LawTerms {
   double spring_goal = 0;         ///< ref z_G of (24) above the ground [m]
   double spring_height = 0;       ///< z_G there [m]
   double spring_rate = 0;         ///< rate of z_G less that of ref z_G [m/s]
-  /// Terms of the acceleration of the reference: of the motion itself commanded under DTAD, (14) to
-  /// (17) of the reference pendulum under VIIP; of the short-term absorption; the pull to the
-  /// command (DTAD) or to the measured state (VIIP); the damping of the rocking.
+  /// Terms of the acceleration of the reference: the motion itself (commanded under DTAD, (14) to
+  /// (17) of the reference pendulum under VIIP); the short-term absorption; the pull to the command
+  /// (DTAD) or to the measured state (VIIP); the damping of the rocking.
   Eigen::Vector3d motion = Eigen::Vector3d::Zero(), short_term = Eigen::Vector3d::Zero(),
                   pull = Eigen::Vector3d::Zero(), rocking = Eigen::Vector3d::Zero();
 };
