@@ -157,8 +157,7 @@ struct AxisReadings {
 
 /// How the reading of a load cell depends on the force on it, in this order (sim/load_cell).
 struct CellResponse {
-  double dead_zone = 0;  ///< largest force at which the cell reads 0; larger forces are reduced by
-                         ///< it [N]
+  double dead_zone = 0;   ///< force below which the reading is 0; subtracted from larger forces [N]
   double hysteresis = 0;  ///< difference of the reading between unloading and loading [N]
   double gain = 1;        ///< reading divided by the force that is left [1]
   double saturation = 0;  ///< largest reading [N]; 0: no bound
