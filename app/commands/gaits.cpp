@@ -193,8 +193,8 @@ GaitMap map_of(const GaitGrid& grid, const std::string& title, const std::vector
   return map;
 }
 
-/// "60 cells: 15 made, 45 missing: 40 (the walk cannot be generated), 5 (...)", and the first missing
-/// ones with their reasons.
+/// "60 cells: 15 made, 45 missing: 40 (the walk cannot be generated), 5 (...)", and the first
+/// missing ones with their reasons.
 std::string missing_words(const std::vector<Json>& entries, const char* noun,
                           const std::function<std::string(const Json&)>& name) {
   std::vector<std::string> kinds;
