@@ -909,7 +909,7 @@ class Hypotheses::Maker {
                   " against the " + name_of(other(swing.foot)) + " foot",
               "with a yaw of " + angle(swing.to.rpy.z() + less) +
                   (has_later_place(i) ? ", and all later footholds turned about it by " +
-                                            angle(less) + " (more steps then make the turn),"
+                                            angle(less) + " (the turn then takes more steps),"
                                       : "")},
              [i, less](Pattern& p) {
                const Eigen::Vector3d about = p.phases[i].swing->to.position;

@@ -584,7 +584,7 @@ void hold_last_row(Eigen::Index least, ImportedMotion& imported) {
   theta.conservativeResize(least, Eigen::NoChange);
   theta.bottomRows(least - rows) = theta.row(rows - 1).replicate(least - rows, 1);
   imported.filled.push_back("the last posture is held until there are " + std::to_string(least) +
-                            " rows, which the check of a motion needs");
+                            " rows, the least number for a check");
 }
 
 // A motion begins and ends at rest: as if it returned along its own path.
