@@ -1,13 +1,13 @@
 #pragma once
-// Answers that fit on a screen: what is worth least is shortened first.
+// Answers that fit on a screen: the least important parts are shortened first.
 
 #include <string>
 #include <vector>
 
 namespace ayumi::app {
 
-/// What a part of an answer is worth, the least first. Every part is shortened once before any part
-/// is shortened a second time. Each time, what is worth least comes first.
+/// Importance of a part of an answer, the least important first. Every part is shortened once
+/// before any part is shortened a second time, each time in the order of importance.
 enum class Worth { origin, information, warning, remark, error, figure, verdict };
 
 struct AnswerPart {
@@ -33,7 +33,7 @@ Room room_of(size_t rows);
 /// shortened, the text ends with the line `more`.
 std::string fitted(const std::vector<AnswerPart>& parts, const Room& room, const std::string& more);
 
-/// Adds parts behind others.
+/// Appends parts to other parts.
 void append(std::vector<AnswerPart>& parts, std::vector<AnswerPart> more);
 
 /// The parts in full.

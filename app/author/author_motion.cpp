@@ -87,7 +87,7 @@ std::string pointer_to(const std::string& list, size_t i) {
   return "/" + list + "/" + std::to_string(i);
 }
 
-// Whether what stands there is read several times, in the rounds of a block.
+// Whether this value is read several times, in the rounds of a block.
 bool is_repeated(const std::string& pointer) { return outermost(pointer) != pointer; }
 
 // A pattern and its document, as written.
@@ -100,7 +100,8 @@ const OrderedJson& written_at(const Written& text, const std::string& pointer) {
   return text.document.at(OrderedJson::json_pointer(pointer));
 }
 
-// Where the time of a keyframe is written, and from when on the value there counts.
+// The place of the time of a keyframe in the text, and the time from which the written value
+// counts.
 OrderedJson time_json(const Written& text, size_t i) {
   const auto& frames = text.pattern.keyframes;
   const std::string pointer = pointer_of_keyframe(text.pattern, i);

@@ -64,7 +64,7 @@ const Stage& stage_of(const Json& entry) {
 
 bool is_missing(const Json& entry) { return entry.at("status") == "missing"; }
 
-/// The values of an axis that was left out: those of the usual walk of the robot.
+/// The values of an axis for which no option is given: the values of the usual walk of the robot.
 void fill_axes(const GaitsCommand& command, const RobotModel& model, GaitGrid& grid) {
   const WalkParameters usual = walk_defaults(model);
   const auto axis = [](const std::string& words, const std::string& option,
@@ -139,7 +139,7 @@ std::vector<Json> run_jobs(const Context& context, const LibraryFolder& folder, 
   };
   in_parallel(wanted.size(), context.threads, stop, [&](size_t k) {
     const size_t i = wanted[k];
-    // What is done inside a job only asks whether to stop.
+    // The progress of the work inside a job is only used to ask whether to stop.
     GaitResult made = job(i, [&](const ProgressEvent&) {
       const std::lock_guard lock(mutex);
       return tell();

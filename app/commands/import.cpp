@@ -1,4 +1,5 @@
-// Motions of other origin as patterns: HOAP sequences, tables of angles, Ayumi's own joint tables.
+// Motions of other programs and robots as patterns: HOAP sequences, tables of angles, Ayumi's own
+// joint tables.
 
 #include <filesystem>
 #include <nlohmann/json.hpp>

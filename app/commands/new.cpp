@@ -135,8 +135,9 @@ struct WalkDial {
   std::function<void(WalkParameters&, double)> set;
 };
 
-// Fills what was left out of a walk in place, forward, or of a turn: `length` is what makes its
-// steps longer. `lifts`: the feet may rise less than asked for, because nobody asked.
+// Fills in the values that are not given for a walk in place, a walk forward or a turn: `length` is
+// what makes its steps longer. `lifts`: the feet may rise less than asked for, because nobody
+// asked.
 void fit_steps(const Context& context, const RobotModel& model, const NewOptions& options,
                WalkParameters& w, const WalkDial& length, bool lifts = false) {
   // Legs without the roll of the ankle carry the COG aside by a few millimetres only, so that they
@@ -531,7 +532,7 @@ double height_for_steps(const RobotModel& model, Pattern pattern) {
   return 0;
 }
 
-// Stands, does what the goal asks, stands.
+// The robot stands, reaches the goal, and stands.
 void new_viip(const Context& context, const NewOptions& options) {
   const RobotModel model = load_robot(options.robot, robot_search(context));
   const bool steps = options.viip_steps > 0;

@@ -151,7 +151,7 @@ std::string check_text(const ConsistencyReport& report, const RobotModel& model)
 constexpr double kMoreTilt = std::numbers::pi / 180;  // [rad]
 constexpr double kMoreTorque = 0.1;                   // share of the limit
 
-// In what the run with control does worse than the one without, under the same disturbances.
+// The figures that are worse with control than without, under the same disturbances.
 std::vector<std::string> worse_than_open_loop(const SimulationResult& open,
                                               const SimulationResult& closed) {
   std::vector<std::string> worse;
@@ -270,7 +270,8 @@ void MainJob::export_tables(const Task& input) {
   write_hoap(input);
 }
 
-// What goes to the robot is judged by its own actuators, not by those a study has assumed.
+// A table for the robot is judged by the robot's own actuators, not by the actuators that a study
+// assumes.
 void MainJob::write_hoap(const Task& input) {
   SafetyOptions safety;
   safety.profile = input.robot.limits().name;

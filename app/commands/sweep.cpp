@@ -67,7 +67,7 @@ std::string first_errors(const ResultsDatabase& results) {
   return text;
 }
 
-/// Prints, writes and judges what there is.
+/// Prints, writes and judges the present results.
 void conclude(Context& context, const ResultsDatabase& results, const SweepOutputs& outputs,
               const CaseRunner* runner, Json json = Json::object()) {
   const std::vector<Expectation> expectations = judge_expectations(results, outputs.expect);
