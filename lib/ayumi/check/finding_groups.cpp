@@ -14,7 +14,7 @@ namespace ayumi {
 
 namespace {
 
-// A place and its mirror image have the same key: what kind of place it is, and two numbers.
+// A place and its mirror image have the same key: the kind of place and two numbers.
 using PlaceKey = std::tuple<size_t, int, int, std::string>;
 
 class PlaceKeys {
@@ -62,8 +62,8 @@ class PlaceKeys {
   std::optional<MirrorMap> map_;
 };
 
-// How far a value is beyond its limit; both have the sign of the side on which the limit is, or a
-// limit of both signs is positive.
+// Distance of a value beyond its limit. Value and limit have the same sign; a limit for both signs
+// is positive.
 double excess(const Finding& f) { return std::abs(std::abs(f.worst) - std::abs(f.limit)); }
 
 int root_of(const ConsistencyReport& report, int i) {

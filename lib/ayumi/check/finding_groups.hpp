@@ -1,7 +1,7 @@
 #pragma once
 // Findings as people read them: one group for each cause. A walk with swings that are too fast has
-// the same finding at each step and on both sides, and each of them has consequences; the author
-// has one thing to correct.
+// the same finding at each step and on both sides, and each of them has consequences; but the
+// author has to correct only one thing.
 
 #include <string>
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace ayumi {
 
-/// What follows from the errors of a group.
+/// A consequence of the errors of a group.
 struct GroupConsequence {
   FindingKind kind = FindingKind::cog_residual;
   int count = 0;  ///< findings
