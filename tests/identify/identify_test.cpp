@@ -253,10 +253,9 @@ TEST(RecordingChecks, RowsThatAreMissingInARest) {
       whole.bottomRows(missing);
   EXPECT_NE(refusal().find("3 rows are missing"), std::string::npos) << refusal();
   motion.measured.theta = whole.topRows(rows - 2);
-  EXPECT_NE(
-      refusal().find(
-          "2 rows are missing. No motion is cut, so they are missing in a pause or at the end"),
-      std::string::npos)
+  EXPECT_NE(refusal().find("2 rows are missing. Every motion is complete, so the rows are missing "
+                           "in a pause or at the end"),
+            std::string::npos)
       << refusal();
   motion.measured.timed = true;
   EXPECT_EQ(refusal(), "");

@@ -8,7 +8,6 @@
 
 #include "ayumi/author/edit/edit.hpp"
 #include "ayumi/base/error.hpp"
-#include "ayumi/limits/amount_text.hpp"
 
 namespace ayumi {
 

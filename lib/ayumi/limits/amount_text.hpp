@@ -4,7 +4,6 @@
 
 #include <Eigen/Core>
 #include <string>
-#include <string_view>
 
 #include "ayumi/base/text.hpp"
 #include "ayumi/limits/finding.hpp"
@@ -37,23 +36,6 @@ inline std::string amount_text(const Finding& finding) {
   while (more < kMostMoreDigits && quantity(finding.worst, more) == quantity(finding.limit, more))
     ++more;
   return quantity(finding.worst, more) + ", limit " + quantity(finding.limit, more);
-}
-
-/// The place of a finding for people: "left" as "left foot", "x" as "x axis", and what follows the
-/// name of the place as it is. Joints and bodies keep their names.
-inline std::string place_words(const std::string& where, bool with_article = false) {
-  struct Words {
-    std::string_view name, article, words;
-  };
-  constexpr Words kWords[] = {{"left", "the ", "left foot"}, {"right", "the ", "right foot"},
-                              {"both", "", "both feet"},     {"none", "", "no foot"},
-                              {"x", "the ", "x axis"},       {"y", "the ", "y axis"},
-                              {"z", "the ", "z axis"}};
-  for (const Words& each : kWords)
-    if (where == each.name || where.starts_with(std::string(each.name) + " with "))
-      return std::string(with_article ? each.article : "") + std::string(each.words) +
-             where.substr(each.name.size());
-  return where;
 }
 
 /// "joint_speed of l_knee", "friction of the left foot"

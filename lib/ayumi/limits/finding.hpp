@@ -88,4 +88,8 @@ struct Finding {
 /// The dof of a finding at a joint, -1 of any other.
 int dof_of(const Finding& finding);
 
+/// Finding::where for people: "left" as "left foot", "x" as "x axis", and what follows the name of
+/// the place as it is. Joints and bodies keep their names. `with_article`: "the left foot".
+std::string place_words(const std::string& where, bool with_article = false);
+
 }  // namespace ayumi

@@ -8,7 +8,6 @@
 #include <algorithm>
 
 #include "ayumi/base/text.hpp"
-#include "ayumi/limits/amount_text.hpp"
 #include "ayumi/limits/judged_motion.hpp"
 #include "ayumi/limits/row_site.hpp"
 #include "ayumi/math/elementary.hpp"

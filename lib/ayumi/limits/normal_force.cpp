@@ -4,7 +4,6 @@
 // may.
 #include <algorithm>
 
-#include "ayumi/limits/amount_text.hpp"
 #include "ayumi/limits/judged_motion.hpp"
 #include "ayumi/limits/row_site.hpp"
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "ayumi/dynamics/inverse_dynamics.hpp"
-#include "ayumi/limits/amount_text.hpp"
 #include "ayumi/limits/judged_motion.hpp"
 #include "ayumi/limits/row_site.hpp"
 

@@ -4,7 +4,6 @@
 // support that is symmetric about it, a lower bound of what is possible (demand/ground_demand.hpp).
 #include <algorithm>
 
-#include "ayumi/limits/amount_text.hpp"
 #include "ayumi/limits/friction.hpp"
 #include "ayumi/limits/judged_motion.hpp"
 #include "ayumi/limits/row_site.hpp"

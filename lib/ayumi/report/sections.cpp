@@ -5,7 +5,6 @@
 
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
-#include "ayumi/limits/amount_text.hpp"
 #include "ayumi/plot/compare_plot.hpp"
 #include "ayumi/plot/push_map.hpp"
 #include "ayumi/render/log_reading.hpp"
