@@ -71,7 +71,7 @@ std::string cost_words(const WeightedChange& cost) {
   const std::string missing = cost.safety > kLeastShare * cost.change
                                   ? ", cost of missing safety " + text::brief(cost.safety)
                                   : "";
-  return "  weighted change of all joints " + text::brief(cost.change) + missing;
+  return "  weighted change of base and joints " + text::brief(cost.change) + missing;
 }
 
 std::string origin_words(const std::map<std::string, std::string>& origin) {

@@ -19,7 +19,7 @@ std::string margin_words(double margin);
 std::string motion_words(const RobotModel& model, const MotionChange& change,
                          const ConsistencyReport& before, const ConsistencyReport& after);
 
-/// "  weighted change of all joints 0.17, cost of missing safety 0.003".
+/// "  weighted change of base and joints 0.17, cost of missing safety 0.003".
 std::string cost_words(const WeightedChange& cost);
 
 struct MotionPlot {
