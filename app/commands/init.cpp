@@ -106,8 +106,7 @@ SidecarGains gains_for(const RobotModel& model) {
         text::brief(-1 / study.weakest.analysis.decay, 2) + " s (" +
         study.loops[study.weakest.index].name +
         "), because the servos are soft. Of the gains that were tried, these are the nearest to "
-        "the "
-        "default gains with which the error " +
+        "the default gains with which the error " +
         (decay > 0
              ? "decays (time constant of the slowest mode: " + text::brief(1 / decay, 2) + " s)"
              : std::string("grows by less than the factor e during a step"));

@@ -309,8 +309,7 @@ void add_sweep(Command& app, Context& context) {
       "  ayumi sweep status results.db\n"
       "  ayumi sweep study.json -o results.db --expect 'falls == 0' --junit results.xml\n"
       "Run again with the same -o to go on: only the cases without a result are run. Exit code 1: "
-      "an "
-      "expectation is not met, or a case could not be run.");
+      "an expectation is not met, or a case could not be run.");
   auto options = std::make_shared<SweepCommand>();
   command->add_option("STUDY", options->study, "Study file with a \"sweep\".");
   command->add_option("-o,--out", options->out, "File for the results (SQLite).")
