@@ -178,8 +178,7 @@ void new_jump(Context& context, JumpOptions options) {
             options.height || options.stoop || options.cog_height
                 ? "No lower jump with the given options was found either. Choose a lower --height, "
                   "another --stoop or another --cog-height. `ayumi check` names the limits that "
-                  "the "
-                  "jump exceeds\n"
+                  "the jump exceeds\n"
                 : "No jump of 1 mm or more passes the check, from any COG height and with "
                   "any stoop that was tried, so these actuators cannot jump. `ayumi "
                   "check` names the limits that the jump exceeds\n");
