@@ -74,7 +74,7 @@ std::string add_case_results(const std::filesystem::path& file, const Json& stud
     const auto json = shallow_json<Json>(bytes);
     if (json.at("format") != kCertifyFormat)
       refuse("this file does not hold results of ayumi certify");
-    // The order of keys says nothing.
+    // The order of keys has no meaning.
     const auto theirs = nlohmann::json::parse(json.at("study").dump());
     const auto ours = nlohmann::json::parse(study.dump());
     if (theirs != ours) {

@@ -1,6 +1,6 @@
 #pragma once
-// Results of certify as JSON and CSV: the file from which a stopped study goes on, and which shards
-// are merged from.
+// Results of certify as JSON and CSV: the file with which a stopped study is continued, and from
+// which shards are merged.
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -9,8 +9,8 @@
 
 namespace ayumi::app {
 
-/// The finished cases of a study. `study` says what was asked; it must be the same to go on.
-/// `shard`: "1/4", or empty.
+/// The finished cases of a study. `study` describes the task; a study can only be continued with
+/// the same task. `shard`: "1/4", or empty.
 std::string case_results_text(const nlohmann::ordered_json& study, const std::string& shard,
                               const KnownResults& results);
 

@@ -51,8 +51,8 @@ std::string entry_of_many(const ConsistencyReport& report, const std::vector<int
   }
   return entry(worst, places + ", " + text::counted(members.size(), "time") + " within " +
                           text::fixed(begin, 3) + "-" + text::fixed(end, 3) + " s, worst " +
-                          (name_worst ? worst.where + " " : "") + "at " + text::fixed(worst.at, 3) +
-                          " s");
+                          (name_worst ? place_words(worst.where) + " " : "") + "at " +
+                          text::fixed(worst.at, 3) + " s");
 }
 
 // Chosen: more places than this are counted.
@@ -65,7 +65,8 @@ std::string names_of_places(const std::vector<std::string>& places) {
 
 std::string entry_of(const ConsistencyReport& report, const FindingGroup& group) {
   const Finding& worst = report.findings[group.worst];
-  if (group.members.size() == 1) return entry(worst, worst.where + ", " + seconds(worst));
+  if (group.members.size() == 1)
+    return entry(worst, place_words(worst.where) + ", " + seconds(worst));
   return entry_of_many(report, group.members, worst, names_of_places(group.places),
                        group.places.size() > 1);
 }
@@ -75,8 +76,9 @@ std::string consequences(const ConsistencyReport& report, const FindingGroup& gr
   for (const GroupConsequence& c : group.consequences) {
     const Finding& f = report.findings[c.worst];
     parts.push_back(std::string(name_of(c.kind)) + " (" +
-                    (c.count > 1 ? text::counted(c.count, "time") + ", worst " : "") + f.where +
-                    " at " + text::fixed(f.at, 3) + " s: " + amount_text(f) + ")");
+                    (c.count > 1 ? text::counted(c.count, "time") + ", worst " : "") +
+                    place_words(f.where) + " at " + text::fixed(f.at, 3) + " s: " + amount_text(f) +
+                    ")");
   }
   if (parts.empty()) return "";
   return std::string(kHang, ' ') + "consequences: " + text::join(parts, ", ") + "\n";
@@ -151,18 +153,19 @@ std::vector<AnswerPart> finding_parts(const ConsistencyReport& report, const Rob
 
 AnswerPart all_findings(const ConsistencyReport& report) {
   std::string out;
-  for (const Finding& f : report.findings) out += entry(f, f.where + ", " + seconds(f)) + hint(f);
+  for (const Finding& f : report.findings)
+    out += entry(f, place_words(f.where) + ", " + seconds(f)) + hint(f);
   return {Worth::error, {out}, kHang};
 }
 
-// Where and when a figure is reached.
+}  // namespace
+
 std::string figure_place(const ConsistencyReport& report, FindingKind kind) {
   const FigurePlace& p = report.summary_at[kind];
   if (!std::isfinite(p.at)) return {};
-  return " (" + (p.where.empty() ? "" : p.where + " ") + "at " + text::fixed(p.at, 2) + " s)";
+  return " (" + (p.where.empty() ? "" : place_words(p.where) + " ") + "at " + text::fixed(p.at, 2) +
+         " s)";
 }
-
-}  // namespace
 
 bool has_limit(const RobotModel& model, FindingKind kind) {
   const auto is_stated = [](const Eigen::VectorXd& limits) {

@@ -336,7 +336,7 @@ void fill_closed_streams() {
       static_cast<void>(::open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY));
 }
 
-// A result that nobody receives is no success.
+// If nobody receives the result, the command has failed.
 int exit_code_after_printing(int exit_code) {
   errno = 0;
   const bool failed = std::fflush(stdout) != 0 || std::ferror(stdout) != 0;
@@ -346,7 +346,7 @@ int exit_code_after_printing(int exit_code) {
   return exit_code_of(ErrorCode::bad_file);
 }
 
-// Where there is no memory even for the message of an error.
+// For the case that there is not even memory for the message of an error.
 [[noreturn]] void end_without_memory() {
   constexpr char kMessage[] = "ayumi: there is not enough memory\n";
   static_cast<void>(!::write(STDERR_FILENO, kMessage, sizeof kMessage - 1));

@@ -28,7 +28,7 @@ struct Context {
   Progress progress() const;
   /// Results for people, on stdout; nothing with --json.
   void print(const std::string& text) const;
-  /// The --json twin: one object on stdout, nothing without --json.
+  /// The result for --json: one object on stdout; nothing without --json.
   void print_json(const std::string& object) const;
   /// What a subcommand's callback sets: the process's exit status.
   int exit_code = 0;

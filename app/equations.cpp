@@ -221,7 +221,7 @@ EquationNumbers zmp_numbers(const RunInstant& i) {
     return w.take();
   }
   const double K = w.scalar("law.K", "1", law.K), D = w.scalar("law.D", "s", law.D);
-  w.line(previewed(i) ? "the wanted ZMP is that of the previewed COG plus " + fixed(K, 3) +
+  w.line(previewed(i) ? "the wanted ZMP is the ZMP of the previewed COG plus " + fixed(K, 3) +
                             " times the error of the COG. This error is the measured COG minus the "
                             "previewed COG, plus " +
                             fixed(1e3 * D / K, 0) + " ms times the difference of their speeds"

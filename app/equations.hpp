@@ -20,14 +20,14 @@ struct RunInstant {
   double gain(const std::string& name) const;
 };
 
-/// A number of the log, and where the equation gives it by the log's other numbers, that.
+/// A number of the log and, if the equation computes it from other numbers of the log, this result.
 struct LoggedValue {
   std::string name;  ///< of the log's column, as "ref.zmp.x[m]"
   double value = 0;
   std::optional<double> computed = {};
 };
 
-/// What an equation was at one instant of a run.
+/// An equation at one instant of a run.
 struct EquationNumbers {
   std::vector<std::string> lines;   ///< in words
   std::vector<LoggedValue> values;  ///< behind the words, unrounded

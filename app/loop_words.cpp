@@ -9,7 +9,7 @@ namespace ayumi::app {
 std::string gap_words(const LoopGap& gap) {
   return "feet " + text::fixed(1e3 * gap.feet, 2) + " mm, base " + text::fixed(1e3 * gap.base, 2) +
          " mm, posture " + text::fixed(gap.posture * 180 / M_PI, 2) + " deg (" + gap.joint +
-         "), rates " + text::fixed(gap.rate * 180 / M_PI, 2) + " deg/s";
+         "), joint speeds " + text::fixed(gap.rate * 180 / M_PI, 2) + " deg/s";
 }
 
 nlohmann::ordered_json gap_json(const LoopGap& gap) {

@@ -1,5 +1,5 @@
 #pragma once
-// How well the end of a motion meets its beginning, in words and as JSON.
+// Differences between the end of a motion and its beginning, in words and as JSON.
 
 #include <nlohmann/json.hpp>
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace ayumi::app {
 
-/// "feet 0.01 mm, base 0.02 mm, posture 0.10 deg (l_knee), rates 0.00 deg/s"
+/// "feet 0.01 mm, base 0.02 mm, posture 0.10 deg (l_knee), joint speeds 0.00 deg/s"
 std::string gap_words(const LoopGap& gap);
 
 nlohmann::ordered_json gap_json(const LoopGap& gap);

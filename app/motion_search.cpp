@@ -35,8 +35,7 @@ bool cannot_be_done(const Error& error) {
 }
 
 std::string text_of(const Finding& finding) {
-  return std::string(name_of(finding.kind)) + " " + finding.where + " at " +
-         text::fixed(finding.at, 3) + " s: " + finding.hint;
+  return kind_place_and_time(finding) + ": " + finding.hint;
 }
 
 // What is wrong with the postures of a motion; "" where nothing is.
@@ -67,8 +66,7 @@ Wrong wrong_motion(const RobotModel& model, const Pattern& pattern) {
     const double severity = severity_of(finding);
     if (severity <= wrong.severity) continue;
     wrong.severity = severity;
-    wrong.worst = std::string(name_of(finding.kind)) + " " + finding.where + " at " +
-                  text::fixed(finding.at, 3) + " s: " + amount_text(finding);
+    wrong.worst = kind_place_and_time(finding) + ": " + amount_text(finding);
   }
   if (wrong.first.empty())
     wrong.first = judged.report.findings.empty() ? "the motion does not pass the check"

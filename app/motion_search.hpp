@@ -1,5 +1,6 @@
 #pragma once
-// Which values of a generated motion the robot can do, where the default ones are too much for it.
+// Search for values of a generated motion that the robot can do, if the default values are too
+// large for it.
 
 #include <functional>
 #include <string>
@@ -10,11 +11,11 @@
 
 namespace ayumi::app {
 
-/// One value of a motion that nobody asked for, and what it may be instead.
+/// One value of a motion that the user did not set, and the values that may replace it.
 struct Dial {
   std::string name;  ///< as the option, e.g. "--stride"; with its unit in `unit`
   std::string unit;
-  std::vector<double> values;  ///< the default first, then ever farther from it
+  std::vector<double> values;  ///< the default first, then values farther and farther from it
   bool posture = false;        ///< changes postures, hardly speeds and torques
 };
 
@@ -31,8 +32,8 @@ struct SearchResult {
   std::vector<double> nearest_values;  ///< of the dials
 };
 
-/// How a motion ends in a simulation with the default controller, "dtad fell at 3.2 s ..."; ""
-/// where the robot stands at its end.
+/// How a motion ends in a simulation with the default controller, "with dtad, the robot fell at 3.2
+/// s ..."; "" where the robot stands at its end.
 std::string end_in_simulation(const RobotModel& model, const Pattern& pattern);
 
 /// Tries the values of the dials, those nearest to the defaults first, until the check accepts the

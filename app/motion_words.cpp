@@ -30,7 +30,7 @@ std::string joint_words(const RobotModel& model, const JointChange& j) {
 
 std::string largest(const std::string& what, const LargestChange& change,
                     const std::string& amount) {
-  return what + " changed by up to " + amount + " at " + seconds(change.at);
+  return what + " by up to " + amount + " at " + seconds(change.at);
 }
 
 }  // namespace
@@ -54,11 +54,11 @@ std::string motion_words(const RobotModel& model, const MotionChange& change,
     out +=
         "        and " + text::counted(rest, "more joint", "more joints") + " by smaller amounts\n";
   if (change.cog.size > 5e-5 || change.foot.size > 5e-5)
-    out += "  " + largest("COG", change.cog, millimetres(change.cog.size)) + "; " +
-           largest("a foot", change.foot, millimetres(change.foot.size)) + "\n";
+    out += "  " + largest("COG moved", change.cog, millimetres(change.cog.size)) + "; " +
+           largest("feet moved", change.foot, millimetres(change.foot.size)) + "\n";
   if (change.zmp.size > 5e-5 || change.fz.size > 0.05)
-    out += "  " + largest("commanded ZMP", change.zmp, millimetres(change.zmp.size)) + "; " +
-           largest("f_z", change.fz, text::fixed(change.fz.size, 1) + " N") + "\n";
+    out += "  " + largest("commanded ZMP changed", change.zmp, millimetres(change.zmp.size)) +
+           "; " + largest("f_z changed", change.fz, text::fixed(change.fz.size, 1) + " N") + "\n";
   return out + "  ZMP " + margin_words(before.summary[FindingKind::support_margin]) + " before, " +
          margin_words(after.summary[FindingKind::support_margin]) +
          " after; distance of the COG from its command " +
@@ -71,7 +71,7 @@ std::string cost_words(const WeightedChange& cost) {
   const std::string missing = cost.safety > kLeastShare * cost.change
                                   ? ", cost of missing safety " + text::brief(cost.safety)
                                   : "";
-  return "  weighted change " + text::brief(cost.change) + missing;
+  return "  weighted change of base and joints " + text::brief(cost.change) + missing;
 }
 
 std::string origin_words(const std::map<std::string, std::string>& origin) {

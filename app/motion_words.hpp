@@ -19,7 +19,7 @@ std::string margin_words(double margin);
 std::string motion_words(const RobotModel& model, const MotionChange& change,
                          const ConsistencyReport& before, const ConsistencyReport& after);
 
-/// "  weighted change 0.17, cost of missing safety 0.003".
+/// "  weighted change of base and joints 0.17, cost of missing safety 0.003".
 std::string cost_words(const WeightedChange& cost);
 
 struct MotionPlot {
@@ -28,16 +28,16 @@ struct MotionPlot {
 };
 
 /// Both motions against time, where they differ: the joints that moved most with their limits, the
-/// speed of those that were too fast, COG, ZMP, its margin and f_z; what is commanded before, where
-/// that is another thing than the motion. As .svg or .png.
+/// speed of those that were too fast, COG, ZMP, its margin and f_z; the command before the change,
+/// if it differs from the motion. As .svg or .png.
 void plot_motions(const RobotModel& model, const CommandSeries& before, const CommandSeries& after,
                   const MotionPlot& plot, const std::filesystem::path& path);
 
-/// Where the second column of origin_words() begins.
+/// Column at which the second column of origin_words() begins.
 inline constexpr size_t kOriginHang = 16;
 
-/// Where each track of a sampled pattern comes from, a line each under a heading: what drives the
-/// joints (of the legs above all) and the base, and what the COG, the ZMP and f_z follow.
+/// The origin of each track of a sampled pattern, one line for each below a heading: what drives
+/// the joints (of the legs above all) and the base, and what the COG, the ZMP and f_z follow.
 std::string origin_words(const std::map<std::string, std::string>& origin);
 
 }  // namespace ayumi::app

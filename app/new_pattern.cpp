@@ -6,6 +6,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
+#include "ayumi/limits/amount_text.hpp"
 #include "ayumi/task/task.hpp"
 
 namespace ayumi::app {
@@ -29,8 +30,7 @@ bool choose_profile(const Context& context, Task& task) {
   if (judged.good()) return true;
   const Finding& first = judged.report.findings.front();
   context.print(std::string("the check finds the new pattern inconsistent: ") +
-                name_of(first.kind) + " " + first.where + " at " + text::fixed(first.at, 3) +
-                " s: " + first.hint + "\n");
+                kind_place_and_time(first) + ": " + first.hint + "\n");
   return false;
 }
 

@@ -130,7 +130,7 @@ KnownCases read_results(const std::filesystem::path& file, const Json& study, si
   try {
     const auto json = shallow_json<Json>(bytes);
     if (json.at("format") != kPushFormat) refuse("this file does not hold results of ayumi push");
-    // The order of keys says nothing.
+    // The order of keys has no meaning.
     if (nlohmann::json::parse(json.at("study").dump()) != nlohmann::json::parse(study.dump()))
       refuse("this file holds the results of a study with other settings");
     for (const Json& entry : json.at("cases")) {

@@ -1,5 +1,6 @@
 #pragma once
-// Push thresholds as JSON: the --json twin, and the results file a stopped study goes on from.
+// Push thresholds as JSON: the output of --json, and the results file with which a stopped study is
+// continued.
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -16,7 +17,8 @@ nlohmann::ordered_json thresholds_json(const std::vector<PushCase>& cases,
 nlohmann::ordered_json summaries_json(const std::vector<PushCase>& cases,
                                       const PushOptions& options);
 
-/// The finished cases of a study. `study` says what was asked; it must be the same to go on.
+/// The finished cases of a study. `study` describes the task; a study can only be continued with
+/// the same task.
 std::string results_text(const nlohmann::ordered_json& study, const KnownCases& cases);
 
 /// Cases of an earlier file; empty when there is none. Throws Error(bad_file) when the file is no

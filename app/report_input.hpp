@@ -1,5 +1,5 @@
 #pragma once
-// What a run's folder gives a report.
+// The input of a report from the folder of a run.
 
 #include "ayumi/io/run/run_folder.hpp"
 #include "ayumi/report/report.hpp"

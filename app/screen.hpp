@@ -1,19 +1,19 @@
 #pragma once
-// Answers that fit on a screen: what is worth least is shortened first.
+// Answers that fit on a screen: the least important parts are shortened first.
 
 #include <string>
 #include <vector>
 
 namespace ayumi::app {
 
-/// What a part of an answer is worth, the least first. Every part is shortened once before any part
-/// is shortened a second time. Each time, what is worth least comes first.
+/// Importance of a part of an answer, the least important first. Every part is shortened once
+/// before any part is shortened a second time, each time in the order of importance.
 enum class Worth { origin, information, warning, remark, error, figure, verdict };
 
 struct AnswerPart {
   Worth worth = Worth::verdict;
   std::vector<std::string> forms = {};  ///< whole lines; each form is shorter than the one before
-  size_t hang = 4;                      ///< where the rest of a line that was broken begins
+  size_t hang = 4;                      ///< column at which the rest of a broken line begins
 };
 
 /// Chosen: the smallest terminal in use has 24 rows of 80 columns. A motion that is wrong may take
@@ -33,7 +33,7 @@ Room room_of(size_t rows);
 /// shortened, the text ends with the line `more`.
 std::string fitted(const std::vector<AnswerPart>& parts, const Room& room, const std::string& more);
 
-/// Adds parts behind others.
+/// Appends parts to other parts.
 void append(std::vector<AnswerPart>& parts, std::vector<AnswerPart> more);
 
 /// The parts in full.

@@ -25,7 +25,8 @@ void on_signal(int signal) {
   if (has_timer) timer_settime(impatience, 0, &once, nullptr);
 }
 
-// Nothing is lost: files get their names when they are whole, and child processes end with us.
+// Nothing is lost: files get their names when they are complete, and child processes end with this
+// process.
 void on_impatience(int) {
   if (is_stop_expected) _exit(0);
   constexpr char kMessage[] = "ayumi: stopped\n";

@@ -12,7 +12,7 @@ constexpr int kStoppedExitCode = 130;
 void watch_for_signals();
 
 /// A stop is how this command ends: what is still at work 0.7 s after it is ended with exit code 0
-/// and without a word.
+/// and without a message.
 void expect_to_be_stopped();
 
 /// Whether Ctrl-C was pressed.

@@ -180,9 +180,12 @@ std::string outcome_text(const SimulationLog& log) { return outcome_text(log, lo
 
 std::string outcome_text(const SimulationLog& log, size_t rows) {
   const SimulationResult& r = log.result;
-  std::string text =
-      (log.controller == ControllerKind::none ? "open loop" : name_of(log.controller.value())) +
-      " " + name_of(r.outcome);
+  std::string text = log.controller == ControllerKind::none
+                         ? std::string("in open loop")
+                         : "with " + name_of(log.controller.value());
+  text += r.outcome == Outcome::stands ? ", the robot stands"
+          : r.outcome == Outcome::fell ? ", the robot fell"
+                                       : ", the robot does not come to rest";
   if (r.outcome == Outcome::fell) {
     text += " at " + text::fixed(r.fell_at, 2) + " s";
     for (const SimulationEvent& event : log.events)

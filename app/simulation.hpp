@@ -1,6 +1,6 @@
 #pragma once
-// Simulating a pattern from the command line: choices over the pattern's own, and verdicts in
-// words.
+// Simulation of a pattern from the command line: options that replace those of the pattern, and
+// verdicts in words.
 
 #include "ayumi/sim/run_caution.hpp"
 #include "pattern_input.hpp"
@@ -14,7 +14,7 @@ struct SimulationChoice {
   std::vector<std::string> gains;  ///< "name=value"
   bool noise = false;              ///< sensor noise, bias and latency of the sidecar
   bool true_state = false;         ///< instead of sensors and estimator
-  bool unstable = false;           ///< run gains whose loop is unstable all the same
+  bool unstable = false;           ///< simulate also with gains that make the loop unstable
   int substeps = 1;                ///< of the integrator per servo period
   std::string plant = "ayumi";     ///< "ayumi" or "mujoco"
 };
@@ -42,17 +42,17 @@ ControllerSpec chosen_controller(const Task& input, const SimulationChoice& choi
 SimulateOptions simulation_options(const Context& context, const Task& input,
                                    const SimulationChoice& choice);
 
-/// What the head of the table of a run has to say: its disturbances and those that the pattern's
-/// own table is from, and why the run is `unfit` for a robot.
+/// The caution in the head of the table of a run: its disturbances and those that the pattern's own
+/// table is from, and why the run is `unfit` for a robot.
 TableCaution table_caution(const Task& input, const SimulationLog& log,
                            const std::vector<std::string>& unfit);
 
 /// Torques that the motors gave, samples x dof [N m].
 Eigen::MatrixXd torques_of(const SimulationLog& log);
 
-/// "DTAD stands: final COG error 0.2 mm, largest trunk tilt 1.3 deg, ..."
+/// "with dtad, the robot stands, final COG error 0.20 mm, largest trunk tilt 1.3 deg, ..."
 std::string outcome_text(const SimulationLog& log);
-/// The same of a log whose `rows` samples are elsewhere.
+/// The same for a log whose `rows` samples are not in memory.
 std::string outcome_text(const SimulationLog& about, size_t rows);
 
 }  // namespace ayumi::app

@@ -1,5 +1,6 @@
 #pragma once
-// A simulation whose samples go to the disk while it runs, and what is kept of them in memory.
+// A simulation whose samples are written to the disk while it runs, and the part of them that stays
+// in memory.
 
 #include <filesystem>
 #include <string>
@@ -33,7 +34,7 @@ StreamedRun simulate_streamed(const Context& context, const Task& input,
 /// The log with its samples, read from its file.
 SimulationLog with_samples(const WrittenLog& log, const std::filesystem::path& file);
 
-/// "DTAD stands: ..." as of the log itself.
+/// "with dtad, the robot stands, ...", as for a log with samples.
 std::string outcome_text(const WrittenLog& log);
 
 }  // namespace ayumi::app

@@ -1,5 +1,5 @@
 #pragma once
-// The file of a pattern that an editor and pages write in turn: no one's change is lost.
+// The file of a pattern that both an editor and the pages write. No change is lost.
 
 #include <filesystem>
 #include <string>
@@ -7,9 +7,9 @@
 
 namespace ayumi::app {
 
-/// Puts `text` in the place of the file if its bytes are still `expected`; false, and the file as
-/// it is, where they are not. The file keeps its permissions. Throws Error(bad_file) as
-/// write_file() does.
+/// Replaces the file by `text` if its bytes are still `expected`; otherwise returns false and does
+/// not change the file. The file keeps its permissions. Throws Error(bad_file) as write_file()
+/// does.
 bool replace_text(const std::filesystem::path& file, const std::string& expected,
                   const std::string& text);
 
@@ -17,8 +17,8 @@ bool replace_text(const std::filesystem::path& file, const std::string& expected
 /// one.
 class TextHistory {
  public:
-  /// A text that was read: the present one, or a new one behind it. What could be redone is gone
-  /// then.
+  /// A text that was read: the present one or a new one after it. A new text ends the list of steps
+  /// that can be redone.
   void add(const std::string& text);
   /// The present text is that of a step back, or forward.
   void step(int by) { at_ += by; }

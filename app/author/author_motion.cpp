@@ -44,11 +44,11 @@ OrderedJson finding_json(const RobotModel& model, const Finding& f) {
   OrderedJson json = {
       {"kind", name_of(f.kind)},
       {"severity", name_of(f.severity)},
-      {"where", f.where},
+      {"where", place_words(f.where)},
       {"begin", f.begin},
       {"end", f.end},
       {"at", f.at},
-      {"message", words_of(name_of(f.kind)) + ", " + f.where + ": " + amount_text(f)},
+      {"message", words_of(name_of(f.kind)) + ", " + place_words(f.where) + ": " + amount_text(f)},
       // The page has a button in place of the command.
       {"hint", f.hint == f.remedy || f.remedy.empty() ? f.hint : f.remedy + ", or choose Repair"},
       {"bodies", OrderedJson::array()},
@@ -72,7 +72,8 @@ OrderedJson groups_json(const RobotModel& model, const ConsistencyReport& report
     OrderedJson consequences = OrderedJson::array();
     for (const GroupConsequence& c : group.consequences) {
       const Finding& f = report.findings[static_cast<size_t>(c.worst)];
-      consequences.push_back(words_of(name_of(c.kind)) + ", " + f.where + ": " + amount_text(f));
+      consequences.push_back(words_of(name_of(c.kind)) + ", " + place_words(f.where) + ": " +
+                             amount_text(f));
     }
     groups.push_back({{"worst", group.worst},
                       {"members", group.members},
@@ -86,7 +87,7 @@ std::string pointer_to(const std::string& list, size_t i) {
   return "/" + list + "/" + std::to_string(i);
 }
 
-// Whether what stands there is read several times, in the rounds of a block.
+// Whether this value is read several times, in the rounds of a block.
 bool is_repeated(const std::string& pointer) { return outermost(pointer) != pointer; }
 
 // A pattern and its document, as written.
@@ -99,7 +100,8 @@ const OrderedJson& written_at(const Written& text, const std::string& pointer) {
   return text.document.at(OrderedJson::json_pointer(pointer));
 }
 
-// Where the time of a keyframe is written, and from when on the value there counts.
+// The place of the time of a keyframe in the text, and the time from which the written value
+// counts.
 OrderedJson time_json(const Written& text, size_t i) {
   const auto& frames = text.pattern.keyframes;
   const std::string pointer = pointer_of_keyframe(text.pattern, i);

@@ -28,7 +28,7 @@ struct AuthorMotion {
   OrderedJson parts;     ///< members of the page's state that follow from the motion
 };
 
-/// What does not come from the pattern's text.
+/// Inputs besides the text of the pattern.
 struct AuthorSetting {
   std::filesystem::path file;  ///< of the pattern
   std::map<std::string, double> set;
@@ -53,8 +53,8 @@ std::string pointer_token(const std::string& key);
 /// The item of the pattern's list that holds a phase or keyframe: itself, or a block that repeats.
 std::string outermost(const std::string& pointer);
 
-/// What can be dragged in the picture: the soles, the ends of the arms, what the head looks at, the
-/// trunk and the COG.
+/// The handles of the picture: the soles, the ends of the arms, the point that the head looks at,
+/// the trunk and the COG.
 struct AuthorHandle {
   enum class Kind { foot, limb, gaze, trunk, cog };
   Kind kind = Kind::cog;
@@ -66,7 +66,7 @@ struct AuthorHandle {
 };
 std::vector<AuthorHandle> handles_of(const RobotModel& robot);
 
-/// Where a key wants a hand, another link, or what the head looks at.
+/// The target of a key for a hand, for another link, or for the gaze.
 struct AuthorTarget {
   std::string pointer;         ///< of the key's value
   std::string label;           ///< "left hand"

@@ -32,11 +32,11 @@ constexpr double kSameTime = 5e-4;
 // A drag by less moves nothing [m]. Chosen: the lengths that are written have tenths of a
 // millimetre.
 constexpr double kStill = 5e-5;
-// A point that ends farther from where it was dragged is worth a word [m]. Chosen: what an eye
-// sees.
+// If a point ends farther than this from the place to which it was dragged, a message is shown [m].
+// Chosen: a distance that is visible.
 constexpr double kWorthSaying = 2e-3;
-// Period of the samples while something is dragged [s]. Chosen: the posture at one time is the same
-// within what an eye sees, and sampling takes a fifth of the time.
+// Period of the samples while something is dragged [s]. Chosen: differences of the posture are not
+// visible, and sampling takes a fifth of the time.
 constexpr double kDragTick = 0.005;
 // Distance of a dragged ZMP from the edge of the support [m]. Chosen: twice the margin below which
 // the check warns, because the motion's own ZMP differs a little from its keys.
@@ -310,7 +310,8 @@ size_t phase_at(const Pattern& pattern, double time) {
   return pattern.phases.size() - 1;
 }
 
-// Numbers of a place, each for itself, so that what does not move stays as it is written.
+// Changes the numbers of a place one by one, so that numbers that do not change stay as they are
+// written.
 void set_place(const AuthorMotion& motion, const std::string& pointer, const Vector3d& place,
                std::vector<PatternEdit>& edits) {
   for (int i = 0; i < 3; ++i) {
@@ -813,7 +814,8 @@ PoseAnswer posed(const AuthorMotion& motion, const std::string& text, const Auth
                  const PoseWish& wish) {
   try {
     if (!wish.drag.empty()) {
-      // The picture has fewer samples than the motion. What counts is by how much it was dragged.
+      // The picture has fewer samples than the motion. So the distance of the drag counts, not the
+      // place.
       PoseWish exact = wish;
       if (wish.from)
         exact.to += place_of(motion, handle_named(motion, wish.drag),

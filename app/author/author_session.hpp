@@ -31,7 +31,7 @@ struct AuthorEvent {
   std::string data;  ///< JSON
 };
 
-/// What changes when a file is written: times [s, ns], size and number.
+/// Properties of a file that change when it is written: times [s, ns], size and number.
 struct FileStamp {
   long seconds = 0, nanoseconds = 0, size = -1;
   unsigned long number = 0;

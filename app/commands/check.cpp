@@ -64,8 +64,9 @@ bool is_of_table(const Finding& f) {
          f.kind == FindingKind::table_rest;
 }
 
-// What the robot's own actuators, by which a table for it is judged, lack where the pattern assumes
-// others; where they are strong enough, why `export` refuses the table nevertheless.
+// A table for the robot is judged by the robot's own actuators. If the pattern assumes other ones,
+// this is what the motion needs beyond the robot's own actuators; if they are strong enough, it is
+// the reason for which `export` refuses the table nevertheless.
 std::string own_need(const Task& input, CheckOptions judged) {
   const std::string own = input.robot.limits().name;
   if (judged.profile.empty() || judged.profile == own) return "";
@@ -153,7 +154,7 @@ std::vector<std::string> plot_joints_against_limits(const Task& task,
 
 // ---- what is printed
 
-// A pattern that cannot be sampled: what, put right, would do, and the first thing that fails.
+// A pattern that cannot be sampled: the changes that would help, and the first error.
 [[noreturn]] void explain(const Context& context, const Error& error, const std::string& file,
                           const CheckCommand& options) {
   const Pattern pattern = read_given_pattern(file, read_pairs(options.input.set, "--set"));

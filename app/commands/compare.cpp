@@ -32,7 +32,7 @@ struct CompareCommand {
   RecordingOptions reading;
 };
 
-// What of the recordings is there.
+// The recordings that are given.
 struct Recordings {
   std::optional<AngleTable> angles;
   SensorTable sensors;

@@ -45,7 +45,7 @@ std::string side_words(const std::string& file, const Task& input,
          text::fixed(input.series.duration(), 2) + " s\n";
 }
 
-// Weighed as a repair of A would.
+// Weighted as in a repair of A.
 WeightedChange weighted(const DiffCommand& options, const Task& a, const Task& b,
                         const ConsistencyReport& check_a) {
   RepairOptions repair = preferred_options(a.pattern);

@@ -248,8 +248,8 @@ void retime(Context& context, const EditCommand& options) {
                in_json(scale, before, force, result, found));
 }
 
-// Two motions in sequence as one, sampled: as keys where these can say it and are as consistent,
-// else as a table. `reason` becomes the reason for a table.
+// Two motions in sequence as one, sampled: as keys if keys can express the motion and it is as
+// consistent, otherwise as a table. `reason` becomes the reason for a table.
 Pattern joined_pattern(const Context& context, const EditCommand& options, const Task& first,
                        const MotionPart& second, double over, CommandSeries& series,
                        std::string& reason) {
@@ -335,7 +335,8 @@ GaitCycle best_cycle(const RobotModel& robot, const MotionPart& walk) {
   return best;
 }
 
-// Two steps in the middle of a walk, so many times. Alone, they begin and end in motion.
+// Two steps in the middle of a walk, repeated. With `alone`, the motion begins and ends while the
+// robot walks.
 void loop_cycle(Context& context, const EditCommand& options) {
   if (options.over > 0)
     fail(ErrorCode::usage,

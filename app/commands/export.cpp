@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -109,8 +110,8 @@ void take_kept_rows(const Task& task, const ExportOptions& options, Source& sour
   source.reference = std::move(targets);
 }
 
-/// What goes to the robot is judged by its own actuators, and made for them, not by those a study
-/// has assumed.
+/// A table for the robot is made for the robot's own actuators and judged by them, not by the
+/// actuators that a study assumes.
 std::string profile_of(const ExportOptions& options, const RobotModel& model,
                        const std::string& recorded) {
   if (!options.safety.profile.empty()) return options.safety.profile;
@@ -254,7 +255,7 @@ Source source_of_run(const ExportOptions& options, const Context& context) {
   Source source = source_of_table(options, context, table.reference, table.caution);
   if (log.samples.size() == source.reference.rows.size()) source.torque = torques_of(log);
   source.unfit = run.unfit;
-  // What the run says of itself, and what is known of an open loop that is asked for.
+  // The cautions of the run and, if the open loop is asked for, of this log.
   const std::string& own = table.caution.unfit;
   if (!own.empty() && text::join(run.unfit, "; ").find(own) == std::string::npos)
     source.unfit.push_back(own);
@@ -267,7 +268,7 @@ bool is_reference_table(const std::string& path) {
                                                        "\"ayumi.reference/") != std::string::npos);
 }
 
-// A table of a run folder is part of that run: what holds of the folder holds of it.
+// A table of a run folder is a part of this run: the cautions of the folder apply to the table.
 void verify_run_of(const fs::path& table) {
   const fs::path folder = table.has_parent_path() ? table.parent_path() : fs::path(".");
   if (!is_run_folder(folder)) return;
@@ -385,7 +386,7 @@ std::string words_of(const TableServo& servo) {
   if (servo.content == "ideal") return "joint angles, not servo targets (--servo ideal)";
   const bool one = servo.lag.find(' ') == std::string::npos;
   return "the targets are ahead of the posture by the lag of the servos" +
-         (one ? " (" + servo.lag + " s)" : "") +
+         (one ? " (" + text::brief(1000 * std::atof(servo.lag.c_str()), 3) + " ms)" : "") +
          (servo.content == "lead" ? "" : ", and they also compensate for the sag");
 }
 
@@ -432,7 +433,7 @@ std::string in_words(const ExportOptions& options, const Source& source, const S
   return text;
 }
 
-/// What became of an imported sequence.
+/// Messages about an imported sequence.
 std::string words_on_sequence(const Source& source, const SafeTable& safe) {
   if (!source.plan || !source.plan->pattern.table || !source.plan->pattern.table->sequence)
     return "";
@@ -462,7 +463,7 @@ TableCaution caution_of_written(const Source& source, const SafeTable& safe) {
   return {source.disturbances, text::join(words, "; ")};
 }
 
-/// The name says it too where a table that no robot should receive is written: walk.UNSAFE.csv.
+/// The name also shows that a table is not for a robot: walk.UNSAFE.csv.
 std::string unsafe_name(const std::string& output) {
   if (output == "-" || fs::path(output).stem().extension() == ".UNSAFE") return output;
   const fs::path path = output;
@@ -470,7 +471,7 @@ std::string unsafe_name(const std::string& output) {
       .string();
 }
 
-/// A HOAP sequence has no head that the robot's program would skip: what has to be said stands in a
+/// A HOAP sequence has no head that the robot's program would skip: the warning is written into a
 /// file beside it.
 std::string note_beside(const std::string& sequence) { return sequence + ".txt"; }
 

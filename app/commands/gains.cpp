@@ -67,14 +67,15 @@ std::string report(const RobotModel& model, const GainStudy& d) {
   const DtadParams& p = d.params;
   const double w = d.omega;
   std::string out = model.name() + ": COG " + text::fixed(d.loops.front().height, 3) +
-                    " m above the soles, omega " + text::fixed(w, 2) + " /s\n";
+                    " m above the soles, omega = sqrt(g / COG height) = " + text::fixed(w, 2) +
+                    " /s\n";
   out += "gains, as a pattern or a sidecar names them:\n ";
   for (const auto& [name, value] : gain_list(p)) out += " " + name + "=" + text::brief(value);
   out +=
-      "\n(18)(19)  K = " + text::brief(long_term_k(p)) +
+      "\nlong term   K = " + text::brief(long_term_k(p)) +
       ", D = " + text::fixed(1e3 * long_term_d(p) / w, 1) +
       " ms: the reference ZMP moves by K times the error of the COG plus D times the rate of this "
-      "error\n";
+      "error, equations (18)(19)\n";
   out += "short term  " + text::fixed(100 * p.zmp_gain / (1 + p.zmp_gain), 0) +
          " % of a ZMP error is answered immediately; the time constant of the ZMP filter is " +
          text::fixed(1e3 * p.zmp_filter / w, 1) + " ms\n";
@@ -89,7 +90,7 @@ std::string report(const RobotModel& model, const GainStudy& d) {
          "for the time of a step. The loop stays stable " +
          (d.largest_ka >= GainStudy::kMostKa ? "for ka beyond " + text::brief(GainStudy::kMostKa)
                                              : "for ka up to " + text::fixed(d.largest_ka, 2)) +
-         ". Slowest modes (" + weakest.name + "):\n";
+         ". The slowest modes of an error (" + weakest.name + "):\n";
   int shown = 0;
   for (const Complex& pole : d.weakest.analysis.poles)
     if (pole.imag() >= 0 && -pole.real() > kShown * w && shown++ < 4) out += mode_text(pole);

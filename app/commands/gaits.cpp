@@ -64,7 +64,7 @@ const Stage& stage_of(const Json& entry) {
 
 bool is_missing(const Json& entry) { return entry.at("status") == "missing"; }
 
-/// The values of an axis that was left out: those of the usual walk of the robot.
+/// The values of an axis for which no option is given: the values of the usual walk of the robot.
 void fill_axes(const GaitsCommand& command, const RobotModel& model, GaitGrid& grid) {
   const WalkParameters usual = walk_defaults(model);
   const auto axis = [](const std::string& words, const std::string& option,
@@ -139,7 +139,7 @@ std::vector<Json> run_jobs(const Context& context, const LibraryFolder& folder, 
   };
   in_parallel(wanted.size(), context.threads, stop, [&](size_t k) {
     const size_t i = wanted[k];
-    // What is done inside a job only asks whether to stop.
+    // The progress of the work inside a job is only used to ask whether to stop.
     GaitResult made = job(i, [&](const ProgressEvent&) {
       const std::lock_guard lock(mutex);
       return tell();
@@ -193,7 +193,8 @@ GaitMap map_of(const GaitGrid& grid, const std::string& title, const std::vector
   return map;
 }
 
-/// "45 are missing: 40 cannot be generated, 5 are not certified", and the first ones with reasons.
+/// "60 cells: 15 made, 45 missing: 40 (the walk cannot be generated), 5 (...)", and the first
+/// missing ones with their reasons.
 std::string missing_words(const std::vector<Json>& entries, const char* noun,
                           const std::function<std::string(const Json&)>& name) {
   std::vector<std::string> kinds;
@@ -205,9 +206,9 @@ std::string missing_words(const std::vector<Json>& entries, const char* noun,
     all += static_cast<size_t>(count);
     if (count > 0) kinds.push_back(std::to_string(count) + " (" + stage.words + ")");
   }
-  std::string text = "  " + text::counted(entries.size(), noun) + ", of which ";
-  text += std::to_string(entries.size() - all) + " are made and " + std::to_string(all) +
-          " are missing" + (all > 0 ? ": " + text::join(kinds, ", ") : "") + "\n";
+  std::string text = "  " + text::counted(entries.size(), noun) + ": ";
+  text += std::to_string(entries.size() - all) + " made, " + std::to_string(all) + " missing" +
+          (all > 0 ? ": " + text::join(kinds, ", ") : "") + "\n";
   size_t shown = 0;
   for (const Json& entry : entries) {
     if (!is_missing(entry) || entry.at("stage") == "neighbour") continue;

@@ -213,9 +213,9 @@ void add_identify(Command& app, Context& context) {
       ->capture_default_str();
   command
       ->add_option("--stand", options.stand,
-                   "How the robot is held during the recording: auto (feet if the robot has soles, "
-                   "otherwise fixed), feet (it stands on level ground), or fixed (a fixture holds "
-                   "the root upright) (default: auto).")
+                   "How the robot is held during the recording. feet: the robot stands on level "
+                   "ground. fixed: a fixture holds the root upright. auto: feet if the robot has "
+                   "soles, otherwise fixed (default: auto).")
       ->check(one_of({"auto", "feet", "fixed"}));
   command->add_option("--unit", unit, "Unit of the joint columns whose names do not state a unit.")
       ->check(one_of({"rad", "deg"}))

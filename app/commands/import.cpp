@@ -1,4 +1,5 @@
-// Motions of other origin as patterns: HOAP sequences, tables of angles, Ayumi's own joint tables.
+// Motions of other programs and robots as patterns: HOAP sequences, tables of angles, Ayumi's own
+// joint tables.
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -127,8 +128,9 @@ void add_import(Command& app, Context& context) {
       ->add_option(
           "--signs", signs,
           "Positive direction of the angles of the file: encoder = the direction in which the "
-          "encoder counts up, joint = the positive direction in the robot's file. Only for files "
-          "in radians with one column for each motor, in the order of the motor numbers.")
+          "encoder counts up, joint = the positive direction in the robot's file. The "
+          "option is for files in radians that have one column for each motor, in the order of the "
+          "motor numbers.")
       ->check(one_of({"encoder", "joint"}))
       ->capture_default_str();
   command->add_flag("--order", options.how.reading.by_order,

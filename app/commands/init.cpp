@@ -105,9 +105,11 @@ SidecarGains gains_for(const RobotModel& model) {
         "with the default gains, an error of the standing robot grows by the factor e in " +
         text::brief(-1 / study.weakest.analysis.decay, 2) + " s (" +
         study.loops[study.weakest.index].name +
-        "), because the servos are soft. These are the nearest gains found with which " +
-        (decay > 0 ? "it decays; the slowest mode takes " + text::brief(1 / decay, 2) + " s"
-                   : std::string("it grows by less than the factor e during a step"));
+        "), because the servos are soft. Of the gains that were tried, these are the nearest to "
+        "the default gains with which the error " +
+        (decay > 0
+             ? "decays (time constant of the slowest mode: " + text::brief(1 / decay, 2) + " s)"
+             : std::string("grows by less than the factor e during a step"));
     result.check = "with `ayumi gains`, after the constants of the servos are known";
     result.to_do =
         "Check the stiffness of the servos: they are so soft that the default gains of the control "
@@ -118,7 +120,8 @@ SidecarGains gains_for(const RobotModel& model) {
   result.to_do =
       "Check the stiffness of the servos of the legs: they are so soft that no gains of the "
       "control law were found that keep the robot standing" +
-      (needed > 0 ? "; with " + text::brief(needed, 2) + " times their kp and kd, there are some."
+      (needed > 0 ? "; such gains exist if kp and kd of these servos are " +
+                        text::brief(needed, 2) + " times as large."
                   : std::string("."));
   return result;
 }

@@ -121,9 +121,9 @@ std::vector<double> values_that_pass(const Context& context, const RobotModel& m
       context.print("First error with the default values: " + result.limit + "\n");
     if (!result.nearest.empty()) {
       const std::string nearest = changed_values(dials, result.nearest_values);
-      context.print("The nearest is that with " +
-                    (nearest.empty() ? "the default values" : nearest) + ", which " +
-                    "is limited by " + result.nearest + "\n");
+      context.print("The combination that comes nearest has " +
+                    (nearest.empty() ? "the default values" : nearest) + ". Its limit is " +
+                    result.nearest + "\n");
     }
   }
   return result.values;
@@ -135,8 +135,9 @@ struct WalkDial {
   std::function<void(WalkParameters&, double)> set;
 };
 
-// Fills what was left out of a walk in place, forward, or of a turn: `length` is what makes its
-// steps longer. `lifts`: the feet may rise less than asked for, because nobody asked.
+// Fills in the values that are not given for a walk in place, a walk forward or a turn: `length` is
+// what makes its steps longer. `lifts`: the feet may rise less than asked for, because nobody
+// asked.
 void fit_steps(const Context& context, const RobotModel& model, const NewOptions& options,
                WalkParameters& w, const WalkDial& length, bool lifts = false) {
   // Legs without the roll of the ankle carry the COG aside by a few millimetres only, so that they
@@ -531,7 +532,7 @@ double height_for_steps(const RobotModel& model, Pattern pattern) {
   return 0;
 }
 
-// Stands, does what the goal asks, stands.
+// The robot stands, reaches the goal, and stands.
 void new_viip(const Context& context, const NewOptions& options) {
   const RobotModel model = load_robot(options.robot, robot_search(context));
   const bool steps = options.viip_steps > 0;
@@ -940,7 +941,7 @@ void add_new(Command& app, Context& context) {
   kick->callback([shared, &context] { new_kick(context, *shared); });
 
   Command* viip = command->add_subcommand(
-      "viip", "goals in place of keys: COG displacement or velocity, steps, a walk at a velocity");
+      "viip", "reach goals by VIIP: COG displacement, COG velocity, steps or a walk at a velocity");
   add_viip(*viip, options);
   viip->callback([shared, &context] { new_viip(context, *shared); });
   add_new_jump(*command, context);
@@ -953,7 +954,7 @@ void add_new(Command& app, Context& context) {
       ->type_name("S");
   stand->callback([shared, &context] { new_stand(context, *shared); });
   Command* excite = command->add_subcommand(
-      "excite", "slow sweeps, chirps and steps of every joint, for identify");
+      "excite", "move every joint by slow sweeps, chirps and steps, for a recording for identify");
   excite->footer("Examples:\n  ayumi new excite hoap1 -o excite.json");
   add_common(*excite, options);
   excite->add_option("ROBOT", options.robot, "Robot to excite. --robot does the same.");

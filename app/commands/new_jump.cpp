@@ -176,9 +176,9 @@ void new_jump(Context& context, JumpOptions options) {
       if (options.profile.empty())
         context.print(
             options.height || options.stoop || options.cog_height
-                ? "No lower jump was found either, where a value was not given as an "
-                  "option. Choose a lower --height, another --stoop or another "
-                  "--cog-height. `ayumi check` names the limits that the jump exceeds\n"
+                ? "No lower jump with the given options was found either. Choose a lower --height, "
+                  "another --stoop or another --cog-height. `ayumi check` names the limits that "
+                  "the jump exceeds\n"
                 : "No jump of 1 mm or more passes the check, from any COG height and with "
                   "any stoop that was tried, so these actuators cannot jump. `ayumi "
                   "check` names the limits that the jump exceeds\n");
@@ -200,7 +200,7 @@ void add_new_jump(Command& parent, Context& context) {
   auto shared = std::make_shared<JumpOptions>();
   JumpOptions& options = *shared;
   Command* command =
-      parent.add_subcommand("jump", "jump: stoop, lift-off, flight, touchdown, settle");
+      parent.add_subcommand("jump", "jump: stoop, lift off, fly, touch down and come to rest");
   command->footer(
       "Examples:\n  ayumi new jump --height 0.02 -o jump.json\n"
       "  ayumi new jump --times 3 -o hop.json\n"

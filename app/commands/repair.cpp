@@ -186,7 +186,7 @@ nlohmann::ordered_json in_json(const PassingPace& pace) {
   return json;
 }
 
-// Where to see what moved.
+// Commands that show the changes.
 std::string see_words(const RepairCommand& options, const RepairResult& result) {
   if (result.status == RepairStatus::already_consistent || options.baked || options.from_scratch)
     return "";
@@ -254,7 +254,7 @@ RepairOptions repair_options(const RepairCommand& options, const Task& input) {
   return repair;
 }
 
-// What the command line alone can get wrong is refused before the pattern is sampled.
+// Errors of the command line alone are refused before the pattern is sampled.
 void refuse_wrong_wishes(const Context& context, const RepairCommand& options) {
   refuse_unknown_tolerances(options.tolerances);
   if (options.locked.empty() && options.weights.empty()) return;
@@ -279,7 +279,7 @@ int exit_code_of(const RepairResult& result) {
 }
 
 // What a repair works on, for a user who waits: said after some seconds, again when another program
-// begins, and when the repair is stopped. It is no progress, so that it is said with -q too.
+// begins, and when the repair is stopped. It is not progress, so it is also printed with -q.
 class StruggleTeller {
  public:
   // Chosen: a usual repair ends before that, and a user who waits longer wants to know why [s].
@@ -313,7 +313,7 @@ class StruggleTeller {
       return;
     told_stage_ = stage;
     told_ = now;
-    say(stage + " takes a while." +
+    say("the step '" + stage + "' takes a while." +
         left_words(
             "The motion already passes the check, and the search looks for a smaller change") +
         " Ctrl-C stops the repair");

@@ -1,6 +1,6 @@
 // A table as the robot would play it: read back, turned into counts, clamped as the motor boards
-// do, and played open loop on the servos in the simulated robot. What is judged here is what is
-// sent.
+// do, and played open loop on the servos in the simulated robot. The values that are sent are the
+// ones that are judged.
 
 #include <algorithm>
 #include <cmath>

@@ -117,13 +117,14 @@ class MainJob {
 std::string check_text(const ConsistencyReport& report, const RobotModel& model) {
   std::string text =
       report.consistent ? painted(Paint::good, "consistent") : painted(Paint::bad, "inconsistent");
-  text +=
-      ": ZMP margin " + text::fixed(1e3 * report.summary[FindingKind::support_margin], 1) + " mm";
+  text += ": ZMP margin " + text::fixed(1e3 * report.summary[FindingKind::support_margin], 1) +
+          " mm" + figure_place(report, FindingKind::support_margin);
   std::string shares;
   for (const auto& [kind, name] : {std::pair{FindingKind::joint_speed, "joint speed "},
                                    std::pair{FindingKind::joint_torque, "torque "}}) {
     if (has_limit(model, kind))
-      shares += std::string(", ") + name + text::fixed(100 * report.summary[kind], 0) + " %";
+      shares += std::string(", ") + name + text::fixed(100 * report.summary[kind], 0) + " %" +
+                figure_place(report, kind);
     else
       text += std::string(", ") + name + "without limits";
   }
@@ -134,8 +135,8 @@ std::string check_text(const ConsistencyReport& report, const RobotModel& model)
     if (worst.severity != Severity::error || ++causes > kMostGroups) continue;
     const size_t times = group.members.size();
     text += std::string("\n            ") + name_of(worst.kind) + " at " +
-            text::fixed(worst.at, 3) + " s, " + worst.where + ": " + amount_text(worst) + "; " +
-            worst.hint;
+            text::fixed(worst.at, 3) + " s, " + place_words(worst.where) + ": " +
+            amount_text(worst) + "; " + worst.hint;
     if (times > 1)
       text += " (" + text::join(group.places, " and ") + ", " + text::counted(times, "time") + ")";
   }
@@ -150,7 +151,7 @@ std::string check_text(const ConsistencyReport& report, const RobotModel& model)
 constexpr double kMoreTilt = std::numbers::pi / 180;  // [rad]
 constexpr double kMoreTorque = 0.1;                   // share of the limit
 
-// In what the run with control does worse than the one without, under the same disturbances.
+// The figures that are worse with control than without, under the same disturbances.
 std::vector<std::string> worse_than_open_loop(const SimulationResult& open,
                                               const SimulationResult& closed) {
   std::vector<std::string> worse;
@@ -246,7 +247,7 @@ void MainJob::simulate(const Task& input) {
   SimulationChoice calm = options_.choice;
   calm.scenario = "none";
   undisturbed_ = run_streamed(input, "undisturbed", calm, {.postures = true, .torque = true});
-  say("", "without disturbances " + outcome_text(undisturbed_->log));
+  say("", "without disturbances, " + outcome_text(undisturbed_->log));
   summary_["undisturbed"] = Json::parse(simulation_json(undisturbed_->log));
   folder_.sections.emplace_back("undisturbed", simulation_json(undisturbed_->log));
 }
@@ -269,7 +270,8 @@ void MainJob::export_tables(const Task& input) {
   write_hoap(input);
 }
 
-// What goes to the robot is judged by its own actuators, not by those a study has assumed.
+// A table for the robot is judged by the robot's own actuators, not by the actuators that a study
+// assumes.
 void MainJob::write_hoap(const Task& input) {
   SafetyOptions safety;
   safety.profile = input.robot.limits().name;
@@ -297,7 +299,12 @@ void MainJob::write_hoap(const Task& input) {
     write_file(output_->file("hoap.csv"), hoap_csv(input.robot, safe.table, safety));
     note_file("hoap.csv");
     text += ", hoap.csv (" + std::to_string(safe.table.rows.size()) + " rows, largest step " +
-            text::fixed(100 * safe.report.max_step_ratio, 0) + " % of the limit)";
+            text::fixed(100 * safe.report.max_step_ratio, 0) + " % of the limit" +
+            (safe.report.worst_joint.empty()
+                 ? ""
+                 : " (" + safe.report.worst_joint + " at " + text::fixed(safe.report.worst_at, 3) +
+                       " s of the table)") +
+            ")";
   } else if (encoders && !safe.report.safe) {
     text += (options_.light ? "; the table for the robot is unsafe: "
                             : "; hoap.csv is not written, because the table is unsafe: ") +

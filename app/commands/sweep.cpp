@@ -67,7 +67,7 @@ std::string first_errors(const ResultsDatabase& results) {
   return text;
 }
 
-/// Prints, writes and judges what there is.
+/// Prints, writes and judges the present results.
 void conclude(Context& context, const ResultsDatabase& results, const SweepOutputs& outputs,
               const CaseRunner* runner, Json json = Json::object()) {
   const std::vector<Expectation> expectations = judge_expectations(results, outputs.expect);
@@ -195,9 +195,9 @@ void run_sweep(Context& context, const SweepCommand& options) {
   if (cost.cases > 0)
     context.print("  " + text::counted(cost.cases, "case") + (cost.cases == 1 ? " was" : " were") +
                   " run; a case took " + text::brief(cost.seconds / double(cost.cases), 3) +
-                  " s of processor time on average, " +
+                  " s of processor time on average, and " +
                   text::fixed(100 * (1 - cost.useful / std::max(1e-9, cost.seconds)), 2) +
-                  " % of this time outside the simulation\n");
+                  " % of this time was not spent on the simulation\n");
   conclude(context, *results, options.outputs, &runner,
            {{"run_now", cost.cases}, {"seconds", cost.seconds}, {"useful_seconds", cost.useful}});
   results->close();
@@ -308,8 +308,8 @@ void add_sweep(Command& app, Context& context) {
       "  ayumi sweep study.json -o a.db --shard 1/2\n  ayumi sweep merge a.db b.db -o all.db\n"
       "  ayumi sweep status results.db\n"
       "  ayumi sweep study.json -o results.db --expect 'falls == 0' --junit results.xml\n"
-      "Run again with the same -o to go on: only what is missing is run. Exit code 1: an "
-      "expectation is not met, or a case could not be run.");
+      "Run again with the same -o to go on: only the cases without a result are run. Exit code 1: "
+      "an expectation is not met, or a case could not be run.");
   auto options = std::make_shared<SweepCommand>();
   command->add_option("STUDY", options->study, "Study file with a \"sweep\".");
   command->add_option("-o,--out", options->out, "File for the results (SQLite).")
@@ -354,12 +354,14 @@ void add_sweep(Command& app, Context& context) {
                              "be repeated.")
                 ->allow_extra_args(false),
             "OPTION");
-  for_slurm(command
-                ->add_option("--chunk", slurm.chunk,
-                             "Number of cases in a task (default: so many that a task takes "
-                             "--task-seconds; the pilot run shows how long a case takes).")
-                ->check(whole_number_within(1, 1000000).description("")),
-            "N");
+  for_slurm(
+      command
+          ->add_option("--chunk", slurm.chunk,
+                       "Number of cases in a task (default: Ayumi runs a few cases first, the "
+                       "pilot run, and chooses the number so that a task takes "
+                       "--task-seconds).")
+          ->check(whole_number_within(1, 1000000).description("")),
+      "N");
   for_slurm(
       command->add_option("--task-seconds", slurm.task_seconds, "Wanted duration of a task [s].")
           ->check(number_within(0.1, 1e6).description(""))

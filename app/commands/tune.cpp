@@ -125,7 +125,7 @@ void add_tune(Command& app, Context& context) {
       "pushes. A push counts 10 if the robot falls. Otherwise it counts omega / z times the\n"
       "integral of |DCM - commanded DCM| from the push to 1.2 s after its end. The second is the\n"
       "mean of |ZMP - reference ZMP| / z of the pattern without a push. z is the COG height, and\n"
-      "omega is the square root of g / z. Gains whose loop is unstable are not tried.");
+      "omega is the square root of g / z. Gains that make the loop unstable are not tried.");
   auto options = std::make_shared<TuneCommand>();
   TuneOptions& t = options->tune;
   command->add_option("PATTERN", options->pattern, "Pattern file.")->required();

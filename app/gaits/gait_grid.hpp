@@ -8,8 +8,7 @@
 
 namespace ayumi::app {
 
-/// What a walk is asked to do, as a command of velocity: distances and angles of one step divided
-/// by its period.
+/// The command of a walk as a velocity: distances and angles of one step divided by its period.
 struct GaitCell {
   std::string name;     ///< "f50_s-20_t10_p550": mm/s, mm/s, deg/s, ms
   double forward = 0;   ///< [m/s]

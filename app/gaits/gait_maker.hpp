@@ -13,7 +13,7 @@
 
 namespace ayumi::app {
 
-/// What is asked of every walk.
+/// Requirements for every walk.
 struct GaitOptions {
   std::string robot;       ///< as patterns in the folder of patterns name it
   std::string profile;     ///< actuator profile; "": the robot's default

@@ -62,7 +62,7 @@ std::string motion_key(const Settings& settings) {
   return key;
 }
 
-/// Those that decide the law and the sensors.
+/// The settings that decide the law and the sensors.
 std::string law_key(const Settings& settings) {
   std::string key;
   for (const auto& [name, value] : settings)
@@ -72,7 +72,7 @@ std::string law_key(const Settings& settings) {
   return key;
 }
 
-/// Those that decide law, ground and disturbances, but neither the seed nor the draw.
+/// The settings that decide law, ground and disturbances, but not the seed or the draw.
 std::string loop_key(const Settings& settings) {
   std::string key;
   for (const auto& [name, value] : settings)
@@ -137,13 +137,13 @@ struct CaseRunner::Watch {
   }
 };
 
-/// What cases of one law share.
+/// Data that the cases of one law share.
 struct CaseRunner::Law {
   SimulateOptions options;  ///< with ground and disturbances of the pattern
   Controller controller;    ///< before its first tick
 };
 
-/// What the draws of one law, ground and scenario share.
+/// Data that the draws of one law, ground and scenario share.
 struct CaseRunner::Draws {
   Draws(Study uncertain, const Task& motion, const SimulateOptions& options)
       : study(std::move(uncertain)),
@@ -152,14 +152,14 @@ struct CaseRunner::Draws {
   UncertainTask task;
 };
 
-/// What check and repair find of a motion on a ground of one friction.
+/// Results of check and repair for a motion on a ground with one friction coefficient.
 struct CaseRunner::Judged {
   std::once_flag judged, repaired;
   std::vector<Cell> check, repair;
   std::optional<Error> repair_error;
 };
 
-/// A motion, what is known of it, and its laws.
+/// A motion, its results, and its laws.
 struct CaseRunner::Prepared {
   std::string key;
   std::once_flag once;
@@ -169,7 +169,8 @@ struct CaseRunner::Prepared {
   std::map<std::string, std::shared_ptr<const Law>> laws;
   std::map<std::string, std::shared_ptr<const Draws>> draws;
 
-  /// The one with that key, or a new one. Those of values that differ in every case are not kept.
+  /// The entry with this key, or a new one. Entries of values that differ in every case are not
+  /// kept.
   template <typename Kept, typename Make>
   std::shared_ptr<const Kept> kept(std::map<std::string, std::shared_ptr<const Kept>>& all,
                                    const std::string& kept_key, const Make& make) {

@@ -22,7 +22,7 @@ struct ResultColumn {
   std::string type;  ///< "REAL", "INTEGER", "TEXT"
 };
 
-/// What is kept of one case.
+/// The results of one case.
 struct CaseRow {
   long number = 0;
   std::vector<Cell> axes;     ///< in the order of SweepStudy::axes()

@@ -1,5 +1,6 @@
 #pragma once
-// What a lab expects of a sweep ("falls == 0"), and the results for its tools: JSON and JUnit.
+// Expectations on the results of a sweep ("falls == 0"), and the results for other tools: JSON and
+// JUnit.
 
 #include <nlohmann/json.hpp>
 

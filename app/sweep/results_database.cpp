@@ -472,9 +472,9 @@ long ResultsDatabase::merge(const fs::path& other) {
   if (!different.good()) complain("the files cannot be compared");
   if (different.step())
     fail(ErrorCode::bad_file, other.string() + ": the result of case " +
-                                  std::to_string(different.integer(0)) + " differs from that in " +
-                                  file_.string() + "; nothing of " + other.string() +
-                                  " was merged");
+                                  std::to_string(different.integer(0)) +
+                                  " differs from the result in " + file_.string() +
+                                  "; nothing of " + other.string() + " was merged");
   if (!different.done()) complain("the files cannot be compared");
   different.reset();
   execute(

@@ -17,8 +17,8 @@ struct sqlite3_stmt;
 
 namespace ayumi::app {
 
-/// What the results in a database belong to. Two databases with the same fingerprint have the same
-/// rows for the same cases.
+/// Identification of the study to which the results belong. Two databases with the same fingerprint
+/// have the same rows for the same cases.
 struct SweepHead {
   std::string name;        ///< of the study
   std::string study_file;  ///< as it was given
@@ -70,7 +70,7 @@ class ResultsDatabase {
   /// The shards that were run into this file: "1/4"; empty: of the whole study.
   std::vector<std::string> shards() const;
   void add_shards(const std::vector<std::string>& shards);
-  /// What its rows took, over all runs that noted it.
+  /// Processor time of the rows, over all runs that recorded it.
   SweepWork work() const;
   void add_work(const SweepWork& more);
 

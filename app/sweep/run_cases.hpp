@@ -5,7 +5,7 @@
 
 namespace ayumi::app {
 
-/// What a run took.
+/// Cost of a run.
 struct RunCost {
   long cases = 0;
   double seconds = 0;  ///< processor time of all threads, rows written included

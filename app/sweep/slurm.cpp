@@ -206,7 +206,7 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-/// What Slurm says of a task.
+/// State of a task as Slurm reports it.
 struct QueuedTask {
   std::string state, reason;
   bool running() const {
@@ -429,7 +429,7 @@ class Engine {
         done_[i] = true;
       }
     const double each = double(std::max(1L, pilot.cases));
-    // Reading of inputs, and what the cases share: a task does it once.
+    // Each task once reads the inputs and computes the data that its cases share.
     const double setup = runner_.setup_seconds() + pilot.seconds - pilot.useful;
     const double limit = kShareOfLimit * slurm_seconds(options_.time);
     chunk_ = chunk_size(pilot.useful / each, setup, all - count,
@@ -440,8 +440,9 @@ class Engine {
                    "\n");
   }
 
-  /// Submits what is pending. What Slurm refuses is tried in smaller arrays; what it refuses then
-  /// stays pending while other tasks are under way, because most limits are of their number.
+  /// Submits what is pending. If Slurm refuses an array, smaller arrays are tried. If Slurm refuses
+  /// these too, they stay pending while other tasks are queued or running, because most limits
+  /// concern the number of tasks.
   void submit() {
     if (pending_.empty()) return;
     if (refused_ && !out_.empty() && seconds_since(*refused_) < kBetweenRefusals) return;
@@ -520,8 +521,8 @@ class Engine {
     cost_.useful += more.useful;
   }
 
-  /// Merges the files that have arrived. One that is damaged or was made of other inputs is worth
-  /// nothing; its task then counts as lost.
+  /// Merges the files that have arrived. A file that is damaged or was made from other inputs is
+  /// not used, and its task counts as lost.
   void collect() {
     for (const fs::path& part : arrived(folder_)) {
       const double begin = thread_seconds();
@@ -554,7 +555,7 @@ class Engine {
     }
   }
 
-  /// A task has ended: what it did not do is pending again.
+  /// A task has ended: the cases that it did not run are pending again.
   std::map<TaskNumber, CaseRanges>::iterator give_back(
       std::map<TaskNumber, CaseRanges>::iterator task) {
     std::vector<bool>& again = again_;
@@ -575,7 +576,7 @@ class Engine {
     return "";
   }
 
-  /// The last line of what a task said.
+  /// The last line of the output of a task.
   std::string words_of(const TaskNumber& task) const {
     const fs::path log = folder_ / ("log-" + std::to_string(task.first) + "-" +
                                     std::to_string(task.second) + ".txt");

@@ -1,6 +1,6 @@
 #pragma once
 // Runs cases of a sweep as job arrays of Slurm: a pilot run here sizes the tasks, each task leaves
-// its rows in a file of its own, and these are merged as they arrive. What became of a task is read
+// its rows in a file of its own, and these are merged as they arrive. The state of a task is read
 // from its file and from the queue; no accounting is needed. docs/slurm.md describes the engine.
 
 #include "sweep/run_cases.hpp"
@@ -43,7 +43,7 @@ RunCost run_on_slurm(const Context& context, const CaseRunner& runner, ResultsDa
                      const std::vector<bool>& missing, const SlurmOptions& options,
                      const Progress& progress);
 
-/// What is known of the tasks that were submitted for these results.
+/// State of the tasks that were submitted for these results.
 struct SlurmStatus {
   bool exists = false;  ///< tasks were submitted and not all were collected
   long waiting = 0, running = 0, arrived = 0;

@@ -67,7 +67,7 @@ struct NamedMesh {
 
 using Materials = std::vector<std::pair<std::string, Vector3d>>;
 
-/// What a robot is made of: `sided` links are written as l_ and, mirrored, r_.
+/// The links of a robot: `sided` links are written as l_ and, mirrored, r_.
 struct RobotMeshes {
   std::string title;   ///< of the robot, for the files' first line
   std::string source;  ///< file that made them

@@ -113,7 +113,7 @@ void bind_robot(py::module_& m) {
           "Time between two targets of the servos [s].")
       .def_property_readonly(
           "assumptions", [](const RobotModel& robot) { return robot.description().assumptions; },
-          "What the files of the robot do not say and was inferred.")
+          "Values that the files of the robot do not state and that were inferred.")
       .def(
           "cog",
           [](const RobotModel& robot, const RobotState& state) -> Eigen::Vector3d {

@@ -254,8 +254,8 @@ void bind_gains(py::module_& m) {
 
 void bind_local_pace(py::module_& m) {
   py::class_<LocalPace>(m, "LocalPace", "The result of fastest_local_pace().")
-      .def_readonly("found", &LocalPace::found, "Whether a course of time passes the check.")
-      .def_readonly("pattern", &LocalPace::pattern, "The motion in this course, as a table.")
+      .def_readonly("found", &LocalPace::found, "Whether a timing passes the check.")
+      .def_readonly("pattern", &LocalPace::pattern, "The motion with this timing, as a table.")
       .def_readonly("scale", &LocalPace::scale,
                     "Duration divided by the duration of the given pattern.")
       .def_readonly("path_scale", &LocalPace::path_scale,
@@ -270,11 +270,11 @@ void bind_local_pace(py::module_& m) {
           },
           "(limit, share of the duration for which it binds), the longest first; '' where no limit "
           "binds, 'pace' for the largest pace, 'pause' for pauses that are kept.")
-      .def_readonly("rounds", &LocalPace::rounds, "Number of courses of time that were checked.")
+      .def_readonly("rounds", &LocalPace::rounds, "Number of timings that were checked.")
       .def_readonly("limited_by", &LocalPace::limited_by,
-                    "In words: why no course of time passes the check.")
+                    "In words: why no timing passes the check.")
       .def_readonly("by_posture", &LocalPace::by_posture,
-                    "Whether no course of time passes because a posture itself violates a limit.");
+                    "Whether no timing passes because a posture itself violates a limit.");
   m.def(
       "fastest_local_pace",
       [](const PyTask& given, const std::string& table, std::optional<double> margin,
@@ -292,7 +292,7 @@ void bind_local_pace(py::module_& m) {
       py::arg("task"), py::kw_only(), py::arg("table") = "retimed.csv",
       py::arg("margin") = py::none(), py::arg("keep_pauses") = false,
       py::arg("progress") = py::none(),
-      "The fastest course of time along the motion: the motion slows down only where a limit "
+      "The fastest timing along the motion: the motion slows down only where a limit "
       "binds. The result names its table `table`; the ZMP keeps at most `margin` [m] from the edge "
       "of the support; "
       "with `keep_pauses`, spans in which nothing moves keep their length.");

@@ -1,6 +1,6 @@
 #pragma once
 // Long work seen from Python: the interpreter's lock is free while the library works, Ctrl-C stops
-// it, and a callback hears how far it is. What a callback raises, and KeyboardInterrupt, is kept
+// it, and a callback receives the progress. What a callback raises, and KeyboardInterrupt, is kept
 // until the library has stopped in its own way, and is raised then.
 
 #include <pybind11/pybind11.h>

@@ -96,7 +96,8 @@ TEST(Consistency, ZmpTrackOutside) {
   EXPECT_NEAR(find(r, "support_margin").at, at, 2 * series.dt);
   EXPECT_NEAR(find(r, "zmp_residual").worst, 0.050, 1e-3);
   EXPECT_EQ(find(r, "zmp_residual").where, "y");
-  EXPECT_EQ(find(r, "zmp_residual").follows_from.rfind("support_margin right at", 0), 0u);
+  EXPECT_EQ(find(r, "zmp_residual").follows_from.rfind("support_margin of the right foot at", 0),
+            0u);
   EXPECT_NEAR(find(r, "support_margin").worst, -0.020, 2e-3);
   EXPECT_EQ(find(r, "support_margin").where, "right");
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "ayumi/limits/amount_text.hpp"
 #include "tests/support/check_report.hpp"
 #include "tests/support/limited_biped.hpp"
 #include "tests/support/walk.hpp"
@@ -95,8 +96,7 @@ TEST(FindingGroups, EveryFindingOfAFastWalkIsInOneGroup) {
     EXPECT_EQ(f.cause >= 0, !f.follows_from.empty());
     if (f.cause < 0) continue;
     const Finding& cause = report.findings[f.cause];
-    EXPECT_NE(f.follows_from.find(std::string(name_of(cause.kind)) + " " + cause.where),
-              std::string::npos)
+    EXPECT_NE(f.follows_from.find(kind_and_place(cause.kind, cause.where)), std::string::npos)
         << f.follows_from;
   }
 }

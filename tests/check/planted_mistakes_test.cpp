@@ -341,7 +341,7 @@ TEST(PlantedMistakes, TargetsOfHandsInAnotherUnitAreNamed) {
       EXPECT_TRUE(std::regex_search(
           first_cause(all), std::regex(std::string("^/keyframes/1/hands/left: the left hand is .*"
                                                    "and there are 2 more targets .* read in ") +
-                                       unit + " the pattern is consistent$")))
+                                       unit + ", the pattern is consistent$")))
           << first_cause(all);
       EXPECT_TRUE(std::regex_search(
           first_cause(one), std::regex(std::string("^/keyframes/2/hands/left: the left hand is .*"
@@ -603,7 +603,7 @@ TEST(PlantedMistakes, ValuesOfTheWorldThatNobodyMeansAreDoubted) {
   const std::string hard =
       doubt([&](Pattern& p) { p.scenario = {push(1, PushKind::impulse, 10'000, 0.02)}; });
   EXPECT_TRUE(hard.starts_with("/scenario/0: the impulse is ")) << hard;
-  EXPECT_NE(hard.find("if it is in mN s, write 10"), std::string::npos) << hard;
+  EXPECT_NE(hard.find("if this number is in mN s, write 10"), std::string::npos) << hard;
   EXPECT_EQ(doubt([&](Pattern& p) { p.scenario = {push(1, PushKind::force, 500, 0.02)}; }), "");
   EXPECT_NE(doubt([&](Pattern& p) { p.scenario = {push(1, PushKind::force, 500, 1)}; }), "");
   const std::string late =

@@ -256,7 +256,7 @@ TEST(ExplainCommand, EveryNumberIsTheLogsOwn) {
 
 // A baseline is named, and no equation of the paper is claimed for its ZMP.
 TEST(ExplainCommand, NamesTheBaselineThatChoseTheZmp) {
-  for (const auto& [name, words] : {std::pair{"preview", "is that of the previewed COG"},
+  for (const auto& [name, words] : {std::pair{"preview", "is the ZMP of the previewed COG"},
                                     std::pair{"foot-guided", "times the error of the DCM"}}) {
     const Folder folder;
     ASSERT_EQ(

@@ -46,9 +46,9 @@ TEST(NewWalk, WhatNoProfileMendsIsSaid) {
   Folder folder;
   const Output out = made(folder, {"--steps", "2", "--turn", "25"});
   EXPECT_EQ(out.exit_code, 0) << out.err;
-  EXPECT_NE(
-      out.out.find("the check finds the new pattern inconsistent: self_collision r_foot - l_foot"),
-      std::string::npos)
+  EXPECT_NE(out.out.find(
+                "the check finds the new pattern inconsistent: self_collision of r_foot - l_foot"),
+            std::string::npos)
       << out.out;
   EXPECT_NE(out.out.find(" is the most that the legs can reach"), std::string::npos) << out.out;
 }
@@ -102,8 +102,9 @@ TEST(NewWalk, NamesTheWalkThatComesNearest) {
   ASSERT_EQ(run_program({"init", "-q", robot.string(), "-o", "duck"}, folder.path()).exit_code, 0);
   const Output out = made(folder, {"--robot", "duck"});
   EXPECT_EQ(out.exit_code, 3);
-  EXPECT_NE(out.out.find("The nearest is that with --period"), std::string::npos) << out.out;
-  EXPECT_NE(out.out.find("which is limited by joint_torque"), std::string::npos) << out.out;
+  EXPECT_NE(out.out.find("The combination that comes nearest has --period"), std::string::npos)
+      << out.out;
+  EXPECT_NE(out.out.find("Its limit is joint_torque"), std::string::npos) << out.out;
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "w.json"));
 }
 

@@ -186,7 +186,7 @@ TEST(SweepCommand, MergeNamesTheFilesThatDiffer) {
   write(s.folder / "b.db", other);
   const Output merged = s.run({"sweep", "merge", "a.db", "b.db", "-o", "m.db"});
   EXPECT_EQ(merged.exit_code, 3);
-  EXPECT_NE(merged.err.find(" differs from that in m.db; nothing of b.db was merged"),
+  EXPECT_NE(merged.err.find(" differs from the result in m.db; nothing of b.db was merged"),
             std::string::npos)
       << merged.err;
   EXPECT_FALSE(fs::exists(s.folder / "m.db"));

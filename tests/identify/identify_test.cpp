@@ -134,7 +134,8 @@ TEST(Identify, NamesWhatItCannotTellApart) {
   const IdentifiedJoint joint =
       identify(model, recorded(theta, kNoise, kCount, 1, slow), held_root(), "m.csv").joints.at(0);
   ASSERT_FALSE(joint.confounded.empty());
-  EXPECT_NE(joint.confounded[0].find("delay and damping are confounded"), std::string::npos)
+  EXPECT_NE(joint.confounded[0].find("delay and damping cannot be distinguished"),
+            std::string::npos)
       << joint.confounded[0];
   EXPECT_NEAR(joint.lag, servo.delay + (servo.kd + servo.viscous) / servo.kp, 0.001);
 }
@@ -252,10 +253,9 @@ TEST(RecordingChecks, RowsThatAreMissingInARest) {
       whole.bottomRows(missing);
   EXPECT_NE(refusal().find("3 rows are missing"), std::string::npos) << refusal();
   motion.measured.theta = whole.topRows(rows - 2);
-  EXPECT_NE(
-      refusal().find(
-          "2 rows are missing. No motion is cut, so they are missing in a pause or at the end"),
-      std::string::npos)
+  EXPECT_NE(refusal().find("2 rows are missing. Every motion is complete, so the rows are missing "
+                           "in a pause or at the end"),
+            std::string::npos)
       << refusal();
   motion.measured.timed = true;
   EXPECT_EQ(refusal(), "");

@@ -109,8 +109,8 @@ TEST(MotionFormats, PlacesThatNoMotionReachesAreRefused) {
   EXPECT_EQ(refusal_of(rows("12"), "m.csv", options), "no error");
   const std::string refused = refusal_of(rows("1e30"), "m.csv", options);
   EXPECT_TRUE(
-      refused.starts_with("m.csv: row 5: a coordinate of the root is 1e+30 m; beyond 10 km it is "
-                          "no place of a motion; correct the file"))
+      refused.starts_with("m.csv: row 5: a coordinate of the root is 1e+30 m, but at most 10 km "
+                          "are possible; correct the file"))
       << refused;
 }
 

@@ -139,7 +139,7 @@ TEST(ExportSafety, FindsTheStepThatIsTooLarge) {
   EXPECT_EQ(found.value, 61);
   EXPECT_EQ(found.limit, 57);
   EXPECT_EQ(text_of(found),
-            "b at 2.005 s (pattern 0.005 s): step 61 counts, limit 57 counts (in 1 row)");
+            "b at 2.005 s (0.005 s of the pattern): step 61 counts, limit 57 counts (in 1 row)");
 }
 
 TEST(ExportSafety, FindsThePositionBeyondTheSoftLimit) {

@@ -55,7 +55,7 @@ TEST(PushMap, SaysWhatItShows) {
   const Drawing drawing = draw_push_map(four_directions());
   for (const char* text : {"walk", "standing", "capture bound B", "open loop", "dtad", "forward",
                            "left", "walking: dtad worst 1.02 B",
-                           "N s, through the COG; hollow point: the robot survives also the "
+                           "N s, through the COG; hollow point: the robot survives even the "
                            "largest push that was tried"})
     EXPECT_TRUE(has_text(drawing, text)) << text;
   for (const auto& item : drawing.items)

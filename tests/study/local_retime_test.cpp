@@ -1,4 +1,4 @@
-// The quickest course of time along a motion: its rows against the check's inverse dynamics, one
+// The quickest timing along a motion: its rows against the check's inverse dynamics, one
 // joint against its bang-bang motion, walks against their fastest uniform pace.
 
 #include "ayumi/study/local_retime.hpp"
@@ -267,7 +267,7 @@ TEST(LocalRetime, AFlightKeepsItsTime) {
   EXPECT_NEAR(flight(pace.pattern), flight(jump), 1e-6);
 }
 
-// A posture beyond a joint's limit stays there in any course of time.
+// A posture beyond a joint's limit stays there with any timing.
 TEST(LocalRetime, APostureThatIsWrongIsTold) {
   const LocalPace pace = local_pace(hoap1(), raised_arms(3, 3));
   EXPECT_FALSE(pace.found);

@@ -75,7 +75,7 @@ TEST(Retime, APostureThatIsWrongIsToldAtOnce) {
   EXPECT_FALSE(pace.found);
   EXPECT_TRUE(pace.by_posture);
   EXPECT_EQ(pace.evaluations, 1);
-  EXPECT_NE(pace.limited_by.find("joint_position l_elbow at 2.0"), std::string::npos)
+  EXPECT_NE(pace.limited_by.find("joint_position of l_elbow at 2.0"), std::string::npos)
       << pace.limited_by;
 }
 

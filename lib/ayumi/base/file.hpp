@@ -1,5 +1,5 @@
 #pragma once
-// Whole files in, whole files out.
+// Reading and writing of whole files.
 
 #include <filesystem>
 #include <functional>

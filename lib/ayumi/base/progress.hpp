@@ -1,5 +1,6 @@
 #pragma once
-// How long work tells its caller where it is, and how the caller stops it.
+// Progress of long work: how the work reports its state to the caller, and how the caller stops the
+// work.
 
 #include <functional>
 #include <string>

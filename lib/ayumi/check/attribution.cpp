@@ -1,10 +1,10 @@
 // Data feed each other in one direction: the angle of a joint makes poses, poses and time make
 // rates, rates make forces, and the command is compared with all of them. A finding is a
-// consequence where a finding upstream, at the same place in the motion, is enough to bring it
-// about. One engine executes the rules in their order: for each open error of the cause, in the
-// rule's order, every other open error that belongs to one of its effects, touches that effect's
-// interval and passes its condition follows from it. An error is open as long as it follows from no
-// other one.
+// consequence if a finding upstream, at the same place in the motion, is sufficient to cause it.
+// One engine executes the rules in their order: for each open error of the cause, in the rule's
+// order, every other open error that belongs to one of its effects, touches that effect's interval
+// and passes its condition follows from it. An error is open as long as it follows from no other
+// one.
 #include "ayumi/check/attribution.hpp"
 
 #include <algorithm>
@@ -40,7 +40,7 @@ struct FindingSet {
   bool (*contains)(const Violation&);
 };
 
-/// Where effects of cause i are looked for.
+/// The interval in which effects of cause i are searched.
 struct Where {
   const char* words;
   std::vector<Interval> (*of)(const Scene&, int i);

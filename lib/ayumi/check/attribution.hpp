@@ -1,7 +1,8 @@
 #pragma once
-// Attribution: one fault in a pattern shows in many figures. A finding that another one is enough
-// to bring about is a consequence of it: it becomes a warning that names its cause, so that errors
-// are what there is to correct. The rules are data, the rows of the table in docs/attribution.md.
+// Attribution: one fault in a pattern affects many figures. If one finding is sufficient to cause
+// another one, the other one is a consequence: it becomes a warning that names its cause, so that
+// only the faults to correct remain errors. The rules are data, the rows of the table in
+// docs/attribution.md.
 
 #include <array>
 #include <string>
@@ -11,8 +12,8 @@
 
 namespace ayumi {
 
-/// Sets `cause` and lowers the severity of every error that follows from another one. At least one
-/// error stays where there was one.
+/// Sets `cause` and lowers the severity of every error that follows from another one. If there was
+/// an error before, at least one error remains.
 void mark_consequences(JudgedMotion& motion, std::vector<FindingWindow>& windows);
 
 /// Adds what `export` would refuse of the table (JudgedMotion::table). A table finding follows from

@@ -10,6 +10,7 @@
 #include "ayumi/base/in_parallel.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/check/attribution.hpp"
+#include "ayumi/limits/amount_text.hpp"
 #include "ayumi/limits/judged_motion.hpp"
 #include "ayumi/model/diagnose.hpp"
 
@@ -29,8 +30,8 @@ void judge_samples(JudgedMotion& motion) {
   }
 }
 
-// Judges the samples. Beside them runs what depends on the commands alone; then follows what needs
-// the whole motion.
+// Judges the samples. At the same time, the limits that depend on the commands alone are computed;
+// then follow the limits that need the whole motion.
 void judge(JudgedMotion& motion, int threads) {
   std::vector<const Limit*> ahead;
   for (const Limit* limit : limits())
@@ -88,7 +89,7 @@ Finding finding_of(const JudgedMotion& motion, const std::vector<FindingWindow>&
   if (window.cause >= 0) {
     const Violation& cause = windows[window.cause].worst;
     f.cause = window.cause;
-    f.follows_from = std::string(name_of(cause.kind)) + " " + place_text(motion, cause) + " at " +
+    f.follows_from = kind_and_place(cause.kind, place_text(motion, cause)) + " at " +
                      text::fixed(cause.sample * dt, 3) + " s";
     f.hint = f.remedy = "follows from " + f.follows_from + ": correct that finding first";
   }
@@ -124,7 +125,7 @@ ConsistencyReport report_of(JudgedMotion& motion) {
   for (const FindingSpec* spec : summary_figures())  // nothing was near the limit at any time
     if (spec->figure.least && !std::isfinite(report.summary[spec->kind]))
       report.summary[spec->kind] = 0;
-  // Without shapes on both legs there is no clearance to speak of, and nothing was checked.
+  // Without collision shapes on both legs, no clearance is known, and nothing was checked.
   double& clearance = report.summary[FindingKind::self_collision];
   if (motion.collisions.pairs().empty() ||
       (clearance >= 0 && !legs_have_collision_shapes(motion.model)))

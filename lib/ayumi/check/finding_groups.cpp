@@ -13,7 +13,7 @@ namespace ayumi {
 
 namespace {
 
-// A place and its mirror image have the same key: what kind of place it is, and two numbers.
+// A place and its mirror image have the same key: the kind of place and two numbers.
 using PlaceKey = std::tuple<size_t, int, int, std::string>;
 
 class PlaceKeys {
@@ -61,8 +61,8 @@ class PlaceKeys {
   std::optional<MirrorMap> map_;
 };
 
-// How far a value is beyond its limit; both have the sign of the side on which the limit is, or a
-// limit of both signs is positive.
+// Distance of a value beyond its limit. Value and limit have the same sign; a limit for both signs
+// is positive.
 double excess(const Finding& f) { return std::abs(std::abs(f.worst) - std::abs(f.limit)); }
 
 int root_of(const ConsistencyReport& report, int i) {
@@ -101,8 +101,9 @@ std::vector<FindingGroup> finding_groups(const ConsistencyReport& report, const 
     FindingGroup& group = groups[entry->second];
     group.members.push_back(i);
     if (is_further_beyond(f, report.findings[group.worst])) group.worst = i;
-    if (std::find(group.places.begin(), group.places.end(), f.where) == group.places.end())
-      group.places.push_back(f.where);
+    const std::string place = place_words(f.where);
+    if (std::find(group.places.begin(), group.places.end(), place) == group.places.end())
+      group.places.push_back(place);
   }
   for (int i = 0; i < count; ++i)
     if (report.findings[i].cause >= 0)

@@ -1,7 +1,7 @@
 #pragma once
 // Findings as people read them: one group for each cause. A walk with swings that are too fast has
-// the same finding at each step and on both sides, and each of them has consequences; the author
-// has one thing to correct.
+// the same finding at each step and on both sides, and each of them has consequences; but the
+// author has to correct only one thing.
 
 #include <string>
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace ayumi {
 
-/// What follows from the errors of a group.
+/// A consequence of the errors of a group.
 struct GroupConsequence {
   FindingKind kind = FindingKind::cog_residual;
   int count = 0;  ///< findings
@@ -21,7 +21,7 @@ struct GroupConsequence {
 struct FindingGroup {
   std::vector<int> members = {};         ///< indices into ConsistencyReport::findings, by time
   int worst = 0;                         ///< the one of them that is furthest beyond its limit
-  std::vector<std::string> places = {};  ///< Finding::where of all members, each once
+  std::vector<std::string> places = {};  ///< of all members, in words, each once
   std::vector<GroupConsequence> consequences = {};  ///< in the order of their first finding
 };
 

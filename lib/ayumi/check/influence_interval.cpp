@@ -14,10 +14,11 @@ constexpr double kTrace = 1e-4;
 // contacts, which are met to 1e-12 m, and the smallest tolerance of a sole (3e-4 m). No measured
 // case changes from half to twice (constants.md).
 constexpr double kOff = 1e-5;
-// Time by which the ZMP answers before the COG is off by kTrace [s]. Source: docs/attribution.md.
+// Time by which the ZMP reacts before the COG is off by kTrace [s]. Source: docs/attribution.md.
 constexpr double kPad = 0.050;
-// Rest [rad/s]: joints slower than this, for at least kRest [s]. Chosen: a squat only turns at its
-// depth, and that is no rest. No measured case changes from half to twice (constants.md).
+// Rest [rad/s]: joints slower than this, for at least kRest [s]. Chosen: a squat reverses its
+// direction at the lowest point, and this is not a rest. No measured case changes from half to
+// twice (constants.md).
 constexpr double kStill = 0.01, kRest = 0.020;
 // Distance back that shows that a joint has turned [rad], [m]. Chosen: above the rounding of tables
 // in 0.1 degrees (1.7e-3 rad). No measured case changes from half to twice (constants.md).

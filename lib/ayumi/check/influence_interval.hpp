@@ -1,5 +1,5 @@
 #pragma once
-// Influence intervals: how far one fault reaches in time, in samples, the last one included.
+// Influence intervals: the time in which one fault has effects, in samples, the last one included.
 
 #include "ayumi/limits/judged_motion.hpp"
 
@@ -24,11 +24,11 @@ inline Interval around(const Interval& interval, int pad) {
   return {interval.first - pad, interval.last + pad};
 }
 
-/// The window, and what lies around it as far as the posture's COG is off the command.
+/// The window and the time around it in which the COG of the posture is off the command.
 Interval deviation_around(const JudgedMotion& motion, const FindingWindow& window);
 
-/// The window of a foot's fault, and what lies around it in the same contact as far as the sole is
-/// out of its place by more than rounding.
+/// The window of a foot's fault and the time around it, within the same contact, in which the sole
+/// is out of its place by more than rounding.
 Interval displacement_around(const JudgedMotion& motion, const FindingWindow& window);
 
 /// The largest distance of a supporting sole from its place [m].
@@ -38,13 +38,15 @@ double displacement(const JudgedMotion& motion, int foot, int sample);
 /// window to its first turning point after it. One wrong key moves the joint only within this time.
 Interval excursion_around(const JudgedMotion& motion, const FindingWindow& window);
 
-/// While an angle is wrong: its excursion, and as long as it moves the COG off the command.
+/// The time in which an angle is wrong: its excursion, and the time in which it moves the COG off
+/// the command.
 Interval wrong_angle_around(const JudgedMotion& motion, const FindingWindow& window);
 
 /// The flight of this window.
 Interval flight_around(const JudgedMotion& motion, const FindingWindow& window);
 
-/// From rest to rest (20 ms and more), around this sample.
+/// The time around this sample from the rest before it to the rest after it (rests of 20 ms or
+/// more).
 Interval motion_around(const JudgedMotion& motion, int sample);
 
 /// The phase in which a foot is planned to stand too early or to leave the ground too early, and

@@ -13,9 +13,8 @@ std::string Judgement::reason() const {
   const auto first = std::find_if(report.findings.begin(), report.findings.end(), is_error);
   if (first == report.findings.end()) return "the pattern is inconsistent: " + need().text;
   const auto errors = std::count_if(report.findings.begin(), report.findings.end(), is_error);
-  std::string text = std::string("the pattern is inconsistent: ") + name_of(first->kind) + " " +
-                     first->where + " at " + text::fixed(first->at, 3) +
-                     " s: " + amount_text(*first);
+  std::string text =
+      "the pattern is inconsistent: " + kind_place_and_time(*first) + ": " + amount_text(*first);
   if (errors > 1)
     text +=
         " (and " + std::to_string(errors - 1) + (errors == 2 ? " more error)" : " more errors)");

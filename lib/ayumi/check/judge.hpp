@@ -1,6 +1,6 @@
 #pragma once
-// Is this pattern good? The one answer that every command gives: the motion is consistent, and the
-// actuators suffice for the motion and for the goals of VIIP, for which the motion only holds a
+// The verdict on a pattern, the same in every command: the motion is consistent, and the actuators
+// suffice for the motion and for the goals of VIIP. For such goals, the motion only holds a
 // posture.
 
 #include "ayumi/check/actuator_need.hpp"
@@ -14,9 +14,9 @@ struct Judgement {
   ActuatorNeed goal_need;         ///< what it lacks for the goals
 
   bool good() const { return report.consistent; }
-  /// What the profile lacks: for the motion, else for the goals.
+  /// What the profile lacks for the motion or, if it suffices for the motion, for the goals.
   const ActuatorNeed& need() const { return motion_need.text.empty() ? goal_need : motion_need; }
-  /// "the pattern is inconsistent: joint_torque r_knee at 1.200 s: 5.2 N m, limit 4.5 N m (and 3
+  /// "the pattern is inconsistent: joint_torque of r_knee at 1.200 s: 5.2 N m, limit 4.5 N m (and 3
   /// more errors)"; empty when it is good.
   std::string reason() const;
 };

@@ -41,14 +41,15 @@ constexpr double kOnGround = 1e-3;
 // Angles below this count as none, and angles this near to a whole number as whole ones [deg].
 // Definition: what rounding to three digits leaves.
 constexpr double kLeastAngle = 1e-3;
-// So many angles make a rule of what may be chance in a few. Chosen: two keys of two joints.
+// From this number of angles on, a regularity is not taken for chance. Chosen: two keys of two
+// joints.
 constexpr size_t kManyAngles = 4;
-// The ground is hardly ever rougher. Chosen: rubber on dry concrete has 1; at half, rubber soles
-// are doubted, at twice, a friction of 3 passes for a real one.
+// A larger friction coefficient of the ground is doubted. Chosen: rubber on dry concrete has 1; at
+// half, rubber soles are doubted, at twice, a friction of 3 passes for a real one.
 constexpr double kRoughest = 2;
-// A push that gives the whole robot more speed than this is no trial of its balance [m/s]. Chosen:
-// ten times what walking robots survive; at half and at twice, units that are wrong by 1000 are
-// named as well.
+// A push that gives the whole robot more speed than this is not a useful test of its balance [m/s].
+// Chosen: ten times what walking robots survive; at half and at twice, units that are wrong by 1000
+// are named as well.
 constexpr double kFastestPush = 2;
 // Time for which a force is not answered [s]. Chosen: about a step; against a force that lasts
 // longer, a robot leans.
@@ -96,7 +97,7 @@ class Suspicions {
   }
 
  private:
-  /// The first few of one rule, and how many more there are.
+  /// The first few mistakes of one rule, and the number of the others.
   void say(std::vector<Mistake> found) {
     const size_t more = found.size() > kNamed ? found.size() - kNamed : 0;
     found.resize(found.size() - more);
@@ -176,13 +177,14 @@ class Suspicions {
                           " kg) a speed of " + text::brief(speed, 3) + " m/s" +
                           (impulse ? "" : " within " + text::brief(acts) + " s");
       if (1e-3 * speed <= kFastestPush)
-        words += "; if it is in m" + unit + ", write " + text::brief(1e-3 * push->magnitude);
+        words +=
+            "; if this number is in m" + unit + ", write " + text::brief(1e-3 * push->magnitude);
       found.push_back({"/scenario/" + std::to_string(i), words});
     }
     say(found);
   }
 
-  // A simulation holds the last posture for a while, and may be told to hold it longer.
+  // A simulation holds the last posture for a while.
   void late_disturbances() {
     if (!feet_) return;
     std::vector<Mistake> found;
@@ -191,8 +193,9 @@ class Suspicions {
         found.push_back({"/scenario/" + std::to_string(i),
                          "the disturbance begins at " + text::brief(pattern_.scenario[i].at) +
                              " s, but the motion ends at " + text::brief(feet_->duration()) +
-                             " s; it acts only if the simulation holds the last posture that long "
-                             "(--settle)"});
+                             " s. The simulation ends " + text::brief(kHeld) +
+                             " s after the motion, so the disturbance has no effect; let the "
+                             "disturbance begin earlier, or make the motion longer"});
     say(found);
   }
 
@@ -214,7 +217,7 @@ class Suspicions {
     say(found);
   }
 
-  // The COG at home, raised by what bent legs can still stretch.
+  // The COG height at home, plus the length by which the bent legs can still be stretched.
   double highest_cog(double home) const {
     RobotData data(model_);
     update_positions(model_, model_.rest_state(), data);
@@ -430,7 +433,7 @@ std::vector<Mistake> likely_mistakes(const RobotModel& model, const Pattern& pat
     mistakes.push_back({e.place, e.written + "; " + e.instead, e.enough});
   const std::vector<Mistake> impossible = impossible_values(model, pattern);
   if (mistakes.empty()) mistakes = impossible;
-  // Why a value that is wrong is impossible, before the one that would do.
+  // The reason why a value is impossible, before a value that is possible.
   if (!search.found.empty())
     for (const Mistake& why : impossible)
       if (const Explanation& e = search.found.front();

@@ -33,7 +33,8 @@ constexpr double kUsualShare = 0.2;
 // No phase of a robot is shorter [s]. Chosen: ten times less than the shortest steps of small
 // robots; a time in seconds that is read in ms is below half of it, and steps are above twice.
 constexpr double kShortestPhase = 0.02;
-// So many keyframes that would be at ends of phases are no chance. Chosen: those of two steps.
+// From this number on, keyframes that would be at the ends of phases are not taken for chance.
+// Chosen: those of two steps.
 constexpr long kManyKeys = 4;
 // A time that is nearer to another than this share of it is meant to be the same. Chosen: times are
 // written in milliseconds, and a factor that is read off one of them is out by as much.
@@ -43,14 +44,14 @@ constexpr double kNoLength = 1e-4;
 // Numbers of a target below this are taken for metres, whatever the others are. Chosen: half a
 // millimetre, or half a centimetre.
 constexpr double kLeastWritten = 0.5;
-// What lengths in metres are written in by mistake.
+// Units in which lengths are written by mistake, in place of metres.
 constexpr std::array kSmallerUnits = {std::pair("mm", 1e-3), std::pair("cm", 1e-2)};
 // An angle below this is none [rad]. Definition: what rounding leaves.
 constexpr double kNoAngle = 1e-6;
 // A level foot below a leg that leans by less than this is no reason [rad]. Chosen: five degrees,
 // which every ankle bends.
 constexpr double kNotedLean = 0.09;
-// A foot that turns less against the other one has no turn to speak of [rad]. Chosen: ten degrees.
+// Below this, the turn of a foot against the other one is ignored [rad]. Chosen: ten degrees.
 constexpr double kNotedTurn = 0.17;
 // A COG that is farther than this from the middle of the feet is beside them; a share of the length
 // of a leg. Chosen: more than half of a sole.
@@ -250,7 +251,7 @@ class Hypotheses::Maker {
          }});
   }
 
-  // Where most lengths are farther than three legs reach.
+  // If most lengths are larger than the length of three legs.
   void length_units(std::vector<Hypothesis>& made) const {
     const double leg = leg_length(model_);
     int far = 0, all = 0;
@@ -313,7 +314,7 @@ class Hypotheses::Maker {
       };
       const double in = keys[i].t - before, out = after - keys[i].t;
       const bool too_early = in < kShortSegment * out;
-      // What was meant leaves no shorter segment than what is written.
+      // The intended time must not leave a shorter segment than the written time.
       for (const double t : number_slips(keys[i].t))
         if (std::min(t - before, after - t) >= std::min(in, out))
           add(Rank::slip, t, "", too_early ? -2 : 0);
@@ -511,7 +512,7 @@ class Hypotheses::Maker {
     }
   }
 
-  /// What the feet go from foothold to foothold [m].
+  /// Distance that the feet move from foothold to foothold [m].
   double way_of_feet(const Pattern& pattern) const {
     double way = 0;
     std::array<std::optional<Eigen::Vector3d>, 2> at;
@@ -662,7 +663,7 @@ class Hypotheses::Maker {
   void footholds(std::vector<Hypothesis>& made) const {
     const auto add = [&](const std::string& place, Side side, const Foothold& foot,
                          const std::function<Foothold&(Pattern&)>& in) {
-      // A single number that is too large is no matter of the unit.
+      // A single number that is too large does not come from a wrong unit.
       for (const double length : foot.position)
         if (std::abs(length) > kNoLength && std::abs(length) < leg_length(model_)) return;
       if (foot.position.norm() < leg_length(model_)) return;
@@ -696,7 +697,7 @@ class Hypotheses::Maker {
       if (reaches_key(target.key)) target_unit(target, made);
   }
 
-  // ---- what hands, other links and the gaze are aimed at
+  // ---- targets of hands, other links and the gaze
 
   static constexpr const char* kGaze = "/gaze";
 
@@ -717,7 +718,7 @@ class Hypotheses::Maker {
                           const LinkTarget& target,
                           const std::function<LinkTarget&(Pattern&)>& in) {
       if (!target.position || target.position->norm() < leg_length(model_)) return;
-      // A single number that is too large is no matter of the unit.
+      // A single number that is too large does not come from a wrong unit.
       for (const double length : *target.position)
         if (std::abs(length) > kNoLength && std::abs(length) < kLeastWritten) return;
       far.push_back({key, name, key_place(key) + pointer, pointer == kGaze, *target.position,
@@ -791,8 +792,8 @@ class Hypotheses::Maker {
     }
   }
 
-  // "turn" counts from the other foot. Who turns both feet by the same angle turns twice as far,
-  // with each second foot turned inwards.
+  // "turn" counts from the other foot. If both feet have the same turn, the robot turns twice as
+  // far, and every second foot is turned inwards.
   void turns(std::vector<Hypothesis>& made) const {
     const auto turn_of = [&](const Phase& phase) {
       return phase.swing && phase.swing->step ? phase.swing->step->turn : 0.0;
@@ -909,7 +910,7 @@ class Hypotheses::Maker {
                   " against the " + name_of(other(swing.foot)) + " foot",
               "with a yaw of " + angle(swing.to.rpy.z() + less) +
                   (has_later_place(i) ? ", and all later footholds turned about it by " +
-                                            angle(less) + " (more steps then make the turn),"
+                                            angle(less) + " (the turn then takes more steps),"
                                       : "")},
              [i, less](Pattern& p) {
                const Eigen::Vector3d about = p.phases[i].swing->to.position;
@@ -978,7 +979,7 @@ class Hypotheses::Maker {
                     (roll               ? "to the side"
                      : amount(most) < 0 ? "ahead"
                                         : "back") +
-                    ", so the ankle bends by as much",
+                    ", so the ankle bends by the same angle",
                 "with the foot turned with the leg (" +
                     turned_foot(side, pattern_.keyframes[most.key].feet[s].value(),
                                 roll ? degrees(most.roll) : 0, roll ? 0 : degrees(most.pitch)) +
@@ -1058,7 +1059,7 @@ class Hypotheses::Maker {
     }
   }
 
-  // ---- what is missing, or is too much
+  // ---- missing or superfluous parts
 
   bool has_foot_key(Side side, double begin, double end) const {
     return std::any_of(pattern_.keyframes.begin(), pattern_.keyframes.end(),
@@ -1212,7 +1213,7 @@ class Hypotheses::Maker {
     }
   }
 
-  // Keys that hold the COG where the feet no longer are.
+  // Keys that hold the COG at a place that the feet have left.
   void held_cog(std::vector<Hypothesis>& made) const {
     if (!feet_) return;
     for (const auto& [axis, key_of] : {std::pair(0, &Keyframe::cog_x), {1, &Keyframe::cog_y}}) {

@@ -1,6 +1,6 @@
 #pragma once
-// Everything that may be wrong in one pattern, kind by kind: what stands there, what may have been
-// meant, and the change of the pattern that tries it.
+// All possible mistakes in one pattern, kind by kind: the written value, the value that may have
+// been meant, and the change of the pattern that tries this value.
 
 #include <memory>
 #include <vector>
@@ -16,7 +16,7 @@ namespace ayumi {
 // m, 0.3 deg.
 inline constexpr double kLeastMistake = 0.005;
 
-/// How particular an explanation is.
+/// Specificity of an explanation.
 enum class Rank { unit, geometry, slip, exchange, sign, missing, amount, pace };
 
 struct Hypothesis {

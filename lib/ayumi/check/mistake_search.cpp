@@ -60,8 +60,8 @@ struct Candidate {
   TrialOutcome outcome;
 };
 
-/// What makes one outcome better than another one. Where two mistakes move one joint, an error of
-/// one of them may count as a consequence of the other one; then no change leaves fewer errors, but
+/// The measure by which outcomes are compared. Where two mistakes move one joint, an error of one
+/// of them may count as a consequence of the other one; then no change leaves fewer errors, but
 /// some leave fewer findings.
 enum class Measure { errors, findings };
 
@@ -83,7 +83,7 @@ class Search {
         rounds_(rounds),
         hypotheses_(model, pattern, found) {}
 
-  /// The best explanations, equal in what they leave and in their rank.
+  /// The best explanations, with equal remaining errors and equal rank.
   std::vector<Candidate> best() {
     if (found_.slight) return best_of_slight();
     const auto kinds = {Kind::units, Kind::times, Kind::exchanges, Kind::missing};
@@ -102,7 +102,7 @@ class Search {
  private:
   using Kind = Hypotheses::Kind;
 
-  // Without what nothing in the pattern speaks for: another sign, digit or foot.
+  // Without hypotheses for which there is no evidence in the pattern: another sign, digit or foot.
   std::vector<Candidate> best_of_slight() {
     test(hypotheses_.of(Kind::units));
     if (enough(Rank::unit)) return chosen();
@@ -128,8 +128,8 @@ class Search {
       tried_.push_back({std::move(hypotheses[i]), outcomes[i]});
   }
 
-  // Values without which the errors vanish; of these what was probably meant, and how far the value
-  // may go.
+  // Values without which the errors vanish, with the probably intended value and the range of
+  // possible values.
   void values() {
     std::vector<WrittenValue> suspects;
     for (const WrittenValue& value : hypotheses_.values())
@@ -256,7 +256,7 @@ class Search {
     test(std::move(slips));
   }
 
-  // For a value whose neighbours leave no more room than it does itself.
+  // For a value whose neighbours leave no larger range than the value itself.
   Hypothesis tenth_of(const WrittenValue& value) const {
     const double number = value.numbers.front().value;
     return {Rank::slip,
@@ -337,14 +337,18 @@ class Search {
 };
 
 std::string result_words(const TrialOutcome& before, const TrialOutcome& after) {
-  if (after.good()) return " the pattern is consistent";
+  if (after.good()) return "the pattern is consistent";
   if (before.errors == kUnsampled)
-    return " the motion can be sampled, with " + text::counted(after.errors, "error");
+    return "the motion can be sampled, and " + text::counted(after.errors, "error") +
+           (after.errors == 1 ? " remains" : " remain");
   if (after.errors >= before.errors)
-    return " " + text::counted(after.findings, "finding") + " of " +
-           std::to_string(before.findings) + (after.findings == 1 ? " remains" : " remain");
-  return " " + text::counted(after.errors, "error") + " of " + std::to_string(before.errors) +
-         (after.errors == 1 ? " remains" : " remain");
+    return text::remaining(after.findings, before.findings, "finding");
+  return text::remaining(after.errors, before.errors, "error");
+}
+
+// "with t = 1 s, ": the beginning of a sentence.
+std::string before_result(const std::string& instead) {
+  return instead + (instead.ends_with(',') ? " " : ", ");
 }
 
 }  // namespace
@@ -366,7 +370,7 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
     std::optional<Search> search(std::in_place, trials, model, current, found, left_rounds);
     std::vector<Candidate> best = search->best();  // its corrections refer to the search
     if (best.empty() && !trials.exact() && trials.finer_when_exact()) {
-      // Quick trials may have errors that are none.
+      // Quick trials may find errors that do not exist in exact trials.
       const TrialOutcome exact = trials.of(current, true);
       if (exact.errors < found.errors) {
         trials.make_exact();
@@ -379,16 +383,18 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
     for (Candidate& c : best) {
       if (c.outcome.good() && !trials.exact()) {
         c.outcome = trials.exactly(current, c.hypothesis.mend);
-        c.hypothesis.says.instead += c.outcome.good()
-                                         ? result_words(found, c.outcome)
-                                         : " only " + text::counted(c.outcome.errors, "error") +
-                                               " of the table for the robot " +
-                                               (c.outcome.errors == 1 ? "remains" : "remain");
+        c.hypothesis.says.instead =
+            before_result(c.hypothesis.says.instead) +
+            (c.outcome.good() ? result_words(found, c.outcome)
+                              : "only " + text::counted(c.outcome.errors, "error") +
+                                    " of the table for the robot " +
+                                    (c.outcome.errors == 1 ? "remains" : "remain"));
       } else {
-        c.hypothesis.says.instead += result_words(found, c.outcome);
+        c.hypothesis.says.instead =
+            before_result(c.hypothesis.says.instead) + result_words(found, c.outcome);
       }
       c.hypothesis.says.enough = c.outcome.good();
-      // The steps before this one are part of what is enough.
+      // The changes of the previous rounds are also needed.
       if (round > 0) c.hypothesis.says.instead += " (together with the change named before)";
       result.found.push_back(c.hypothesis.says);
     }

@@ -1,10 +1,10 @@
 #pragma once
-// What an author has probably written wrongly, found by trial: one thing in the pattern is put
-// right, and the motion is sampled and checked again. What is enough to make the pattern consistent
-// is named, the most particular first: a unit, a decimal point, an exchanged side, a sign,
-// something that is missing, then a value that is too large or too small. A motion whose errors are
-// all slight is near its limits: another sign, digit or foot is tried only where something else in
-// the pattern speaks for it.
+// Probable mistakes of an author, found by trial: one thing in the pattern is changed, and the
+// motion is sampled and checked again. Changes that make the pattern consistent are named, the most
+// specific first: a unit, a decimal point, an exchanged side, a sign, something that is missing,
+// then a value that is too large or too small. A motion whose errors are all slight is near its
+// limits: another sign, digit or foot is tried only where something else in the pattern speaks for
+// it.
 
 #include <string>
 #include <vector>
@@ -18,8 +18,8 @@ namespace ayumi {
 
 struct Explanation {
   std::string place;    ///< JSON pointer in the pattern's file
-  std::string written;  ///< what stands there: "the right foot's x is 0.9 m"
-  std::string instead;  ///< what would do: "with 0.09 m, ... the pattern is consistent"
+  std::string written;  ///< the written value: "the right foot's x is 0.9 m"
+  std::string instead;  ///< the remedy: "with 0.09 m, ..., the pattern is consistent"
   bool enough = false;  ///< with it, the pattern is consistent
 };
 

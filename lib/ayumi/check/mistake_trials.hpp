@@ -1,6 +1,6 @@
 #pragma once
-// Versions of a pattern on trial: each is sampled and checked, quickly or exactly, and what is
-// wrong with it is counted.
+// Trial versions of a pattern: each is sampled and checked, quickly or exactly, and its errors are
+// counted.
 
 #include <algorithm>
 #include <functional>
@@ -54,15 +54,15 @@ class Trials {
   /// Whether exact trials differ from quick ones in the steps of time.
   bool finer_when_exact() const { return ticks_ > 1; }
 
-  /// The outcome at the servo's period of what is good in a quick trial.
+  /// The outcome at the servo's period of a version that is good in a quick trial.
   TrialOutcome exactly(Pattern pattern, const Mend& mend) const;
   TrialOutcome of(const Pattern& pattern) const { return of(pattern, exact_); }
   TrialOutcome of(const Pattern& pattern, bool exact) const;
   TrialOutcome after(const Pattern& pattern, const Mend& mend) {
     return after(pattern, std::vector<Mend>{mend}).front();
   }
-  /// The outcomes in the same order. Those for which no trials are left are of no motion that can
-  /// be sampled.
+  /// The outcomes in the same order. Versions for which no trials are left count as motions that
+  /// cannot be sampled.
   std::vector<TrialOutcome> after(const Pattern& pattern, const std::vector<Mend>& mends);
 
   /// Whether there was something left to try when no trials were left.

@@ -1,7 +1,7 @@
 #pragma once
-// What the robot makes of a table: every target becomes a whole count of 16 bits, which the motor
-// board keeps within the position limits of the joint. The board moves its target by at most so
-// many counts per millisecond.
+// Processing of a table by the robot: every target becomes a whole count of 16 bits, which the
+// motor board keeps within the position limits of the joint. The board changes its target by at
+// most a given number of counts per millisecond.
 
 #include <string>
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace ayumi {
 
-/// One way in which a joint receives something other than the table says, at its worst sample.
+/// A difference between the table and the targets that a joint receives, at its worst sample.
 struct Clamp {
   std::string kind;  ///< "range" (16 bits), "position" or "speed"
   std::string joint;

@@ -1,5 +1,5 @@
 #pragma once
-// How near a planned motion is to its limits over time, for a picture: the worst sample of each
+// Distance of a planned motion from its limits over time, for a picture: the worst sample of each
 // short stretch of time. The verdict is that of check_consistency().
 
 #include <vector>

@@ -1,6 +1,6 @@
 #pragma once
-// The angular momentum task of (22): where no place of the support gives the ZMP that the law asks
-// for, the trunk and the arms take up the moment that is missing, and give it back slowly.
+// The angular momentum task of (22): if the ZMP that the law asks for is outside the support, the
+// trunk and the arms supply the missing moment by their acceleration, and return slowly.
 
 #include <vector>
 
@@ -13,15 +13,15 @@ struct UpperBodyTurn {
   Eigen::Vector3d lean = Eigen::Vector3d::Zero();       ///< of the trunk, rotation vector in world
                                                         ///< axes [rad]
   Eigen::Vector3d lean_rate = Eigen::Vector3d::Zero();  ///< [rad/s]
-  Eigen::VectorXd joints;                               ///< by dof, zero but for the arms [rad]
+  Eigen::VectorXd joints;                               ///< by dof, zero except for the arms [rad]
   Eigen::VectorXd joint_rates;                          ///< [rad/s]
 };
 
 /// The coordinates s are the trunk's tilt about the world's x and y axes and the joints of the arms
-/// (and of the head): all that the trunk carries. With the COG held, their rates have the angular
-/// momentum A_G ds about it (docs/theory.md, "Angular momentum"). Of all accelerations with
-/// A_G dds = dL those nearest to zero in the norm W are taken, as in (23), each within the range,
-/// the speed and the torque of its joint.
+/// (and of the head): all joints that the trunk carries. When the COG is kept in place, the rates
+/// ds have the angular momentum A_G ds about the COG (docs/theory.md, "Angular momentum"). Of all
+/// accelerations with A_G dds = dL, the law takes the ones that are nearest to zero in the norm W,
+/// as in (23), each within the range, the speed and the torque of its joint.
 class AngularMomentumTask {
  public:
   /// The joints have the robot's own weights.

@@ -1,5 +1,5 @@
 #pragma once
-// The command of a pattern where the robot's feet are: as sampled, or moved over the ground, after
+// The command of a pattern relative to the robot's feet: as sampled, or moved over the ground after
 // steps that VIIP placed or by footholds that answer a push. The laws that follow a command take
 // their plan from here.
 
@@ -21,7 +21,7 @@ class CommandPlan {
   /// The command of the coming tick.
   const CommandSample& now() const { return is_sampled() ? sampled(tick_) : now_; }
 
-  /// Whether what is measured changes the command.
+  /// Whether measurements change the command.
   bool measures() const { return footholds_.has_value(); }
 
   /// The command of tick k where the feet are; after the end of the series its last posture, at
@@ -37,19 +37,18 @@ class CommandPlan {
   /// W of now() [dof]; null: the robot's own.
   const Eigen::VectorXd* joint_weight() const { return series_->joint_weight_at(sample()); }
 
-  /// Goes on at tick k after another law: the command is turned to where the feet of `from` are. A
-  /// foot that is not quite there stays until it next swings; an offset of the COG is taken back
-  /// slowly.
+  /// Continues at tick k after another law: the command is moved and turned to the feet of `from`.
+  /// A foot with a small deviation stays until its next swing; an offset of the COG fades slowly.
   void go_on_from(const CommandSample& from, long k);
 
   /// From now on footholds answer pushes; only before the first tick.
   void move_footholds(const RobotModel& model, const FootholdParams& params);
 
-  /// The command one tick after now(), chosen by what is measured. Where a foot has landed before
-  /// its time, the feet of now() jump to where they are. Holds until the next call.
+  /// The command one tick after now(), chosen by what is measured. If a foot has landed early, the
+  /// feet of now() jump to its place. Holds until the next call.
   const CommandSample& look_ahead(const Estimate& estimate);
 
-  /// What look_ahead() gave becomes now(); the reference that it returned is no longer valid.
+  /// The result of look_ahead() becomes now(); the reference that it returned is no longer valid.
   void advance();
 
  private:

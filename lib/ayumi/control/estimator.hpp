@@ -46,13 +46,14 @@ class Estimator {
 
   /// `feet`: planned sole frames. The stance foot is the one that carries more than 60 %; its
   /// centre of pressure is put at its planned place on the ground and taken as the momentary point
-  /// of support, so a foot tipping on its edge does not spoil the estimate. Holds until the next
-  /// update.
+  /// of support, so a foot that tips on its edge does not disturb the estimate. Holds until the
+  /// next update.
   const Estimate& update(const Measurement& measurement,
                          const std::array<Eigen::Isometry3d, 2>& feet);
 
-  /// In place of update() where nobody reads the estimate of this tick: only what later ones go on
-  /// from, the loads and the ZMP. Later estimates are the same to the last bit.
+  /// In place of update() if the estimate of this tick is not needed: computes only the quantities
+  /// on which later estimates depend, the loads and the ZMP. Later estimates are the same to the
+  /// last bit.
   void follow_loads(const Measurement& measurement, const std::array<Eigen::Isometry3d, 2>& feet);
 
   /// Of the last update().

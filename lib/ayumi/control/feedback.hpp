@@ -8,7 +8,7 @@
 
 namespace ayumi {
 
-/// (21): command less measured.
+/// (21): the command minus the measurement.
 struct CogError {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s]
@@ -37,14 +37,15 @@ double admissible_force(double fz, double mass);
 
 /// Short-term absorption, (14)(15) closed on the measured ZMP: `gap` is the measured ZMP less ref
 /// ZMP [m]. The ground gives omega^2 (x - measured), ref ZMP asks for omega^2 (x - ref); the
-/// difference is what the reference lacks. Gain 0 is replay; a large gain tends to (14) [m/s^2].
+/// difference is the acceleration that the reference lacks. Gain 0 plays the reference unchanged; a
+/// large gain tends to (14) [m/s^2].
 inline Eigen::Vector2d short_term_acceleration(double gain, double omega2,
                                                const Eigen::Vector2d& gap) {
   return gain * omega2 * gap;
 }
 
-/// Damping of the robot's rocking on soles and servos that yield [m/s^2]: the reference follows the
-/// measured velocity of the COG, which it lacks by `estimate.dcog - reference_dcog` [m/s], at
+/// Damping of the rocking of the robot on its soft soles and servos [m/s^2]: the reference follows
+/// the measured velocity of the COG, which it lacks by `estimate.dcog - reference_dcog` [m/s], at
 /// gain * omega and with a bounded acceleration. z: height of the COG [m]. docs/theory.md, "Late
 /// sensors".
 Eigen::Vector2d rocking_acceleration(double gain, double omega, double z,
@@ -73,7 +74,7 @@ double landing_stiffness(double speed, double z_d);
 /// Share of a first-order low pass with time constant tau / omega in one tick of dt [s].
 double low_pass_share(double dt, double omega, double tau);
 
-/// The measured ZMP [m] and vertical force [N] behind a first-order low pass. They are held while
+/// The measured ZMP [m] and vertical force [N] after a first-order low pass. They are held while
 /// there is no contact.
 class ReactionFilter {
  public:

@@ -1,6 +1,6 @@
 #pragma once
-// Foot-guided control, one of the baselines of DTAD: the ZMP that guides the DCM to where the plan
-// has it when the next foot takes over, with the least deviation from the planned ZMP on the way.
+// Foot-guided control, one of the baselines of DTAD: the ZMP guides the DCM to its planned place at
+// the time when the next foot takes over, with the least deviation from the planned ZMP until then.
 // After Sugihara and Yamamoto, "Foot-guided agile control of a biped robot through ZMP
 // manipulation" (2017). docs/theory_baselines.md, "Foot-guided control".
 
@@ -17,7 +17,7 @@ double foot_guided_gain(double omega, double time);
 
 class FootGuided {
  public:
-  /// `least_time`: at least this is left to the DCM, in units of 1/omega.
+  /// `least_time`: least time for this, in units of 1/omega.
   FootGuided(const CommandSeries& series, double least_time);
 
   /// At sample k of the series.

@@ -1,6 +1,6 @@
 #pragma once
-// Moves the coming footholds of a pattern, and speeds up its clock, where a push is more than the
-// present support can answer: the next step answers the rest. docs/theory.md, "Moving footholds".
+// Moves the coming footholds of a pattern and speeds up its time if a push is too large for the
+// present support: the next step answers the rest. docs/theory.md, "Moving footholds".
 
 #include <optional>
 #include <vector>
@@ -31,14 +31,14 @@ void command_between(const CommandSeries& series, double phase, CommandSample& c
 struct FootholdParams {
   double share = 0;               ///< of the DCM error that the supports leave over; 0: off
   double time_scale_limit = 2.5;  ///< fastest clock of the pattern, at least 1
-  /// Footholds and clock by the program of control/step_program, which answers every error, in the
-  /// place of a search that answers what the supports leave over.
+  /// Footholds and clock by the program of control/step_program, which answers every error, in
+  /// place of a search that answers only the part that the supports leave.
   std::optional<StepWeights> program = {};
 };
 
-/// The plan of a pattern whose footholds move. Until the supports leave an error over it is the
-/// pattern to the last bit; from then on footholds, ZMP and COG to come are shifted over the
-/// ground.
+/// The plan of a pattern whose footholds move. As long as the supports can answer all errors, the
+/// plan equals the pattern to the last bit. After that, the coming footholds, ZMP and COG are
+/// shifted over the ground.
 class FootholdShift {
  public:
   /// Model and series outlive it.
@@ -48,7 +48,7 @@ class FootholdShift {
   const CommandSample& plan() const { return plan_; }
 
   /// The tick of plan() has been measured: the next foothold is chosen and the clock goes on. True
-  /// when a foot has landed before its time: it stays where it is and the plan's feet jump there.
+  /// if a foot has landed early: the foot stays in its place, and the foot of the plan jumps there.
   bool advance(const Estimate& estimate);
 
   double time_scale() const { return time_scale_; }  ///< of the pattern's clock, 1: its own pace

@@ -1,7 +1,7 @@
 #pragma once
 // Where VIIP puts the feet: a nominal path of footholds, and the DCM (divergent component of
-// motion, x + dx/omega) that the pendulum must have when a foot lands so that the path can be
-// walked on.
+// motion, x + dx/omega) that the pendulum must have when a foot lands so that the robot can
+// continue on this path.
 
 #include <Eigen/Geometry>
 #include <array>
@@ -59,13 +59,13 @@ class Footsteps {
   PlannedStep step(const StepGoal& goal, Side stance, const GroundPose& foot, int left,
                    const Eigen::Vector2d& rest) const;
 
-  /// Moves the path so that the stance foot is not farther from it than can be taken back.
+  /// Moves the path so that the stance foot is close enough to it to return.
   void meet(Side stance, const GroundPose& foot);
 
-  /// The path stays where it is in the world when the plan is found to be off by `error` [m].
+  /// Keeps the path in its place in the world when the plan is corrected by `error` [m].
   void shift(const Eigen::Vector2d& error) { center_.position -= error; }
 
-  /// The path goes on by the step just begun.
+  /// Advances the path by the step that has just begun.
   void advance(const StepGoal& goal, Side stance, int left);
 
  private:

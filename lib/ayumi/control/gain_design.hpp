@@ -35,7 +35,7 @@ WeakestLoop weakest_loop(const std::vector<LoopModel>& loops, const DtadParams& 
 DtadParams gains_from_poles(std::complex<double> p1, std::complex<double> p2,
                             DtadParams params = {});
 
-/// What a designer may ask for in seconds; nothing asked leaves the gain as it was.
+/// What a designer may ask for, in seconds. A value that is not set leaves the gain unchanged.
 struct GainWishes {
   std::optional<std::array<std::complex<double>, 2>> poles;  ///< of the COG under (18)(19) [1/s]
   std::optional<double> absorb;       ///< share of a ZMP error taken up at once, 0 to 1
@@ -46,15 +46,16 @@ struct GainWishes {
 
 /// Gains of a robot with this omega: K, D from the poles; ka = share / (1 - share), since a stiff
 /// robot's ZMP is [(x - cmdddx / w2) + ka refZ] / (1 + ka); ks = kd = 1 / (omega T), a double pole
-/// at -1 / T. Throws Error(usage) naming the wish that cannot be had.
+/// at -1 / T. Throws Error(usage) that names the value that is not possible.
 DtadParams design_gains(double omega, const GainWishes& wishes, DtadParams params = {});
 
 /// Largest ka with which all loops are stable, other gains as they are; 0 when none is.
 double largest_stable_ka(const std::vector<LoopModel>& loops, DtadParams params, double most = 20);
 
-/// Gains with which all loops are stable: ks and kd together, damp, ka and tau_z, as few changed
-/// and by as little as possible. Of those tried, the first whose errors decay within kSlowestDecay
-/// / omega, else the ones with the quickest decay. Empty: none of them is stable.
+/// Gains with which all loops are stable: ks and kd together, damp, ka and tau_z, with as few and
+/// as small changes as possible. Of the gains that are tried, these are the first whose errors
+/// decay within kSlowestDecay / omega, otherwise the ones with the fastest decay. Empty if none of
+/// them is stable.
 std::optional<DtadParams> nearest_stable_gains(const std::vector<LoopModel>& loops,
                                                const DtadParams& params);
 
@@ -63,12 +64,12 @@ std::optional<DtadParams> nearest_stable_gains(const std::vector<LoopModel>& loo
 std::vector<std::pair<std::string, double>> changed_loop_gains(const DtadParams& params,
                                                                const DtadParams& other);
 
-/// Throws Error(usage) with the mode that grows and the gains nearby that would be stable.
+/// Throws Error(usage) with the mode that grows and with stable gains nearby.
 void refuse_unstable(const std::vector<LoopModel>& loops, const DtadParams& params);
 
 /// Why a robot should not be run with a controller at this COG height, in the words of
-/// refuse_unstable(); empty when nothing speaks against it, for demonstrations (dtad-literal,
-/// as_printed), other controllers and legs without servos.
+/// refuse_unstable(); empty if the loop is stable, for demonstrations (dtad-literal, as_printed),
+/// other controllers and legs without servos.
 std::string instability(const RobotModel& model, const ActuatorLimits& actuators,
                         const ControllerSpec& spec, double height, double tick);
 

@@ -1,7 +1,7 @@
 #pragma once
-// What every control law takes and gives. A law (control/laws) has plan(), the command of the
-// coming tick; update(), which measures one tick and fills a ControlOutput; and handover(), from
-// which the next law goes on.
+// Inputs and outputs of every control law. A law (control/laws) has plan(), the command of the
+// coming tick; update(), which measures one tick and fills a ControlOutput; and handover(), with
+// which the next law continues.
 
 #include <string>
 #include <vector>
@@ -27,10 +27,10 @@ struct ControlOutput {
   LawTerms terms;
   TaskResiduals residuals;
   Eigen::VectorXd weight;          ///< W of (22) and (28), by dof; empty: nothing was resolved
-  std::vector<std::string> notes;  ///< what gave way in this tick: saturated joints, held limits
+  std::vector<std::string> notes;  ///< reduced in this tick: saturated joints, held limits
 };
 
-/// What one law leaves to the next.
+/// What one law passes on to the next.
 struct Handover {
   RobotState reference;                            ///< plan frame
   Eigen::Vector3d dcog = Eigen::Vector3d::Zero();  ///< of the reference [m/s]

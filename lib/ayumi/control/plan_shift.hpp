@@ -1,6 +1,6 @@
 #pragma once
-// A moved plan: the one place where a command is carried over the ground. The pattern is moved when
-// steps that VIIP placed end elsewhere (control/command_plan) and when footholds answer a push
+// A moved plan. Only this file moves a command over the ground. The pattern is moved when steps
+// that VIIP placed end elsewhere (control/command_plan) and when footholds answer a push
 // (control/foothold_shift).
 
 #include <array>

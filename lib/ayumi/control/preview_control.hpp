@@ -55,7 +55,7 @@ class PreviewControl {
   /// Goes on from tick k of the plan. Returns the motion of the COG in this tick.
   CogMotion go_on(long k, double omega);
 
-  /// The robot has left the ground: begins anew with the plan.
+  /// The robot has left the ground: starts again from the plan.
   void restart() { started_ = false; }
 
  private:

@@ -19,7 +19,7 @@ inline double ground_of(const std::array<Eigen::Isometry3d, 2>& feet) {
   return std::min(feet[0].translation().z(), feet[1].translation().z());
 }
 
-/// That polygon less a margin, worked out again only when feet or support have changed.
+/// The support polygon reduced by a margin, computed again only if feet or support have changed.
 class SupportRegion {
  public:
   /// Holds until the next call; allocates nothing once it has met its largest polygon.

@@ -46,7 +46,7 @@ struct ResolverOptions {
   bool in_order = true;         ///< tasks give way one after the other; false: all of them together
 };
 
-/// Tasks that may give way to a joint's limit, in this order.
+/// Tasks that may be reduced because of the limit of a joint, in this order.
 struct YieldingTasks {
   bool height = false;  ///< of the COG
   bool trunk = false;   ///< attitude
@@ -57,14 +57,14 @@ struct Resolution {
   double scale = 1;        ///< below 1 where a speed limit made the whole motion slower
   int limiting_dof = -1;   ///< the joint whose speed limit made tasks give way, or the motion slow
   std::vector<int> held;   ///< joints held at a position limit
-  YieldingTasks yielding;  ///< what gave way
+  YieldingTasks yielding;  ///< the tasks that were reduced
   TaskResiduals residuals;
 };
 
-/// One line per joint at a limit, with what gives way to it.
+/// One line for each joint at a limit, with the tasks that are reduced because of it.
 std::vector<std::string> limit_notes(const RobotModel& model, const Resolution& resolution);
 
-/// What resolve() keeps its room in.
+/// Memory that resolve() uses again in each call.
 struct ResolverWork {
   StackedTask task, softened, moving;  ///< as it is; some rows yielding; without the joints held
   StackedTask::Rows weighted;

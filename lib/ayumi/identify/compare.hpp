@@ -1,6 +1,6 @@
 #pragma once
-// A simulated run beside a recording of the robot: joint angles, loads of the feet and their share,
-// landings and the IMU, with the time shift between both found first.
+// Comparison of a simulated run with a recording of the robot: joint angles, loads of the feet and
+// their share, landings and the IMU, with the time shift between both found first.
 
 #include <algorithm>
 #include <optional>
@@ -65,7 +65,7 @@ struct CompareOptions {
 
 /// Throws Error(bad_file) "`file`: what" where the recording and the run have no time in common.
 /// Joints with another sign or unit, or that do not follow, are noted. The recording holds what the
-/// encoders read, so the zero offsets of the run's servos are taken from the simulated angles.
+/// encoders read, so the zero offsets of the run's servos are subtracted from the simulated angles.
 Comparison compare(const RobotModel& model, const SimulationLog& log,
                    const std::optional<AngleTable>& measured, const SensorTable& sensors,
                    const CompareOptions& options, const std::string& file);

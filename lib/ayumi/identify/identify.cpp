@@ -307,13 +307,15 @@ class Advice {
       return;
     }
     if (type.delay_takes_damping)
-      say("delay and damping are confounded, so the delay contains the effect of both: record "
-          "quick steps or a chirp");
+      say("the effects of delay and damping cannot be distinguished, so the delay contains both: "
+          "record quick steps or a chirp");
     const bool kp = joint.kp.known;
     if (!kp && tied(Constant::compliance, Constant::dry))
-      say("kp and friction are confounded: record a slow sweep");
+      say("the effects of kp and friction cannot be distinguished: record a slow sweep");
     else if (!kp && offset_tied())
-      say("kp and offset are confounded: record a load that changes, such as a squat");
+      say("the effects of kp and offset cannot be distinguished: record a load that changes, such "
+          "as "
+          "a squat");
     else if (!kp)
       say("the load changes too little to show kp: record a squat or a sway, or use --per type");
     if (kp && !joint.coulomb.known)
@@ -322,9 +324,12 @@ class Advice {
     if (kp && !type.delay_takes_damping && !joint.damping.known)
       say("viscous friction and damping are not determined: record steps or a chirp");
     if (type.has_backlash && tied(Constant::backlash, Constant::dry))
-      say("backlash and Coulomb friction are confounded: record a load that changes its sign");
+      say("the effects of backlash and Coulomb friction cannot be distinguished: record a load "
+          "that "
+          "changes its sign");
     if (type.has_backlash && tied(Constant::backlash, Constant::compliance))
-      say("backlash and kp are confounded: record a load that changes its sign and its size");
+      say("the effects of backlash and kp cannot be distinguished: record a load that changes its "
+          "sign and its size");
   }
   std::vector<std::string> words;
 

@@ -404,7 +404,7 @@ std::string lost_rows_words(const LostRows& lost, const AngleTable& measured) {
   return (lost.exact ? "at data row " : "near data row ") + std::to_string(lost.row + 1) + " (" +
          time + "), " + rows + are + (lost.rows > 0 ? "missing" : "repeated") +
          ": from here on, the angles are " + change +
-         (measured.timed ? ", although the times go on; record again"
+         (measured.timed ? ", although the times of the rows have no gap; record again"
                          : "; record again, or give the rows a time column");
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// What a robot was sent and what it measured, by joint, on one clock.
+// The command that a robot received and the angles that it measured, by joint, with common times.
 
 #include <Eigen/Core>
 #include <string>
@@ -19,7 +19,8 @@ struct AngleTable {
   double duration() const { return dt * static_cast<double>(theta.rows() - 1); }
 };
 
-/// What a robot measured beside its joints. Vectors that the file does not have are empty.
+/// What a robot measured in addition to its joint angles. Vectors that the file does not have are
+/// empty.
 struct SensorTable {
   double dt = 0.001;                   ///< [s]
   Eigen::MatrixXd foot_load;           ///< rows x (left, right) [N], of the file's own calibration

@@ -233,13 +233,13 @@ void require_answer(const RobotModel& model, const AngleTable& command, const An
                            : 1.5 * std::max(measured.dt, command.dt);
   if (!measured.timed && asked - lasts > least) {
     const long missing = std::max(1L, std::lround((asked - lasts) / measured.dt));
-    complain(
-        "the recording has " + std::to_string(measured.theta.rows()) + " rows, one every " +
-        text::brief(1000 * measured.dt) + " ms, which last " + text::fixed(lasts, 3) +
-        " s, but its command lasts " + text::fixed(asked, 3) +
-        " s: " + text::counted(missing, "row") + (missing == 1 ? " is" : " are") +
-        " missing. No motion is cut, so they are missing in a pause or at the end; record again, "
-        "or give the rows a time column");
+    complain("the recording has " + std::to_string(measured.theta.rows()) + " rows, one every " +
+             text::brief(1000 * measured.dt) + " ms, which last " + text::fixed(lasts, 3) +
+             " s, but its command lasts " + text::fixed(asked, 3) +
+             " s: " + text::counted(missing, "row") + (missing == 1 ? " is" : " are") +
+             " missing. Every motion is complete, so the rows are missing in a pause or at the "
+             "end; record "
+             "again, or give the rows a time column");
   }
   const std::vector<std::string> wrong =
       motion_complaints(model, command, measured, behind, 0, command.duration());

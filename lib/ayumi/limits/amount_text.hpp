@@ -1,8 +1,9 @@
 #pragma once
-// A finding's value and its limit in words: lengths in mm, angles and their rates in the unit of
+// A finding's place, value and limit in words: lengths in mm, angles and their rates in the unit of
 // the pattern's angles.
 
 #include <Eigen/Core>
+#include <string>
 
 #include "ayumi/base/text.hpp"
 #include "ayumi/limits/finding.hpp"
@@ -35,6 +36,16 @@ inline std::string amount_text(const Finding& finding) {
   while (more < kMostMoreDigits && quantity(finding.worst, more) == quantity(finding.limit, more))
     ++more;
   return quantity(finding.worst, more) + ", limit " + quantity(finding.limit, more);
+}
+
+/// "joint_speed of l_knee", "friction of the left foot"
+inline std::string kind_and_place(FindingKind kind, const std::string& where) {
+  return name_of(kind) + (where.empty() ? "" : " of " + place_words(where, true));
+}
+
+/// "joint_speed of l_knee at 1.860 s"
+inline std::string kind_place_and_time(const Finding& finding) {
+  return kind_and_place(finding.kind, finding.where) + " at " + text::fixed(finding.at, 3) + " s";
 }
 
 }  // namespace ayumi

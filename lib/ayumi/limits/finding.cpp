@@ -38,4 +38,19 @@ int dof_of(const Finding& finding) {
   return joint ? joint->dof : -1;
 }
 
+std::string place_words(const std::string& where, bool with_article) {
+  struct Words {
+    std::string_view name, article, words;
+  };
+  constexpr Words kWords[] = {{"left", "the ", "left foot"}, {"right", "the ", "right foot"},
+                              {"both", "", "both feet"},     {"none", "", "no foot"},
+                              {"x", "the ", "x axis"},       {"y", "the ", "y axis"},
+                              {"z", "the ", "z axis"}};
+  for (const Words& each : kWords)
+    if (where == each.name || where.starts_with(std::string(each.name) + " with "))
+      return std::string(with_article ? each.article : "") + std::string(each.words) +
+             where.substr(each.name.size());
+  return where;
+}
+
 }  // namespace ayumi

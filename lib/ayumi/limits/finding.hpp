@@ -1,7 +1,6 @@
 #pragma once
-// A finding is what the check says about a motion: of what kind it is, where and when it occurs,
-// how large it is, and what to do about it. Kind and place are typed; their texts are for people
-// only.
+// A finding is one result of the check of a motion: its kind, its place and time, its size, and a
+// remedy. Kind and place are typed; their texts are for people only.
 
 #include <array>
 #include <optional>
@@ -88,5 +87,9 @@ struct Finding {
 
 /// The dof of a finding at a joint, -1 of any other.
 int dof_of(const Finding& finding);
+
+/// Finding::where for people: "left" as "left foot", "x" as "x axis", and what follows the name of
+/// the place as it is. Joints and bodies keep their names. `with_article`: "the left foot".
+std::string place_words(const std::string& where, bool with_article = false);
 
 }  // namespace ayumi

@@ -102,8 +102,8 @@ Advice friction_advice(const JudgedMotion& motion, const FindingWindow& window) 
 }
 
 std::string friction_infeasibility(const Finding& f, double violation) {
-  return "the motion needs " + ratio_text(violation) + " times the available friction (" + f.where +
-         ")";
+  return "the motion needs " + ratio_text(violation) + " times the available friction (" +
+         place_words(f.where) + ")";
 }
 
 }  // namespace

@@ -111,7 +111,7 @@ const Limit& heat_limit() {
                                .scale = 100,
                                .share_name = "continuous torque",
                                .line = 10},
-                    .actuator = {.line = 2, .after = " lasting"},
+                    .actuator = {.line = 2, .after = " on average"},
                     .repair = {.is_mean = true},
                     .finding_unit = heat_unit,
                     .place = joint_place,

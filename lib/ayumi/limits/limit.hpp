@@ -27,7 +27,7 @@ struct RowSite;
 struct FindingWindow;
 struct Violation;
 
-/// What a limit is about. Playing a motion slower changes rates and forces, never postures.
+/// The class of a limit. Playing a motion more slowly changes rates and forces, but not postures.
 enum class LimitClass {
   posture,  ///< where bodies are: joint positions, feet, clearances
   rate,     ///< how fast joints and servo targets move
@@ -65,18 +65,22 @@ struct Advice {
 
 /// What an error of one kind means for a repair.
 struct RepairTraits {
-  /// Of the motion in flight: the knots of a correction have to be near each other there.
+  /// The error concerns the motion in flight: there, the knots of a correction have to be close to
+  /// each other.
   bool in_flight = false;
-  /// As brief as the time in which a sole leaves its place: needs knots within its window.
+  /// The error lasts only as long as a sole is out of its place: the correction needs knots within
+  /// this window.
   bool is_brief = false;
-  /// The commanded COG or ZMP may itself be wrong around it, and is then no goal.
+  /// The commanded COG or ZMP may itself be wrong near the error, and is then not a goal of the
+  /// repair.
   bool is_of_plan = false;
-  /// Of the motion of one joint alone: where that joint is locked, nothing removes it.
+  /// The error concerns the motion of one joint alone: if this joint is locked, the error cannot be
+  /// removed.
   bool is_of_one_joint = false;
-  /// Of a mean over a fixed time: no fault of the posture of one sample, and no slower motion
-  /// removes it.
+  /// The error concerns a mean over a fixed time: it is not caused by the posture of one sample,
+  /// and a slower motion does not remove it.
   bool is_mean = false;
-  /// A motion that is repaired at all is repaired where the check only warns, too.
+  /// If a motion is repaired, findings of this kind that are only warnings are repaired, too.
   bool warnings_too = false;
 };
 
@@ -138,7 +142,7 @@ const std::vector<const FindingSpec*>& summary_figures();
 const std::vector<const FindingSpec*>& actuator_findings();
 
 /// Whether the finding is about the posture itself, the same at every pace; a speed, a torque or a
-/// ZMP at some time can be corrected though the posture there stays.
+/// ZMP at some time can be corrected although the posture there stays the same.
 bool is_of_posture(const Finding& finding);
 
 /// The figures of a motion, by kind; in the unit of FindingSpec::figure before its scale.
@@ -160,7 +164,7 @@ struct CheckOptions {
   double friction = 0.8;
   std::map<std::string, double> tolerances;  ///< by the name of the kind
   int threads = 0;                           ///< 0: all cores; results do not depend on it
-  bool degrees = true;  ///< unit of the pattern's angles, in which texts for people have theirs
+  bool degrees = true;  ///< texts for people give angles in degrees, not in rad
 };
 
 /// The defaults with those that were set. Throws Error(usage) for an unknown name or a tolerance

@@ -57,7 +57,7 @@ Advice normal_force_advice(const JudgedMotion&, const FindingWindow&) {
 }
 
 std::string normal_force_infeasibility(const Finding& f, double) {
-  return "the ground would have to pull the robot down (" + f.where + ")";
+  return "the ground would have to pull the robot down (" + place_words(f.where) + ")";
 }
 
 }  // namespace

@@ -123,7 +123,7 @@ Advice support_advice(const JudgedMotion&, const FindingWindow& window) {
 }
 
 std::string support_infeasibility(const Finding& f, double violation) {
-  return "the ZMP is " + in_mm(violation) + " outside the support (" + f.where + ")";
+  return "the ZMP is " + in_mm(violation) + " outside the support (" + place_words(f.where) + ")";
 }
 
 }  // namespace

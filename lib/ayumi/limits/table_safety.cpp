@@ -359,9 +359,9 @@ SafetyOptions as_it_is(SafetyOptions options) {
 
 std::string on_both_clocks(double t, double begin, double end) {
   constexpr double kSlack = 1e-9;  // Definition: rounding of whole multiples of a tick [s]
-  const std::string pattern = t < begin - kSlack ? "ramp"
-                              : t > end + kSlack ? "hold"
-                                                 : "pattern " + text::fixed(t - begin, 3) + " s";
+  const std::string pattern = t < begin - kSlack ? "in the ramp"
+                              : t > end + kSlack ? "in the hold"
+                                                 : text::fixed(t - begin, 3) + " s of the pattern";
   return text::fixed(t, 3) + " s (" + pattern + ")";
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 // Before a table goes to a real robot: an approach ramp, an end hold, and a check of what the
-// servos would receive, on whole encoder counts where the robot has them. Servos jump to whatever
-// the next row says, so the table has to be harmless by itself.
+// servos would receive, on whole encoder counts where the robot has them. Servos follow every row
+// at once, so the table itself has to be safe.
 
 #include <functional>
 #include <string>
@@ -23,14 +23,14 @@ struct SafetyOptions {
   /// HOAP's encoders; a target that leads a start from rest at a limit is beyond it by 4e-9 rad.
   double beyond_range = 1e-6;
   double rest_speed = 0.1;  ///< start and end count as rest below this [rad/s]
-  double rest_window = 0;   ///< mean over so long; 0: from one row to the next [s]
+  double rest_window = 0;   ///< the speed is a mean over this time; 0: over one row [s]
 };
 
 /// The same for an imported sequence whose rows are kept, which is complete as it is: no ramp and
 /// no hold, and its speed at both ends is a mean, because its rows are whole counts.
 SafetyOptions as_it_is(SafetyOptions options);
 
-/// One way in which a table is unsafe: its worst instant.
+/// One way in which a table is unsafe, with its worst row.
 struct SafetyViolation {
   std::string kind;  ///< "position", "step", "range", "torque", "start_speed", "end_speed"
   std::string joint;
@@ -41,11 +41,11 @@ struct SafetyViolation {
   double begin = 0, end = 0;    ///< of the motion, in the time of the table [s]
 };
 
-/// A time of a table on both clocks: "3.234 s (pattern 1.234 s)"; where the motion does not last
-/// from `begin` to `end`, "1.234 s (ramp)" or "9.500 s (hold)".
+/// A time of a table, with the time of the pattern: "3.234 s (1.234 s of the pattern)", or "1.234 s
+/// (in the ramp)" before `begin` and "9.500 s (in the hold)" after `end`.
 std::string on_both_clocks(double t, double begin, double end);
 
-/// "l_knee at 3.234 s (pattern 1.234 s): step 61 counts, limit 57 (3 rows)"
+/// "l_knee at 3.234 s (1.234 s of the pattern): step 61 counts, limit 57 (3 rows)"
 std::string text_of(const SafetyViolation& violation, bool degrees = true);
 
 struct SafetyReport {
@@ -89,7 +89,7 @@ SafetyReport safety_of_targets(const RobotModel& model, const TargetRows& target
                                const SafetyOptions& options = {});
 
 /// Where motor torques (rows x dof of the robot, the first at `begin` [s] of a table) are beyond
-/// the peaks of a profile: the worst of every joint. A table tells nothing of forces; a log does.
+/// the peaks of a profile: the worst of every joint. A table contains no forces; a log does.
 std::vector<SafetyViolation> torque_violations(const RobotModel& model,
                                                const Eigen::MatrixXd& torque, double dt,
                                                double begin, const std::string& profile);
@@ -97,13 +97,13 @@ std::vector<SafetyViolation> torque_violations(const RobotModel& model,
 /// Adds violations to the report of a table, which is then unsafe.
 void add_violations(SafeTable& safe, const std::vector<SafetyViolation>& violations);
 
-/// What a robot is to receive from a run: make_safe() and the torques that its motors gave in the
-/// run (rows of `reference` x dof), judged by the same profile.
+/// The table that a robot is to receive from a run: make_safe(), and the torques that its motors
+/// gave in the run (rows of `reference` x dof), judged by the same profile.
 SafeTable make_safe_run(const RobotModel& model, const ReferenceTrajectory& reference,
                         const Eigen::MatrixXd& torque, const SafetyOptions& options);
 
 /// Encoder counts of every row, rows x dof in the robot's joint order: the nearest whole count, or
-/// its neighbour (less than one count off) where only that one keeps the position limits and
+/// its neighbour (less than one count off) if only this neighbour keeps the position limits and
 /// `step_limits` (counts per tick, by dof). Joints without an encoder give 0.
 Eigen::MatrixXi encoder_counts(const RobotModel& model, const ReferenceTrajectory& table,
                                const Eigen::VectorXd& step_limits);

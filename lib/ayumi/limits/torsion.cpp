@@ -112,7 +112,7 @@ Advice torsion_advice(const JudgedMotion&, const FindingWindow& window) {
 
 std::string torsion_infeasibility(const Finding& f, double violation) {
   return "the foot would turn: the motion needs " + ratio_text(violation) +
-         " times the yaw moment that friction can resist (" + f.where + ")";
+         " times the yaw moment that friction can resist (" + place_words(f.where) + ")";
 }
 
 }  // namespace

@@ -1,12 +1,11 @@
 #pragma once
-// Sine, exponential function and their relatives with the same bits on every machine. Those of the
-// C library differ in the last bit from version to version, and with the processor (with and
-// without fused multiply-add); a simulation of a walk makes a visible difference of it. Only
-// operations that IEEE 754 rounds in one way are used here: + - * / and the square root.
-//
-// Errors are below 1 unit in the last place for sin, cos (to 1e9 rad), exp, log, and atan, and
-// below 2 for the others, except power(). The rooms that compute use these, not those of <cmath>;
-// architecture_tests looks for the latter.
+// Sine, exponential function and their relatives with the same bits on every machine. The functions
+// of the C library differ in the last bit between versions and between processors (with and without
+// fused multiply-add), and a simulation of a walk amplifies this to a visible difference. Here,
+// only operations are used for which IEEE 754 defines the rounding exactly: + - * / and the square
+// root.  Errors are below 1 unit in the last place for sin, cos (to 1e9 rad), exp, log, and atan,
+// and below 2 for the others, except power(). The rooms that compute use these, not those of
+// <cmath>; architecture_tests looks for functions of <cmath>.
 
 #include <Eigen/Geometry>
 

@@ -46,7 +46,8 @@ class Track {
   std::vector<std::array<double, 6>> segments_;  ///< coefficients in u = (t - t0)/(t1 - t0)
 };
 
-/// Rest to rest from 0 to 1 for u in [0, 1], clamped outside; derivatives per u.
+/// Curve from 0 to 1, at rest at both ends, for u in [0, 1]; constant outside. Derivatives are with
+/// respect to u.
 TrackPoint minimum_jerk(double u);
 
 }  // namespace ayumi

@@ -114,7 +114,7 @@ class Doctor {
       const std::string detail = each.detail.empty() ? ""
                                  : count == 1
                                      ? " (" + each.detail + ")"
-                                     : " (most in " + each.worst + ": " + each.detail + ")";
+                                     : " (the worst is " + each.worst + ": " + each.detail + ")";
       const bool named = count > 1 || !each.names[0].empty();
       warnings.push_back({each.kind, named ? where : each.kind, each.message + detail});
     }

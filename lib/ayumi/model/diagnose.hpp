@@ -9,7 +9,7 @@
 namespace ayumi {
 
 struct ModelWarning {
-  std::string kind;     ///< "link", "joint", ...: what has the cause
+  std::string kind;     ///< "link", "joint", ...: what the warning concerns
   std::string where;    ///< links, joints or field, e.g. "link head", "links head, neck"
   std::string message;  ///< the suspicion and the remedy
 };

@@ -67,7 +67,7 @@ struct LoadFriction {
 /// within the dead band and reduced by it beyond,
 ///   torque = kp e - kd dphi,   or with an inner speed loop   kd (clamp(kp / kd e) - dphi),
 /// bounded by the profile's peak torque and by the motor's voltage. A velocity feed-forward is a
-/// lead of delay + kd/kp seconds of the target. The unit of a sliding joint is m where rad stands.
+/// lead of delay + kd/kp seconds of the target. For a sliding joint, read m in place of rad.
 struct ServoDescription {
   double kp = 0;             ///< [N m/rad]
   double kd = 0;             ///< [N m s/rad]
@@ -155,12 +155,11 @@ struct AxisReadings {
   Eigen::Vector3d scale = Eigen::Vector3d::Ones();  ///< [m/s^2, rad/s per reading]
 };
 
-/// How a load cell of a sole answers to the force on it, in this order (sim/load_cell).
+/// How the reading of a load cell depends on the force on it, in this order (sim/load_cell).
 struct CellResponse {
-  double dead_zone = 0;   ///< force that the cell does not feel; of a larger one it feels the rest
-                          ///< [N]
-  double hysteresis = 0;  ///< what it feels during unloading in excess of loading [N]
-  double gain = 1;        ///< reading for what it feels [1]
+  double dead_zone = 0;   ///< force below which the reading is 0; subtracted from larger forces [N]
+  double hysteresis = 0;  ///< difference of the reading between unloading and loading [N]
+  double gain = 1;        ///< reading divided by the force that is left [1]
   double saturation = 0;  ///< largest reading [N]; 0: no bound
   bool operator==(const CellResponse&) const = default;
 };
@@ -189,7 +188,7 @@ struct SensorDescription {
     const double force = force_latency.value_or(latency) + 0.5 * (force_readings - 1) * tick;
     return std::max({force, encoder_latency.value_or(latency), imu_latency.value_or(latency)});
   }
-  /// Every quantity is as old as this [s].
+  /// Gives every quantity this latency [s].
   void set_latency(double age) {
     latency = age;
     encoder_latency = imu_latency = force_latency = std::nullopt;

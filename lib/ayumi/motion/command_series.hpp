@@ -33,7 +33,7 @@ struct ViipSpan {
   ViipGoal goal;
 };
 
-/// W = diag(value) from a sample on [dof].
+/// W = diag(value), valid from this sample on [dof].
 struct JointWeight {
   long from = 0;
   Eigen::VectorXd value;
@@ -48,11 +48,11 @@ struct CommandSeries {
   std::vector<JointWeight> joint_weight;      ///< in time order; none: the robot's own
   /// The joints come from a table of servo targets without their lead; it is replayed unchanged.
   bool servo_commands = false;
-  /// What the servos receive in open loop in place of the command with its feedforward, dof x
-  /// samples [rad]; the last column holds after the end. Empty: nothing takes its place.
+  /// Servo targets in open loop, in place of the command with its feedforward, dof x samples [rad];
+  /// the last column is held after the end. Empty: the command with its feedforward is used.
   Eigen::MatrixXd targets = {};
-  /// The rows of an imported sequence, which a robot receives as they were; none: its table is
-  /// computed of the samples.
+  /// The rows of an imported sequence, which a robot receives unchanged; none: the table is
+  /// computed from the samples.
   std::optional<ReferenceTrajectory> kept = {};
 
   /// W of sample k; null: the robot's own.

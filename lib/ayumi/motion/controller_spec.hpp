@@ -13,21 +13,22 @@ enum class ControllerKind {
   none,  ///< open loop: the servos receive the command; VIIP phases hold their posture
   dtad,  ///< DTAD, section 3 of the paper; VIIP in phases that carry goals
   viip,  ///< the same laws in the same phases, but the gains given are those of VIIP
-  /// Baselines: what others have published, on the body, sensors and servos of DTAD. Only the
-  /// choice of the ZMP differs. VIIP in phases that carry goals.
+  /// Baselines: published control laws with the body, sensors and servos of DTAD. Only the choice
+  /// of the ZMP differs. VIIP is used in phases with goals.
   preview,      ///< ZMP preview control (control/preview_control)
   foot_guided,  ///< foot-guided control (control/foot_guided)
   dcm_step,     ///< DCM tracking that chooses step place and durations (control/step_program)
 };
 
-/// Whether the law is one to compare with: a ZMP chosen otherwise, all else as under DTAD.
+/// Whether the law is a baseline: it chooses the ZMP in another way, and everything else is as in
+/// DTAD.
 bool is_baseline(ControllerKind kind);
 
-/// Variants that show what a part of a law is worth. They are not meant for a robot.
+/// Variants that show the effect of one part of a law. They are not meant for a robot.
 enum class Demonstration {
   none,
   literal,        ///< DTAD: (14) is integrated as printed, only the sign of D is corrected
-  no_feedback,    ///< VIIP: nothing is measured, feet land by the clock; open loop elsewhere
+  no_feedback,    ///< VIIP without measurements: feet land at planned times; otherwise open loop
   landings_only,  ///< VIIP: as no_feedback, but the landing of a foot is noticed
 };
 

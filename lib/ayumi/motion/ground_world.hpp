@@ -26,7 +26,8 @@ struct FrictionPatch {
   double friction = 0;                             ///< Coulomb coefficient
 };
 
-/// Heights on a square grid, bilinear between the nodes; the plane outside of the grid.
+/// Heights on a square grid, interpolated bilinearly between the nodes. Outside the grid, the
+/// ground is the plane.
 struct HeightField {
   Eigen::Vector2d origin = Eigen::Vector2d::Zero();  ///< of node (0, 0) [m]
   double spacing = 0.01;                             ///< [m]
@@ -35,7 +36,7 @@ struct HeightField {
 
 enum class MotionShape { ramp, half_sine, sine };
 
-/// Where a motion takes the whole floor, and how.
+/// Displacement of the whole floor by a motion, and its course over time.
 ///   ramp: smoothly (minimum jerk) to the full value within the duration, where it stays;
 ///   half_sine: to the full value and back within the duration;
 ///   sine: sin(2 pi frequency (t - at)) for the duration, then zero.
@@ -67,7 +68,8 @@ struct World {
 /// Corners of a block's top, ground's frame, anticlockwise; returns their number, 4 or 8 (disc).
 int block_corners(const GroundBlock& block, std::array<Eigen::Vector2d, 8>& corners);
 
-/// The ground's frame in the world at time t [s]: slope and all motions. Before 0 it is as at 0.
+/// The ground's frame in the world at time t [s]: slope and all motions. Before time 0, the frame
+/// is the same as at 0.
 Eigen::Isometry3d floor_pose(const World& world, const std::vector<FloorMotion>& further, double t);
 
 }  // namespace ayumi

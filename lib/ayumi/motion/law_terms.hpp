@@ -1,12 +1,12 @@
 #pragma once
-// What a control law did in a tick, as plain numbers: the terms of its reference by the paper's
-// equations, and what the resolution of (22) or (28) left of its tasks.
+// The quantities of a control law in one tick, as plain numbers: the terms of its reference by the
+// paper's equations, and what the resolution of (22) or (28) left of its tasks.
 
 #include <Eigen/Core>
 
 namespace ayumi {
 
-/// What a law does in a tick.
+/// The activity of a law in one tick.
 enum class LawStage {
   replay,          ///< open loop
   follow,          ///< DTAD on the ground
@@ -22,8 +22,8 @@ enum class LawStage {
   settle           ///< (24)(25)
 };
 
-/// The terms of which a law made its reference in a tick, so that a log tells what it did. What a
-/// law does not use is 0. Places in the plan frame [m], accelerations [m/s^2].
+/// The terms from which a law computed its reference in one tick, for the log. Terms that a law
+/// does not use are 0. Places in the plan frame [m], accelerations [m/s^2].
 struct LawTerms {
   LawStage stage = LawStage::replay;
   /// (18)(19): the ZMP that is planned, within the support; the one wanted, before the nearest
@@ -38,14 +38,14 @@ struct LawTerms {
   double spring_goal = 0;         ///< ref z_G of (24) above the ground [m]
   double spring_height = 0;       ///< z_G there [m]
   double spring_rate = 0;         ///< rate of z_G less that of ref z_G [m/s]
-  /// Summands of the reference's acceleration. Of the motion itself: commanded under DTAD, (14) to
-  /// (17) of the reference pendulum under VIIP; of the short-term absorption; the pull to the
-  /// command (DTAD) or to the measured state (VIIP); the damping of the rocking.
+  /// Terms of the acceleration of the reference: the motion itself (commanded under DTAD, (14) to
+  /// (17) of the reference pendulum under VIIP); the short-term absorption; the pull to the command
+  /// (DTAD) or to the measured state (VIIP); the damping of the rocking.
   Eigen::Vector3d motion = Eigen::Vector3d::Zero(), short_term = Eigen::Vector3d::Zero(),
                   pull = Eigen::Vector3d::Zero(), rocking = Eigen::Vector3d::Zero();
 };
 
-/// What (22) or (28) left of its tasks, as |J_U ref dtheta - u|.
+/// Residuals of the tasks of (22) or (28), as |J_U ref dtheta - u|.
 struct TaskResiduals {
   double cog = 0;        ///< [m/s]
   double foot = 0;       ///< of the other foot [m/s]

@@ -26,7 +26,7 @@ inline bool supports(Support support, Side side) {
   return support == Support::both ||
          support == (side == Side::left ? Support::left : Support::right);
 }
-/// Left for right and right for left.
+/// The mirror image: left and right are exchanged.
 inline Support opposite(Support support) {
   return support == Support::left    ? Support::right
          : support == Support::right ? Support::left
@@ -41,8 +41,8 @@ struct Foothold {
   Eigen::Vector3d rpy = Eigen::Vector3d::Zero();       ///< roll, pitch, yaw, R = Rz Ry Rx [rad]
 };
 
-/// A step as seen from the sole frame of the other foot. With zeros the foot lands beside the other
-/// one, as far from it and as turned as at the start.
+/// A step as seen from the sole frame of the other foot. If all values are 0, the foot lands beside
+/// the other one, with the distance and the turn that it has at the start.
 struct RelativeStep {
   double forward = 0, side = 0, up = 0;  ///< ahead, to the left, upwards [m]
   double turn = 0;                       ///< to the left [rad]
@@ -71,14 +71,14 @@ struct ZmpKey {
   Place place = Place::point;  ///< left/right: centre of that sole at that time
   Eigen::Vector2d point = Eigen::Vector2d::Zero();  ///< world [m], for Place::point
 };
-/// Left for right and right for left.
+/// The mirror image: left and right are exchanged.
 inline ZmpKey::Place opposite(ZmpKey::Place place) {
   return place == ZmpKey::Place::left    ? ZmpKey::Place::right
          : place == ZmpKey::Place::right ? ZmpKey::Place::left
                                          : place;
 }
 
-/// Where the end of a link shall be, and which way it shall point; or what a head shall look at.
+/// Target of the end of a link: its place and its direction; or the point that a head looks at.
 struct LinkTarget {
   enum class Frame { world, trunk };
   Frame frame = Frame::world;
@@ -86,7 +86,7 @@ struct LinkTarget {
   std::optional<Eigen::Vector3d> direction;  ///< from the link's joint to its end, unit vector
 };
 
-/// Sets the tracks that it names at time t; it does not affect other tracks.
+/// Sets the tracks that it names at time t, and no other tracks.
 struct Keyframe {
   double t = 0;                                ///< [s]
   std::optional<Interpolation> interpolation;  ///< of the segment that ends here

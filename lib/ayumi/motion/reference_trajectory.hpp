@@ -41,8 +41,8 @@ struct ReferenceTrajectory {
   TableServo servo = {};
 };
 
-/// The table at another rate, straight between its rows; where the last row is not on the new
-/// ticks, it is the row after them.
+/// The table at another rate, interpolated linearly between its rows. If the last row is not on one
+/// of the new ticks, it follows as one more row.
 ReferenceTrajectory resampled(const ReferenceTrajectory& table, double dt);
 
 }  // namespace ayumi

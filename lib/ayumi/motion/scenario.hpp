@@ -47,7 +47,7 @@ struct Bump {
   double height = 0;                                ///< over the plane of the ground [m]
 };
 
-/// Every reading of the sensors is older by this.
+/// Adds this latency to every reading of the sensors.
 struct Latency {
   double latency = 0;  ///< [s]
 };
@@ -59,7 +59,7 @@ struct SensorBias {
   double load = 0;                                 ///< of every load cell [N]
 };
 
-/// What an encoder reads in excess, for servo and controller alike.
+/// Amount by which an encoder reads too much, for the servo and the controller.
 struct EncoderOffset {
   std::string joint{};  ///< "": all joints
   double offset = 0;    ///< [rad, m]

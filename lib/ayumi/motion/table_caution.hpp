@@ -1,5 +1,5 @@
 #pragma once
-// What a person has to know before a robot receives a joint table.
+// Warnings that a person needs before a robot receives a joint table.
 
 #include <string>
 
@@ -9,12 +9,12 @@ struct TableCaution {
   /// The scripted disturbances of the run that the table is from; empty for an undisturbed run. The
   /// table holds the reactions to them, which no robot should repeat.
   std::string disturbances;
-  /// Why no robot should receive the table ("the run fell at 2.31 s"); empty where nothing is known
-  /// against it.
+  /// Why no robot should receive the table ("the run fell at 2.31 s"); empty if there is no such
+  /// reason.
   std::string unfit;
 };
 
-/// What holds of one part of a table holds of the whole.
+/// Adds the warnings for one part of a table to those for the whole table.
 inline void add_caution(TableCaution& caution, const TableCaution& more) {
   const auto add = [](std::string& text, const std::string& other) {
     if (!other.empty()) text += (text.empty() ? "" : "; ") + other;

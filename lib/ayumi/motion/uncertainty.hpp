@@ -1,7 +1,7 @@
 #pragma once
-// What is not known of a robot, its ground and its disturbances: named quantities with a
-// distribution each, and where the numbers of the distribution come from. docs/formats.md,
-// "Studies", specifies the file.
+// Uncertainty of a robot, its ground and its disturbances: named quantities, each with a
+// distribution, and where the numbers of the distribution come from. docs/formats.md, "Studies",
+// specifies the file.
 
 #include <array>
 #include <map>
@@ -10,7 +10,7 @@
 
 namespace ayumi {
 
-/// How the values of a quantity are spread.
+/// Distribution of the values of a quantity.
 struct Distribution {
   enum class Kind { uniform, normal, truncated, choice };
   Kind kind = Kind::uniform;
@@ -51,7 +51,7 @@ enum class UncertainKind {
   push_link        ///< number of the link in UncertainPush::links
 };
 
-/// What a quantity of this kind is called in files, what it acts on, and its unit.
+/// Name of the kind in files, the thing on which it acts, and its unit.
 struct UncertainKindInfo {
   UncertainKind kind;
   std::string name;

@@ -344,10 +344,10 @@ void describe(const SampleJob& job, const CogPlan& plan, const Worst& worst,
                                   : " joints of its own and one that moves both legs, not six,") +
         " so there are places at which it cannot put the sole level: the trunk leans by up to " +
         text::fixed(worst.lean * 180 / std::numbers::pi, 1) +
-        " deg, and soles that carry miss their places by up to " + millimetres(worst.miss) +
-        " (allowed " + millimetres(kLackingTolerance) + ")";
+        " deg, and a supporting sole is up to " + millimetres(worst.miss) +
+        " away from its place (allowed " + millimetres(kLackingTolerance) + ")";
     if (worst.swing > kNotedMiss)
-      origin["legs"] += ", soles that swing by up to " + millimetres(worst.swing) + " (allowed " +
+      origin["legs"] += "; a swinging sole by up to " + millimetres(worst.swing) + " (allowed " +
                         millimetres(kSwingingTolerance) + " in the middle of a swing)";
   }
   origin["joints"] = "legs by inverse kinematics, others from keys and default posture";

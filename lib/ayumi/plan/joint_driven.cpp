@@ -65,7 +65,7 @@ void anchor_samples(const SampleJob& job, CommandSeries& series) {
       sample.state.base.attitude.coeffs() *= -1;
     sample.cog = data.cog;
   }
-  series.origin["base"] = "from the foot that carries";
+  series.origin["base"] = "from the foot that carries the robot";
 }
 
 void table_base(const SampleJob& job, CommandSeries& series) {

@@ -622,7 +622,7 @@ void LinkPlan::complain(const Group& group, double t, const std::vector<Aim>& ai
     remedy = other_unit(in_trunk ? Vector3d(trunk.inverse() * missed->place) : missed->place,
                         data.cog.z()) +
              "the " + target.name + " reaches only " +
-             numbers(in_trunk ? Vector3d(trunk.inverse() * end) : end, 4) + in_frame +
+             numbers(in_trunk ? Vector3d(trunk.inverse() * end) : end, 4) + " m" + in_frame +
              (only_way ? "; the trunk is on its way, too: let the hand set out when the trunk has "
                          "arrived, with a key \"free\" of the hand there, or move the target"
                        : "; move the target, or move or tilt the trunk");

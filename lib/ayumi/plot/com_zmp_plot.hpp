@@ -1,7 +1,8 @@
 #pragma once
 // Loci of runs against time: COG x, y, z with the command, ZMP x, y with the reference ZMP, and
-// f_z, several runs of one pattern together (open loop and closed loop); with the robot at hand how
-// far the ZMP is inside the soles planned down. And the same from above.
+// f_z, several runs of one pattern together (open loop and closed loop); if the robot is known,
+// also the distance of the ZMP from the edge of the soles that are planned on the ground. Also a
+// view from above.
 
 #include <filesystem>
 #include <string>
@@ -30,7 +31,8 @@ struct LociOptions {
   bool limits_in_view = false;             ///< panels of joints reach to the limits of the joint
   Frame frame = Frame::world;              ///< of places, where the robot is known
   bool command = true, reference = true;   ///< what is commanded; the reference ZMP
-  /// Leave out panels in which the runs differ by less than can be seen, and name them below.
+  /// Leave out panels in which the difference between the runs is too small to be seen, and name
+  /// these panels below.
   bool only_differences = false;
   double width = 1000;     ///< [pixel]
   double panel = 132;      ///< height of one panel [pixel]

@@ -1,5 +1,5 @@
 #pragma once
-// A flat drawing of lines, areas and text, and its two faces: SVG with real text, and a picture.
+// A flat drawing of lines, areas and text, and its two forms: SVG with text, and a picture.
 
 #include <Eigen/Core>
 #include <string>
@@ -35,8 +35,8 @@ struct DrawnText {
 };
 
 struct Drawing {
-  double width = 800, height = 600;  ///< [pixel]
-  std::string title, description;    ///< for those who hear the SVG instead of seeing it
+  double width = 800, height = 600;                       ///< [pixel]
+  std::string title, description;                         ///< for screen readers
   std::vector<std::variant<DrawnPath, DrawnText>> items;  ///< in the order they are laid
 };
 

@@ -174,7 +174,7 @@ double draw_legend(Drawing& drawing, const PushMap& map, bool capped) {
   entry(map.baseline, kOpen, false);
   for (size_t i = 0; i < map.laws.size(); ++i) entry(map.laws[i], kLaws[i], false);
   std::string unit = "N s, through the COG";
-  if (capped) unit += "; hollow point: the robot survives also the largest push that was tried";
+  if (capped) unit += "; hollow point: the robot survives even the largest push that was tried";
   make_room(text_width(unit, kSmall));
   for (const std::string& line : wrapped(unit, drawing.width - kSide - x)) {
     drawing.items.push_back(

@@ -1,5 +1,6 @@
 #pragma once
-// Where the picture is taken from. Image x to the right, y down, pixel centres at halves.
+// The camera of a picture. Image x to the right, y down; the centres of the pixels are at half
+// numbers.
 
 #include <Eigen/Geometry>
 #include <string>
@@ -54,7 +55,8 @@ Framing framing(const Camera& camera, double aspect, const std::vector<Eigen::Ve
 Camera framed(const Camera& camera, const Framing& framing);
 
 /// The cameras of a clip: a target path from the COG at a fixed rate, and a distance at which a
-/// robot of this height fits. A function of time alone, whatever frame is asked for first.
+/// robot of this height fits. The camera depends on the time alone, not on the order in which
+/// frames are requested.
 class CameraPath {
  public:
   /// `cog` at k dt, world [m]; `height` of the robot [m]; `aspect` width / height of the picture.

@@ -19,7 +19,7 @@
 
 namespace ayumi {
 
-/// The robot a second time, translucent.
+/// A second, translucent robot.
 struct GhostOptions {
   bool command = false;                ///< the commanded posture of the same log
   const SimulationLog* log = nullptr;  ///< or another run of the same robot; must outlive the clip
@@ -58,8 +58,8 @@ struct ClipShape {
   std::shared_ptr<const DrawnRobot> robot;
   std::vector<std::string> notes;
 };
-/// `thin`: triangles that a picture of this size cannot show are left out, which pays where many
-/// pictures are drawn. `progress` hears of the work on heavy meshes.
+/// `thin`: triangles that are too small to be visible in a picture of this size are left out, which
+/// saves time if many pictures are drawn. `progress` is called during the work on heavy meshes.
 std::shared_ptr<const ClipShape> clip_shape(const RobotModel& model, const SimulationLog& log,
                                             const ClipOptions& options, bool thin,
                                             const Progress& progress = {});
@@ -78,7 +78,7 @@ class ClipRenderer {
   Image clip_frame(double t);
   /// One of several on a sheet: time and event are written in a corner, and nothing else.
   Image tile(double t);
-  /// From now on pictures are framed alike, so that the robot at these instants fills them.
+  /// All later pictures have the same frame, which the robot fills at these instants.
   void frame_robot(const std::vector<double>& times);
   /// A sheet's lines: title, controller and verdict; the marks with their meanings, over as many
   /// lines as they need. `size` of the letters [pixel]; (left, top) to the right edge. They return

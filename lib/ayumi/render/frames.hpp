@@ -1,7 +1,7 @@
 #pragma once
-// One frame for what a robot did and what it was told. The plan is in a frame of its own, in which
-// the supporting foot is where the plan has it; a foot that slipped, or landed elsewhere, puts the
-// two apart.
+// A common frame for the motion of a robot and its command. The plan has a frame of its own, in
+// which the supporting foot is at its planned place. If a foot slips or lands at another place, the
+// two frames differ.
 
 #include <string>
 #include <vector>

@@ -16,7 +16,7 @@ double duration(const SimulationLog& log);
 SimulationSample sample_at(const SimulationLog& log, double t);
 
 /// The floor's frame in the world at `t`: the slope and every motion of the floor, those of the
-/// scenario included. What stands on the ground lies in this frame.
+/// scenario included. Objects on the ground are given in this frame.
 Eigen::Isometry3d floor_at(const SimulationLog& log, double t);
 
 /// Frame of the ground plane at `t`: the floor's, raised to the plane; z is its normal.
@@ -66,9 +66,8 @@ std::vector<double> telling_instants(const SimulationLog& log, int count);
 /// What happens at an instant: "push 1.1 N s", "apex", "falls"; empty for nothing special.
 std::string instant_text(const SimulationLog& log, double t);
 
-/// From when on it is so what the verdict says [s]: the fall, or the instant from which on a robot
-/// that stands keeps its posture, its place and its contacts. Its end where it does not come to
-/// rest.
+/// Time from which the verdict holds [s]: the fall, or the instant from which on a robot that
+/// stands keeps its posture, its place and its contacts. Its end where it does not come to rest.
 double verdict_instant(const SimulationLog& log);
 
 }  // namespace ayumi

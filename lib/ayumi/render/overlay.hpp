@@ -60,8 +60,8 @@ std::vector<Eigen::Vector3d> support_corners(
     const std::array<bool, 2>& contact,
     const Eigen::Isometry3d& ground = Eigen::Isometry3d::Identity());
 
-/// How near the joint of each body is to its limits of position, speed and torque, by body: 0 up to
-/// two thirds of the limit of speed or torque and outside the last tenth of the range, 1 at the
+/// Closeness of the joint of each body to its limits of position, speed and torque, by body: 0 up
+/// to two thirds of the limit of speed or torque and outside the last tenth of the range, 1 at the
 /// limit. Where the home posture is near a limit, the joint is near it from a third of that
 /// distance on, so that nothing is near a limit at home. `profile` by name; the default one where
 /// unknown.

@@ -49,7 +49,7 @@ struct Exposure {
 /// Colour of a joint by Scene::heat, from amber to red.
 Eigen::Vector4f heat_color(float heat);
 
-/// What stands on the ground from beginning to end.
+/// Fixed objects on the ground.
 struct Scenery {
   Triangles triangles;       ///< in the floor's frame
   Eigen::AlignedBox2d hole;  ///< of the ground plane, where a field takes its place [m]
@@ -73,7 +73,7 @@ class Renderer {
   /// Throws Error(usage) for a size outside 1..4096, Error(internal) where OpenGL fails.
   Renderer(const std::vector<BodySurface>& robot, const RenderOptions& options,
            const Scenery& scenery = {});
-  /// Nothing of the robot is kept but what OpenGL holds of it.
+  /// Only the data of the robot in OpenGL are kept.
   Renderer(const RenderOptions& options, const DrawnRobot& robot, const Scenery& scenery = {});
   ~Renderer();
   Renderer(Renderer&&) noexcept;
@@ -82,8 +82,8 @@ class Renderer {
   /// Throws Error(internal) unless the scene has one pose per body.
   Image render(const Scene& scene);
 
-  /// What is drawn otherwise than its files say, and why: a texture that cannot
-  /// be read.
+  /// Parts that are drawn in another way than the files state, with the reason: a texture that
+  /// cannot be read.
   const std::vector<std::string>& notes() const;
 
  private:

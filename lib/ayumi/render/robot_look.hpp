@@ -1,6 +1,6 @@
 #pragma once
-// What all pictures of a robot are drawn from: its surface, made of its meshes once, however many
-// clips, snapshots and pages show it.
+// The surface of a robot for all pictures. It is made from the meshes once, for any number of
+// clips, snapshots and pages.
 
 #include <memory>
 #include <string>

@@ -1,5 +1,5 @@
 #pragma once
-// The robot as triangles per body, and where its bodies are.
+// The robot as triangles of each body, and the poses of its bodies.
 
 #include <Eigen/Geometry>
 #include <string>
@@ -17,7 +17,7 @@ struct TexturedSurface {
   std::string texture;  ///< as MeshPart::texture_file
 };
 
-/// What is seen of one body, in the body frame.
+/// The visible surface of one body, in the body frame.
 struct BodySurface {
   Triangles closed;  ///< outside counter-clockwise; back faces need no drawing
   Triangles open;    ///< to be seen from both sides

@@ -10,8 +10,9 @@
 
 namespace ayumi {
 
-/// Empty on a bare plane. Patches lie a fraction of a millimetre above it, darker the less they
-/// hold. Of a field with more than `max_nodes` a side only every second, third, ... node is taken.
+/// Empty on a bare plane. Patches lie a fraction of a millimetre above it, darker if their friction
+/// is smaller. Of a field with more than `max_nodes` a side only every second, third, ... node is
+/// taken.
 Triangles make_scenery(const World& world, int max_nodes = 512);
 
 /// A disc that comes up during a run.

@@ -12,8 +12,8 @@ namespace ayumi {
 /// The same surface with fewer triangles: about `tolerance` [m] from the original ones. A vertex
 /// only moves along an edge onto the other end. Outlines of open surfaces and borders of colours
 /// keep their course as surfaces do; normals and colours of the corners that stay are kept; closed
-/// surfaces stay closed. Pictures on surfaces are not touched. `progress` hears of every round. The
-/// method is that of Garland and Heckbert (1997), with the squared distances as a mean over the
+/// surfaces stay closed. Pictures on surfaces are not touched. `progress` is called in every round.
+/// The method is that of Garland and Heckbert (1997), with the squared distances as a mean over the
 /// area that a vertex stands for.
 Triangles thinned(const Triangles& surface, double tolerance, const Progress& progress = {});
 void thin(std::vector<BodySurface>& surface, double tolerance, const Progress& progress = {});

@@ -78,9 +78,8 @@ std::string window_text(const Finding& f) {
 std::string violation_text(const Finding& f, double violation) {
   if (const auto text = spec_of(f.kind).infeasibility) return text(f, violation);
   const ShownUnit unit = shown_unit(f.unit, f.in_degrees);
-  return std::string(name_of(f.kind)) + " of " + f.where + " is " +
-         text::brief(f.worst * unit.scale) + " " + unit.name + ", but the limit is " +
-         text::brief(f.limit * unit.scale) + " " + unit.name;
+  return kind_and_place(f.kind, f.where) + " is " + text::brief(f.worst * unit.scale) + " " +
+         unit.name + ", but the limit is " + text::brief(f.limit * unit.scale) + " " + unit.name;
 }
 
 std::string words_of(const InfeasibilityCause& cause) {

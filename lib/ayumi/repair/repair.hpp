@@ -33,8 +33,8 @@ struct RandomStart {
   std::uint64_t seed = 0;
 };
 
-/// The series is a plan (sample_plan) and no motion yet: the feet are moved where it has them, and
-/// the axes of the COG that count stay near it.
+/// The series is a plan (sample_plan) and not yet a motion: the feet are moved to their places in
+/// the plan, and the COG stays near the plan along the axes that count.
 struct Generation {
   std::array<bool, 3> cog = {};  ///< x, y, z
 };
@@ -61,8 +61,8 @@ struct RepairOptions {
   bool mumps = false;        ///< linear systems by MUMPS, to compare
   RandomStart random_start;  ///< of the first program, to see how little depends on the start
   std::optional<Generation> generate = {};
-  /// Called with the check of the motion as it is given, and of every motion found after that: what
-  /// is still wrong with it is what the repair works on. See remaining_errors().
+  /// Called with the check of the motion as it is given, and of every motion found after that: its
+  /// errors are the ones that the repair has to remove. See remaining_errors().
   std::function<void(const ConsistencyReport& check)> on_check = {};
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// The weighted change, which a repair makes small, of any motion against another:
+// The weighted change between two motions, which a repair minimizes:
 //   sum_c w_c integral (d_c^2 + tau^4 d_c''^2) dt,   tau = 0.1 s,
 // with d the differences of base position, base rotation (vector of R_b R_a') and joints.
 

@@ -1,7 +1,7 @@
 #pragma once
 // One HTML page of a run, complete in itself: verdict, replay, loci, findings, pictures, push
-// thresholds, provenance. It loads nothing from anywhere; without JavaScript the replay is a
-// picture and everything else is there.
+// thresholds, provenance. It loads no other files. Without JavaScript, the replay is a picture and
+// everything else is the same.
 
 #include <memory>
 #include <string>
@@ -20,7 +20,8 @@ namespace ayumi {
 struct ReportRun {
   std::string name;          ///< "open loop", "closed loop"
   const SimulationLog* log;  ///< must outlive the call
-  /// Only its joints were measured: it is a ghost of the replay, and has no outcome and no curves.
+  /// Only the joints were measured: the recording appears as a ghost in the replay, without an
+  /// outcome and without curves.
   bool recorded = false;
 };
 

@@ -139,7 +139,7 @@ Table finding_table(const ConsistencyReport& check) {
         {escaped(name_of(f.kind)),
          f.severity == Severity::error ? marked(Tone::bad, ayumi::name_of(f.severity))
                                        : ayumi::name_of(f.severity),
-         escaped(f.where),
+         escaped(place_words(f.where)),
          time_link(f.at) + " (" + text::fixed(f.begin, 2) + " to " + text::fixed(f.end, 2) + ")",
          figure(f.worst, f.unit, f.in_degrees), figure(f.limit, f.unit, f.in_degrees),
          escaped(f.hint)});
@@ -263,7 +263,7 @@ std::string thresholds_section(const ReportInput& input) {
   if (input.thresholds.empty()) return "";
   Table rows = {
       "Largest survivable impulse of 20 ms through the COG. The bound is the impulse that a point "
-      "mass on the planned footholds could absorb; + means that the robot survives also the "
+      "mass on the planned footholds could absorb; + means that the robot survives even the "
       "largest push of the study.",
       {"phase", "towards [deg]", "law", "impulse [N s]", "open loop [N s]", "bound [N s]",
        "share of the bound"},

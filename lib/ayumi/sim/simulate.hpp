@@ -28,7 +28,7 @@ struct PlantKind {
 using TargetFunction = std::function<Eigen::VectorXd(
     double t, const Estimate& estimate, const CommandSample& plan, const Eigen::VectorXd& targets)>;
 
-/// One robot of a kind. It differs from the model by which its controller works: in masses, soles
+/// One specimen of a robot. It differs from the model that its controller uses: in masses, soles
 /// and sensors (model), and in its servos (actuators). Links, joints and their order are the same.
 struct RobotUnit {
   RobotModel model;

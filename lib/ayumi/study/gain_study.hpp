@@ -1,6 +1,7 @@
 #pragma once
-// Gains of DTAD for a standing robot: what a designer asks for becomes gains, and with them follow
-// the poles of the linear loop and the pushes from which the robot recovers without a step.
+// Gains of DTAD for a standing robot: the gains that follow from the wishes of a designer, the
+// poles of the linear loop with these gains, and the pushes from which the robot recovers without a
+// step.
 
 #include <optional>
 #include <string>
@@ -10,7 +11,7 @@
 
 namespace ayumi {
 
-/// How far the DCM may be from the plan, and the impulse that brings it there, along one direction.
+/// Largest distance of the DCM from the plan, and the impulse that causes it, in one direction.
 struct Reach {
   std::string support, direction;
   double dcm = 0;      ///< [m]

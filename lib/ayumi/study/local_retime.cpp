@@ -32,7 +32,7 @@ constexpr int kMostRounds = 10;
 // the third changes the duration by less than 0.1 %; a later round begins near its result.
 constexpr int kTimings = 3, kLaterTimings = 2;
 
-// Width of one of the three boxes that smooth a course of time [s]: s'' then has no jump and no
+// Width of one of the three boxes that smooth a timing [s]: s'' then has no jump and no
 // kink. Chosen: servos of small robots answer within 30 ms, and the motion gets 36 ms longer.
 constexpr double kBox = 0.013;
 
@@ -344,8 +344,7 @@ class LocalSearch {
       if (f.severity == Severity::error && (!shown || (is_of_posture(f) && !is_of_posture(*shown))))
         shown = &f;
     if (!shown) return "the check";
-    return std::string(name_of(shown->kind)) + " " + shown->where + " at " +
-           text::fixed(shown->at, 3) + " s: " + amount_text(*shown) + " (motion of " +
+    return kind_place_and_time(*shown) + ": " + amount_text(*shown) + " (when the motion takes " +
            text::fixed(result_.series.duration(), 3) + " s)";
   }
 

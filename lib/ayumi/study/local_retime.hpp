@@ -1,5 +1,5 @@
 #pragma once
-// The quickest course of time along a motion: it slows the motion only where a limit binds. The
+// The quickest timing along a motion: it slows the motion only where a limit binds. The
 // path is the motion at the fastest pace that all of it keeps, because the COG that is solved from
 // the ZMP depends on the pace. Along the path, math/path_timing finds the quickest timing within
 // the rows of study/path_limits, which is then made smooth, sampled and checked. Where the check
@@ -26,16 +26,16 @@ struct LocalRetimeOptions {
 };
 
 struct LocalPace {
-  bool found = false;                 ///< a course of time passes the check
-  Pattern pattern;                    ///< in this course, as a table
+  bool found = false;                 ///< a timing passes the check
+  Pattern pattern;                    ///< with this timing, as a table
   CommandSeries series;               ///< its samples
   ConsistencyReport report;           ///< of them
   double scale = 1;                   ///< duration over that of the given pattern
   double path_scale = 1;              ///< of the path, uniform
   std::vector<BindingLimit> binding;  ///< what limits the pace, the longest first
-  int rounds = 0;                     ///< courses of time that were checked
+  int rounds = 0;                     ///< timings that were checked
   std::string limited_by;             ///< why none was found, in words
-  bool by_posture = false;            ///< because of the posture, which no course of time changes
+  bool by_posture = false;            ///< because of the posture, which no timing changes
 };
 
 /// The table of the result gets the file name `table`. Flights keep their pace. Throws

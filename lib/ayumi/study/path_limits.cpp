@@ -19,7 +19,7 @@ namespace {
 constexpr double kLeastPace = 0.01;
 
 // Time beside a flight in which s' stays 1, besides the samples whose rates mix it with support
-// [s]. Derived: above half the reach of the smoothing of a course of time (local_retime.cpp).
+// [s]. Derived: above half the reach of the smoothing of a timing (local_retime.cpp).
 constexpr double kBesideFlight = 0.025;
 
 // Steps of x (a share of it) and of u [1/s] for the slopes of torques, whose shares between the

@@ -149,9 +149,8 @@ class PaceSearch {
       if (!shown || (is_of_posture(f) && !trial.of_posture)) shown = &f;
       trial.of_posture = is_of_posture(*shown);
     }
-    reason_ = std::string(name_of(shown->kind)) + " " + shown->where + " at " +
-              text::fixed(shown->at, 3) + " s: " + amount_text(*shown) + " (motion of " +
-              text::fixed(duration, 3) + " s)";
+    reason_ = kind_place_and_time(*shown) + ": " + amount_text(*shown) +
+              " (when the motion takes " + text::fixed(duration, 3) + " s)";
     trial.reason = reason_;
     return trial;
   }

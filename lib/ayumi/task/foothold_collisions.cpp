@@ -204,9 +204,8 @@ class Footholds {
     std::vector<std::string> remedies;
     for (const std::optional<Remedy>& remedy : {to_the_side(phase), less_turned(phase)}) {
       if (!remedy) continue;
-      remedies.push_back("with " + remedy->words + ", " + text::counted(remedy->errors, "error") +
-                         " of " + std::to_string(errors_) +
-                         (remedy->errors == 1 ? " remains" : " remain"));
+      remedies.push_back("with " + remedy->words + ", " +
+                         text::remaining(remedy->errors, errors_, "error"));
     }
     if (!remedies.empty()) words += "; " + text::join(remedies, ", and ");
     return Mistake{pointer_of_phase(task_.pattern, phase) + "/swing", words};

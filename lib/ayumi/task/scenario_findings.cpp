@@ -41,8 +41,7 @@ std::vector<std::string> findings_under_scenario(const Task& task, const CheckOp
     if (errors.empty())
       words += "check finds no other error";
     else
-      words += std::string("check finds ") + name_of(errors[0].kind) + " " + errors[0].where +
-               " at " + text::fixed(errors[0].at, 3) + " s: " + amount_text(errors[0]) +
+      words += "check finds " + kind_place_and_time(errors[0]) + ": " + amount_text(errors[0]) +
                (errors.size() > 1 ? " (and " + text::counted(errors.size() - 1, "more error") + ")"
                                   : "");
     sentences.push_back(words);

@@ -48,7 +48,7 @@ SimulateOptions simulate_options(const Task& task);
 /// The profile of the task, an approach ramp and a hold of default length.
 SafetyOptions safety_options(const Task& task);
 
-/// Robot, pattern and profile with their SHA-256, for the head of whatever is made of the task.
+/// Robot, pattern and profile with their SHA-256, for the head of all results of the task.
 /// `controller` is the name of the control law.
 Provenance provenance(const Task& task, const std::string& controller,
                       const std::string& command_line = "");
@@ -65,7 +65,7 @@ SimulationLog simulate(const Task& task, const SimulateOptions& options,
 /// Why a table of a run is not for a robot: the pattern is inconsistent (`inconsistent` says why
 /// and is empty otherwise), or the run fell or did not settle. Where the run was disturbed,
 /// `undisturbed` may be the same run without disturbances; the reasons then name the run that they
-/// are from. Empty where nothing is known against the table.
+/// are from. Empty if there is no such reason.
 std::vector<std::string> unfit_reasons(const std::string& inconsistent, const SimulationLog& log,
                                        const SimulationLog* undisturbed = nullptr);
 std::vector<std::string> unfit_reasons(const Judgement& judgement, const SimulationLog& log);

@@ -320,11 +320,11 @@ class LocalPace:
 
     @property
     def found(self) -> bool:
-        """Whether a course of time passes the check."""
+        """Whether a timing passes the check."""
 
     @property
     def pattern(self) -> Pattern:
-        """The motion in this course, as a table."""
+        """The motion with this timing, as a table."""
 
     @property
     def scale(self) -> float:
@@ -340,15 +340,15 @@ class LocalPace:
 
     @property
     def rounds(self) -> int:
-        """Number of courses of time that were checked."""
+        """Number of timings that were checked."""
 
     @property
     def limited_by(self) -> str:
-        """In words: why no course of time passes the check."""
+        """In words: why no timing passes the check."""
 
     @property
     def by_posture(self) -> bool:
-        """Whether no course of time passes because a posture itself violates a limit."""
+        """Whether no timing passes because a posture itself violates a limit."""
 
 class Log:
     """A run with one sample per tick. log['cog'] is an array, log.units('cog') has its units. docs/formats.md describes the quantities."""
@@ -660,7 +660,7 @@ class Robot:
 
     @property
     def assumptions(self) -> list[str]:
-        """What the files of the robot do not say and was inferred."""
+        """Values that the files of the robot do not state and that were inferred."""
 
     def cog(self, state: RobotState) -> NDArray[numpy.float64]:
         """Centre of gravity in the world [m], shape (3,)."""
@@ -1029,7 +1029,7 @@ def data_folder(name: str) -> Path:
     """Folder of the bundled data: 'robots', 'patterns' or 'examples'."""
 
 def fastest_local_pace(task: Task, *, table: str = 'retimed.csv', margin: Optional[float] = None, keep_pauses: bool = False, progress: Optional[Callable[[str, float, str], Any]] = None) -> LocalPace:
-    """The fastest course of time along the motion: the motion slows down only where a limit binds. The result names its table `table`; the ZMP keeps at most `margin` [m] from the edge of the support; with `keep_pauses`, spans in which nothing moves keep their length."""
+    """The fastest timing along the motion: the motion slows down only where a limit binds. The result names its table `table`; the ZMP keeps at most `margin` [m] from the edge of the support; with `keep_pauses`, spans in which nothing moves keep their length."""
 
 def fastest_pace(task: Task, *, resolution: float = 0.002, progress: Optional[Callable[[str, float, str], Any]] = None) -> Pace:
     """The fastest uniform time scaling of the pattern that passes the check."""

@@ -18,10 +18,10 @@ namespace ayumi {
 Pattern baked(const RobotModel& model, const Pattern& pattern, const CommandSeries& series,
               const std::string& table);
 
-/// Map of a robot onto its mirror image in its x z plane.
+/// Map of a robot to its mirror image about its x z plane.
 struct MirrorMap {
   std::vector<int> dof;   ///< the dof on the other side; the same dof for one in the middle
-  std::vector<int> sign;  ///< +1 or -1: theta of the image
+  std::vector<int> sign;  ///< +1 or -1: sign of theta in the image
   std::vector<int> link;  ///< the link on the other side
 };
 /// Throws Error(bad_model) that names the joint without a counterpart within 5 mm.
@@ -43,20 +43,21 @@ Pattern retimed(const RobotModel& model, const Pattern& pattern, double scale);
 Pattern stretched(const RobotModel& model, const Pattern& pattern, double begin, double end,
                   double factor);
 
-/// Another course of time along a motion of the same postures.
+/// Another timing along a motion of the same postures.
 struct TimeCourse {
-  double dt = 0.001;       ///< of the new motion [s]
-  std::vector<double> at;  ///< at its sample k: the time of the given motion; rises to its end [s]
+  double dt = 0.001;       ///< sampling step of the new motion [s]
+  std::vector<double> at;  ///< for each sample of the new motion, the time of the given motion [s];
+                           ///< increases up to its end
 
   double duration() const { return dt * static_cast<double>(at.size() - 1); }
   /// The new time of a time of the given motion [s].
   double time_of(double given) const;
 };
 
-/// The motion in another course of time, as a table of posture and base (COG, ZMP and f_z are those
-/// of the full model). `series` holds the samples of the pattern, between which the postures follow
+/// The motion with another timing, as a table of posture and base (COG, ZMP and f_z are those of
+/// the full model). `series` holds the samples of the pattern, between which the postures follow
 /// their rates and accelerations. Phases, pushes, weights and windows move along. The feet are
-/// planned where the joints have them, because a planned swing knows no other course of time.
+/// planned where the joints have them, because the path of a planned swing has a fixed timing.
 /// Throws as baked().
 Pattern with_course(const RobotModel& model, const Pattern& pattern, const CommandSeries& series,
                     const TimeCourse& course, const std::string& table);
@@ -65,19 +66,20 @@ Pattern with_course(const RobotModel& model, const Pattern& pattern, const Comma
 struct KeyEdit {
   double at = 0;             ///< time of the keyframe, within 0.5 ms [s]
   std::optional<double> to;  ///< its new time [s]; none: it stays
-  bool copy = false;         ///< the keyframe stays where it was, too
-  bool mirror = false;       ///< left and right are exchanged in what arrives
+  bool copy = false;         ///< the keyframe also stays at its old time
+  bool mirror = false;       ///< left and right are exchanged at the new time
 };
-/// A keyframe that arrives at the time of another one is merged with it, and its tracks count.
-/// Throws Error(usage) for a time without a keyframe or beyond the phases, and as mirror_map.
+/// A keyframe that is moved to the time of another one is merged with it. For a track that both
+/// have, the moved keyframe counts. Throws Error(usage) for a time without a keyframe or beyond the
+/// phases, and as mirror_map.
 Pattern with_key_edited(const RobotModel& model, const Pattern& pattern, const KeyEdit& edit);
 
 /// The pattern and its mirror image in turn, `times` in all, so that one step becomes a walk: each
-/// begins with the feet where the last one has left them. Swings become steps relative to the other
-/// foot, the last of which brings the feet beside each other when `close`. Points on the ground go
-/// with the foot that carries at the first swing. Throws Error(bad_pattern) for a pattern with a
-/// table, a correction, VIIP phases or foot keys, or without a swing, Error(usage) unless `times`
-/// is 2 to 1000, and as mirror_map.
+/// part begins with the feet in the places in which the previous part ends. Swings become steps
+/// relative to the other foot, the last of which brings the feet beside each other when `close`.
+/// Points on the ground move with the foot that carries the robot in the first swing. Throws
+/// Error(bad_pattern) for a pattern with a table, a correction, VIIP phases or foot keys, or
+/// without a swing, Error(usage) unless `times` is 2 to 1000, and as mirror_map.
 Pattern alternated(const RobotModel& model, const Pattern& pattern, int times, bool close = true);
 
 /// A pattern and its samples.
@@ -97,20 +99,21 @@ Pattern joined(const RobotModel& model, const MotionPart& first, const MotionPar
                double over, const std::string& table);
 
 /// Two patterns in sequence as keys, as joined() does it with samples: keys, phases and scenario of
-/// the second pattern are moved in place and time; keys at the join keep every track of either
-/// pattern at what it was. Throws as joined(), and Error(bad_pattern) with the reason where keys
-/// cannot say the same: a table, a correction, VIIP phases, legs led by joints, foot keys, and
-/// tracks of COG or ZMP that only one of the patterns has.
+/// the second pattern are moved in place and time; keys at the join keep the value of every track
+/// of both patterns. Throws as joined(), and Error(bad_pattern) with the reason if keys cannot
+/// express the joined motion: a table, a correction, VIIP phases, legs led by joints, foot keys,
+/// and tracks of COG or ZMP that only one of the patterns has.
 Pattern chained(const RobotModel& model, const MotionPart& first, const MotionPart& second,
                 double over);
 
-/// How well the end of a motion meets its beginning, which is moved over the ground to the feet.
+/// Differences between the end of a motion and its beginning, after the beginning has been moved
+/// over the ground to the feet.
 struct LoopGap {
   double feet = 0;     ///< largest distance of a sole from its place at the beginning [m]
   double posture = 0;  ///< largest difference of a joint [rad, m]
   double base = 0;     ///< difference of the base's place [m]
   double rate = 0;     ///< largest difference of a joint's rate [rad/s, m/s]
-  std::string joint;   ///< that differs most
+  std::string joint;   ///< the joint that differs most
   bool closed = false;
 };
 /// Throws Error(bad_pattern) where a foot is in the air at an end.

@@ -71,8 +71,8 @@ SquatParameters squat_defaults(const RobotModel& model);
 /// COG height keys; the horizontal COG is solved. Throws as walk_pattern.
 Pattern squat_pattern(const RobotModel& model, const SquatParameters& parameters);
 
-/// The COG goes down as onto a seat and stays, or comes up from there; the trunk leans ahead and
-/// back meanwhile.
+/// The COG goes down as if to sit on a seat and stays there, or comes up from there. The trunk
+/// leans forward and comes back during this time.
 struct SeatParameters {
   double depth = 0.05;    ///< below the standing COG [m]
   double lean = 0.35;     ///< of the trunk half-way [rad]
@@ -83,7 +83,8 @@ SeatParameters seat_defaults(const RobotModel& model);
 Pattern sit_pattern(const RobotModel& model, const SeatParameters& parameters);
 Pattern rise_pattern(const RobotModel& model, const SeatParameters& parameters);
 
-/// The trunk leans ahead and comes back; the COG goes down as the trunk's does on legs that stay.
+/// The trunk leans forward and comes back. The COG goes down by as much as it does when only the
+/// trunk moves.
 struct BowParameters {
   double angle = 0.5;     ///< of the trunk [rad]
   double period = 2.4;    ///< down and up without the hold [s]
@@ -104,7 +105,8 @@ WaveParameters wave_defaults(const RobotModel& model);
 /// Throws as walk_pattern, and when no arm of three joints reaches beside the head.
 Pattern wave_pattern(const RobotModel& model, const WaveParameters& parameters);
 
-/// A foot goes back, kicks ahead and comes back to its place, on the other foot.
+/// While the robot stands on one foot, the other foot goes back, kicks forward and comes back to
+/// its place.
 struct KickParameters {
   Side side = Side::right;
   double length = 0.04;   ///< ahead of its place [m]
@@ -115,9 +117,9 @@ struct KickParameters {
 KickParameters kick_defaults(const RobotModel& model);
 Pattern kick_pattern(const RobotModel& model, const KickParameters& parameters);
 
-/// Slow sweeps, chirps and steps of every joint within its limits, by which `identify` tells the
-/// constants of servos apart; the robot stands on both feet. `scale` of all amplitudes, `stature`
-/// of the COG height. Throws as walk_pattern.
+/// Slow sweeps, chirps and steps of every joint within its limits, by which `identify` can
+/// distinguish the constants of the servos; the robot stands on both feet. `scale` is a factor on
+/// all amplitudes, `stature` a factor on the COG height. Throws as walk_pattern.
 Pattern excite_pattern(const RobotModel& model, double scale = 1, double stature = 1);
 
 /// Stoop, lift-off, flight, touchdown and settling, `times` times without a rest between.

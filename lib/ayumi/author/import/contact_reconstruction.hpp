@@ -10,13 +10,13 @@
 
 namespace ayumi {
 
-/// Where nothing rests in a motion with a base, a foot carries the robot nevertheless if these
-/// three quantities say so: recorded soles hover, slide and tilt.
+/// If no sole is at rest in a motion with a base, these three thresholds decide whether a foot
+/// carries the robot, because recorded soles hover, slide and tilt.
 struct ContactThresholds {
   /// Largest height of a sole over the lowest one within half a second [m]. Chosen: soles of
   /// retargeted dances hover 4 to 10 mm; swings lift them by more than 15 mm.
   double height = 0.012;
-  /// Largest speed of the sole [m/s]. Chosen: a tenth of that of a quick swing (1.5 m/s).
+  /// Largest speed of the sole [m/s]. Chosen: a tenth of the speed of a quick swing (1.5 m/s).
   double speed = 0.15;
   /// Least vertical force that the motion of the COG needs, in weights. Chosen: 0 is flight and 1
   /// is rest; recordings at 30 rows per second state it within about 0.2.
@@ -35,13 +35,14 @@ struct RawMotion {
 };
 
 /// Support in each row. Feet on the ground do not move relative to each other: both support while
-/// their relative pose rests (2 cm/s) at one height (3 mm); else the foot that is lower in the
-/// other's frame. At an immediate change of the supporting foot both support as long as they do not
-/// move apart along the ground (4 cm/s) or by more than 1 cm in height. In a motion with a base, a
-/// sole supports that is at rest within 3 mm of the lowest height of all. In rows without such a
-/// sole, the thresholds of the motion decide by height, speed and load; rows where they find no
-/// sole either are flight. Intervals shorter than 20 ms belong to their neighbours. A contact lasts
-/// from the rest after a swing, if there is one, to the beginning of the next swing.
+/// their relative pose rests (2 cm/s) at one height (3 mm); otherwise the foot supports that is
+/// lower in the frame of the other foot. At an immediate change of the supporting foot both support
+/// as long as they do not move apart along the ground (4 cm/s) or by more than 1 cm in height. In a
+/// motion with a base, a sole supports that is at rest within 3 mm of the lowest height of all. In
+/// rows without such a sole, the thresholds of the motion decide by height, speed and load; rows
+/// where they find no sole either are flight. Intervals shorter than 20 ms belong to their
+/// neighbours. A contact lasts from the rest after a swing, if there is one, to the beginning of
+/// the next swing.
 std::vector<Support> detect_supports(const RobotModel& model, const RawMotion& motion);
 
 /// One foot on the ground.
@@ -57,14 +58,14 @@ struct FootContact {
 struct GroundedMotion {
   Pattern pattern;
   std::vector<FootContact> contacts;  ///< in order of begin
-  /// In words, of a motion with a base: by how much it floats, sinks and slides, and its flights.
+  /// For a motion with a base, in words: how far the soles float, sink and slide, and the flights.
   std::vector<std::string> notes = {};
 };
 /// Throws Error(bad_model) without soles, Error(bad_pattern) for fewer than 6 rows.
 GroundedMotion grounded(const RobotModel& model, const RawMotion& motion, const std::string& table);
 
-/// A motion with a base, moved up and down so that the lowest sole that carries is at height 0;
-/// evenly between contacts. Without a base, the motion as it is.
+/// A motion with a base, moved up and down so that the lowest supporting sole is at height 0;
+/// between contacts, the shift is interpolated linearly. Without a base, the motion as it is.
 RawMotion put_on_ground(const RobotModel& model, RawMotion motion);
 
 /// Ends at which the motion was cut while the robot moved.
@@ -74,11 +75,11 @@ struct CutEnds {
 };
 CutEnds cut_ends(const RobotModel& model, const RawMotion& motion);
 
-/// The motion from rest to rest: where it was cut while the robot moved, it is played slowly at
-/// first and reaches its own speed (by minimum jerk) after `seconds`, or slows down likewise at its
-/// end. Its path over the ground stays, so that no foot slides; every end takes seconds/2 longer.
-/// All other rows keep their bits. ZMP and vertical force are dropped, for they change. Throws
-/// Error(bad_pattern) when the motion is too short.
+/// The motion, changed so that it begins and ends at rest: where it was cut while the robot moved,
+/// it is played slowly at first and reaches its own speed (by minimum jerk) after `seconds`, or
+/// slows down in the same way at its end. Its path over the ground stays, so that no foot slides;
+/// every end takes seconds/2 longer. All other rows keep their bits. ZMP and vertical force are
+/// dropped, because they change. Throws Error(bad_pattern) when the motion is too short.
 RawMotion with_ramps(const RobotModel& model, RawMotion motion, double seconds);
 
 }  // namespace ayumi

@@ -207,10 +207,14 @@ DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec) {
              " never bring the COG back; equations (18)(19) need K > 1 and D > 0");
   check_baseline(p);
   if (!p.k && p.pole_ratio <= 0)
-    fail(ErrorCode::usage, "controller gains: q must be positive (K = 1 + q must exceed 1)");
-  if (p.zmp_filter <= 0) fail(ErrorCode::usage, "controller gains: tau_z must be positive");
+    fail(ErrorCode::usage, "controller gains: q is " + text::brief(p.pole_ratio) +
+                               "; it must be above 0, because K = 1 + q must exceed 1");
+  if (p.zmp_filter <= 0)
+    fail(ErrorCode::usage,
+         "controller gains: tau_z is " + text::brief(p.zmp_filter) + "; it must be above 0");
   if (p.as_printed != 0 && p.as_printed != 1)
-    fail(ErrorCode::usage, "controller gains: as_printed must be 0 or 1");
+    fail(ErrorCode::usage,
+         "controller gains: as_printed is " + text::brief(p.as_printed) + "; it must be 0 or 1");
   if (p.step_share > 1)
     fail(ErrorCode::usage, "controller gains: step is " + text::brief(p.step_share) +
                                "; it must be from 0 to 1. This gain is the part of an error that "

@@ -1,6 +1,6 @@
 #pragma once
 // DTAD: dual-term absorption of disturbance, section 3 of the paper. The law and its derivation:
-// docs/theory.md, "DTAD". What each term is worth: docs/measurements/law.md.
+// docs/theory.md, "DTAD". The effect of each term: docs/measurements/law.md.
 
 #include <memory>
 #include <optional>
@@ -83,7 +83,7 @@ struct HorizontalGains {
   double D = 0;  ///< [s]
 };
 
-/// DTAD, and the baselines: another choice of the ZMP on the same body.
+/// DTAD, and the baselines, which choose the ZMP in another way for the same body.
 class Dtad {
  public:
   /// Starts at rest in the posture of the command, which the servos hold with `target` [rad].
@@ -93,7 +93,7 @@ class Dtad {
        CommandPlan command, std::shared_ptr<const Eigen::MatrixXd> torque_lead,
        const Eigen::VectorXd& target);
 
-  /// Goes on from what another law left.
+  /// Continues after another law.
   void take_over(const Handover& handover);
 
   /// The command of the coming tick.

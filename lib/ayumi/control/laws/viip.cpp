@@ -154,7 +154,8 @@ ViipParams viip_params(const RobotModel& model, const ControllerSpec& spec) {
     for (const auto& [name, value] : spec.gains) set(name, value, "controller gains");
   for (const char* name : {"q", "goal", "tau_z", "kz", "kz_one", "single", "both", "lift"})
     if (!(*fields.at(name) > 0))
-      fail(ErrorCode::usage, std::string("controller gains: ") + name + " must be positive");
+      fail(ErrorCode::usage, std::string("controller gains: ") + name + " is " +
+                                 text::brief(*fields.at(name)) + "; it must be above 0");
   if (p.height_damping < 1 - 1e-9)
     fail(ErrorCode::usage, "controller gains: with dz = " + text::brief(p.height_damping) +
                                " the COG height overshoots; dz must be at least 1, because "

@@ -3,7 +3,7 @@
 //   <interval ms>,2,<motor 1>,...,<motor n>[,<words>],R,...
 // without a head row. Motors in device order, values in encoder counts, interval = time to the next
 // row. "R" requests sensor data. The columns are those of a layout of the robot's sidecar; files
-// without an interval are what a robot answers.
+// without an interval are recordings of a robot.
 
 #include <filesystem>
 #include <string>
@@ -17,7 +17,7 @@
 namespace ayumi {
 
 /// The robot's layouts. A sidecar without any has two: interval, 2, the motors of all encoders and
-/// three requests; and the motors with two more values behind them, without an interval.
+/// three requests; and the motors followed by two more values, without an interval.
 std::vector<SequenceLayout> sequence_layouts(const RobotModel& model);
 
 /// The layout of that name, else the first with an interval: the one that is written. Throws
@@ -43,8 +43,8 @@ struct HoapFile {
   double dt() const { return 0.001 * tick_ms; }
 };
 
-/// Blanks, CR, `-0` and any text behind the motors are fine. Rows without an interval follow each
-/// other in the interval of their layout, or in `interval_ms` where it is above 0. Throws
+/// Blanks, CR, `-0` and any text after the motors are accepted. Rows without an interval follow
+/// each other in the interval of their layout, or in `interval_ms` where it is above 0. Throws
 /// Error(bad_file) "file:line: ..." for a number of columns that no layout of the robot has, a
 /// value that is no count of 16 bits (or no angle), an interval that is none, no rows.
 HoapFile parse_hoap(const std::string& bytes, const std::string& file, const RobotModel& model,
@@ -53,14 +53,14 @@ HoapFile parse_hoap(const std::string& bytes, const std::string& file, const Rob
 /// Whether a file begins as a sequence of this robot.
 bool looks_like_hoap(const std::string& bytes, const RobotModel& model);
 
-/// Values of one device from 1 at every tick, straight between rows.
+/// Values of one device (counted from 1) at every tick, interpolated linearly between rows.
 Eigen::VectorXd values_on_ticks(const HoapFile& sequence, int device);
 
 /// Angle of a joint per unit of the file's values; radians have the sign of the encoder.
 double angle_of_unit(const HoapFile& sequence, const Dof& dof);
 
-/// What the servos receive: joint angles of a sequence on its ticks (other fields zero), in the
-/// robot's joint order. Joints without a device in the file keep their home angle.
+/// The servo targets: joint angles of a sequence at its ticks (other fields zero), in the robot's
+/// joint order. Joints without a device in the file keep their home angle.
 ReferenceTrajectory hoap_targets(const RobotModel& model, const HoapFile& sequence);
 
 /// The table as a sequence file, in the layout that the robot writes unless another is given;

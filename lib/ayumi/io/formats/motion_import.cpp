@@ -234,7 +234,7 @@ std::vector<std::string> column_names(const MotionFile& motion, const RobotModel
                         " of '" + model.name() + "' in the order of the robot (" + own.front() +
                         ", ..., " + own.back() + "), or name the columns with --joints A,B,..."
                   : ", but '" + model.name() + "' has " + text::counted(own.size(), "joint") +
-                        ", so that this may be a motion of another robot; --joints A,B,... names "
+                        ", so this may be a motion of another robot; --joints A,B,... names "
                         "the columns"));
   return motion.joints;
 }
@@ -272,8 +272,7 @@ void refuse_absurd(const MotionFile& motion, const RobotModel& model, const std:
       if (std::abs(x) > most) most = std::abs(x);
     if (most > kFarthest)
       refuse(row, std::string("a coordinate of the ") + name + " is " + text::brief(most) +
-                      " m; beyond " + text::brief(kFarthest / 1000) +
-                      " km it is no place of a motion");
+                      " m, but at most " + text::brief(kFarthest / 1000) + " km are possible");
   };
   for (size_t k = 0; k < motion.base.size(); ++k) check(k, "root", motion.base[k].position);
   for (size_t k = 0; k < motion.cog.size(); ++k) check(k, "COG", motion.cog[k]);
@@ -585,7 +584,7 @@ void hold_last_row(Eigen::Index least, ImportedMotion& imported) {
   theta.conservativeResize(least, Eigen::NoChange);
   theta.bottomRows(least - rows) = theta.row(rows - 1).replicate(least - rows, 1);
   imported.filled.push_back("the last posture is held until there are " + std::to_string(least) +
-                            " rows, which the check of a motion needs");
+                            " rows, the least number for a check");
 }
 
 // A motion begins and ends at rest: as if it returned along its own path.

@@ -83,7 +83,7 @@ MotionFile read_op3_action(const MotionInput& source) {
                          " bytes, but an action file has " + std::to_string(kPages * kPageBytes) +
                          (bytes.size() < kPages * kPageBytes
                               ? "; it was cut, so copy it again"
-                              : "; something stands behind its pages, so copy it again"));
+                              : "; there are more bytes after the last page, so copy it again"));
   std::vector<size_t> full;
   std::vector<bool> follows(kPages, false);
   std::vector<std::string> damaged;

@@ -52,7 +52,7 @@ MotionFile read_transposed_csv(const MotionInput& source) {
         find_joint(source.model, std::string(cells[0])) < 0) {
       motion.notes.push_back("row '" + std::string(cells[0].substr(0, 48)) + "' (line " +
                              std::to_string(line) +
-                             ") has words and no numbers, so that it is left out");
+                             ") has words and no numbers, so it is left out");
       continue;
     }
     std::vector<double> row;

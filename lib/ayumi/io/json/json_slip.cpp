@@ -141,7 +141,7 @@ class SlipFinder {
       ++end;
     const size_t word = text_.find_last_not_of(" \t", end - 1) + 1;
     say(end, "a quotation mark is missing: " + quoted(begin, word) +
-                 " begins with one and has none at its end");
+                 " begins with a quotation mark and does not end with one");
   }
 
   // Reads the next token; says what is wrong with it where it is none of JSON.

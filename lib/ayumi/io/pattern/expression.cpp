@@ -148,7 +148,7 @@ class Parser {
     const auto found = functions().find(name);
     if (found == functions().end()) stop(unknown_function(name));
     const Function& function = found->second;
-    if (!take('(')) stop("'(' is missing behind " + name);
+    if (!take('(')) stop("'(' is missing after " + name);
     std::array<double, 2> value = {};
     for (size_t i = 0; i < function.arguments; ++i) {
       if (i > 0 && !take(',')) stop(name + " takes two numbers, as in \"" + name + "(1, 2)\"");

@@ -212,7 +212,7 @@ std::string meant_time(double before, double previous, const std::string& place_
              text::exact(previous) + " s, correct that time; otherwise give a later time here";
   for (const double slip : number_slips(t))
     if (slip > previous && slip < 2 * previous - before)
-      return "; give a later time (" + text::exact(slip) + " s?)";
+      return "; give a later time, perhaps " + text::exact(slip) + " s";
   return "; give a later time" + otherwise;
 }
 

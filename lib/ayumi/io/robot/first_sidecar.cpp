@@ -183,7 +183,7 @@ std::string soles_text(const RobotModel& model, const RobotGuess& guess) {
                  guess.sole_reason) +
          remark(
              "Softness: stiffness [N/m] and damping time [s] of a whole sole on the ground. Guess: "
-             "the whole weight presses hard rubber in by 0.1 mm. Check this by loading a foot: the "
+             "the whole weight compresses hard rubber by 0.1 mm. Check this by loading a foot: the "
              "softness of the soles can decide whether the robot falls when it walks.") +
          "  \"soles\": {\n" + sole_text(soles.at("left"), model, Side::left) + ",\n" +
          sole_text(soles.at("right"), model, Side::right) + "\n  },\n";

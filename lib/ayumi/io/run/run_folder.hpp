@@ -1,7 +1,7 @@
 #pragma once
 // A RUN: the folder that run and simulate write. run.json holds verdicts, options, provenance and
-// fingerprints; log_<name>.bin the simulation logs; reference.csv the table to replay. Nothing in
-// it depends on when, where or with how many threads it was made.
+// fingerprints; log_<name>.bin the simulation logs; reference.csv the table to replay. Its content
+// does not depend on the time, the place or the number of threads with which it was made.
 
 #include <filesystem>
 #include <map>
@@ -30,7 +30,7 @@ struct RunFolder {
   bool light = false;
   std::vector<std::string> files;  ///< others in the folder, relative, existing
   /// Why the run gives no table for a robot: an inconsistent pattern, a run that fell or did not
-  /// settle. Empty where nothing is known against it.
+  /// settle. Empty if there is no such reason.
   std::vector<std::string> unfit = {};
 };
 

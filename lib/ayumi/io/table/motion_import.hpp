@@ -1,6 +1,6 @@
 #pragma once
-// Motions of other origin, in the formats of io/formats/motion_formats.hpp, fitted to a robot. What
-// was understood, assumed, filled in or left out is said in words.
+// Motions of other programs and robots, in the formats of io/formats/motion_formats.hpp, fitted to
+// a robot. What was understood, assumed, filled in or left out is listed in words.
 
 #include <optional>
 #include <string>
@@ -32,7 +32,7 @@ struct ImportedMotion {
   bool commands = false;            ///< motion.theta is what servos receive
   TableCaution caution = {};        ///< of the run that the table is from
   std::string sequence = {};        ///< bytes of a HOAP sequence, kept to be exported unchanged
-  std::vector<std::string> filled;  ///< what the file does not say, or says beside the motion
+  std::vector<std::string> filled;  ///< assumptions, and other content of the file, in words
 };
 
 /// A file of key poses as a pattern.

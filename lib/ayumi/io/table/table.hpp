@@ -1,7 +1,8 @@
 #pragma once
-// Joint tables that say what they hold: ReferenceTrajectory as CSV and JSON ("ayumi.reference/1"),
-// and the sampled motions a pattern names. Columns and units as in docs/formats.md: t[s],
-// theta.<joint>[rad], cog.x[m], zmp.x[m], fz[N], base.x[m], base.qw, contact.left.
+// Joint tables that describe their content: ReferenceTrajectory as CSV and JSON
+// ("ayumi.reference/1"), and the sampled motions a pattern names. Columns and units as in
+// docs/formats.md: t[s], theta.<joint>[rad], cog.x[m], zmp.x[m], fz[N], base.x[m], base.qw,
+// contact.left.
 
 #include <filesystem>
 #include <string>
@@ -13,15 +14,15 @@
 
 namespace ayumi {
 
-/// "# key: value" lines, one head row, one row per tick; numbers read back to the same bits.
-/// The head says what there is to say of the table's run. Throws Error(internal) for a value that
-/// is not finite or a row with another number of joints.
+/// "# key: value" lines, one head row, one row per tick; numbers read back to the same bits. The
+/// head describes the run of the table. Throws Error(internal) for a value that is not finite or a
+/// row with another number of joints.
 std::string reference_csv(const ReferenceTrajectory& reference, const TableCaution& caution = {});
 /// The same columns and rows as one JSON object.
 std::string reference_json(const ReferenceTrajectory& reference, const TableCaution& caution = {});
 
-/// What the head of a table says of the run that it is from. Throws Error(bad_file) where the file
-/// is no table.
+/// The part of the head of a table that describes its run. Throws Error(bad_file) where the file is
+/// no table.
 TableCaution read_table_caution(const std::filesystem::path& path);
 
 /// Reads what reference_csv or reference_json wrote; the first character says which of them. Throws
@@ -33,11 +34,11 @@ ReferenceTrajectory read_reference(const std::filesystem::path& path);
 void require_joints(const ReferenceTrajectory& reference, const std::vector<std::string>& joints,
                     const std::string& file);
 
-/// Reads the table of a pattern: t[s] and any whole group of the columns above. Contacts are the
-/// business of the pattern's phases; contact columns are skipped. Time starts at 0 at a fixed rate.
-/// Throws Error(bad_file) as read_reference.
+/// Reads the table of a pattern: t[s] and any whole group of the columns above. Contacts follow
+/// from the phases of the pattern, so contact columns are skipped. Time starts at 0 at a fixed
+/// rate. Throws Error(bad_file) as read_reference.
 DenseTable read_dense_table(const std::filesystem::path& path);
-/// Fingerprint of the angles of a table, which says whether they are still those of the import.
+/// Fingerprint of the angles of a table, which shows whether they have changed since the import.
 std::string theta_sha256(const DenseTable& table);
 /// The text read_dense_table reads.
 std::string dense_table_csv(const DenseTable& table, const TableCaution& caution = {});

@@ -442,7 +442,7 @@ class Page {
       "aria-pressed": String(members.some((i) => findings[i] === this.finding)), onclick: () => this.showFinding(one) },
     element("span", {}, element("strong", {}, { error: "Error", warning: "Warning", info: "Note" }[one.severity]), " " + times),
     element("span", {}, one.message),
-    places !== one.where && members.length > 1 ? element("span", {}, `The same of: ${places}`) : null,
+    places !== one.where && members.length > 1 ? element("span", {}, `The same finding at: ${places}`) : null,
     one.hint ? element("span", { class: "soft" }, one.hint) : null,
     consequences.length ? element("span", { class: "soft" }, `Consequences: ${consequences.join("; ")}`) : null);
   }

@@ -396,7 +396,7 @@ export function setRounds(state, document, phase, rounds) {
   if (other) return { refused: `The keyframe at ${other.time.toFixed(3)} s does not repeat with these phases. Change the rounds in the text.` };
   if (rounds === now) return { edits: [] };
   const kept = disturbancesWithin(state, from + Math.min(rounds, now) * (until - from) / now, until);
-  if (kept) return { refused: `${kept} is in a round that would go. Move or remove it first.` };
+  if (kept) return { refused: `${kept} is in a round that would be removed. Move or remove it first.` };
   const moved = moveLater(state, document, state.phases.indexOf(own.at(-1)), (rounds - now) * (until - from) / now, frames.length > 0, afterBlock(until, begins));
   if (moved.refused) return moved;
   return { edits: [...[pointer, ...blocks].map((block) => ({ kind: "set", pointer: block + "/repeat", value: rounds })), ...moved.edits] };

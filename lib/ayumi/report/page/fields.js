@@ -14,7 +14,7 @@ const weighted = (path, written) => Object.keys(written ?? {}).map((joint) => ({
 export const fieldsOf = {
   pattern: (value, state) => [
     { path: ["name"], otherwise: "none" },
-    { path: ["profile"], otherwise: "the first one of the robot", choices: state.profiles },
+    { path: ["profile"], otherwise: "the first profile of the robot", choices: state.profiles },
     { path: ["defaults", "cog_height"], otherwise: "as in the posture" },
     { path: ["defaults", "posture"], otherwise: "home", choices: state.postures },
     { path: ["defaults", "interpolation"], otherwise: "minimum_jerk", choices: interpolation },
@@ -25,8 +25,8 @@ export const fieldsOf = {
     { path: ["controller", "type"], otherwise: "dtad", choices: ["none", "dtad", "viip", "preview",
       "foot-guided", "dcm-step", "dtad-literal", "viip-landings", "viip-nofeedback"] },
     { path: ["repair", "trust"], otherwise: "posture", choices: ["posture", "cog", "zmp"] },
-    { path: ["repair", "margin"], otherwise: "that of the command" },
-    { path: ["repair", "safety"], otherwise: "that of the command" },
+    { path: ["repair", "margin"], otherwise: "the default of ayumi repair" },
+    { path: ["repair", "safety"], otherwise: "the default of ayumi repair" },
     ...weighted(["repair", "weights"], value.repair?.weights),
   ],
   phase: (value) => [
@@ -36,11 +36,11 @@ export const fieldsOf = {
       field(["viip", "jump", "forward"], "0"), { path: ["viip", "jump", "times"], otherwise: "1" },
       { path: ["viip", "jump", "release"], otherwise: "ref_z", choices: ["ref_z", "spring"] }] : [],
     ...value.viip?.velocity || value.viip?.turn !== undefined || value.viip?.step
-      ? [{ path: ["viip", "steps"], otherwise: "as many as fit" }] : [],
+      ? [{ path: ["viip", "steps"], otherwise: "as many steps as the phase has time for" }] : [],
     ...value.viip?.velocity ? [{ path: ["viip", "turn"], otherwise: "0" }] : [],
   ],
   keyframe: (value, state) => [
-    { path: ["interpolation"], otherwise: "that of the pattern", choices: interpolation },
+    { path: ["interpolation"], otherwise: "the interpolation of the pattern", choices: interpolation },
     ...typeof value.posture === "object" ? [] : [{ path: ["posture"], otherwise: "none", choices: state.postures }],
     { path: ["zmp"], otherwise: "no key", choices: ["left", "center", "right"] },
     ...["x", "y", "height"].map((name) => ({ path: ["cog", name], otherwise: "no key" })),

@@ -111,7 +111,7 @@ export const quantities = [
 /// The axes that an uncertain quantity may have (docs/formats.md).
 export const axesOf = (what) => ["slope", "attitude_bias"].includes(what) ? ["x", "y"] : ["x", "y", "z"];
 
-const assumed = "assumed: a first range of the page";
+const assumed = "assumed: the initial range of the page";
 
 export function addQuantity(what, unit) {
   const one = quantities.find((each) => each.what === what);
