@@ -8,7 +8,7 @@ namespace ayumi::app {
 
 /// What a part of an answer is worth, the least first. Every part is shortened once before any part
 /// is shortened a second time. Each time, what is worth least comes first.
-enum class Worth { origin, information, warning, remark, error, figure, verdict };
+enum class Worth { origin, info, warning, remark, error, figure, verdict };
 
 struct AnswerPart {
   Worth worth = Worth::verdict;

@@ -326,13 +326,37 @@ TEST_F(ChecksOn80Columns, ManyDisturbancesDoNotPushTheVerdictOutOfSight) {
   expect_fits(wrong.out, 40);
 }
 
+TEST_F(ChecksOn80Columns, TheAnswerOfARunFitsOnAScreen) {
+  ASSERT_EQ(ayumi({"new", "jump", "-o", "jump.json", "-q"}).exit_code, 0);
+  const Output jump = ayumi({"run", "jump.json", "-o", "jump", "--no-pictures", "-q"});
+  EXPECT_EQ(jump.exit_code, 0) << jump.out << jump.err;
+  expect_fits(jump.out, 22 - 3);  // pictures take three rows
+  Json fast =
+      Json::parse(R"({"format": "ayumi.pattern/1", "robot": "hoap1", "units": {"angle": "deg"},
+      "phases": [{"until": 3.5, "support": "both"}],
+      "keyframes": [{"t": 0, "posture": "home"}]})");
+  for (int i = 0; i < 24; ++i) {
+    Json joints = Json::object();
+    for (const char* joint : {"l_shoulder_pitch", "r_shoulder_pitch", "l_elbow", "r_elbow"})
+      joints[joint] = i % 2 ? -20 : -80;
+    fast["keyframes"].push_back({{"t", 0.4 + 0.12 * i}, {"joints", joints}});
+  }
+  write(folder / "fast.json", fast.dump());
+  const Output wrong = ayumi({"run", "fast.json", "-o", "fast", "--no-pictures", "-q"});
+  EXPECT_EQ(wrong.exit_code, 1) << wrong.out << wrong.err;
+  expect_fits(wrong.out, 40);
+  const Output all = ayumi({"run", "fast.json", "-o", "all", "--no-pictures", "-q", "--all"});
+  EXPECT_GT(std::count(all.out.begin(), all.out.end(), '\n'), 60) << all.out;
+  EXPECT_EQ(all.out.find("shortened"), std::string::npos) << all.out;
+}
+
 // A terminal of the program `script`; without it, colours are not tried.
 TEST_F(CheckRepair, ATerminalHasColoursUnlessTheyAreRefused) {
   if (std::system("command -v script > /dev/null") != 0) GTEST_SKIP() << "no program `script`";
-  const auto shown = [&](const std::string& environment) {
+  const auto shown = [&](const std::string& environment, const std::string& pattern = kWalk) {
     const fs::path file = folder / "shown.txt";
     const std::string command = environment + " script -qec '" + program_under_test() +
-                                " check -q " + kWalk + "' /dev/null > " + file.string() +
+                                " check -q " + pattern + "' /dev/null > " + file.string() +
                                 " < /dev/null";
     EXPECT_EQ(std::system(command.c_str()), 0);
     return contents(file);
@@ -342,6 +366,19 @@ TEST_F(CheckRepair, ATerminalHasColoursUnlessTheyAreRefused) {
   EXPECT_EQ(shown("NO_COLOR=1 TERM=xterm").find('\x1b'), std::string::npos);
   EXPECT_EQ(shown("env -u NO_COLOR TERM=dumb").find('\x1b'), std::string::npos);
   EXPECT_EQ(ayumi({"check", kWalk}).out.find('\x1b'), std::string::npos);
+  // Colours take no columns: lines are broken at the same words.
+  Json pattern = Json::parse(contents(kWalk), nullptr, true, true);
+  pattern["scenario"] = {{{"type", "impulse"},
+                          {"at", 20},
+                          {"duration", 0.02},
+                          {"direction", {1, 0, 0}},
+                          {"impulse", 0.1}}};
+  write(folder / "late.json", pattern.dump());
+  const std::string file = folder / "late.json";
+  const std::string plain = shown("NO_COLOR=1 COLUMNS=80 TERM=xterm", file);
+  const std::string painted = shown("env -u NO_COLOR COLUMNS=80 TERM=xterm", file);
+  EXPECT_NE(painted.find("\x1b[33mworth a look:\x1b[0m"), std::string::npos) << painted;
+  EXPECT_EQ(std::regex_replace(painted, std::regex("\x1b\\[[0-9;]*m"), ""), plain);
 }
 
 TEST_F(CheckRepair, CheckSaysWhereEachTrackComesFrom) {
