@@ -70,6 +70,20 @@ TEST_F(CheckRepair, TheMistakeIsNamedFirst) {
             std::string::npos)
       << far.err;
   EXPECT_NE(far.err.find("the first error is: phases/5: t = "), std::string::npos);
+  // A value that is wrong by a factor of a thousand has a range too, which holds what it is read
+  // as.
+  write(folder / "step.json", R"({"format": "ayumi.pattern/1", "robot": "hoap1",
+      "phases": [{"duration": 1.2, "support": "both"},
+                 {"duration": 0.6, "support": "left",
+                  "swing": {"foot": "right", "lift": 0.015, "step": {"forward": 30}}},
+                 {"duration": 0.3, "support": "both"}, {"duration": 1, "support": "both"}],
+      "keyframes": [{"t": 0, "posture": "home", "zmp": "center"}, {"t": 1, "zmp": "left"},
+                    {"t": 1.8, "zmp": "left"}, {"t": 2.4, "zmp": "center"}]})");
+  const std::string step = ayumi({"check", "step.json", "-q"}).err;
+  EXPECT_NE(step.find("step.json: likely cause: /phases/1: the right foot's step forward is 30 m; "
+                      "with the number read in mm (0.03 m), or with values up to 0.0"),
+            std::string::npos)
+      << step;
   plant("foot.json", R"({ "t": 2.22, "zmp": "left" })", R"({ "t": 2.22, "zmp": "right" })");
   const Output foot = ayumi({"check", "foot.json", "-q"});
   EXPECT_EQ(foot.exit_code, 1);
