@@ -87,7 +87,8 @@ export function bodyOf(actor, number) {
 /// the triangles that stand on the ground.
 export class Viewer {
   /// `gltf` is the robot, with the colour for ghosts of it; its animations, if it has any, are the
-  /// motion and its ghosts. `hooks`: shown(mark) says whether a mark is drawn, moved(time, row, push) and played(on) tell the page.
+  /// motion and its ghosts. `hooks`: shown(mark) says whether a mark is drawn, moved(time, row, push)
+  /// and played(on) tell the page.
   constructor(stage, motion, gltf, hooks) {
     this.time = 0;
     this.playing = false;
