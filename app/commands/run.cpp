@@ -119,15 +119,21 @@ class MainJob {
   Json summary_ = Json::object();
 };
 
-// Chosen: the name of the pattern and what is said after the check take 11 rows of 80 columns where
+// Chosen: the name of the pattern and what is said after the check take 12 rows of 80 columns where
 // everything is written, and up to 3 more where the run is worse than open loop.
-constexpr size_t kRowsOfOtherStages = 12;
+constexpr size_t kRowsOfOtherStages = 14;
 
-std::string check_words(const ConsistencyReport& report, const RobotModel& model) {
-  return (report.consistent ? painted(Paint::good, "consistent")
-                            : painted(Paint::bad, "INCONSISTENT")) +
-         ": ZMP margin " + text::fixed(1e3 * report.summary[FindingKind::support_margin], 1) +
-         " mm, limits of " + report.profile + ": " + shares_of_limits(report, model);
+// The verdict with the shares of the limits, and without.
+AnswerPart check_part(const ConsistencyReport& report, const RobotModel& model) {
+  const std::string verdict =
+      (report.consistent ? painted(Paint::good, "consistent")
+                         : painted(Paint::bad, "INCONSISTENT")) +
+      ": ZMP margin " + text::fixed(1e3 * report.summary[FindingKind::support_margin], 1) + " mm";
+  return {Worth::figure,
+          {stage_line("check", verdict + ", limits of " + report.profile + ": " +
+                                   shares_of_limits(report, model)),
+           stage_line("check", verdict)},
+          kStageHang};
 }
 
 // Differences worth a line. Chosen: below a degree, nobody sees a tilt in a clip; a tenth of the
@@ -136,8 +142,9 @@ constexpr double kMoreTilt = std::numbers::pi / 180;  // [rad]
 constexpr double kMoreTorque = 0.1;                   // share of the limit
 
 // In what the run with control does worse than the one without, under the same disturbances.
-std::vector<std::string> worse_than_open_loop(const SimulationResult& open,
-                                              const SimulationResult& closed) {
+std::vector<std::string> worse_than_open_loop(const SimulationLog& open_run,
+                                              const SimulationLog& closed_run) {
+  const SimulationResult &open = open_run.result, &closed = closed_run.result;
   std::vector<std::string> worse;
   if (closed.outcome != Outcome::stands && open.outcome == Outcome::stands)
     worse.push_back(std::string("the robot ") +
@@ -147,13 +154,14 @@ std::vector<std::string> worse_than_open_loop(const SimulationResult& open,
   const auto degrees = [](double angle) {
     return text::fixed(angle * 180 / std::numbers::pi, 1) + " deg";
   };
-  const auto percent = [](double share) { return text::fixed(100 * share, 0) + " %"; };
   if (closed.max_tilt > open.max_tilt + kMoreTilt)
     worse.push_back("the largest trunk tilt is " + degrees(closed.max_tilt) + " with control and " +
                     degrees(open.max_tilt) + " in open loop");
   if (closed.max_torque_ratio > open.max_torque_ratio + kMoreTorque)
-    worse.push_back("the largest torque is " + percent(closed.max_torque_ratio) +
-                    " of the limit with control and " + percent(open.max_torque_ratio) +
+    worse.push_back("the largest torque is " +
+                    share_text(closed_run, closed.max_torque_ratio, closed.torque_peak) +
+                    " of the limit with control and " +
+                    share_text(open_run, open.max_torque_ratio, open.torque_peak) +
                     " in open loop");
   return worse;
 }
@@ -161,8 +169,7 @@ std::vector<std::string> worse_than_open_loop(const SimulationResult& open,
 void MainJob::check(Task& input) {
   const Judgement judged = judge(input, check_options(input));
   const std::string& need = judged.need().text;
-  std::vector<AnswerPart> parts = {
-      {Worth::verdict, {stage_line("check", check_words(judged.report, input.robot))}, kStageHang}};
+  std::vector<AnswerPart> parts = {check_part(judged.report, input.robot)};
   append(parts,
          finding_parts(judged.report, input.robot, options_.all ? Shown::findings : Shown::causes));
   if (!need.empty()) append(parts, remark_parts("", {need}));
@@ -219,8 +226,7 @@ void MainJob::simulate(const Task& input) {
       run_streamed(input, "closed_loop", options_.choice, {.postures = true, .torque = true});
   const WrittenLog& closed = closed_loop_.log;
   say("", outcome_text(closed));
-  const std::vector<std::string> worse =
-      worse_than_open_loop(open_log.about.result, closed.about.result);
+  const std::vector<std::string> worse = worse_than_open_loop(open_log.about, closed.about);
   if (!worse.empty())
     say("", painted(Paint::caution, "some figures are worse with control than in open loop") +
                 ": " + text::join(worse, "; "));
