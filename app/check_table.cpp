@@ -120,10 +120,51 @@ AnswerPart warning_part(const ConsistencyReport& report,
     forms.push_back(entry_of_many(report, members, *worst, names_of_places(places), true));
   forms.push_back("  " + severity_word(worst->severity) + padded(name_of(worst->kind), 19) +
                   text::counted(members.size(), "time") + "\n");
-  return {worst->severity == Severity::warning ? Worth::warning : Worth::information, forms, kHang};
+  return {worst->severity == Severity::warning ? Worth::warning : Worth::info, forms, kHang};
 }
 
-std::vector<AnswerPart> finding_parts(const ConsistencyReport& report, const RobotModel& model) {
+AnswerPart all_findings(const ConsistencyReport& report) {
+  std::string out;
+  for (const Finding& f : report.findings)
+    out += entry(f, place_words(f.where) + ", " + seconds(f)) + hint(f);
+  return {Worth::error, {out}, kHang};
+}
+
+// Where and when a figure is reached.
+std::string figure_place(const ConsistencyReport& report, FindingKind kind) {
+  const FigurePlace& p = report.summary_at[kind];
+  if (!std::isfinite(p.at)) return {};
+  return " (" + (p.where.empty() ? "" : place_words(p.where) + " ") + "at " + text::fixed(p.at, 2) +
+         " s)";
+}
+
+// False where the robot's profile states no limit of this kind for any motor.
+bool has_limit(const RobotModel& model, FindingKind kind) {
+  const auto is_stated = [](const Eigen::VectorXd& limits) {
+    return limits.size() == 0 || limits.array().isFinite().any();
+  };
+  const ActuatorLimits& limits = model.limits();
+  if (kind == FindingKind::joint_speed) return is_stated(limits.speed);
+  if (kind == FindingKind::joint_torque) return is_stated(limits.peak_torque);
+  return kind != FindingKind::continuous_torque || is_stated(limits.continuous_torque);
+}
+
+}  // namespace
+
+std::string shares_of_limits(const ConsistencyReport& report, const RobotModel& model) {
+  std::vector<std::string> shares;
+  for (const FindingSpec* spec : summary_figures())
+    if (spec->figure.share_name)
+      shares.push_back(std::string(spec->figure.share_name) + " " +
+                       (has_limit(model, spec->kind) ? whole_percent(report.summary[spec->kind]) +
+                                                           figure_place(report, spec->kind)
+                                                     : "without limits"));
+  return text::join(shares, ", ");
+}
+
+std::vector<AnswerPart> finding_parts(const ConsistencyReport& report, const RobotModel& model,
+                                      Shown shown_findings) {
+  if (shown_findings == Shown::findings) return {all_findings(report)};
   const std::vector<FindingGroup> groups = finding_groups(report, model);
   const size_t shown = std::min(groups.size(), static_cast<size_t>(kMostGroups));
   std::vector<AnswerPart> parts;
@@ -151,50 +192,9 @@ std::vector<AnswerPart> finding_parts(const ConsistencyReport& report, const Rob
   return parts;
 }
 
-AnswerPart all_findings(const ConsistencyReport& report) {
-  std::string out;
-  for (const Finding& f : report.findings)
-    out += entry(f, place_words(f.where) + ", " + seconds(f)) + hint(f);
-  return {Worth::error, {out}, kHang};
-}
-
-}  // namespace
-
-std::string figure_place(const ConsistencyReport& report, FindingKind kind) {
-  const FigurePlace& p = report.summary_at[kind];
-  if (!std::isfinite(p.at)) return {};
-  return " (" + (p.where.empty() ? "" : place_words(p.where) + " ") + "at " + text::fixed(p.at, 2) +
-         " s)";
-}
-
-bool has_limit(const RobotModel& model, FindingKind kind) {
-  const auto is_stated = [](const Eigen::VectorXd& limits) {
-    return limits.size() == 0 || limits.array().isFinite().any();
-  };
-  const ActuatorLimits& limits = model.limits();
-  if (kind == FindingKind::joint_speed) return is_stated(limits.speed);
-  if (kind == FindingKind::joint_torque) return is_stated(limits.peak_torque);
-  return kind != FindingKind::continuous_torque || is_stated(limits.continuous_torque);
-}
-
-std::string shares_of_limits(const ConsistencyReport& report, const RobotModel& model) {
-  std::vector<std::string> shares;
-  for (const FindingSpec* spec : summary_figures())
-    if (spec->figure.share_name)
-      shares.push_back(std::string(spec->figure.share_name) + " " +
-                       (has_limit(model, spec->kind) ? whole_percent(report.summary[spec->kind]) +
-                                                           figure_place(report, spec->kind)
-                                                     : "without limits"));
-  return text::join(shares, ", ");
-}
-
 std::vector<AnswerPart> check_parts(const ConsistencyReport& report, const RobotModel& model,
                                     Shown shown) {
-  std::vector<AnswerPart> parts;
-  if (shown == Shown::findings)
-    parts.push_back(all_findings(report));
-  else
-    parts = finding_parts(report, model);
+  std::vector<AnswerPart> parts = finding_parts(report, model, shown);
   const auto at = [&](FindingKind kind) { return report.summary[kind]; };
   const auto place = [&](FindingKind kind) { return figure_place(report, kind); };
   const double margin = at(FindingKind::support_margin);

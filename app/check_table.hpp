@@ -19,7 +19,11 @@ enum class Shown {
 inline constexpr int kMostGroups = 10;
 
 /// "  error    support_margin  left foot, 1.200-1.350 s, worst at 1.280 s: -9.8 mm, limit 0.0 mm"
-/// with its hint, and lines with the most important figures.
+/// with its hint.
+std::vector<AnswerPart> finding_parts(const ConsistencyReport& report, const RobotModel& model,
+                                      Shown shown);
+
+/// These, and lines with the most important figures.
 std::vector<AnswerPart> check_parts(const ConsistencyReport& report, const RobotModel& model,
                                     Shown shown = Shown::causes);
 
@@ -28,12 +32,6 @@ size_t rows_for(const ConsistencyReport& report);
 
 /// The line below an answer that was shortened.
 std::string where_more_is(const ConsistencyReport& report);
-
-/// " (l_knee at 1.20 s)": where and when a figure is reached; empty where this is not known.
-std::string figure_place(const ConsistencyReport& report, FindingKind kind);
-
-/// False where the robot's profile states no limit of this kind for any motor.
-bool has_limit(const RobotModel& model, FindingKind kind);
 
 /// "joint speed 62 % (l_knee at 1.20 s), ...": the largest share of each limit.
 std::string shares_of_limits(const ConsistencyReport& report, const RobotModel& model);

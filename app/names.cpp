@@ -23,10 +23,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What is known of the robot and the pattern on the command line.
+/// What is known of the robot and of the pattern, or the library of postures, on the command line.
 struct Named {
   std::optional<RobotModel> robot;
   std::optional<Pattern> pattern;
+  std::optional<PostureLibrary> library;
   bool by_word = false;  ///< a word names the robot; else it is the one that `new` takes
 };
 
@@ -50,10 +51,14 @@ Named named_by(const Context& context, const std::vector<std::string>& words) {
     if (words[i].starts_with("--robot=")) load(words[i].substr(8));
   }
   for (const std::string& word : words) {
-    if (word.empty() || word.front() == '-' || (named.robot && named.pattern)) continue;
-    if (!named.pattern && fs::path(word).extension() == ".json")
+    const bool file_known = named.pattern || named.library;
+    if (word.empty() || word.front() == '-' || (named.robot && file_known)) continue;
+    if (!file_known && fs::path(word).extension() == ".json") {
       named.pattern = tried([&] { return read_given_pattern(word, {}); });
+      if (!named.pattern) named.library = tried([&] { return read_posture_library(word); });
+    }
     if (named.pattern) load(robot_of(*named.pattern));
+    if (named.library && !named.library->robot.empty()) load(named.library->robot);
     if (fs::is_regular_file(fs::path(word) / "run.json"))
       if (const auto log = tried([&] { return read_run_log(word, ""); }))
         load(log->provenance.robot);
@@ -66,6 +71,10 @@ Named named_by(const Context& context, const std::vector<std::string>& words) {
 
 std::set<std::string> posture_names(const Named& named) {
   std::set<std::string> names;
+  if (named.library) {
+    for (const auto& entry : named.library->postures) names.insert(entry.first);
+    return names;
+  }
   if (named.robot)
     for (const auto& entry : named.robot->description().postures) names.insert(entry.first);
   if (named.pattern)

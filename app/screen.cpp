@@ -28,10 +28,10 @@ size_t rows_of(const std::string& text) {
   return static_cast<size_t>(std::count(text.begin(), text.end(), '\n'));
 }
 
-// The line's first words, within this many bytes.
+// The line's first words, within this many columns.
 std::string beginning(const std::string& line, size_t most) {
-  if (line.size() <= most) return line + "\n";
-  const size_t blank = line.rfind(' ', most - 4);
+  if (columns_of(line) <= most) return line + "\n";
+  const size_t blank = line.rfind(' ', bytes_within(line, most - 4));
   return line.substr(0, blank) + " ...\n";
 }
 

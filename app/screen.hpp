@@ -8,7 +8,7 @@ namespace ayumi::app {
 
 /// Importance of a part of an answer, the least important first. Every part is shortened once
 /// before any part is shortened a second time, each time in the order of importance.
-enum class Worth { origin, information, warning, remark, error, figure, verdict };
+enum class Worth { origin, info, warning, remark, error, figure, verdict };
 
 struct AnswerPart {
   Worth worth = Worth::verdict;

@@ -164,17 +164,28 @@ Eigen::MatrixXd torques_of(const SimulationLog& log) {
 
 namespace {
 
-// A robot that is simulated moves and bears its weight, so a share of exactly 0 has no limit.
-std::string shares_text(double speed, double torque) {
-  const auto percent = [](double share) { return text::fixed(100 * share, 0) + " %"; };
-  if (speed > 0 && torque > 0)
-    return "joint speed " + percent(speed) + " and torque " + percent(torque) + " of the limits";
-  if (speed > 0) return "joint speed " + percent(speed) + " of the limits, torque without limits";
-  if (torque > 0) return "torque " + percent(torque) + " of the limits, joint speed without limits";
+// "joint speed 72 % (l_knee at 2.90 s)". A robot that is simulated moves and bears its weight, so a
+// share of exactly 0 has no limit.
+std::string shares_text(const SimulationLog& log) {
+  const SimulationResult& r = log.result;
+  const std::string speed = "joint speed " + share_text(log, r.max_speed_ratio, r.speed_peak);
+  const std::string torque = "torque " + share_text(log, r.max_torque_ratio, r.torque_peak);
+  const bool has_speed = r.max_speed_ratio > 0, has_torque = r.max_torque_ratio > 0;
+  if (has_speed && has_torque) return speed + " and " + torque + " of the limits";
+  if (has_speed) return speed + " of the limits, torque without limits";
+  if (has_torque) return torque + " of the limits, joint speed without limits";
   return "joint speed and torque without limits";
 }
 
 }  // namespace
+
+std::string share_text(const SimulationLog& log, double share, const JointPeak& peak) {
+  std::string text = text::fixed(100 * share, 0) + " %";
+  if (peak.dof >= 0)
+    text +=
+        " (" + log.joints[static_cast<size_t>(peak.dof)] + " at " + text::fixed(peak.at, 2) + " s)";
+  return text;
+}
 
 std::string outcome_text(const SimulationLog& log) { return outcome_text(log, log.samples.size()); }
 
@@ -197,7 +208,7 @@ std::string outcome_text(const SimulationLog& log, size_t rows) {
               text::fixed(r.zmp_frequency, 1) + " Hz";
   }
   text += ", largest trunk tilt " + text::fixed(r.max_tilt * 180 / std::numbers::pi, 1) + " deg, " +
-          shares_text(r.max_speed_ratio, r.max_torque_ratio);
+          shares_text(log);
   const double end = log.dt * static_cast<double>(rows - 1);
   std::vector<Disturbance> late;
   for (const Disturbance& disturbance : log.scenario)

@@ -36,6 +36,23 @@ std::string_view own_sequence(std::string_view text) {
   return "";
 }
 
+// Bytes of what begins there: a colour, or a character in UTF-8.
+struct Step {
+  size_t bytes;
+  size_t columns;
+};
+
+Step step_at(const std::string& text, size_t at) {
+  if (text[at] == '\x1b')
+    if (const size_t bytes = own_sequence(std::string_view(text).substr(at)).size())
+      return {bytes, 0};
+  constexpr unsigned char kMarked = 0xC0, kContinued = 0x80;
+  size_t end = at + 1;
+  while (end < text.size() && (static_cast<unsigned char>(text[end]) & kMarked) == kContinued)
+    ++end;
+  return {end - at, 1};
+}
+
 // Where the description in a line begins: behind the names, and two blanks or more. In a line
 // without names: where the line begins.
 size_t indent_of(const std::string& line) {
@@ -47,12 +64,14 @@ size_t indent_of(const std::string& line) {
 
 // Where a line that is too long is broken: the end of its first part.
 size_t break_of(const std::string& line, size_t indent, size_t columns) {
-  const size_t blank = line.rfind(' ', columns), comma = line.rfind(',', columns - 1);
+  const size_t last = bytes_within(line, columns);
+  const size_t blank = line.rfind(' ', last), comma = line.rfind(',', last - 1);
   const bool at_blank = blank != std::string::npos && blank > indent;
-  const size_t next = at_blank ? std::min(line.find(' ', blank + 1), line.size()) - blank - 1 : 0;
-  if (at_blank && next <= columns - indent) return blank;
+  const std::string next =
+      at_blank ? line.substr(blank + 1, line.find(' ', blank + 1) - blank - 1) : std::string();
+  if (at_blank && columns_of(next) <= columns - indent) return blank;
   if (comma != std::string::npos && comma > indent) return comma + 1;
-  return at_blank ? blank : line.find(' ', columns);
+  return at_blank ? blank : line.find(' ', last);
 }
 
 }  // namespace
@@ -91,13 +110,34 @@ size_t terminal_columns() {
   return ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
 }
 
+size_t columns_of(const std::string& text) {
+  size_t columns = 0;
+  for (size_t at = 0; at < text.size();) {
+    const Step step = step_at(text, at);
+    columns += step.columns;
+    at += step.bytes;
+  }
+  return columns;
+}
+
+size_t bytes_within(const std::string& text, size_t columns) {
+  size_t at = 0;
+  while (at < text.size()) {
+    const Step step = step_at(text, at);
+    if (step.columns > columns) break;
+    columns -= step.columns;
+    at += step.bytes;
+  }
+  return at;
+}
+
 std::string broken_line(std::string line, size_t indent, size_t columns) {
   // Chosen: a description needs this much room beside the names [characters].
   constexpr size_t kLeastRoom = 20;
   if (columns == 0) return line;
   indent = std::min(indent, columns > kLeastRoom ? columns - kLeastRoom : 0);
   std::string broken;
-  while (line.size() > columns) {
+  while (columns_of(line) > columns) {
     const size_t end = break_of(line, indent, columns);
     if (end == std::string::npos) break;
     broken += line.substr(0, line.find_last_not_of(' ', end - 1) + 1) + "\n";

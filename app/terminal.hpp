@@ -22,6 +22,12 @@ std::string safe_for_terminal(const std::string& text);
 /// 0 where standard output is no terminal.
 size_t terminal_columns();
 
+/// Columns that a text takes on a terminal: colours take none, a character of several bytes one.
+size_t columns_of(const std::string& text);
+
+/// The bytes of a text that fill so many columns, or all of it.
+size_t bytes_within(const std::string& text, size_t columns);
+
 /// Text whose lines are at most `columns` long: longer ones are broken at blanks, and within words
 /// that fill more than a line after a comma. What follows is indented as the description in the
 /// line. Commands of examples stay whole, so that they can be pasted. 0 columns: no line is broken.

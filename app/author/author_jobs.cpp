@@ -57,7 +57,7 @@ std::string counted_findings(const Judgement& judgement) {
   for (const Finding& f : judgement.report.findings) ++count[f.severity];
   return text::counted(count[Severity::error], "error") + ", " +
          text::counted(count[Severity::warning], "warning") + ", " +
-         text::counted(count[Severity::info], "note");
+         text::counted(count[Severity::info], "info", "info");
 }
 
 AuthorResult check_job(const AuthorMotion& motion, const Progress& progress) {

@@ -10,18 +10,15 @@
 #include <thread>
 #include <utility>
 
-#include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
-#include "ayumi/check/finding_groups.hpp"
 #include "ayumi/io/formats/hoap.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/io/run/results_json.hpp"
 #include "ayumi/io/run/run_folder.hpp"
 #include "ayumi/io/run/run_output.hpp"
 #include "ayumi/io/table/table.hpp"
-#include "ayumi/limits/amount_text.hpp"
 #include "ayumi/limits/table_safety.hpp"
 #include "ayumi/plot/com_zmp_plot.hpp"
 #include "ayumi/render/encoder.hpp"
@@ -32,6 +29,7 @@
 #include "pattern_input.hpp"
 #include "repairing.hpp"
 #include "report_input.hpp"
+#include "screen.hpp"
 #include "simulation.hpp"
 #include "streamed_run.hpp"
 #include "terminal.hpp"
@@ -51,6 +49,7 @@ struct RunCommand {
   bool repair = false;
   bool pictures = true;
   bool light = false;  ///< the logs and the verdicts only
+  bool all = false;    ///< every finding
 };
 
 /// What the run writes, as far as it is known before the run.
@@ -67,6 +66,13 @@ std::vector<std::string> names_of_files(const RunCommand& options) {
   return names;
 }
 
+// Where the text behind the name of a stage begins.
+constexpr size_t kStageHang = 12;
+
+std::string stage_line(const std::string& stage, const std::string& text) {
+  return padded("  " + stage, kStageHang) + text + "\n";
+}
+
 class MainJob {
  public:
   MainJob(Context& context, const RunCommand& options, const fs::path& target)
@@ -79,8 +85,7 @@ class MainJob {
 
  private:
   void say(const std::string& stage, const std::string& text) const {
-    context_.print("  " + stage + std::string(10 - std::min<size_t>(9, stage.size()), ' ') + text +
-                   "\n");
+    context_.print(in_full({{Worth::verdict, {stage_line(stage, text)}, kStageHang}}));
   }
   void note_file(const std::string& name) { folder_.files.push_back(name); }
 
@@ -114,36 +119,21 @@ class MainJob {
   Json summary_ = Json::object();
 };
 
-std::string check_text(const ConsistencyReport& report, const RobotModel& model) {
-  std::string text =
-      report.consistent ? painted(Paint::good, "consistent") : painted(Paint::bad, "inconsistent");
-  text += ": ZMP margin " + text::fixed(1e3 * report.summary[FindingKind::support_margin], 1) +
-          " mm" + figure_place(report, FindingKind::support_margin);
-  std::string shares;
-  for (const auto& [kind, name] : {std::pair{FindingKind::joint_speed, "joint speed "},
-                                   std::pair{FindingKind::joint_torque, "torque "}}) {
-    if (has_limit(model, kind))
-      shares += std::string(", ") + name + text::fixed(100 * report.summary[kind], 0) + " %" +
-                figure_place(report, kind);
-    else
-      text += std::string(", ") + name + "without limits";
-  }
-  if (!shares.empty()) text += shares + " of the limits of " + report.profile;
-  int causes = 0;
-  for (const FindingGroup& group : finding_groups(report, model)) {
-    const Finding& worst = report.findings[group.worst];
-    if (worst.severity != Severity::error || ++causes > kMostGroups) continue;
-    const size_t times = group.members.size();
-    text += std::string("\n            ") + name_of(worst.kind) + " at " +
-            text::fixed(worst.at, 3) + " s, " + place_words(worst.where) + ": " +
-            amount_text(worst) + "; " + worst.hint;
-    if (times > 1)
-      text += " (" + text::join(group.places, " and ") + ", " + text::counted(times, "time") + ")";
-  }
-  if (causes > kMostGroups)
-    text += "\n            " + text::counted(causes - kMostGroups, "more cause") +
-            "; `ayumi check --all` prints every finding";
-  return text;
+// Chosen: the name of the pattern and what is said after the check take 12 rows of 80 columns where
+// everything is written, and up to 3 more where the run is worse than open loop.
+constexpr size_t kRowsOfOtherStages = 14;
+
+// The verdict with the shares of the limits, and without.
+AnswerPart check_part(const ConsistencyReport& report, const RobotModel& model) {
+  const std::string verdict =
+      (report.consistent ? painted(Paint::good, "consistent")
+                         : painted(Paint::bad, "inconsistent")) +
+      ": ZMP margin " + text::fixed(1e3 * report.summary[FindingKind::support_margin], 1) + " mm";
+  return {Worth::figure,
+          {stage_line("check", verdict + ", limits of " + report.profile + ": " +
+                                   shares_of_limits(report, model)),
+           stage_line("check", verdict)},
+          kStageHang};
 }
 
 // Differences worth a line. Chosen: below a degree, nobody sees a tilt in a clip; a tenth of the
@@ -152,8 +142,9 @@ constexpr double kMoreTilt = std::numbers::pi / 180;  // [rad]
 constexpr double kMoreTorque = 0.1;                   // share of the limit
 
 // The figures that are worse with control than without, under the same disturbances.
-std::vector<std::string> worse_than_open_loop(const SimulationResult& open,
-                                              const SimulationResult& closed) {
+std::vector<std::string> worse_than_open_loop(const SimulationLog& open_run,
+                                              const SimulationLog& closed_run) {
+  const SimulationResult &open = open_run.result, &closed = closed_run.result;
   std::vector<std::string> worse;
   if (closed.outcome != Outcome::stands && open.outcome == Outcome::stands)
     worse.push_back(std::string("the robot ") +
@@ -163,13 +154,14 @@ std::vector<std::string> worse_than_open_loop(const SimulationResult& open,
   const auto degrees = [](double angle) {
     return text::fixed(angle * 180 / std::numbers::pi, 1) + " deg";
   };
-  const auto percent = [](double share) { return text::fixed(100 * share, 0) + " %"; };
   if (closed.max_tilt > open.max_tilt + kMoreTilt)
     worse.push_back("the largest trunk tilt is " + degrees(closed.max_tilt) + " with control and " +
                     degrees(open.max_tilt) + " in open loop");
   if (closed.max_torque_ratio > open.max_torque_ratio + kMoreTorque)
-    worse.push_back("the largest torque is " + percent(closed.max_torque_ratio) +
-                    " of the limit with control and " + percent(open.max_torque_ratio) +
+    worse.push_back("the largest torque is " +
+                    share_text(closed_run, closed.max_torque_ratio, closed.torque_peak) +
+                    " of the limit with control and " +
+                    share_text(open_run, open.max_torque_ratio, open.torque_peak) +
                     " in open loop");
   return worse;
 }
@@ -177,8 +169,13 @@ std::vector<std::string> worse_than_open_loop(const SimulationResult& open,
 void MainJob::check(Task& input) {
   const Judgement judged = judge(input, check_options(input));
   const std::string& need = judged.need().text;
-  say("check",
-      check_text(judged.report, input.robot) + (need.empty() ? "" : "\n            " + need));
+  std::vector<AnswerPart> parts = {check_part(judged.report, input.robot)};
+  append(parts,
+         finding_parts(judged.report, input.robot, options_.all ? Shown::findings : Shown::causes));
+  if (!need.empty()) append(parts, remark_parts("", {need}));
+  Room room = room_of(rows_for(judged.report));
+  room.rows -= kRowsOfOtherStages;
+  context_.print(options_.all ? in_full(parts) : fitted(parts, room, where_more_is(judged.report)));
   summary_["check"] = Json::parse(check_json(judged.report));
   summary_["repair"] = nullptr;  // stays so unless a repair was asked for and needed
   folder_.sections.emplace_back("sampled_from", Json(input.series.origin).dump());
@@ -229,8 +226,7 @@ void MainJob::simulate(const Task& input) {
       run_streamed(input, "closed_loop", options_.choice, {.postures = true, .torque = true});
   const WrittenLog& closed = closed_loop_.log;
   say("", outcome_text(closed));
-  const std::vector<std::string> worse =
-      worse_than_open_loop(open_log.about.result, closed.about.result);
+  const std::vector<std::string> worse = worse_than_open_loop(open_log.about, closed.about);
   if (!worse.empty())
     say("", painted(Paint::caution, "some figures are worse with control than in open loop") +
                 ": " + text::join(worse, "; "));
@@ -287,8 +283,8 @@ void MainJob::write_hoap(const Task& input) {
     text += ", reference_pushed.csv (with the reactions to the disturbances)";
   const bool encoders = input.robot.dofs().front().encoder.device > 0;
   const TableCaution& caution = folder_.reference_caution;
-  const std::string still =
-      std::string("\n            ") + (options_.light ? "" : "written, but not for a robot: ");
+  const std::string still = std::string("\n") + std::string(kStageHang, ' ') +
+                            (options_.light ? "" : "written, but not for a robot: ");
   if (!caution.unfit.empty()) {
     text = "no table for a robot: " + caution.unfit + still + text;
   } else if (!caution.disturbances.empty()) {
@@ -459,6 +455,8 @@ void add_run(Command& app, Context& context) {
       },
       "Write only the logs and verdicts. Tables, plots, clips and the report can be made from the "
       "logs later.");
+  command->add_flag("--all", options->all,
+                    "Print every finding. Without this option, the answer fits on a screen.");
   add_pattern_options(*command, options->input);
   add_simulation_options(*command, options->choice);
   command->callback([options, &context] { run_patterns(context, *options); });

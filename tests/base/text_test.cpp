@@ -11,6 +11,12 @@ TEST(Text, FirstItemsOfAList) {
   EXPECT_EQ(text::join_first({"a", "b", "c", "d"}, 2), "a, b and 2 more");
 }
 
+TEST(Text, LettersThatWereExchangedAreOneSlip) {
+  EXPECT_EQ(text::suggestion("sni", {"pi", "sin", "cos"}), "; did you mean 'sin'?");
+  EXPECT_EQ(text::suggestion("wlak", {"talk", "walk"}), "; did you mean 'walk'?");
+  EXPECT_EQ(text::suggestion("x", {"walk"}), "");
+}
+
 TEST(PrintableText, KeepsWordsLinesAndTabsOfAnyLanguage) {
   for (const std::string text : {"", "a walk\n\tof 4.3 s, 0.5°", "歩み", "z̈ ≤ g, 𝜃"})
     EXPECT_EQ(text::printable(text), text);

@@ -70,6 +70,33 @@ TEST_F(CheckRepair, TheMistakeIsNamedFirst) {
             std::string::npos)
       << far.err;
   EXPECT_NE(far.err.find("the first error is: phases/5: t = "), std::string::npos);
+  // A value that is wrong by a factor of a thousand has a range too, which holds what it is read
+  // as.
+  write(folder / "step.json", R"({"format": "ayumi.pattern/1", "robot": "hoap1",
+      "phases": [{"duration": 1.2, "support": "both"},
+                 {"duration": 0.6, "support": "left",
+                  "swing": {"foot": "right", "lift": 0.015, "step": {"forward": 30}}},
+                 {"duration": 0.3, "support": "both"}, {"duration": 1, "support": "both"}],
+      "keyframes": [{"t": 0, "posture": "home", "zmp": "center"}, {"t": 1, "zmp": "left"},
+                    {"t": 1.8, "zmp": "left"}, {"t": 2.4, "zmp": "center"}]})");
+  const std::string step = ayumi({"check", "step.json", "-q"}).err;
+  EXPECT_NE(step.find("step.json: likely cause: /phases/1: the right foot's step forward is 30 m; "
+                      "with the number read in mm (0.03 m), or with values up to 0.0"),
+            std::string::npos)
+      << step;
+  // What is written once is named once, however often the block is repeated.
+  write(folder / "rounds.json", R"({"format": "ayumi.pattern/1", "robot": "hoap1",
+      "phases": [{"duration": 1.2, "support": "both"},
+                 {"repeat": 3, "phases": [
+                   {"duration": 600, "support": "left",
+                    "swing": {"foot": "right", "lift": 0.015, "step": {}}},
+                   {"duration": 300, "support": "both"}]}],
+      "keyframes": [{"t": 0, "posture": "home", "zmp": "center"}, {"t": 1, "zmp": "left"}]})");
+  const std::string rounds = ayumi({"check", "rounds.json", "-q"}).err;
+  const size_t once = rounds.find("the swing lasts 600 s");
+  EXPECT_NE(once, std::string::npos) << rounds;
+  EXPECT_EQ(rounds.find("the swing lasts 600 s", once + 1), std::string::npos) << rounds;
+  EXPECT_EQ(rounds.find("more of this kind"), std::string::npos) << rounds;
   plant("foot.json", R"({ "t": 2.22, "zmp": "left" })", R"({ "t": 2.22, "zmp": "right" })");
   const Output foot = ayumi({"check", "foot.json", "-q"});
   EXPECT_EQ(foot.exit_code, 1);
@@ -326,13 +353,40 @@ TEST_F(ChecksOn80Columns, ManyDisturbancesDoNotPushTheVerdictOutOfSight) {
   expect_fits(wrong.out, 40);
 }
 
+TEST_F(ChecksOn80Columns, TheAnswerOfARunFitsOnAScreen) {
+  ASSERT_EQ(ayumi({"new", "jump", "-o", "jump.json", "-q"}).exit_code, 0);
+  const Output jump = ayumi({"run", "jump.json", "-o", "jump", "--no-pictures", "-q"});
+  EXPECT_EQ(jump.exit_code, 0) << jump.out << jump.err;
+  expect_fits(jump.out, 22 - 3);  // pictures take three rows
+  // Each share names its joint and time.
+  EXPECT_TRUE(std::regex_search(jump.out, std::regex("torque\\s+\\d+ %\\s+\\(\\w+\\s+at\\s+\\d")))
+      << jump.out;
+  Json fast =
+      Json::parse(R"({"format": "ayumi.pattern/1", "robot": "hoap1", "units": {"angle": "deg"},
+      "phases": [{"until": 3.5, "support": "both"}],
+      "keyframes": [{"t": 0, "posture": "home"}]})");
+  for (int i = 0; i < 24; ++i) {
+    Json joints = Json::object();
+    for (const char* joint : {"l_shoulder_pitch", "r_shoulder_pitch", "l_elbow", "r_elbow"})
+      joints[joint] = i % 2 ? -20 : -80;
+    fast["keyframes"].push_back({{"t", 0.4 + 0.12 * i}, {"joints", joints}});
+  }
+  write(folder / "fast.json", fast.dump());
+  const Output wrong = ayumi({"run", "fast.json", "-o", "fast", "--no-pictures", "-q"});
+  EXPECT_EQ(wrong.exit_code, 1) << wrong.out << wrong.err;
+  expect_fits(wrong.out, 40);
+  const Output all = ayumi({"run", "fast.json", "-o", "all", "--no-pictures", "-q", "--all"});
+  EXPECT_GT(std::count(all.out.begin(), all.out.end(), '\n'), 60) << all.out;
+  EXPECT_EQ(all.out.find("shortened"), std::string::npos) << all.out;
+}
+
 // A terminal of the program `script`; without it, colours are not tried.
 TEST_F(CheckRepair, ATerminalHasColoursUnlessTheyAreRefused) {
   if (std::system("command -v script > /dev/null") != 0) GTEST_SKIP() << "no program `script`";
-  const auto shown = [&](const std::string& environment) {
+  const auto shown = [&](const std::string& environment, const std::string& pattern = kWalk) {
     const fs::path file = folder / "shown.txt";
     const std::string command = environment + " script -qec '" + program_under_test() +
-                                " check -q " + kWalk + "' /dev/null > " + file.string() +
+                                " check -q " + pattern + "' /dev/null > " + file.string() +
                                 " < /dev/null";
     EXPECT_EQ(std::system(command.c_str()), 0);
     return contents(file);
@@ -342,6 +396,19 @@ TEST_F(CheckRepair, ATerminalHasColoursUnlessTheyAreRefused) {
   EXPECT_EQ(shown("NO_COLOR=1 TERM=xterm").find('\x1b'), std::string::npos);
   EXPECT_EQ(shown("env -u NO_COLOR TERM=dumb").find('\x1b'), std::string::npos);
   EXPECT_EQ(ayumi({"check", kWalk}).out.find('\x1b'), std::string::npos);
+  // Colours take no columns: lines are broken at the same words.
+  Json pattern = Json::parse(contents(kWalk), nullptr, true, true);
+  pattern["scenario"] = {{{"type", "impulse"},
+                          {"at", 20},
+                          {"duration", 0.02},
+                          {"direction", {1, 0, 0}},
+                          {"impulse", 0.1}}};
+  write(folder / "late.json", pattern.dump());
+  const std::string file = folder / "late.json";
+  const std::string plain = shown("NO_COLOR=1 COLUMNS=80 TERM=xterm", file);
+  const std::string painted = shown("env -u NO_COLOR COLUMNS=80 TERM=xterm", file);
+  EXPECT_NE(painted.find("\x1b[33mworth a look:\x1b[0m"), std::string::npos) << painted;
+  EXPECT_EQ(std::regex_replace(painted, std::regex("\x1b\\[[0-9;]*m"), ""), plain);
 }
 
 TEST_F(CheckRepair, CheckSaysWhereEachTrackComesFrom) {

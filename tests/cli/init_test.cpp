@@ -176,7 +176,7 @@ TEST(Init, MotorsWithoutLimitsAreSaid) {
   EXPECT_NE(check.out.find("speed without limits, torque without limits"), std::string::npos)
       << check.out;
   const Output run = ayumi(folder, {"run", "s.json", "--no-pictures", "-o", "run"});
-  EXPECT_NE(run.out.find("joint speed without limits, torque without limits\n"), std::string::npos)
+  EXPECT_NE(run.out.find("speed without limits, torque without limits"), std::string::npos)
       << run.out;
   EXPECT_NE(run.out.find(" deg, joint speed and torque without limits"), std::string::npos)
       << run.out;

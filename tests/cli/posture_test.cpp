@@ -90,6 +90,23 @@ TEST_F(PostureCommand, CapturesWhatTheMotionHasAtThatTime) {
   EXPECT_NE(late.err.find("lasts from 0 to 7.091 s"), std::string::npos) << late.err;
 }
 
+TEST_F(PostureCommand, ShellsProposeThePosturesOfALibrary) {
+  ASSERT_EQ(adjust("l_elbow=-60", "ready").exit_code, 0);
+  EXPECT_EQ(ayumi({"--names", "postures", "posture", "draw", "mine.json"}).out, "ready\n");
+}
+
+// Servos leave a ten-thousandth of a degree on joints that nothing moves.
+TEST_F(PostureCommand, AJointThatRestsAtZeroIsCapturedAtZero) {
+  ASSERT_EQ(ayumi({"new", "bow", "-o", "bow.json", "-q"}).exit_code, 0);
+  ASSERT_EQ(ayumi({"simulate", "bow.json", "-o", "run", "-q"}).exit_code, 0);
+  const Output made =
+      ayumi({"posture", "capture", "run", "--at", "2", "--as", "bowed", "-o", "mine.json", "-q"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_EQ(made.out.find("e-0"), std::string::npos) << made.out;
+  for (const auto& [joint, angle] : postures("mine.json")["bowed"].items())
+    EXPECT_TRUE(angle == 0 || std::abs(angle.get<double>()) > 9e-6) << joint << " " << angle;
+}
+
 TEST_F(PostureCommand, BadInputIsRefusedAndNothingIsWritten) {
   ASSERT_EQ(adjust("l_elbow=-60", "ready").exit_code, 0);
   const std::string before = contents(folder / "mine.json");

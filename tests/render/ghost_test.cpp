@@ -2,9 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "ayumi/base/error.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
 #include "ayumi/render/clip.hpp"
+#include "ayumi/render/ghost_color.hpp"
+#include "ayumi/render/gltf.hpp"
 #include "tests/render/box_robot.hpp"
 
 namespace ayumi::test {
@@ -136,10 +141,62 @@ TEST(Ghost, HasNoSpeckleWhereItCoincides) {
   }
 }
 
-TEST(Ghost, HasAHueOfItsOwn) {
-  const Eigen::Vector4f tint = Exposure{}.tint;
-  EXPECT_GT(tint[0], tint[1] + 0.3f) << "orange, on a robot of blue and silver";
-  EXPECT_GT(tint[1], tint[2] + 0.3f);
+/// One box of this colour, and one of an eighth of its edge.
+std::vector<BodySurface> two_boxes(const Eigen::Vector4f& large, const Eigen::Vector4f& small) {
+  std::vector<BodySurface> robot(2);
+  robot[0].closed = tessellate(Box{Eigen::Vector3d::Constant(0.4)}, large);
+  robot[1].open = tessellate(Box{Eigen::Vector3d::Constant(0.05)}, small);
+  return robot;
+}
+
+/// Angle between the hues of two colours [deg].
+double between(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
+  const auto hue = [](const Eigen::Vector3f& c) {
+    return Eigen::Vector2f(c[0] - (c[1] + c[2]) / 2, std::sqrt(0.75f) * (c[1] - c[2])).normalized();
+  };
+  return std::acos(std::clamp(hue(a).dot(hue(b)), -1.0f, 1.0f)) * 180 / M_PI;
+}
+
+TEST(Ghost, HasAHueFarFromTheRobots) {
+  const std::vector<Eigen::Vector3f> covers = {
+      {0.8f, 0.1f, 0.1f}, {0.9f, 0.4f, 0.1f}, {0.9f, 0.8f, 0.1f},
+      {0.2f, 0.7f, 0.2f}, {0.1f, 0.6f, 0.6f}, {0.15f, 0.2f, 0.8f},
+      {0.5f, 0.2f, 0.7f}, {0.9f, 0.3f, 0.6f}, {0.3f, 0.05f, 0.05f}};
+  const Eigen::Vector4f white(0.92f, 0.90f, 0.86f, 1);
+  for (const Eigen::Vector3f& cover : covers) {
+    const Eigen::Vector4f color(cover[0], cover[1], cover[2], 1);
+    EXPECT_GT(between(ghost_color(two_boxes(color, white), BesideGhost::robot), cover), 110)
+        << cover.transpose();
+  }
+  for (const Eigen::Vector3f& cover : {covers[0], covers[5]}) {
+    const Eigen::Vector4f color(cover[0], cover[1], cover[2], 1);
+    EXPECT_GT(between(ghost_color(two_boxes(white, color), BesideGhost::robot), cover), 110)
+        << "a few covers of a white robot";
+  }
+}
+
+TEST(Ghost, OfAGreyRobotIsOrangeAndOfAHotOneIsNot) {
+  const Eigen::Vector4f grey(0.5f, 0.5f, 0.5f, 1), black(0, 0, 0, 1);
+  EXPECT_EQ(hex_text(ghost_color(two_boxes(grey, black), BesideGhost::robot)), "#ed730d");
+  EXPECT_EQ(hex_text(ghost_color({}, BesideGhost::robot)), "#ed730d");
+  const Eigen::Vector3f hot = ghost_color(two_boxes(grey, black), BesideGhost::robot_heat);
+  for (const float heat : {0.0f, 1.0f}) EXPECT_GT(between(hot, heat_color(heat).head<3>()), 110);
+}
+
+// Clips and pages show one colour: the pages take it from the robot's file.
+TEST(Ghost, HasOneColourInClipsAndOnPages) {
+  const RobotModel model = box_robot();
+  const auto look = robot_look(model);
+  EXPECT_EQ(look->ghost, ghost_color(robot_surface(model), BesideGhost::robot));
+  const std::string words = "\"extras\":{\"ghost_color\":\"" + hex_text(look->ghost) + "\"}";
+  EXPECT_NE(glb_bytes(model, {}).find(words), std::string::npos);
+  EXPECT_NE(glb_bytes(model, {}, {.look = look.get(), .max_triangles = 500}).find(words),
+            std::string::npos);
+  const SimulationLog log = box_run(model);
+  ClipOptions with = bare();
+  EXPECT_EQ(clip_shape(model, log, with, true)->ghost, look->ghost);
+  with.overlay.heat = true;
+  EXPECT_EQ(clip_shape(model, log, with, false)->ghost, look->heat_ghost);
 }
 
 TEST(Surface, TooFineIsSimplifiedAndSaidSo) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "ayumi/io/robot/mesh.hpp"
+#include "ayumi/render/ghost_color.hpp"
 #include "ayumi/render/gltf.hpp"
 #include "ayumi/render/image.hpp"
 #include "ayumi/render/renderer.hpp"
@@ -68,6 +69,13 @@ TEST_F(Textured, ThePictureLiesTheRightWayRound) {
   EXPECT_GT(left[1], 150) << left.transpose();
   EXPECT_GT(right[2], 150) << right.transpose();
   EXPECT_TRUE(notes.empty());
+}
+
+TEST_F(Textured, AGhostTurnsFromTheColoursOfThePicture) {
+  Image image{8, 8, std::vector<std::uint8_t>(3 * 64, 0)};
+  for (size_t pixel = 0; pixel < 64; ++pixel) image.rgb[3 * pixel] = 220;
+  write_png(folder / "flag.png", image);
+  EXPECT_EQ(hex_text(ghost_color(surface("flag.png"), BesideGhost::robot)), "#0d9e9e");
 }
 
 TEST_F(Textured, AJpegIsRead) {

@@ -402,7 +402,7 @@ async function showsFindings(tab) {
       return found;
     };
     return [words, color("info"), color("warning"), color("error")];`);
-  expect(note[0].startsWith("Note ") && new Set(note).size === 4, "a note: " + note);
+  expect(note[0].startsWith("Info ") && new Set(note).size === 4, "an info: " + note);
   const sole = await tab.run(`
     const page = window.ayumiAuthor.page;
     page.showFinding(page.state.findings.find((one) => one.kind === "support_margin"));

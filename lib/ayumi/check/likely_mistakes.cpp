@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "ayumi/author/generate/pattern_builder.hpp"
 #include "ayumi/base/counted.hpp"
@@ -97,8 +98,14 @@ class Suspicions {
   }
 
  private:
-  /// The first few mistakes of one rule, and the number of the others.
-  void say(std::vector<Mistake> found) {
+  /// The first few mistakes of one rule, and the number of the others. The rounds of a block that
+  /// repeats have one text in the file.
+  void say(std::vector<Mistake> each) {
+    std::vector<Mistake> found;
+    for (Mistake& mistake : each)
+      if (std::none_of(found.begin(), found.end(),
+                       [&](const Mistake& said) { return said.text() == mistake.text(); }))
+        found.push_back(std::move(mistake));
     const size_t more = found.size() > kNamed ? found.size() - kNamed : 0;
     found.resize(found.size() - more);
     if (more) found.back().words += " (and " + std::to_string(more) + " more of this kind)";
@@ -328,12 +335,15 @@ class Suspicions {
       if (!is_wrong(before) || !is_wrong(after)) continue;
       const bool left = support == Support::left;
       const bool under = pattern_.keyframes[*before].zmp->place == wrong;
-      found.push_back({phase_place(i),
-                       std::string("the robot stands on the ") + (left ? "left" : "right") +
-                           " foot, but " + key_place(*before) + " and " + key_place(*after) +
-                           " put the ZMP " +
-                           (under ? std::string("under the ") + (left ? "right" : "left") + " foot"
-                                  : std::string("at \"center\", between both feet"))});
+      found.push_back(
+          {phase_place(i),
+           std::string("the robot stands on the ") + (left ? "left" : "right") + " foot, but " +
+               key_place(*before) +
+               (key_place(*before) == key_place(*after) ? std::string(" puts")
+                                                        : " and " + key_place(*after) + " put") +
+               " the ZMP " +
+               (under ? std::string("under the ") + (left ? "right" : "left") + " foot"
+                      : std::string("at \"center\", between both feet"))});
     }
     say(found);
   }

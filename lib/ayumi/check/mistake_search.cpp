@@ -22,8 +22,12 @@ namespace {
 constexpr size_t kTriedValues = 24;
 constexpr size_t kTriedSigns = 12;
 constexpr size_t kSuspects = 3;
-// Number of bisection steps for the range of a value. Chosen: 3 % of the distance.
+// Number of bisection steps for the range of a value, from the first that is possible. Chosen: 3 %
+// of the distance.
 constexpr int kBisections = 5;
+// At most so many steps in all. Chosen: the range of a length that was written in mm in place of m
+// begins at the tenth step.
+constexpr int kMostBisections = 14;
 // A value of which more than this share is possible is no slip of a factor of ten. Chosen: such a
 // slip is at 0.1, and motions seldom bear five times what their author meant.
 constexpr double kGrossShare = 0.5;
@@ -200,11 +204,13 @@ class Search {
   void look_at(const WrittenValue& value, const TrialOutcome& without, Measure measure,
                double least) {
     double possible = least, impossible = 1;
-    for (int i = 0; i < kBisections; ++i) {
+    int within = 0;
+    for (int i = 0; i < kMostBisections && within < kBisections; ++i) {
       const double share = 0.5 * (possible + impossible);
       const TrialOutcome outcome =
           trials_.after(pattern_, [&](Pattern& p) { value.pull(p, share); });
       (is_better(without, outcome, measure) ? impossible : possible) = share;
+      if (possible > 0) ++within;
     }
     const WrittenNumber& number = value.numbers.front();
     const double limit = number.neutral + possible * (number.value - number.neutral);

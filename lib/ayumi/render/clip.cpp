@@ -331,6 +331,7 @@ std::shared_ptr<const ClipShape> clip_shape(const RobotModel& model, const Simul
   shape->notes = notes_of(model, *look, triangle_count(surface), moved);
   shape->outline = outlines(surface);
   shape->robot = drawn_robot(surface);
+  shape->ghost = options.overlay.heat ? look->heat_ghost : look->ghost;
   return shape;
 }
 
@@ -348,6 +349,7 @@ ClipRenderer::ClipRenderer(const RobotModel& model, const SimulationLog& log,
       height_(shape->height),
       outline_(shape->outline),
       verdict_at_(verdict_instant(log)),
+      ghost_(shape->ghost),
       bumps_(rising_bumps(model, log)),
       renderer_(options.picture, *shape->robot, scenery_of(log)),
       path_(make_path(log, options, height_)) {
@@ -355,14 +357,16 @@ ClipRenderer::ClipRenderer(const RobotModel& model, const SimulationLog& log,
 }
 
 void ClipRenderer::add_ghost(double t, Scene& scene) const {
+  // Chosen: of the robot's own colours a seventh stays, which shows its parts.
+  const Eigen::Vector4f tint = {ghost_[0], ghost_[1], ghost_[2], 0.85f};
   if (options_.ghost.log)
-    scene.exposures.push_back({body_poses(model_, sample_at(*options_.ghost.log, t).state)});
+    scene.exposures.push_back({body_poses(model_, sample_at(*options_.ghost.log, t).state), tint});
   if (!options_.ghost.command) return;
   const SimulationSample sample = sample_at(log_, t);
   RobotState state = sample.state;
   state.base = sample.command_base;
   state.theta = sample.command_theta;
-  scene.exposures.push_back({body_poses(model_, state)});
+  scene.exposures.push_back({body_poses(model_, state), tint});
 }
 
 Scene ClipRenderer::scene_at(double t, Overlay& overlay) const {
@@ -558,8 +562,9 @@ double ClipRenderer::write_legend(Image* image, int width, double top, double si
        {on.push && pushed, "→ push", kPush},
        {on.heat, "■ joint near a limit of angle, speed or torque", heat_color(0)},
        {on.heat, "■ joint at its limit", heat_color(1)},
-       {ghost, "▒ " + (options_.ghost.command ? "command" : options_.ghost.name),
-        Exposure{}.tint}}};
+       {ghost,
+        "▒ " + (options_.ghost.command ? "command" : options_.ghost.name),
+        {ghost_[0], ghost_[1], ghost_[2], 1}}}};
   const double margin = 0.6 * size, line = 1.7 * size;
   double x = margin, y = top + 0.5 * line;
   for (const Entry& entry : entries) {

@@ -56,6 +56,7 @@ struct ClipShape {
   double height = 1;                                  ///< of the robot [m]
   std::vector<std::vector<Eigen::Vector3d>> outline;  ///< farthest points of each body, its frame
   std::shared_ptr<const DrawnRobot> robot;
+  Eigen::Vector3f ghost = Eigen::Vector3f::Zero();  ///< sRGB
   std::vector<std::string> notes;
 };
 /// `thin`: triangles that are too small to be visible in a picture of this size are left out, which
@@ -103,6 +104,7 @@ class ClipRenderer {
   std::optional<Framing> framing_;
   std::vector<std::pair<double, double>> shown_;  ///< times that the legend is about [s]
   double verdict_at_;                             ///< [s]
+  Eigen::Vector3f ghost_;                         ///< sRGB
   std::vector<RisingBump> bumps_;
   Renderer renderer_;
   CameraPath path_;

@@ -9,6 +9,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/render/ghost_color.hpp"
 #include "ayumi/render/glb_writer.hpp"
 #include "ayumi/render/log_reading.hpp"
 #include "ayumi/render/simplify.hpp"
@@ -68,9 +69,7 @@ void add_batches(Writer& writer, const Triangles& surface, bool with_uvs, const 
 }
 
 /// Mesh of each body; -1 where there is nothing to see.
-std::vector<int> add_meshes(Writer& writer, const RobotModel& model, const GltfOptions& options) {
-  std::vector<BodySurface> surface = options.look ? options.look->surface : robot_surface(model);
-  if (options.max_triangles > 0) simplify(surface, options.max_triangles);
+std::vector<int> add_meshes(Writer& writer, const std::vector<BodySurface>& surface) {
   std::vector<int> meshes;
   for (const BodySurface& body : surface) {
     std::vector<std::string> primitives;
@@ -266,11 +265,16 @@ std::string glb_bytes(const RobotModel& model, const std::vector<Motion>& motion
                       const GltfOptions& options) {
   for (const Motion& motion : motions) check(model, motion);
   Writer writer;
-  const std::vector<int> meshes = add_meshes(writer, model, options);
+  std::vector<BodySurface> surface = options.look ? options.look->surface : robot_surface(model);
+  const Eigen::Vector3f ghost =
+      options.look ? options.look->ghost : ghost_color(surface, BesideGhost::robot);
+  if (options.max_triangles > 0) simplify(surface, options.max_triangles);
+  const std::vector<int> meshes = add_meshes(writer, surface);
   std::vector<std::string> animations;
   for (const Motion& motion : motions) animations.push_back(animation_text(writer, model, motion));
   const std::string nodes = nodes_text(model, motions.empty() ? nullptr : &motions.front(), meshes);
-  return writer.file(nodes, joined("animations", animations));
+  return writer.file(nodes, joined("animations", animations) + ",\"extras\":{\"ghost_color\":\"" +
+                                hex_text(ghost) + "\"}");
 }
 
 }  // namespace ayumi

@@ -40,9 +40,8 @@ std::shared_ptr<const DrawnRobot> drawn_robot(const std::vector<BodySurface>& ro
 
 /// The robot once more, translucent: a ghost, or an earlier instant.
 struct Exposure {
-  std::vector<Eigen::Isometry3d> poses;  ///< one per body, world
-  /// sRGB, and its share of the colour. Of no robot's covers and no mark.
-  Eigen::Vector4f tint = {0.93f, 0.45f, 0.05f, 0.85f};
+  std::vector<Eigen::Isometry3d> poses;            ///< one per body, world
+  Eigen::Vector4f tint = Eigen::Vector4f::Zero();  ///< sRGB, and its share of the colour
   double opacity = 0.40;
 };
 

@@ -15,6 +15,8 @@ struct RobotLook {
   std::vector<BodySurface> surface;  ///< as robot_surface(), but with fewer triangles if too many
   size_t triangles = 0;              ///< of the robot's own meshes
   double moved = 0;                  ///< about how far the surface is from theirs [m]; 0: theirs
+  Eigen::Vector3f ghost = Eigen::Vector3f::Zero();       ///< ghost_color() beside the robot
+  Eigen::Vector3f heat_ghost = Eigen::Vector3f::Zero();  ///< and beside joints near their limits
 };
 
 /// It depends on the robot alone, so that all pictures of a robot show the same surface.

@@ -136,10 +136,13 @@ void FallMonitor::observe_figures(double t, const CommandSample& command,
   iterations_ += static_cast<double>(report.contact_iterations);
   r.mean_contact_iterations = iterations_ / static_cast<double>(++ticks_);
   for (int j = 0; j < model_->dof_count(); ++j) {
-    r.max_speed_ratio =
-        std::max(r.max_speed_ratio, std::abs(sample.state.dtheta[j]) / limits_.speed[j]);
-    r.max_torque_ratio =
-        std::max(r.max_torque_ratio, std::abs(sample.torque[j]) / limits_.peak_torque[j]);
+    const auto raise = [&](double& most, JointPeak& peak, double ratio) {
+      if (!(ratio > most)) return;
+      most = ratio;
+      peak = {j, t};
+    };
+    raise(r.max_speed_ratio, r.speed_peak, std::abs(sample.state.dtheta[j]) / limits_.speed[j]);
+    raise(r.max_torque_ratio, r.torque_peak, std::abs(sample.torque[j]) / limits_.peak_torque[j]);
   }
   if (sample.fz > kTouchLoad * weight) {
     zmp_square_sum_ += (sample.measured_zmp - sample.reference_zmp).head<2>().squaredNorm();

@@ -66,6 +66,12 @@ struct SimulationEvent {
 enum class Outcome { stands, unsettled, fell };
 const char* name_of(Outcome outcome);
 
+/// Where a figure of the joints is the largest. Files do not store it.
+struct JointPeak {
+  int dof = -1;   ///< -1: unknown
+  double at = 0;  ///< [s]
+};
+
 /// Verdict and figures of a run, as docs/cli.md defines them.
 struct SimulationResult {
   Outcome outcome = Outcome::unsettled;
@@ -86,6 +92,7 @@ struct SimulationResult {
   double max_contact_residual = 0;  ///< [m/s]
   int max_contact_iterations = 0;
   double mean_contact_iterations = 0;
+  JointPeak speed_peak = {}, torque_peak = {};  ///< of the ratios
 };
 
 struct SimulationLog {

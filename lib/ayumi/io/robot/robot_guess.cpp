@@ -7,6 +7,7 @@
 #include <numbers>
 #include <set>
 
+#include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/dynamics/inverse_kinematics.hpp"

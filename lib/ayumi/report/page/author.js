@@ -191,7 +191,7 @@ class Page {
     const hooks = { fills: true, shown: (mark) => byId("mark-" + mark).checked,
       moved: (time, row, push) => this.moved(time, row, push),
       played: (on) => { byId("play").textContent = on ? "Pause" : "Play"; } };
-    this.viewer = new Viewer(byId("stage"), this.whole(), { scene: model, animations: [] }, hooks);
+    this.viewer = new Viewer(byId("stage"), this.whole(), { ...gltf, animations: [] }, hooks);
     this.viewer.renderer.domElement.setAttribute("aria-label",
       "The robot in 3-D. Drag turns the view, the wheel changes the distance.");
     this.rig = new Rig(model, this.state.replay);
@@ -440,7 +440,7 @@ class Page {
     const times = members.length > 1 ? `${members.length} times, worst at ${seconds(one.at)}` : `at ${seconds(one.at)}`;
     return element("button", { type: "button", class: "answer " + one.severity, "data-id": "answer " + worst,
       "aria-pressed": String(members.some((i) => findings[i] === this.finding)), onclick: () => this.showFinding(one) },
-    element("span", {}, element("strong", {}, { error: "Error", warning: "Warning", info: "Note" }[one.severity]), " " + times),
+    element("span", {}, element("strong", {}, { error: "Error", warning: "Warning", info: "Info" }[one.severity]), " " + times),
     element("span", {}, one.message),
     places !== one.where && members.length > 1 ? element("span", {}, `The same finding at: ${places}`) : null,
     one.hint ? element("span", { class: "soft" }, one.hint) : null,

@@ -12,7 +12,7 @@ import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { clampTime, convexHull, sampleAt } from "./series.js";
 
 const colors = { cog: 0xd9a312, zmp: 0xd6261f, reference: 0x0d4dbf, support: 0x1a73cc,
-  force: 0x0d8c59, push: 0xc7409e, ghost: 0xed730d };
+  force: 0x0d8c59, push: 0xc7409e };
 
 // ---- marks
 
@@ -86,8 +86,9 @@ export function bodyOf(actor, number) {
 /// A motion is { config, series, scenery }: what a page's JSON says of it, its rows (series.js) and
 /// the triangles that stand on the ground.
 export class Viewer {
-  /// `gltf` is the robot; its animations, if it has any, are the motion and its ghosts. `hooks`:
-  /// shown(mark) says whether a mark is drawn, moved(time, row, push) and played(on) tell the page.
+  /// `gltf` is the robot, with the colour for ghosts of it; its animations, if it has any, are the
+  /// motion and its ghosts. `hooks`: shown(mark) says whether a mark is drawn, moved(time, row, push)
+  /// and played(on) tell the page.
   constructor(stage, motion, gltf, hooks) {
     this.time = 0;
     this.playing = false;
@@ -144,6 +145,7 @@ export class Viewer {
     this.scene.add(this.ground());
     this.paintGround();
     this.actors = [];
+    this.ghostColor = gltf.userData.ghost_color;
     if (gltf.animations.length > 0) this.addActor(gltf.scene, gltf.animations[0], false);
     for (const clip of gltf.animations.slice(1)) this.addActor(gltf.scene.clone(true), clip, true);
     const m = this.marks;
@@ -228,7 +230,7 @@ export class Viewer {
       // A ghost lies a little behind where it is: what coincides with it is seen, without speckle.
       const behind = { polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 400,
         transparent: true };
-      part.material = new MeshLambertMaterial({ color: colors.ghost, opacity: 0.4, ...behind });
+      part.material = new MeshLambertMaterial({ color: this.ghostColor, opacity: 0.4, ...behind });
       part.renderOrder = 2;
       // Its depth comes first, so that only its nearest surface shines through.
       const depth = new Mesh(part.geometry, new MeshBasicMaterial({ colorWrite: false, ...behind }));
