@@ -612,7 +612,7 @@ def words_of(figure):
 
 
 def differences(before, after):
-    """(weight, case, words) of what changed, and whether anything did."""
+    """(weight, case, changes of a figure in words), and whether anything changed."""
     found, any_change = [], False
     for name in after:
         if before[name] == after[name]:
@@ -633,8 +633,9 @@ def differences(before, after):
                 weight = min(weight, 50) * (0.1 if figure in ("iterations", "joints moved") else 1)
             else:
                 weight = {"outcome": 1000, "findings": 200, "causes": 100}.get(figure, 80)
-            words = f"{words_of(figure)} {shown(figure, a)} → {shown(figure, b)}"
-            found.append((weight, name, changed_counts(figure, a, b) if figure in COUNTED else words))
+            changes = (changed_counts(figure, a, b) if figure in COUNTED
+                       else [f"{words_of(figure)} {shown(figure, a)} → {shown(figure, b)}"])
+            found.append((weight, name, changes))
     return sorted(found, key=lambda f: -f[0]), any_change
 
 
@@ -651,24 +652,31 @@ def counted(text):
 
 
 def changed_counts(figure, a, b):
-    """The kinds of which there are more or fewer."""
+    """The kinds of which there are more or fewer, in words."""
     before, after = counted(a), counted(b)
     changes = [f"{COUNTED[figure].format(*kind.split())} {before.get(kind, 0)} → {after.get(kind, 0)}"
                for kind in sorted({**before, **after}) if before.get(kind) != after.get(kind)]
-    more = len(changes) - MOST_KINDS
-    if more > 0:
-        changes = changes[:MOST_KINDS] + [f"{more} more kind{'s' if more > 1 else ''}"]
-    return ", ".join(changes)
+    return changes
+
+
+def first_of(words, most, noun):
+    left = len(words) - most
+    return words[:most] + ([counted_words(left, "more " + noun)] if left > 0 else [])
+
+
+def counted_words(number, noun):
+    return f"{number} {noun}{'s' if number > 1 else ''}"
 
 
 def cell_of(parts, more):
-    """Text of a cell: (case, words of its figures) of the cases that are named, and how many more
-    changed. Figures and then a case are left out until the cell is not too wide."""
-    for cases, figures in ((2, 2), (2, 1), (1, 1)):
-        texts = [f"{name}: {'; '.join(words[:figures])}" for name, words in parts[:cases]]
+    """Text of a cell: (case, changes of its figures) of the cases that are named, and how many more
+    changed. Figures, then a case, and then kinds are left out until the cell is not too wide."""
+    for cases, figures, kinds in ((2, 2, MOST_KINDS), (2, 1, MOST_KINDS), (1, 1, MOST_KINDS), (1, 1, 1)):
+        texts = [f"{name}: {'; '.join(', '.join(first_of(f, kinds, 'kind')) for f in changes[:figures])}"
+                 for name, changes in parts[:cases]]
         left = more + len(parts) - len(texts)
         if left:
-            texts.append(f"{left} more case{'s' if left > 1 else ''}")
+            texts.append(counted_words(left, "more case"))
         text = ". ".join(texts)
         if len(text) <= WIDEST_CELL:
             break
@@ -682,8 +690,8 @@ def summary_of(before, after):
     if not found:
         return "below 5 %"
     by_case = {}
-    for _, name, words in found:
-        by_case.setdefault(name, []).append(words)
+    for _, name, changes in found:
+        by_case.setdefault(name, []).append(changes)
     parts = list(by_case.items())
     return cell_of(parts[:2], len(parts[2:]))
 
