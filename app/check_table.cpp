@@ -133,9 +133,7 @@ AnswerPart all_findings(const ConsistencyReport& report) {
 // Where and when a figure is reached.
 std::string figure_place(const ConsistencyReport& report, FindingKind kind) {
   const FigurePlace& p = report.summary_at[kind];
-  if (!std::isfinite(p.at)) return {};
-  return " (" + (p.where.empty() ? "" : place_words(p.where) + " ") + "at " + text::fixed(p.at, 2) +
-         " s)";
+  return std::isfinite(p.at) ? in_brackets(place_words(p.where), p.at) : "";
 }
 
 // False where the robot's profile states no limit of this kind for any motor.

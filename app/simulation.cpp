@@ -7,6 +7,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/control/gain_design.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
+#include "ayumi/limits/amount_text.hpp"
 #include "ayumi/sim/run_caution.hpp"
 #include "option_checks.hpp"
 #ifdef AYUMI_HAS_MUJOCO
@@ -180,11 +181,9 @@ std::string shares_text(const SimulationLog& log) {
 }  // namespace
 
 std::string share_text(const SimulationLog& log, double share, const JointPeak& peak) {
-  std::string text = text::fixed(100 * share, 0) + " %";
-  if (peak.dof >= 0)
-    text +=
-        " (" + log.joints[static_cast<size_t>(peak.dof)] + " at " + text::fixed(peak.at, 2) + " s)";
-  return text;
+  const std::string text = text::fixed(100 * share, 0) + " %";
+  return peak.dof < 0 ? text
+                      : text + in_brackets(log.joints[static_cast<size_t>(peak.dof)], peak.at);
 }
 
 std::string outcome_text(const SimulationLog& log) { return outcome_text(log, log.samples.size()); }

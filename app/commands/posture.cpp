@@ -302,9 +302,9 @@ Instant instant_of(const Context& context, const PostureCommand& options) {
   return {task.robot_name, task.robot.dof_names(), task.series.samples[row].state.theta};
 }
 
-// A joint that a run keeps at 0 is captured at 0. Chosen: 1e-5 rad or m; a joint that is driven to
-// 0 ends within 3e-6, and one count of HOAP-1's encoders is 8e-5.
-double settled(double value) { return std::abs(value) < 1e-5 ? 0 : value; }
+// A joint that a run keeps nearer to 0 than this is captured at 0 [rad, m]. Chosen: a joint that is
+// driven to 0 ends within 3e-6, and one count of HOAP-1's encoders is 8e-5.
+constexpr double kAtRest = 1e-5;
 
 void capture(const Context& context, const PostureCommand& options) {
   const Instant instant = instant_of(context, options);
@@ -312,7 +312,8 @@ void capture(const Context& context, const PostureCommand& options) {
   Angles angles;
   for (size_t i = 0; i < instant.joints.size(); ++i) {
     dof_of(model, instant.joints[i], options.source);
-    angles[instant.joints[i]] = settled(instant.theta[static_cast<Eigen::Index>(i)]);
+    const double angle = instant.theta[static_cast<Eigen::Index>(i)];
+    angles[instant.joints[i]] = std::abs(angle) < kAtRest ? 0 : angle;
   }
   save(context, options, model, options.robot.empty() ? instant.robot : options.robot, angles);
 }

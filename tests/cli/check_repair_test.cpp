@@ -84,6 +84,19 @@ TEST_F(CheckRepair, TheMistakeIsNamedFirst) {
                       "with the number read in mm (0.03 m), or with values up to 0.0"),
             std::string::npos)
       << step;
+  // What is written once is named once, however often the block is repeated.
+  write(folder / "rounds.json", R"({"format": "ayumi.pattern/1", "robot": "hoap1",
+      "phases": [{"duration": 1.2, "support": "both"},
+                 {"repeat": 2, "phases": [
+                   {"duration": 31, "support": "left",
+                    "swing": {"foot": "right", "lift": 0.015, "step": {}}},
+                   {"duration": 0.3, "support": "both"}]}],
+      "keyframes": [{"t": 0, "posture": "home", "zmp": "center"}, {"t": 1, "zmp": "left"}]})");
+  const std::string rounds = ayumi({"check", "rounds.json", "-q"}).out;
+  const size_t once = rounds.find("the swing lasts 31 s");
+  EXPECT_NE(once, std::string::npos) << rounds;
+  EXPECT_EQ(rounds.find("the swing lasts 31 s", once + 1), std::string::npos) << rounds;
+  EXPECT_EQ(rounds.find("more of this kind"), std::string::npos) << rounds;
   plant("foot.json", R"({ "t": 2.22, "zmp": "left" })", R"({ "t": 2.22, "zmp": "right" })");
   const Output foot = ayumi({"check", "foot.json", "-q"});
   EXPECT_EQ(foot.exit_code, 1);

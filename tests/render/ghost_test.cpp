@@ -165,21 +165,21 @@ TEST(Ghost, HasAHueFarFromTheRobots) {
   const Eigen::Vector4f white(0.92f, 0.90f, 0.86f, 1);
   for (const Eigen::Vector3f& cover : covers) {
     const Eigen::Vector4f color(cover[0], cover[1], cover[2], 1);
-    EXPECT_GT(between(ghost_color(two_boxes(color, white), BesideGhost::robot), cover), 110)
+    EXPECT_GT(between(ghost_colors(two_boxes(color, white)).beside_robot, cover), 110)
         << cover.transpose();
   }
   for (const Eigen::Vector3f& cover : {covers[0], covers[5]}) {
     const Eigen::Vector4f color(cover[0], cover[1], cover[2], 1);
-    EXPECT_GT(between(ghost_color(two_boxes(white, color), BesideGhost::robot), cover), 110)
+    EXPECT_GT(between(ghost_colors(two_boxes(white, color)).beside_robot, cover), 110)
         << "a few covers of a white robot";
   }
 }
 
 TEST(Ghost, OfAGreyRobotIsOrangeAndOfAHotOneIsNot) {
   const Eigen::Vector4f grey(0.5f, 0.5f, 0.5f, 1), black(0, 0, 0, 1);
-  EXPECT_EQ(hex_text(ghost_color(two_boxes(grey, black), BesideGhost::robot)), "#ed730d");
-  EXPECT_EQ(hex_text(ghost_color({}, BesideGhost::robot)), "#ed730d");
-  const Eigen::Vector3f hot = ghost_color(two_boxes(grey, black), BesideGhost::robot_heat);
+  EXPECT_EQ(hex_text(ghost_colors(two_boxes(grey, black)).beside_robot), "#ed730d");
+  EXPECT_EQ(hex_text(ghost_colors({}).beside_robot), "#ed730d");
+  const Eigen::Vector3f hot = ghost_colors(two_boxes(grey, black)).beside_heat;
   for (const float heat : {0.0f, 1.0f}) EXPECT_GT(between(hot, heat_color(heat).head<3>()), 110);
 }
 
@@ -187,16 +187,17 @@ TEST(Ghost, OfAGreyRobotIsOrangeAndOfAHotOneIsNot) {
 TEST(Ghost, HasOneColourInClipsAndOnPages) {
   const RobotModel model = box_robot();
   const auto look = robot_look(model);
-  EXPECT_EQ(look->ghost, ghost_color(robot_surface(model), BesideGhost::robot));
-  const std::string words = "\"extras\":{\"ghost_color\":\"" + hex_text(look->ghost) + "\"}";
+  EXPECT_EQ(look->ghost.beside_robot, ghost_colors(robot_surface(model)).beside_robot);
+  const std::string words =
+      "\"extras\":{\"ghost_color\":\"" + hex_text(look->ghost.beside_robot) + "\"}";
   EXPECT_NE(glb_bytes(model, {}).find(words), std::string::npos);
   EXPECT_NE(glb_bytes(model, {}, {.look = look.get(), .max_triangles = 500}).find(words),
             std::string::npos);
   const SimulationLog log = box_run(model);
   ClipOptions with = bare();
-  EXPECT_EQ(clip_shape(model, log, with, true)->ghost, look->ghost);
+  EXPECT_EQ(clip_shape(model, log, with, true)->ghost, look->ghost.beside_robot);
   with.overlay.heat = true;
-  EXPECT_EQ(clip_shape(model, log, with, false)->ghost, look->heat_ghost);
+  EXPECT_EQ(clip_shape(model, log, with, false)->ghost, look->ghost.beside_heat);
 }
 
 TEST(Surface, TooFineIsSimplifiedAndSaidSo) {

@@ -75,7 +75,7 @@ TEST_F(Textured, AGhostTurnsFromTheColoursOfThePicture) {
   Image image{8, 8, std::vector<std::uint8_t>(3 * 64, 0)};
   for (size_t pixel = 0; pixel < 64; ++pixel) image.rgb[3 * pixel] = 220;
   write_png(folder / "flag.png", image);
-  EXPECT_EQ(hex_text(ghost_color(surface("flag.png"), BesideGhost::robot)), "#0d9e9e");
+  EXPECT_EQ(hex_text(ghost_colors(surface("flag.png")).beside_robot), "#0d9e9e");
 }
 
 TEST_F(Textured, AJpegIsRead) {

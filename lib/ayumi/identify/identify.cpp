@@ -314,8 +314,7 @@ class Advice {
       say("the effects of kp and friction cannot be distinguished: record a slow sweep");
     else if (!kp && offset_tied())
       say("the effects of kp and offset cannot be distinguished: record a load that changes, such "
-          "as "
-          "a squat");
+          "as a squat");
     else if (!kp)
       say("the load changes too little to show kp: record a squat or a sway, or use --per type");
     if (kp && !joint.coulomb.known)
@@ -325,8 +324,7 @@ class Advice {
       say("viscous friction and damping are not determined: record steps or a chirp");
     if (type.has_backlash && tied(Constant::backlash, Constant::dry))
       say("the effects of backlash and Coulomb friction cannot be distinguished: record a load "
-          "that "
-          "changes its sign");
+          "that changes its sign");
     if (type.has_backlash && tied(Constant::backlash, Constant::compliance))
       say("the effects of backlash and kp cannot be distinguished: record a load that changes its "
           "sign and its size");

@@ -238,8 +238,7 @@ void require_answer(const RobotModel& model, const AngleTable& command, const An
              " s, but its command lasts " + text::fixed(asked, 3) +
              " s: " + text::counted(missing, "row") + (missing == 1 ? " is" : " are") +
              " missing. Every motion is complete, so the rows are missing in a pause or at the "
-             "end; record "
-             "again, or give the rows a time column");
+             "end; record again, or give the rows a time column");
   }
   const std::vector<std::string> wrong =
       motion_complaints(model, command, measured, behind, 0, command.duration());

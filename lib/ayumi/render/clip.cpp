@@ -331,7 +331,7 @@ std::shared_ptr<const ClipShape> clip_shape(const RobotModel& model, const Simul
   shape->notes = notes_of(model, *look, triangle_count(surface), moved);
   shape->outline = outlines(surface);
   shape->robot = drawn_robot(surface);
-  shape->ghost = options.overlay.heat ? look->heat_ghost : look->ghost;
+  shape->ghost = options.overlay.heat ? look->ghost.beside_heat : look->ghost.beside_robot;
   return shape;
 }
 

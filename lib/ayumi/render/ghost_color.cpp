@@ -57,6 +57,11 @@ struct Use {
       by_hue[i] += weight * saturation * saturation * std::pow(near, kSharpness);
     }
   }
+
+  Vector3f rarest_hue() const {
+    const auto least = std::min_element(by_hue.begin(), by_hue.end());
+    return kHues[static_cast<size_t>(least - by_hue.begin())];
+  }
 };
 
 /// At a place in a picture, which is repeated beyond its edges.
@@ -90,7 +95,7 @@ void add(Use& use, const Triangles& surface, const Texture* picture) {
 
 }  // namespace
 
-Vector3f ghost_color(const std::vector<BodySurface>& robot, BesideGhost beside) {
+GhostColors ghost_colors(const std::vector<BodySurface>& robot) {
   Use use;
   std::map<std::string, Texture> pictures;
   std::vector<std::string> notes;
@@ -103,11 +108,12 @@ Vector3f ghost_color(const std::vector<BodySurface>& robot, BesideGhost beside) 
       add(use, part.triangles, &picture->second);
     }
   }
-  if (beside == BesideGhost::robot_heat)
-    for (const float heat : {0.0f, 1.0f})
-      use.add(heat_color(heat).head<3>(), kHeatShare / 2 * use.area);
-  const auto least = std::min_element(use.by_hue.begin(), use.by_hue.end());
-  return kHues[static_cast<size_t>(least - use.by_hue.begin())];
+  GhostColors colors;
+  colors.beside_robot = use.rarest_hue();
+  for (const float heat : {0.0f, 1.0f})
+    use.add(heat_color(heat).head<3>(), kHeatShare / 2 * use.area);
+  colors.beside_heat = use.rarest_hue();
+  return colors;
 }
 
 std::string hex_text(const Vector3f& srgb) {

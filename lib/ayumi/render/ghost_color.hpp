@@ -9,15 +9,16 @@
 
 namespace ayumi {
 
-/// Which colours are drawn beside the ghost.
-enum class BesideGhost {
-  robot,      ///< those of the robot
-  robot_heat  ///< those, and the amber and red of joints near their limits
+/// sRGB.
+struct GhostColors {
+  Eigen::Vector3f beside_robot = Eigen::Vector3f::Zero();
+  Eigen::Vector3f beside_heat =
+      Eigen::Vector3f::Zero();  ///< also beside the amber and red of joints near their limits
 };
 
-/// sRGB. Of the hues that ghosts have, the one furthest from those of the robot: each triangle
-/// counts by its area and its saturation. Orange beside a grey robot.
-Eigen::Vector3f ghost_color(const std::vector<BodySurface>& robot, BesideGhost beside);
+/// Of the hues that ghosts have, the one furthest from those of the robot: each triangle counts by
+/// its area and its saturation. Orange beside a grey robot.
+GhostColors ghost_colors(const std::vector<BodySurface>& robot);
 
 /// "#ed730d".
 std::string hex_text(const Eigen::Vector3f& srgb);

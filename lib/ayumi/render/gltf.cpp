@@ -267,7 +267,7 @@ std::string glb_bytes(const RobotModel& model, const std::vector<Motion>& motion
   Writer writer;
   std::vector<BodySurface> surface = options.look ? options.look->surface : robot_surface(model);
   const Eigen::Vector3f ghost =
-      options.look ? options.look->ghost : ghost_color(surface, BesideGhost::robot);
+      (options.look ? options.look->ghost : ghost_colors(surface)).beside_robot;
   if (options.max_triangles > 0) simplify(surface, options.max_triangles);
   const std::vector<int> meshes = add_meshes(writer, surface);
   std::vector<std::string> animations;

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "ayumi/base/text.hpp"
-#include "ayumi/render/ghost_color.hpp"
 #include "ayumi/render/hidden_parts.hpp"
 #include "ayumi/render/simplify.hpp"
 #include "ayumi/render/thin.hpp"
@@ -45,8 +44,7 @@ std::shared_ptr<const RobotLook> robot_look(const RobotModel& model, const Progr
   auto look = std::make_shared<RobotLook>();
   look->surface = robot_surface(model);
   look->triangles = triangle_count(look->surface);
-  look->ghost = ghost_color(look->surface, BesideGhost::robot);
-  look->heat_ghost = ghost_color(look->surface, BesideGhost::robot_heat);
+  look->ghost = ghost_colors(look->surface);
   if (look->triangles <= kMostTriangles) return look;
   const double height = robot_extent(look->surface, model, model.rest_state());
   leave_out_hidden(look->surface);

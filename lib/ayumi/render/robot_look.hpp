@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ayumi/base/progress.hpp"
+#include "ayumi/render/ghost_color.hpp"
 #include "ayumi/render/robot_surface.hpp"
 
 namespace ayumi {
@@ -15,8 +16,7 @@ struct RobotLook {
   std::vector<BodySurface> surface;  ///< as robot_surface(), but with fewer triangles if too many
   size_t triangles = 0;              ///< of the robot's own meshes
   double moved = 0;                  ///< about how far the surface is from theirs [m]; 0: theirs
-  Eigen::Vector3f ghost = Eigen::Vector3f::Zero();       ///< ghost_color() beside the robot
-  Eigen::Vector3f heat_ghost = Eigen::Vector3f::Zero();  ///< and beside joints near their limits
+  GhostColors ghost;                 ///< ghost_colors() of the robot's own meshes
 };
 
 /// It depends on the robot alone, so that all pictures of a robot show the same surface.
