@@ -29,9 +29,6 @@ size_t rows_for(const ConsistencyReport& report);
 /// The line below an answer that was shortened.
 std::string where_more_is(const ConsistencyReport& report);
 
-/// False where the robot's profile states no limit of this kind for any motor.
-bool has_limit(const RobotModel& model, FindingKind kind);
-
 /// "joint speed 62 % (l_knee at 1.20 s), ...": the largest share of each limit.
 std::string shares_of_limits(const ConsistencyReport& report, const RobotModel& model);
 
