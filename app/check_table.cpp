@@ -136,17 +136,6 @@ std::string figure_place(const ConsistencyReport& report, FindingKind kind) {
   return std::isfinite(p.at) ? in_brackets(place_words(p.where), p.at) : "";
 }
 
-// False where the robot's profile states no limit of this kind for any motor.
-bool has_limit(const RobotModel& model, FindingKind kind) {
-  const auto is_stated = [](const Eigen::VectorXd& limits) {
-    return limits.size() == 0 || limits.array().isFinite().any();
-  };
-  const ActuatorLimits& limits = model.limits();
-  if (kind == FindingKind::joint_speed) return is_stated(limits.speed);
-  if (kind == FindingKind::joint_torque) return is_stated(limits.peak_torque);
-  return kind != FindingKind::continuous_torque || is_stated(limits.continuous_torque);
-}
-
 }  // namespace
 
 std::string shares_of_limits(const ConsistencyReport& report, const RobotModel& model) {

@@ -17,17 +17,13 @@
 #include "ayumi/io/robot/mesh_message.hpp"
 #include "collada_check.hpp"
 #include "companion_files.hpp"
+#include "corners.hpp"
 
 namespace ayumi::mesh_reader {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-// [bytes] Chosen: 400,000 facets of 50 bytes; of so many neither edges nor facets show.
-constexpr size_t kLargeStl = 20'000'000;
-// [deg] Chosen: sharper edges keep separate normals, the facets of round parts do not.
-constexpr float kCreaseAngle = 40.0f;
 
 std::string lower_extension(const fs::path& path) {
   std::string extension = path.extension().string();
@@ -79,7 +75,9 @@ class Collector {
       if (!part.vertices.back().allFinite())
         throw Refusal("a vertex is not finite; repair the mesh");
       Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-      if (source.HasNormals()) normal = normal_turn * vector(source.mNormals[i]);
+      // STL has one normal per facet, often zero: round surfaces would look faceted.
+      if (source.HasNormals() && extension_ != ".stl")
+        normal = normal_turn * vector(source.mNormals[i]);
       const bool usable = std::isfinite(normal.norm()) && normal.norm() > 1e-12;
       part.normals.emplace_back(usable ? normal.normalized().cast<float>().eval()
                                        : Eigen::Vector3f::Zero().eval());
@@ -88,7 +86,7 @@ class Collector {
       if (source.HasTextureCoords(0) && !part.uvs.back().allFinite()) part.uvs.back().setZero();
     }
     add_triangles(source, turn.determinant() < 0, part);
-    make_missing_normals(part);
+    finish_corners(part);
     add_material(source, part);
     if (!part.triangles.empty()) mesh_.parts.push_back(std::move(part));
   }
@@ -108,28 +106,6 @@ class Collector {
     if (total_ > kMostMeshTriangles)
       throw Refusal("the mesh has more than " + std::to_string(kMostMeshTriangles) +
                     " triangles; simplify the mesh");
-  }
-
-  // Where the file has none: the area-weighted mean of the triangles around the vertex.
-  static void make_missing_normals(MeshPart& part) {
-    std::vector<Eigen::Vector3f> sums(part.vertices.size(), Eigen::Vector3f::Zero());
-    for (const auto& [a, b, c] : part.triangles) {
-      const Eigen::Vector3f& at = part.vertices[a];
-      const Eigen::Vector3f area = (part.vertices[b] - at).cross(part.vertices[c] - at);
-      for (const std::uint32_t corner : {a, b, c}) sums[corner] += area;
-    }
-    for (size_t i = 0; i < sums.size(); ++i) {
-      if (!part.normals[i].isZero()) continue;
-      const float length = sums[i].norm();
-      part.normals[i] = length > 0 ? (sums[i] / length).eval() : Eigen::Vector3f::UnitZ().eval();
-      // A tiny or huge triangle leaves the range of float, where its area is squared.
-      if (!(std::abs(part.normals[i].norm() - 1) < 1e-4f)) {
-        const Eigen::Vector3d sum = sums[i].cast<double>();
-        const bool usable = std::isfinite(sum.norm()) && sum.norm() > 0;
-        part.normals[i] =
-            usable ? sum.normalized().cast<float>().eval() : Eigen::Vector3f::UnitZ().eval();
-      }
-    }
   }
 
   void add_material(const aiMesh& source, MeshPart& part) const {
@@ -179,18 +155,15 @@ TriangleMesh import_mesh(const std::string& name, const std::string& bytes,
   Assimp::Importer importer;
   importer.SetIOHandler(new CompanionFiles(name, bytes, ask));  // the importer owns it
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-  importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, kCreaseAngle);
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
                               aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  unsigned steps = aiProcess_Triangulate | aiProcess_GenSmoothNormals |
-                   aiProcess_JoinIdenticalVertices | aiProcess_SortByPType;
-  // STL has one normal per facet, often zero: round surfaces would look faceted, or edges round.
-  // Of very many facets neither shows, and assimp's search among them takes long.
-  if (extension == ".stl" && bytes.size() < kLargeStl) steps |= aiProcess_ForceGenNormals;
+  // Not its normals and not its joining of vertices: its search for what is at one place takes half
+  // of the time to read a large mesh.
+  constexpr unsigned kSteps = aiProcess_Triangulate | aiProcess_SortByPType;
   const aiScene* scene = nullptr;
   std::string reason;
   try {
-    scene = importer.ReadFile(CompanionFiles::path_of(name), steps);
+    scene = importer.ReadFile(CompanionFiles::path_of(name), kSteps);
     reason = importer.GetErrorString();
   } catch (const std::exception& error) {
     reason = error.what();

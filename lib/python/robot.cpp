@@ -4,6 +4,7 @@
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
 #include "bindings.hpp"
+#include "watch.hpp"
 
 namespace ayumi::python {
 
@@ -152,8 +153,10 @@ void bind_robot(py::module_& m) {
   m.def(
       "load_robot",
       [](const std::string& name, const std::vector<Path>& path, bool meshes) {
-        const py::gil_scoped_release release;
-        return std::make_shared<RobotModel>(load_robot(name, robot_search(path), {meshes}));
+        return Watch(py::none()).run([&](const Progress& progress) {
+          return std::make_shared<RobotModel>(
+              load_robot(name, robot_search(path), {.meshes = meshes, .progress = progress}));
+        });
       },
       py::arg("name"), py::arg("path") = std::vector<Path>(), py::arg("meshes") = true,
       "The robot of this name, folder, sidecar or URDF. `meshes`: also read the meshes, which only "

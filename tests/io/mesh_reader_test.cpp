@@ -161,6 +161,20 @@ TEST(HostileMesh, HidesNoneOfTheOthers) {
             std::string::npos);
 }
 
+// A stop was heard after all meshes had been read, which took seconds.
+TEST(MeshReader, IsStoppedWhileItReads) {
+  const TemporaryFolder folder;
+  const auto mesh = folder.write("good.obj", kTriangle);
+  const auto slow = folder.write("slow", "#!/bin/sh\nexec /bin/sleep 30\n");
+  std::filesystem::permissions(slow, std::filesystem::perms::owner_all);
+  MeshFailure failure;
+  int heard = 0;
+  const auto stop = [&](const ProgressEvent&) { return ++heard < 3; };
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_THROW(load_meshes({{mesh}, {mesh}}, failure, {.program = slow}, stop), Interrupted);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
+}
+
 TEST(MeshCompanions, AreOpenedOnlyWhereTheyMayBelongToAMesh) {
   const TemporaryFolder folder;
   const std::string material = "newmtl red\nKd 1 0 0\n";

@@ -82,6 +82,22 @@ TEST(Report, ShowsFindingsRepairAndThresholds) {
     EXPECT_NE(html.find(words), std::string::npos) << words;
 }
 
+// "0 % of the limit" was said of robots that state no limit.
+TEST(Report, SaysWhichLimitsAreNotStatedAndHowSoftTheSolesAre) {
+  Made made;
+  ASSERT_FALSE(has_limit(made.model, FindingKind::continuous_torque));
+  made.input.results.check = ConsistencyReport{};
+  const std::string html = make_report(made.model, made.input).html;
+  EXPECT_NE(html.find("no limit is stated"), std::string::npos);
+  const size_t soft = html.find("softness of the soles");
+  ASSERT_NE(soft, std::string::npos);
+  EXPECT_NE(html.find("kN/m, damping time 4 ms", soft), std::string::npos);
+  EXPECT_EQ(html.find("not used by the plant"), std::string::npos);
+  made.closed.plant = "mujoco";
+  EXPECT_NE(make_report(made.model, made.input).html.find("not used by the plant mujoco"),
+            std::string::npos);
+}
+
 // Lengths in mm and angles in deg wherever they stand, with three digits.
 TEST(Report, HasOneUnitPerQuantity) {
   Made made;

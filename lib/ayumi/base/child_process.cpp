@@ -25,6 +25,9 @@ using std::chrono::steady_clock;
 
 // Chosen: a process that ends by itself does so within milliseconds.
 constexpr std::chrono::milliseconds kGrace(1000), kPause(1);
+// [ms] How long an exchange waits before it looks whether it shall stop. Chosen: nobody notices it,
+// and it costs nothing.
+constexpr long kStopPause = 50;
 
 std::vector<char*> pointers_to(std::vector<std::string>& words) {
   std::vector<char*> pointers;
@@ -153,9 +156,10 @@ bool ChildProcess::wait_for(short events) {
   while (true) {
     const auto left =
         std::chrono::ceil<std::chrono::milliseconds>(deadline_ - steady_clock::now()).count();
-    if (left <= 0) return false;
+    if (left <= 0 || (stop_ && *stop_)) return false;
     pollfd waiting = {socket_, events, 0};
-    const int ready = poll(&waiting, 1, static_cast<int>(std::min<long>(left, 1'000'000)));
+    const long longest = stop_ ? kStopPause : 1'000'000;
+    const int ready = poll(&waiting, 1, static_cast<int>(std::min<long>(left, longest)));
     if (ready > 0) return true;
     if (ready < 0 && errno != EINTR) return true;  // the next exchange finds the reason
   }

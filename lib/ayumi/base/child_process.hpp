@@ -4,6 +4,7 @@
 
 #include <sys/types.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <filesystem>
@@ -46,7 +47,7 @@ class ChildProcess {
   enum class Exchange {
     done,
     closed,   ///< the child closed the connection, mostly because it has ended
-    too_late  ///< the time was over first
+    too_late  ///< the time was over first, or a stop was asked for
   };
 
   /// Starts `program` without arguments. Its environment has the variables of this process that
@@ -60,6 +61,8 @@ class ChildProcess {
 
   /// From now on, exchanges have `seconds` altogether before they are too late.
   void set_time(double seconds);
+  /// From now on, exchanges that wait are too late soon after `stop` has become true.
+  void set_stop(const std::atomic<bool>& stop) { stop_ = &stop; }
   Exchange send(const void* bytes, size_t size);
   /// Receives exactly `size` bytes.
   Exchange receive(void* bytes, size_t size);
@@ -73,6 +76,7 @@ class ChildProcess {
   int socket_ = -1;
   pid_t process_ = -1;
   std::chrono::steady_clock::time_point deadline_;
+  const std::atomic<bool>* stop_ = nullptr;
 };
 
 }  // namespace ayumi

@@ -161,4 +161,14 @@ ConsistencyReport check_consistency(const RobotModel& model, const CommandSeries
   return report_of(motion);
 }
 
+bool has_limit(const RobotModel& model, FindingKind kind) {
+  const auto is_stated = [](const Eigen::VectorXd& limits) {
+    return limits.size() == 0 || limits.array().isFinite().any();
+  };
+  const ActuatorLimits& limits = model.limits();
+  if (kind == FindingKind::joint_speed) return is_stated(limits.speed);
+  if (kind == FindingKind::joint_torque) return is_stated(limits.peak_torque);
+  return kind != FindingKind::continuous_torque || is_stated(limits.continuous_torque);
+}
+
 }  // namespace ayumi

@@ -24,4 +24,7 @@ struct ConsistencyReport {
 ConsistencyReport check_consistency(const RobotModel& model, const CommandSeries& series,
                                     const CheckOptions& options = {});
 
+/// False where the robot's profile states no limit of this kind for any motor.
+bool has_limit(const RobotModel& model, FindingKind kind);
+
 }  // namespace ayumi

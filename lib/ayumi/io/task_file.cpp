@@ -26,7 +26,7 @@ Task load_task(Pattern pattern, const TaskOptions& options, const Progress& prog
   const std::string name = options.robot.empty() ? robot_of(pattern) : options.robot;
   RobotModel robot = [&] {
     try {
-      return load_robot(name, options.robots, {.meshes = options.meshes});
+      return load_robot(name, options.robots, {.meshes = options.meshes, .progress = progress});
     } catch (const Error& error) {
       if (!options.robot.empty() || error.code() != ErrorCode::bad_file) throw;
       fail(error.code(), in_file(pattern, "/robot: ") + error.what());

@@ -138,10 +138,11 @@ std::string law_name(const ControllerType& law) {
 /// Name without folder and extension.
 std::string plain_name(const std::string& file) { return fs::path(file).stem().string(); }
 
-/// Triangles of a robot beyond which a clip thins it further, by up to four times as much. Chosen:
-/// they take about 40 ms of a frame, so 1.2 s for each second of motion; at half, robots of makers
-/// lose triangles in large clips, at twice, clips of robots with noisy meshes take twice as long.
-constexpr size_t kMostOfClip = 100'000;
+/// Triangles of a robot in a clip: beyond them, it is thinned by up to four times as much, and
+/// simplified where noise is left. Chosen: they take about 25 ms of a frame, so 1 s for each second
+/// of motion, and half of them face the eye, about one for three pixels; at half, corners of noisy
+/// meshes are several pixels apart, at twice, clips of robots with such meshes take 1 s longer.
+constexpr size_t kMostOfClip = 80'000;
 /// The frames from which on a clip is thinned. Chosen: thinning a robot with 280,000 triangles
 /// takes 0.3 s, which about five frames save; at half, clips of half a second gain too, at twice,
 /// clips of a second gain nothing.
@@ -327,7 +328,9 @@ std::shared_ptr<const ClipShape> clip_shape(const RobotModel& model, const Simul
     const double thinned = thin_to(surface, kThinned * pixel, kMostOfClip, progress);
     if (thinned > kThinned * pixel) moved = std::max(moved, thinned);
   }
-  moved = std::max(moved, std::sqrt(3.0) * simplify(surface, options.max_triangles));
+  const size_t most =
+      thin_surface ? std::min(kMostOfClip, options.max_triangles) : options.max_triangles;
+  moved = std::max(moved, std::sqrt(3.0) * simplify(surface, most));
   shape->notes = notes_of(model, *look, triangle_count(surface), moved);
   shape->outline = outlines(surface);
   shape->robot = drawn_robot(surface);

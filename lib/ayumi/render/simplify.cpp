@@ -5,9 +5,11 @@
 #include <cmath>
 #include <cstdint>
 
-#include "ayumi/render/key_numbers.hpp"
+#include "ayumi/base/key_numbers.hpp"
 
 // A vertex moves to the mean of the vertices in its cell; triangles whose corners share a cell go.
+// What goes has no part in the boundary, so a closed surface stays closed: each of its edges has as
+// many triangles on one side as on the other.
 // Within a cell, vertices that look towards different sides of a cube keep normals of their own, so
 // that edges stay edges.
 
@@ -82,8 +84,8 @@ size_t count_at(const std::vector<BodySurface>& surface, float edge,
   result.clear();
   for (const BodySurface& body : surface) {
     BodySurface coarse;
-    for (const Triangles* part : {&body.closed, &body.open})
-      append(coarse.open, clustered(*part, edge));
+    coarse.closed = clustered(body.closed, edge);
+    coarse.open = clustered(body.open, edge);
     for (const TexturedSurface& part : body.textured)
       coarse.textured.push_back({clustered(part.triangles, edge), part.texture});
     result.push_back(std::move(coarse));

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "ayumi/render/key_numbers.hpp"
+#include "ayumi/base/key_numbers.hpp"
 
 namespace ayumi {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/math/rotation.hpp"
-#include "ayumi/render/key_numbers.hpp"
+#include "ayumi/base/key_numbers.hpp"
 
 namespace ayumi {
 namespace {

@@ -198,9 +198,9 @@ std::string page(const RobotModel& model, const RobotLook& look, const ReportInp
   // The scene stays in sight beside the curves, or above them where the window is narrow.
   return head + html::verdict_section(input) + "<div id=\"watch\">\n" +
          html::section("replay", plan.with_replay ? "Replay" : "Picture", scene) + pieces.loci +
-         "</div>\n" + html::findings_section(input) + html::thresholds_section(input) +
+         "</div>\n" + html::findings_section(model, input) + html::thresholds_section(input) +
          html::comparison_section(input) + (plan.with_snapshots ? pieces.snapshots : "") +
-         html::events_section(input) + html::provenance_section(input, caps) + "</main>\n" +
+         html::events_section(input) + html::provenance_section(model, input, caps) + "</main>\n" +
          script + "</body>\n</html>\n";
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
@@ -146,15 +148,17 @@ Table finding_table(const ConsistencyReport& check) {
   return table;
 }
 
-Table summary_table(const CheckSummary& summary) {
+Table summary_table(const RobotModel& model, const CheckSummary& summary) {
   // What is below this in the unit of its figure is the rounding of the computation. Chosen: no
   // figure is judged by as little.
   constexpr double kRounding = 1e-6;
   Table table = {"Figures of the check", {}, {}};
   for (const FindingSpec* spec : summary_figures()) {
     const double value = spec->figure.scale * summary[spec->kind];
-    table.rows.push_back(
-        {spec->figure.label, figure(std::abs(value) < kRounding ? 0 : value, spec->figure.unit)});
+    table.rows.push_back({spec->figure.label,
+                          has_limit(model, spec->kind)
+                              ? figure(std::abs(value) < kRounding ? 0 : value, spec->figure.unit)
+                              : "no limit is stated"});
   }
   return table;
 }
@@ -238,13 +242,13 @@ PushMap threshold_map(const std::vector<PushThreshold>& thresholds) {
 
 }  // namespace
 
-std::string findings_section(const ReportInput& input) {
+std::string findings_section(const RobotModel& model, const ReportInput& input) {
   if (!input.results.check) return "";
   const ConsistencyReport& check = *input.results.check;
   std::string out = "<p>Judged against the actuators " + escaped(check.profile) + ".</p>\n";
   out +=
       check.findings.empty() ? "<p>The check has no findings.</p>\n" : table(finding_table(check));
-  return section("findings", "Findings", out + table(summary_table(check.summary)));
+  return section("findings", "Findings", out + table(summary_table(model, check.summary)));
 }
 
 namespace {
@@ -339,7 +343,25 @@ std::string events_section(const ReportInput& input) {
   return section("events", "Events", table(rows));
 }
 
-std::string provenance_section(const ReportInput& input, const std::vector<std::string>& caps) {
+namespace {
+
+// A foot falls in one simulator and stands in another where they differ in this.
+std::string softness_of_soles(const RobotModel& model, const std::string& plant) {
+  if (!model.has_soles()) return "no soles";
+  std::vector<std::string> soles;
+  for (const Side side : {Side::left, Side::right}) {
+    const Sole& sole = model.sole(side);
+    soles.push_back(std::string(ayumi::name_of(side)) + " " + three_digits(1e-3 * sole.stiffness) +
+                    " kN/m, damping time " + three_digits(1e3 * sole.damping_time) + " ms");
+  }
+  return text::join(soles, "; ") +
+         (plant == "ayumi" ? "" : "; not used by the plant " + plant + ", which has its own");
+}
+
+}  // namespace
+
+std::string provenance_section(const RobotModel& model, const ReportInput& input,
+                               const std::vector<std::string>& caps) {
   const Provenance& p = input.runs.back().log->provenance;
   const auto code = [](const std::string& text) { return "<code>" + escaped(text) + "</code>"; };
   Table rows = {"", {}, {{"tool", escaped(std::string("ayumi ") + version())}}};
@@ -347,6 +369,8 @@ std::string provenance_section(const ReportInput& input, const std::vector<std::
   rows.rows.push_back({"robot", escaped(p.robot) + " " + code(p.robot_sha256)});
   rows.rows.push_back({"pattern", escaped(p.pattern) + " " + code(p.pattern_sha256)});
   rows.rows.push_back({"actuators", escaped(p.profile)});
+  rows.rows.push_back(
+      {"softness of the soles", escaped(softness_of_soles(model, input.runs.back().log->plant))});
   rows.rows.push_back({"controller", escaped(p.controller)});
   rows.rows.push_back({"command", code(p.command_line)});
   std::string out = table(rows);

@@ -3,16 +3,19 @@
 
 #include <string>
 
+#include "ayumi/model/robot_model.hpp"
 #include "ayumi/report/report.hpp"
 
 namespace ayumi::html {
 
 std::string verdict_section(const ReportInput& input);
-std::string findings_section(const ReportInput& input);    ///< empty without a check
+/// Empty without a check.
+std::string findings_section(const RobotModel& model, const ReportInput& input);
 std::string thresholds_section(const ReportInput& input);  ///< empty without a study
 std::string comparison_section(const ReportInput& input);  ///< empty without a recording
 std::string events_section(const ReportInput& input);
-std::string provenance_section(const ReportInput& input, const std::vector<std::string>& caps);
+std::string provenance_section(const RobotModel& model, const ReportInput& input,
+                               const std::vector<std::string>& caps);
 
 /// "closed loop (dtad)"
 std::string name_of(const ReportRun& run);

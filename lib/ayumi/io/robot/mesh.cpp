@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <csignal>
+#include <future>
 #include <optional>
 
 #include "ayumi/base/child_process.hpp"
@@ -26,6 +28,9 @@ constexpr size_t kMeshReaders = 4;
 constexpr int kMostCompanions = 64;
 constexpr size_t kMostCompanionBytes = size_t{1} << 30;
 constexpr size_t kLongestCompanionName = 4096;
+// How long the caller waits before it asks whether the work shall go on. Chosen: Ctrl-C is answered
+// at once, and the wait costs nothing.
+constexpr std::chrono::milliseconds kPause(50);
 // [bytes] Chosen: a line or two of a message for people.
 constexpr size_t kLongestRefusal = 400;
 // An answer is received in pieces, so that one that states a size and ends takes no memory. Chosen.
@@ -69,8 +74,9 @@ struct ReaderLost {
 // One reader at a time, used for one mesh after the other.
 class MeshReader {
  public:
-  explicit MeshReader(const MeshReading& reading)
+  MeshReader(const MeshReading& reading, const std::atomic<bool>& stop)
       : reading_(reading),
+        stop_(stop),
         program_(reading.program.empty() ? find_mesh_reader() : reading.program) {}
 
   TriangleMesh read(const MeshRequest& request) {
@@ -82,6 +88,7 @@ class MeshReader {
       const bool fresh = !child_;
       try {
         if (fresh) child_.emplace(program_, kReaderEnvironment, kReaderErrors);
+        child_->set_stop(stop_);
         TriangleMesh mesh = ask_reader(request, bytes, fresh);
         for (MeshPart& part : mesh.parts) part.texture_file = texture_of(part.texture_file);
         return mesh;
@@ -198,6 +205,7 @@ class MeshReader {
   // Throws ReaderLost unless the exchange is done.
   void need(Exchange exchange) {
     if (exchange == Exchange::done) return;
+    if (stop_) throw Interrupted();
     if (exchange == Exchange::too_late)
       throw ReaderLost{"reading this mesh takes longer than " + text::brief(reading_.time) +
                            " s; simplify the mesh, or close other programs that load the machine",
@@ -256,37 +264,57 @@ class MeshReader {
   }
 
   const MeshReading& reading_;
+  const std::atomic<bool>& stop_;
   fs::path program_, path_;
   std::optional<ChildProcess> child_;
   int companions_ = 0;
   size_t companion_bytes_ = 0;
 };
 
+/// work() on another thread, while this one asks `progress`; it sets `stop` where it throws.
+template <typename Work>
+void watched(const Progress& progress, std::atomic<bool>& stop, const Work& work) {
+  if (!progress) return work();
+  std::future<void> done = std::async(std::launch::async, work);
+  try {
+    do report(progress, {"meshes", -1, ""});
+    while (done.wait_for(kPause) != std::future_status::ready);
+  } catch (...) {
+    stop = true;
+    done.wait();
+    throw;
+  }
+  done.get();
+}
+
 }  // namespace
 
 TriangleMesh load_mesh(const fs::path& path, const Eigen::Vector3d& scale,
                        const MeshReading& reading) {
-  return MeshReader(reading).read({path, scale});
+  const std::atomic<bool> never = false;
+  return MeshReader(reading, never).read({path, scale});
 }
 
 std::vector<TriangleMesh> load_meshes(const std::vector<MeshRequest>& requests,
-                                      MeshFailure& failure, const MeshReading& reading) {
+                                      MeshFailure& failure, const MeshReading& reading,
+                                      const Progress& progress) {
   std::vector<TriangleMesh> meshes(requests.size());
   const size_t groups = std::min(kMeshReaders, requests.size());
   std::vector<MeshFailure> failures(groups);
+  std::atomic<bool> stop = false, failed = false;
   // Which reader reads which meshes does not depend on the machine. The first failure of each group
   // is known, and so is the first of all.
   const auto read_group = [&](size_t group) {
     size_t i = group;
     try {
-      MeshReader reader(reading);
-      for (; i < requests.size(); i += groups) meshes[i] = reader.read(requests[i]);
+      MeshReader reader(reading, stop);
+      for (; i < requests.size() && !stop; i += groups) meshes[i] = reader.read(requests[i]);
     } catch (const Error&) {
       failures[group] = {i, std::current_exception()};
     }
   };
-  std::atomic<bool> stop = false;
-  in_parallel(groups, static_cast<int>(groups), stop, read_group);
+  watched(progress, stop,
+          [&] { in_parallel(groups, static_cast<int>(groups), failed, read_group); });
   failure = {};
   for (const MeshFailure& candidate : failures)
     if (candidate.error && (!failure.error || candidate.request < failure.request))

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "ayumi/base/progress.hpp"
 #include "ayumi/geometry/shape.hpp"
 
 namespace ayumi {
@@ -55,7 +56,9 @@ struct MeshFailure {
 
 /// Several meshes as load_mesh() reads them, in the order of `requests`, by at most four readers
 /// side by side. The same files give the same bytes. With a failure, what comes behind it is empty.
+/// `progress` is asked by the calling thread all the time.
 std::vector<TriangleMesh> load_meshes(const std::vector<MeshRequest>& requests,
-                                      MeshFailure& failure, const MeshReading& reading = {});
+                                      MeshFailure& failure, const MeshReading& reading = {},
+                                      const Progress& progress = {});
 
 }  // namespace ayumi

@@ -58,7 +58,7 @@ fs::path find_file(const std::string& name, const RobotSearch& search) {
 }
 
 // What the robot touches with is always read; what it looks like only where it is drawn.
-void fill_meshes(RobotDescription& robot, bool visuals) {
+void fill_meshes(RobotDescription& robot, bool visuals, const Progress& progress) {
   std::vector<MeshRequest> requests;    // each mesh once
   std::vector<std::string> first_link;  // that needs it
   std::map<std::string, size_t> known;
@@ -82,7 +82,7 @@ void fill_meshes(RobotDescription& robot, bool visuals) {
     want(link.collisions, link.name);
   }
   MeshFailure failure;
-  const std::vector<TriangleMesh> meshes = load_meshes(requests, failure);
+  const std::vector<TriangleMesh> meshes = load_meshes(requests, failure, {}, progress);
   if (failure.error) try {
       std::rethrow_exception(failure.error);
     } catch (const Error& error) {
@@ -117,7 +117,7 @@ RobotDescription load_robot_description(const std::string& name_or_path, const R
   const auto find = [&](const std::string& name) { return find_file(name, search); };
   RobotDescription robot = sidecar ? read_sidecar(file, search.folders, search.packages, find)
                                    : parse_robot(bytes, file, search.packages);
-  fill_meshes(robot, options.meshes);
+  fill_meshes(robot, options.meshes, options.progress);
   std::error_code ignored;
   if (!sidecar && fs::is_regular_file(file.parent_path() / kSidecarName, ignored))
     robot.assumptions.push_back("the " + std::string(kSidecarName) +

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "ayumi/base/progress.hpp"
 #include "ayumi/model/robot_model.hpp"
 
 namespace ayumi {
@@ -19,8 +20,9 @@ struct RobotSearch {
 };
 
 struct LoadOptions {
-  bool meshes = false;  ///< fill MeshShape::mesh of visuals too; of collisions always
-  bool guess = true;    ///< fill in what the files do not state
+  bool meshes = false;     ///< fill MeshShape::mesh of visuals too; of collisions always
+  bool guess = true;       ///< fill in what the files do not state
+  Progress progress = {};  ///< is asked while meshes are read
 };
 
 struct RobotEntry {
