@@ -25,7 +25,7 @@ Json case_json(const CaseResult& r) {
   return {name_of(r.outcome), r.fell_at, r.cog_error, r.torque, r.foot_tilt};
 }
 
-CaseResult case_of(const Json& json) {
+CaseResult case_of(const nlohmann::json& json) {
   return {.outcome = outcome_of(json.at(0)),
           .fell_at = json.at(1),
           .cog_error = json.at(2),
@@ -71,11 +71,11 @@ std::string add_case_results(const std::filesystem::path& file, const Json& stud
                  : "choose another name, or replace the file with --force";
   const std::string bytes = read_file(file);
   try {
-    const auto json = shallow_json<Json>(bytes);
+    const auto json = shallow_json<nlohmann::json>(bytes);
     if (json.at("format") != kCertifyFormat)
       refuse("this file does not hold results of ayumi certify");
     // The order of keys has no meaning.
-    const auto theirs = nlohmann::json::parse(json.at("study").dump());
+    const auto& theirs = json.at("study");
     const auto ours = nlohmann::json::parse(study.dump());
     if (theirs != ours) {
       std::string key;
@@ -84,13 +84,13 @@ std::string add_case_results(const std::filesystem::path& file, const Json& stud
       refuse("this file holds the results of another study ('" + key + "' differs); " + remedy);
     }
     shard = json.value("shard", "");
-    for (const Json& row : json.at("cases")) {
+    for (const auto& row : json.at("cases")) {
       const size_t number = row.at(0);
       if (number >= kMostCases)
         refuse("the number " + std::to_string(number) + " of a case is too large; the largest is " +
                std::to_string(kMostCases - 1));
       if (number >= results.size()) results.resize(number + 1);
-      const CaseResult result = case_of(Json(row.begin() + 1, row.end()));
+      const CaseResult result = case_of(nlohmann::json(row.begin() + 1, row.end()));
       if (results[number] && !(*results[number] == result))
         refuse("the result of case " + std::to_string(number) +
                " differs from the result in another file of the same study; run the study again "

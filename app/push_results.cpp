@@ -23,7 +23,7 @@ Json limit_json(const PushLimit& limit) {
             {"trunk_tilt_rad", limit.moderate.trunk_tilt}}}};
 }
 
-PushLimit limit_from(const Json& json) {
+PushLimit limit_from(const nlohmann::json& json) {
   const Json& moderate = json.at("moderate");
   return {.impulse = json.at("impulse_Ns"),
           .capped = json.at("capped"),
@@ -49,7 +49,7 @@ Json case_json(const PushCase& push) {
           {"limits", limits}};
 }
 
-PushCase case_from(const Json& json) {
+PushCase case_from(const nlohmann::json& json) {
   PushCase push;
   push.phase = {json.at("phase"), json.at("at_s"), json.at("standing")};
   push.direction = json.at("direction_rad");
@@ -58,7 +58,7 @@ PushCase case_from(const Json& json) {
   push.mass = json.at("mass_kg");
   push.height = json.at("height_m");
   push.open_loop = limit_from(json.at("open_loop"));
-  for (const Json& limit : json.at("limits")) push.limits.push_back(limit_from(limit));
+  for (const auto& limit : json.at("limits")) push.limits.push_back(limit_from(limit));
   return push;
 }
 
@@ -128,12 +128,12 @@ KnownCases read_results(const std::filesystem::path& file, const Json& study, si
   };
   const std::string bytes = read_file(file);
   try {
-    const auto json = shallow_json<Json>(bytes);
+    const auto json = shallow_json<nlohmann::json>(bytes);
     if (json.at("format") != kPushFormat) refuse("this file does not hold results of ayumi push");
     // The order of keys has no meaning.
-    if (nlohmann::json::parse(json.at("study").dump()) != nlohmann::json::parse(study.dump()))
+    if (json.at("study") != nlohmann::json::parse(study.dump()))
       refuse("this file holds the results of a study with other settings");
-    for (const Json& entry : json.at("cases")) {
+    for (const auto& entry : json.at("cases")) {
       if (entry.at("limits").size() != study.at("controllers").size())
         refuse(
             "the number of results of a push differs from the number of controllers of the study");

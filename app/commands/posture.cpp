@@ -30,6 +30,8 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 using Angles = std::map<std::string, double>;  // by joint [rad], of sliders [m]
 
+constexpr size_t kMostNamed = 20;  // Chosen: a message that a person still reads
+
 struct PostureCommand {
   std::string source, name, robot, as, out, log, view = "iso";
   std::vector<std::string> joints;
@@ -47,7 +49,7 @@ struct PostureSource {
 
 // The value of "format" of a JSON text with comments; "" where it is no such text.
 std::string format_of(const std::string& text) {
-  const auto json = shallow_json<Json>(text, true);
+  const auto json = shallow_json<nlohmann::json>(text, true);
   return json.is_object() ? json.value("format", "") : "";
 }
 
@@ -94,7 +96,7 @@ const Angles& posture_of(const PostureSource& source, const PostureCommand& opti
   for (const auto& [name, angles] : source.postures) names.push_back(name);
   fail(ErrorCode::usage, options.source + ": there is no posture '" + options.name + "'" +
                              text::suggestion(options.name, names) +
-                             " (known: " + text::join(names, ", ") + ")");
+                             " (known: " + text::join_first(names, kMostNamed) + ")");
 }
 
 int dof_of(const RobotModel& model, const std::string& joint, const std::string& place) {
@@ -211,14 +213,15 @@ void list(const Context& context, const PostureCommand& options) {
   } catch (const Error&) {
     if (!options.robot.empty()) throw;
   }
-  Json json = Json::object();
+  // The names are known to differ: to look each up in what is there takes quadratic time.
+  Json::object_t json;
   std::string out;
   for (const auto& [name, angles] : source.postures) {
     out += name + "\n  " + angles_text(model ? &*model : nullptr, angles) + "\n";
-    json[name] = angles;
+    json.emplace_back(name, angles);
   }
   context.print(out.empty() ? options.source + ": no postures\n" : "Angles in deg\n" + out);
-  context.print_json(Json{{"postures_rad", json}}.dump(2));
+  context.print_json(Json{{"postures_rad", std::move(json)}}.dump(2));
 }
 
 void draw(const Context& context, const PostureCommand& options) {

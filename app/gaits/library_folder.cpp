@@ -32,9 +32,9 @@ std::vector<std::string> files_of_library(const fs::path& folder) {
   const fs::path index = folder / kIndex;
   std::vector<std::string> files = {kIndex};
   try {
-    const auto json = shallow_json<Json>(read_file(index));
+    const auto json = shallow_json<nlohmann::json>(read_file(index));
     if (json.at("format") != kGaitsFormat) throw std::out_of_range("format");
-    for (const Json& each : json.at("files")) {
+    for (const auto& each : json.at("files")) {
       const fs::path path = fs::path(each.get<std::string>()).lexically_normal();
       if (path.is_absolute() || path.empty() || *path.begin() == "..")
         throw std::out_of_range("files");

@@ -1,5 +1,7 @@
 // The command posture: what it writes is what patterns include.
 
+#include <sys/resource.h>
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -52,6 +54,30 @@ TEST_F(PostureCommand, MirroredTwiceAPostureIsUnchanged) {
   // Both roll axes of HOAP-1 point ahead, so the image turns the other way.
   EXPECT_NEAR(all["image"]["r_hip_roll"].get<double>(), -12 * M_PI / 180, 1e-8);
   EXPECT_EQ(all["image"].value("l_hip_roll", 0.0), 0.0);
+}
+
+// [s] of processor time of the programs that have ended.
+double time_of_children() {
+  rusage used{};
+  ::getrusage(RUSAGE_CHILDREN, &used);
+  return static_cast<double>(used.ru_utime.tv_sec) + 1e-6 * used.ru_utime.tv_usec;
+}
+
+TEST_F(PostureCommand, ListsPosturesInTimeThatIsLinearInTheirNumber) {
+  std::string text = R"({"format": "ayumi.postures/1", "units": {"angle": "rad"}, "postures": {)";
+  for (int i = 0; i < 80'000; ++i)
+    text += (i ? ", \"p" : "\"p") + std::to_string(i) + R"(": {"l_elbow": 1})";
+  write(folder.path() / "many.json", text + "}}");
+  const double begin = time_of_children();
+  const Json all = postures("many.json");
+  EXPECT_LT(time_of_children() - begin, 5.0);
+  EXPECT_EQ(all.size(), 80'000u);
+  EXPECT_EQ(all["p79999"]["l_elbow"], 1);
+  // Nor does a message name them all.
+  const Output wrong = ayumi({"posture", "adjust", "many.json", "q", "--joint", "l_elbow=1", "--as",
+                              "r", "-o", "mine.json"});
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_LT(wrong.err.size(), 400u) << wrong.err.substr(0, 1000);
 }
 
 TEST_F(PostureCommand, TheTextOfALibraryStaysAndAPatternCanIncludeIt) {

@@ -21,6 +21,9 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+/// Names of links or postures in one message. Chosen: a message that a person still reads.
+constexpr size_t kMostNamed = 20;
+
 /// Penetration of a sole without a stated stiffness under the whole weight [m]. Chosen: stiff
 /// rubber; the sidecar states the measured stiffness.
 constexpr double kSoleSink = 0.0001;
@@ -175,14 +178,15 @@ void require_masses(const RobotDescription& robot, const std::vector<Body>& bodi
       std::find_if(robot.links.begin(), robot.links.end(),
                    [&](const LinkDescription& link) { return link.name == first; });
   massless.erase(massless.begin());
-  complain_urdf(
-      robot,
-      "link " + first + ": " +
-          (description->has_inertial ? "its mass is 0" : "it has no <inertial>") +
-          (first == bodies[0].name ? " although it is the root of a robot that moves"
-                                   : " although a joint moves it") +
-          "; give it a mass and an inertia" +
-          (massless.empty() ? "" : " (the same holds for " + text::join(massless, ", ") + ")"));
+  complain_urdf(robot,
+                "link " + first + ": " +
+                    (description->has_inertial ? "its mass is 0" : "it has no <inertial>") +
+                    (first == bodies[0].name ? " although it is the root of a robot that moves"
+                                             : " although a joint moves it") +
+                    "; give it a mass and an inertia" +
+                    (massless.empty()
+                         ? ""
+                         : " (the same holds for " + text::join_first(massless, kMostNamed) + ")"));
 }
 
 double value_or(const std::map<std::string, double>& map, const std::string& key, double other) {
@@ -358,8 +362,8 @@ Eigen::VectorXd RobotModel::posture(const std::string& posture_name) const {
   if (found == description_.postures.end()) {
     std::vector<std::string> known;
     for (const auto& [name, values] : description_.postures) known.push_back(name);
-    complain_sidecar(description_,
-                     "no posture '" + posture_name + "'; known: " + text::join(known, ", "));
+    complain_sidecar(description_, "no posture '" + posture_name +
+                                       "'; known: " + text::join_first(known, kMostNamed));
   }
   Eigen::VectorXd theta = Eigen::VectorXd::Zero(dof_count());
   for (int i = 0; i < dof_count(); ++i) theta[i] = value_or(found->second, dofs_[i].name, 0.0);
