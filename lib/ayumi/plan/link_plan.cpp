@@ -14,11 +14,13 @@
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/dynamics/reach.hpp"
 #include "ayumi/math/elementary.hpp"
+#include "ayumi/math/rotation.hpp"
 #include "ayumi/motion/pattern_context.hpp"
 #include "ayumi/plan/sample_job.hpp"
 
 namespace ayumi {
 
+using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
@@ -59,6 +61,26 @@ constexpr double kNudge = 0.02;
 // Vectors of keys that are added up to less than this have no direction. Chosen: keys that are more
 // than about 170 degrees apart.
 constexpr double kNoDirection = 0.08;
+
+// Brings the poses of these bodies in `data` up to date, root first; their parents are in the list
+// or have moved with nothing. The centres of mass stay as they were.
+void move_limb(const RobotModel& model, const RobotState& state, const std::vector<int>& path,
+               RobotData& data) {
+  for (const int b : path) {
+    const Body& body = model.bodies()[static_cast<size_t>(b)];
+    const double q = body.ratio * state.theta[body.dof] + body.offset;
+    const Matrix3d before = data.rotation[body.parent] * body.placement.linear();
+    data.axis[b] = before * body.axis;
+    data.position[b] =
+        data.position[body.parent] + data.rotation[body.parent] * body.placement.translation();
+    if (body.prismatic) {
+      data.rotation[b] = before;
+      data.position[b] += q * data.axis[b];
+    } else {
+      data.rotation[b] = before * exp_rotation(q * body.axis).toRotationMatrix();
+    }
+  }
+}
 
 bool contains(const std::vector<int>& list, int value) {
   return std::find(list.begin(), list.end(), value) != list.end();
@@ -255,12 +277,19 @@ void LinkPlan::put_in_group(Target target) {
     it = groups_.erase(it);
   }
   std::sort(group.dofs.begin(), group.dofs.end());
-  for (size_t b = 1; b < model_->bodies().size(); ++b) {
-    const auto at = std::find(group.dofs.begin(), group.dofs.end(), model_->bodies()[b].dof);
-    if (at == group.dofs.end()) continue;
-    group.bodies.push_back(static_cast<int>(b));
-    group.column.push_back(static_cast<int>(at - group.dofs.begin()));
+  for (Target& each : group.targets) {
+    each.chain.clear();
+    for (int b = each.body; b > 0; b = model_->bodies()[static_cast<size_t>(b)].parent) {
+      const int dof = model_->bodies()[static_cast<size_t>(b)].dof;
+      const auto at = std::find(group.dofs.begin(), group.dofs.end(), dof);
+      if (at != group.dofs.end()) each.chain.emplace_back(b, at - group.dofs.begin());
+    }
+    std::reverse(each.chain.begin(), each.chain.end());
+    for (int b = each.body; b >= each.chain.front().first;
+         b = model_->bodies()[static_cast<size_t>(b)].parent)
+      if (!contains(group.path, b)) group.path.push_back(b);
   }
+  std::sort(group.path.begin(), group.path.end());
   for (const Target& each : group.targets) {
     const auto& anchors = each.anchors;
     for (size_t i = 0; i < anchors.size(); ++i) {
@@ -392,7 +421,6 @@ double LinkPlan::minimize(const Group& group, const std::vector<Aim>& aims, cons
   const VectorXd start = q;
   const auto put = [&](const VectorXd& x) {
     for (Eigen::Index i = 0; i < n; ++i) state.theta[group.dofs[static_cast<size_t>(i)]] = x[i];
-    update_positions(*model_, state, data);
   };
   // The terms of the sum: the pull of each, its derivatives, and its multiplier, the pull expected
   // after the step. Curvature by the multiplier is right also while the term itself is far off.
@@ -405,37 +433,35 @@ double LinkPlan::minimize(const Group& group, const std::vector<Aim>& aims, cons
   std::vector<Term> terms(2 * aims.size());
   VectorXd gradient(n);
   MatrixXd linear(n, n), curved(n, n);
+  std::vector<Vector3d> axes, columns;
   const auto derive = [&](const VectorXd& x) {
     put(x);
+    move_limb(*model_, state, group.path, data);
     gradient = x - ref;
     linear.setIdentity();
     curved.setZero();
     for (size_t number = 0; number < aims.size(); ++number) {
       const Aim& aim = aims[number];
       const Target& target = *aim.target;
-      // Bodies of the limb from the root outwards that carry the target.
-      std::vector<size_t> chain;
-      for (size_t k = 0; k < group.bodies.size(); ++k)
-        for (int b = target.body; b > 0; b = model_->bodies()[static_cast<size_t>(b)].parent)
-          if (b == group.bodies[k]) chain.push_back(k);
       const Vector3d end = data.rotation[target.body] * target.point + data.position[target.body];
       const auto add = [&](Term& term, double weight, const Vector3d& off, const auto& derivative) {
         term.weight = weight;
         term.off = off;
-        term.columns = Eigen::Matrix3Xd::Zero(3, n);
-        std::vector<Vector3d> axes, columns;
-        for (const size_t k : chain) {
-          const Body& body = model_->bodies()[static_cast<size_t>(group.bodies[k])];
-          const Vector3d a = body.ratio * data.axis[group.bodies[k]];
-          columns.push_back(derivative(body.prismatic, a, group.bodies[k]));
+        term.columns.setZero(3, n);
+        axes.clear();
+        columns.clear();
+        for (const auto& [moved, column] : target.chain) {
+          const Body& body = model_->bodies()[static_cast<size_t>(moved)];
+          const Vector3d a = body.ratio * data.axis[moved];
+          columns.push_back(derivative(body.prismatic, a, moved));
           axes.push_back(body.prismatic ? Vector3d::Zero() : a);
-          term.columns.col(group.column[k]) += columns.back();
+          term.columns.col(column) += columns.back();
         }
         gradient += weight * term.columns.transpose() * off;
         linear += weight * term.columns.transpose() * term.columns;
-        for (size_t i = 0; i < chain.size(); ++i)
-          for (size_t j = 0; j < chain.size(); ++j)
-            curved(group.column[chain[i]], group.column[chain[j]]) +=
+        for (size_t i = 0; i < columns.size(); ++i)
+          for (size_t j = 0; j < columns.size(); ++j)
+            curved(target.chain[i].second, target.chain[j].second) +=
                 axes[std::min(i, j)].cross(columns[std::max(i, j)]).dot(term.multiplier);
       };
       if (aim.place_weight > 0)
@@ -452,6 +478,8 @@ double LinkPlan::minimize(const Group& group, const std::vector<Aim>& aims, cons
       }
     }
   };
+  put(q);
+  update_positions(*model_, state, data);
   for (int step = 0; step < kMostSteps; ++step) {
     derive(q);
     std::vector<Eigen::Index> free;
@@ -493,6 +521,7 @@ double LinkPlan::minimize(const Group& group, const std::vector<Aim>& aims, cons
     if (longest < kLastStep) break;
   }
   put(q);
+  update_positions(*model_, state, data);
   return (q - start).cwiseAbs().maxCoeff();
 }
 

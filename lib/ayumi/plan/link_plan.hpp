@@ -77,6 +77,9 @@ class LinkPlan {
     Eigen::Vector3d axis = Eigen::Vector3d::Zero();   ///< body frame, unit vector
     double length = 0;                                ///< of the limb [m]
     std::vector<int> dofs;
+    /// Bodies that carry the target and that its group moves, root first, and their places among
+    /// the dofs of the group.
+    std::vector<std::pair<int, Eigen::Index>> chain;
     std::vector<Anchor> anchors;
     Blend place, direction;
   };
@@ -84,8 +87,7 @@ class LinkPlan {
   struct Group {
     std::vector<Target> targets;
     std::vector<int> dofs;
-    std::vector<int> bodies;                         ///< that these move, root first
-    std::vector<int> column;                         ///< of these bodies among the dofs
+    std::vector<int> path;  ///< bodies that these move and that carry a target, root first
     std::vector<std::pair<double, double>> windows;  ///< in which targets lead [s]
     bool at(double t) const;
   };
