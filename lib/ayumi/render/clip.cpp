@@ -172,8 +172,10 @@ class FrameQueue {
           const std::lock_guard lock(mutex_);
           notes_ = renderer->notes();
         }
-        for (int k = w; k < count; k += workers)
+        for (int k = w; k < count; k += workers) {
+          renderer->reuse(used_frame(slot));
           if (!put(slot, renderer->clip_frame(time(k)))) return;
+        }
       } catch (...) {
         const std::lock_guard lock(mutex_);
         slot.error = std::current_exception();
@@ -207,6 +209,12 @@ class FrameQueue {
     return image;
   }
 
+  /// Gives the memory of a frame back to the worker that draws frame k and its successors.
+  void give_back(int k, Image image) {
+    const std::lock_guard lock(mutex_);
+    slots_[size_t(k) % slots_.size()].used = std::move(image);
+  }
+
  private:
   void end() {
     {
@@ -219,8 +227,14 @@ class FrameQueue {
 
   struct Slot {
     std::vector<Image> ready;
+    Image used;
     std::exception_ptr error;
   };
+
+  Image used_frame(Slot& slot) {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(slot.used, {});
+  }
 
   bool put(Slot& slot, Image image) {
     std::unique_lock lock(mutex_);
@@ -669,7 +683,9 @@ ClipSummary write_clip(const RobotModel& model, const SimulationLog& log, const 
         }
       };
       alive();
-      use(k, queue.take(k, alive));
+      Image image = queue.take(k, alive);
+      use(k, image);
+      queue.give_back(k, std::move(image));
       if (k == 0) notes = queue.notes();
     }
   };

@@ -77,6 +77,8 @@ class ClipRenderer {
   Image frame(double t);
   /// The same as a part of the clip, the legend of which is that of all its pictures.
   Image clip_frame(double t);
+  /// The next frame takes the memory of this one, which nobody needs any more.
+  void reuse(Image frame) { renderer_.reuse(std::move(frame)); }
   /// One of several on a sheet: time and event are written in a corner, and nothing else.
   Image tile(double t);
   /// All later pictures have the same frame, which the robot fills at these instants.

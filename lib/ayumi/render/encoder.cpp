@@ -49,14 +49,17 @@ Arguments format_arguments(const std::filesystem::path& path, int width, int hei
                                " needs an even width and height");
   Arguments arguments;
   if (extension == ".mp4") {
-    // A finer search of motion (me, subme) costs two thirds more time for 0.4 dB and 6 % of size.
-    // Large transforms (8x8dct) cost a quarter more time, and the file is 1 % larger and 0.06 dB
-    // worse: most of a picture is even, and the rest are sharp edges.
-    arguments = {"-c:v",         "libx264",
-                 "-preset",      "veryfast",
-                 "-crf",         "20",
-                 "-x264-params", "threads=1:lookahead-threads=1:me=dia:subme=1:8x8dct=0",
-                 "-movflags",    "+faststart"};
+    // Without small partitions and motion of half a pixel, a fifth of the time is saved, the file
+    // is 16 % larger, and its PSNR is the same. A still finer search of motion (me, subme) costs
+    // two thirds more time for 0.4 dB and 6 % of size. Large transforms (8x8dct) cost a quarter
+    // more time, and the file is 1 % larger and 0.06 dB worse: most of a picture is even, and the
+    // rest are sharp edges.
+    arguments = {
+        "-c:v",         "libx264",
+        "-preset",      "veryfast",
+        "-crf",         "20",
+        "-x264-params", "threads=1:lookahead-threads=1:me=dia:subme=0:partitions=none:8x8dct=0",
+        "-movflags",    "+faststart"};
   } else if (extension == ".webm") {
     arguments = {"-c:v", "libvpx-vp9", "-deadline", "realtime", "-cpu-used", "6",
                  "-crf", "30",         "-b:v",      "0",        "-threads",  "1"};

@@ -296,6 +296,8 @@ Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
+void Renderer::reuse(Image image) { parts_->spare = std::move(image); }
+
 Image Renderer::render(const Scene& scene) {
   Parts& p = *parts_;
   require(scene.poses.size() == p.ranges.size(), "a scene needs one pose per body");
@@ -323,7 +325,7 @@ Image Renderer::render(const Scene& scene) {
   p.gl.Disable(GL_SCISSOR_TEST);
   p.shadow.cover.clear();
   if (with_shadow) p.draw_coverage(scene, flatten);
-  Image image;
+  Image image = std::move(p.spare);
   GroundPicture(scene.camera, to_clip, p.options.width, p.options.height, plane, p.hole_box,
                 p.options.ground)
       .draw(p.shadow, image);

@@ -81,6 +81,9 @@ class Renderer {
   /// Throws Error(internal) unless the scene has one pose per body.
   Image render(const Scene& scene);
 
+  /// The next picture takes the memory of this one, which nobody needs any more.
+  void reuse(Image image);
+
   /// Parts that are drawn in another way than the files state, with the reason: a texture that
   /// cannot be read.
   const std::vector<std::string>& notes() const;

@@ -44,6 +44,7 @@ struct Renderer::Parts {
   GlTarget flattened;
   GLuint coverage = 0;
   std::vector<std::uint8_t> pixels;  // of a part of the picture, as OpenGL gives it
+  Image spare;                       // memory for the next picture
   IndexRange all_scenery;
   Eigen::AlignedBox3d scenery_box;
   Eigen::AlignedBox2d hole_box;

@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "ayumi/base/error.hpp"
-#include "ayumi/math/rotation.hpp"
 #include "ayumi/base/key_numbers.hpp"
+#include "ayumi/math/rotation.hpp"
 
 namespace ayumi {
 namespace {
