@@ -267,8 +267,9 @@ void add_push(Command& app, Context& context) {
   command
       ->add_option(
           "--times", options->times,
-          "Times of the pushes [s] (default for a walk with keys: one push while the robot "
-          "stands, and one in each of four phases of a step).")
+          "Times of the pushes [s] (default: for a walk with keys, one while the robot stands "
+          "and four in one step; for VIIP, three in one step; otherwise one while the robot stands "
+          "and one in the middle of the motion).")
       ->type_name("T")
       ->delimiter(',');
   command
