@@ -75,8 +75,8 @@ Table run_table(const ReportInput& input) {
 std::string export_words(const ExportNote& note, bool good) {
   if (note.safe)
     return "<p>" + marked(good ? Tone::good : Tone::neutral, "The joint table is safe to replay") +
-           ": its largest step is " + percent(note.max_step_ratio) + " % of the limit (" +
-           escaped(note.worst_joint) + ").</p>\n";
+           ": its largest step from row to row is " + percent(note.max_step_ratio) +
+           " % of the limit (" + escaped(note.worst_joint) + ").</p>\n";
   std::string words =
       "<p>" + marked(Tone::bad, "The joint table is not safe to replay") + ":</p>\n<ul>";
   for (const std::string& violation : note.violations)

@@ -223,9 +223,9 @@ TuneResult tune_gains(const RobotModel& model, const CommandSeries& series,
         }
         const TuneFigures figures = tuner.evaluate(gains);
         ++result.choices;
-        report(progress,
-               {"tune", static_cast<double>(round) / options.rounds,
-                name + " = " + text::brief(value) + ": " + text::fixed(figures.objective, 4)});
+        report(progress, {"tune", static_cast<double>(round) / options.rounds,
+                          "objective " + text::fixed(figures.objective, 4) + " with " + name +
+                              " = " + text::brief(value)});
         if (figures.objective > (1 - kImprovement) * result.after.objective) continue;
         result.gains = gains;
         result.after = figures;

@@ -140,8 +140,7 @@ class SlipFinder {
            std::string_view(",:]}\"\r\n").find(text_[end]) == std::string_view::npos)
       ++end;
     const size_t word = text_.find_last_not_of(" \t", end - 1) + 1;
-    say(end, "a quotation mark is missing: " + quoted(begin, word) +
-                 " begins with a quotation mark and does not end with one");
+    say(end, "a quotation mark is missing at the end of " + quoted(begin, word));
   }
 
   // Reads the next token; says what is wrong with it where it is none of JSON.
