@@ -25,7 +25,8 @@ namespace {
 using Eigen::Matrix4f;
 using Eigen::Vector3d;
 
-constexpr size_t kShadowTriangles = 4000;  // finer ones do not show in a shadow of kShadowSize
+constexpr size_t kShadowTriangles =
+    4000;  // finer triangles cannot be seen in a shadow of kShadowSize
 
 const Eigen::Vector4f kNoTint = Eigen::Vector4f::Zero();
 
@@ -39,7 +40,7 @@ Matrix4f pushed_back(const Scene& scene, const Matrix4f& view_projection, size_t
   const Camera& camera = scene.camera;
   const double away = (camera.eye - camera.target).norm();
   const double step = kBehind * away * double(steps), range = camera.far - camera.near;
-  // By how much the depth of OpenGL grows there.
+  // Growth of OpenGL's depth for this distance.
   const double deeper = camera.parallel_height > 0
                             ? 2 * step / range
                             : 2 * camera.far * camera.near / range * step / (away * (away + step));
@@ -48,7 +49,7 @@ Matrix4f pushed_back(const Scene& scene, const Matrix4f& view_projection, size_t
   return moved;
 }
 
-/// Of a body: its own colour where it is cold.
+/// The colour of a body, which is its own colour where it is cold.
 Eigen::Vector4f heat_tint(float heat) {
   Eigen::Vector4f tint = heat_color(heat);
   tint[3] = heat > 0 ? 0.35f + 0.65f * std::min(heat, 1.0f) : 0.0f;
@@ -167,7 +168,7 @@ void Renderer::Parts::light(const Scene& scene, const Matrix4f& view_projection,
   }
 }
 
-/// Bodies from the eye outwards: what is behind is then not shaded.
+/// Draws bodies from the eye outwards, so that hidden ones are not shaded.
 std::vector<size_t> Renderer::Parts::nearest_first(const Scene& scene) const {
   std::vector<std::pair<double, size_t>> away;
   for (size_t i = 0; i < boxes.size(); ++i)
