@@ -60,7 +60,7 @@ void move(const Isometry3d& by, const std::vector<Vector3d*>& places,
   for (Vector3d* direction : directions) *direction = by.linear() * *direction;
 }
 
-/// The parts of a log in the frame of the plan.
+/// Moves the parts of a sample that are in the frame of the plan.
 void move_plan(const Isometry3d& by, SimulationSample& s) {
   move(by, s.command_base);
   move(by, s.reference_base);
@@ -70,7 +70,7 @@ void move_plan(const Isometry3d& by, SimulationSample& s) {
        {&s.measured_dcog, &s.command_dcog, &s.reference_dcog, &s.reference_ddcog});
 }
 
-/// The parts of a log that really happened, in the world.
+/// Moves the parts of a sample that really happened, in the world.
 void move_world(const Isometry3d& by, SimulationSample& s) {
   move(by, s.state.base);
   move(by, {&s.cog, &s.zmp, &s.foot_cop[0], &s.foot_cop[1], &s.push_point},

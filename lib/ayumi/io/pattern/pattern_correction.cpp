@@ -10,11 +10,11 @@ namespace ayumi {
 
 namespace {
 
-/// Where things of the top object are in the text.
+/// The places of things in the text of the top object.
 struct TopObject {
-  size_t open = 0, close = 0;  ///< its braces
-  size_t last = 0;             ///< its last character that is neither space nor comment
-  size_t begin = 0, end = 0;   ///< value of "correction"; both 0 when there is none
+  size_t open = 0, close = 0;  ///< places of its braces
+  size_t last = 0;             ///< place of its last character that is neither space nor comment
+  size_t begin = 0, end = 0;   ///< value of "correction"; both are 0 if there is none
 };
 
 size_t skip_comment(const std::string& text, size_t i) {

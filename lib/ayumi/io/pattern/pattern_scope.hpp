@@ -16,10 +16,10 @@ inline constexpr double kLargestNumber = 1e6;
 /// Longest pattern [s]. Source: docs/formats.md.
 inline constexpr double kLongestPattern = 3600;
 
-/// What the values of one file need to be understood.
+/// The context that is needed to read the values of one file.
 struct PatternScope {
   std::map<std::string, double> parameters;
-  std::set<std::string> used;              ///< parameters met in expressions
+  std::set<std::string> used;              ///< names of parameters in expressions
   std::optional<double> radians_per_unit;  ///< none: the file names no angle unit
 };
 
@@ -57,7 +57,7 @@ ControllerSpec read_controller(const JsonNode& node, PatternScope& scope);
 Disturbance read_disturbance(const JsonNode& node, PatternScope& scope);
 CorrectionTrack read_correction(const JsonNode& node);
 Uncertainty read_uncertainty(const JsonNode& node, PatternScope& scope);
-/// `keyframes`: how many the pattern has.
+/// `keyframes` is the number of keyframes of the pattern.
 RepairPreferences read_repair(const JsonNode& node, int keyframes, PatternScope& scope);
 
 }  // namespace ayumi

@@ -10,10 +10,10 @@
 
 namespace ayumi {
 
-/// Where the table of a pattern written to `path` goes: the same name, ending in .csv.
+/// The place of the table of a pattern that is written to `path`: the same name, ending in .csv.
 std::filesystem::path table_beside(const std::filesystem::path& path);
 
-/// Where the sequence goes from which that table was imported: the same name, ending in
+/// The place of the sequence from which this table was imported: the same name, ending in
 /// .sequence.csv.
 std::filesystem::path sequence_beside(const std::filesystem::path& path);
 

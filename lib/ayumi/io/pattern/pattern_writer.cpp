@@ -257,7 +257,7 @@ class Writer {
   const Pattern& pattern_;
 };
 
-// A relative path written for files in `from`, so that it holds for files in `to`.
+// A relative path of files in `from`, changed so that it is right for files in `to`.
 std::string rebased(const std::string& name, const fs::path& from, const fs::path& to) {
   if (fs::path(name).is_absolute() || from.lexically_normal() == to.lexically_normal()) return name;
   std::error_code ignored;

@@ -20,12 +20,13 @@ namespace {
 constexpr const char* kXacro =
     "this is a xacro file; expand it with `xacro FILE > robot.urdf` of ROS, and use robot.urdf";
 
-// Links of a robot. Chosen: humanoids with hands have about a hundred; urdfdom and the tree of the
-// robot descend a chain of links by recursion, and some steps take the square of their number.
+// Largest number of links of a robot. Chosen: humanoids with hands have about a hundred; urdfdom
+// and the tree of the robot descend a chain of links by recursion, and some steps take the square
+// of their number.
 constexpr size_t kMostLinks = 1000;
 // A numeric attribute and how many numbers it holds.
 struct NumericAttribute {
-  const char* element;  // "*": any
+  const char* element;  // "*" means any element
   const char* name;
   int count;
 };
