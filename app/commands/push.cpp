@@ -294,7 +294,9 @@ void add_push(Command& app, Context& context) {
       ->capture_default_str();
   command->add_flag("--noise", push.simulate.sensor_noise,
                     "Simulate noise, bias and latency of the sensors.");
-  command->add_option("--substeps", push.simulate.substeps, "Integrator steps per servo period.")
+  command
+      ->add_option("--substeps", push.simulate.substeps,
+                   "Number of integrator steps per servo period.")
       ->check(whole_number_within(1, 100).description(""))
       ->type_name("N")
       ->capture_default_str();
