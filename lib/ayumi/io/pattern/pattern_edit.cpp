@@ -31,7 +31,7 @@ std::string number_text(double value) {
 using Parameters = std::map<std::string, double>;
 
 // The parameters that an expression at this place may name, with the values that are set from
-// outside. The count of a block around it is 0, as in its first round.
+// outside. The count of a block around the place is 0, as in its first round.
 Parameters parameters_at(const Json& document, const std::string& pointer, const Parameters& set) {
   Parameters parameters = set;
   if (document.is_object() && document.contains("parameters"))

@@ -35,7 +35,7 @@ void require_parameter_name(const std::string& name, const JsonNode& place) {
     place.complain("the name of a parameter must not be empty and must not contain $, { or }");
 }
 
-// The numbers of "parameters", replaced by those that are set from outside.
+// The numbers of "parameters"; those that are set from outside are replaced.
 void read_parameters(const JsonNode& root, const std::map<std::string, double>& set,
                      PatternScope& scope) {
   if (const auto parameters = root.find("parameters"))
@@ -98,7 +98,7 @@ fs::path named_file(const JsonNode& name, const fs::path& folder) {
   return path;
 }
 
-// Posture libraries beside the pattern; returns their bytes for the fingerprint.
+// Reads the posture libraries beside the pattern, and returns their bytes for the fingerprint.
 std::string read_includes(const JsonNode& root, const fs::path& folder, Pattern& pattern) {
   const auto include = root.find("include");
   if (!include) return {};
@@ -135,7 +135,7 @@ void read_start(const JsonNode& root, PatternScope& scope, Pattern& pattern) {
       pattern.start_feet[static_cast<size_t>(side)] = read_foothold(*foot, scope);
 }
 
-// A count is a parameter while its block is read.
+// While a block is read, its count is a parameter.
 class Counter {
  public:
   Counter(const JsonNode& block, PatternScope& scope) : scope_(scope) {
@@ -219,7 +219,7 @@ std::string meant_time(double before, double previous, const std::string& place_
   return "; give a later time" + otherwise;
 }
 
-// Times that are counted from the one before, where the file has them from the beginning on.
+// The end of a message about a time from the beginning on that may be counted from the time before.
 std::string meant_span(const JsonNode& node, const std::string& absolute,
                        const std::string& relative, double value) {
   if (!node.has(absolute) || !(value > 0)) return "";
