@@ -81,7 +81,7 @@ bool contains(const std::vector<int>& list, int value) {
   return std::find(list.begin(), list.end(), value) != list.end();
 }
 
-// Joints of both legs that move each leg by a body of its own; a waist moves both by one body.
+// The joints of both legs that move each leg by a body of its own; a waist moves both by one body.
 std::vector<int> coupled_joints(const RobotModel& model) {
   const auto bodies = [&](Side side) {
     std::vector<int> chain;
@@ -286,7 +286,8 @@ InverseKinematics::Residual InverseKinematics::residual(const PostureTarget& tar
   return e;
 }
 
-// 6 x joints: twist of the sole, written for speed (body_jacobian has all columns).
+// The twist of the sole, 6 x joints, computed faster than by body_jacobian(), which has all
+// columns.
 MatrixXd InverseKinematics::leg_jacobian(const RobotData& data, Side side,
                                          const std::vector<int>& leg) const {
   const Sole& sole = model_->sole(side);
@@ -308,7 +309,7 @@ MatrixXd InverseKinematics::leg_jacobian(const RobotData& data, Side side,
   return J;
 }
 
-// The same of a leg of six joints into the first columns of `rows`.
+// The same twist of a leg of six joints, written into the first columns of `rows`.
 void InverseKinematics::square_jacobian(const RobotData& data, Side side, SixRows& rows) const {
   const Sole& sole = model_->sole(side);
   const Vector3d p = data.position[sole.body] + data.rotation[sole.body] * sole.frame.translation();
@@ -327,8 +328,8 @@ void InverseKinematics::square_jacobian(const RobotData& data, Side side, SixRow
   }
 }
 
-// COG Jacobian of the six joints of a leg with the base at rest: (6)(7) for the links that the leg
-// moves.
+// The COG Jacobian of the six joints of a leg with the base at rest: (6)(7) for the links that the
+// leg moves.
 Eigen::Matrix<double, 3, 6> InverseKinematics::leg_cog_jacobian(RobotData& data, Side side) const {
   const std::vector<LegBody>& leg = leg_bodies_[static_cast<int>(side)];
   for (const LegBody& moved : leg)
@@ -479,7 +480,7 @@ void InverseKinematics::damped(const PostureTarget& target, RobotState& state,
         J.block<3, 3>(6 * s + 3, 3) = firm[s] * Eigen::Matrix3d::Identity();
       }
       J.block<3, 3>(12, 3) = -kCogWeight * skew(data.cog - data.base_position);
-      // d log(A exp(-d)) = -(1 + [e]/2 + [e]^2/12 + ...) d at e = log A
+      // Here d log(A exp(-d)) = -(1 + [e]/2 + [e]^2/12 + ...) d at e = log A.
       const Eigen::Matrix3d turn = skew(e.trunk);
       J.block<3, 3>(15, 3) = trunk * (Eigen::Matrix3d::Identity() + turn / 2 + turn * turn / 12);
     }
