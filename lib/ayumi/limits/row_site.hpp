@@ -72,7 +72,7 @@ struct RowSettings {
     double light = 0;  ///< normal force over the weight: rows where the motion presses with less
   } normal_force;
   struct {
-    double cone_share = 1;  ///< another factor on the friction that may be used
+    double cone_share = 1;  ///< a further factor on the friction that may be used
     double rounding = 0;    ///< tangential force over the weight at which the cone's tip is rounded
     double active = 0;      ///< RowBlock::active, a share of the friction available
   } friction;

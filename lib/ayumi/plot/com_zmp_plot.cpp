@@ -27,7 +27,7 @@ constexpr double kBeforeFall = 0.5;  // time before a fall in which the fall is 
 struct PanelPlan {
   std::string name;  ///< name with the unit
   Value run;         ///< curves of every run
-  Value command;     ///< curve of the last run; the command is the same for all runs; empty: none
+  Value command;     ///< curve of the last run (all runs have the same command); empty: none
   Value reference;   ///< curve of the last run; empty: none
   double least = 0;  ///< smallest span of the axis
   double seen = 0;   ///< runs whose values differ by less count as equal

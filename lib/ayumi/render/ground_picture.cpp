@@ -109,9 +109,10 @@ AYUMI_INLINE void near_share(const GroundRow& row, const Eight& u, const Eight& 
   near = 1.0f / (1.0f + square * square);
 }
 
-/// Of eight stretches of the row, each from its first to its last pixel: whether a part of one of
-/// these lines may be in it. Where none is, add_lines() adds nothing. Along a row of pixels, the
-/// plane's coordinates only grow or only fall, and so does the width of a pixel there.
+/// Tells for eight stretches of the row, each from its first to its last pixel, whether a part of
+/// one of these lines may be in the stretch. In the others, add_lines() adds nothing. Along a row
+/// of pixels, the plane's coordinates only grow or only fall, and so does the width of a pixel
+/// there.
 AYUMI_INLINE void has_lines(const Seen& from, const Seen& to, const GridLines& lines,
                             EightWhole& has) {
   Eight wide, low, high, first, last;

@@ -8,12 +8,13 @@
 #include "ayumi/render/simplify.hpp"
 #include "ayumi/render/texture.hpp"
 
-// Order of a frame: the robot's shadow as coverage seen along the sun, read back and blurred;
-// ground, sky and shadow as a picture (ground_picture.hpp). Then, in OpenGL, only where anything
-// else is: the depth of the ground where it may hide something, robot, scenery, exposures, overlay.
-// These are drawn on nothing, with colours multiplied by how much of a pixel they cover, and laid
-// over the picture: ground, sky and shadow have no edges that samples would smooth (the grid
-// smooths its own lines), so one colour per pixel is the same as one per sample.
+// A frame is drawn in this order: first the robot's shadow, as coverage seen along the sun, which
+// is read back and blurred; then ground, sky and shadow as a picture (ground_picture.hpp). Then, in
+// OpenGL, only where anything else is: the depth of the ground where it may hide something, robot,
+// scenery, exposures, overlay. These are drawn on nothing, with colours multiplied by how much of a
+// pixel they cover, and laid over the picture: ground, sky and shadow have no edges that samples
+// would smooth (the grid smooths its own lines), so one colour per pixel is the same as one per
+// sample.
 //
 // An exposure is drawn twice, first into the depth alone, so that only its nearest surface shines
 // through. It lies a little behind where it is: what coincides with it is seen, without speckle.

@@ -34,7 +34,7 @@ struct PointCurvature {
   SplineWeights weights;
   /// By value and value; by acceleration and value, and turned round. Empty where nothing curves.
   Eigen::MatrixXd value, mixed, turned;
-  Eigen::Matrix2d cone = Eigen::Matrix2d::Zero();  ///< by the tangential force
+  Eigen::Matrix2d cone = Eigen::Matrix2d::Zero();  ///< second derivatives by the tangential force
   std::array<Eigen::MatrixXd, 4> force;  ///< derivatives of this force by each control point
 };
 PointCurvature curvature_at(const ProgramHessian& hessian, const SplineWeights& weights,

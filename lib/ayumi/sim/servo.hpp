@@ -70,7 +70,8 @@ class TargetDelay {
  public:
   explicit TargetDelay(const std::vector<ServoDescription>& servos);
 
-  /// Forgets the targets: before the first step the servos have always had its targets.
+  /// Forgets the targets. The servos then behave as if they had always had the targets of the next
+  /// step.
   void reset() { count_ = 0; }
 
   /// `targets` [rad, m] hold during the coming step of `dt` [s]. The result holds until the next

@@ -285,8 +285,8 @@ double height_of(const RobotModel& model, const RawMotion& motion, const Soles& 
 // rest before the middle of this interval, the contact begins (or ends) at the rest.
 void end_swings(const RobotModel& model, const RawMotion& motion, const Soles& soles,
                 std::vector<Support>& supports) {
-  // Height over its place at rest [m]. Chosen: above the rounding of tables. Half: contact 1 of
-  // the imported walk ends at 1.678 s, not 1.681 s; twice: at 1.683 s.
+  // A foot this much above its place at rest has left it [m]. Chosen: above the rounding of tables.
+  // Half: contact 1 of the imported walk ends at 1.678 s, not 1.681 s; twice: at 1.683 s.
   constexpr double kAtRest = 1e-5;
   for (const Stretch& run : stretches(supports)) {
     if (run.support != Support::both) continue;

@@ -17,16 +17,16 @@ namespace ayumi {
 /// in units of the COG height z. The names in files and on the command line are those in brackets.
 /// Where the values come from: docs/theory.md, "VIIP".
 struct ViipParams {
-  double pole_ratio = 0.75;       ///< [q] second pole of the standing regulator
-  double goal_lag = 0.3;          ///< [goal] time constant of each of two lags of a displacement
-  double zmp_gain = 1;            ///< [ka] short-term loop on the measured ZMP
-  double velocity_leak = 3;       ///< [av] pull of the reference velocity to the measured one
-  double position_leak = 1;       ///< [ax] pull of the reference COG to the measured one
-  double rocking_damping = 8;     ///< [damp] of the robot's rocking on its soles and servos
-  double zmp_filter = 0.01;       ///< [tau_z] low pass of the measured ZMP
-  double margin = 0.01;           ///< [margin] kept inside the support region
-  double height_rate = 1.5;       ///< [kz] sqrt(K_Pz / m) of (24) while both feet bear
-  double one_foot_rate = 1.06;    ///< [kz_one] the same while one foot bears
+  double pole_ratio = 0.75;    ///< [q] second pole of the standing regulator
+  double goal_lag = 0.3;       ///< [goal] time constant of each of two lags of a displacement
+  double zmp_gain = 1;         ///< [ka] short-term loop on the measured ZMP
+  double velocity_leak = 3;    ///< [av] pull of the reference velocity to the measured one
+  double position_leak = 1;    ///< [ax] pull of the reference COG to the measured one
+  double rocking_damping = 8;  ///< [damp] of the robot's rocking on its soles and servos
+  double zmp_filter = 0.01;    ///< [tau_z] low pass of the measured ZMP
+  double margin = 0.01;      ///< [margin] distance that is kept from the edge of the support region
+  double height_rate = 1.5;  ///< [kz] sqrt(K_Pz / m) of (24) while both feet bear
+  double one_foot_rate = 1.06;    ///< [kz_one] `height_rate` while one foot bears
   double height_damping = 1;      ///< [dz] K_Dz / (2 sqrt(m K_Pz)): (25) asks for at least 1
   double momentum_share = 0.3;    ///< [moment] share of the moment of a swing that the COG takes
   double yielding = 1;            ///< [yield] share of a vertical push that standing yields to

@@ -246,8 +246,8 @@ void refuse_xacro(const TiXmlElement* element, const Checker& checker) {
     refuse_xacro(each, checker);
 }
 
-/// Materials that visuals define, as materials of the robot: a visual may name one that a later
-/// visual defines, which urdfdom would leave without colour. The first definition holds.
+/// Makes materials that visuals define materials of the robot. A visual may name a material that a
+/// later visual defines, and urdfdom would leave it without colour. The first definition counts.
 void share_materials(TiXmlElement* root) {
   std::set<std::string> known;
   const auto name_of = [](const TiXmlElement* material) {
