@@ -176,8 +176,8 @@ EquationNumbers pendulum_numbers(const RunInstant& i) {
       // DTAD moves its offset after it has used it: the gap is that of the term itself.
       const double gap = law.short_term[a] / (ka * w2);
       w.line("   short term: ka = " + text::brief(ka) + " times w2 x (ZMP - ref ZMP" +
-             (offset != 0 ? " - offset " + mm(offset) : std::string()) + "); the bracket is " +
-             mm(gap));
+             (offset != 0 ? " - offset " + mm(offset) : std::string()) +
+             "); the value in parentheses is " + mm(gap));
     }
     acceleration_lines(w, i, a);
   }

@@ -37,7 +37,7 @@ void add_simulation_options(Command& command, SimulationChoice& choice) {
       "Simulate noise, bias and latency of the sensors as the sidecar describes them.");
   command.add_flag("--true-state", choice.true_state,
                    "Give the controller the true state in place of the estimate.");
-  command.add_option("--substeps", choice.substeps, "Integrator steps per servo period.")
+  command.add_option("--substeps", choice.substeps, "Number of integrator steps per servo period.")
       ->check(whole_number_within(1, 100).description(""))
       ->type_name("N");
   add_unstable_flag(command, choice.unstable);

@@ -414,7 +414,7 @@ void add_certify(Command& app, Context& context) {
       ->capture_default_str();
   command
       ->add_option("--confidence", certify.confidence,
-                   "Confidence of the certificate and of all bounds.")
+                   "Confidence level of the certificate and of every interval in the results.")
       ->check(number_within(0.5, 0.999999).description(""))
       ->type_name("P")
       ->capture_default_str();
@@ -449,7 +449,8 @@ void add_certify(Command& app, Context& context) {
                    "Compare with another controller in the same cases.")
       ->type_name("NAME");
   command->add_flag("--rare", options->rare,
-                    "Also estimate the failure probability by subset simulation.");
+                    "Also estimate the failure probability by subset simulation, which needs fewer "
+                    "runs for rare failures.");
   command
       ->add_option(
           "--rare-runs", options->subset.runs,

@@ -403,7 +403,7 @@ void add_check(Command& app, Context& context) {
       ->add_option("--plot", options.plot, "Draw the joints against their limits (.svg or .png).")
       ->type_name("F");
   command->add_flag("--watch", options.watch,
-                    "Check again whenever a file of the pattern changes. Ctrl-C ends this.");
+                    "Check again whenever a file of the pattern changes. Press Ctrl-C to stop.");
   add_pattern_options(*command, options.input);
   command->callback([&context] { check(context, options); });
 }

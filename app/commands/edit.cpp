@@ -576,7 +576,8 @@ void add_edit(Command& app, Context& context) {
   add_table_flag(blend_command);
   blend_command.callback([&context] { join(context, options); });
   Command& ramp_command = add_edit_of(
-      *command, "ramp", "move from a posture to the motion, and back at its end", options);
+      *command, "ramp", "add a move from a posture to the motion, and a move back after the motion",
+      options);
   ramp_command
       .add_option("--in", options.ramps.in,
                   "Time to move from the posture to the motion [s]; 0 = none.")
@@ -608,9 +609,10 @@ void add_edit(Command& app, Context& context) {
       "With --to-limits: slow the motion down only at the times at which a limit requires this.");
   retime_command
       .add_option("--margin", options.margin,
-                  "With --local: a ZMP margin of this size is enough [m]. A smaller value allows a "
-                  "faster motion (default: 80 % of the margin of the result without --local, or an "
-                  "eighth of the width of the sole, whichever is larger).")
+                  "With --local: the ZMP need not keep a larger distance than this from the edge "
+                  "of the support [m]. A smaller value allows a faster motion. Default: an eighth "
+                  "of the width of the sole, or 80 % of the distance that the result has without "
+                  "--local, whichever is larger.")
       ->check(number_within(0.0, 1.0))
       ->type_name("M");
   retime_command.add_flag("--keep-pauses", options.keep_pauses,
@@ -625,7 +627,7 @@ void add_edit(Command& app, Context& context) {
   loop_command
       .add_option("--over", options.over,
                   "Duration of a transition from the end to the beginning [s]. It is added only if "
-                  "the two differ.")
+                  "the motion ends in another posture than it begins.")
       ->check(number_within(0.02, 60.0))
       ->type_name("S");
   loop_command.add_flag("--cycle", options.cycle,

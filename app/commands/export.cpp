@@ -415,7 +415,7 @@ std::string in_words(const ExportOptions& options, const Source& source, const S
   text += "  ramp " + text::brief(report.ramp) + " s, hold " + text::brief(report.hold) +
           " s; the pattern begins at " + text::brief(report.ramp) + " s of the table";
   if (!report.worst_joint.empty())
-    text += "; the largest step is " + text::fixed(100 * report.max_step_ratio, 1) +
+    text += "; the largest step from row to row is " + text::fixed(100 * report.max_step_ratio, 1) +
             " % of the limit (" + report.worst_joint + " at " +
             on_both_clocks(report.worst_at, report.ramp, report.ramp + report.motion) + ")";
   const ShownUnit margin = shown_unit("rad", angles_in_degrees(source));

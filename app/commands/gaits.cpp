@@ -193,7 +193,7 @@ GaitMap map_of(const GaitGrid& grid, const std::string& title, const std::vector
   return map;
 }
 
-/// "60 cells: 15 made, 45 missing: 40 (the walk cannot be generated), 5 (...)", and the first
+/// "60 cells: 15 made, 45 missing (40: the walk cannot be generated; 5: ...)", and the first
 /// missing ones with their reasons.
 std::string missing_words(const std::vector<Json>& entries, const char* noun,
                           const std::function<std::string(const Json&)>& name) {
@@ -204,11 +204,11 @@ std::string missing_words(const std::vector<Json>& entries, const char* noun,
       return is_missing(entry) && &stage_of(entry) == &stage;
     });
     all += static_cast<size_t>(count);
-    if (count > 0) kinds.push_back(std::to_string(count) + " (" + stage.words + ")");
+    if (count > 0) kinds.push_back(std::to_string(count) + ": " + stage.words);
   }
   std::string text = "  " + text::counted(entries.size(), noun) + ": ";
   text += std::to_string(entries.size() - all) + " made, " + std::to_string(all) + " missing" +
-          (all > 0 ? ": " + text::join(kinds, ", ") : "") + "\n";
+          (all > 0 ? " (" + text::join(kinds, "; ") + ")" : "") + "\n";
   size_t shown = 0;
   for (const Json& entry : entries) {
     if (!is_missing(entry) || entry.at("stage") == "neighbour") continue;
@@ -291,14 +291,15 @@ void make_gaits(Context& context, GaitsCommand command) {
   index["files"] = files;
   folder.deliver(index, files);
 
-  context.print(command.out + ": " + title + "\n" +
+  context.print(command.out + ": walks of " + maker.model().name() + " with the controller " +
+                name_of(maker.controller().type) + " and the profile " + maker.profile() + "\n" +
                 missing_words(cells, "cell", [](const Json& e) { return e.at("name"); }));
   if (!transitions.empty())
     context.print(missing_words(transitions, "transition", [](const Json& e) {
       return e.at("from").get<std::string>() + " to " + e.at("to").get<std::string>();
     }));
   if (options.certify)
-    context.print("  each walk fails with a probability of at most " +
+    context.print("  each walk that was made fails with a probability of at most " +
                   text::brief(100 * options.study.failure, 3) + " %, with " +
                   text::brief(100 * options.study.confidence, 3) +
                   " % confidence, for the uncertainty in " + maker.study().file + "\n");

@@ -185,9 +185,10 @@ void add_identify(Command& app, Context& context) {
                    "Choreonoid body, mi-lib ztk).")
       ->required();
   command
-      ->add_option("--command", options.command,
-                   "Command that the robot received: a HOAP sequence, counts, or a table with "
-                   "joint columns.")
+      ->add_option(
+          "--command", options.command,
+          "Command that the robot received: a HOAP sequence, other rows of counts, or a table with "
+          "joint columns.")
       ->required()
       ->type_name("F");
   command

@@ -746,13 +746,13 @@ void add_viip(Command& command, NewOptions& options) {
   add_common(command, options);
   command
       .add_option("--cog", options.cog,
-                  "Displacement of the COG while both feet stay [m]: forward, left, up.")
+                  "Displacement of the COG while both feet stay in place [m]: forward, left, up.")
       ->delimiter(',')
       ->expected(3)
       ->type_name("DX,DY,DZ");
   command
       .add_option("--cog-velocity", options.cog_velocity,
-                  "Velocity of the COG while both feet stay [m/s]: forward, left, up.")
+                  "Velocity of the COG while both feet stay in place [m/s]: forward, left, up.")
       ->delimiter(',')
       ->expected(3)
       ->type_name("VX,VY,VZ");
@@ -837,7 +837,7 @@ void add_kick(Command& command, NewOptions& options) {
   command.footer("Examples:\n  ayumi new kick --foot left --length 0.05 -o kick.json");
   add_common(command, options);
   add_which(command, "--foot", "Foot that kicks", options);
-  add_scaled(command, "--length", options.length, "How far ahead the foot goes [m]",
+  add_scaled(command, "--length", options.length, "Distance that the foot moves forward [m]",
              KickParameters().length, "M");
   add_scaled(command, "--height", options.height, "Height of the foot when it kicks [m]",
              KickParameters().height, "M");
@@ -926,17 +926,17 @@ void add_new(Command& app, Context& context) {
   sit->footer("Examples:\n  ayumi new sit --depth 0.06 -o sit.json");
   add_seat(*sit, options);
   sit->callback([shared, &context] { new_seat(context, *shared, true); });
-  Command* rise = command->add_subcommand("rise", "come up as from a seat");
+  Command* rise = command->add_subcommand("rise", "stand up as if from a seat");
   rise->footer("Examples:\n  ayumi new rise --depth 0.06 -o rise.json");
   add_seat(*rise, options);
   rise->callback([shared, &context] { new_seat(context, *shared, false); });
-  Command* bow = command->add_subcommand("bow", "lean the trunk ahead and come back");
+  Command* bow = command->add_subcommand("bow", "lean the trunk forward and come back");
   add_bow(*bow, options);
   bow->callback([shared, &context] { new_bow(context, *shared); });
   Command* wave = command->add_subcommand("wave", "wave a hand");
   add_wave(*wave, options);
   wave->callback([shared, &context] { new_wave(context, *shared); });
-  Command* kick = command->add_subcommand("kick", "kick ahead with a foot");
+  Command* kick = command->add_subcommand("kick", "kick forward with a foot");
   add_kick(*kick, options);
   kick->callback([shared, &context] { new_kick(context, *shared); });
 
@@ -954,10 +954,12 @@ void add_new(Command& app, Context& context) {
       ->type_name("S");
   stand->callback([shared, &context] { new_stand(context, *shared); });
   Command* excite = command->add_subcommand(
-      "excite", "move every joint by slow sweeps, chirps and steps, for a recording for identify");
+      "excite",
+      "move every joint in slow sweeps, chirps and steps, to record the robot for identify");
   excite->footer("Examples:\n  ayumi new excite hoap1 -o excite.json");
   add_common(*excite, options);
-  excite->add_option("ROBOT", options.robot, "Robot to excite. --robot does the same.");
+  excite->add_option("ROBOT", options.robot,
+                     "Robot that performs the motion. Instead, --robot can name the robot.");
   excite->add_option("--scale", options.scale, "Factor on the amplitudes of all movements.")
       ->check(number_within(0.05, 2.0))
       ->capture_default_str();

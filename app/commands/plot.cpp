@@ -132,8 +132,12 @@ void add_plot(Command& app, Context& context) {
                    "Draw only these logs of a run, for example closed_loop.")
       ->allow_extra_args(false);
   command->add_flag("--top", options->top, "Draw the ground from above with the footholds.");
-  command->add_option("--from", options->loci.begin, "First time [s].")->capture_default_str();
-  command->add_option("--to", options->loci.end, "Last time [s] (default: the end).");
+  command
+      ->add_option("--from", options->loci.begin,
+                   "Time of the motion at which the curves begin [s].")
+      ->capture_default_str();
+  command->add_option("--to", options->loci.end,
+                      "Time of the motion at which the curves end [s] (default: the end).");
   command->add_option("--title", options->loci.title, "Title of the picture.");
   command->add_option("--width", options->loci.width, "Width in pixels.")->capture_default_str();
   command

@@ -255,8 +255,10 @@ void add_picture_options(Command& command, PreviewOptions& options) {
       .add_option("--speed", clip.speed,
                   "Playing speed: 1 is the real speed, 0.25 is four times slower.")
       ->capture_default_str();
-  command.add_option("--from", clip.begin, "First time [s].")->capture_default_str();
-  command.add_option("--to", clip.end, "Last time [s] (default: the end).");
+  command.add_option("--from", clip.begin, "Time of the motion at which the clip begins [s].")
+      ->capture_default_str();
+  command.add_option("--to", clip.end,
+                     "Time of the motion at which the clip ends [s] (default: the end).");
   command.add_option("--at", clip.at, "Time of the picture, if the file is a single picture [s].")
       ->capture_default_str();
   command.add_option("--strip", options.strip, "Number of snapshots side by side in a .png.")
@@ -265,7 +267,9 @@ void add_picture_options(Command& command, PreviewOptions& options) {
       .add_option("--exposures", options.exposures,
                   "Number of postures that are drawn into one .png, evenly spaced in time.")
       ->check(whole_number_within(1, 100));
-  command.add_option("--columns", options.columns, "Columns of --strip and --sheet.")
+  command
+      .add_option("--columns", options.columns,
+                  "Number of pictures side by side in --strip and --sheet.")
       ->check(whole_number_within(1, 100))
       ->capture_default_str();
   command.add_option("--view", clip.camera.view, "View: " + text::join(view_names(), ", ") + ".")

@@ -267,8 +267,9 @@ void add_push(Command& app, Context& context) {
   command
       ->add_option(
           "--times", options->times,
-          "Times of the pushes [s] (default for a walk with keys: one push while the robot "
-          "stands, and one in each of four phases of a step).")
+          "Times of the pushes [s] (default: for a walk with keys, one while the robot stands "
+          "and four in one step; for VIIP, three in one step; otherwise one while the robot stands "
+          "and one in the middle of the motion).")
       ->type_name("T")
       ->delimiter(',');
   command
@@ -293,7 +294,9 @@ void add_push(Command& app, Context& context) {
       ->capture_default_str();
   command->add_flag("--noise", push.simulate.sensor_noise,
                     "Simulate noise, bias and latency of the sensors.");
-  command->add_option("--substeps", push.simulate.substeps, "Integrator steps per servo period.")
+  command
+      ->add_option("--substeps", push.simulate.substeps,
+                   "Number of integrator steps per servo period.")
       ->check(whole_number_within(1, 100).description(""))
       ->type_name("N")
       ->capture_default_str();

@@ -490,7 +490,7 @@ void add_repair(Command& app, Context& context) {
       ->type_name("FACTOR");
   command
       ->add_option("--knots", options.repair.knot_spacing,
-                   "Time between the knots of the correction [s].")
+                   "Time between the knots of the spline that describes the correction [s].")
       ->check(number_within(0.005, 1.0))
       ->type_name("S")
       ->capture_default_str();

@@ -294,7 +294,8 @@ void MainJob::write_hoap(const Task& input) {
   } else if (encoders && safe.report.safe && !options_.light) {
     write_file(output_->file("hoap.csv"), hoap_csv(input.robot, safe.table, safety));
     note_file("hoap.csv");
-    text += ", hoap.csv (" + std::to_string(safe.table.rows.size()) + " rows, largest step " +
+    text += ", hoap.csv (" + std::to_string(safe.table.rows.size()) +
+            " rows, largest step from row to row " +
             text::fixed(100 * safe.report.max_step_ratio, 0) + " % of the limit" +
             (safe.report.worst_joint.empty()
                  ? ""

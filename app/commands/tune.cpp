@@ -157,8 +157,9 @@ void add_tune(Command& app, Context& context) {
   command
       ->add_option(
           "--times", options->times,
-          "Times of the pushes [s] (default for a walk with keys: one push while the robot "
-          "stands, and one in each of four phases of a step).")
+          "Times of the pushes [s] (default: for a walk with keys, one while the robot stands "
+          "and four in one step; for VIIP, three in one step; otherwise one while the robot stands "
+          "and one in the middle of the motion).")
       ->delimiter(',')
       ->type_name("T");
   command->add_option("--rounds", t.rounds, "Number of passes of the search through all gains.")

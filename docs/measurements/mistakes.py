@@ -430,7 +430,7 @@ def all_friction(pattern, robot):
 
 NEW = [
     Mistake("durations in place of times", "walk", durations_as_times, r"(?i)duration"),
-    Mistake("all times at 0.3 of theirs", "walk", twice_as_fast, r"^/phases.*multiplied by"),
+    Mistake("all times at 0.3 of their values", "walk", twice_as_fast, r"^/phases.*multiplied by"),
     Mistake("phases 1.5 times as long, keys left", "walk", keys_not_moved,
             r"keyframes.*(do not fit|phases)"),
     Mistake("left and right exchanged in all ZMP keys", "walk", zmp_keys_exchanged,

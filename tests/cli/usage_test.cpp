@@ -187,6 +187,7 @@ TEST_F(Usage, WrongWordsAreRefusedFirst) {
       {{"export", "log_closed_loop.bin", "--format", "csv", "-o", "x.csv"},
        "log_closed_loop.bin: no such file"},
       {{"new", "jump", "--height", "0.5", "-o", "j.json"}, "jump: height 0.5 m is out of range"},
+      {{"new", "bow", "--angle", "120", "-o", "b.json"}, "bow: angle 120 deg is out of range"},
       {{"new", "walk", "--cog-height", "0.4", "-o", "w.json"}, "nothing is written"}};
   for (const auto& [words, complaint] : cases) {
     const Output refused = ayumi(words);

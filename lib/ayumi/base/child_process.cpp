@@ -43,7 +43,7 @@ int become(const char* program, char* const* words, char* const* variables, int 
   for (int signal = 1; signal < NSIG; ++signal) {
     struct sigaction usual {};
     usual.sa_handler = SIG_DFL;
-    sigaction(signal, &usual, nullptr);  // fails for those that have their usual effect anyway
+    sigaction(signal, &usual, nullptr);  // fails for signals that have their usual effect anyway
   }
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) return ECHILD;  // this process had ended before the line above
@@ -72,7 +72,7 @@ pid_t start_child(const ChildStart& start) {
   std::vector<std::string> words = {start.program}, variables = start.environment;
   words.insert(words.end(), start.arguments.begin(), start.arguments.end());
   const std::vector<char*> argv = pointers_to(words), envp = pointers_to(variables);
-  // Above the standard streams, also where one of these is closed.
+  // The descriptor is above the standard streams, also where one of these is closed.
   const int opened = open("/dev/null", O_RDWR | O_CLOEXEC);
   const int nowhere = opened < 0 ? -1 : fcntl(opened, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
   int reason = errno;
@@ -151,7 +151,7 @@ void ChildProcess::set_time(double seconds) {
                                 std::chrono::duration<double>(std::clamp(seconds, 0.0, kLongest)));
 }
 
-// False: the time is over.
+// Returns false when the time is over.
 bool ChildProcess::wait_for(short events) {
   while (true) {
     const auto left =
@@ -213,7 +213,7 @@ ChildEnding ChildProcess::end() {
     std::this_thread::sleep_for(kPause);
   }
   process_ = -1;
-  // ended < 0: this program ignores SIGCHLD, so nobody knows how the child ended.
+  // ended < 0 means that this program ignores SIGCHLD, so nobody knows how the child ended.
   if (ended < 0 || ending.by_us) return ending;
   if (WIFEXITED(status)) ending.exit_code = WEXITSTATUS(status);
   if (WIFSIGNALED(status)) ending.signal = WTERMSIG(status);

@@ -19,8 +19,8 @@ std::string read_file(const fs::path& path, size_t max_bytes) {
   const auto refuse = [&](const std::string& reason) {
     fail(ErrorCode::bad_file, path.string() + ": " + reason);
   };
-  // The question is asked of the open file, which nobody can exchange any more. O_NONBLOCK: opening
-  // a named pipe would wait for its writer.
+  // What the file is, is asked of the open file, which nobody can exchange any more. Without
+  // O_NONBLOCK, opening a named pipe would wait for its writer.
   const int opened = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
   if (opened < 0 && errno == ENOENT) refuse("no such file");
   if (opened < 0 && errno == ENXIO)
@@ -42,7 +42,7 @@ std::string read_file(const fs::path& path, size_t max_bytes) {
   };
   const auto size = static_cast<size_t>(about.st_size);
   if (size > max_bytes) too_large(size);
-  // Some files, as those of /proc, state no size, and a file may grow while it is read.
+  // Some files, such as those of /proc, state no size, and a file may grow while it is read.
   std::string bytes(size + 1, '\0');
   size_t got = 0;
   while (true) {

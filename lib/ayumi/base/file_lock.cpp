@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Whether the open file still is the one of that name: its last holder may have removed it between
+// Whether the open file still is the one of that name. Its last holder may have removed it between
 // our opening and locking it.
 bool is_file_of(int descriptor, const fs::path& path) {
   struct stat opened {

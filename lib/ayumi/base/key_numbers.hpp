@@ -17,14 +17,14 @@ class KeyNumbers {
  public:
   using Key = std::array<std::uint32_t, Words>;
 
-  /// For at most so many different keys.
+  /// Makes a table for at most so many different keys.
   explicit KeyNumbers(size_t most)
       : shift_(64 - std::bit_width(2 * most + 1)),
         slots_(size_t{1} << std::bit_width(2 * most + 1)) {
     keys_.reserve(most);
   }
 
-  /// Its number, the next one where it is new.
+  /// Returns the number of the key, which is the next one where the key is new.
   std::uint32_t number(const Key& key) {
     std::uint64_t sum = 0;
     for (const std::uint32_t word : key) sum = (sum ^ word) * 0x9E3779B97F4A7C15;

@@ -1,5 +1,5 @@
 #pragma once
-// What may have been meant by a number that was typed: slips of the keyboard, for messages.
+// What may have been meant by a number that was typed. Messages name it.
 
 #include <string>
 #include <vector>
@@ -8,8 +8,9 @@
 
 namespace ayumi {
 
-/// A decimal point that is one or two places off, thousandths, two neighbouring digits exchanged,
-/// and a zero too many behind the point ("2.03" for "2.3"). Never the number itself.
+/// The slips are a decimal point that is one or two places off, thousandths, two neighbouring
+/// digits exchanged, and a zero too many behind the point ("2.03" for "2.3"). The number itself is
+/// never among them.
 inline std::vector<double> number_slips(double value) {
   std::vector<double> slips = {value / 1000, value / 100, value / 10, value * 10};
   const std::string digits = text::exact(value);

@@ -14,7 +14,8 @@ struct SourcePlace {
   int line = 0;         ///< counted from 1; 0: the pointer names the place
   /// The error is about a name that nothing has, so that no other number mends it.
   bool unknown_name = false;
-  /// The error names the value that is wrong. A cause that leaves other errors says less.
+  /// The error names the value that is wrong. The cause of an error that leaves other errors does
+  /// not.
   bool names_value = false;
 
   bool empty() const { return file.empty() && pointer.empty() && line == 0; }

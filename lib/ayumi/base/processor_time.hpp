@@ -1,5 +1,5 @@
 #pragma once
-// Measuring work.
+// Measures how long work takes.
 
 #include <ctime>
 

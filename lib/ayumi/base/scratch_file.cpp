@@ -14,7 +14,7 @@ namespace ayumi {
 
 ScratchFile::ScratchFile(std::filesystem::path folder)
     : folder_(folder.empty() ? std::filesystem::path(".") : std::move(folder)) {
-  // Not every file system has files without a name, so it has one for a moment.
+  // Not every file system can make a file without a name, so the file has a name for a moment.
   std::string name = (folder_ / ".ayumi_scratch_XXXXXX").string();
   descriptor_ = ::mkostemp(name.data(), O_CLOEXEC);
   if (descriptor_ < 0) refuse("no file can be made in this folder");
@@ -46,7 +46,7 @@ std::string ScratchFile::read(size_t begin, size_t count) const {
     const ssize_t more =
         ::pread(descriptor_, bytes.data() + got, count - got, static_cast<off_t>(begin + got));
     if (more < 0 && errno == EINTR) continue;
-    if (more == 0) errno = EIO;  // shorter than what was written
+    if (more == 0) errno = EIO;  // the file is shorter than what was written
     if (more <= 0) refuse("the samples cannot be read back from a file in this folder");
     got += static_cast<size_t>(more);
   }

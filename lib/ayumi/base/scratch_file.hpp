@@ -20,7 +20,8 @@ class ScratchFile {
   /// Throws Error(bad_file) when the disk is full.
   void append(std::string_view bytes);
   size_t size() const { return size_; }
-  /// `count` of its bytes from byte `begin` on. Throws Error(bad_file) when they cannot be read.
+  /// Reads `count` of its bytes from byte `begin` on. Throws Error(bad_file) when they cannot be
+  /// read.
   std::string read(size_t begin, size_t count) const;
 
  private:

@@ -11,7 +11,7 @@ namespace ayumi::text {
 
 namespace {
 
-// Letters that are added, left out, changed, or exchanged with their neighbour.
+// The number of letters that are added, left out, changed, or exchanged with their neighbour.
 size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<size_t> row(b.size() + 1), above, higher;
   std::iota(row.begin(), row.end(), size_t{0});

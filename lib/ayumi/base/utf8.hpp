@@ -5,8 +5,9 @@
 
 namespace ayumi::text {
 
-/// The bytes of the UTF-8 character that `text` begins with, its number in `code`; 0 when the bytes
-/// are not UTF-8 (RFC 3629: no overlong forms, no surrogates, at most U+10FFFF).
+/// Returns the number of bytes of the UTF-8 character that `text` begins with, and puts the number
+/// of the character into `code`. Returns 0 when the bytes are not UTF-8 (RFC 3629: no overlong
+/// forms, no surrogates, at most U+10FFFF).
 size_t utf8_character(std::string_view text, char32_t& code);
 
 /// Index of the first byte that is no part of UTF-8 text; npos: there is none.

@@ -21,10 +21,10 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Rate at which a turn is given back, times omega, critically damped. Chosen: slower than the DCM,
-// so that giving back does not undo what the turn was for. Largest pushes of the walk of HOAP-1,
-// worst and mean of 32, in multiples of B: 1.14 and 1.52; with 0.7 one of them is 1.02 instead of
-// 1.44.
+// Rate at which the turn of the trunk returns to zero, critically damped, times omega. Chosen:
+// slower than the DCM, so that the return does not undo the effect of the turn. Largest pushes of
+// the walk of HOAP-1, worst and mean of 32, in multiples of B: 1.14 and 1.52; with 0.7 one of them
+// is 1.02 instead of 1.44.
 constexpr double kReturnRate = 0.5;
 
 // Largest turn of the trunk [rad]: 24 deg. Chosen: with 0.35 the walk of HOAP-1 with hoap1-strong
@@ -43,7 +43,7 @@ constexpr double kTrunkTilt = 0.65;
 constexpr double kSpeedShare = 0.8;
 constexpr double kTorqueShare = 0.5;
 
-// Turn [rad] and rate [rad/s] below which nothing is left to give back. Chosen: a hundredth of an
+// Turn [rad] and rate [rad/s] below which the turn counts as zero. Chosen: a hundredth of an
 // encoder count of HOAP-1.
 constexpr double kReturned = 1e-6;
 
@@ -157,8 +157,8 @@ const Eigen::Matrix3Xd& AngularMomentumTask::matrix(const RobotData& data) {
   return matrix_;
 }
 
-// A coordinate may become as fast as lets its torque stop it at the end of its range. Where no
-// torque is stated, nothing says how soon it stops, and it does not turn.
+// Largest rate of a coordinate: the rate from which its torque can stop it at the end of its range.
+// A coordinate without a stated torque does not turn, because no such rate is known.
 void AngularMomentumTask::bound(const VectorXd& commanded, const Vector2d& tilt, double dt) {
   for (Eigen::Index i = 0; i < weight_.size(); ++i) {
     if (!std::isfinite(torque_[i])) {
@@ -186,7 +186,8 @@ void AngularMomentumTask::bound(const VectorXd& commanded, const Vector2d& tilt,
   }
 }
 
-// Coordinates whose acceleration meets a bound keep it, and the others do what is left.
+// A coordinate whose acceleration reaches a bound keeps this bound, and the other coordinates
+// provide the rest.
 void AngularMomentumTask::accelerate(const Vector3d& moment) {
   const Eigen::Index n = weight_.size();
   std::fill(held_.begin(), held_.end(), false);

@@ -54,7 +54,7 @@ Controller::Law Controller::first_law() {
   return law_of_command({plan.state, plan.dcog, target_, plan, command});
 }
 
-// DTAD or open loop, going on at the handover's plan.
+// Makes DTAD or open loop, which continues from the plan of the handover.
 Controller::Law Controller::law_of_command(Handover from) const {
   const bool own_gains = has_dtad_gains(spec_.type.kind);
   if (!own_gains && spec_.type != ControllerKind::viip)
@@ -68,7 +68,7 @@ Controller::Law Controller::law_of_command(Handover from) const {
   return law;
 }
 
-// The last phase goes on after the end of the series.
+// The span at tick k. The last span continues after the end of the series.
 const ViipSpan* Controller::span_at(long k) const {
   if (spec_.type == ControllerKind::none) return nullptr;
   const long last = static_cast<long>(series_->samples.size()) - 1;
@@ -77,7 +77,7 @@ const ViipSpan* Controller::span_at(long k) const {
   return nullptr;
 }
 
-// Laws change, and the goal of VIIP, before tick k.
+// Before tick k, changes the law and the goal of VIIP where a span begins or ends.
 void Controller::enter(long k) {
   const ViipSpan* span = span_at(k);
   if (span == span_) return;
@@ -102,7 +102,7 @@ void Controller::start_viip(const ViipSpan& span, long k) {
   if (!jump) set_goal(span, k);
 }
 
-// Steps go on into following phases of steps.
+// Phases of steps that follow one another without a gap have one end.
 void Controller::set_goal(const ViipSpan& span, long k) {
   long end = span.end;
   for (const ViipSpan& next : series_->viip)
@@ -125,7 +125,7 @@ void Controller::set_goal(const ViipSpan& span, long k) {
 
 const ControlOutput& Controller::update(const Estimate& estimate) {
   out_.notes.clear();
-  // The other laws have a plan that knows its weights.
+  // Only the laws of VIIP need the weights here. The plans of the other laws contain them.
   if (const Eigen::VectorXd* weight = series_->joint_weight_at(tick_)) {
     if (Viip* viip = std::get_if<Viip>(&law_)) viip->weigh(*weight);
     if (ViipJump* jump = std::get_if<ViipJump>(&law_)) jump->weigh(*weight);

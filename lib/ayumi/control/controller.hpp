@@ -1,8 +1,8 @@
 #pragma once
-// The control laws behind one face: open loop, DTAD, VIIP's steps and its jump. A pattern may pass
-// the robot from one to another by phases; each goes on from the posture, velocity and footholds
-// that the last one left. Where the whole motion is planned ahead, without VIIP goals, the servos
-// receive the torques of the plan in every law (control/torque_feedforward).
+// One interface for all control laws: open loop, DTAD, VIIP's steps and its jump. The law may
+// change from phase to phase of a pattern. The new law continues from the posture, velocity and
+// footholds of the previous one. Where the whole motion is planned ahead, without VIIP goals, the
+// servos receive the torques of the plan in every law (control/torque_feedforward).
 
 #include <memory>
 #include <variant>
@@ -23,8 +23,8 @@ std::vector<std::pair<std::string, double>> gains_in_use(const RobotModel& model
 
 class Controller {
  public:
-  /// Series and model outlive it and its copies. Throws as check_controller() and
-  /// Error(bad_pattern) for a VIIP phase that cannot be carried.
+  /// The series and the model must outlive the controller and its copies. Throws as
+  /// check_controller(), and Error(bad_pattern) for a VIIP phase that the law cannot execute.
   Controller(const RobotModel& model, const ActuatorLimits& limits, const CommandSeries& series,
              const ControllerSpec& spec);
 
@@ -39,13 +39,14 @@ class Controller {
     return !open || open->measures();
   }
 
-  /// How the robot stands before the first tick: as planned; where the plan's joints are what
-  /// servos receive, as they give way under the weight.
+  /// Posture of the robot before the first tick. It is the planned posture. If the joint angles of
+  /// the plan are servo targets, it is the posture to which the servos yield under the weight.
   const RobotState& start() const { return start_; }
-  /// What the servos received last [rad]; before the first tick what they hold the start with.
+  /// The last servo targets [rad]. Before the first tick, these are the targets that hold the start
+  /// posture.
   const Eigen::VectorXd& target() const { return target_; }
 
-  /// One tick: goes on to the next. The output holds until the next update.
+  /// Computes one tick. The output does not change until the next update.
   const ControlOutput& update(const Estimate& estimate);
 
  private:
@@ -62,13 +63,14 @@ class Controller {
   ActuatorLimits limits_;
   const CommandSeries* series_;
   ControllerSpec spec_;
-  long tick_ = 0;  // the coming one
+  long tick_ = 0;  // the coming tick
   RobotState start_;
   Eigen::VectorXd target_;
-  /// Of the servo targets by sample of the series [rad]; one column: throughout.
+  /// Offsets of the servo targets by sample of the series [rad]; a single column holds for all
+  /// samples.
   std::shared_ptr<const Eigen::MatrixXd> torque_lead_;
   Law law_;
-  const ViipSpan* span_ = nullptr;  // that law_ carries; null: law_ follows the command
+  const ViipSpan* span_ = nullptr;  // the span that law_ executes; null: law_ follows the command
   ControlOutput out_;
 };
 

@@ -33,7 +33,7 @@ constexpr double kStanceShare = 0.6;
 // Figures change by less than 5 % from half to twice.
 constexpr double kContactShare = 0.05;
 
-// Tilt about x and y of a sole that lies flat, per f_z (cop - centre) [rad/(N m)]: its corners are
+// Tilt about x and y of a sole that lies flat, per f_z (cop - centre) [rad/(N m)]. Its corners are
 // springs of equal stiffness, as in the plant (sim/plant/contact_points).
 Eigen::Matrix2d tilt_per_moment(const Sole& sole) {
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();
@@ -91,7 +91,8 @@ const Estimate& Estimator::update(const Measurement& m, const std::array<Isometr
   const double weight = model_->mass() * kGravity;
   Estimate& e = last_;
 
-  // All in base axes first (base at the origin, at rest), one pass over the tree.
+  // Everything is first computed in base axes (base at the origin, at rest), in one pass over the
+  // tree.
   RobotState& s = e.state;
   s.base = BasePose{};
   s.base_velocity.setZero();
@@ -100,13 +101,14 @@ const Estimate& Estimator::update(const Measurement& m, const std::array<Isometr
   s.dtheta = m.dtheta;
   update_velocities(*model_, s, data_);
 
-  // Attitude of the base from the IMU, wherever on the robot it sits.
+  // Attitude of the base from the IMU, which may be on any link.
   const Link& imu = model_->links()[imu_];
   const Matrix3d imu_in_base = data_.rotation[imu.body] * imu.pose.linear();
   const Matrix3d R = m.attitude.toRotationMatrix() * imu_in_base.transpose();
   const Vector3d w = m.attitude * m.gyro - R * data_.angular_velocity[imu.body];
 
-  // Heading has no absolute measurement in the plan frame: it is that of the planned stance foot.
+  // No sensor measures the heading in the plan frame. The heading of the stance foot is taken from
+  // the plan.
   const int stance = static_cast<int>(e.stance);
   const Isometry3d sole_in_base = sole_pose(*model_, data_, e.stance);
   const double yaw = heading_of(feet[stance].linear()) - heading_of(R * sole_in_base.linear());
@@ -115,7 +117,7 @@ const Estimate& Estimator::update(const Measurement& m, const std::array<Isometr
   s.base_angular_velocity = turn * w;
   const Matrix3d attitude = s.base.attitude.toRotationMatrix();
 
-  // The loaded point of the sole is where the plan has it, and at rest.
+  // The loaded point of the sole is at its planned place, and at rest.
   const Eigen::Vector2d cop = m.feet[stance].fz > kContactShare * weight
                                   ? m.feet[stance].cop
                                   : model_->sole(e.stance).center;
@@ -132,7 +134,7 @@ const Estimate& Estimator::update(const Measurement& m, const std::array<Isometr
   e.dcog = s.base_velocity + rate.cross(offset) + attitude * data_.dcog;
   const Matrix3d tilt = attitude * sole_in_base.linear() * feet[stance].linear().transpose();
   e.foot_tilt = log_rotation(Quaterniond(tilt));
-  Vector3d yielding = Vector3d::Zero();  // of the sole under its load
+  Vector3d yielding = Vector3d::Zero();  // tilt of the sole that comes from its load
   yielding.head<2>() = yield_[stance] * (m.feet[stance].fz * (cop - model_->sole(e.stance).center));
   e.foot_tilt -= feet[stance].linear() * yielding;
   e.foot_tilt.z() = 0;

@@ -25,7 +25,7 @@ constexpr double kAdmissibleForceShare = 0.1;
 
 // Largest shift of the ZMP by which the rocking of the robot on its soles is damped, times z: 22 mm
 // on HOAP-1. Chosen: enough to end the rocking that a push of 0.3 N s leaves with sensors that are
-// 14 ms late (with 0.06 it goes on), and small beside the soles, because after a hard push this
+// 14 ms late (with 0.06 it goes on), and small compared with the soles. After a hard push, this
 // damping works against the long term: without a bound the walk survives 0.78 B instead of 1.08.
 constexpr double kRockingLimit = 0.09;
 

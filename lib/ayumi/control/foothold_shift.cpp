@@ -30,7 +30,7 @@ namespace {
 // of HOAP-1: docs/measurements/pushes.md. Lengths are times the COG height z, times are times
 // 1 / omega.
 
-// Share of each support that is kept in reserve. Chosen for what the point mass does not know.
+// Share of each support that is kept in reserve. Chosen: the robot differs from the point mass.
 // Half: hurried walk, slip 5.22 to 8.86 mm; twice: pushed walk, slip 1.45 to 0.875 mm.
 constexpr double kReserve = 0.2;
 
@@ -39,31 +39,33 @@ constexpr double kReserve = 0.2;
 // touchdowns 4 to 5.
 constexpr double kNextSupportShare = 0.5;
 
-// Largest distance of a foothold from the pattern's [z]. Chosen: within the reach of the legs with
-// the COG at the height of a walk. Half: thrown walk, touchdowns 6 to 5; twice: slip 2.98 to 2.54
-// mm.
+// Largest distance of a foothold from the foothold of the pattern [z]. Chosen: within the reach of
+// the legs with the COG at the height of a walk. Half: thrown walk, touchdowns 6 to 5; twice: slip
+// 2.98 to 2.54 mm.
 constexpr double kFootholdReach = 0.36;
 
-// Largest speed of a foot's shift [omega z]. Chosen: what the joint speeds of HOAP-1 leave beside
-// the swing itself. Half: thrown walk, touchdowns 6 to 5; twice: hurried walk, touchdowns 5 to 6.
+// Largest speed of a foot's shift [omega z]. Chosen: the swing itself needs the rest of the joint
+// speed of HOAP-1. Half: thrown walk, touchdowns 6 to 5; twice: hurried walk, touchdowns 5 to 6.
 constexpr double kFootSpeed = 0.65;
 
-// Least error at the landing that is answered [z]: 4 mm on HOAP-1. Chosen: the sole takes less.
-// Half: crossing walk, joint speed 0.738 to 0.958; twice: hurried walk, touchdowns 5 to 8.
+// Smallest error at the landing that a foothold answers [z]: 4 mm on HOAP-1. Chosen: the sole
+// absorbs smaller errors. Half: crossing walk, joint speed 0.738 to 0.958; twice: hurried walk,
+// touchdowns 5 to 8.
 constexpr double kLeastError = 0.02;
 
-// A foothold is chosen from this time before lift-off on [1/omega]. Chosen: until then the present
-// support can still take the error away. Half: thrown walk, touchdowns 6 to 5; twice: no change.
+// A foothold is chosen from this time before lift-off on [1/omega]. Chosen: before this time, the
+// present support can still remove the error. Half: thrown walk, touchdowns 6 to 5; twice: no
+// change.
 constexpr double kLookAhead = 1;
 
-// Cost of moving a foothold by a length against leaving the same length over. Chosen: moving is
-// worth it as soon as it takes away a third of what it costs. Half: hurried walk, slip 5.22 to 9.26
-// mm; twice: 4.57 mm.
+// Cost of moving a foothold by a length, relative to the cost of a remaining error of the same
+// length. Chosen: a foothold moves if this removes at least a third of the distance that it moves.
+// Half: hurried walk, slip 5.22 to 9.26 mm; twice: 4.57 mm.
 constexpr double kMoveCost = 0.3;
 
-// Cost of the clock's rate 1 [z]. Chosen: small, so that a faster clock is taken whenever it
-// leaves less over; of two that leave the same the slower one is. Half: hurried walk, slip 5.22 to
-// 4.57 mm; twice: 8.97 mm.
+// Cost of the clock's rate 1 [z]. Chosen: small, so that a faster clock is chosen whenever it
+// leaves a smaller error. Of two clocks that leave the same error, the slower one is chosen. Half:
+// hurried walk, slip 5.22 to 4.57 mm; twice: 8.97 mm.
 constexpr double kTimeScaleCost = 0.016;
 
 // Step between the rates of the clock that are tried. Chosen: 16 candidates up to 2.5. Half: less
@@ -76,8 +78,8 @@ constexpr double kTimeScaleStep = 0.1;
 constexpr double kSwingLandingAfter = 0.3;
 
 // Longest double support over which the shift of the ZMP counts as a ramp [1/omega]. Chosen: the
-// DCM forgets a ramp that goes on after this by more than two thirds. Half: thrown walk, slip 2.98
-// to 2.39 mm; twice: 2.27 mm.
+// part of a ramp after this time has less than a third of its effect on the DCM. Half: thrown walk,
+// slip 2.98 to 2.39 mm; twice: 2.27 mm.
 constexpr double kLongestRamp = 1.3;
 
 // Peak speed of a path of least jerk from rest to rest, in units of its mean speed. Derived: 15/8,
@@ -90,8 +92,8 @@ ConvexPolygon about_zmp(const ConvexPolygon& polygon, const Vector2d& center) {
   return ConvexPolygon(points);
 }
 
-/// What is left of an error that grows for `time` while the ZMP may be anywhere in `share` of
-/// `polygon` about `zmp`.
+/// The part of an error that remains. The error grows for `time`, while the ZMP may be anywhere in
+/// `share` of `polygon` about `zmp`.
 Vector2d error_after(const Vector2d& error, const ConvexPolygon& polygon, const Vector2d& zmp,
                      double omega, double time, double share) {
   if (time <= 0) return error;
@@ -199,12 +201,14 @@ FootholdShift::Step FootholdShift::step_of(const PlannedSwing& swing) const {
   return step;
 }
 
-/// Share of a shift that the ZMP makes evenly within `time` which the DCM has made at its start.
+/// The ZMP makes a shift evenly within `time`. This is the share of the shift that the DCM has made
+/// at the start of this time.
 double FootholdShift::ramp_share(double time) const {
   return time > 0 ? (1 - elementary::exp(-omega_ * time)) / (omega_ * time) : 1.0;
 }
 
-/// From the foot that stood to the one that has landed, evenly over the double support.
+/// Moves the ZMP from the foot that stood to the foot that has landed, evenly over the double
+/// support.
 Vector2d FootholdShift::zmp_shift() const {
   if (coming_ == 0) return after_;
   const PlannedSwing& past = steps_[coming_ - 1].swing;
@@ -225,7 +229,7 @@ Vector2d FootholdShift::dcm_shift(double time_scale, const Vector2d& target) con
   return shift;
 }
 
-/// The part of the DCM's error, as it will be at the landing, that the supports cannot take away.
+/// The part of the DCM's error at the landing that the supports cannot remove.
 Vector2d FootholdShift::error_left_over(const Vector2d& dcm, double time_scale) const {
   const Step& step = steps_[coming_];
   const double to_lift = seconds_to(step.swing.lift) / time_scale;
@@ -239,7 +243,7 @@ Vector2d FootholdShift::error_left_over(const Vector2d& dcm, double time_scale) 
   return error.norm() < kLeastError * height_ ? Vector2d::Zero() : error;
 }
 
-/// A foot that would cross the other one stays, sideways, where the pattern has it.
+/// A foot that would cross the other one keeps the sideways place of the pattern.
 Vector2d FootholdShift::not_crossing(const Vector2d& target) const {
   const Step& step = steps_[coming_];
   const Eigen::Rotation2Dd turn(step.stance.yaw);
@@ -251,7 +255,7 @@ Vector2d FootholdShift::not_crossing(const Vector2d& target) const {
   return step.stance.position + turn * offset - step.landing.position + after_;
 }
 
-/// How far the foot can be moved in the time that is left [m].
+/// Distance by which the foot can be moved in the remaining time [m].
 double FootholdShift::swing_room(double time_scale) const {
   const PlannedSwing& swing = steps_[coming_].swing;
   const double margin = kSwingMargin * (swing.land - swing.lift);
@@ -260,7 +264,7 @@ double FootholdShift::swing_room(double time_scale) const {
   return kFootSpeed * omega_ * height_ * time / kLeastJerkPeak;
 }
 
-/// What the leg can reach, and in the time that is left.
+/// Limits a shift to the reach of the leg and to the remaining time.
 Vector2d FootholdShift::reachable(const Vector2d& target, double time_scale) const {
   Vector2d shift = target - after_;
   const double reach = kFootholdReach * height_;
@@ -278,7 +282,8 @@ void FootholdShift::choose_foothold(const Estimate& e) {
     return;
   }
   const PlannedSwing& swing = steps_[coming_].swing;
-  // A foot that ought to stand and does not yet is waited for: the robot leans on the other one.
+  // The clock waits for a foot that should stand but does not stand yet: the robot leans on the
+  // other foot.
   const Side stance = other(swing.foot);
   const bool stands = bears(*model_, e, stance) && (phase_ < swing.lift || e.stance == stance);
   const bool early = seconds_to(swing.lift) > kLookAhead / omega_;
@@ -314,7 +319,7 @@ void FootholdShift::solve_foothold(const Vector2d& dcm) {
   p.most_growth = elementary::exp(omega_ * time / params_.program->slowest);
   set_support(p, step.single, yaw, height_, 1 - kReserve);
 
-  // Within reach, with the speed of the swing, on its own side.
+  // Keeps a shift within the reach and the speed of the swing, and the foot on its own side.
   const int side = index(step.swing.foot);
   const Vector2d from = local(foot_[side] - after_);
   const Vector2d room = Vector2d::Constant(swing_room(time_scale_) / height_);
@@ -355,14 +360,14 @@ void FootholdShift::search_foothold(const Vector2d& dcm) {
       chosen = time_scale;
       target_ = target;
     }
-    if (rest.isZero(0)) break;  // a faster clock leaves no less
+    if (rest.isZero(0)) break;  // a faster clock leaves an error that is at least as large
   }
   time_scale_ = chosen;
 }
 
-// In the last part of the swing, where the plan itself has the foot next to the ground and moves it
-// no more, contact is the landing that is planned: the clock goes on as planned, and so does the
-// DCM of the plan, which a jump of the clock would carry along.
+// In the last part of the swing, the planned foot is next to the ground and hardly moves. A contact
+// in this part is the planned landing, so the clock does not jump. A jump of the clock would also
+// move the DCM of the plan.
 bool FootholdShift::lands_early(const Estimate& e) const {
   if (!moved_ || coming_ == steps_.size()) return false;
   const PlannedSwing& swing = steps_[coming_].swing;
@@ -372,7 +377,7 @@ bool FootholdShift::lands_early(const Estimate& e) const {
          bears(*model_, e, swing.foot);
 }
 
-/// The foot stays where it has met the ground, and the clock goes to its landing; the COG does not
+/// The foot stays where it has met the ground, and the clock jumps to its landing. The COG does not
 /// jump.
 void FootholdShift::land_where_it_is(const Estimate& e) {
   const PlannedSwing& swing = steps_[coming_].swing;

@@ -16,13 +16,13 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Footholds that b looks ahead. Derived: the effect of one falls by E = exp(2.1) = 8 per step, so
-// that of the seventh is below 1e-5 of a step.
+// Number of footholds ahead that b takes into account. Derived: the effect of one falls by E =
+// exp(2.1) = 8 per step, so that of the seventh is below 1e-5 of a step.
 constexpr int kPreview = 6;
 
-// Largest error of position that is taken back, times the distance of the feet. Chosen: a path that
-// is farther off is moved to the feet, so that a push does not make the robot hurry back. No
-// measured case changes from half to twice (constants.md).
+// Largest error of position that the steps correct, times the distance of the feet. Chosen: with a
+// larger error, the path is moved to the feet, so that a push does not make the robot hurry back.
+// No measured case changes from half to twice (constants.md).
 constexpr double kLargestError = 0.35;
 
 Vector2d turned_by(const Vector2d& v, double yaw) { return Eigen::Rotation2Dd(yaw) * v; }
@@ -71,7 +71,7 @@ Vector2d Footsteps::zmp_on(Side side, const GroundPose& foot) const {
   return foot.position - turned_by({0, sign_of(side) * inset_}, foot.yaw);
 }
 
-// Sideways the foot that leads goes twice as far and the other one closes up to it.
+// Sideways, the leading foot moves by twice the distance, and the other foot follows.
 GroundPose Footsteps::moved(const GroundPose& center, const StepGoal& goal, Side swing,
                             int left) const {
   if (left <= 1) return center;
@@ -86,7 +86,7 @@ PlannedStep Footsteps::step(const StepGoal& goal, Side stance, const GroundPose&
                             const Vector2d& rest) const {
   PlannedStep result{stance, zmp_on(stance, foot), {}, {}};
   Vector2d error = foot.position - beside(center_, stance).position;
-  std::vector<Vector2d> zmps;  // nominal ones, on each foothold
+  std::vector<Vector2d> zmps;  // nominal ZMPs, one on each foothold
   GroundPose center = center_;
   Side side = other(stance);
   const int count = std::min(left, kPreview);
@@ -101,7 +101,7 @@ PlannedStep Footsteps::step(const StepGoal& goal, Side stance, const GroundPose&
   const Vector2d after = count == left
                              ? Vector2d(center.position + error + turned_by(rest, center.yaw))
                              : zmp_on(side, beside(moved(center, goal, side, left - count), side));
-  // At the end the DCM stays where the robot is to stand; else one more step is guessed.
+  // At the end the DCM stays where the robot is to stand. Otherwise, one more step is assumed.
   const double share = count == left ? 1 : 1 / (growth_ + 1);
   result.offset = zmps.front() - result.landing.position +
                   landing_offsets(zmps, growth_, share * (after - zmps.back())).front();

@@ -55,7 +55,7 @@ MatrixXd tick_matrix(const LoopModel& loop, const DtadParams& p) {
   const RowVectorXd gap = A.row(filtered) - K * x - D * dx - unit(offset);
   A.row(offset) = unit(offset);
   if (p.offset_time > 0) A.row(offset) += dt * w / p.offset_time * gap;
-  // The law uses the gap before the offset follows in this tick.
+  // The law uses the difference before the offset is updated in this tick.
   A.row(dxr) = unit(dxr) + dt * (p.zmp_gain * w2 * gap + p.rocking_damping * w * (dx - unit(dxr)) -
                                  p.pull_rate * p.pull_rate * w2 * unit(xr) -
                                  2 * p.pull_damping * w * unit(dxr));
@@ -72,7 +72,7 @@ LoopAnalysis analyze_loop(const LoopModel& loop, const DtadParams& params) {
   LoopAnalysis analysis;
   for (const std::complex<double>& value : values)
     if (std::abs(value) > 1e-9) analysis.poles.push_back(std::log(value) / loop.tick);
-  // Without an offset time its state is a constant, not a mode.
+  // Without a time constant of the offset, its state is constant and gives no mode.
   if (params.offset_time <= 0)
     std::erase_if(analysis.poles, [](const auto& pole) { return std::abs(pole) < 1e-6; });
   std::sort(analysis.poles.begin(), analysis.poles.end(), [](const auto& a, const auto& b) {
@@ -143,7 +143,7 @@ WeakestLoop weakest_loop(const std::vector<LoopModel>& loops, const DtadParams& 
   return weakest;
 }
 
-// Stable gains below the first unstable one: the loop leaves stability once as ka grows.
+// The search assumes that the loop becomes unstable only once as ka grows.
 double largest_stable_ka(const std::vector<LoopModel>& loops, DtadParams params, double most) {
   const auto stable = [&](double ka) {
     params.zmp_gain = ka;
@@ -160,10 +160,9 @@ double largest_stable_ka(const std::vector<LoopModel>& loops, DtadParams params,
 
 namespace {
 
-// Time constant, times omega, within which errors decay in a loop that is not searched further.
-// Chosen: three times that of the default gains' slowest mode on stiff servos, which forgets
-// offsets (washout, 6.6). At half of it, the gains of soft servos change more; at twice, slower
-// modes are left.
+// Time constant, times omega, of the slowest mode with which a loop is accepted. Chosen: three
+// times that of the default gains' slowest mode on stiff servos, which forgets offsets (washout,
+// 6.6). At half of it, the gains of soft servos change more; at twice, slower modes are left.
 constexpr double kSlowestDecay = 20;
 // Changes of the gains together. Chosen: the three largest ones of a gain, or one step of three
 // gains; 33 choices, of which each unstable one costs one loop.
@@ -171,10 +170,11 @@ constexpr size_t kMostSteps = 3;
 
 struct LoopGain {
   std::vector<std::pair<const char*, double DtadParams::*>> fields;
-  std::vector<double> factors;  ///< on the gain, the nearest first
+  std::vector<double> factors;  ///< factors on the gain, the one nearest to 1 first
 };
 
-// Chosen: steps of a third for the pull, which helps most on soft servos, of 2 for the others.
+// Chosen: factors of a third for the pull, which helps most on soft servos, and factors of 2 for
+// the other gains.
 const std::vector<LoopGain>& loop_gains() {
   static const std::vector<LoopGain> gains = {
       {{{"ks", &DtadParams::pull_rate}, {"kd", &DtadParams::pull_damping}},
@@ -185,7 +185,8 @@ const std::vector<LoopGain>& loop_gains() {
   return gains;
 }
 
-// Places in the lists of factors with at most kMostSteps steps, by their sum.
+// Combinations of places in the lists of factors with at most kMostSteps steps in total, ordered by
+// this number.
 std::vector<std::vector<size_t>> nearest_choices() {
   std::vector<std::vector<size_t>> all = {{}};
   for (const LoopGain& gain : loop_gains()) {
@@ -210,12 +211,12 @@ std::optional<DtadParams> nearest_stable_gains(const std::vector<LoopModel>& loo
                                                const DtadParams& params) {
   std::optional<DtadParams> best;
   double quickest = 0;
-  size_t worst = 0;  // the loop in which the choice before was unstable, which is looked at first
+  size_t worst = 0;  // the loop in which the previous choice was unstable; it is examined first
   for (const std::vector<size_t>& places : nearest_choices()) {
     DtadParams choice = params;
     for (size_t i = 0; i < places.size(); ++i)
       for (const auto& [name, field] : loop_gains()[i].fields)
-        if (places[i] > 0)  // in whole hundredths
+        if (places[i] > 0)  // gains are rounded to whole hundredths
           choice.*field =
               std::round(100 * choice.*field * loop_gains()[i].factors[places[i]]) / 100;
     double margin = INFINITY;
@@ -250,7 +251,7 @@ std::string gains_in_words(const std::vector<std::pair<std::string, double>>& ga
   return text::join(words, ", ");
 }
 
-// What makes an unstable loop stable.
+// Finds a change of gains with which an unstable loop becomes stable.
 std::string remedy(const std::vector<LoopModel>& loops, const DtadParams& params) {
   const double low = largest_stable_ka(loops, params, params.zmp_gain);
   if (low > 1e-6)
@@ -262,7 +263,7 @@ std::string remedy(const std::vector<LoopModel>& loops, const DtadParams& params
          "because the servos are too soft for this robot: use stiffer servos";
 }
 
-/// Empty when stable.
+/// Empty if the loop is stable.
 std::string growth(const std::vector<LoopModel>& loops, const DtadParams& params) {
   const WeakestLoop weakest = weakest_loop(loops, params);
   if (weakest.analysis.stable) return {};

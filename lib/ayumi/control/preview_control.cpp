@@ -41,7 +41,7 @@ PreviewGains preview_gains(double tick, double effort, double horizon) {
   g.integral = K[0];
   g.state = K.tail<3>();
 
-  // Two poles are about -1, twice, the others much faster.
+  // Two poles are near -1; the other two are much faster.
   Eigen::VectorXcd poles = eigenvalues(g.A - g.B * K);
   std::sort(poles.begin(), poles.end(),
             [](const auto& a, const auto& b) { return std::norm(a) > std::norm(b); });

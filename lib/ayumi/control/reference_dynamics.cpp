@@ -74,7 +74,7 @@ std::array<Vector6d, 2> ReferenceDynamics::foot_wrenches(const CommandSample& pl
   const Vector3d f = wrench.head<3>(), n = wrench.tail<3>();
   std::array<Vector3d, 2> place;
   for (size_t s = 0; s < 2; ++s) place[s] << places[s], plan.feet[s].translation().z();
-  // Where the moment of the wrench is vertical, at the height of the soles.
+  // The point at the height of the soles about which the moment of the wrench is vertical.
   const Vector3d& base = data_.base_position;
   const double down = 0.5 * (place[0].z() + place[1].z()) - base.z();
   const Vector3d zmp =

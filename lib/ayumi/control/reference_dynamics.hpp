@@ -1,7 +1,7 @@
 #pragma once
-// What the motion of a law's reference body asks of the ground and of the servos, for laws whose
-// motion is not planned ahead: the rate of its angular momentum, which moves the ZMP, and the
-// torques that hold it. docs/theory.md, "VIIP".
+// The forces that the motion of a law's reference body needs, for laws whose motion is not planned
+// ahead: the rate of its angular momentum, which moves the ZMP, and the torques that hold it.
+// docs/theory.md, "VIIP".
 
 #include "ayumi/demand/ground_demand.hpp"
 #include "ayumi/dynamics/robot_data.hpp"
@@ -14,16 +14,16 @@ class ReferenceDynamics {
   ReferenceDynamics(const RobotModel& model, const ActuatorLimits& limits, double dt);
 
   /// The reference body at `state`, anchored on the sole of `anchor`, has moved by the joint rates
-  /// `dtheta` [rad/s] in this tick. `plan`: feet and support. `places`: where the ZMP is when one
-  /// foot alone carries the robot, by Side, plan frame [m].
+  /// `dtheta` [rad/s] in this tick. `plan` contains feet and support. `places` are the places of
+  /// the ZMP when one foot alone carries the robot, by Side, plan frame [m].
   void update(const RobotState& state, Side anchor, const Eigen::VectorXd& dtheta,
               const CommandSample& plan, const std::array<Eigen::Vector2d, 2>& places);
 
-  /// Of the angular momentum about the COG [N m], filtered.
+  /// Rate of the angular momentum about the COG [N m], filtered.
   const Eigen::Vector3d& momentum_rate() const { return momentum_rate_; }
 
-  /// tau / kp by dof [rad]: by how much a servo target must lie beyond the posture so that the
-  /// joint does not sag. Zero before the first two ticks.
+  /// tau / kp by dof [rad]: if the servo target is ahead of the posture by this angle, the joint
+  /// does not sag. Zero before the first two ticks.
   const Eigen::VectorXd& lead() const { return lead_; }
 
  private:

@@ -31,7 +31,8 @@ namespace {
 // Step of the differences [m, rad]. Chosen: the root of the rounding error of a double, times 10.
 constexpr double kStep = 1e-6;
 
-// Inverse weight of the base against a joint, which follows freely. Definition: large.
+// Inverse weight of the base relative to that of a joint. The base follows freely. Definition:
+// large.
 constexpr double kFreeBase = 1e3;
 
 // Time for which a walking robot stands on one foot, times omega. Chosen: that of a step of VIIP.
@@ -45,10 +46,10 @@ constexpr double kRidge = 1e-12;
 
 struct Spring {
   int body = 0;
-  Vector3d place, rest;  // body frame; at rest in the world [m]
-  double stiffness = 0;  // [N/m]
-  double damping = 0;    // [N s/m]
-  double load = 0;       // that it carries [N]
+  Vector3d place, rest;  // place in the body frame, and in the world when the robot is at rest [m]
+  double stiffness = 0;  // stiffness [N/m]
+  double damping = 0;    // damping [N s/m]
+  double load = 0;       // load that the point carries [N]
 };
 
 struct Stance {
@@ -84,7 +85,7 @@ struct Stance {
     return body_jacobian(model, data, s.body, data.pose(s.body) * s.place).topRows(3);
   }
 
-  // Generalised force of gravity, soles and servos at a configuration at rest.
+  // Generalised force of gravity, soles and servos in a configuration at rest.
   VectorXd force(const RobotState& at) {
     VectorXd q = -bias_force(model, at, data);
     for (const Spring& s : springs) {
@@ -141,7 +142,8 @@ struct Stance {
     return M;
   }
 
-  // Joint rates per COG velocity along an axis, both feet and the trunk's attitude held.
+  // Joint rates for a unit velocity of the COG along an axis, with both feet and the trunk's
+  // attitude held.
   VectorXd joints_per_cog(int axis) {
     const Index n = model.velocity_count();
     MatrixXd J(18, n);
@@ -165,8 +167,9 @@ struct Stance {
   }
 };
 
-// Continuous to a tick, the inputs held. Rates at the end of the tick, as the plant integrates:
-// this damps an oscillation of w [rad/s] by w^2 tick / 2 [1/s], 3 /s at 12 Hz and 1 ms.
+// Converts the continuous system to ticks with constant inputs. Rates are taken at the end of the
+// tick, as the plant integrates: this damps an oscillation of w [rad/s] by w^2 tick / 2 [1/s], 3 /s
+// at 12 Hz and 1 ms.
 void discretize(const MatrixXd& motion, const MatrixX2d& input, LoopModel& loop) {
   const Index n = motion.rows();
   const MatrixXd one = MatrixXd::Identity(n, n);

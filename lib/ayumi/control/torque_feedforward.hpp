@@ -1,8 +1,8 @@
 #pragma once
-// What the servos must receive before anything is measured, beside the velocity feedforward of
-// motion/servo_feedforward. A position servo gives torque only where it is off its target,
-// kp (target - theta) + kd (dtarget - dtheta) = tau at best, so that a posture that is sent as it
-// is sags under the weight by tau / kp.
+// The torque part of the servo targets, which is known before anything is measured. It is added to
+// the velocity feedforward of motion/servo_feedforward. A position servo gives torque only if it is
+// off its target, kp (target - theta) + kd (dtarget - dtheta) = tau at best, so that a posture that
+// is sent as it is sags under the weight by tau / kp.
 
 #include <algorithm>
 
@@ -18,7 +18,7 @@ namespace ayumi {
 Eigen::MatrixXd torque_feedforward(const RobotModel& model, const ActuatorLimits& limits,
                                    const CommandSeries& series);
 
-/// The column of sample k; the last column holds after the end.
+/// The column of sample k. After the last sample, the last column.
 inline auto lead_at(const Eigen::MatrixXd& torque_lead, long k) {
   return torque_lead.col(std::min<Eigen::Index>(k, torque_lead.cols() - 1));
 }

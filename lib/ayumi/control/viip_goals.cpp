@@ -27,20 +27,20 @@ using Eigen::Vector3d;
 
 namespace {
 
-// A COG this near to a goal has reached it [m]. Chosen: half of the 2 mm to which a displacement is
-// to settle. Half: low goal, possible -66.4 to -65.8 mm; twice: -67.6 mm.
+// A goal counts as reached if the COG is within this distance [m]. Chosen: half of the 2 mm to
+// which a displacement is to settle. Half: low goal, possible -66.4 to -65.8 mm; twice: -67.6 mm.
 constexpr double kGoalReached = 0.001;
 
-// The reference is led to a goal in ticks of this length [s], at most so many. Chosen: 6 s, several
-// times what the slowest displacement takes. No measured case changes from half to twice
-// (constants.md).
+// Length of the ticks in which the reference is moved to a goal [s], and their largest number.
+// Chosen: 6 s, several times what the slowest displacement takes. No measured case changes from
+// half to twice (constants.md).
 constexpr double kLeadTick = 0.004;
 // No measured case changes from half to twice (constants.md).
 constexpr int kLeadTicks = 1500;
 
-// The rest of the distance is made in this time [s], but not faster than this speed [m/s]. Chosen:
-// so slow that only position limits count. Half: low goal, possible -66.4 to -66.6 mm; twice: no
-// change.
+// Time in which the reference moves the remaining distance [s], and its largest speed [m/s].
+// Chosen: so slow that only position limits count. Half: low goal, possible -66.4 to -66.6 mm;
+// twice: no change.
 constexpr double kLeadTime = 0.1;
 // No measured case changes from half to twice (constants.md).
 constexpr double kLeadSpeed = 0.1;
@@ -53,8 +53,8 @@ constexpr double kLowestShare = 0.3;
 // goal. Half: far goal, possible 46.5 to 45.0 mm; twice: low goal, possible -66.4 to -66.6 mm.
 constexpr int kHalvings = 10;
 
-// Steps of the keyed walk that is judged in the place of a goal. Chosen: a longer walk repeats
-// itself. No measured case changes from half to twice (constants.md).
+// Number of steps of the keyed walk that is judged in place of a goal. Chosen: a longer walk
+// repeats itself. No measured case changes from half to twice (constants.md).
 constexpr int kMostKeyedSteps = 6;
 
 // Largest turn in one step [rad]: 20 deg. Chosen: soles beside each other must not meet. Half:
@@ -95,9 +95,9 @@ std::string in_millimetres(const Vector3d& d) {
          text::fixed(1e3 * d.z(), 1) + " mm";
 }
 
-/// How far the resolution is from a COG, and the joint that stops it.
+/// The distance of the resolution from a COG, and the joint that stops it.
 struct Attempt {
-  double miss = 0;  ///< [m]
+  double miss = 0;  ///< distance from the wanted COG [m]
   std::string joint;
 };
 
@@ -108,7 +108,8 @@ bool in_a_leg(const RobotModel& model, int dof) {
   return false;
 }
 
-// The reference posture led to the goal as VIIP leads it, but so slowly that only limits count.
+// The posture of the reference after it was moved to the goal as VIIP moves it, but so slowly that
+// only position limits matter.
 Attempt lead_to(const RobotModel& model, const CommandSample& held, const Vector3d& goal) {
   CommandSample wanted = held;
   wanted.state.dtheta.setZero();
@@ -134,7 +135,7 @@ Attempt lead_to(const RobotModel& model, const CommandSample& held, const Vector
   return attempt;
 }
 
-// What keeps the robot from standing displaced; "" when it can.
+// The reason why the robot cannot stand displaced; "" if it can.
 std::string obstacle(const RobotModel& model, const CommandSample& held, const ViipParams& params,
                      const Vector3d& displacement) {
   const double yaw = matrix_to_rpy(held.feet[0].linear()).z();
@@ -156,7 +157,7 @@ std::string obstacle(const RobotModel& model, const CommandSample& held, const V
          (attempt.joint.empty() ? "" : ", because " + attempt.joint + " is at its limit there");
 }
 
-// The largest share of a goal, from 0 to 1, that meets no obstacle.
+// The largest share of a goal, from 0 to 1, that the robot can reach.
 double possible_share(const std::function<std::string(double)>& obstacle_of) {
   double possible = 0, not_possible = 1;
   if (obstacle_of(0).empty())
@@ -183,14 +184,14 @@ void require_reachable(const RobotModel& model, const CommandSample& held, const
                 : std::string("not even the posture without a displacement is possible")));
 }
 
-/// A velocity of the COG, from where, and for how long [m], [s].
+/// A velocity of the COG, with the place where it begins and its duration [m], [s].
 struct CogPath {
   Vector3d from, velocity;
   double time = 0;
 };
 
-// The displacement that the goals up to a span ask for at its begin: VIIP goes on from it as long
-// as it keeps the feet and the robot.
+// The displacement that the goals before a span ask for. VIIP continues from this displacement as
+// long as the feet and the robot stay.
 CogPath cog_path(const CommandSeries& series, const ViipSpan& span) {
   CogPath path = {Vector3d::Zero(), Vector3d::Zero(), 0};
   long end = 0;
@@ -283,7 +284,7 @@ std::vector<KeyedGoal> keyed_goals(const RobotModel& model, const CommandSeries&
         if (cog->displacement.norm() == 0) continue;
         keyed.place = "VIIP displacement" + at;
         require_reachable(model, held, params, "", *cog);
-        continue;  // slow, from rest to rest: the posture at its end is all there is to judge
+        continue;  // slow and from rest to rest: only the posture at its end counts
       } else if (std::holds_alternative<CogVelocityGoal>(span.goal)) {
         keyed.place = "VIIP velocity" + at;
         require_reachable(model, held, params, "", cog_path(series, span));

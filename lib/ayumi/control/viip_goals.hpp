@@ -1,5 +1,6 @@
 #pragma once
-// Goals of VIIP as motions the check can judge, and the goals that a robot cannot reach at all.
+// Makes motions that the check can judge from goals of VIIP, and refuses goals that a robot cannot
+// reach at all.
 
 #include <vector>
 
@@ -8,12 +9,13 @@
 
 namespace ayumi {
 
-/// Of every goal of the series that moves the robot.
+/// Equivalent motions of all goals of the series that move the robot.
 std::vector<KeyedGoal> keyed_goals(const RobotModel& model, const CommandSeries& series,
                                    const ControllerSpec& controller);
 
 /// Throws Error(bad_pattern) naming the goal, the value and how much is possible, for a COG that
-/// would leave the support of the feet or the reach of the legs, and for steps beyond the legs.
+/// would leave the support of the feet or the reach of the legs, and for steps that are too long
+/// for the legs.
 void require_reachable_goals(const RobotModel& model, const CommandSeries& series,
                              const ControllerSpec& controller);
 

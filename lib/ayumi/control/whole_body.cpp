@@ -35,18 +35,18 @@ namespace {
 // 8; twice: 6.
 constexpr double kSoftness = 0.003;
 
-// Largest residual of a task that counts as done [m/s]: 2 um per tick of 1 ms. Chosen: what the
-// damping leaves of a task with bent knees is below it. No measured case changes from half to twice
-// (constants.md).
+// Largest residual of a task that counts as done [m/s]: 2 um per tick of 1 ms. Chosen: with bent
+// knees, the residual that the damping leaves is smaller. No measured case changes from half to
+// twice (constants.md).
 constexpr double kDone = 0.002;
 
 // How often joints that reach a position limit are fixed and the rest solved again. Chosen: both
-// knees and both ankles may come in one after the other. No measured case changes from half to
-// twice (constants.md).
+// knees and both ankles may reach their limits one after the other. No measured case changes from
+// half to twice (constants.md).
 constexpr int kLimitPasses = 4;
 
-// Speed limit of the reference COG, times omega z: 1.2 m/s on HOAP-1. Chosen: a DCM that far off
-// has left every support; without a limit an integrator could run away. No measured case changes
+// Speed limit of the reference COG, times omega z: 1.2 m/s on HOAP-1. Chosen: at this speed the DCM
+// is outside every support; without a limit an integrator could run away. No measured case changes
 // from half to twice (constants.md).
 constexpr double kCogSpeedLimit = 0.8;
 
@@ -84,9 +84,10 @@ Vector3d turn_between(const Matrix3d& from, const Matrix3d& to) {
   return log_rotation(Eigen::Quaterniond(Matrix3d(to * from.transpose())));
 }
 
-/// Adds what a unit rate of every joint from the root to `body` gives a point at p (from the base
-/// origin) on it, times `sign`: linear velocity from row `linear` on where that is not negative,
-/// angular velocity times `length` from row `angular` on.
+/// Adds the contribution of every joint from the root to `body`, at unit rate and times `sign`, to
+/// the velocity of a point at p (from the base origin) on this body. The linear velocity is added
+/// from row `linear` on, unless it is negative. The angular velocity times `length` is added from
+/// row `angular` on.
 void add_chain(const RobotModel& model, const RobotData& data, int body, const Vector3d& p,
                double sign, int linear, int angular, double length, StackedTask& task) {
   for (int i = body; i > 0; i = model.bodies()[i].parent) {
@@ -100,8 +101,8 @@ void add_chain(const RobotModel& model, const RobotData& data, int body, const V
   }
 }
 
-/// Joint rates for the given task; a joint that would leave its position limits is held there and
-/// the rest solved again, a joint too fast slows all down.
+/// Joint rates for the given task. A joint that would leave its position limits is held there, and
+/// the rest is solved again. A joint that is too fast slows down the whole motion.
 void within_limits(const RobotModel& model, const ActuatorLimits& limits,
                    const RobotState& reference, const StackedTask& given, const VectorXd& weight,
                    double dt, const ResolverOptions& options, ResolverWork& work,
@@ -151,7 +152,7 @@ void soften(StackedTask& task, int first, int count) {
   task.u.segment(first, count) *= kSoftness;
 }
 
-/// What the rates leave of the task; softened rows count as little as they weigh.
+/// Residual of the task. The rows of a task that gives way count only with their reduced weight.
 StackedTask::Vector left_of(const StackedTask& task, const VectorXd& dtheta) {
   StackedTask::Vector done = StackedTask::Vector::Zero();
   kernels::best_kernels().multiply_add(task.J.data(), StackedTask::kRows,
@@ -162,7 +163,7 @@ StackedTask::Vector left_of(const StackedTask& task, const VectorXd& dtheta) {
 
 }  // namespace
 
-// (23) and (29).
+// Equations (23) and (29).
 void solve_stacked_task(const StackedTask& task, const VectorXd& w, const VectorXd& bias,
                         double damping, StackedTask::Rows& weighted, VectorXd& x) {
   constexpr int kRows = StackedTask::kRows;
@@ -171,7 +172,7 @@ void solve_stacked_task(const StackedTask& task, const VectorXd& w, const Vector
   weighted.resize(kRows, n);
   for (int j = 0; j < n; ++j) weighted.col(j) = task.J.col(j) * (1 / w[j]);
   Eigen::Matrix<double, kRows, kRows> A;
-  // The product is symmetric, and of it only what stands on and below the diagonal is read.
+  // The product is symmetric, and only the part on and below the diagonal is read.
   for (int j = 0; j < kRows; j += 4)
     kernels.gram(weighted.data() + j, kRows, task.J.data() + j, kRows, n, kRows - j, 4,
                  A.data() + j * kRows + j, kRows);
@@ -196,7 +197,7 @@ void resolve(const RobotModel& model, const ActuatorLimits& limits, const RobotS
   const int a = static_cast<int>(anchor), f = static_cast<int>(free);
   const int stance = model.sole(anchor).body;
 
-  // Motion of the planned anchor, as the rigid motion it gives to the whole robot.
+  // The motion of the planned anchor, as a rigid motion of the whole robot.
   const Vector3d anchor_velocity =
       (next.feet[a].translation() - command.feet[a].translation()) / dt;
   const Vector3d anchor_rate = turn_between(command.feet[a].linear(), next.feet[a].linear()) / dt;
@@ -204,8 +205,8 @@ void resolve(const RobotModel& model, const ActuatorLimits& limits, const RobotS
     return anchor_velocity + anchor_rate.cross(point - command.feet[a].translation());
   };
 
-  // COG: J_G of (13) and ref dp_G. All rows are relative to the anchored sole, whose own chain
-  // counts backwards.
+  // COG: J_G of (13) and ref dp_G. All rows are relative to the anchored sole, so the joints of its
+  // own leg count with the opposite sign.
   StackedTask& task = work.task;
   StackedTask::Vector& u = task.u;
   cog_jacobian(model, data, anchor, work.cog);
@@ -214,7 +215,7 @@ void resolve(const RobotModel& model, const ActuatorLimits& limits, const RobotS
   task.J.bottomRows<9>().setZero();
   u.head<3>() = cog_velocity - carried(data.cog);
 
-  // The other foot.
+  // Rows of the other foot.
   const Isometry3d foot = sole_pose(model, data, free);
   const double length = options.angular_length;
   const Vector3d foot_point = foot.translation() - data.base_position;
@@ -245,7 +246,7 @@ void resolve(const RobotModel& model, const ActuatorLimits& limits, const RobotS
   u.tail<3>() = length * (commanded_rate - anchor_rate +
                           options.trunk_rate * turn_between(data.rotation[trunk], commanded));
 
-  // (22): the commanded rates, zero in (28), and the pull towards the posture.
+  // (22): the commanded rates, which are zero in (28), and the pull towards the posture.
   work.bias = command.state.dtheta + options.posture_rate * (command.state.theta - reference.theta);
   if (options.turn.joints.size() == n)
     work.bias += options.turn.joint_rates + options.posture_rate * options.turn.joints;
@@ -260,7 +261,7 @@ void resolve(const RobotModel& model, const ActuatorLimits& limits, const RobotS
     if (yielding.trunk) soften(work.softened, 9, 3);
     Resolution& attempt = work.attempt;
     within_limits(model, limits, reference, asked, weight, dt, options, work, attempt);
-    if (yielding.height) {  // keep the joints that made it yield
+    if (yielding.height) {  // keep the joints that made the task give way
       attempt.held.insert(attempt.held.end(), result.held.begin(), result.held.end());
       std::sort(attempt.held.begin(), attempt.held.end());
       attempt.held.erase(std::unique(attempt.held.begin(), attempt.held.end()), attempt.held.end());
@@ -428,7 +429,7 @@ void ReferenceBody::fly(const Vector3d& tilt, const CommandSample& command,
 
 void ReferenceBody::send(const VectorXd& dtheta, const CommandSample& command,
                          const CommandSample& next, const VectorXd& offsets, ControlOutput& out) {
-  // The posture of this tick with its base, and the rates that lead to the next.
+  // The posture of this tick with its base, and the rates that lead to the next posture.
   reference_.dtheta = dtheta;
   out.reference = reference_;
   reference_.theta += dt_ * dtheta;

@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-// A shape where its body is.
+// A shape at the place of its body.
 struct PlacedCore {
   const Collider* collider;
   Isometry3d shape, core;
@@ -56,7 +56,7 @@ bool is_box(const ConvexCore& core) {
   return core.points.empty() && core.disc == 0 && core.half.minCoeff() > 0;
 }
 
-// Distance of an end of one shape from the other shape; `on_a` is on the other.
+// Distance of an end of one shape from the other shape. `on_a` is on the other shape.
 Closest end_from(const PlacedCore& other, const PlacedCore& own, const Vector3d& end) {
   Closest c;
   if (own.set().disc == 0 && is_box(other.set())) {
@@ -125,7 +125,7 @@ Closest point_from_box(const Vector3d& point, const Isometry3d& pose, const Vect
   double distance = normal.norm();
   if (distance > 0) {
     normal /= distance;
-  } else {  // inside: out through the nearest face
+  } else {  // inside: the point leaves through the nearest face
     int axis = 0;
     distance = -(half - p.cwiseAbs()).minCoeff(&axis);
     normal = (p[axis] < 0 ? -1 : 1) * Vector3d::Unit(axis);

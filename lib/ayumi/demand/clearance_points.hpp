@@ -15,11 +15,11 @@
 
 namespace ayumi {
 
-/// A shape of each body of a pair.
+/// One shape of each body of a pair.
 struct ShapePair {
   int pair = 0;        ///< index of the pair of bodies
   int a = 0, b = 0;    ///< index of the shape of the first and of the second body
-  bool edges = false;  ///< the clearance itself is a row too
+  bool edges = false;  ///< whether the clearance itself is a row too
 };
 
 /// The shapes of a pair of bodies.

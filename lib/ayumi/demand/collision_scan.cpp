@@ -11,9 +11,9 @@ namespace ayumi {
 
 namespace {
 
-// Period at which every pair of bodies is looked at [s]. Chosen: in that time bodies that approach
-// each other at 0.5 m/s come 10 mm nearer, which is what limits/clearance.cpp adds to its
-// tolerance. Half: less than 5 %; twice: grip, clearance 12.2 to 13.5 mm.
+// Period at which the distance of every pair of bodies is computed [s]. Chosen: in that time bodies
+// that approach each other at 0.5 m/s come 10 mm nearer, which is what limits/clearance.cpp adds to
+// its tolerance. Half: less than 5 %; twice: grip, clearance 12.2 to 13.5 mm.
 constexpr double kCoarsePeriod = 0.020;
 
 std::vector<int> coarse_samples(const CommandSeries& series) {
@@ -80,8 +80,8 @@ class ClearanceScan {
   }
 
  private:
-  // Way of the bodies relative to each other within which they are one rigid part [m]. Chosen:
-  // above the rounding of poses, a thousandth of what any tolerance sees.
+  // Movement of two bodies relative to each other below which they count as one rigid part [m].
+  // Chosen: above the rounding of poses, and a thousandth of the smallest tolerance.
   static constexpr double kStill = 1e-9;
 
   int pairs() const { return static_cast<int>(collisions_.pairs().size()); }
@@ -99,7 +99,8 @@ class ClearanceScan {
       for (int p = 0; p < pairs(); ++p) way_(c, p) = way_of(p, static_cast<size_t>(c));
   }
 
-  // By how much any point of the second body moves, seen from the first, to the next coarse sample.
+  // Largest movement of any point of the second body, seen from the first body, until the next
+  // coarse sample.
   double way_of(int pair, size_t c) const {
     const CollisionModel::Pair& bodies = collisions_.pairs()[pair];
     const Eigen::Isometry3d before =
@@ -114,8 +115,8 @@ class ClearanceScan {
     return (after * sphere.center - before * sphere.center).norm() + angle * sphere.radius;
   }
 
-  // Way between two samples beside a coarse one: that of its neighbours too, because a body may
-  // turn back in between.
+  // Movement between two samples beside a coarse sample. The movement of its neighbours counts too,
+  // because a body may turn back in between.
   double way_around(int c, int pair) const {
     const int first = std::max(c - 1, 0),
               last = std::min<int>(c + 1, static_cast<int>(way_.rows()) - 1);
@@ -124,7 +125,7 @@ class ClearanceScan {
     return most;
   }
 
-  /// What is below this has to be exact.
+  /// Clearances below this value must be exact.
   double wanted() const { return std::max(exact_, least_); }
 
   void measure_coarsely() {
@@ -142,7 +143,7 @@ class ClearanceScan {
           continue;
         }
         here -= moved;
-        // Its neighbours have to be exact too, where it may be the least.
+        // The neighbours of the smallest clearance must be exact too.
         const double reach = n > 1 ? 2 * way_around(std::min(c, n - 2), p) : 0;
         known[static_cast<size_t>(p)] = c == 0 || here - reach < wanted();
         if (known[static_cast<size_t>(p)]) {
@@ -154,7 +155,7 @@ class ClearanceScan {
     }
   }
 
-  // Whether a pair may have, between two coarse samples, a clearance that has to be known.
+  // Whether a pair may have a clearance between two coarse samples that must be known.
   bool hides(int c, int p) const {
     const int n = static_cast<int>(coarse_.size());
     const double here = clearance_(c, p), next = clearance_(c + 1, p);
@@ -189,7 +190,7 @@ class ClearanceScan {
   std::vector<int> coarse_;
   std::vector<BodySphere> spheres_;
   RobotData data_;
-  std::vector<std::vector<Eigen::Isometry3d>> poses_;  // by coarse sample and body
+  std::vector<std::vector<Eigen::Isometry3d>> poses_;  // poses by coarse sample and body
   Eigen::MatrixXd way_, clearance_;                    // by coarse sample and pair [m]
   double least_ = std::numeric_limits<double>::infinity();
   std::vector<std::vector<std::pair<int, double>>> fine_;  // by pair: sample and clearance

@@ -50,8 +50,8 @@ ContactPlan contact_plan(const CommandSeries& series) {
 
 RunOn swing_run_on(const RobotModel& model, const CommandSeries& series, Side side,
                    const ContactInterval& contact, bool lands) {
-  // Share of the height at the edge below which the sole has as good as come to its place. Chosen:
-  // a swing that ends as (1 - s)^3 has a quarter of its remaining time left there. No measured case
+  // Share of the height at the edge below which the sole counts as being in its place. Chosen: a
+  // swing that ends as (1 - s)^3 has a quarter of its remaining time left there. No measured case
   // changes from half to twice (constants.md).
   constexpr double kArrived = 0.02;
   // Share of the height at the edge by which the sole comes down without a halt when it is on its

@@ -15,7 +15,8 @@ namespace ayumi {
 struct ContactInterval {
   int first = 0, last = 0;
   bool contact = false;
-  Eigen::Isometry3d sole = Eigen::Isometry3d::Identity();  ///< in contact: where it stands, world
+  Eigen::Isometry3d sole =
+      Eigen::Isometry3d::Identity();  ///< pose at which the foot stands while in contact, world
 };
 
 /// The whole series cut into alternating intervals, in order of time.
@@ -24,7 +25,7 @@ std::vector<ContactInterval> contact_intervals(const CommandSeries& series, Side
 /// By sample: index of its interval in contact_intervals().
 std::vector<int> interval_index(const std::vector<ContactInterval>& intervals);
 
-/// Both feet of a series, ready to be asked by sample.
+/// Contact intervals of both feet of a series, by sample.
 struct ContactPlan {
   std::array<std::vector<ContactInterval>, 2> intervals;  ///< by Side
   std::array<std::vector<int>, 2> index;                  ///< by Side, then sample
@@ -33,7 +34,7 @@ struct ContactPlan {
     const int s = static_cast<int>(side);
     return intervals[s][index[s][sample]];
   }
-  /// The support of a sample, from its intervals.
+  /// The support of a sample, according to its intervals.
   Support support(int sample) const;
 };
 ContactPlan contact_plan(const CommandSeries& series);

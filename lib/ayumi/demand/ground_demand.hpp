@@ -78,7 +78,8 @@ std::array<Vector6d, 2> foot_wrenches(const RobotModel& model, Support support,
 inline constexpr double kCoulombRate = 0.01;
 
 /// Motor torques [dof]: `force` of inverse_dynamics without what the ground gives at the feet, plus
-/// rotor inertia, viscous and Coulomb friction of the servo. `data` as inverse_dynamics left it.
+/// rotor inertia, viscous and Coulomb friction of the servo. `data` is as inverse_dynamics() left
+/// it.
 Eigen::VectorXd motor_torques(const RobotModel& model, const ActuatorLimits& actuators,
                               const RobotState& state, const Eigen::VectorXd& acceleration,
                               const Eigen::VectorXd& force,

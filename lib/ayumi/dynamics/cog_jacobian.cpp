@@ -26,7 +26,8 @@ namespace {
 // joint rates that keep both soles at rest it has no influence.
 constexpr double kSoleTurnLength = 0.2;
 
-/// Velocity of the point p (from the base origin) on what joint i moves, and turn, per unit rate.
+/// The velocity per unit rate of joint i of the point p (from the base origin) on what the joint
+/// moves, and its turn.
 struct PointRate {
   Vector3d linear, angular;
 };
@@ -46,7 +47,7 @@ MatrixXd with_joints(const MatrixXd& base) {
 /// Adds (6)(7) to the three rows of J, joint 0 in column `first`.
 void add_held_base_columns(const RobotModel& model, RobotData& data, int first, MatrixXd& J) {
   const std::vector<Body>& bodies = model.bodies();
-  // First moment of each subtree, leaves first.
+  // The first moment of each subtree, leaves first.
   for (size_t i = 0; i < bodies.size(); ++i)
     data.composite[i].moment = bodies[i].inertia.mass * data.com[i];
   const double per_mass = 1 / model.mass();
@@ -94,8 +95,8 @@ MatrixXd cog_jacobian_floating(const RobotModel& model, RobotData& data) {
   return J;
 }
 
-// With the base origin as the point of reference the base columns of J_F are inverted in closed
-// form, J_Fb = [1 -[p x]; 0 1].
+// With the base origin as the point of reference, the base columns of J_F are inverted in closed
+// form: J_Fb = [1 -[p x]; 0 1].
 MatrixXd anchored_velocity_map(const RobotModel& model, const RobotData& data, Side support) {
   const int body = model.sole(support).body, n = model.dof_count();
   const Vector3d p = data.position[static_cast<size_t>(body)];
@@ -106,7 +107,7 @@ MatrixXd anchored_velocity_map(const RobotModel& model, const RobotData& data, S
   return with_joints(base);
 }
 
-// Normal equations of min sum over the feet |v + w x p + linear|^2 + L^2 |w + angular|^2.
+// The normal equations of min sum over the feet |v + w x p + linear|^2 + L^2 |w + angular|^2.
 MatrixXd both_feet_velocity_map(const RobotModel& model, const RobotData& data) {
   constexpr double kSquare = kSoleTurnLength * kSoleTurnLength;
   Eigen::Matrix<double, 6, 6> A = Eigen::Matrix<double, 6, 6>::Zero();

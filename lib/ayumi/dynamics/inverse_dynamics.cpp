@@ -39,7 +39,7 @@ SpatialInertia body_inertia(const Body& body, const Matrix3d& R, const Vector3d&
   result.inertia = R * body.inertia.about_com * R.transpose();
   result.inertia.diagonal().array() += m * com.squaredNorm();
   result.inertia -= m * com * com.transpose();
-  // R I R^T is symmetric only up to rounding; keep the mass matrix exactly so.
+  // R I R^T is symmetric only up to rounding, but the mass matrix has to be exactly symmetric.
   result.inertia = 0.5 * (result.inertia + result.inertia.transpose()).eval();
   return result;
 }

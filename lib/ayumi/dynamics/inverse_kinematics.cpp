@@ -37,15 +37,15 @@ constexpr double kLastNewtonStep = 1e-8;
 // below the tolerances of the check.
 constexpr double kAcceptedResidual = 1e-10;
 
-// Most steps of Newton. Chosen: a few suffice near a solution, and damped steps follow.
+// Largest number of Newton steps. Chosen: a few suffice near a solution, and damped steps follow.
 constexpr int kMostNewtonSteps = 25;
 
 // Largest step of a joint in one iteration [rad]. Chosen: Newton stays on its side of a straight
 // knee.
 constexpr double kLargestJointStep = 0.3;
 
-// Weight of the COG against the feet in the damped solve. Chosen: large, so that what is out of
-// reach shows at the feet and not at the COG.
+// Weight of the COG against the feet in the damped solve. Chosen: large, so that the feet miss a
+// target that is out of reach, and not the COG.
 constexpr double kCogWeight = 100;
 
 // Weights of the trunk's attitude against the feet where legs lack joints: of the roll of legs
@@ -54,18 +54,18 @@ constexpr double kCogWeight = 100;
 // weakly that a smaller weight lets them wander.
 constexpr double kRollWeight = 1e-3, kTrunkWeight = 3e-2;
 
-// Weight of a sole in the middle of its swing against one that carries, where legs lack joints.
-// Chosen: the sole that carries then takes a hundredth of what both miss together.
+// Weight of a sole in the middle of its swing, relative to a sole that carries, where legs lack
+// joints. Chosen: the sole that carries then takes a hundredth of what both miss together.
 constexpr double kSwingingWeight = 0.1;
 
-// Step of a joint with which a solution that leaves a residual ends [rad]. Chosen: angles are then
+// Step of a joint at which the search ends if a residual remains [rad]. Chosen: angles are then
 // continuous in time to what rates at 1 kHz need.
 constexpr double kLastStep = 1e-10;
 
 // Share of an axis that lies across the trunk. Chosen: within 45 degrees.
 constexpr double kAcross = 0.7;
 
-// Room that a knee needs on its human side [rad]. Chosen: half of kStartBend; a knee with less
+// Range that a knee needs on its human side [rad]. Chosen: half of kStartBend; a knee with less
 // stays nearly straight, and its robot is built to bend the other way.
 constexpr double kStartBend = 0.3, kKneeRoom = 0.15;
 
@@ -81,7 +81,7 @@ bool contains(const std::vector<int>& list, int value) {
   return std::find(list.begin(), list.end(), value) != list.end();
 }
 
-// Joints of both legs that move each leg by a body of its own; a waist moves both by one body.
+// The joints of both legs that move each leg by a body of its own; a waist moves both by one body.
 std::vector<int> coupled_joints(const RobotModel& model) {
   const auto bodies = [&](Side side) {
     std::vector<int> chain;
@@ -209,8 +209,8 @@ void InverseKinematics::find_knees(RobotData& data) {
   }
 }
 
-// Sine of the angle between thigh and shank, positive where the knee is in front of the line from
-// hip to ankle; without a knee 0.
+// Sine of the angle between thigh and shank, positive if the knee is in front of the line from hip
+// to ankle. It is 0 without a knee.
 double InverseKinematics::knee_bend(const RobotData& data, Side side) const {
   const int s = static_cast<int>(side);
   if (knees_[s] < 0) return 0;
@@ -246,7 +246,7 @@ void InverseKinematics::bend_straight_legs(RobotData& data) {
     const auto room = [&](double w) {
       double least = room_of(knee, w);
       if (knees_[s] < 0) return least;
-      const double turn = forward_[s] * w;  // of the shank about the axis to the left
+      const double turn = forward_[s] * w;  // rotation of the shank about the axis to the left
       for (const int body : {knee_hips_[s], knee_feet_[s]}) {
         const double own = model_->bodies()[body].ratio * data.axis[body].dot(across);
         least = std::min(least, 2 * room_of(model_->bodies()[body].dof, own > 0 ? -turn : turn));
@@ -286,7 +286,8 @@ InverseKinematics::Residual InverseKinematics::residual(const PostureTarget& tar
   return e;
 }
 
-// 6 x joints: twist of the sole, written for speed (body_jacobian has all columns).
+// The twist of the sole, 6 x joints, computed faster than by body_jacobian(), which has all
+// columns.
 MatrixXd InverseKinematics::leg_jacobian(const RobotData& data, Side side,
                                          const std::vector<int>& leg) const {
   const Sole& sole = model_->sole(side);
@@ -308,7 +309,7 @@ MatrixXd InverseKinematics::leg_jacobian(const RobotData& data, Side side,
   return J;
 }
 
-// The same of a leg of six joints into the first columns of `rows`.
+// The same twist of a leg of six joints, written into the first columns of `rows`.
 void InverseKinematics::square_jacobian(const RobotData& data, Side side, SixRows& rows) const {
   const Sole& sole = model_->sole(side);
   const Vector3d p = data.position[sole.body] + data.rotation[sole.body] * sole.frame.translation();
@@ -327,7 +328,8 @@ void InverseKinematics::square_jacobian(const RobotData& data, Side side, SixRow
   }
 }
 
-// Of the COG by the six joints of a leg with the base at rest: (6)(7), for what the leg moves.
+// The COG Jacobian of the six joints of a leg with the base at rest: (6)(7) for the links that the
+// leg moves.
 Eigen::Matrix<double, 3, 6> InverseKinematics::leg_cog_jacobian(RobotData& data, Side side) const {
   const std::vector<LegBody>& leg = leg_bodies_[static_cast<int>(side)];
   for (const LegBody& moved : leg)
@@ -384,8 +386,8 @@ bool InverseKinematics::newton(const PostureTarget& target, RobotState& state, R
     }
     const Residual e = residual(target, state, data);
     error = e.largest();
-    // Even a guess within the tolerance takes one step: errors of a guess that is extrapolated from
-    // guesses would grow from sample to sample.
+    // Even a guess within the tolerance takes one step. Otherwise the errors of guesses that are
+    // extrapolated from guesses would grow from sample to sample.
     if (iteration > 0 && error <= kNewtonTolerance) break;
     if (iteration > 3 && error > 0.5 * before) {
       if (error <= kAcceptedResidual) break;
@@ -419,7 +421,7 @@ bool InverseKinematics::newton(const PostureTarget& target, RobotState& state, R
     for (int s = 0; s < 2; ++s)
       for (int i = 0; i < 6; ++i) state.theta[legs_[s][i]] += scale * dq[s][i];
   }
-  // The determinants of the posture before the last step count where that step cannot have changed
+  // The determinants of the posture before the last step are used if this step cannot have changed
   // their signs.
   const double change = largest_bend_rate_ * longest;
   if (!(std::min(std::abs(legs_bend[0]), std::abs(legs_bend[1])) > change)) {
@@ -478,7 +480,7 @@ void InverseKinematics::damped(const PostureTarget& target, RobotState& state,
         J.block<3, 3>(6 * s + 3, 3) = firm[s] * Eigen::Matrix3d::Identity();
       }
       J.block<3, 3>(12, 3) = -kCogWeight * skew(data.cog - data.base_position);
-      // d log(A exp(-d)) = -(1 + [e]/2 + [e]^2/12 + ...) d at e = log A
+      // Here d log(A exp(-d)) = -(1 + [e]/2 + [e]^2/12 + ...) d at e = log A.
       const Eigen::Matrix3d turn = skew(e.trunk);
       J.block<3, 3>(15, 3) = trunk * (Eigen::Matrix3d::Identity() + turn / 2 + turn * turn / 12);
     }
@@ -504,7 +506,7 @@ void InverseKinematics::damped(const PostureTarget& target, RobotState& state,
     limit(trial.theta);
     const Residual next = residual(target, trial, data);
     const double gain = r.squaredNorm() - stack(next).squaredNorm();
-    // Where soles cannot meet their places, the residual stays and the steps vanish.
+    // If soles cannot reach their places, a residual remains and the steps vanish.
     const bool ends = lacking_ && longest < kLastStep;
     if (gain > 0) {
       state = trial;
@@ -544,8 +546,8 @@ PostureSolution InverseKinematics::solve(const PostureTarget& target, RobotState
     solution.error = e.largest();
     solution.lean = e.trunk.norm();
     solution.reached = e.cog.cwiseAbs().maxCoeff() <= tolerance(1);
-    // Of each sole: its error in units of what is allowed, and how far it is turned [rad]. What is
-    // allowed is the same number of metres and of radians.
+    // For each sole: its error in units of the allowed error, and its turn [rad]. The allowed error
+    // is the same number of metres and of radians.
     std::array<double, 2> share, turned;
     for (int s = 0; s < 2; ++s) {
       const double allowed = tolerance(target.hold[s]);

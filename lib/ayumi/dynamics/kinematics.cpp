@@ -91,7 +91,7 @@ namespace {
 /// Joints whose angles go through the kernel at once. Definition: a workspace, no limit.
 constexpr size_t kJointsAtOnce = 8;
 
-/// Attitude (in link axes) and origin of a body in the base, by its own chain alone.
+/// The attitude (in link axes) and origin of a body in the base frame, by its own chain alone.
 void carry_to(const RobotState& state, const RobotData& data, int body, Matrix3d& R, Vector3d& p) {
   std::array<int, kJointsAtOnce> chain;  // the last joints, from the body inwards
   std::array<double, kJointsAtOnce> q, s, c;
@@ -135,7 +135,9 @@ void anchor_base(const RobotModel& model, Side support, const Isometry3d& sole, 
   Vector3d p;
   carry_to(state, data, own.body, R, p);
   const kernels::Link& link = data.links[static_cast<size_t>(own.body)];
-  if (link.skewed) R = (R * Eigen::Map<const Matrix3d>(link.C)).eval();  // by rows: transposed
+  if (link.skewed)
+    R = (R * Eigen::Map<const Matrix3d>(link.C))
+            .eval();  // transposed, because it is stored by rows
   body.linear() = R;
   body.translation() = p;
   const Isometry3d base = sole * (body * own.frame).inverse();

@@ -15,17 +15,17 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-// Rounds of the iteration. Chosen: a quadratic iteration needs ten; beside limits and stretched
-// arms it takes more.
+// Largest number of iterations. Chosen: a quadratic iteration needs ten; beside limits and
+// stretched arms it takes more.
 constexpr int kRounds = 200;
-// A point that is this near its place is there [m]. Chosen: a hundredth of a millimetre, which no
-// hand has.
+// A point has reached its place if it is this near [m]. Chosen: a hundredth of a millimetre; no
+// hand is more accurate.
 constexpr double kThere = 1e-5;
 // Largest change of a joint in a round [rad, m]. Chosen: so that the linear model holds.
 constexpr double kLongestStep = 0.2;
 
-// What hangs on a body reaches less than this share of its limb's length: then these are parts of
-// its end. Chosen: fingers reach a fifth of an arm, and arms twice as far as a chest.
+// If the parts on a body reach less than this share of its limb's length, they belong to the end of
+// the limb. Chosen: fingers reach a fifth of an arm, and arms twice as far as a chest.
 constexpr double kPartOfLimb = 0.5;
 
 }  // namespace
@@ -40,7 +40,7 @@ std::vector<int> limb_ends(const RobotModel& model) {
     carried[parent] =
         std::max(carried[parent], carried[b] + bodies[b].placement.translation().norm());
   }
-  std::vector<double> limb(bodies.size(), 0);  // from where it branches off [m]
+  std::vector<double> limb(bodies.size(), 0);  // length from the place where it branches off [m]
   std::vector<bool> beyond(bodies.size(), false);
   std::vector<int> ends;
   for (size_t b = 1; b < bodies.size(); ++b) {
@@ -58,7 +58,7 @@ std::vector<int> limb_ends(const RobotModel& model) {
 
 std::vector<int> limb_dofs(const RobotModel& model, int body) {
   const auto& bodies = model.bodies();
-  std::vector<int> ends_above(bodies.size(), 0);  // ends that a body carries, itself included
+  std::vector<int> ends_above(bodies.size(), 0);  // number of ends that a body carries, with itself
   for (const int end : limb_ends(model)) ++ends_above[static_cast<size_t>(end)];
   for (size_t b = bodies.size(); b-- > 1;)
     ends_above[static_cast<size_t>(bodies[b].parent)] += ends_above[b];
@@ -74,10 +74,11 @@ std::vector<int> limb_dofs(const RobotModel& model, int body) {
 
 namespace {
 
-// A limb whose end is this near the middle plane at rest is no arm [m]. Chosen: necks are in it.
+// A limb whose end is at rest this near to the middle plane is not an arm [m]. Chosen: necks are in
+// it.
 constexpr double kMiddle = 0.02;
 
-// Ends of limbs that are no feet, and y of their joints at rest [m].
+// Ends of limbs that are not feet, and the y of their joints at rest [m].
 std::vector<std::pair<int, Vector3d>> free_ends(const RobotModel& model) {
   RobotData data(model);
   update_positions(model, model.rest_state(), data);
@@ -173,7 +174,7 @@ ReachSolution reach(const RobotModel& model, const RobotState& state, int body,
       const double wanted = now.theta[dofs[i]] + step[static_cast<Eigen::Index>(i)];
       const double kept = std::min(room, 0.5 * (dof.upper - dof.lower));
       now.theta[dofs[i]] = std::clamp(wanted, dof.lower + kept, dof.upper - kept);
-      // A joint at its limit is left out, so that the others make up for it.
+      // A joint at its limit is left out, so that the other joints do its part.
       if (now.theta[dofs[i]] != wanted && !held[i]) held[i] = blocked = true;
     }
     at = there();
@@ -183,7 +184,7 @@ ReachSolution reach(const RobotModel& model, const RobotState& state, int body,
       damping = std::max(1e-9, damping / 4);
       if (!blocked) std::fill(held.begin(), held.end(), false);
     } else if (!blocked) {
-      if (damping > 1) break;  // no step brings it nearer
+      if (damping > 1) break;  // no step brings the point nearer
       damping *= 8;
       now.theta = best.theta;
       at = there();

@@ -1,6 +1,6 @@
 #pragma once
-// A point of a link brought to a place by some joints alone, as a hand by the joints of its arm;
-// the base and all other joints stay.
+// Moves a point of a link to a place by means of some joints only, such as a hand by the joints of
+// its arm. The base and all other joints stay.
 
 #include <vector>
 
@@ -10,7 +10,7 @@ namespace ayumi {
 
 struct ReachSolution {
   Eigen::VectorXd theta;  ///< all joints; those that may move are within their limits [rad, m]
-  double missing = 0;     ///< of the point from its place [m]
+  double missing = 0;     ///< distance of the point from its place [m]
 };
 
 /// Bodies at which the limbs end: those that carry nothing, and those whose parts, such as fingers,
@@ -28,11 +28,11 @@ int hand_body(const RobotModel& model, Side side);
 /// The highest end of a limb in the middle plane, above the trunk; -1: the robot has no neck.
 int head_body(const RobotModel& model);
 
-/// The way that a head looks: forward where all joints are 0 (frame of the body).
+/// The direction in which a head looks: forward when all joints are 0 (frame of the body).
 Eigen::Vector3d gaze_axis(const RobotModel& model, int head);
 
-/// The far end of a body as seen from its joint: the middle of that side of the box around its
-/// collision shapes, or twice as far as its centre of mass where it has none (body frame).
+/// The far end of a body as seen from its joint: the middle of the far side of the box around its
+/// collision shapes. If it has no shape, the point twice as far as its centre of mass (body frame).
 Eigen::Vector3d limb_point(const RobotModel& model, int body);
 
 /// Damped least squares from the posture of `state`: of all postures near it, one that brings

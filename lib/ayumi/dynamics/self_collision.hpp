@@ -1,5 +1,5 @@
 #pragma once
-// Self-collision: which pairs of bodies are worth looking at, and how near they come.
+// Self-collision: the pairs of bodies that are examined, and their distances.
 
 #include <vector>
 

@@ -19,11 +19,11 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// 1 - cosine of the angle up to which a face is square to the line of contact. Chosen: 0.26 deg,
-/// so that a body that rests on a face with rounding and compliance keeps its patch.
+/// Up to this angle, as 1 - cosine, a face is square to the line of contact. Chosen: 0.26 deg, so
+/// that a body that rests on a face with rounding and compliance keeps its patch.
 constexpr double kSquare = 1e-5;
-/// Distance of two corners below which they are one [m]. Chosen: 1 um, far below any edge and far
-/// above rounding.
+/// Two corners nearer than this are one [m]. Chosen: 1 um, far below any edge and far above
+/// rounding.
 constexpr double kSame = 1e-6;
 // Definition: parts of the ids of points.
 constexpr int kOther = 100, kCrossing = 200, kNearest = 1000, kSwapped = 2000;
@@ -124,7 +124,7 @@ Feature feature(const Collider& collider, const Isometry3d& core_pose, const Vec
 
 double cross_seen(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// Corners in the plane of the reference face, anticlockwise seen from outside.
+/// The corners in the plane of the reference face, anticlockwise seen from outside.
 struct Outline {
   int count = 0;
   std::array<Vector2d, 16> corner;
@@ -178,7 +178,7 @@ class Over {
     return result;
   }
 
-  /// Height of the other shape's face or edge over the reference.
+  /// The height of the other shape's face or edge over the reference face.
   double height(const Vector2d& p) const {
     const Vector3d at = origin_ + p.x() * x_ + p.y() * y_;
     if (other_.face()) return other_.normal.dot(other_.corner[0] - at) / other_.normal.dot(up_);

@@ -9,7 +9,7 @@
 namespace ayumi {
 
 struct PatchPoint {
-  int id = 0;                ///< the same while the same corners and edges touch
+  int id = 0;                ///< stays the same while the same corners and edges touch
   Eigen::Vector3d position;  ///< world [m]
   double gap = 0;            ///< along the normal, negative inside [m]
   bool corner_of_b = false;  ///< a corner or end of b on a face of a

@@ -22,13 +22,13 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// Distance below which the sets overlap [m]. Chosen: above the rounding of double precision at
+/// Below this distance the sets overlap [m]. Chosen: above the rounding of double precision at
 /// lengths of 1 m (2e-16 m), below every tolerance of a length.
 constexpr double kTouch = 1e-10;
 /// Relative error of the squared distance at which GJK ends. Chosen: above the rounding of its
 /// sums.
 constexpr double kGjkTolerance = 1e-12;
-/// Steps of GJK. Chosen: reached only where rounding stops the progress.
+/// Most steps of GJK. Chosen: reached only where rounding stops the progress.
 constexpr int kGjkSteps = 200;
 
 double sign(double x) { return x < 0 ? -1 : 1; }
@@ -65,7 +65,7 @@ struct Sets {
   }
 };
 
-/// A list of at most four items without memory allocation.
+/// A list of at most four items that needs no memory allocation.
 template <typename T>
 class Few {
  public:
@@ -271,8 +271,8 @@ class Polytope {
     return true;
   }
 
-  // A facet of D may consist of several coplanar triangles. The points are those of the triangle
-  // that contains the foot of the perpendicular; otherwise they would not be opposite to each
+  // A facet of D may consist of several coplanar triangles. The points belong to the triangle that
+  // contains the foot of the perpendicular, because otherwise they would not be opposite to each
   // other.
   ConvexPair pair_of(const Face& nearest) const {
     constexpr double kSamePlane = 1e-9;  // [m]. Chosen: above rounding

@@ -34,7 +34,8 @@ struct SegmentPoints {
   Vector3d on_a, on_b;
 };
 
-// Minimum of a convex quadratic over the unit square: the free optimum, then each variable clamped.
+// The minimum of a convex quadratic over the unit square: first the free optimum, and then each
+// variable clamped.
 SegmentPoints nearest_on_segments(const Vector3d& a0, const Vector3d& a1, const Vector3d& b0,
                                   const Vector3d& b1) {
   const Vector3d u = a1 - a0, v = b1 - b0, w = a0 - b0;
@@ -58,7 +59,7 @@ ConvexPair swept_pair(const Vector3d& ca, const Vector3d& za, const Vector3d& cb
   return pair;
 }
 
-/// Extent of a core from its centre along a direction [m].
+/// The extent of a core from its centre along a direction [m].
 double core_extent(const ConvexCore& core, const Isometry3d& pose, const Vector3d& direction) {
   const Vector3d d = pose.linear().transpose() * direction;
   double far = -std::numeric_limits<double>::infinity();

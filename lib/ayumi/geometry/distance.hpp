@@ -63,8 +63,8 @@ Closest closest(const Collider& a, const Eigen::Isometry3d& pose_a, const Collid
 double clearance_bound(const Collider& a, const Eigen::Isometry3d& pose_a, const Collider& b,
                        const Eigen::Isometry3d& pose_b);
 
-/// Gap of the two shapes along a unit vector (world) from a to b: a lower bound of clearance(), and
-/// clearance() itself along the normal of closest() [m].
+/// The gap of the two shapes along a unit vector (world) from a to b: a lower bound of clearance(),
+/// and clearance() itself along the normal of closest() [m].
 double clearance_along(const Eigen::Vector3d& direction, const Collider& a,
                        const Eigen::Isometry3d& pose_a, const Collider& b,
                        const Eigen::Isometry3d& pose_b);

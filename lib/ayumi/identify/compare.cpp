@@ -21,7 +21,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Longest shift that is looked for [s]. Chosen: recorders are started by hand.
+// Longest shift that the search allows [s]. Chosen: recorders are started by hand.
 constexpr double kReach = 10;
 
 // Loads and accelerations are smoothed to this frequency before they are compared [Hz], both alike.
@@ -45,8 +45,8 @@ double interpolated(const Eigen::Ref<const VectorXd>& values, double dt, double 
   return (1 - u) * values[k] + u * values[k + 1];
 }
 
-// Zero offsets of the encoders with which the run was simulated: a joint is this much beyond what
-// its encoder reads [rad, m].
+// Zero offsets of the encoders with which the run was simulated: the angle of a joint minus the
+// reading of its encoder [rad, m].
 VectorXd encoder_offsets(const RobotModel& model, const SimulationLog& log) {
   VectorXd offsets = VectorXd::Zero(model.dof_count());
   const std::vector<std::string> known = model.profile_names();
@@ -56,7 +56,7 @@ VectorXd encoder_offsets(const RobotModel& model, const SimulationLog& log) {
   return offsets;
 }
 
-// What the encoders of the simulated robot read.
+// The readings of the encoders of the simulated robot.
 AngleTable angles_of(const RobotModel& model, const SimulationLog& log) {
   const VectorXd offsets = encoder_offsets(model, log);
   AngleTable table;
@@ -114,7 +114,7 @@ ComparedCurve curve_of(const std::string& name, const std::string& unit, const V
   return curve;
 }
 
-// Times at which a foot takes load after it was in the air.
+// Times at which a foot takes up load after it was in the air.
 std::vector<double> landings_of(const VectorXd& share, double dt) {
   std::vector<double> found;
   double air = 0;

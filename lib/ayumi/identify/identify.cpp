@@ -37,13 +37,15 @@ constexpr double kConfounded = 0.9;
 // value and its double are then apart. It changes the words of a result, and not its numbers.
 constexpr double kKnown = 0.5;
 
-// What a constant has to change, in what the law of the servo leaves over beside noise, before the
-// recording is said to show it. Chosen: a wrong law bends every constant a little. The recorded
-// walk of a HOAP-3 gives 1.2 for damping, and simulated recordings with a chirp give 3.4 or more.
+// Smallest change of the residual that a constant must cause, relative to the part of the residual
+// that is not noise, before the recording counts as showing this constant. Chosen: a wrong law
+// bends every constant a little. The recorded walk of a HOAP-3 gives 1.2 for damping, and simulated
+// recordings with a chirp give 3.4 or more.
 constexpr double kBeyondErrors = 2;
 
-// Uncertainty of the torque that loads a joint beside that share [N m]. Chosen: cables and bearings
-// of a small joint. A joint that carries much less of a changing load does not show its stiffness.
+// Uncertainty of the torque that loads a joint, in addition to that share [N m]. Chosen: cables and
+// bearings of a small joint. A joint that carries much less of a changing load does not show its
+// stiffness.
 constexpr double kLoadError = 0.01;
 
 // Uncertainty of a rotor's inertia, in parts of it. Chosen: it is calculated from data sheets, and
@@ -59,12 +61,12 @@ constexpr double kLeastCompliance = 1e-6;
 // that is shifted by more than this is refused; half as much would refuse soft servos.
 constexpr double kSlowServo = 0.03, kSlowerThanStated = 2;
 
-// Lag beyond that of the robot's file from which on a shift of the recording is likely [s].
-// Chosen: loads and friction change the lag of a servo by a few milliseconds.
+// If the lag is larger than that of the robot's file by this time, the recording is probably
+// shifted [s]. Chosen: loads and friction change the lag of a servo by a few milliseconds.
 constexpr double kLikelyShift = 0.007;
 
-// Time for which the load of a joint has to be known [s], or its stiffness is not looked for.
-// Chosen: the single supports of two steps.
+// Shortest time with a known load of a joint with which its stiffness is computed [s]. Chosen: the
+// single supports of two steps.
 constexpr double kLeastKnown = 1;
 
 // Place of the centre of gravity of a robot that its file may be wrong by [m]. Chosen: cables and
@@ -78,7 +80,7 @@ constexpr double kFlankTorque = 0.05;
 // shows which of them holds. Chosen: five standard deviations, squared.
 constexpr double kLawSeen = 25;
 
-// Share of what a law leaves over below which the answers of two laws are the same. Chosen: the
+// Share of the residual of a law below which the answers of two laws count as equal. Chosen: the
 // steps in which an answer is integrated change it by up to a tenth. Synthetic servos of which the
 // wrong law was chosen before had 0.005 to 0.12, others 0.25 or more.
 constexpr double kSameAnswer = 0.15;
@@ -87,11 +89,12 @@ struct TypeFit {
   ServoFit fit;
   bool delay_takes_damping = false;  // the recording does not tell delay and damping apart
   bool has_backlash = false;
-  /// What the delay is less, and its uncertainty, for what a servo does between two commands [s].
+  /// The amount by which the delay is smaller, and its uncertainty, because of the servo's
+  /// behaviour between two commands [s].
   double hold = 0;
   double step = 0;  ///< as much for the damping: the simulator's step was neither seen nor excluded
-  ServoConstants heavier;       ///< with a rotor that is heavier by its uncertainty
-  StandingCompliance standing;  ///< where it shows the stiffness better than the motion does
+  ServoConstants heavier;       ///< with a rotor inertia that is larger by its uncertainty
+  StandingCompliance standing;  ///< used if it shows the stiffness better than the motion does
 };
 
 double rms_between(const ServoFit& a, const ServoFit& b) {
@@ -108,14 +111,14 @@ double deviation(const ServoFit& fit, Constant which) {
   return std::sqrt(fit.covariance(i, i));
 }
 
-// Whether a constant that `with` has and `without` does not changes the angle by far more than what
-// the servo's law leaves over anyhow, and is not zero within its interval.
+// Whether a constant that only `with` has changes the angle by far more than the residual that
+// remains in any case, and whether its interval does not contain zero.
 bool is_seen(const ServoFit& with, const ServoFit& without, double value, Constant which) {
   return rms_between(with, without) > kBeyondErrors * with.model_error &&
          value > with.t_factor * deviation(with, which);
 }
 
-// Standard deviation of what loads a joint beside its own inertia [N m].
+// Standard deviation of the torque that loads a joint, without its own inertia [N m].
 double load_change(const JointRecording& recording) {
   const VectorXd load =
       (recording.torque.array() - recording.link_inertia.array() * recording.acceleration.array())
@@ -141,7 +144,7 @@ constexpr std::array<bool, kConstants> holding(bool damping, bool backlash) {
   return {false, false, damping, false, backlash};
 }
 
-// A gear's play is seen only where its load goes from one flank to the other.
+// The play of a gear is visible only if its load changes from one flank to the other.
 bool load_changes_sign(const std::vector<JointRecording>& joints) {
   return std::any_of(joints.begin(), joints.end(), [](const JointRecording& joint) {
     return joint.torque.minCoeff() < -kFlankTorque && joint.torque.maxCoeff() > kFlankTorque;
@@ -153,8 +156,8 @@ bool fits_better(const ServoFit& a, const ServoFit& b) {
   return 2 * a.independent * elementary::log(b.rms / a.rms) > kLawSeen;
 }
 
-// The same of two laws of what a servo does between two commands: their answers have to differ by
-// more than what the better one leaves over beside noise.
+// The same for two laws of the servo's behaviour between two commands: their answers must differ by
+// more than the residual of the better one that is not noise.
 bool shows_law(const ServoFit& a, const ServoFit& b) {
   return fits_better(a, b) &&
          rms_between(a, b) > std::max(kBeyondErrors * a.model_error, kSameAnswer * a.rms);
@@ -170,7 +173,8 @@ void set_law(std::vector<JointRecording>& joints, CommandLaw law, bool at_once) 
   for (JointRecording& joint : joints) joint.law = law, joint.at_once = at_once;
 }
 
-// Time by which a servo of this law is behind one that goes from one command to the next.
+// Time by which a servo of this law is behind a servo that moves gradually from one command to the
+// next.
 double behind(CommandLaw law, const JointRecording& joint) {
   if (law == CommandLaw::linear) return 0;
   return 0.5 * joint.command_dt + (law == CommandLaw::stepped ? 0.5 * joint.dt : 0.0);
@@ -196,8 +200,8 @@ ServoFit damped_fit(const std::vector<JointRecording>& joints, const ServoFit& s
   return fit_servo(joints, best, holding(false, true), longest_delay);
 }
 
-// Where the weight that a leg carries shows the stiffness better than the motion does, the other
-// constants are fitted beside it.
+// If the weight that a leg carries shows the stiffness better than the motion does, the other
+// constants are fitted with this stiffness.
 void take_standing_stiffness(const std::vector<JointRecording>& joints, double longest_delay,
                              double load_error, TypeFit& type) {
   const ServoConstants& found = type.fit.constants[0];
@@ -277,7 +281,7 @@ TypeFit fit_type(std::vector<JointRecording> joints, double longest_delay, doubl
       fit_servo(heavy, result.fit.constants,
                 holding(result.delay_takes_damping, !result.has_backlash), longest_delay)
           .constants[0];
-  // A weight that goes from one flank of a gear to the other shows its play too.
+  // A weight that changes from one flank of a gear to the other also shows its play.
   if (!result.has_backlash)
     take_standing_stiffness(joints, longest_delay, kCogError * weight, result);
   return result;
@@ -353,7 +357,7 @@ std::vector<Index> settled_rows(const VectorXd& own, double dt) {
   const auto half = static_cast<Index>(std::ceil(0.5 * kSettle / dt));
   const auto kind = [&](Index k) { return own[k] > kLoaded ? 1 : own[k] < 1 - kLoaded ? -1 : 0; };
   std::vector<Index> rows;
-  Index since = 0;  // row from which on the kind is that of the last one
+  Index since = 0;  // first row of the kind of the last row
   for (Index k = 0; k < own.size(); ++k) {
     if (k > 0 && kind(k) != kind(k - 1)) since = k;
     if (kind(k) != 0 && k - since >= 2 * half) rows.push_back(k - half);
@@ -361,7 +365,8 @@ std::vector<Index> settled_rows(const VectorXd& own, double dt) {
   return rows;
 }
 
-// The share of the load on the foot of the leg to which this joint belongs; empty: of no leg.
+// The share of the load on the foot of the leg to which this joint belongs. Empty if it belongs to
+// no leg.
 VectorXd own_share(const RobotModel& model, const JointLoads& loads, int dof) {
   if (loads.left_share.size() == 0) return {};
   for (const Side side : {Side::left, Side::right}) {
@@ -411,11 +416,11 @@ void describe(const TypeFit& type, size_t i, const JointRecording& recording,
   };
   joint.damping = by_stiffness(Constant::damping, c.damping, type.heavier.damping,
                                type.step / std::max(s, 1e-12));
-  // What the delay contains is not known by itself.
+  // The parts of the delay are not known separately.
   if (type.delay_takes_damping) joint.damping = {0, 0, HUGE_VAL, false};
   joint.coulomb = by_stiffness(Constant::dry, c.dry, type.heavier.dry, 0);
-  // The motor's damping and viscous friction act alike. What the robot's file states of the first
-  // is taken off, unless the recording contradicts it.
+  // The motor's damping and viscous friction act alike. The damping that the robot's file states is
+  // subtracted, unless the recording contradicts this.
   const double kd = own_servo && servo.kd <= joint.damping.upper ? servo.kd : 0;
   joint.viscous = estimate(std::max(0.0, joint.damping.value - kd),
                            joint.damping.upper - joint.damping.value, 0);
@@ -468,7 +473,8 @@ double longest_lag(const RobotModel& model) {
   return longest;
 }
 
-// The words on an answer that is rather late, from the joint in the middle; empty: none.
+// The text about an answer that is rather late, with the joint in the middle. Empty if there is
+// none.
 std::string late_answer(const RobotModel& model, const std::vector<IdentifiedJoint>& joints) {
   std::vector<std::pair<double, double>> lags;  // beyond the stated one, whole
   for (const IdentifiedJoint& joint : joints) {

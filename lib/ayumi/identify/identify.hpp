@@ -15,7 +15,7 @@ namespace ayumi {
 struct IdentifyOptions {
   bool per_type = false;  ///< one set of constants for all joints of one motor type
   RobotStand stand = RobotStand::feet;
-  double longest_lag = 0;  ///< of an answer that a servo gives [s]; 0: that of longest_lag()
+  double longest_lag = 0;  ///< largest lag of a servo [s]; 0: the value of longest_lag()
   int threads = 0;         ///< 0: all cores
   std::string loads_place = "load cells";  ///< of their file, for messages
 };
@@ -26,30 +26,31 @@ struct ServoEstimate {
   bool known = false;  ///< the recording determines it to better than half its value
 };
 
-/// What was found for one joint.
+/// The results for one joint.
 struct IdentifiedJoint {
   std::string joint, type;
-  bool moved = false;         ///< false: only the mean distance from the command is found
+  bool moved = false;         ///< false: only the mean difference from the command was found
   bool delay_is_lag = false;  ///< the recording shows no damping: `delay` is the whole lag
   ServoEstimate delay;        ///< [s]
   ServoEstimate kp;           ///< [N m/rad]
   ServoEstimate damping;      ///< kd + viscous [N m s/rad]
-  ServoEstimate viscous;      ///< damping less the robot's kd [N m s/rad]
+  ServoEstimate viscous;      ///< damping minus the robot's kd [N m s/rad]
   ServoEstimate coulomb;      ///< [N m]
   ServoEstimate backlash;     ///< [rad]
   ServoEstimate offset;       ///< mean distance of the unloaded joint from its command [rad]
-  double lag = 0;             ///< by which the angle is behind a slow command [s]
+  double lag = 0;             ///< time by which the angle is behind a slow command [s]
   double sag = 0;             ///< change of the angle from the unloaded to the loaded foot [rad]
   bool has_sag = false;
   double mean_error = 0, largest_error = 0, largest_at = 0;  ///< measured - simulated [rad], [s]
   double command_error = 0;                                  ///< mean |measured - command| [rad]
-  std::vector<std::string> confounded;  ///< what could not be told apart, and what would
+  std::vector<std::string> confounded;  ///< constants that could not be distinguished, and a motion
+                                        ///< that would distinguish them
 };
 
 struct Identification {
-  std::vector<IdentifiedJoint> joints;  ///< in the robot's order; those the recording has
+  std::vector<IdentifiedJoint> joints;  ///< the joints that the recording has, in the robot's order
   double seconds = 0;                   ///< length of the recording [s]
-  std::string caution;                  ///< that the recording may be shifted; empty: it is not
+  std::string caution;  ///< a note that the recording may be shifted; empty: it is not
 };
 
 /// Throws Error(bad_file) "`place`: what" for a recording that cannot be of this command: a joint

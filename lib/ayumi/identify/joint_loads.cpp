@@ -26,8 +26,9 @@ namespace {
 // of a leg by less than 0.05 N m.
 constexpr double kLoadCutoff = 50;
 
-// The distance of a joint from its late command changes slower than this [Hz]. Chosen: weight and
-// friction change it, and the noise of an encoder beyond this frequency does not become a torque.
+// The difference between a joint and its delayed command changes more slowly than this [Hz].
+// Chosen: weight and friction change it, and the noise of an encoder beyond this frequency does not
+// become a torque.
 constexpr double kSagCutoff = 15;
 
 // Share of the quick load of a standing leg in the largest load of the joint, above which it is not
@@ -38,8 +39,8 @@ constexpr double kQuickShare = 0.05;
 // s or more.
 constexpr double kShareCutoff = 15;
 
-// Sum of the loads of both feet, in the mean of the recording, below which they have no share.
-// Chosen: a tenth is far above noise.
+// Sum of the loads of both feet, as a part of its mean in the recording, below which no share is
+// computed. Chosen: a tenth is far above noise.
 constexpr double kLeastLoad = 0.1;
 
 std::vector<CommandSample> samples_of(const MatrixXd& theta) {
@@ -152,8 +153,9 @@ class LoadsOnFeet {
   std::vector<Support> supports_;
 };
 
-// The motion of a joint that has a command: the command with the mean delay of the answer, and what
-// the answer differs from it, smoothed. Two differentiations make little of an encoder's noise.
+// The motion of a joint that has a command: the command with the mean delay of the answer, plus the
+// smoothed difference of the answer from it. So two differentiations do not amplify the noise of an
+// encoder much.
 VectorXd smooth_motion(const RecordedMotion& motion, Index dof) {
   const AngleTable &measured = motion.measured, &command = motion.command;
   const VectorXd answer = measured.theta.col(dof);
@@ -191,7 +193,7 @@ VectorXd low_pass(const VectorXd& x, double dt, double cutoff) {
   const double w = elementary::tan(M_PI * cutoff * dt), root = std::sqrt(2.0) * w;
   const double scale = 1 / (1 + root + w * w);
   const double b = w * w * scale, a1 = 2 * (w * w - 1) * scale, a2 = (1 - root + w * w) * scale;
-  // Mirrored beyond its ends, so that the ends keep their value and their rate.
+  // The signal is mirrored beyond its ends, so that the ends keep their value and their rate.
   const Index pad = std::min<Index>(n - 1, static_cast<Index>(std::ceil(1 / (cutoff * dt))));
   VectorXd y(n + 2 * pad);
   for (Index k = 0; k < pad; ++k) {

@@ -11,15 +11,17 @@ namespace ayumi {
 /// Load of a standing leg above this frequency is quick [Hz]. Chosen: slower than a step.
 inline constexpr double kQuickLoad = 5;
 
-/// What carries the robot while it moves.
+/// How the robot is supported while it moves.
 enum class RobotStand {
   feet,  ///< it stands or walks on level ground; from the joint angles
   fixed  ///< its root is held upright and at rest: on a stand, or a robot without feet
 };
 
 struct JointLoads {
-  Eigen::MatrixXd torque;   ///< rows x dof: of gravity, inertia and ground on the joint [N m, N]
-  Eigen::MatrixXd inertia;  ///< rows x dof: of what the joint moves, root held [kg m^2, kg]
+  Eigen::MatrixXd
+      torque;  ///< torque of gravity, inertia and ground on the joint, rows x dof [N m, N]
+  Eigen::MatrixXd
+      inertia;  ///< inertia that the joint moves while the root is held, rows x dof [kg m^2, kg]
   Eigen::MatrixXd rate, acceleration;  ///< rows x dof, of the smoothed motion
   Eigen::VectorXd left_share;          ///< of the ground's load on the left foot; empty when fixed
   std::vector<Support> support;        ///< by row; empty when fixed
@@ -37,8 +39,8 @@ JointLoads joint_loads(const RobotModel& model, const RecordedMotion& motion, Ro
 /// what a single standing leg carries comes from the whole robot on yielding servos and ground.
 std::vector<char> load_known(const RobotModel& model, const JointLoads& loads, int dof, double dt);
 
-/// x without what is faster than `cutoff` [Hz], not delayed: a Butterworth filter of second order
-/// forwards and backwards.
+/// x without the components faster than `cutoff` [Hz], without a delay: a Butterworth filter of
+/// second order, forwards and backwards.
 Eigen::VectorXd low_pass(const Eigen::VectorXd& x, double dt, double cutoff);
 
 }  // namespace ayumi

@@ -15,8 +15,9 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Rows on each side of a place that show a step. Chosen: noise of an encoder of half a count then
-// hides one lost row only where all joints move by less than a fifth of a count per row.
+// Number of rows on each side of a place that are used to find a step. Chosen: noise of an encoder
+// of half a count then hides one lost row only where all joints move by less than a fifth of a
+// count per row.
 constexpr Index kStepRows = 5;
 
 // Rows on each side in which lost rows have to explain what is left, and the part of it that may
@@ -26,8 +27,8 @@ constexpr Index kStepRows = 5;
 constexpr Index kSurroundingRows = 50;
 constexpr double kMostLeft = 0.75;
 
-// A step has to be this many of its standard deviations. Chosen: in a recorded walk of 17902 rows
-// without a lost row, steps that are near a whole number of rows reach less than half of it.
+// A step must be at least this many of its standard deviations. Chosen: in a recorded walk of 17902
+// rows without a lost row, steps that are near a whole number of rows reach less than half of it.
 constexpr double kClearStep = 5;
 
 // What follows a lost row stays earlier. Time on both sides of a step in which the delays are
@@ -37,7 +38,7 @@ constexpr double kClearStep = 5;
 constexpr double kLastingTime = 0.75, kLeastLastingTime = 0.3;
 constexpr double kLeastStep = 0.6, kStepMargin = 0.35, kStepShare = 0.25;
 
-// Clearest steps that are looked at. Chosen: each belongs to about ten rows.
+// Number of the clearest steps that are examined. Chosen: each belongs to about ten rows.
 constexpr size_t kMostSteps = 60;
 
 // Smallest noise of a joint, in steps of its encoder, or without any in [rad, m]. Derived: rounding
@@ -76,13 +77,14 @@ double middle_of(std::vector<double> values) {
   return *at;
 }
 
-// Standard deviation of what is normal but for a few values.
+// Standard deviation of values that are normal except for a few.
 double robust_deviation(std::vector<double> values) {
   for (double& value : values) value = std::abs(value);
   return 1.4826 * middle_of(std::move(values));
 }
 
-// A joint beside its delayed command, by row of the recording; both in parts of its noise.
+// The difference between a joint and its delayed command, by row of the recording, and its change;
+// both as a part of the noise.
 struct FollowingJoint {
   VectorXd error, per_row;  // difference, and change of it by one lost row
 };

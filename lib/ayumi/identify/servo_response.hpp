@@ -36,13 +36,13 @@ struct JointRecording {
   double command_dt = 0.001, dt = 0.001;  ///< [s]
   bool at_once = false;                   ///< the angle follows the late command without J and D
   CommandLaw law = CommandLaw::linear;
-  Eigen::VectorXd command;             ///< [rad]
-  Eigen::VectorXd measured;            ///< [rad]
-  Eigen::VectorXd torque;              ///< of the rigid tree on the joint [N m]
-  Eigen::VectorXd inertia;             ///< that the joint moves, its rotor included [kg m^2]
-  Eigen::VectorXd link_inertia;        ///< without the rotor [kg m^2]
-  Eigen::VectorXd acceleration;        ///< with which `torque` was computed [rad/s^2]
-  Eigen::VectorXd rate;                ///< of the smoothed motion [rad/s]
+  Eigen::VectorXd command;       ///< [rad]
+  Eigen::VectorXd measured;      ///< [rad]
+  Eigen::VectorXd torque;        ///< of the rigid tree on the joint [N m]
+  Eigen::VectorXd inertia;       ///< inertia that the joint moves, its rotor included [kg m^2]
+  Eigen::VectorXd link_inertia;  ///< without the rotor [kg m^2]
+  Eigen::VectorXd acceleration;  ///< with which `torque` was computed [rad/s^2]
+  Eigen::VectorXd rate;          ///< of the smoothed motion [rad/s]
   std::vector<Eigen::Index> compared;  ///< rows that a fit compares, ascending
   bool load_known = true;              ///< `torque` is right at these rows
   Eigen::VectorXd own_share;           ///< of the weight on the foot of its leg; empty: of no leg

@@ -94,7 +94,7 @@ fs::path copy_beside(const fs::path& path, const std::string& format) {
 }
 
 std::optional<std::string> kept_file(const DenseTable& table, const std::string& format) {
-  // The ending of the copy says of which format it is.
+  // The ending of the copy's name says which format it has.
   if (!table.sequence || !table.sequence->file.ends_with(copy_beside("", format).string()) ||
       theta_sha256(table) != table.sequence->theta_sha256)
     return {};

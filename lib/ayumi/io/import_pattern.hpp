@@ -1,6 +1,7 @@
 #pragma once
-// A motion of another program or robot as a pattern: the file is read, its ends are ramped, its
-// soles are put on the ground and its contacts found, as far as the caller asks for this.
+// Makes a pattern from a motion of another program or robot. The file is read. If the caller asks
+// for it, the ends of the motion are ramped, the soles are put on the ground, and contacts are
+// found.
 
 #include <filesystem>
 #include <optional>
@@ -19,37 +20,37 @@ inline constexpr size_t kLargestMotionFile = 64'000'000;
 
 struct PatternImport {
   ImportOptions reading = {};
-  ContactThresholds contact = {};  ///< where contacts are detected
+  ContactThresholds contact = {};  ///< settings for the detection of contacts
   bool ground = false;             ///< the soles that carry the robot are put on the ground
   double ramp = 0;                 ///< time from rest to the speed of a recording that was cut [s]
 };
 
 struct ImportedPattern {
-  Pattern pattern;                    ///< without robot; keys, or phases with a table
-  std::string format, reason;         ///< as in ImportedMotion
-  int rows = 0;                       ///< data rows or key poses of the file
-  std::vector<FootContact> contacts;  ///< of a table
+  Pattern pattern;             ///< the pattern without a robot; it has keys, or phases with a table
+  std::string format, reason;  ///< format and its reason, as in ImportedMotion
+  int rows = 0;                ///< number of data rows or key poses of the file
+  std::vector<FootContact> contacts;  ///< contacts of a table
   std::vector<std::string> filled;    ///< what was assumed, left out or changed, in words
-  TableCaution caution = {};          ///< of the run that a table is from
-  std::string sequence = {};          ///< bytes to be kept beside the pattern; "": none
+  TableCaution caution = {};          ///< caution of the run from which a table comes
+  std::string sequence = {};          ///< bytes that are kept beside the pattern; "": none
 };
 
 /// `bytes` are the content of `file`. Throws Error(bad_file) that names file, place and remedy.
 ImportedPattern import_pattern(const std::string& bytes, const std::string& file,
                                const RobotModel& model, const PatternImport& options = {});
 
-/// The bytes of the file of `format` from which the table was imported, where the table has the
-/// angles of that import; nothing for another format. Throws as kept_sequence().
+/// The bytes of the file of `format` from which the table was imported, if the table still has the
+/// angles of this import. Nothing for another format. Throws as kept_sequence().
 std::optional<std::string> kept_file(const DenseTable& table, const std::string& format);
 
-/// Where write_imported() keeps the copy of a file of this format.
+/// The place where write_imported() keeps the copy of a file of this format.
 std::filesystem::path copy_beside(const std::filesystem::path& path, const std::string& format);
 
 /// The files that write_imported() may write.
 std::vector<std::filesystem::path> files_of_import(const std::filesystem::path& path);
 
 /// Writes the pattern, its table beside it, and the copy that is kept of the file; all of them or
-/// none. Adds to `filled` where the copy is.
+/// none. Adds the place of the copy to `filled`.
 void write_imported(const std::filesystem::path& path, ImportedPattern& imported);
 
 }  // namespace ayumi

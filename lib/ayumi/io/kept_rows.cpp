@@ -10,7 +10,7 @@ namespace ayumi {
 
 namespace {
 
-// Whether the pattern moves as its table does.
+// Whether the pattern still moves as its table does.
 bool moves_as_table(const Task& task) {
   constexpr double kSame = 1e-6;  // Chosen: a hundredth of a count [rad]
   const DenseTable& table = *task.pattern.table;
@@ -34,7 +34,7 @@ bool moves_as_table(const Task& task) {
 std::optional<KeptRows> kept_rows(const Task& task) {
   if (!task.pattern.table) return {};
   const DenseTable& table = *task.pattern.table;
-  // A copy of another format (io/import_pattern.hpp) has no rows of targets.
+  // A copy in another format (io/import_pattern.hpp) has no rows of targets.
   if (!table.sequence || !table.sequence->file.ends_with(sequence_beside("").string()) ||
       theta_sha256(table) != table.sequence->theta_sha256 || !moves_as_table(task))
     return {};

@@ -10,8 +10,8 @@ namespace ayumi {
 
 namespace {
 
-// What `export` would write. A kept sequence that is missing or was changed is its error, and no
-// other command's.
+// The rows that `export` would write. If a kept sequence is missing or was changed, this is an
+// error of `export` only.
 std::optional<ReferenceTrajectory> kept_targets(const Task& task) {
   try {
     if (std::optional<KeptRows> kept = kept_rows(task)) return std::move(kept->targets);

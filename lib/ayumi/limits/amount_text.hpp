@@ -10,7 +10,7 @@
 
 namespace ayumi {
 
-/// A unit for people: a value times `scale` is in `name`.
+/// A unit for people: a value multiplied by `scale` is a value in the unit `name`.
 struct ShownUnit {
   double scale = 1;
   std::string name;
@@ -38,7 +38,8 @@ inline std::string amount_text(const Finding& finding) {
   return quantity(finding.worst, more) + ", limit " + quantity(finding.limit, more);
 }
 
-/// " (l_knee at 1.20 s)", behind the largest value of a figure; " (at 1.20 s)" without a place.
+/// " (l_knee at 1.20 s)", which follows the largest value of a figure. Without a place: " (at 1.20
+/// s)".
 inline std::string in_brackets(const std::string& place, double at) {
   return " (" + place + (place.empty() ? "" : " ") + "at " + text::fixed(at, 2) + " s)";
 }

@@ -60,7 +60,8 @@ void add_clearance(RowSite& site, int point, const ShapePair& shapes, double own
            Eigen::VectorXd::Constant(rows, kUnbounded));
 }
 
-// Shapes are watched from farther away than bodies, because the next nearest ones are not far.
+// Shapes are watched at a larger distance than bodies, because the next nearest shapes may be at a
+// similar distance.
 void place_pair_rows(RowSite& site, int point, int pair, RobotData& data) {
   const CollisionModel& collisions = *site.settings.collisions;
   const auto& settings = site.settings.clearance;

@@ -35,7 +35,7 @@ constexpr double kPointMassTolerance = 0.02;
 // what counts is its moment. Source: docs/attribution.md: legs that swing at 1000 rad/s^2 leave 0.1
 // N m of rounding in single samples.
 constexpr double kLightShare = 0.25;
-constexpr double kLeastForceShare = 1e-3;  // of the weight, so that no force divides by zero
+constexpr double kLeastForceShare = 1e-3;  // share of the weight that prevents a division by zero
 
 // A ZMP error that lasts less than 5 ms and is at most three times its limit is a warning. Source:
 // docs/attribution.md: where the acceleration has a kink, as beside flights, single samples of the
@@ -137,8 +137,8 @@ Advice vertical_force_advice(const JudgedMotion&, const FindingWindow& window) {
 }
 
 Advice point_mass_advice(const JudgedMotion&, const FindingWindow& window) {
-  return "the point-mass model has a ZMP error of " + in_mm(window.worst.value) +
-         " here: use the full model";
+  return "the point-mass model would have a ZMP error of " + in_mm(window.worst.value) +
+         " here, so compute this motion with the full model";
 }
 
 std::string cog_infeasibility(const Finding& f, double) {

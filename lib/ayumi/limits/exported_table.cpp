@@ -25,7 +25,7 @@ namespace {
 // Definition: the tolerances are those of `export`, so that a larger one has no effect.
 const SafetyOptions kExport;
 
-// Definition: details of a violation, the unit of its value.
+// Definition: details of a violation, which give the unit of its value.
 constexpr int kInCounts = 1, kInJointUnit = 0;
 
 FindingKind kind_of(const SafetyViolation& violation) {
@@ -45,7 +45,7 @@ void make_table(JudgedMotion& motion) {
   options.beyond_range = least(FindingKind::table_position, kExport.beyond_range);
   options.rest_speed = least(FindingKind::table_rest, kExport.rest_speed);
   const std::optional<ReferenceTrajectory>& kept = motion.series.kept;
-  // The table is as long as the motion, so it is judged without being made.
+  // The table is as long as the motion, so it is judged without being stored.
   const Eigen::VectorXd lead = velocity_lead(motion.limits);
   TargetRows targets;
   if (kept) {
@@ -99,7 +99,7 @@ void place_step_rows(RowSite& site, int dof, double lead, double largest) {
 void place_target_rows(RowSite& site, int dof, double lead) {
   const Dof& joint = site.model.dofs()[dof];
   const RowSettings& settings = site.settings;
-  // A tolerance below 0 asks for a margin.
+  // A tolerance below 0 requires a margin.
   const double margin =
       site.model.description().soft_limit_margin +
       std::max({settings.joint_margin, 0.0, -site.tolerance(FindingKind::table_position)});

@@ -1,5 +1,5 @@
 #pragma once
-// What a motion does to its angular momentum in flight, as the check judges it.
+// The change of the angular momentum of a motion in flight, as the check judges it.
 
 #include <functional>
 
@@ -7,12 +7,12 @@
 
 namespace ayumi {
 
-/// In flight, and not so near its edges that the rates mix it with support; false outside the
-/// series.
+/// Whether a sample is in flight and so far from its edges that its rates do not mix flight and
+/// support. False outside the series.
 bool flies_freely(const CommandSeries& series, int sample);
 
-/// Mean of the moments of the samples around one [N m], as far as they fly freely; 0 where none
-/// does. `moment`: of one sample.
+/// Mean of the moments of the samples around one sample [N m], counting those that are in free
+/// flight; 0 if there are none. `moment` gives the moment of one sample.
 Eigen::Vector3d mean_flight_moment(const CommandSeries& series, int sample,
                                    const std::function<Eigen::Vector3d(int sample)>& moment);
 

@@ -23,7 +23,7 @@ constexpr double kFallTolerance = 0.5;
 // ten times the weight bends the path by 0.04 mm at 1 kHz, so 1 mm is no force.
 constexpr double kLeap = 1e-3;
 
-// All five samples are in the same flight.
+// Whether all five samples are in the same flight.
 Vector3d commanded_acceleration(const CommandSeries& series, int k) {
   const auto cog = [&](int i) { return series.samples[i].cog; };
   return (16 * (cog(k - 1) + cog(k + 1)) - (cog(k - 2) + cog(k + 2)) - 30 * cog(k)) /
@@ -54,7 +54,8 @@ void judge_leaps(JudgedMotion& motion) {
   }
 }
 
-// Force and moment that the given motion needs in flight, about its planned COG, over the weight.
+// Force and moment that the given motion needs in flight, about its planned COG, divided by the
+// weight.
 Vector6d own_flight_wrench(const RowSite& site, int sample) {
   const CommandSample& s = site.series.samples[sample];
   SupportPlane plane;
@@ -64,8 +65,9 @@ Vector6d own_flight_wrench(const RowSite& site, int sample) {
   return plane_wrench(plane, s.state.base.position, wrench) / site.weight();
 }
 
-// The ground wrench in flight over m g is 0: the force by free fall, the moment by the angular
-// momentum. Both stand in one block, so that they share what a relaxed program violates them by.
+// The ground wrench in flight, divided by m g, is 0: the force because of free fall, the moment
+// because of the angular momentum. Both are in one block, so they share the slack of a relaxed
+// program.
 const RowKind kFlightRows = {
     .name = "flight", .unit = &RowPrices::length, .relaxed = &RowPrices::foot, .order = {4, 0}};
 

@@ -37,7 +37,7 @@ void judge_friction(JudgedMotion& motion, const JudgedSample& s) {
 struct ConeRow {
   double mu = 0;
   double scale = 0;     // 1 / (m g)
-  double rounding = 0;  // over the weight
+  double rounding = 0;  // tangential force over the weight
 
   double tangential(const Vector6d& w) const {
     return std::sqrt(w.head<2>().squaredNorm() + elementary::power<2>(rounding / scale));

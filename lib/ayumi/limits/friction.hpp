@@ -1,5 +1,5 @@
 #pragma once
-// The rule of the friction cone, which torsional friction needs too.
+// The rule of the friction cone. Torsional friction needs it too.
 
 #include "ayumi/demand/ground_demand.hpp"
 

@@ -30,8 +30,8 @@ void judge_heat_at(JudgedMotion& motion, const JudgedSample& s) {
   const int window = std::clamp(whole, 1, motion.count());
   const Severity severity = motion.count() >= whole ? Severity::error : Severity::warning;
   const double most = motion.tolerance(FindingKind::continuous_torque);
-  // Sums of the samples before this one, of all with it, and of those before the window: columns
-  // of a ring.
+  // Sums of the samples before this one, of all samples with this one, and of those before the
+  // window: columns of a ring.
   const int columns = window + 1, end = s.k + 1;
   Heat& heat = motion.heat;
   if (heat.square_sum.size() == 0) {
@@ -55,7 +55,7 @@ void judge_heat_at(JudgedMotion& motion, const JudgedSample& s) {
   }
 }
 
-// Of equal figures that of the first joint counts.
+// If two joints have the same value, the first joint is named.
 void note_heat(JudgedMotion& motion) {
   for (size_t i = 0; i < motion.heat.largest.size(); ++i) {
     const auto& [share, sample] = motion.heat.largest[i];

@@ -30,7 +30,7 @@ void judge_joint_accelerations(JudgedMotion& motion, const JudgedSample& s) {
 
 const RowKind kRoughnessRows = {.name = "acceleration", .order = {3, 3}};
 
-// A motion that is rough already gets no rougher: the check only warns of it.
+// A motion that is already rough becomes no rougher, because the check only warns about roughness.
 void place_roughness_rows(RowSite& site) {
   const double most = site.tolerance(FindingKind::joint_acceleration);
   for (int i = 0; i < site.model.dof_count(); ++i) {

@@ -14,7 +14,8 @@ namespace {
 // [rad] or [m] Chosen: a motion planned onto the limit meets it but for the rounding of a table
 // with four decimals. No measured case changes from half to twice (constants.md).
 constexpr double kPositionTolerance = 1e-4;
-constexpr double kLeastHalfRange = 1e-9;  // so that a joint without range divides by no zero [rad]
+constexpr double kLeastHalfRange =
+    1e-9;  // prevents a division by zero for a joint without a range [rad]
 
 struct Range {
   double lower = 0, upper = 0;

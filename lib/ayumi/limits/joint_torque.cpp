@@ -26,7 +26,7 @@ void judge_joint_torques(JudgedMotion& motion, const JudgedSample& s) {
   }
 }
 
-// By dof: the largest size over the watched samples.
+// By dof: the largest absolute torque over the watched samples.
 Eigen::VectorXd watched_torques(const RowSite& site, int point) {
   Eigen::VectorXd most = Eigen::VectorXd::Zero(site.model.dof_count());
   RobotData data(site.model);

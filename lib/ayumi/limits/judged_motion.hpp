@@ -1,5 +1,5 @@
 #pragma once
-// A motion under judgement: what it demands, what its limits are, and what they find.
+// A motion that is judged: its demands, its limits, and the violations that are found.
 
 #include <cmath>
 #include <optional>
@@ -24,11 +24,11 @@ inline constexpr double kRounding = 1e-7;
 /// not 2 error joint_speed.
 inline constexpr double kWindowGap = 0.020;
 
-/// What the limit of the heat of motors keeps from sample to sample.
+/// The values that the limit of motor heat keeps from sample to sample.
 struct Heat {
   struct Largest {
-    double share = 0;  ///< of the limit
-    int sample = -1;   ///< where; -1: nowhere yet
+    double share = 0;  ///< largest share of the limit
+    int sample = -1;   ///< sample of this value; -1: none yet
   };
   /// Sums of squares of the torques before a sample, a ring as long as the thermal window, by dof.
   Eigen::MatrixXd square_sum = {};
@@ -45,12 +45,13 @@ struct JudgedMotion {
   bool flies(int k) const {
     return k >= 0 && k < count() && series.samples[k].support == Support::none;
   }
-  /// In flight, and not so near its edges that the rates mix it with support.
+  /// Whether the sample is in flight and so far from the edges that its rates do not mix flight and
+  /// support.
   bool flies_freely(int k) const { return ayumi::flies_freely(series, k); }
   /// See at_flight_edge() of demand/contact_plan.hpp.
   bool at_flight_edge(int k) const { return ayumi::at_flight_edge(series, k); }
 
-  /// Notes a violation; `size` orders the samples of a finding, `detail` is carried along.
+  /// Notes a violation. `size` orders the samples of a finding, and `detail` is stored with it.
   void add(FindingKind kind, int item, int sample, double value, double limit, double size,
            int detail = 0, Severity severity = Severity::error) {
     windows.add({kind, item, sample, severity, value, limit, size, detail});
@@ -63,13 +64,13 @@ struct JudgedMotion {
   void lower(FindingKind kind, double value, int sample, int item = 0, int detail = 0) {
     if (value < summary[kind]) note(kind, value, sample, item, detail);
   }
-  /// Where the figure has its value; its sample is -1 where no value was noted.
+  /// Place of the figure's value. Its sample is -1 if no value was noted.
   const Violation& extreme(FindingKind kind) const { return extremes_[kind]; }
 
   const RobotModel& model;
   const CommandSeries& series;
   const Tolerances tolerance_of;
-  const double friction;  ///< coefficient
+  const double friction;  ///< coefficient of friction
   const bool degrees;     ///< unit of angles in texts
   const ActuatorLimits& limits;
   const ContactPlan plan;
@@ -78,10 +79,10 @@ struct JudgedMotion {
   const double weight;  ///< [N]
 
   FindingWindows windows;
-  FindingWindows table;  ///< of the table that a robot would receive
+  FindingWindows table;  ///< violations of the table that a robot would receive
   CheckSummary summary;
 
-  // What the samples demand, as far as limits of the whole motion and attribution ask for it.
+  // Demands of the samples, as far as limits of the whole motion and attribution need them.
   Heat heat;
   std::vector<Eigen::Vector3d> flight_moment;   ///< about the COG, by sample; 0 on the ground [N m]
   std::vector<Eigen::Vector3d> cog;             ///< of the posture, by sample [m]
@@ -133,14 +134,14 @@ void judge_difference(JudgedMotion& motion, FindingKind kind, int sample,
 /// always be scaled to gravity.
 bool flight_is_free(JudgedMotion& motion, int sample, double pace, double limit);
 
-// Places and words that several limits share.
-Place axis_place(const JudgedMotion&, const Violation&);     ///< by detail
-Place support_place(const JudgedMotion&, const Violation&);  ///< by detail
-Place foot_place(const JudgedMotion&, const Violation&);     ///< by item
-Place joint_place(const JudgedMotion&, const Violation&);    ///< by item
+// Words for places that several limits use.
+Place axis_place(const JudgedMotion&, const Violation&);     ///< axis, by detail
+Place support_place(const JudgedMotion&, const Violation&);  ///< support, by detail
+Place foot_place(const JudgedMotion&, const Violation&);     ///< foot, by item
+Place joint_place(const JudgedMotion&, const Violation&);    ///< joint, by item
 std::string where_text(const RobotModel& model, const Place& place);
 const char* axis_name(int axis);
-/// `rotary`, or for a prismatic joint (the item) the other unit.
+/// `rotary`, or the other unit for a prismatic joint (the item).
 const char* joint_unit(const JudgedMotion&, const Violation&, const char* rotary,
                        const char* prismatic);
 std::string in_mm(double metres);  ///< of the size, "12.0 mm"

@@ -13,7 +13,7 @@ namespace ayumi {
 
 namespace {
 
-// Share of tau_max / J. Definition: at 1 the motor accelerates its rotor and nothing else.
+// Share of tau_max / J. Definition: at 1 the motor accelerates its rotor only.
 constexpr double kWholeMotorAcceleration = 1;
 
 /// tau_max / J of every joint [rad/s^2], [m/s^2]; infinite where J is not stated.

@@ -27,8 +27,8 @@ void judge_normal_force(JudgedMotion& motion, const JudgedSample& s) {
              static_cast<int>(s.command.support), pulls ? Severity::error : Severity::warning);
 }
 
-// f_n / (m g) is at least a share of the weight, above the check's, so that the ZMP keeps its
-// meaning between two samples.
+// f_n / (m g) is at least a share of the weight that is larger than that of the check, so that the
+// ZMP keeps its meaning between two samples.
 const RowKind kNormalForceRows = {.name = "normal_force", .beyond_check = true, .order = {4, 3}};
 
 void place_normal_force_rows(RowSite& site) {

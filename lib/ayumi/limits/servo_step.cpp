@@ -15,8 +15,8 @@ namespace {
 constexpr double kWholeStep = 1;
 
 // The mean speed of a period differs a little from the speeds at its ends. Chosen: half a percent,
-// so that a motion planned at its speed limit makes no step beyond it. No measured case changes
-// from half to twice (constants.md).
+// so that a motion planned at its speed limit has no step above it. No measured case changes from
+// half to twice (constants.md).
 constexpr double kMeanSpeedSpare = 1.005;
 
 int servo_ticks(const JudgedMotion& motion) {

@@ -59,7 +59,7 @@ SoleRows deviation_rows(Side side, const Isometry3d& planned) {
 namespace {
 
 struct Heights {
-  std::vector<Eigen::Vector2d> polygon;  // of the sole, in its frame
+  std::vector<Eigen::Vector2d> polygon;  // corners of the sole, in its frame
   Isometry3d ground;
 
   int rows() const { return static_cast<int>(polygon.size()); }

@@ -5,10 +5,10 @@
 
 namespace ayumi {
 
-/// Position [m] and rotation [rad], world axes, of a sole from where it should be.
+/// Deviation of a sole from its place: position [m] and rotation [rad], world axes.
 Vector6d sole_deviation(const Eigen::Isometry3d& actual, const Eigen::Isometry3d& planned);
 
-/// Rates of sole_deviation(): rows of SoleRows::rate.
+/// Derivatives of sole_deviation(): rows of SoleRows::rate.
 Eigen::MatrixXd deviation_rates(const Eigen::Isometry3d& sole, const Eigen::Isometry3d& planned,
                                 const Eigen::MatrixXd& motion);
 

@@ -117,8 +117,8 @@ void judge_stance(JudgedMotion& motion) {
   }
 }
 
-// How far a sole may turn in its place. A long sole may turn less, because its corners rise and
-// sink.
+// Angle by which a sole may turn in its place. A long sole may turn less, because its corners rise
+// and sink.
 double angle_band(const RowSite& site, Side side) {
   double reach = 0;
   for (const Eigen::Vector2d& v : site.model.sole(side).polygon)
@@ -205,7 +205,7 @@ Advice penetration_advice(const JudgedMotion&, const FindingWindow& window) {
           kOrRepair};
 }
 
-// The detail of a contact edge is the number of samples by which the swing runs on.
+// The detail of a contact edge is the number of samples by which the swing continues.
 Advice float_advice(const JudgedMotion& motion, const FindingWindow& window) {
   const Violation& v = window.worst;
   const std::string foot = name_of(foot_of(v));

@@ -41,7 +41,8 @@ void judge_support(JudgedMotion& motion, const JudgedSample& s) {
     judge_margin(motion, s, kCommandZmp, command_margin);
 }
 
-// Of the motion as given; unbounded where the ZMP has no meaning, 0 where the ground would pull.
+// Margin of the motion as given. It is unbounded where the ZMP has no meaning, and 0 where the
+// ground would have to pull.
 std::vector<double> own_margins(const RowSite& site) {
   RobotData data(site.model);
   std::vector<double> own;

@@ -58,8 +58,8 @@ void judge_landings(JudgedMotion& motion) {
 
 // ---- landing on the place
 
-// From sole_deviation() to the offset of a sole from its place apart from its height: along the
-// ground and, times half the sole's size, around three axes [m].
+// Maps sole_deviation() to the offset of a sole from its place without the height: along the ground
+// and, times half the sole's size, around three axes [m].
 Eigen::Matrix<double, 5, 6> offset_rows(const RobotModel& model, Side side,
                                         const Isometry3d& place) {
   double reach = 0;
@@ -73,7 +73,7 @@ Eigen::Matrix<double, 5, 6> offset_rows(const RobotModel& model, Side side,
 // Ten rows: factor * height^2 -+ offset.
 struct Landing {
   Isometry3d place;
-  Eigen::Matrix<double, 5, 6> offset;  // offset_rows()
+  Eigen::Matrix<double, 5, 6> offset;  // see offset_rows()
   double factor = 0;                   // k [1/m]
 
   Vector3d normal() const { return place.linear().col(2); }
@@ -179,7 +179,7 @@ double lowest_height(const RowSite& site, Side side, const std::vector<ContactIn
   return lowest;
 }
 
-// The median over the motion's swings.
+// The median over the swings of the motion.
 double own_foot_clearance(const RowSite& site) {
   std::vector<double> heights;
   for (Side side : {Side::left, Side::right}) {
@@ -210,7 +210,7 @@ const RowKind kFootClearanceRows = {.name = "foot_clearance",
                                     .beyond_check = true,
                                     .order = {2, 4}};
 
-// Of the lowest corner over the ground, in the watched samples.
+// Height of the lowest corner over the ground, in the watched samples.
 double watched_height(const RowSite& site, int point, Side side) {
   const Isometry3d& ground = site.points[point].ground[static_cast<int>(side)];
   double lowest = kUnbounded;

@@ -1,12 +1,12 @@
 #pragma once
-// How far a swinging sole is from where it lands.
+// The offset of a swinging sole from its landing place.
 
 #include "ayumi/limits/row.hpp"
 
 namespace ayumi {
 
-/// Offset of a sole from its place apart from its height: along the ground and, times half the
-/// sole's size, around three axes [m].
+/// Offset of a sole from its place without the height: along the ground and, times half the sole's
+/// size, around three axes [m].
 Eigen::Matrix<double, 5, 1> landing_offset(const RobotModel& model, Side side,
                                            const Eigen::Isometry3d& actual,
                                            const Eigen::Isometry3d& place);

@@ -102,12 +102,12 @@ class CountRounder {
  private:
   double scale_;  // counts per rad
   TargetRange range_;
-  double step_;  // largest one in counts
+  double step_;  // the largest step in counts
   int previous_ = 0;
   bool first_ = true;
 };
 
-// Keeps the worst of each kind and joint, and all of them.
+// Keeps the worst violation of each kind and joint, and a list of all violations.
 class Violations {
  public:
   void add(const SafetyViolation& found) {
@@ -123,7 +123,7 @@ class Violations {
     list_.push_back(found);
     list_.back().rows = 1;
   }
-  /// Those of another joint.
+  /// Adds the violations of another joint.
   void append(const Violations& other) {
     list_.insert(list_.end(), other.list_.begin(), other.list_.end());
     every_.insert(every_.end(), other.every_.begin(), other.every_.end());
@@ -158,7 +158,7 @@ class JointJudge {
     first_ = false;
   }
 
-  /// What the joints before this one gave, and this one.
+  /// The violations of the joints before this one, and of this one.
   void add_to(SafetyReport& report, Violations& violations) const {
     if (margin_ < report.min_limit_margin) {
       report.min_limit_margin = margin_;
@@ -180,7 +180,7 @@ class JointJudge {
     if (margin < -beyond_) violations_.add({"position", dof_.name, t, theta, limit, "rad", 0});
   }
 
-  // `change` in counts where the joint has an encoder, else in rad.
+  // `change` in counts if the joint has an encoder, otherwise in rad.
   void step(double change, double t) {
     const double ratio = std::abs(change) / step_;
     if (ratio > ratio_) {
@@ -200,7 +200,7 @@ class JointJudge {
 
   const Dof& dof_;
   TargetRange soft_;
-  double scale_;   // counts per rad, 0 without encoder
+  double scale_;   // counts per rad, 0 without an encoder
   double beyond_;  // [rad]
   double share_;   // of step_
   double step_;    // per tick, counts or rad
@@ -215,9 +215,9 @@ class JointJudge {
 
 // A motion with a ramp before and a hold after it.
 struct LaidMotion {
-  size_t ramp = 0, motion = 0, hold = 0;  // rows
-  Eigen::VectorXd from, target;           // of the ramp, columns of the table
-  double duration = 0;                    // that the ramp needs [s]
+  size_t ramp = 0, motion = 0, hold = 0;  // numbers of rows
+  Eigen::VectorXd from, target;           // ends of the ramp, by column of the table
+  double duration = 0;                    // duration that the ramp needs [s]
 
   size_t count() const { return ramp + motion + hold; }
 };
@@ -270,7 +270,8 @@ bool is_too_long(double ramp, const SafetyOptions& options) {
   return !(ramp <= std::max(options.ramp, kLongestRamp));
 }
 
-// Speed any joint may have, by column of the table: the profile's, or the motor board's cap.
+// Largest speed of any joint, by column of the table: that of the profile, or the cap of the motor
+// boards.
 Eigen::VectorXd speed_limits(const RobotModel& model, const std::vector<Eigen::Index>& columns,
                              const SafetyOptions& options) {
   Eigen::VectorXd speed(static_cast<Eigen::Index>(columns.size()));
@@ -292,7 +293,7 @@ void add_to_report(SafetyReport& report, const std::vector<SafetyViolation>& vio
   report.safe = report.violations.empty();
 }
 
-// The ramp and the hold that the options ask for. In place of a ramp that is too long there is the
+// The ramp and the hold that the options ask for. A ramp that is too long is replaced by the
 // shortest one, whose steps are then violations.
 LaidMotion laid(const RobotModel& model, const TargetRows& targets, const SafetyOptions& options) {
   const std::vector<Eigen::Index> columns = columns_of(model, targets.joints, targets.count);
@@ -333,7 +334,7 @@ SafetyReport report_on(const RobotModel& model, const TargetRows& targets, const
   for (size_t k = 0; k < plan.count(); ++k) {
     if (k < plan.ramp)
       theta = ramp_at(plan, k);
-    else if (k < plan.ramp + plan.motion)  // and then the last row is held
+    else if (k < plan.ramp + plan.motion)  // then the last row is held
       targets.row(k - plan.ramp, theta);
     if (!theta.allFinite())
       fail(ErrorCode::bad_pattern, "the joint table contains an angle that is not a finite number");
@@ -452,7 +453,7 @@ SafeTable make_safe(const RobotModel& model, ReferenceTrajectory reference,
   SafeTable result;
   result.first = plan.ramp;
   result.report = report_on(model, targets, plan, options);
-  // The rows of a long motion take much memory, so none is there twice.
+  // The rows of a long motion take much memory, so each row exists only once.
   std::vector<ReferenceRow> motion = std::move(reference.rows);
   result.table = std::move(reference);
   std::vector<ReferenceRow>& rows = result.table.rows;

@@ -28,9 +28,9 @@ double torsion_ratio(const GroundDemand& demand, double coefficient, double arm)
 // disc is farther away. [m]
 double least_arm(const GroundDemand& demand) { return 2.0 / 3 * demand.margin; }
 
-// Nothing resists turning where the foot slides anyway, and a ZMP outside the support has no arm;
-// both are findings of their own. The arm took a sixth of the time of a check, so it is left out
-// where a shorter one already shows that the sample is neither an error nor the worst so far.
+// If the foot slides, nothing resists a turn, and a ZMP outside the support has no arm. Both are
+// findings of their own. The arm took a sixth of the time of a check, so it is left out where a
+// shorter one already shows that the sample is neither an error nor the worst so far.
 void judge_torsion(JudgedMotion& motion, const JudgedSample& s) {
   if (!s.has_zmp()) return;
   const GroundDemand& use = s.demand.use;

@@ -1,8 +1,8 @@
-// Numerov: x_{k+1} - 2 x_k + x_{k-1} = h^2/12 (f_{k+1} + 10 f_k + f_{k-1}), f = w2 (x - z).
-// Rest before the start means x_{-1} = x_0 and f_{-1} = f_0 = 0: x_1 - x_0 - h^2/12 f_1 = 0.
-// For a start from rest, the initial DCM w int e^{-wt} z dt has to equal z_0. A bump b(t) shifts
-// the DCM by w int e^{-wt} b dt. The smallest bump for a given shift is b ~ e^{-wt}; (wt)^2 e^{-wt}
-// is 8 % larger and starts smoothly.
+// Numerov: x_{k+1} - 2 x_k + x_{k-1} = h^2/12 (f_{k+1} + 10 f_k + f_{k-1}), f = w2 (x - z). The
+// rest before the start means x_{-1} = x_0 and f_{-1} = f_0 = 0: x_1 - x_0 - h^2/12 f_1 = 0. For a
+// start from rest, the initial DCM w int e^{-wt} z dt has to equal z_0. A bump b(t) shifts the DCM
+// by w int e^{-wt} b dt. The smallest bump for a given shift is b ~ e^{-wt}; (wt)^2 e^{-wt} is 8 %
+// larger and starts smoothly.
 #include "ayumi/math/bounded_curve.hpp"
 
 #include <Eigen/LU>
@@ -48,7 +48,7 @@ RestToRest rest_to_rest_cog(const VectorXd& z, const VectorXd& w2, double h) {
     bump[0][k] = rest_bump(std::sqrt(w2[0]), t, duration);
     bump[1][k] = rest_bump(std::sqrt(w2[n]), duration - t, duration);
   }
-  // Deviation of x from rest at both ends, for a ZMP `zmp`.
+  // The deviation of x from rest at both ends, for a ZMP `zmp`.
   const auto unrest = [&](const VectorXd& x, const VectorXd& zmp) {
     const auto at = [&](Eigen::Index end, Eigen::Index inner) {
       return x[inner] - x[end] - h * h / 12.0 * w2[inner] * (x[inner] - zmp[inner]);

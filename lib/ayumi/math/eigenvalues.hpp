@@ -6,7 +6,7 @@
 
 namespace ayumi {
 
-/// The eigenvalues of a square matrix A, n x n, in the order of its Schur form. n values.
+/// The eigenvalues of a square matrix A, n x n, in the order of its Schur form: n values.
 Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A);
 
 /// The eigenvalues of a symmetric A in rising order (its lower triangle is read).

@@ -23,7 +23,8 @@ using Pair = parts::Pair<double>;
 parts::Reduced<double> reduced(double x) {
   constexpr double kLeast = 0.78, kMost = 1e9;
   if (std::abs(x) < kLeast) return {{x, 0}, 0};  // below pi/4, of which nothing is taken off
-  // Angles beyond any meaning: reduced by the double nearest to 2 pi, exactly and everywhere alike.
+  // Angles this large mean nothing. They are reduced by the double nearest to 2 pi, exactly and
+  // everywhere alike.
   if (std::abs(x) > kMost) x = std::fmod(x, 6.283185307179586);
   return parts::reduced(x);
 }
@@ -47,7 +48,7 @@ double exp_of_pair(const Pair& x) {
   const double k = x.high * 1.4426950408889634 + kRound - kRound;
   const Pair a = sum(x.high - k * kLog2, -k * kLog2Low);
   const auto exponent = static_cast<int>(k);
-  // In two steps, so that the factor stays a number where the result is one.
+  // The factor is applied in two steps, so that it stays a number where the result is one.
   return std::ldexp(std::ldexp(exp_of({a.high, a.low + x.low}), exponent / 2),
                     exponent - exponent / 2);
 }
@@ -157,7 +158,7 @@ double atan2(double y, double x) {
     if (std::isinf(y)) return sign * kHalfPi.high;
     return x > 0 ? std::copysign(0.0, y) : sign * kPi.high;
   }
-  // Into the middle of the range, where products neither overflow nor lose bits.
+  // Moves the numbers into the middle of the range, where products neither overflow nor lose bits.
   double a = std::abs(y), b = std::abs(x);
   const double most = std::max(a, b);
   if (most > 0x1p500) a *= 0x1p-600, b *= 0x1p-600;

@@ -33,7 +33,8 @@ template <typename T>
   return {high, a - high};
 }
 template <typename T, typename U>
-[[gnu::always_inline]] inline Pair<T> product(const T& a, const U& b) {  // exact (Dekker)
+[[gnu::always_inline]] inline Pair<T> product(const T& a,
+                                              const U& b) {  // exact (Dekker)
   const T p = a * b;
   const Pair<T> x = split(a);
   const Pair<U> y = split(b);
@@ -67,7 +68,7 @@ template <typename T>
   const T shifted = x * 0.63661977236758134308 + kRound;
   const T k = shifted - kRound;
   const Pair<T> first = product(k, kFirst), second = product(k, kSecond);
-  // k to 2^30: the products are exact as pairs.
+  // For k up to 2^30, the products are exact as pairs.
   const Pair<T> a = sum<T>(x - first.high, -first.low);
   const Pair<T> b = sum<T>(a.high, -second.high);
   const T low = a.low + b.low - second.low - k * kThird;

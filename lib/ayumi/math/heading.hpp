@@ -1,5 +1,5 @@
 #pragma once
-// The turn of a body about the vertical.
+// The yaw of a body about the vertical.
 
 #include <Eigen/Core>
 
@@ -7,7 +7,7 @@
 
 namespace ayumi {
 
-/// The third of matrix_to_rpy() alone [rad].
+/// The third angle of matrix_to_rpy() alone [rad].
 inline double heading_of(const Eigen::Matrix3d& rotation) {
   return elementary::atan2(rotation(1, 0), rotation(0, 0));
 }

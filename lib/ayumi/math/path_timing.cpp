@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// A row of unit length, or one between parallels, is kept to this. Chosen: far above the rounding
-// of doubles and far below any limit of a motion.
+// A row of unit length, or one between parallels, is kept within this tolerance. Chosen: far above
+// the rounding of doubles and far below any limit of a motion.
 constexpr double kKept = 1e-10;
 
 // No s'' is larger. Definition: above any that makes sense, so that only the rows bind.
@@ -54,7 +54,7 @@ std::optional<double> extreme_x(Rows& rows, double sign, double least, double mo
   for (size_t i = 0; i < rows.all.size(); ++i) {
     const UnitRow row = rows.all[i];
     if (row.u * u + row.x * x <= row.most + kKept) continue;
-    // Points (u, x) = most (row.u, row.x) + t (-row.x, row.u).
+    // The points of the row are (u, x) = most (row.u, row.x) + t (-row.x, row.u).
     double low = -kInfinity, high = kInfinity;
     const auto cut = [&](double a, double b, double c) {
       const double along = -a * row.x + b * row.u, rest = c - row.most * (a * row.u + b * row.x);
@@ -105,7 +105,7 @@ class Reachability {
     return points_[at + 1].at - points_[at].at;
   }
 
-  // The rows of the step that begins at point i; at the last point, of that point alone.
+  // The rows of the step that begins at point i; at the last point, the rows of that point alone.
   void collect(int i, bool last) {
     rows_.clear();
     const auto at = static_cast<size_t>(i);
@@ -144,7 +144,7 @@ class Reachability {
       else
         low = std::max(low, u);
     }
-    // Rounding may leave the interval empty by a little.
+    // Because of rounding, the interval may be empty by a little.
     return std::clamp(x + twice * std::max(high, std::min(low, high)), to.least, to.most);
   }
 

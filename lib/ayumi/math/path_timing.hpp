@@ -10,12 +10,12 @@
 
 namespace ayumi {
 
-/// u * s'' + x * s'^2 <= most.
+/// The limit u * s'' + x * s'^2 <= most.
 struct TimingRow {
   double u = 0, x = 0, most = 0;
 };
 
-/// What holds at one point of the path.
+/// The limits that hold at one point of the path.
 struct TimingPoint {
   double at = 0;  ///< its place s on the path; places increase
   std::vector<TimingRow> rows;

@@ -22,7 +22,7 @@ Vector2d nearest_on_segment(const Vector2d& a, const Vector2d& b, const Vector2d
 
 ConvexPolygon::ConvexPolygon(std::vector<Vector2d> points) { assign(points); }
 
-// Andrew's monotone chain.
+// Computes the hull by Andrew's monotone chain.
 void ConvexPolygon::assign(std::vector<Vector2d>& points) {
   std::sort(points.begin(), points.end(), [](const Vector2d& a, const Vector2d& b) {
     return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());

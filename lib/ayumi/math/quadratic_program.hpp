@@ -9,7 +9,7 @@ namespace ayumi {
 inline constexpr int kMostUnknowns = 8;       ///< Definition
 inline constexpr int kMostInequalities = 40;  ///< Definition
 
-/// Least 1/2 x'H x + f'x with A x <= b. H: symmetric and definite.
+/// Minimises 1/2 x'H x + f'x with A x <= b. H is symmetric and definite.
 struct QuadraticProgram {
   using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostUnknowns, 1>;
   using Matrix =
@@ -25,11 +25,12 @@ struct QuadraticProgram {
 
 struct ProgramSolution {
   QuadraticProgram::Vector x;
-  QuadraticProgram::Bounds multipliers;  ///< of the inequalities, >= 0
+  QuadraticProgram::Bounds multipliers;  ///< multipliers of the inequalities, >= 0
   bool optimal = false;                  ///< false: x is feasible only
 };
 
-/// By an active set that begins at `start`, which has to keep A x <= b. Allocates nothing.
+/// Solves it by an active set that begins at `start`, which has to keep A x <= b. Allocates
+/// nothing.
 ProgramSolution solve_program(const QuadraticProgram& program,
                               const QuadraticProgram::Vector& start);
 

@@ -14,7 +14,7 @@ struct QuinticEnd {
   double value = 0, rate = 0, acceleration = 0;
 };
 
-/// Value, rate and acceleration at t of the quintic between two points.
+/// The value, rate and acceleration at t of the quintic between two points.
 TrackPoint quintic_at(const QuinticEnd& from, const QuinticEnd& to, double t);
 
 /// Spline keys of the quintics through all points, at most 4 ms apart, the first point included.

@@ -1,4 +1,4 @@
-// Two or four numbers at once, each by the operations of Random::normal() in their order.
+// Computes two or four numbers at once, each by the operations of Random::normal() in their order.
 #include "ayumi/math/random.hpp"
 
 #include <algorithm>
@@ -9,7 +9,8 @@ namespace ayumi {
 
 namespace {
 
-/// Numbers that are drawn at once. Definition: a workspace; results do not depend on it.
+/// The number of numbers that are drawn at once. Definition: a workspace; results do not depend on
+/// it.
 constexpr int kMostAtOnce = 32;
 
 typedef double Two __attribute__((vector_size(16)));
@@ -28,7 +29,7 @@ template <typename Numbers, typename Whole>
   const Whole fraction = (bits & ((1ll << kFraction) - 1)) | (kHalf << kFraction);
   Numbers m;
   __builtin_memcpy(&m, &fraction, sizeof m);
-  const Whole small = m < elementary::parts::kRootHalf;  // -1: yes
+  const Whole small = m < elementary::parts::kRootHalf;  // -1 where it is true
   m = small ? 2.0 * m : m;
   exponent += small;
   const Numbers k = __builtin_convertvector(exponent, Numbers);

@@ -19,14 +19,14 @@ class Random {
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
     return z ^ (z >> 31);
   }
-  /// In [0, 1).
+  /// A number in [0, 1).
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1.0p-53; }
-  /// Mean 0, standard deviation 1 (Box-Muller, one of the pair).
+  /// A number with mean 0 and standard deviation 1 (Box-Muller, one of the pair).
   double normal() {
     const double radius = std::sqrt(-2.0 * elementary::log(1.0 - uniform()));
     return radius * elementary::cos(2.0 * M_PI * uniform());
   }
-  /// As many calls of normal(), in less time.
+  /// Gives the same numbers as so many calls of normal(), in less time.
   void normals(double* out, int count);
 
  private:

@@ -13,7 +13,7 @@ namespace ayumi {
 Eigen::MatrixXd solve_riccati(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B,
                               const Eigen::MatrixXd& Q, const Eigen::MatrixXd& R);
 
-/// (R + B'PB)^-1 B'PA.
+/// The gain (R + B'PB)^-1 B'PA.
 Eigen::MatrixXd regulator_gain(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B,
                                const Eigen::MatrixXd& R, const Eigen::MatrixXd& P);
 

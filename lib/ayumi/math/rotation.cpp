@@ -9,7 +9,7 @@ namespace ayumi {
 
 Eigen::Quaterniond exp_rotation(const Eigen::Vector3d& r) {
   const double angle = r.norm();
-  // sin(a/2)/a by its series near zero, where the quotient loses digits.
+  // Computes sin(a/2)/a by its series near zero, where the quotient loses digits.
   const double s = angle < 1e-4 ? 0.5 - angle * angle / 48.0 : elementary::sin(0.5 * angle) / angle;
   const Eigen::Vector3d v = s * r;
   return Eigen::Quaterniond(elementary::cos(0.5 * angle), v.x(), v.y(), v.z());

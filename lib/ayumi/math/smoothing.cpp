@@ -31,7 +31,7 @@ constexpr double kToBoundary = 0.99;
 using Bands =
     std::array<VectorXd, kBand + 1>;  // diagonals of a symmetric matrix, from the main one
 
-// D'D of third differences.
+// The matrix D'D of third differences.
 Bands third_differences(Index n) {
   constexpr std::array<double, 4> d = {-1, 3, -3, 1};
   Bands P;
@@ -52,7 +52,7 @@ VectorXd times(const Bands& P, const VectorXd& x) {
   return y;
 }
 
-// L D L' in place, then the solution: P is positive definite.
+// Factorizes into L D L' in place, and then solves; P is positive definite.
 VectorXd solved(Bands P, VectorXd b) {
   const Index n = b.size();
   for (Index k = 0; k < n; ++k) {
@@ -79,7 +79,7 @@ double step_share(const VectorXd& v, const VectorXd& step) {
   return share;
 }
 
-// The change u of x, both in units of the band.
+// Returns the change u of x; both are in units of the band.
 VectorXd within_one(const VectorXd& x, double weight) {
   const Index n = x.size();
   Bands P = third_differences(n);

@@ -11,13 +11,13 @@ namespace ayumi {
 
 namespace {
 
-/// Without promotion to long double, whose rounding depends on the processor.
+/// Does not promote to long double, whose rounding depends on the processor.
 using Policy = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
 using Normal = boost::math::normal_distribution<double, Policy>;
 using Beta = boost::math::beta_distribution<double, Policy>;
 using Binomial = boost::math::binomial_distribution<double, Policy>;
 
-/// Ranks from 1; equal values have the mean of theirs.
+/// Ranks count from 1; equal values have the mean of their ranks.
 std::vector<double> ranks(const std::vector<double>& values) {
   std::vector<size_t> order(values.size());
   std::iota(order.begin(), order.end(), size_t{0});

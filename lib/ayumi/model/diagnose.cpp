@@ -282,14 +282,14 @@ class Doctor {
   }
 
   // The joints on the right that are mirror images of those on the left, by their places with every
-  // joint at 0: of the same kind, as many joints away from the root, nearest to the mirrored place,
-  // and the other one has none nearer either.
+  // joint at 0: a pair is of the same kind and as many joints away from the root, and each of the
+  // two is nearest to the mirrored place of the other.
   std::vector<std::pair<const Dof*, const Dof*>> partners() const {
     const auto place = [&](const Dof& dof) { return zero_[dof.body].translation(); };
     const auto mirrored_distance = [&](const Dof& a, const Dof& b) {
       Eigen::Vector3d mirrored = place(a);
       mirrored.y() = -mirrored.y();
-      // Joints with one centre differ by their axes.
+      // Joints with one centre are told apart by their axes.
       const Eigen::Vector3d axis = zero_[a.body].linear() * model_.bodies()[a.body].axis;
       const Eigen::Vector3d other = zero_[b.body].linear() * model_.bodies()[b.body].axis;
       const Eigen::Vector3d turned(axis.x(), -axis.y(), axis.z());
@@ -322,7 +322,7 @@ class Doctor {
       for (const Link& link : model_.links())
         if (link.body == left->body && link.name == model_.bodies()[left->body].name)
           compare_links(link, model_.links()[model_.find_link(model_.bodies()[right->body].name)]);
-      // What the joint before is displaced by is said there.
+      // The message about the joint before it says what that joint is displaced by.
       Eigen::Vector3d before = Eigen::Vector3d::Zero();
       for (const auto& [above, other] : pairs)
         if (above->body == model_.bodies()[left->body].parent &&
@@ -356,7 +356,7 @@ class Doctor {
            millimetres(apart) + " apart with every joint at 0", apart);
   }
 
-  // From the right joint to the mirror image of the left one.
+  // The vector from the right joint to the mirror image of the left one.
   Eigen::Vector3d displacement(const Dof& left, const Dof& right) const {
     Eigen::Vector3d mirrored = zero_[left.body].translation();
     mirrored.y() = -mirrored.y();

@@ -31,7 +31,7 @@ std::vector<Eigen::Vector3d> rings_of(const std::vector<Ring>& rings) {
   return points;
 }
 
-// Rings of two half balls with a straight piece of the given length between them.
+// The rings of two half balls with a straight piece of the given length between them.
 std::vector<Eigen::Vector3d> rounded(double radius, double length) {
   std::vector<Ring> rings;
   for (int i = 0; i <= 8; ++i) {

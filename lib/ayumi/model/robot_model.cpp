@@ -21,7 +21,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Names of links or postures in one message. Chosen: a message that a person still reads.
+/// Most names of links or postures in one message. Chosen: a message that a person still reads.
 constexpr size_t kMostNamed = 20;
 
 /// Penetration of a sole without a stated stiffness under the whole weight [m]. Chosen: stiff

@@ -136,7 +136,7 @@ void validate_joints(const RobotDescription& robot) {
 }
 
 int find_root_link(const RobotDescription& robot) {
-  std::map<std::string, std::string> parent_joint;  // of each child link
+  std::map<std::string, std::string> parent_joint;  // parent joint of each child link
   std::multimap<std::string, std::string> children;
   for (const JointDescription& joint : robot.joints) {
     const auto [other, fresh] = parent_joint.emplace(joint.child, joint.name);
@@ -234,9 +234,9 @@ void positive(const RobotDescription& robot, const std::string& what,
           robot, what + " of '" + name + "' is " + text::exact(value) + "; it must be above 0");
 }
 
-// Corners of a sole. Each is a contact of the simulation, whose time grows with the third power of
-// their number. Chosen: on a round sole of 0.1 m, 32 corners leave out 0.5 mm. At half of it, this
-// is 2 mm; at twice, a step of the simulation takes eight times as long.
+// Most corners of a sole. Each is a contact of the simulation, whose time grows with the third
+// power of their number. Chosen: on a round sole of 0.1 m, 32 corners leave out 0.5 mm. At half of
+// it, this is 2 mm; at twice, a step of the simulation takes eight times as long.
 constexpr size_t kMostSoleCorners = 32;
 
 void validate_sole(const RobotDescription& robot, const std::string& side,

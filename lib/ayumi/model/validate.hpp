@@ -13,25 +13,26 @@ namespace ayumi {
 inline constexpr double kLargestMass = 1e6;
 inline constexpr double kLargestLength = 1e4;
 
-/// Throws "urdf file: message".
+/// Throws Error(bad_model) "urdf file: message".
 [[noreturn]] void complain_urdf(const RobotDescription& robot, const std::string& message);
-/// Throws "sidecar file: message".
+/// Throws Error(bad_model) "sidecar file: message".
 [[noreturn]] void complain_sidecar(const RobotDescription& robot, const std::string& message);
 
-/// Names, finite numbers, masses and inertia tensors of all links.
+/// Checks names, finite numbers, masses and inertia tensors of all links.
 void validate_links(const RobotDescription& robot);
 
-/// Names, ends, axes, limits and mimic targets of all joints.
+/// Checks names, ends, axes, limits and mimic targets of all joints.
 void validate_joints(const RobotDescription& robot);
 
-/// One root, one parent for each link, no loop. Returns the index of the root link.
+/// Checks that there is one root, one parent for each link, and no loop. Returns the index of the
+/// root link.
 int find_root_link(const RobotDescription& robot);
 
 /// Indices into `robot.joints` of the joints with a coordinate of their own (neither fixed,
 /// floating nor mimicking), in `joint_order` when it is given, else in the file's order.
 std::vector<int> ordered_dof_joints(const RobotDescription& robot);
 
-/// Names of joints and links in the sidecar, and its numbers.
+/// Checks the names of joints and links in the sidecar, and its numbers.
 void validate_sidecar(const RobotDescription& robot, const std::vector<std::string>& dof_names);
 
 }  // namespace ayumi

@@ -103,9 +103,9 @@ namespace {
 
 namespace {
 
-// Rounds of legs and hands, and the change of a joint with which they end [rad, m]. Chosen: an arm
-// is a twentieth of the robot, so that each round leaves about as much of the change; what remains
-// shows in accelerations at 1 kHz as less than 1e-5 rad/s^2.
+// Largest number of rounds of legs and hands, and the change of a joint at which they end [rad, m].
+// Chosen: an arm has a twentieth of the robot's mass, so each round leaves about a twentieth of the
+// change. The rest changes accelerations at 1 kHz by less than 1e-5 rad/s^2.
 constexpr int kMostRounds = 30;
 constexpr double kSameJoint = 1e-11;
 
@@ -125,7 +125,7 @@ PostureSolution solve_posture(const SampleJob& job, double t, const Eigen::Matri
   };
   PostureSolution solution = legs();
   if (!job.links.leads(t)) return solution;
-  // A hand moves the COG, so that the base moves, and with it the hand.
+  // The hand moves the COG, so the base moves, and the hand moves with the base.
   const VectorXd keyed = keyed_joints(job, t);
   for (int round = 0; round < kMostRounds; ++round) {
     if (job.links.solve(t, keyed, sample.state, data) < kSameJoint) break;
@@ -136,9 +136,9 @@ PostureSolution solve_posture(const SampleJob& job, double t, const Eigen::Matri
 
 namespace {
 
-/// Largest change of an angle [rad] or place [m] from one step to the next that is extrapolated;
-/// keys that hold let the trunk jump. Chosen: 20 rad/s at 1 kHz, above the speed of servos. Figures
-/// change by rounding only.
+/// Largest change of an angle [rad] or place [m] from one step to the next that is extrapolated.
+/// The trunk jumps at keys with the interpolation hold. Chosen: 20 rad/s at 1 kHz, above the speed
+/// of servos. Figures change by rounding only.
 constexpr double kLargestChange = 0.02;
 
 }  // namespace
@@ -205,15 +205,16 @@ void require_body_tracks(const SampleJob& job) {
 
 namespace {
 
-// Lean [rad] and miss [m] of a motion that are worth a sentence. Chosen: what a person sees.
+// Smallest lean [rad] and displacement [m] that the origin of a motion names. Chosen: a person sees
+// larger ones.
 constexpr double kNotedLean = 1e-3, kNotedMiss = 1e-5;
 
-// Largest figures of a motion.
+// Largest values in a motion.
 struct Worst {
-  double miss = 0;   // of a sole that carries, by legs that lack joints [m]
-  double swing = 0;  // the same of a sole that swings [m]
-  double lean = 0;   // of the trunk, by legs that lack joints [rad]
-  double zmp = 0;    // error of the full model in the solved axes [m]
+  double miss = 0;   // displacement of a sole that carries the robot, for legs that lack joints [m]
+  double swing = 0;  // displacement of a sole that swings [m]
+  double lean = 0;   // lean of the trunk, for legs that lack joints [rad]
+  double zmp = 0;    // ZMP error of the full model in the solved axes [m]
 
   void include(const Worst& other) {
     miss = std::max(miss, other.miss);
@@ -223,7 +224,7 @@ struct Worst {
   }
 };
 
-// The posture at the start of a block: that of the grid, or at rest.
+// The posture at the start of a block: from the grid, or at rest.
 RobotState start_of_block(const SampleJob& job, const CogPlan& plan, int first) {
   if (!plan.postures.empty()) {
     const double share = static_cast<double>(first) / (job.count - 1);
@@ -234,7 +235,7 @@ RobotState start_of_block(const SampleJob& job, const CogPlan& plan, int first) 
   return state;
 }
 
-// Solves the postures of the samples from `first` to before `end`.
+// Solves the postures of the samples first, first + 1, ..., end - 1.
 Worst solve_block(const SampleJob& job, const CogPlan& plan, int first, int end,
                   CommandSeries& series) {
   RobotData data(job.model);
@@ -259,7 +260,7 @@ Worst solve_block(const SampleJob& job, const CogPlan& plan, int first, int end,
   return worst;
 }
 
-// Fills rates, commanded ZMP and f_z of the samples from `first` to before `end`.
+// Computes rates, commanded ZMP and f_z of the samples first, ..., end - 1.
 Worst fill_block(const SampleJob& job, const CogPlan& plan, int first, int end,
                  CommandSeries& series) {
   fill_rates(series.samples, first, end, job.dt, job.tracks.rest_ends);
@@ -285,7 +286,7 @@ Worst fill_block(const SampleJob& job, const CogPlan& plan, int first, int end,
   return worst;
 }
 
-// Work(first, end) returns the worst of its samples.
+// Calls work(first, end) for all blocks. Each call returns the worst values of its samples.
 template <class Work>
 Worst worst_of_blocks(const SampleJob& job, int block, const Work& work) {
   std::mutex mutex;
@@ -376,7 +377,7 @@ CommandSeries sample_body_driven(const SampleJob& job) {
   series.origin = job.tracks.origin;
   const CogPlan plan = plan_cog(job);
   report(job.progress, {"sample", 0, ""});
-  // Without postures of a grid, each sample is solved from the one before it.
+  // Without postures of a grid, each sample is solved from the previous one.
   Worst worst = worst_of_blocks(job, plan.postures.empty() ? 0 : kBlock, [&](int first, int end) {
     return solve_block(job, plan, first, end, series);
   });

@@ -53,7 +53,7 @@ class FlightTurn {
     Vector3d turn = Vector3d::Zero(), rate = Vector3d::Zero(), acceleration = Vector3d::Zero();
   };
 
-  /// Rate of the turn with zero angular momentum at t, for a trunk that is turned by `turn`.
+  /// Rate of the turn with zero angular momentum at t, if the trunk is turned by `turn`.
   Vector3d rate(double t, const Vector3d& turn) {
     put_plan(job_, t, sample_);
     const Matrix3d trunk =
@@ -90,9 +90,9 @@ class FlightTurn {
   }
 
  private:
-  // Accelerations by differences of the rates, then the turn again as the integral of the cubic
-  // through both, so that the quintics between the nodes have exactly these rates and
-  // accelerations.
+  // Computes accelerations as differences of the rates. Then the turn is computed again as the
+  // integral of the cubic through both, so that the quintics between the nodes have exactly these
+  // rates and accelerations.
   static void accelerate(std::vector<Node>& nodes, double h) {
     const size_t last = nodes.size() - 1;
     for (size_t k = 1; k < last; ++k)
@@ -105,7 +105,7 @@ class FlightTurn {
                           h * h / 12 * (nodes[k].acceleration - nodes[k + 1].acceleration);
   }
 
-  // Rates of the joints that hands lead in the frame of the trunk; empty: nothing does.
+  // Rates of the joints that follow hands in the frame of the trunk. Empty if there are none.
   VectorXd rates_of_targets(double t) const {
     if (!job_.links.leads(t - kDifference) || !job_.links.leads(t + kDifference)) return {};
     RobotData data(job_.model);
@@ -170,7 +170,7 @@ double segment_at(const Pattern& pattern, double t, bool before) {
   return length;
 }
 
-// The turn of one flight: it begins level with the necessary rate; the swings before and after it
+// The turn of one flight: it begins level, with the necessary rate; the swings before and after it
 // begin and end at rest or at another flight.
 struct Flight {
   double begin = 0, end = 0, swing_up = 0, swing_down = 0;
@@ -217,7 +217,7 @@ TrunkTurn plan_trunk_turn(const SampleJob& job, const CogAt& cog) {
   for (size_t i = 0; i < flights.size(); ++i) {
     double from = flights[i].begin - flights[i].swing_up;
     double until = flights[i].end + flights[i].swing_down;
-    // Swings that touch become one.
+    // Joins swings that touch each other.
     if (i > 0 && from < flights[i - 1].end + flights[i - 1].swing_down + 1e-6)
       from = flights[i].begin;
     if (i + 1 < flights.size() && until > flights[i + 1].begin - flights[i + 1].swing_up - 1e-6)

@@ -1,7 +1,8 @@
 #pragma once
-// Flight: nothing outside turns the robot, so that the trunk turns against the legs. Zero angular
-// momentum about the COG determines the trunk's rate at each time of the flight, ends included.
-// Before and after the flight the trunk swings smoothly from and to the commanded attitude.
+// In flight, no external moment acts on the robot, so the trunk turns against the legs. Zero
+// angular momentum about the COG determines the trunk's rate at each time of the flight, ends
+// included. Before and after the flight the trunk swings smoothly from and to the commanded
+// attitude.
 
 #include <array>
 #include <functional>
@@ -10,7 +11,7 @@
 
 namespace ayumi {
 
-/// The planned COG at a time: position [m], rate, acceleration by axis.
+/// The planned COG at a time: position [m], and rate and acceleration by axis.
 using CogAt = std::function<std::array<TrackPoint, 3>(double)>;
 
 /// The turn of the trunk; zero for patterns without flight or with torso keys. Throws

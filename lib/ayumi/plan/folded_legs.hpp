@@ -11,13 +11,13 @@ namespace ayumi {
 // count as too high; at twice, legs that are nearly straight would count as folded.
 inline constexpr double kFoldedShare = 0.7;
 
-/// COG height of the home posture of a pattern [m].
+/// COG height in the home posture of a pattern [m].
 inline double home_cog_height(const RobotModel& model, Pattern pattern) {
   pattern.cog_height = 0;
   return default_cog_height(model, pattern);
 }
 
-/// Whether the COG is so low, above the soles [m], that the legs are folded.
+/// Whether legs are folded at this height of the COG above the soles [m].
 inline bool legs_are_folded(const RobotModel& model, const Pattern& pattern, double cog_height) {
   return cog_height < kFoldedShare * home_cog_height(model, pattern);
 }

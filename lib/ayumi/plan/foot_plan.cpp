@@ -22,10 +22,10 @@ constexpr std::array<Side, 2> kSides = {Side::left, Side::right};
 // Times closer than this are equal [s]. Chosen: above rounding. No measured case changes from half
 // to twice (constants.md).
 constexpr double kInstant = 1e-9;
-// A foot stands where its keys move it by less than this [m, rad]. Chosen: a home posture that is
-// given in degrees with two decimals turns a foot by 3e-7 rad, which no author writes into a key;
-// at half and at twice, such a foot still stands, and moves by less than any tolerance of the
-// check.
+// A foot counts as standing if its keys move it by less than this [m, rad]. Chosen: a home posture
+// that is given in degrees with two decimals turns a foot by 3e-7 rad, which no author writes into
+// a key; at half and at twice, such a foot still stands, and moves by less than any tolerance of
+// the check.
 constexpr double kStands = 1e-5;
 
 [[noreturn]] void complain(const Pattern& pattern, const std::string& place,
@@ -46,7 +46,7 @@ Isometry3d on_ground(const Vector3d& position, double yaw) {
 // 0.0353 to 0.00372.
 constexpr double kFlightRamp = 0.04;
 
-// From 0 to 1 with three derivatives that are zero at both ends.
+// Rises from 0 to 1. The first three derivatives are zero at both ends.
 double smooth_step(double u) {
   u = std::clamp(u, 0.0, 1.0);
   return u * u * u * u * (35 + u * (-84 + u * (70 - 20 * u)));
@@ -70,14 +70,14 @@ bool same_place(const Isometry3d& a, const Isometry3d& b) {
          (a.linear() - b.linear()).norm() < kStands;
 }
 
-// The key that drags the foot is the first one, from the beginning of the phase on, that is
-// elsewhere.
+// The key that moves the foot is the first key in the phase that is at another place.
 [[noreturn]] void complain_of_dragged_foot(const FootPlan& feet, const Pattern& pattern, Side side,
                                            size_t phase) {
   const double first = feet.begin(static_cast<int>(phase)), until = feet.phases()[phase].until;
   const Isometry3d stands = feet.pose(side, first);
   size_t dragging = 0;
-  bool by_curve = true, kept = false;  // no key is elsewhere; one at the end of the phase stands
+  bool by_curve = true,
+       kept = false;  // no key is at another place; a key at the end of the phase keeps the place
   for (size_t i = 0; i < pattern.keyframes.size(); ++i) {
     const auto& key = pattern.keyframes[i].feet[index(side)];
     if (!key || pattern.keyframes[i].t < first - kInstant) continue;

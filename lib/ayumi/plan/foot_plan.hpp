@@ -11,9 +11,9 @@
 
 namespace ayumi {
 
-/// Index of arrays by Side, left first.
+/// Index of arrays by Side; the left side is first.
 inline int index(Side side) { return static_cast<int>(side); }
-/// Single support by this foot.
+/// The single support by this foot.
 inline Support on(Side side) { return side == Side::left ? Support::left : Support::right; }
 
 /// Fraction at both ends of a swing in which the foot moves only up or down. Chosen: the lift at 8
@@ -39,14 +39,14 @@ class FootPlan {
   /// neither swings nor has keys in a flight follows the COG's parabola, faded in and out over 40
   /// ms, and rises as high as the COG.
   Eigen::Isometry3d pose(Side side, double t) const;
-  /// Of both sides.
+  /// Poses of both soles.
   std::array<Eigen::Isometry3d, 2> poses(double t) const {
     return {pose(Side::left, t), pose(Side::right, t)};
   }
 
-  /// How firmly a foot keeps its place: 1 where it carries and in flights; while the other foot
-  /// alone carries, down to 0 in the middle of this time and back, with two derivatives that are
-  /// zero at both ends.
+  /// Weight with which a foot keeps its place. It is 1 while the foot carries the robot and in
+  /// flights. While only the other foot carries the robot, the weight falls to 0 in the middle of
+  /// this time and returns to 1. Its first two derivatives are zero at both ends.
   double hold(Side side, double t) const;
 
   /// Mean height of both soles without lifts, which is the ground under the robot [m].
@@ -54,14 +54,14 @@ class FootPlan {
 
   /// Centre of the sole polygon, world [m].
   Eigen::Vector3d sole_center(Side side, double t) const;
-  /// Mean of the centres of the supporting soles; of both soles in flight.
+  /// Mean of the centres of the supporting soles. In flight, the mean of both soles.
   Eigen::Vector3d support_center(double t) const;
 
   /// Index of the phase at t; the end of a phase belongs to the next one.
   int phase(double t) const;
   Support support(double t) const;
   double begin(int phase) const { return phase > 0 ? phases_[phase - 1].until : 0.0; }
-  /// Those of the pattern, with footholds in place of steps.
+  /// The phases of the pattern, with footholds in place of steps.
   const std::vector<Phase>& phases() const { return phases_; }
   double duration() const { return phases_.back().until; }
 
@@ -74,10 +74,10 @@ class FootPlan {
   };
   struct KeyedFoot {
     std::array<Track, 3> position, rpy;
-    std::vector<double> times;  // of its keys [s]
+    std::vector<double> times;  // times of the keys of this foot [s]
   };
   void read_phases(const Pattern& pattern);
-  /// World pose of the sole after a step, `now` the soles before it.
+  /// World pose of the sole after a step. `now` are the soles before the step.
   Eigen::Isometry3d landing_of(const Swing& swing, const RelativeStep& step,
                                const std::array<Eigen::Isometry3d, 2>& now) const;
   void read_foot_keys(const Pattern& pattern, Side side);
@@ -88,7 +88,7 @@ class FootPlan {
 
   std::vector<Phase> phases_;
   std::array<Eigen::Isometry3d, 2> start_;
-  std::array<Eigen::Vector3d, 2> center_;  ///< of the sole polygons, sole frame
+  std::array<Eigen::Vector3d, 2> center_;  ///< centres of the sole polygons, in the sole frame [m]
   std::array<std::vector<Move>, 2> moves_;
   std::array<std::optional<KeyedFoot>, 2> keyed_;
 };

@@ -1,5 +1,5 @@
 // The base follows from the anchor, the foot that supports the robot; in double support the last
-// anchor remains. A new anchor stays at its present place, so that the base never jumps.
+// anchor remains. A new anchor stays at its present place, so the base never jumps.
 #include <algorithm>
 
 #include "ayumi/base/error.hpp"
@@ -19,8 +19,8 @@ namespace {
 
 constexpr std::array<Side, 2> kBothSides = {Side::left, Side::right};
 
-// Rounds for a head whose eye moves when it turns, and the change of a joint with which they end
-// [rad]. Chosen: as in a motion that the body drives.
+// Largest number of rounds for a head whose eye moves when the head turns, and the change of a
+// joint at which they end [rad]. Chosen: the same values as in plan/body_driven.
 constexpr int kMostGazeRounds = 30;
 constexpr double kSameGaze = 1e-11;
 
@@ -52,7 +52,7 @@ void anchor_samples(const SampleJob& job, CommandSeries& series) {
     const double t = k * job.dt;
     if (!supports(job.feet.support(t), anchor)) {
       anchor = other(anchor);
-      // The new anchor stays at its place of the last sample.
+      // The new anchor stays at its place in the previous sample.
       if (k > 0) {
         update_positions(job.model, series.samples[k - 1].state, data);
         held = sole_pose(job.model, data, anchor);
@@ -84,8 +84,8 @@ void table_base(const SampleJob& job, CommandSeries& series) {
   }
 }
 
-// Place of a foot from sample `first` to `last`: the median of its places by the joints, so that a
-// late landing or a slip during less than half of the time does not change it.
+// Place of a foot from sample `first` to `last`: the median of its places according to the joints,
+// so that a late landing or a slip during less than half of the time does not change it.
 Isometry3d median_sole(const std::vector<Isometry3d>& soles, int first, int last) {
   const int n = last - first + 1;
   std::array<std::vector<double>, 6> values;
@@ -109,7 +109,8 @@ Isometry3d median_sole(const std::vector<Isometry3d>& soles, int first, int last
   return pose;
 }
 
-// A sole whose contact ends at the place where it began stands there; otherwise the median counts.
+// If a sole is at the same place at the beginning and at the end of its contact, it stands there.
+// Otherwise the median counts.
 Isometry3d place_of(const std::vector<Isometry3d>& soles, int first, int last) {
   // Largest difference of two places [m], and of entries of their rotations. Chosen: the rounding
   // of tables. No measured case changes from half to twice (constants.md).
@@ -140,7 +141,8 @@ void fill_feet_from_joints(CommandSeries& series, const RobotModel& model) {
   }
 }
 
-// Planned soles: those of the phases when there are swings or foot keys; else those by the joints.
+// Planned soles: according to the phases if there are swings or foot keys, otherwise according to
+// the joints.
 void fill_feet(const SampleJob& job, CommandSeries& series) {
   const Pattern& pattern = job.pattern;
   const bool planned = std::any_of(pattern.phases.begin(), pattern.phases.end(),
@@ -187,7 +189,7 @@ void fill_commands(const SampleJob& job, CommandSeries& series) {
   }
 }
 
-// The base does not depend on arms and head; the COG does.
+// The base does not depend on arms and head, but the COG does.
 void follow_targets(const SampleJob& job, CommandSeries& series) {
   RobotData data(job.model);
   for (int k = 0; k < job.count; ++k) {

@@ -27,21 +27,21 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Weights of a place in lengths of the limb, of a direction and of a gaze, against radians from the
-// joints' keys. Chosen: a posture one radian away misses a place by a few nanometres; a direction
-// gives way to the place, which an arm of four joints needs, and is met within a hundredth of a
-// degree where it can be. Half and twice change only these figures.
+// Weights of a place (in lengths of the limb), of a direction and of a gaze, relative to the weight
+// of 1 rad from the joints' keys. Chosen: a posture one radian away misses a place by a few
+// nanometres; a direction gives way to the place, which an arm of four joints needs, and is met
+// within a hundredth of a degree where it can be. Half and twice change only these figures.
 constexpr double kPlaceWeight = 1e8, kDirectionWeight = 1e4, kGazeWeight = 1e8;
 
-// A link that ends within this distance of its place is there [m]. Chosen: a tenth of a millimetre,
-// which no hand has.
+// A link has reached its place if its end is within this distance [m]. Chosen: no hand needs a
+// tenth of a millimetre.
 constexpr double kThere = 1e-4;
 // A direction is met within this angle [rad]. Chosen: two degrees, because four joints of an arm
 // can point a hand only nearly. Half: fewer directions are taken; twice: the eye sees the miss.
 constexpr double kAligned = 2 * M_PI / 180;
 
-// Distance ahead of the head at which it looks without a target [m]. Chosen: where a person looks
-// at something at hand; it decides only the way from there to the first target.
+// Distance ahead of the head at which it looks without a target [m]. Chosen: the distance at which
+// a person looks at a thing in the hand. It affects only the movement to the first target.
 constexpr double kAhead = 1;
 
 // Steps of Newton's method. Chosen: a few suffice near a solution; a start far away takes tens.
@@ -55,10 +55,11 @@ constexpr double kLastStep = 1e-8;
 // few radians from its keys, and below what would outweigh the linear part of a limb that cannot
 // reach.
 constexpr double kLargestPull = 1;
-// Step off a point where nothing pulls, as a straight arm is one [rad, m]. Chosen: about a degree.
+// Step away from a point without a gradient, such as a straight arm [rad, m]. Chosen: about a
+// degree.
 constexpr double kNudge = 0.02;
 
-// Vectors of keys that are added up to less than this have no direction. Chosen: keys that are more
+// Vectors of keys that are added up to less than this have no direction. Chosen: such keys are more
 // than about 170 degrees apart.
 constexpr double kNoDirection = 0.08;
 
@@ -86,8 +87,8 @@ bool contains(const std::vector<int>& list, int value) {
   return std::find(list.begin(), list.end(), value) != list.end();
 }
 
-// A weight below this is none, and times [s] and angles [rad] closer than kSameMoment are equal.
-// Chosen: above rounding.
+// A weight below this counts as zero, and times [s] and angles [rad] closer than kSameMoment are
+// equal. Chosen: above rounding.
 constexpr double kNoWeight = 1e-12, kSameMoment = 1e-9;
 
 Vector3d value_of(const std::array<Track, 3>& tracks, double t) {
@@ -99,15 +100,15 @@ std::string numbers(const Vector3d& v, int digits) {
          text::fixed(v.z(), digits) + "]";
 }
 
-// A place whose numbers are in another unit is farther than so many heights of the robot's COG, and
-// within so many in that unit. Chosen: arms and walks of a few metres reach less than the first and
-// more than the second.
+// If the numbers of a place are probably in another unit, the place is farther than the first
+// multiple of the COG height, and in the other unit nearer than the second one. Chosen: arms and
+// walks of a few metres reach less than the first distance and more than the second.
 constexpr double kOtherUnit = 20, kSameUnit = 5;
-// A number of such a place is 0, or at least this large. Chosen: nobody writes a tenth of a
-// millimetre; a smaller number beside a large one is in metres, and the large one is a slip.
+// Each number of such a place is 0 or at least this large. Chosen: nobody writes a tenth of a
+// millimetre. So a smaller number beside a large one is in metres, and the large one is a slip.
 constexpr double kWholeUnits = 0.5;
 
-// What a place that is far away would be in mm or cm; empty where that is far away, too.
+// The unit, mm or cm, in which a place that is far away would be near. Empty if there is none.
 std::string other_unit(const Vector3d& place, double height) {
   if (place.norm() < kOtherUnit * height) return "";
   for (const double number : place)
@@ -202,8 +203,8 @@ void LinkPlan::add_target(const std::string& name, bool gaze, const std::vector<
   target.length = std::max(0.01, target.length + target.point.norm());
   if (!gaze && target.point.norm() > 1e-6) target.axis = target.point.normalized();
 
-  // Keys of this target, and those of its joints, which take the limb back.
-  double keyed = 0;  // last time of keys of the joints before the first target
+  // Keys of this target, and keys of its joints, which let the joints lead the limb again.
+  double keyed = 0;  // last time at which the joints have keys before the first target
   for (size_t i = 0; i < pattern_->keyframes.size(); ++i) {
     const Keyframe& key = pattern_->keyframes[i];
     const LinkTarget* const asked = asks(key);
@@ -226,14 +227,14 @@ void LinkPlan::add_target(const std::string& name, bool gaze, const std::vector<
     target.anchors.push_back(
         {key.t, free ? nullptr : asked, key.interpolation.value_or(pattern_->interpolation), i});
   }
-  if (target.anchors.empty()) return;  // all of them are free
+  if (target.anchors.empty()) return;  // all keys let the link go free
   fill_tracks(target);
   put_in_group(std::move(target));
 }
 
 void LinkPlan::fill_tracks(Target& target) const {
   const auto fill = [&](bool directions, Blend& blend) {
-    std::array<std::array<std::vector<TrackKey>, 4>, 2> keys;  // by frame: x, y, z and the weight
+    std::array<std::array<std::vector<TrackKey>, 4>, 2> keys;  // by frame: x, y, z and their weight
     for (const Anchor& anchor : target.anchors) {
       const LinkTarget* const asked = anchor.target;
       const bool given = asked && (directions ? asked->direction.has_value() : true);
@@ -422,8 +423,9 @@ double LinkPlan::minimize(const Group& group, const std::vector<Aim>& aims, cons
   const auto put = [&](const VectorXd& x) {
     for (Eigen::Index i = 0; i < n; ++i) state.theta[group.dofs[static_cast<size_t>(i)]] = x[i];
   };
-  // The terms of the sum: the pull of each, its derivatives, and its multiplier, the pull expected
-  // after the step. Curvature by the multiplier is right also while the term itself is far off.
+  // The terms of the sum. Each has its residual, the derivatives of the residual, and a multiplier,
+  // which is the residual that is expected after the step. The curvature that is computed with the
+  // multiplier is also right far away from the solution.
   struct Term {
     double weight = 0;
     Vector3d off = Vector3d::Zero();
@@ -499,7 +501,8 @@ double LinkPlan::minimize(const Group& group, const std::vector<Aim>& aims, cons
     }
     const double longest = way.cwiseAbs().maxCoeff();
     if (!convex && longest < kLastStep) {
-      // Nothing pulls, but the sum has no minimum here: towards the middle of the ranges it falls.
+      // The gradient is zero, but this is no minimum of the sum: towards the middle of the ranges
+      // the sum falls.
       for (const Eigen::Index i : free) {
         const double middle =
             std::isfinite(low[i]) && std::isfinite(high[i]) ? 0.5 * (low[i] + high[i]) : q[i] + 1;
@@ -511,7 +514,8 @@ double LinkPlan::minimize(const Group& group, const std::vector<Aim>& aims, cons
     if (longest > kLongestStep) way *= kLongestStep / longest;
     const VectorXd before = q;
     q = (q + way).cwiseMax(low).cwiseMin(high);
-    // Farther off than the limb is long, the pull is no multiplier: nothing can be reached there.
+    // If the target is farther away than the limb is long, the residual cannot serve as multiplier,
+    // because the limb cannot reach the target.
     for (Term& term : terms)
       if (term.weight > 0) {
         term.multiplier = term.weight * (term.off + term.columns * (q - before));
@@ -536,7 +540,7 @@ double LinkPlan::solve(double t, const VectorXd& keyed, RobotState& state, Robot
           return !target.gaze && (target.direction.in_world.at(t).value > kNoWeight ||
                                   target.direction.in_trunk.at(t).value > kNoWeight);
         });
-    // A direction fades in from the one that the link has without it.
+    // A direction fades in, starting from the direction that the link has without it.
     if (directed) {
       RobotState without = state;
       minimize(group, aims, keyed, without, data);
@@ -552,7 +556,8 @@ double LinkPlan::solve(double t, const VectorXd& keyed, RobotState& state, Robot
 
 namespace {
 
-// What a target misses: its place [m], or where this is met its direction [rad]; 0 where it is met.
+// The distance from the target: that of its place [m], or, if the place is reached, that of its
+// direction [rad]. It is 0 if both are reached.
 double off_place(const Vector3d& end, const Vector3d& place, double weight) {
   const double missing = weight > 0 ? (end - place).norm() : 0;
   return missing > kThere ? missing : 0;
@@ -612,11 +617,13 @@ void LinkPlan::complain(const Group& group, double t, const std::vector<Aim>& ai
   const Anchor& key = next == target.anchors.end() ? target.anchors.back() : *next;
   const bool under_way = next != target.anchors.end() && key.t > t + kSameMoment;
   const bool in_trunk = key.target && key.target->frame == LinkTarget::Frame::trunk;
-  // Where the trunk moves until then, the reach at the time of the key is not known here.
+  // If the trunk moves until then, it is not known here what the limb reaches at the time of the
+  // key.
   const bool trunk_waits = in_trunk || !trunk_moves(*pattern_, t, key.t);
   const bool only_way = under_way && !trunk_waits;
   if (only_way && t < forgiven_before_ - kSameMoment) return;
-  // On the way to a key the limb is at the end of its reach; what counts is how far the key is.
+  // On the way to a key the limb is at the end of its reach; the message states the distance of the
+  // key.
   if (under_way && key.target && trunk_waits) {
     RobotState there = state;
     std::vector<Aim> goal = aims_at(group, key.t, keyed, there, data, true);

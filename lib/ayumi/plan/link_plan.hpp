@@ -1,8 +1,8 @@
 #pragma once
 // Hands, other links and the gaze of a pattern as they move over time, and the joints that follow
-// them. A link without a target is where the keys of its joints put it; between two keys it goes
-// from the one place to the other. Of all postures of the limb that put the link there, the joints
-// take the one nearest to their own keys, so that they begin and end with them.
+// them. A link without a target is where the keys of its joints put it; between two keys it moves
+// from one place to the other. Of all postures of the limb that put the link there, the joints take
+// the one nearest to their own keys, so that they begin and end with them.
 
 #include <array>
 #include <map>
@@ -22,7 +22,7 @@ class MissedOnTheWay : public PlacedError {
  public:
   MissedOnTheWay(const std::string& message, SourcePlace place, double key_time)
       : PlacedError(ErrorCode::bad_pattern, message, std::move(place)), key_time_(key_time) {}
-  double key_time() const { return key_time_; }  ///< [s]
+  double key_time() const { return key_time_; }  ///< time of the key [s]
 
  private:
   double key_time_;
@@ -36,23 +36,23 @@ class LinkPlan {
   LinkPlan(const RobotModel& model, const Pattern& pattern, const std::vector<bool>& solved);
 
   bool empty() const { return groups_.empty(); }
-  /// Whether targets lead the joint at t.
+  /// Whether a target moves the joint at t.
   bool leads(int dof, double t) const;
-  /// Whether targets lead any joint at t.
+  /// Whether a target moves any joint at t.
   bool leads(double t) const;
-  /// Whether a place in the world leads a joint from `begin` to `end`.
+  /// Whether a target in the world moves a joint from `begin` to `end`.
   bool leads_in_world(double begin, double end) const;
 
-  /// Moves the joints that targets lead at t; `keyed` are the angles of the joints' own keys, and
-  /// the base and all other joints stay. Returns the largest change of a joint [rad, m]. Throws
-  /// Error(bad_pattern) for a target that is out of reach, and by how much; MissedOnTheWay where
-  /// only the way to its key is known to be.
+  /// Moves the joints that follow targets at t. `keyed` are the angles of the joints' own keys. The
+  /// base and all other joints do not move. Returns the largest change of a joint [rad, m]. Throws
+  /// Error(bad_pattern), which states the missing distance, for a target that is out of reach.
+  /// Throws MissedOnTheWay if only a place before its key is known to be out of reach.
   double solve(double t, const Eigen::VectorXd& keyed, RobotState& state, RobotData& data) const;
 
-  /// From now on a limb comes as near as it can where MissedOnTheWay would be thrown before `t`.
+  /// From now on, a limb comes as near as it can where MissedOnTheWay would be thrown before `t`.
   void forgive_before(double t) { forgiven_before_ = t; }
 
-  /// "hands", "gaze" or both, as what leads joints; empty: nothing does.
+  /// What moves joints: "hands", "gaze" or both. Empty if nothing does.
   std::string origin() const;
 
  private:
@@ -64,18 +64,19 @@ class LinkPlan {
   };
   struct Anchor {
     double t = 0;
-    const LinkTarget* target = nullptr;  ///< null: the joints' keys lead
+    const LinkTarget* target = nullptr;  ///< null: the joints' keys move the link
     Interpolation interpolation = Interpolation::minimum_jerk;
     size_t keyframe = 0;
   };
   struct Target {
-    std::string name;  ///< in messages
-    std::string key;   ///< its place in a keyframe, "hands/left"
+    std::string name;  ///< name in messages
+    std::string key;   ///< place in a keyframe, "hands/left"
     bool gaze = false;
     int body = -1;
-    Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< body frame [m]
-    Eigen::Vector3d axis = Eigen::Vector3d::Zero();   ///< body frame, unit vector
-    double length = 0;                                ///< of the limb [m]
+    Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< end of the link, body frame [m]
+    Eigen::Vector3d axis =
+        Eigen::Vector3d::Zero();  ///< direction of the link, body frame, unit vector
+    double length = 0;            ///< length of the limb [m]
     std::vector<int> dofs;
     /// Bodies that carry the target and that its group moves, root first, and their places among
     /// the dofs of the group.
@@ -83,15 +84,16 @@ class LinkPlan {
     std::vector<Anchor> anchors;
     Blend place, direction;
   };
-  /// Targets that move a common joint.
+  /// Targets that have a common joint.
   struct Group {
     std::vector<Target> targets;
     std::vector<int> dofs;
     std::vector<int> path;  ///< bodies that these move and that carry a target, root first
-    std::vector<std::pair<double, double>> windows;  ///< in which targets lead [s]
+    std::vector<std::pair<double, double>>
+        windows;  ///< intervals in which targets move the joints [s]
     bool at(double t) const;
   };
-  /// What is asked for at a time.
+  /// What the targets ask for at a time.
   struct Aim {
     const Target* target = nullptr;
     Eigen::Vector3d place = Eigen::Vector3d::Zero();

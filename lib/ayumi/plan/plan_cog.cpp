@@ -60,18 +60,19 @@ Track default_height(const SampleJob& job, const Grid& grid) {
   return spline_through(grid, z);
 }
 
-// Least height of that pendulum, as a share of the height of the COG. Chosen: a lean against the
-// way of the COG, which nobody has seen, does not make it fall at once.
+// Least height of that pendulum, as a share of the height of the COG. Chosen: if the trunk leaned
+// against the movement of the COG, which has not been seen, the pendulum would not fall at once.
 constexpr double kLeastHeight = 0.3;
 
 // Step of the COG to either side by which lean_height() looks at the postures [m]. Chosen: 1/20 of
-// what legs of five joints do, far above the tolerance of the inverse kinematics.
+// the displacement with legs of five joints, and far above the tolerance of the inverse kinematics.
 constexpr double kLook = 5e-4;
 
 // Where legs lack joints, the trunk leans to move the COG aside, and its angular momentum L about
 // the COG is proportional to the COG's speed, so that the robot falls like a pendulum that is
-// higher by L / (m v): the ZMP is c - (z + L / (m v)) c'' / g. This is that height for both axes
-// [m], at the start of the motion; 0 for other legs, whose trunk keeps its attitude.
+// higher by L / (m v): the ZMP is c - (z + L / (m v)) c'' / g. Returns the additional height L / (m
+// v) for both axes [m], at the start of the motion. It is 0 for other legs, whose trunk keeps its
+// attitude.
 Eigen::Vector2d lean_height(const SampleJob& job, const CogPlan& plan) {
   Eigen::Vector2d height = Eigen::Vector2d::Zero();
   if (!job.ik.lacks_joints()) return height;
@@ -94,7 +95,7 @@ Eigen::Vector2d lean_height(const SampleJob& job, const CogPlan& plan) {
     RobotState state = posture_at(cog);
     cog[axis] += 2 * kLook;
     const RobotState after = posture_at(cog);
-    // The speed with which the COG takes 1 s for both steps, at the first of the postures.
+    // The speed with which the COG makes both steps in 1 s, at the first of the postures.
     state.base_velocity = after.base.position - state.base.position;
     state.base_angular_velocity =
         log_rotation(after.base.attitude * state.base.attitude.conjugate());
@@ -108,7 +109,7 @@ Eigen::Vector2d lean_height(const SampleJob& job, const CogPlan& plan) {
   return height;
 }
 
-// (17) with the planned height and `more` above it.
+// (17) with the planned height plus `more`.
 VectorXd omega_squared_of(const SampleJob& job, const CogPlan& plan, const Grid& grid,
                           double more) {
   VectorXd w2(grid.n + 1);
@@ -139,8 +140,8 @@ struct CogSolver {
   Grid grid;
   std::array<VectorXd, 2> w2;  // by axis; 0 in flight
   std::array<VectorXd, 3> cog;
-  std::vector<CommandSample> samples = {};  // of the last pass
-  std::vector<Eigen::Matrix3d> trunk = {};  // as the pattern asks for it
+  std::vector<CommandSample> samples = {};  // values of the last pass
+  std::vector<Eigen::Matrix3d> trunk = {};  // as the pattern states it
   std::array<VectorXd, 2> error = {};       // cmd ZMP - full-model ZMP in the solved axes
 
   void read_tracks();
@@ -175,14 +176,14 @@ void CogSolver::put_tracks() {
     if (plan.solved[axis]) plan.cog[axis] = spline_through(grid, cog[axis]);
 }
 
-// Computes the trunk's turn around flights for the present COG.
+// Computes the turn of the trunk around flights for the present COG.
 void CogSolver::turn_trunk() {
   if (!flies(job)) return;
   put_tracks();
   plan.turn = turn_around_flights(job, plan);
 }
 
-// The postures of the first pass, each from those before it.
+// The postures of the first pass, each computed from the previous ones.
 void CogSolver::solve_first() {
   samples.resize(grid.n + 1);
   trunk.resize(grid.n + 1);
@@ -204,8 +205,8 @@ void CogSolver::solve_first() {
   }
 }
 
-// The postures of the samples from `first` to before `end` in a later pass, from those of the last
-// one and how the samples before them changed.
+// The postures of the samples first, ..., end - 1 in a later pass. They are computed from the
+// postures of the last pass and from the changes of the previous samples.
 void CogSolver::solve_again(int first, int end) {
   RobotData data(job.model);
   Extrapolation changes;
@@ -225,8 +226,8 @@ void CogSolver::solve_again(int first, int end) {
   }
 }
 
-// Fills the error of the samples from `first` to before `end`. Returns the largest; where the
-// ground force is below the weight, errors count as their moment divided by the weight.
+// Computes the errors of the samples first, ..., end - 1. Returns the largest one; where the ground
+// force is below the weight, errors count as their moment divided by the weight.
 double CogSolver::measure(int first, int end) {
   fill_rates(samples, first, end, grid.h, true);
   for (int k = first; k < end; ++k) samples[k].zmp = plan.zmp_at(grid.t(k));
@@ -250,7 +251,7 @@ double CogSolver::measure(int first, int end) {
   return worst;
 }
 
-// Of all samples.
+// Computes the errors of all samples.
 double CogSolver::measure() {
   std::mutex mutex;
   double worst = 0;

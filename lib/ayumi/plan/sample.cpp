@@ -66,7 +66,7 @@ CommandSeries sample_carried(const SampleJob& job) {
 
 enum class Posture { solved, carried };
 
-/// Targets of hands and gaze may be missed on the way to keys before `forgiven` [s].
+/// Before the time `forgiven` [s], targets of hands and gaze may be out of reach between keys.
 CommandSeries sample_posture(const RobotModel& model, const Pattern& pattern,
                              const SampleOptions& options, const Progress& progress,
                              Posture posture, double forgiven) {
@@ -97,10 +97,11 @@ CommandSeries sample_keys(const RobotModel& model, const Pattern& pattern,
   try {
     return sample_posture(model, pattern, options, progress, posture, 0);
   } catch (const MissedOnTheWay& on_the_way) {
-    // Where the trunk is at the time of the key, only the motion until then tells.
+    // The place of the trunk at the time of the key is known only when the motion until then has
+    // been solved.
     try {
       sample_posture(model, pattern, options, progress, posture, on_the_way.key_time());
-    } catch (const MissedOnTheWay&) {  // to a later key: the first message stays
+    } catch (const MissedOnTheWay&) {  // a later key: the first message is kept
     } catch (const PlacedError& at_key) {
       if (at_key.place().pointer == on_the_way.place().pointer) throw;
     } catch (const Error& other) {

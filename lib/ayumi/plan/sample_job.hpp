@@ -27,12 +27,14 @@ struct SampleJob {
   const Progress& progress;
 };
 
-/// Samples that one thread solves in a row, each from those before it. Chosen: much more than the
-/// first few, which cost more, and few enough to occupy all cores. Figures change by rounding only.
+/// Number of samples that one thread solves in a row, each from the previous ones. Chosen: much
+/// more than the first few, which cost more, and few enough to occupy all cores. Figures change by
+/// rounding only.
 inline constexpr int kBlock = 256;
 
 /// Calls work(first, end) for blocks of `block` of the numbers 0..count-1, on the threads of the
-/// job. Reports the stage now and then where there are very many. `block` 0: all at once.
+/// job. Reports the stage from time to time if there are very many blocks. With `block` = 0, there
+/// is only one block.
 template <class Work>
 void in_blocks(const SampleJob& job, const char* stage, int count, int block, const Work& work) {
   // Blocks between two reports. Chosen: they take a fraction of a second.
@@ -55,7 +57,8 @@ void in_blocks(const SampleJob& job, const char* stage, int count, int block, co
 class Extrapolation {
  public:
   void add(const Eigen::VectorXd& x);
-  /// `guess` becomes the next one; the last one where the sequence jumps. Needs one.
+  /// `guess` becomes the extrapolated vector, or the last vector if the sequence jumps. Needs at
+  /// least one vector.
   void next(Eigen::VectorXd& guess) const;
 
  private:
@@ -68,8 +71,8 @@ class Extrapolation {
 /// theta of every joint track at t [rad].
 Eigen::VectorXd keyed_joints(const SampleJob& job, double t);
 
-/// Fills the planned feet, the support and the joints with tracks of their own; those that hands
-/// lead stay as they are, an initial guess.
+/// Fills the planned feet, the support and the joints with tracks of their own; joints that follow
+/// hands are not changed and serve as an initial guess.
 void put_plan(const SampleJob& job, double t, CommandSample& sample);
 
 /// Commanded trunk attitude: torso keys, else level with the mean heading of the planned feet.
@@ -83,7 +86,7 @@ using TrunkTurn = std::array<Track, 3>;
 /// The base relative to the COG, and the joints: what Extrapolation continues.
 Eigen::VectorXd posture_of(const CommandSample& sample);
 
-/// Initial guess of sample.state from the postures before it and sample.cog.
+/// Makes the initial guess of sample.state from the previous postures and sample.cog.
 void continue_posture(const Extrapolation& postures, CommandSample& sample);
 
 /// Solves base and legs at time t for sample.cog and the plan in `sample`, with the initial guess
@@ -102,28 +105,29 @@ inline constexpr double kZmpShare = 0.05;
 /// COG and ZMP of a motion driven by the body's tracks.
 struct CogPlan {
   std::array<Track, 3> cog;                     ///< world [m]
-  std::array<Track, 3> zmp;                     ///< as keyed [m]
+  std::array<Track, 3> zmp;                     ///< as the keys state them [m]
   std::array<bool, 2> solved = {false, false};  ///< axes solved from the ZMP
-  std::array<Eigen::Vector2d, 2> bump = {Eigen::Vector2d::Zero(),
-                                         Eigen::Vector2d::Zero()};  ///< [begin, end](axis) [m]
-  std::array<Eigen::Vector2d, 2> omega = {Eigen::Vector2d::Ones(),
-                                          Eigen::Vector2d::Ones()};  ///< likewise [1/s]
+  std::array<Eigen::Vector2d, 2> bump = {
+      Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};  ///< bumps at begin and end by axis [m]
+  std::array<Eigen::Vector2d, 2> omega = {
+      Eigen::Vector2d::Ones(), Eigen::Vector2d::Ones()};  ///< omega at begin and end by axis [1/s]
   TrunkTurn turn;
   double duration = 0;  ///< [s]
-  /// Postures on a grid from beginning to end, close to the motion's: initial guesses; or none.
+  /// Postures on a grid from beginning to end that are close to the motion's, as initial guesses;
+  /// or none.
   std::vector<RobotState> postures;
 
   Eigen::Vector3d cog_at(double t) const;
   /// Commanded ZMP: the keys with the bumps that a start from rest needs.
   Eigen::Vector3d zmp_at(double t) const;
-  /// The trunk attitude that the pattern asks for, turned around flights.
+  /// The attitude of the trunk in the pattern, turned around flights.
   Eigen::Matrix3d turned(double t, const Eigen::Matrix3d& asked) const;
 };
 
-/// COG keys where given, other axes from the ZMP by (14)(15), corrected for the full model.
+/// The COG: from its keys, and without keys from the ZMP by (14)(15), corrected for the full model.
 CogPlan plan_cog(const SampleJob& job);
 
-/// Fills the commanded ZMP and f_z of a sample that has the rates of its COG.
+/// Computes the commanded ZMP and f_z of a sample whose COG has its rates.
 void put_ground_commands(const SampleJob& job, const CogPlan& plan, double t,
                          CommandSample& sample);
 

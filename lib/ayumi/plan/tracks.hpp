@@ -20,16 +20,17 @@ namespace ayumi {
 struct PatternTracks {
   std::vector<Track> joints;                     ///< one per dof [rad]
   bool joint_driven = false;                     ///< the legs follow keys, not the COG
-  std::string driver;                            ///< the reason, in words
+  std::string driver;                            ///< the reason in words
   std::array<std::optional<Track>, 3> cog;       ///< world x, y, z [m]
   std::optional<std::array<Track, 3>> zmp;       ///< world [m]
   std::optional<Track> fz;                       ///< [N]
   std::optional<std::array<Track, 3>> torso;     ///< roll, pitch, yaw [rad]
   std::optional<std::array<Track, 3>> base;      ///< position from a table [m]
   std::optional<std::array<Track, 4>> attitude;  ///< w, x, y, z from a table, unnormalised
-  bool rest_ends = true;                         ///< false: a table may start or end moving
-  std::vector<std::pair<double, Eigen::VectorXd>> weight;  ///< times [s], and W from then on
-  std::map<std::string, std::string> origin;               ///< of the given tracks, in words
+  bool rest_ends = true;                         ///< false: a table may start or end in motion
+  std::vector<std::pair<double, Eigen::VectorXd>>
+      weight;                                 ///< times [s], and the weights W from each time on
+  std::map<std::string, std::string> origin;  ///< origins of the given tracks in words
 };
 
 /// `solved` marks the leg joints that inverse kinematics can solve. Throws Error(bad_pattern)

@@ -21,7 +21,7 @@ constexpr double kAtRest = 0.015;
 /// posture is the same at all of them. No measured case changes from half to twice (constants.md).
 constexpr double kShortestSample = 0.1;
 
-/// A VIIP phase: number, begin and end, and the total duration of the VIIP phases before it.
+/// A VIIP phase: its number, begin and end, and the total duration of the VIIP phases before it.
 struct Cut {
   size_t phase;
   double begin, end, before;

@@ -10,7 +10,7 @@ namespace ayumi {
 bool has_viip_phases(const Pattern& pattern);
 
 /// Throws Error(bad_pattern) that names the first VIIP phase: its controller decides the motion, so
-/// that the pattern cannot be `done` ("baked").
+/// the pattern cannot be `done` (for example "baked").
 void refuse_viip_phases(const Pattern& pattern, const std::string& done);
 
 /// The pattern without its VIIP phases and without its correction. Throws Error(bad_pattern) for

@@ -71,7 +71,8 @@ std::vector<Vector2d> simplified(const std::vector<Vector2d>& points) {
   return out;
 }
 
-/// Narrows `share` to where a + share * step lies between low and high; high < low: nowhere.
+/// Narrows `share` to the values for which a + share * step lies between low and high. If there are
+/// none, high < low.
 void narrow(Interval& share, double a, double step, double low, double high) {
   if (step == 0) {
     if (a < low || a > high) share = {1, 0};
@@ -123,7 +124,7 @@ std::vector<double> nice_ticks(const Interval& interval, int count) {
     if (ticks.size() > static_cast<size_t>(std::max(2, count))) break;
     chosen = i;
   }
-  // A single number does not show a scale.
+  // A single number on an axis does not show a scale.
   for (take(steps[chosen]); ticks.size() < 2 && chosen + 1 < steps.size();) take(steps[++chosen]);
   return ticks;
 }
@@ -161,7 +162,7 @@ void draw_axes(Drawing& drawing, const Axes& axes, const std::string& y_name, bo
       .points = {{axes.left, axes.top}, {right, axes.top}, {right, bottom}, {axes.left, bottom}},
       .closed = true,
       .stroke = kFrame});
-  // A long name in smaller letters: it must not reach into the next panel.
+  // A long name is written in smaller letters, so that it does not reach into the next panel.
   const double wide = text_width(y_name, kName);
   const double size = kName * std::min(1.0, (axes.height + kNameOverhang) / std::max(1.0, wide));
   drawing.items.push_back(DrawnText{.position = {axes.left - 58, axes.top + axes.height / 2},

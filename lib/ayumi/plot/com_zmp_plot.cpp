@@ -20,21 +20,21 @@ using Eigen::Vector2d;
 using Eigen::Vector4f;
 using Value = std::function<double(const SimulationSample&)>;
 
-constexpr double kGap = 12;          // between panels [pixel]
-constexpr double kSmallText = 11;    // the smallest that is read on a screen [pixel]
-constexpr double kBeforeFall = 0.5;  // so long before a fall it does not show yet [s]
+constexpr double kGap = 12;          // space between panels [pixel]
+constexpr double kSmallText = 11;    // the smallest letters that can be read on a screen [pixel]
+constexpr double kBeforeFall = 0.5;  // time before a fall in which the fall is not yet visible [s]
 
 struct PanelPlan {
-  std::string name;  ///< with unit
-  Value run;         ///< of every run
-  Value command;     ///< of the last run; the command is the same for all; empty: none
-  Value reference;   ///< of the last run; empty: none
-  double least = 0;  ///< span of the axis at least
-  double seen = 0;   ///< runs that differ by less differ in nothing that matters
-  std::vector<double> limits = {};  ///< drawn where they are within the range
-  bool limits_in_view = false;      ///< the range reaches to the limits
-  bool peaks = false;               ///< the tops of landings get their values
-  /// In place of the runs: curves of the last one, each with its name.
+  std::string name;  ///< name with the unit
+  Value run;         ///< curves of every run
+  Value command;     ///< curve of the last run (all runs have the same command); empty: none
+  Value reference;   ///< curve of the last run; empty: none
+  double least = 0;  ///< smallest span of the axis
+  double seen = 0;   ///< runs whose values differ by less count as equal
+  std::vector<double> limits = {};  ///< drawn only if they are within the range
+  bool limits_in_view = false;      ///< the range extends to the limits
+  bool peaks = false;               ///< the peaks of landings get their values
+  /// In place of the runs: curves of the last run, each with its name.
   std::vector<std::pair<std::string, Value>> named = {};
 };
 
@@ -81,7 +81,8 @@ Value component(Eigen::Vector3d SimulationSample::*quantity, int index) {
       [quantity, index](const SimulationSample& s) { return (s.*quantity)[index] / kMillimetre; };
 }
 
-/// No number where `is_there` says so: in flight there is no ZMP, although the log holds the last.
+/// No number where `is_there` is false: in flight there is no ZMP, although the log still has the
+/// last one.
 Value where(const std::function<bool(const SimulationSample&)>& is_there, const Value& value) {
   return [=](const SimulationSample& s) { return is_there(s) ? value(s) : std::nan(""); };
 }
@@ -93,10 +94,11 @@ bool is_supported(const SimulationSample& s) {
 
 // ---- what moves most
 
-constexpr size_t kMostMoved = 3;      // curves, so that they can be told apart
-constexpr double kLeastMoved = 0.5;   // [deg] what moves less rests
-constexpr double kMovedShare = 0.25;  // of the largest move, below which a curve is left out
-constexpr double kSameCurve = 0.03;   // curves that differ by less of their range are one
+constexpr size_t kMostMoved = 3;      // number of curves, so that they can be distinguished
+constexpr double kLeastMoved = 0.5;   // a joint that moves less counts as resting [deg]
+constexpr double kMovedShare = 0.25;  // share of the largest move, below which a curve is left out
+constexpr double kSameCurve =
+    0.03;  // curves that differ by less than this share of their range are joined
 const Vector4f kMovedColors[kMostMoved] = {
     {0.42f, 0.20f, 0.60f, 1}, {0.62f, 0.38f, 0.06f, 1}, {0.00f, 0.47f, 0.55f, 1}};
 
@@ -107,7 +109,7 @@ struct MovedCurve {
   double low = 0, high = 0;
 };
 
-/// Angle of the trunk about x, y or z, the others being small [deg].
+/// Angle of the trunk about x, y or z, if the other two angles are small [deg].
 Value trunk_angle(int axis) {
   return [axis](const SimulationSample& s) {
     const Eigen::Matrix3d r = s.state.base.attitude.toRotationMatrix();
@@ -118,8 +120,8 @@ Value trunk_angle(int axis) {
   };
 }
 
-/// The angles that move most over the time shown, before a fall, in the last run; joints that move
-/// alike are one curve.
+/// The angles that move most in the shown time of the last run, before a fall. Joints that move
+/// alike share one curve.
 PanelPlan moved_panel(const RobotModel& model, const SimulationLog& log, const Interval& time) {
   std::vector<MovedCurve> curves;
   for (const auto& [axis, name] :
@@ -165,10 +167,10 @@ PanelPlan moved_panel(const RobotModel& model, const SimulationLog& log, const I
   return panel;
 }
 
-/// Distance, seen from above, of the ZMP inside the hull of the soles planned down, where they
-/// really are; no number in flight.
+/// Distance of the ZMP from the edge of the hull of the soles that are planned down, at their true
+/// places, seen from above. No number in flight.
 Value zmp_margin(const RobotModel& model) {
-  const auto data = std::make_shared<RobotData>(model);  // a workspace
+  const auto data = std::make_shared<RobotData>(model);  // workspace
   return [&model, data](const SimulationSample& s) {
     std::vector<Vector2d> corners;
     for (const Eigen::Vector3d& corner :
@@ -237,7 +239,8 @@ void extend(std::vector<double>& values, const std::vector<Vector2d>& points) {
     if (std::isfinite(point.y())) values.push_back(point.y());
 }
 
-/// What runs that fell had before that, where nothing else says how far a panel has to go.
+/// The range of the runs that fell before their fall, if nothing else determines the range of a
+/// panel.
 std::vector<double> values_before_falls(const PanelPlan& panel, const std::vector<LociRun>& runs,
                                         const Interval& time) {
   std::vector<double> values;
@@ -249,7 +252,8 @@ std::vector<double> values_before_falls(const PanelPlan& panel, const std::vecto
   return values;
 }
 
-/// Range of the command and the runs that stand, with a margin; a wide one where none stands.
+/// Range of the command and of the runs that stand, with a margin. The margin is wide if no run
+/// stands.
 Interval value_range(const PanelPlan& panel, const std::vector<LociRun>& runs,
                      const Interval& time) {
   std::vector<double> values;
@@ -261,7 +265,7 @@ Interval value_range(const PanelPlan& panel, const std::vector<LociRun>& runs,
   if (!panel.named.empty() && !values.empty()) {
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
     const double span = std::max(*high - *low, panel.least);
-    return {*low - 0.1 * span, *high + 0.35 * span};  // names stand on top
+    return {*low - 0.1 * span, *high + 0.35 * span};  // names are at the top
   }
   extend(values, series(*runs.back().log, panel.command, time));
   for (const LociRun& run : runs)
@@ -334,7 +338,7 @@ void draw_phases(Drawing& drawing, const Axes& axes, const std::vector<SupportSp
 
 void draw_pushes(Drawing& drawing, const Axes& axes, const std::vector<PushRecord>& list,
                  bool names) {
-  double taken = 0;  // by words, from the left
+  double taken = 0;  // by text, from the left
   for (const PushRecord& push : list) {
     const double x = axes.px(push.begin), bottom = axes.top + axes.height;
     drawing.items.push_back(
@@ -344,14 +348,14 @@ void draw_pushes(Drawing& drawing, const Axes& axes, const std::vector<PushRecor
     const double wide = text_width(words, 11.5);
     const bool leftward = x + 4 + wide > axes.left + axes.width;
     const double from = leftward ? x - 4 - wide : x + 4;
-    if (from < taken) continue;  // two words over each other say nothing
+    if (from < taken) continue;  // two texts on top of each other cannot be read
     taken = from + wide + 6;
     drawing.items.push_back(DrawnText{
         .position = {from, axes.top - 17}, .text = words, .size = 11.5, .color = kPushColor});
   }
 }
 
-/// What the ranges leave out.
+/// A sentence about what the ranges leave out.
 std::string range_note(const std::vector<LociRun>& runs) {
   const auto fell = [](const LociRun& run) { return has_fallen(*run.log); };
   if (std::none_of(runs.begin(), runs.end(), fell)) return "";
@@ -379,11 +383,11 @@ void draw_named(Drawing& drawing, const Axes& axes, const PanelPlan& panel,
   }
 }
 
-/// The tops of a force that is well above what it mostly is, the highest first.
+/// The peaks of a force that is well above its usual value, the highest first.
 std::vector<Vector2d> force_peaks(const std::vector<Vector2d>& force) {
-  // A top is so many times the middle value, and the highest of so long before and after. Chosen:
-  // a landing is above twice the weight, a walk below 1.4 times; feet land 0.2 s apart at least.
-  // What is lower than a share of the highest is no top of its own.
+  // A peak is at least this many times the median, and the highest value for this time before and
+  // after it. Chosen: a landing is above twice the weight, and a walk below 1.4 times; feet land at
+  // least 0.2 s apart. A value below a share of the highest peak is not a peak.
   constexpr double kHigh = 1.5, kApart = 0.15, kShare = 0.2;
   std::vector<double> values;
   extend(values, force);
@@ -405,8 +409,8 @@ std::vector<Vector2d> force_peaks(const std::vector<Vector2d>& force) {
   return kept;
 }
 
-/// Values at the tops of the forces of runs that stand, beside the curves and as far as the words
-/// have room.
+/// Values at the peaks of the forces of runs that stand, beside the curves, as far as there is room
+/// for the text.
 void draw_peaks(Drawing& drawing, const Axes& axes, const PanelPlan& panel,
                 const std::vector<LociRun>& runs) {
   std::vector<std::vector<Vector2d>> curves;
@@ -461,7 +465,7 @@ void draw_panel(Drawing& drawing, const Axes& axes, const PanelPlan& panel,
     const double fell_at = runs[i].log->result.fell_at;
     if (!has_fallen(*runs[i].log) || fell_at < axes.x.low || fell_at > axes.x.high) continue;
     const double value = panel.run(sample_at(*runs[i].log, fell_at));
-    // Where no foot carries the robot at the fall, there is no ZMP to mark.
+    // If no foot carries the robot at the fall, there is no ZMP to mark.
     if (std::isfinite(value)) draw_cross(drawing, axes, {fell_at, value}, style.color);
   }
   draw_line(drawing, axes, series(last, panel.command, axes.x), kCommandStyle);
@@ -483,7 +487,7 @@ double largest_difference(const PanelPlan& panel, const std::vector<LociRun>& ru
 }
 
 /// Removes the panels in which all runs are equal and returns a sentence with their names. All
-/// panels are kept where none would be left.
+/// panels are kept if otherwise none would be left.
 std::string leave_out_equal(std::vector<PanelPlan>& panels, const std::vector<LociRun>& runs,
                             const Interval& time) {
   std::vector<PanelPlan> kept;
@@ -499,7 +503,7 @@ std::string leave_out_equal(std::vector<PanelPlan>& panels, const std::vector<Lo
   return "These values are equal in all runs: " + text::join(names, ", ") + ".";
 }
 
-/// A sentence in lines of at most that width.
+/// A sentence divided into lines of at most this width.
 std::vector<std::string> lines_of(const std::string& sentence, double width) {
   std::vector<std::string> lines = {""};
   for (size_t at = 0; at < sentence.size();) {
@@ -517,7 +521,8 @@ std::vector<std::string> lines_of(const std::string& sentence, double width) {
   return lines;
 }
 
-/// Whether there is a panel of what moves most: where the robot is known and no joint is asked for.
+/// Whether there is a panel of the angles that move most: only if the robot is known and no joint
+/// was requested.
 bool shows_moved(const LociOptions& options) {
   return options.model && options.joints.empty() && options.speeds.empty() &&
          !options.only_differences;

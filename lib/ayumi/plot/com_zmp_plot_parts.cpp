@@ -13,11 +13,12 @@ namespace {
 
 constexpr double kLegend = 12.5;  // font size [pixel]
 
-// Told apart also without colour vision: dark, vermilion, blue, green, purple, sky, yellow.
+// Colours that can also be distinguished without colour vision: dark, vermilion, blue, green,
+// purple, sky, yellow.
 const Eigen::Vector4f kRunColors[] = {{0.84f, 0.37f, 0.00f, 1}, {0.00f, 0.45f, 0.70f, 1},
                                       {0.00f, 0.62f, 0.45f, 1}, {0.80f, 0.47f, 0.65f, 1},
                                       {0.34f, 0.71f, 0.91f, 1}, {0.72f, 0.66f, 0.05f, 1}};
-constexpr size_t kMostRuns = 6;  // as many as there are colours
+constexpr size_t kMostRuns = 6;  // the number of colours
 
 std::string title_of(const std::vector<LociRun>& runs, const LociOptions& options) {
   if (!options.title.empty()) return options.title;
@@ -64,7 +65,7 @@ std::vector<PushRecord> all_pushes(const std::vector<LociRun>& runs, const Inter
 }
 
 std::string legend_name(const LociRun& run) {
-  if (!run.log->controller) return run.label;  // a plan: nothing fell or stood
+  if (!run.log->controller) return run.label;  // a plan, which has no outcome
   const SimulationResult& result = run.log->result;
   return run.label +
          (has_fallen(*run.log)
@@ -85,7 +86,7 @@ FramedRuns::FramedRuns(const RobotModel* model, const std::vector<LociRun>& as_l
 
 double draw_legend(Drawing& drawing, const Legend& entries, double top) {
   const auto width_of = [](const std::string& name) { return 34 + text_width(name, kLegend) + 22; };
-  // Below each other, all begin at one place.
+  // Items below each other begin at the same place.
   const bool too_wide = std::any_of(entries.begin(), entries.end(), [&](const auto& entry) {
     return kLeft + width_of(entry.first) > drawing.width;
   });
@@ -131,7 +132,7 @@ Drawing start_drawing(const std::vector<LociRun>& runs, const LociOptions& optio
   for (const LociRun& run : runs)
     drawing.description.append(" ").append(legend_name(run)).append(";");
   drawing.description.back() = '.';
-  // A long title begins at the edge, and in smaller letters where that is not enough.
+  // A long title begins at the edge, and it has smaller letters if this is not enough.
   const double wide = text_width(drawing.title, 16, true);
   const double left = kLeft + wide > drawing.width - kRight ? 8.0 : kLeft;
   const double room = drawing.width - left - 8;

@@ -1,5 +1,5 @@
 #pragma once
-// What plots of runs have in common: styles, legend, title, pushes.
+// Parts that several plots of runs use: styles, legend, title, pushes.
 
 #include <string>
 #include <utility>
@@ -26,18 +26,18 @@ LineStyle run_style(size_t index, size_t count);
 
 bool has_fallen(const SimulationLog& log);
 
-/// The times shown. Throws Error(usage) as draw_loci() says.
+/// The times that are shown. Throws Error(usage) as draw_loci() describes.
 Interval time_range(const std::vector<LociRun>& runs, const LociOptions& options);
 
-/// Pushes of all runs in that time; the same push in several runs once.
+/// Pushes of all runs in this time. A push that is the same in several runs is listed once.
 std::vector<PushRecord> all_pushes(const std::vector<LociRun>& runs, const Interval& time);
 
 /// Runs with their places in one frame.
 struct FramedRuns {
   std::vector<SimulationLog> logs;
-  std::vector<LociRun> runs;  ///< of those logs
+  std::vector<LociRun> runs;  ///< runs of those logs
 
-  /// As they are without a model. Throws as in_frame().
+  /// The runs as they are without a model. Throws as in_frame().
   FramedRuns(const RobotModel* model, const std::vector<LociRun>& as_logged, Frame frame);
 };
 
@@ -45,14 +45,15 @@ struct FramedRuns {
 std::string legend_name(const LociRun& run);
 
 using Legend = std::vector<std::pair<std::string, LineStyle>>;
-/// Command where asked for, runs, and the reference ZMP when `with_reference`.
+/// The command if wanted, the runs, and, with `with_reference`, the reference ZMP.
 Legend legend(const std::vector<LociRun>& runs, const std::string& reference,
               bool with_command = true);
 
-/// Entries from left to right, broken where the line ends; returns the bottom [pixel].
+/// Draws the entries from left to right and begins a new line at the end of a line. Returns the
+/// bottom [pixel].
 double draw_legend(Drawing& drawing, const Legend& entries, double top);
 
-/// A drawing with its title laid. `what` begins the description: "Loci against time".
+/// A drawing with its title. `what` begins the description: "Loci against time".
 Drawing start_drawing(const std::vector<LociRun>& runs, const LociOptions& options,
                       const std::string& what);
 

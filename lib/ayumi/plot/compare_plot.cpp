@@ -16,8 +16,8 @@ using Eigen::Vector4f;
 
 constexpr double kComparedWidth = 1000, kCurveHeight = 104, kErrorHeight = 62;  // [pixel]
 constexpr double kComparedLeft = 96, kComparedRight = 24, kComparedTop = 60;    // [pixel]
-// Between a curve and its difference, so that the names at their sides do not touch; between
-// curves.
+// Space between a curve and its difference, so that the names at their sides do not touch, and
+// space between curves.
 constexpr double kErrorGap = 20, kCurveGap = 26;  // [pixel]
 
 const Vector4f kMeasured = {0.10f, 0.10f, 0.12f, 1}, kSimulated = {0.86f, 0.45f, 0.10f, 1},

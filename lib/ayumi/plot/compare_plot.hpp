@@ -12,7 +12,7 @@ namespace ayumi {
 /// Error(usage) when there is no curve.
 Drawing draw_comparison(const Comparison& comparison, const std::string& title);
 
-/// As .svg or .png. Errors as above, and Error(bad_file).
+/// Writes the plot as .svg or .png. Throws as above, and Error(bad_file).
 void write_comparison_plot(const Comparison& comparison, const std::string& title,
                            const std::filesystem::path& path);
 

@@ -12,14 +12,14 @@
 namespace ayumi {
 
 struct GaitMapCell {
-  std::optional<double> margin = {};  ///< of the ZMP [m]; none: the cell is missing
-  char mark = ' ';                    ///< of a missing cell, one of GaitMap::marks
+  std::optional<double> margin = {};  ///< margin of the ZMP [m]; none: the cell is missing
+  char mark = ' ';                    ///< mark of a missing cell, one of GaitMap::marks
 };
 
 /// Transitions between two neighbours of a panel.
 struct GaitMapLink {
   size_t from = 0, to = 0;  ///< cells of the panel
-  int ways = 0;             ///< 2: to and fro, 1: one way alone
+  int ways = 0;             ///< 2: in both directions, 1: in one direction only
 };
 
 struct GaitMapPanel {
@@ -31,10 +31,10 @@ struct GaitMapPanel {
 struct GaitMap {
   std::string title;
   std::vector<double> forward, sideways;  ///< [m/s], ascending
-  size_t columns = 1;                     ///< panels in a row
+  size_t columns = 1;                     ///< number of panels in a row
   std::vector<GaitMapPanel> panels;
-  std::vector<std::pair<char, std::string>> marks = {};  ///< of missing cells, in words
-  std::vector<std::string> remarks = {};                 ///< lines below
+  std::vector<std::pair<char, std::string>> marks = {};  ///< reasons for missing cells, in words
+  std::vector<std::string> remarks = {};                 ///< lines below the map
 };
 
 /// Throws Error(usage) when there is no panel or a panel has not one cell for each pair of speeds.

@@ -15,7 +15,7 @@ using Eigen::Vector2d;
 using Eigen::Vector4f;
 
 constexpr double kRow = 22, kTop = 84, kEdge = 16;   // height of a row, of the head, margin [pixel]
-constexpr double kPanelWidth = 280, kPanelGap = 40;  // of the two panels [pixel]
+constexpr double kPanelWidth = 280, kPanelGap = 40;  // width and gap of the two panels [pixel]
 constexpr double kTextSize = 11;                     // [pixel]
 const Vector4f kLine = {0.86f, 0.87f, 0.89f, 1}, kGrey = {0.42f, 0.44f, 0.48f, 1};
 const Vector4f kWorse = {0.86f, 0.45f, 0.10f, 1}, kBetter = {0.08f, 0.33f, 0.68f, 1};

@@ -1,6 +1,6 @@
 #pragma once
-// A picture of what matters in a study of many runs: for every uncertain value its rank correlation
-// with the severity of the run, and the failure rates in the two halves of its range.
+// A picture of the influences in a study of many runs: for every uncertain value, its rank
+// correlation with the severity of the run, and the failure rates in the two halves of its range.
 
 #include <string>
 #include <vector>

@@ -15,16 +15,18 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector4f;
 
-constexpr double kPanel = 300, kRadius = 108;    // of one panel, of its largest ring [pixel]
-constexpr double kHead = 74, kSide = 14;         // above and beside the panels [pixel]
+constexpr double kPanel = 300,
+                 kRadius = 108;           // width of one panel, and of its largest ring [pixel]
+constexpr double kHead = 74, kSide = 14;  // space above and beside the panels [pixel]
 constexpr double kPhaseName = 26, kRemark = 20;  // heights of lines of text [pixel]
-constexpr double kLegendLine = 18;               // the same in a legend of several lines
-constexpr size_t kColumns = 3, kMostLaws = 4;    // of panels; as many laws as colours
+constexpr double kLegendLine = 18;               // the same for a legend of several lines
+constexpr size_t kColumns = 3, kMostLaws = 4;    // columns of panels; as many laws as colours
 constexpr int kCircleSteps = 72;                 // corners of a ring, one every 5 degrees
 
 constexpr double kSmall = 11;                 // size of the smallest letters [pixel]
 constexpr double kDot = 2.6, kDotLine = 1.2;  // radius and line of a value's dot [pixel]
-// Between the largest ring and the name of a direction: a dot on the ring does not touch it.
+// Space between the largest ring and the name of a direction, so that a dot on the ring does not
+// touch the name.
 constexpr double kNameGap = kDot + kDotLine / 2 + 4;
 
 const Vector4f kMapGrid = {0.86f, 0.87f, 0.89f, 1}, kQuiet = {0.42f, 0.44f, 0.48f, 1};
@@ -39,7 +41,7 @@ struct Panel {
   Vector2d center;
   double most;  // impulse at the largest ring [N s]
 
-  /// Forward is up, left is left.
+  /// Forward is up, and left is left.
   Vector2d at(double direction, double impulse) const {
     const double r = kRadius * impulse / most;
     return center + r * Vector2d(-std::sin(direction), -std::cos(direction));
@@ -71,8 +73,8 @@ void draw_grid(Drawing& drawing, const Panel& panel, const PushMapPhase& phase,
     path.stroke = kMapGrid;
     drawing.items.push_back(path);
   }
-  // Between the last direction and the first one, where no line and no value of a curve is; with
-  // few directions, between "forward" and "right".
+  // A direction between the last and the first one, where there is no line and no value of a curve;
+  // with few directions, between "forward" and "right".
   double beside = -M_PI / 4;
   if (phase.direction.size() > 2) {
     const auto [first, last] = std::minmax_element(phase.direction.begin(), phase.direction.end());
@@ -137,7 +139,7 @@ void draw_panel(Drawing& drawing, const Panel& panel, const PushMapPhase& phase,
     draw_curve(drawing, panel, phase.direction, phase.curves[c], c == 0 ? kOpen : kLaws[c - 1]);
 }
 
-/// The words of a text on lines of at most this width [pixel].
+/// The words of a text, divided into lines of at most this width [pixel].
 std::vector<std::string> wrapped(const std::string& words, double width) {
   std::vector<std::string> lines(1);
   std::istringstream in(words);
@@ -151,7 +153,7 @@ std::vector<std::string> wrapped(const std::string& words, double width) {
   return lines;
 }
 
-// As many lines as the width asks for; the height of those below the first one.
+// As many lines as the width requires. Returns the height of the lines below the first one.
 double draw_legend(Drawing& drawing, const PushMap& map, bool capped) {
   double x = kSide, y = kHead - 24;
   const auto make_room = [&](double width) {
@@ -233,7 +235,7 @@ Drawing draw_push_map(const PushMap& map, PushMapLayout layout) {
   }
   drawing.title = map.title;
   drawing.description = "largest survivable impulse by direction and gait phase";
-  if (!narrow)  // the page that it is in has a heading
+  if (!narrow)  // the page that contains it has a heading
     drawing.items.push_back(
         DrawnText{.position = {kSide, 26}, .text = map.title, .size = 15, .bold = true});
   const double head = kHead + draw_legend(drawing, map, capped);
@@ -259,7 +261,7 @@ void write_push_map(const PushMap& map, const std::filesystem::path& path) {
 
 namespace {
 
-/// What the robot does in the phases that are not its standing in the first posture.
+/// What the robot does in the phases in which it does not stand in the first posture.
 std::string motion_of(const CommandSeries& series) {
   const auto one = [](const CommandSample& s) {
     return s.support == Support::left || s.support == Support::right;

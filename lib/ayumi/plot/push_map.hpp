@@ -15,29 +15,29 @@ namespace ayumi {
 /// One curve of a panel; values by direction.
 struct PushMapCurve {
   std::vector<double> impulse;    ///< [N s]
-  std::vector<bool> capped = {};  ///< the search ended there; empty: nowhere
+  std::vector<bool> capped = {};  ///< the search ended at this value; empty: nowhere
 };
 
 struct PushMapPhase {
   std::string name;
-  std::vector<double> direction;     ///< from forward, to the left [rad]
+  std::vector<double> direction;     ///< direction from forward, to the left [rad]
   std::vector<double> bound;         ///< capture bound [N s]
-  std::vector<PushMapCurve> curves;  ///< open loop first, then as PushMap::laws
+  std::vector<PushMapCurve> curves;  ///< open loop first, then the order of PushMap::laws
 };
 
 struct PushMap {
   std::string title;
   std::string baseline = "open loop";  ///< name of the first curve
-  std::vector<std::string> laws;       ///< names of the others
+  std::vector<std::string> laws;       ///< names of the other laws
   std::vector<PushMapPhase> phases;
-  std::vector<std::string> remarks;  ///< lines below, e.g. the figures over all cases
+  std::vector<std::string> remarks;  ///< lines below the map, e.g. the figures over all cases
 };
 
-/// What a push study has beside the laws: "open loop", or "no feedback" for VIIP's pendulum.
+/// The baseline of a push study: "open loop", or "no feedback" for VIIP's pendulum.
 std::string push_baseline(const CommandSeries& series);
 
-/// One line for each law walking, and one for each law standing: its worst and mean limit in
-/// capture bounds beside those of the baseline.
+/// One line for each law while walking, and one for each law while standing: its worst and mean
+/// limit in capture bounds, with those of the baseline.
 std::vector<std::string> push_summary_lines(const std::vector<PushCase>& cases,
                                             const PushOptions& push, const CommandSeries& series);
 
@@ -49,7 +49,7 @@ std::string push_map_title(const std::string& pattern, const std::string& robot,
 PushMap push_map(const std::string& title, const std::vector<PushCase>& cases,
                  const PushOptions& push, const CommandSeries& series);
 
-/// For pages and prints, or for a telephone.
+/// A map for pages and prints, or for a telephone.
 enum class PushMapLayout { wide, narrow };
 
 /// One polar panel per phase, all with the same radius. Throws Error(usage) when there is no phase,
@@ -57,7 +57,7 @@ enum class PushMapLayout { wide, narrow };
 /// A narrow map has its panels below each other, and no title.
 Drawing draw_push_map(const PushMap& map, PushMapLayout layout = PushMapLayout::wide);
 
-/// As .svg or .png. Errors as above, and Error(bad_file).
+/// Writes the map as .svg or .png. Throws as above, and Error(bad_file).
 void write_push_map(const PushMap& map, const std::filesystem::path& path);
 
 }  // namespace ayumi

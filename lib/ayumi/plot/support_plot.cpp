@@ -15,10 +15,10 @@ using Eigen::Vector3d;
 struct PlacedSole {
   Side side;
   std::vector<Vector2d> corners;  ///< [mm]
-  double begin = 0, end = 0;      ///< while it is planned down [s]
+  double begin = 0, end = 0;      ///< time while the sole is planned down [s]
 };
 
-/// The soles where the plan puts them down, at the middle of each planned contact.
+/// The soles at their planned places, in the middle of each planned contact.
 std::vector<PlacedSole> footholds(const RobotModel& model, const SimulationLog& log,
                                   const Interval& time) {
   std::vector<PlacedSole> out;
@@ -48,13 +48,13 @@ std::vector<PlacedSole> footholds(const RobotModel& model, const SimulationLog& 
       begin = end;
     }
   }
-  // In the order in which they are put down.
+  // In the order in which they land.
   std::stable_sort(out.begin(), out.end(),
                    [](const PlacedSole& a, const PlacedSole& b) { return a.begin < b.begin; });
   return out;
 }
 
-/// The part of these times before the robot falls. After that, its soles and its ZMP say nothing
+/// The part of these times before the robot falls. After that, its soles and its ZMP show nothing
 /// about the motion.
 Interval before_fall(const SimulationLog& log, Interval time) {
   if (has_fallen(log)) time.high = std::clamp(log.result.fell_at, time.low, time.high);
@@ -79,7 +79,7 @@ std::vector<Vector2d> path_of(const SimulationLog& log, const Interval& time,
   return points;
 }
 
-/// Both axes to one scale, around everything that stands or was planned.
+/// Both axes have one scale, and show everything that stands or was planned.
 Axes make_axes(const Drawing& drawing, const std::vector<LociRun>& runs, const Interval& time,
                const std::vector<PlacedSole>& feet, double top) {
   Eigen::AlignedBox2d box;
@@ -94,7 +94,7 @@ Axes make_axes(const Drawing& drawing, const std::vector<LociRun>& runs, const I
     box.extend(point);
   const Vector2d middle = box.center();
   Vector2d half = 0.55 * box.sizes().cwiseMax(100);
-  // Labels of footholds find room around them [pixel].
+  // The labels of footholds are put around them [pixel].
   constexpr double kRoom = 26;
   half += Vector2d(kRoom, kRoom) * 2 * half.x() / (drawing.width - kLeft - kRight);
   Axes axes;
@@ -145,7 +145,8 @@ void label_footholds(Drawing& drawing, const Axes& axes, const std::vector<Place
                               text::fixed(foot.begin, 2) + " s";
     const Vector2d half(0.5 * text_width(words, kText) + kPad, 0.5 * kText + kPad);
     const Vector2d middle = soles[i].center();
-    const double outwards = foot.side == Side::left ? -M_PI / 2 : M_PI / 2;  // on the paper
+    const double outwards =
+        foot.side == Side::left ? -M_PI / 2 : M_PI / 2;  // direction in the picture
     double best = INFINITY;
     Eigen::AlignedBox2d place;
     for (double away = 0.5 * soles[i].sizes().minCoeff(); away < axes.width; away += 0.7 * kText) {

@@ -15,7 +15,8 @@ using Eigen::Vector3d;
 
 struct NamedView {
   const char* name;
-  double azimuth, elevation;  ///< of the camera seen from the robot; x forward, y left [rad]
+  double azimuth,
+      elevation;  ///< direction of the camera as seen from the robot; x forward, y left [rad]
   bool parallel = false;
 };
 constexpr NamedView kViews[] = {{"front", 0.0, 0.14},
@@ -26,9 +27,10 @@ constexpr NamedView kViews[] = {{"front", 0.0, 0.14},
                                 {"ortho-side", -1.5707963267948966, 0.0, true},
                                 {"ortho-front", 0.0, 0.0, true}};
 
-// Chosen: no picture needs more, and places stay numbers.
+// Chosen: no picture needs a larger value, and coordinates stay finite numbers.
 constexpr double kLeastZoom = 1e-6, kMostZoom = 1e6;
-constexpr double kFieldOfView = 0.5;  // [rad] so narrow that lengths can be compared
+constexpr double kFieldOfView =
+    0.5;  // angle so small that lengths in the picture can be compared [rad]
 
 // The height of the picture's middle stays while the COG is between these shares of its first
 // height, so that a squat or a jump is seen as one; beyond, the camera goes down with a fall and up
@@ -90,7 +92,7 @@ Framing framing(const Camera& camera, double aspect, const std::vector<Vector3d>
     result.distance = parallel ? camera.parallel_height : (camera.eye - camera.target).norm();
     return result;
   }
-  const auto edges = [&](int axis, double distance) {  // where the shift must be
+  const auto edges = [&](int axis, double distance) {  // range of the shift
     Eigen::Vector2d between(-INFINITY, INFINITY);
     for (const Vector3d& p : offsets) {
       const double reach = parallel ? 0.5 * share * distance * (axis == 0 ? aspect : 1.0)
@@ -102,8 +104,9 @@ Framing framing(const Camera& camera, double aspect, const std::vector<Vector3d>
   };
   for (const int axis : {0, 1}) {
     const Eigen::Vector2d at_zero = edges(axis, 0);
-    const double gained = parallel ? share * (axis == 0 ? aspect : 1.0)
-                                   : 2 * k[static_cast<size_t>(axis)];  // by each metre of distance
+    const double gained = parallel
+                              ? share * (axis == 0 ? aspect : 1.0)
+                              : 2 * k[static_cast<size_t>(axis)];  // for each metre of distance
     result.distance = std::max(result.distance, (at_zero[0] - at_zero[1]) / gained);
   }
   result.right = edges(0, result.distance).mean();
@@ -183,7 +186,8 @@ Camera CameraPath::at(double t) const {
           : camera.target.z() -
                 std::clamp(camera.target.z(), kLowestStance * first, kHighestJump * first);
   camera.target.z() = 0.92 * first + beyond;
-  // The robot takes two thirds of the height; a path that is wide moves the fixed camera away.
+  // The robot takes two thirds of the picture's height. If the path is wide, the fixed camera is
+  // farther away.
   const double tall = 1.5 * height_;
   const double wide = (1.2 * height_ + reach_) / std::max(aspect_, 0.1);
   const double distance = std::max(tall, wide) / (2 * std::tan(kFieldOfView / 2)) / options_.zoom;

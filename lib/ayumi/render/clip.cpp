@@ -68,12 +68,13 @@ double robot_height(const std::vector<BodySurface>& surface, const RobotModel& m
   const SimulationSample& first = log.samples.front();
   const Eigen::AlignedBox3d box = robot_bounds(surface, body_poses(model, first.state));
   if (box.isEmpty()) return 1.0;
-  // Where nothing is drawn above the COG, that around which the camera looks.
+  // If nothing is drawn above the COG, the height follows from the COG, around which the camera
+  // looks.
   const double around_cog = 1.8 * (first.cog.z() - box.min().z());
   return std::max({1e-3, box.sizes().maxCoeff(), around_cog});
 }
 
-/// Of each body, the points farthest in 26 directions.
+/// The points of each body that are farthest in 26 directions.
 std::vector<std::vector<Vector3d>> outlines(const std::vector<BodySurface>& surface) {
   std::vector<std::vector<Vector3d>> all;
   for (const BodySurface& body : surface) {
@@ -97,7 +98,7 @@ std::vector<std::vector<Vector3d>> outlines(const std::vector<BodySurface>& surf
   return all;
 }
 
-/// What is drawn otherwise than the robot's files say.
+/// Notes about everything that is drawn differently from the robot's files.
 std::vector<std::string> notes_of(const RobotModel& model, const RobotLook& look, size_t drawn,
                                   double moved) {
   std::vector<std::string> notes;
@@ -109,7 +110,7 @@ std::vector<std::string> notes_of(const RobotModel& model, const RobotLook& look
   return notes;
 }
 
-/// What stands on the floor, and where a field takes the place of the plane.
+/// Everything that stands on the floor, and the place where a field replaces the plane.
 Scenery scenery_of(const SimulationLog& log) {
   Scenery scenery = {make_scenery(log.world), {}};
   for (const HeightField& field : log.world.fields) {
@@ -135,7 +136,7 @@ std::string law_name(const ControllerType& law) {
   return law == ControllerKind::none ? std::string("open loop") : std::string(name_of(law));
 }
 
-/// Name without folder and extension.
+/// Name of a file without folder and extension.
 std::string plain_name(const std::string& file) { return fs::path(file).stem().string(); }
 
 /// Triangles of a robot in a clip: beyond them, it is thinned by up to four times as much, and
@@ -148,8 +149,8 @@ constexpr size_t kMostOfClip = 80'000;
 /// clips of a second gain nothing.
 constexpr int kThinFrames = 24;
 
-/// How long a frame is waited for before the caller may stop the work. Chosen: Ctrl-C is answered
-/// at once, and the wait costs nothing.
+/// Longest wait for a frame before the caller may stop the work. Chosen: Ctrl-C is answered at
+/// once, and the wait costs nothing.
 constexpr std::chrono::milliseconds kFrameWait(50);
 
 /// Threads that draw a clip. Chosen: one encoder takes the frames of about that many, and each
@@ -193,10 +194,12 @@ class FrameQueue {
   FrameQueue(const FrameQueue&) = delete;
   FrameQueue& operator=(const FrameQueue&) = delete;
 
-  /// What the renderers draw otherwise than asked; known once a frame was taken.
+  /// Notes about what the renderers draw differently from the request. They are known when the
+  /// first frame was taken.
   const std::vector<std::string>& notes() const { return notes_; }
 
-  /// While it waits, `alive` is called several times per second; what it throws ends the wait.
+  /// While it waits, `alive` is called several times per second. An exception of `alive` ends the
+  /// wait.
   Image take(int k, const std::function<void()>& alive) {
     Slot& slot = slots_[size_t(k) % slots_.size()];
     std::unique_lock lock(mutex_);
@@ -258,14 +261,14 @@ std::string frame_name(int k) {
   return "frame_" + std::string(number.size() < 5 ? 5 - number.size() : 0, '0') + number + ".png";
 }
 
-/// A message with the name people gave instead of the temporary one.
+/// A message with the name that the user gave in place of the temporary name.
 std::string with_name(std::string message, const std::string& temporary, const std::string& name) {
   for (size_t at; (at = message.find(temporary)) != std::string::npos;)
     message.replace(at, temporary.size(), name);
   return message;
 }
 
-/// Whether a clip wrote this file: frame_name() of some number.
+/// Whether a file comes from a clip: its name is frame_name() of some number.
 bool is_frame(const fs::directory_entry& entry) {
   const std::string name = entry.path().filename().string();
   const size_t begin = name.find_first_of("0123456789");
@@ -276,8 +279,8 @@ bool is_frame(const fs::directory_entry& entry) {
   return read.ec == std::errc() && name == frame_name(number);
 }
 
-/// Throws unless frames may be written to a folder of that name: nothing is there, an empty folder,
-/// or, to be overwritten, a folder that holds frames only.
+/// Throws unless frames may be written to a folder of that name: the folder does not exist, is
+/// empty, or, if it may be overwritten, contains only frames.
 void require_frame_folder(const fs::path& path, bool overwrite) {
   const fs::file_status status = fs::symlink_status(path);
   if (!fs::exists(status)) return;
@@ -289,7 +292,7 @@ void require_frame_folder(const fs::path& path, bool overwrite) {
     if (!overwrite || !is_frame(entry)) refuse_existing(path);
 }
 
-/// Fills a new folder beside `path`, then gives it that name.
+/// Fills a new folder beside `path`, and then renames it.
 void write_folder(const fs::path& path, bool overwrite,
                   const std::function<void(const fs::path&)>& produce) {
   require_frame_folder(path, overwrite);
@@ -335,7 +338,7 @@ std::shared_ptr<const ClipShape> clip_shape(const RobotModel& model, const Simul
   shape->height = robot_height(surface, model, log);
   double moved = look->moved;
   if (thin_surface) {
-    // [m] Where the robot just fits into the picture, a pixel is this large.
+    // Size of a pixel [m] if the robot just fits into the picture.
     const double pixel =
         shape->height / (options.picture.height * std::max(1.0, options.camera.zoom));
     if (moved <= 0) leave_out_hidden(surface);
@@ -374,7 +377,7 @@ ClipRenderer::ClipRenderer(const RobotModel& model, const SimulationLog& log,
 }
 
 void ClipRenderer::add_ghost(double t, Scene& scene) const {
-  // Chosen: of the robot's own colours a seventh stays, which shows its parts.
+  // Chosen: a seventh of the robot's own colours stays, which shows its parts.
   const Eigen::Vector4f tint = {ghost_[0], ghost_[1], ghost_[2], 0.85f};
   if (options_.ghost.log)
     scene.exposures.push_back({body_poses(model_, sample_at(*options_.ghost.log, t).state), tint});
@@ -422,7 +425,7 @@ Image ClipRenderer::drawn(double t) {
 Image ClipRenderer::tile(double t) {
   Overlay overlay;
   const Scene scene = scene_at(t, overlay);
-  overlay.labels.clear();  // the corner says it
+  overlay.labels.clear();  // the corner of the picture shows it
   Image image = finished(scene, overlay, t);
   if (!options_.overlay.caption) return image;
   const double size = std::clamp(image.height / 30.0, 9.0, 54.0);
@@ -434,7 +437,7 @@ Image ClipRenderer::tile(double t) {
 }
 
 void ClipRenderer::frame_robot(const std::vector<double>& times) {
-  // How much of a picture the robot takes, which leaves room for the line of text.
+  // Share of a picture's height that the robot takes. The rest is room for the line of text.
   constexpr double kShare = 0.88;
   framing_.reset();
   shown_.clear();
@@ -457,7 +460,8 @@ void ClipRenderer::frame_robot(const std::vector<double>& times) {
 
 namespace {
 
-/// "t = 0.00, 1.20, 2.40 s"; of many instants the first and the last. None of a single one.
+/// "t = 0.00, 1.20, 2.40 s". Of many instants, the first and the last are named, and for a single
+/// one the text is empty.
 std::string instants_text(const std::vector<double>& times) {
   constexpr size_t kNamed = 6;  // Chosen: as many as fit beside a title.
   if (times.size() < 2) return "";
@@ -498,7 +502,7 @@ Image ClipRenderer::finished(const Scene& scene, const Overlay& overlay, double 
                              .anchor = TextAnchor::center,
                              .color = {0.45f, 0.08f, 0.33f, opacity},
                              .plate = {1, 1, 1, 0.75f * opacity}};
-    // Between the lines of text above and below.
+    // The room between the lines of text above and below.
     const double y = std::clamp(at.y(), std::min(2.6 * size, 0.5 * image.height),
                                 std::max(image.height - 2.6 * size, 0.5 * image.height));
     const double half = 0.5 * drawn_width(label.text, style), most = image.width - half;
@@ -516,7 +520,8 @@ namespace {
 // enough. Returns the width it takes.
 double write_within(Image& image, double x, double y, std::string title, TextStyle style,
                     double room) {
-  constexpr double kSmallest = 0.7;  // share of the size. Chosen: as small as still reads well
+  constexpr double kSmallest =
+      0.7;  // share of the size. Chosen: the smallest letters that can be read well
   if (title.empty()) return 0;
   const double wide = drawn_width(title, style);
   if (wide > room) style.size *= std::clamp(room / wide, kSmallest, 1.0);
@@ -534,7 +539,7 @@ double ClipRenderer::write_title(Image& image, double top, double size, double t
   bold.bold = true;
   const std::string title =
       options_.title.empty() ? plain_name(log_.provenance.pattern) : options_.title;
-  // The same room at every time, so that the title does not change its size in a clip.
+  // The room is the same at every time, so the title does not change its size in a clip.
   double room = image.width - 2 * margin;
   if (log_.controller)
     room -= drawn_width(law_name(*log_.controller), plain) +
@@ -547,7 +552,7 @@ double ClipRenderer::write_title(Image& image, double top, double size, double t
   x += write_within(image, x, y, title, bold, room);
   if (log_.controller) x += draw_text(image, x, y, law_name(*log_.controller), plain);
   if (!framing_) draw_text(image, x, y, when(t), plain);
-  if (log_.controller && t >= verdict_at_ - 1e-9) {  // a plan neither stands nor falls
+  if (log_.controller && t >= verdict_at_ - 1e-9) {  // a plan has no outcome
     TextStyle verdict = bold;
     verdict.anchor = TextAnchor::right;
     verdict.color = log_.result.outcome == Outcome::stands
@@ -588,7 +593,7 @@ double ClipRenderer::write_legend(Image* image, int width, double top, double si
     if (!entry.shown) continue;
     TextStyle style = {.size = size, .plate = {1, 1, 1, 0.72f}};
     style.color = entry.color;
-    style.color.head<3>() *= 0.75f;  // dark enough to be read on the plate
+    style.color.head<3>() *= 0.75f;  // dark enough to be readable on the plate
     style.color[3] = 1;
     const int wide = drawn_width(entry.text, style);
     if (x > margin && x + wide > width - margin) {
@@ -612,12 +617,12 @@ void ClipRenderer::write_scale(Image& image, const Camera& camera, double t) con
   const double size = std::clamp(image.height / 40.0, 9.0, 40.0);
   const Eigen::Isometry3d ground = ground_at(log_, t);
   const Vector3d n = ground.linear().col(2);
-  // The ground below the middle of the picture, along gravity.
+  // The ground below the middle of the picture, in the direction of gravity.
   Vector3d below = camera.target;
   below.z() -= n.dot(camera.target - ground.translation()) / n.z();
   const double pixel = camera.parallel_height / image.height;  // [m]
   const double foot = project(camera, image.width, image.height, below).y();
-  double step = 1;  // [m] the smallest of 1, 2, 5 with at least three lines of text between marks
+  double step = 1;  // the smallest of 1, 2, 5 with at least three lines of text between marks [m]
   for (const double next : {0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001})
     if (next / pixel >= 3 * size) step = next;
   const auto line = [&](double y, int from, int to, double share) {
@@ -659,7 +664,7 @@ ClipSummary write_clip(const RobotModel& model, const SimulationLog& log, const 
   std::exception_ptr unshaped;
   std::atomic<bool> stopped = false;
   const auto make = [&] {
-    std::call_once(shaped, [&] {  // an exception here would let the next thread try again
+    std::call_once(shaped, [&] {  // with an exception here, the next thread would try again
       try {
         shape = clip_shape(model, log, options, count >= kThinFrames,
                            [&](const ProgressEvent&) { return !stopped; });
@@ -678,7 +683,7 @@ ClipSummary write_clip(const RobotModel& model, const SimulationLog& log, const 
         try {
           report(progress, {"preview", double(k) / count, "frame " + std::to_string(k)});
         } catch (...) {
-          stopped = true;  // the threads that prepare the surface
+          stopped = true;  // stops the threads that prepare the surface
           throw;
         }
       };

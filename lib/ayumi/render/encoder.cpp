@@ -27,11 +27,11 @@ namespace {
 
 using Arguments = std::vector<std::string>;
 
-// How often the end of ffmpeg is asked for, and how long a wait for it lasts before `alive` is
-// called. Chosen: a clip is delayed by less than a frame takes, and Ctrl-C is answered at once.
+// Period at which the end of ffmpeg is tested, and the longest wait before `alive` is called.
+// Chosen: a clip is delayed by less than a frame takes, and Ctrl-C is answered at once.
 constexpr std::chrono::milliseconds kPause(2), kPatience(50);
 
-/// What to_yuv420 makes; players assume it for video of this size.
+/// The colour standard of to_yuv420(). Players assume it for video of this size.
 const Arguments kVideoColor = {"-pix_fmt",         "yuv420p", "-colorspace", "bt709",
                                "-color_primaries", "bt709",   "-color_trc",  "bt709",
                                "-color_range",     "tv"};
@@ -101,7 +101,7 @@ Arguments all_arguments(const std::filesystem::path& path, int width, int height
   all.insert(all.end(), format.begin(), format.end());
   for (const char* word : {"-map_metadata", "-1", "-fflags", "+bitexact", "-flags:v", "+bitexact"})
     all.emplace_back(word);
-  // A path that begins with a dash or holds a colon is still a file.
+  // A path that begins with a dash or contains a colon is still a file.
   all.push_back("file:" + path.string());
   return all;
 }
@@ -219,7 +219,7 @@ void ClipEncoder::add(const Image& frame) {
 
 void ClipEncoder::finish() {
   const int status = wait();
-  // Some versions say that the disk is full and still end as if all were well.
+  // Some versions report that the disk is full, and still end with exit code 0.
   const bool silent = lseek(log_, 0, SEEK_END) <= 0;
   if (!silent || !WIFEXITED(status) || WEXITSTATUS(status) != 0) fail_with_log();
 }

@@ -1,5 +1,6 @@
 #pragma once
-// Clips by the `ffmpeg` program, run as a child process and fed frames through a pipe.
+// Clips are made by the program `ffmpeg`, which runs as a child process and receives frames through
+// a pipe.
 
 #include <filesystem>
 #include <functional>
@@ -32,12 +33,12 @@ class ClipEncoder {
   void finish();
 
  private:
-  std::filesystem::path path_;  ///< its extension says the format
+  std::filesystem::path path_;  ///< its extension gives the format
   std::string program_;
   int width_, height_;
   int pipe_ = -1, log_ = -1;
   int process_ = -1;
-  std::vector<std::uint8_t> planes_;  ///< of the frame last added
+  std::vector<std::uint8_t> planes_;  ///< planes of the last frame
 
   std::function<void()> alive_;
 

@@ -14,8 +14,9 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-// A sole that is tilted by more than this against the plan says nothing of where the plan is [rad].
-// Chosen: soles of a walk tilt by less than 3 degrees; a robot that falls passes this at once.
+// The place of the plan is not taken from a sole that is tilted by more than this against the plan
+// [rad]. Chosen: soles of a walk tilt by less than 3 degrees, and a robot that falls exceeds this
+// at once.
 constexpr double kTilted = 0.1;
 
 /// Poses of the soles' middles in many postures.
@@ -39,7 +40,7 @@ class SolePoses {
   RobotState state_;
 };
 
-/// Without its tilt.
+/// The pose without its tilt.
 Isometry3d upright(const Isometry3d& pose) {
   Isometry3d upright = Isometry3d::Identity();
   upright.translation() = pose.translation();
@@ -59,7 +60,7 @@ void move(const Isometry3d& by, const std::vector<Vector3d*>& places,
   for (Vector3d* direction : directions) *direction = by.linear() * *direction;
 }
 
-/// What is in the frame of the plan.
+/// Moves the parts of a sample that are in the frame of the plan.
 void move_plan(const Isometry3d& by, SimulationSample& s) {
   move(by, s.command_base);
   move(by, s.reference_base);
@@ -69,7 +70,7 @@ void move_plan(const Isometry3d& by, SimulationSample& s) {
        {&s.measured_dcog, &s.command_dcog, &s.reference_dcog, &s.reference_ddcog});
 }
 
-/// What happened, in the world.
+/// Moves the parts of a sample that really happened, in the world.
 void move_world(const Isometry3d& by, SimulationSample& s) {
   move(by, s.state.base);
   move(by, {&s.cog, &s.zmp, &s.foot_cop[0], &s.foot_cop[1], &s.push_point},

@@ -29,7 +29,7 @@ const std::array<Vector3f, 6> kHues = {{{0.93f, 0.45f, 0.05f},    // orange
 /// two hues that are called by one name are apart.
 constexpr int kSharpness = 4;
 
-/// Saturation below which a colour is seen as grey. Chosen: silver has 0.05; covers of a pale
+/// Saturation below which a colour counts as grey. Chosen: silver has 0.05, and covers of a pale
 /// colour have 0.17 and more.
 constexpr float kGrey = 0.1f;
 
@@ -42,12 +42,13 @@ Vector2f chroma(const Vector3f& c) {
   return {c[0] - (c[1] + c[2]) / 2, std::sqrt(0.75f) * (c[1] - c[2])};
 }
 
-/// How much each hue is taken already.
+/// The part of each hue that the robot already uses.
 struct Use {
   std::array<double, kHues.size()> by_hue = {};
   double area = 0;
 
-  /// By the square of the saturation: large pale covers do not hide a few bright ones.
+  /// Weighted by the square of the saturation, so that large pale covers do not hide a few bright
+  /// ones.
   void add(const Vector3f& color, double weight) {
     const Vector2f own = chroma(color);
     const double saturation = own.norm();
@@ -64,7 +65,7 @@ struct Use {
   }
 };
 
-/// At a place in a picture, which is repeated beyond its edges.
+/// The colour at a place in a picture, which is repeated beyond its edges.
 Vector3f color_at(const Texture& picture, const Vector2f& uv) {
   const auto place = [](float share, int size) {
     const double within = double(share) - std::floor(double(share));

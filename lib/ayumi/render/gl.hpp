@@ -1,5 +1,6 @@
 #pragma once
-// The OpenGL functions that the renderer uses, found at run time, and what it makes with them.
+// The OpenGL functions that the renderer uses, which are found at run time, and the objects that it
+// makes with them.
 
 #include <GL/glcorearb.h>
 
@@ -78,7 +79,7 @@ struct GlMesh {
   GLuint array = 0, vertices = 0, indices = 0;
 };
 
-/// A picture to draw into.
+/// A target to draw into.
 struct GlTarget {
   GLuint framebuffer = 0, color = 0, depth = 0;
   int width = 0, height = 0;
@@ -94,18 +95,19 @@ struct Gl {
   /// Throws Error(internal) naming a function that is missing.
   explicit Gl(const OffscreenContext& context);
 
-  /// `between` stands before the fragment's text. Throws Error(internal) with
-  /// the compiler's words.
+  /// `between` is put before the text of the fragment shader. Throws Error(internal) with the
+  /// message of the compiler.
   GLuint link(const char* vertex, const char* fragment, const char* between = "") const;
-  /// A picture to be put on surfaces, repeated beyond its edges.
+  /// A picture for surfaces, which is repeated beyond its edges.
   GLuint make_texture(const std::vector<std::uint8_t>& rgba, int width, int height) const;
   GlMesh make_mesh() const;
-  /// A strip of two triangles over -1..1, places alone.
+  /// A strip of two triangles over -1..1, with positions only.
   GlMesh make_square() const;
   void fill(const GlMesh& mesh, const Triangles& triangles, GLenum usage) const;
-  /// Places alone, two numbers each.
+  /// Positions only, two numbers each.
   GlMesh make_places() const;
-  /// `samples` per pixel, 0 for one without resolving. Throws Error(internal) where refused.
+  /// `samples` per pixel; 0 for a target that needs no resolving. Throws Error(internal) if OpenGL
+  /// refuses.
   GlTarget make_target(int width, int height, int samples, GLenum format, bool depth) const;
   void discard(GlTarget& target) const;
   void draw(const IndexRange& range) const;

@@ -17,7 +17,7 @@ double linear(std::uint8_t srgb) {
   return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
 }
 
-/// Six digits are more than eight bits of colour hold.
+/// Six digits are more than the precision of eight bits of colour.
 double rounded(double value) { return std::round(1e6 * value) / 1e6; }
 
 }  // namespace

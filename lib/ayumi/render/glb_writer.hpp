@@ -22,21 +22,22 @@ std::string list(const Values& values) {
   return out + "]";
 }
 std::string quoted(const std::string& text);
-/// ",\"key\":[items]"; nothing without items.
+/// ",\"key\":[items]"; an empty text if there are no items.
 std::string joined(const std::string& key, const std::vector<std::string>& items);
 
-/// The members of the file as they grow; each call returns the number of what it added.
+/// The members of the file while it grows. Each call returns the number of the part that it added.
 class Writer {
  public:
-  /// `components` values each; `with_bounds` where glTF asks for least and largest.
+  /// `components` values for each entry. With `with_bounds`, the least and largest values are
+  /// written, which glTF requires in some places.
   int add_floats(const std::vector<float>& values, int components, bool vertices, bool with_bounds);
   int add_indices(const std::vector<std::uint32_t>& values);
-  /// The same again for the same colour.
+  /// Returns the same number again for the same colour.
   int material(const Color& color, bool double_sided);
-  /// With the picture of a mesh; as `material` where there is none to embed.
+  /// A material with the picture of a mesh; the same as `material` if there is no picture to embed.
   int material(const Color& color, const std::string& texture);
 
-  /// The whole file around the text of its nodes (the first is the scene's root) and animations.
+  /// The whole file, with the text of its nodes (the first is the scene's root) and animations.
   std::string file(const std::string& nodes, const std::string& animations) const;
   std::vector<std::string> meshes;  ///< as JSON
 

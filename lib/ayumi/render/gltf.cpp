@@ -25,7 +25,7 @@ using namespace glb;
 
 // ---- surfaces
 
-/// Triangles of one colour with each vertex once.
+/// Triangles of one colour, with each vertex only once.
 struct Batch {
   std::vector<float> positions, normals, uvs;
   std::vector<std::uint32_t> indices;
@@ -48,7 +48,7 @@ struct Batch {
   }
 };
 
-/// `material` of a colour gives its number.
+/// `material` gives the number of a colour.
 template <typename Material>
 void add_batches(Writer& writer, const Triangles& surface, bool with_uvs, const Material& material,
                  std::vector<std::string>& primitives) {
@@ -68,7 +68,7 @@ void add_batches(Writer& writer, const Triangles& surface, bool with_uvs, const 
   }
 }
 
-/// Mesh of each body; -1 where there is nothing to see.
+/// The mesh of each body; -1 if nothing of the body is visible.
 std::vector<int> add_meshes(Writer& writer, const std::vector<BodySurface>& surface) {
   std::vector<int> meshes;
   for (const BodySurface& body : surface) {
@@ -90,7 +90,7 @@ std::vector<int> add_meshes(Writer& writer, const std::vector<BodySurface>& surf
 
 // ---- nodes and animations
 
-/// Pose of a body in its parent.
+/// Pose of a body in the frame of its parent.
 Eigen::Isometry3d joint_pose(const Body& body, double theta) {
   const double q = body.ratio * theta + body.offset;
   Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
@@ -105,7 +105,7 @@ BasePose as_base(const Eigen::Isometry3d& pose) {
   return {pose.translation(), Eigen::Quaterniond(pose.linear()).normalized()};
 }
 
-/// Pose of a body in its parent, the root in the world.
+/// Pose of a body in the frame of its parent; the root's pose is in the world.
 BasePose node_pose(const RobotModel& model, const Motion& motion, size_t body, size_t k) {
   if (model.bodies()[body].parent < 0) return motion.base[k];
   const Body& b = model.bodies()[body];
@@ -152,7 +152,7 @@ struct Channel {
 };
 
 void add_rotation(std::vector<float>& values, Eigen::Quaternionf q) {
-  // The shorter rotation from the key before.
+  // The shorter rotation, starting from the previous key.
   const size_t n = values.size();
   if (n >= 4 && q.x() * values[n - 4] + q.y() * values[n - 3] + q.z() * values[n - 2] +
                         q.w() * values[n - 1] <

@@ -13,7 +13,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kFade = 4.5;  // where the ground becomes the horizon, in distances of the camera
+constexpr double kFade =
+    4.5;  // where the ground becomes the horizon, in distances of the camera from its target
 constexpr float kShadowStrength = 0.42f;
 constexpr std::array<float, 3> kHorizonColor = {0.877f, 0.893f, 0.907f};
 constexpr std::array<float, 3> kZenithColor = {0.735f, 0.798f, 0.867f};
@@ -22,7 +23,7 @@ constexpr std::array<float, 3> kFineColor = {0.646f, 0.653f, 0.659f};
 constexpr std::array<float, 3> kBoldColor = {0.508f, 0.518f, 0.535f};
 constexpr std::array<float, 3> kShadowColor = {0.03f, 0.04f, 0.07f};
 
-/// Spacing and width of lines of the grid [m], and how much of their colour they have.
+/// Spacing and width of the lines of the grid [m], and the strength of their colour.
 struct GridLines {
   float spacing, width, share;
 };
@@ -33,8 +34,8 @@ std::uint8_t to_byte(float share) { return static_cast<std::uint8_t>(share * 255
 typedef float Eight __attribute__((vector_size(32)));
 typedef std::int32_t EightWhole __attribute__((vector_size(32)));
 
-/// A row of the plane: numerators of u and v and the denominator, at the first pixel and per pixel;
-/// how they change by a row.
+/// A row of the plane: numerators of u and v and the denominator at the first pixel, their changes
+/// per pixel, and their changes per row.
 struct GroundRow {
   std::array<float, 3> first, along, down;
   std::array<float, 2> middle;
@@ -55,7 +56,7 @@ AYUMI_INLINE void floor_of(const Eight& p, Eight& whole) {
   whole = whole > p ? whole - 1.0f : whole;
 }
 
-/// How far points are from the nearest line [m].
+/// Distance of points from the nearest line [m].
 AYUMI_INLINE void off_line(const Eight& p, const GridLines& lines, Eight& away) {
   const Eight q = p * (1.0f / lines.spacing) + 0.5f;
   Eight whole;
@@ -64,7 +65,8 @@ AYUMI_INLINE void off_line(const Eight& p, const GridLines& lines, Eight& away) 
   away *= lines.spacing;
 }
 
-// Share of a pixel that lines across one axis cover; far away, where they run together, their mean.
+// Share of a pixel that lines across one axis cover. Far away, where lines merge, it is the mean
+// share.
 AYUMI_INLINE void add_lines(const Eight& p, const Eight& footprint, const Eight& sharpness,
                             const GridLines& lines, Eight& cover) {
   Eight away;
@@ -82,7 +84,7 @@ AYUMI_INLINE void add_lines(const Eight& p, const Eight& footprint, const Eight&
   larger(cover, share, cover);
 }
 
-/// Where pixels see the plane, u or v, and how wide a pixel is there.
+/// The u or v of the plane at each pixel, and the width of a pixel there.
 struct Seen {
   Eight place, wide;
 };
@@ -100,16 +102,17 @@ AYUMI_INLINE void see(const GroundRow& row, size_t axis, const Eight& at, const 
   larger(across + down, at * 0.0f + 1e-6f, seen.wide);
 }
 
-/// Share of the ground's colour there: far away the ground becomes the horizon.
+/// Share of the ground's colour at a distance. Far away, the ground becomes the horizon.
 AYUMI_INLINE void near_share(const GroundRow& row, const Eight& u, const Eight& v, Eight& near) {
   const Eight du = (u - row.middle[0]) * row.fade, dv = (v - row.middle[1]) * row.fade;
   const Eight square = du * du + dv * dv;
   near = 1.0f / (1.0f + square * square);
 }
 
-/// Of eight stretches of the row, each from its first to its last pixel: whether a part of one of
-/// these lines may be in it. Where none is, add_lines() adds nothing. Along a row of pixels, the
-/// plane's coordinates only grow or only fall, and so does the width of a pixel there.
+/// Tells for eight stretches of the row, each from its first to its last pixel, whether a part of
+/// one of these lines may be in the stretch. In the others, add_lines() adds nothing. Along a row
+/// of pixels, the plane's coordinates only grow or only fall, and so does the width of a pixel
+/// there.
 AYUMI_INLINE void has_lines(const Seen& from, const Seen& to, const GridLines& lines,
                             EightWhole& has) {
   Eight wide, low, high, first, last;
@@ -124,7 +127,7 @@ AYUMI_INLINE void has_lines(const Seen& from, const Seen& to, const GridLines& l
   has = (first != last) | (wide > 0.29f * lines.spacing);
 }
 
-/// Colours of eight pixels as bytes of whole numbers, red the lowest.
+/// Colours of eight pixels as bytes of whole numbers, with red as the lowest byte.
 AYUMI_INLINE void mix_colors(const Eight& fine, const Eight& bold, const Eight& near,
                              std::array<std::int32_t, 8>& pixels) {
   EightWhole packed = {};
@@ -137,7 +140,7 @@ AYUMI_INLINE void mix_colors(const Eight& fine, const Eight& bold, const Eight& 
   std::memcpy(pixels.data(), &packed, sizeof packed);
 }
 
-/// Which lines may be in a stretch: across u or v, the bold ones only beside fine ones.
+/// The lines that may be in a stretch: those across u or v, and bold ones only beside fine ones.
 constexpr std::array<int, 2> kFineThere = {1, 2}, kBoldThere = {4, 8};
 
 AYUMI_INLINE void eight_colors(const GroundRow& row, int x, int lines, float near_there,
@@ -194,7 +197,7 @@ AYUMI_INLINE void draw_plane_row(const GroundRow& row, int begin, int end, std::
         eight_colors(row, x, there[part], nears[part], pixels);
       else
         pixels.fill(plain[part]);
-      // Each writes a byte beyond its own, which the next one overwrites.
+      // Each store writes one byte too many, which the next one overwrites.
       std::uint8_t* out = rgb + 3 * size_t(x);
       for (int i = 0; i + 1 < count; ++i) std::memcpy(out + 3 * i, &pixels[size_t(i)], 4);
       std::memcpy(out + 3 * (count - 1), &pixels[size_t(count - 1)], 3);
@@ -250,7 +253,7 @@ GroundPicture::GroundPicture(const Camera& camera, const Eigen::Matrix4d& to_cli
   fade_ = kFade * distance;
   if (!shown || camera.parallel_height > 0 || plane.normal.dot(camera.eye - plane.origin) <= 0)
     return;
-  Eigen::Matrix<double, 4, 3> corner;  // of (u, v, 1), counted from the whole metres
+  Eigen::Matrix<double, 4, 3> corner;  // coefficients of (u, v, 1), counted from whole metres
   corner << plane.u, plane.v, plane.origin + plane.u * whole_.x() + plane.v * whole_.y(), 0, 0, 1;
   const Eigen::Matrix<double, 4, 3> seen = to_clip * corner;
   Eigen::Matrix3d flat;
@@ -258,7 +261,7 @@ GroundPicture::GroundPicture(const Camera& camera, const Eigen::Matrix4d& to_cli
   bool can = false;
   Eigen::Matrix3d back;
   flat.computeInverseWithCheck(back, can, 1e-12);
-  if (!can) return;  // seen on edge
+  if (!can) return;  // the plane is seen from the side
   Eigen::Matrix3d from_pixel;
   from_pixel << 2.0 / width, 0, -1, 0, -2.0 / height, 1, 0, 0, 1;
   place_ = back * from_pixel;
@@ -282,7 +285,8 @@ GroundPicture::GroundPicture(const Camera& camera, const Eigen::Matrix4d& to_cli
 PixelSpan GroundPicture::span(const std::vector<Line>& lines, int y) const {
   double first = 0, end = width_;
   for (const Line& line : lines) {
-    const double here = line.x() * 0.5 + line.y() * (y + 0.5) + line.z();  // at the first pixel
+    const double here =
+        line.x() * 0.5 + line.y() * (y + 0.5) + line.z();  // values at the first pixel
     if (line.x() > 0)
       first = std::max(first, std::ceil(-here / line.x()));
     else if (line.x() < 0)

@@ -1,6 +1,6 @@
 #pragma once
-// Ground, sky and the robot's shadow as a picture, row by row: what each pixel of it shows follows
-// from its place alone, without triangles. Colours are sRGB throughout.
+// Ground, sky and the robot's shadow as a picture, row by row: each pixel is computed from its
+// place alone, without triangles. Colours are sRGB throughout.
 
 #include <Eigen/Core>
 #include <array>
@@ -19,43 +19,44 @@ constexpr double kPlaneReach = 30;
 /// Point of the plane at the camera's target, its coordinates: the middle of that square.
 Eigen::Vector2d middle_of_plane(const Camera& camera, const GroundRectangle& plane);
 
-/// Pixels of a row, the end excluded.
+/// Pixels of a row; the end is excluded.
 struct PixelSpan {
   int begin = 0, end = 0;
 };
 
 /// The robot's shadow as coverage of a square of the plane.
 struct ShadowPicture {
-  static constexpr int kSize = 256;     ///< of an edge [pixel]
+  static constexpr int kSize = 256;     ///< number of pixels of an edge
   std::vector<std::uint8_t> cover;      ///< kSize^2, along u then v of the plane; empty: no shadow
-  Eigen::Vector4f dark = {0, 0, 0, 0};  ///< as covered() gives it
+  Eigen::Vector4f dark = {0, 0, 0, 0};  ///< as covered() returns it
 
-  /// Interpolated between pixels. Both go from 0 to 1 over the square; outside it, its edge counts.
+  /// The coverage, interpolated between pixels. Both arguments go from 0 to 1 over the square.
+  /// Outside the square, the value at its edge counts.
   float at(float along_u, float along_v) const;
 };
 
 /// A square of the plane around the middle of the picture, as a camera sees it.
 class GroundPicture {
  public:
-  /// `to_clip` of the camera; `hole` in the plane's coordinates, empty for none. Without `shown`,
-  /// all is sky.
+  /// `to_clip` belongs to the camera. `hole` is in the plane's coordinates and empty if there is
+  /// none. Without `shown`, everything is sky.
   GroundPicture(const Camera& camera, const Eigen::Matrix4d& to_clip, int width, int height,
                 const GroundRectangle& plane, const Eigen::AlignedBox2d& hole, bool shown);
 
-  /// Where a row shows the plane: before and behind the hole.
+  /// The parts of a row that show the plane: before the hole and behind it.
   std::array<PixelSpan, 2> plane_in_row(int y) const;
   void draw(const ShadowPicture& shadow, Image& image) const;
 
  private:
-  /// (a, b, c): pixels with a x + b y + c >= 0 are taken.
+  /// (a, b, c): pixels with a x + b y + c >= 0 are used.
   using Line = Eigen::Vector3d;
   int width_, height_;
   GroundRectangle plane_;
   bool shown_ = false;
   double horizon_ = 0;
   double fade_ = 1;                 // distance at which the ground becomes the horizon's colour [m]
-  Eigen::Vector2d middle_, whole_;  // of the square; whole metres near it
-  Eigen::Matrix3d place_;           // pixel (x, y, 1) to (u, v, 1) over the distance
+  Eigen::Vector2d middle_, whole_;  // middle of the square; a point with whole metres near it
+  Eigen::Matrix3d place_;           // maps a pixel (x, y, 1) to (u, v, 1) over the distance
   std::vector<Line> seen_, hole_;
 
   PixelSpan span(const std::vector<Line>& lines, int y) const;

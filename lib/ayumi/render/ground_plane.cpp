@@ -41,7 +41,7 @@ Eigen::Matrix4d flattening(const GroundRectangle& plane, const Vector3d& sun) {
 }
 
 double horizon_height(const Camera& camera, const Vector3d& normal, const Matrix4f& to_clip) {
-  if (camera.parallel_height > 0) {  // the ground is seen on edge
+  if (camera.parallel_height > 0) {  // the ground is seen from the side
     const Eigen::Vector4f clip = to_clip * camera.target.cast<float>().homogeneous();
     return clip.y() - 2 * normal.dot(camera.target) / camera.parallel_height;
   }
@@ -56,8 +56,8 @@ double horizon_height(const Camera& camera, const Vector3d& normal, const Matrix
 
 void blur(std::vector<std::uint8_t>& image, int size, int radius) {
   const auto n = static_cast<size_t>(size), r = static_cast<size_t>(radius), width = 2 * r + 1;
-  std::vector<std::uint8_t> smooth(image.size());  // along rows
-  std::vector<std::uint16_t> sums(n);              // of columns, a whole row at a time
+  std::vector<std::uint8_t> smooth(image.size());  // box along rows
+  std::vector<std::uint16_t> sums(n);              // box along columns, a whole row at a time
   // Multiplied and shifted, this divides every sum of `width` bytes by `width` exactly.
   const std::uint32_t part = (1u << 24) / static_cast<std::uint32_t>(width) + 1;
   require(width <= 255, "a shadow is blurred too widely");

@@ -1,5 +1,5 @@
 #pragma once
-// Where the ground is in a picture, and the softening of the shadow on it.
+// The place of the ground in a picture, and the softening of the shadow on it.
 
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -24,11 +24,12 @@ GroundRectangle ground_rectangle(const Eigen::Isometry3d& frame, const Eigen::Al
 /// Along the sun onto the plane: the square of the shadow becomes -1..1, depth 0.
 Eigen::Matrix4d flattening(const GroundRectangle& ground, const Eigen::Vector3d& sun);
 
-/// The sun over the camera's left shoulder, whatever side it looks from; unit.
+/// The direction to the sun: over the camera's left shoulder, whatever the camera looks at. A unit
+/// vector.
 Eigen::Vector3d sun_behind(const Camera& camera, const Eigen::Vector3d& up);
 
-/// Where the ground vanishes straight ahead, -1 at the bottom of the picture, 1
-/// at its top.
+/// Height in the picture at which the ground vanishes straight ahead: -1 is the bottom of the
+/// picture, 1 its top.
 double horizon_height(const Camera& camera, const Eigen::Vector3d& normal,
                       const Eigen::Matrix4f& to_clip);
 

@@ -17,18 +17,19 @@ using Eigen::Vector3d;
 // of how far a hidden one is inside. Chosen: a part of 200 pixels is then convex to 0.04 pixels; at
 // half, round parts whose corners have six digits are not convex, at twice, it is 0.08 pixels.
 constexpr double kFlat = 2e-4;
-// Planes times corners of a part that is examined. Chosen: a part of 1,150 triangles; at twice,
-// heavy meshes take longer to examine, at half, finely divided balls and tubes are left out.
+// Largest product of planes and corners of a part that is examined. Chosen: a part of 1,150
+// triangles; at twice, heavy meshes take longer to examine, at half, finely divided balls and tubes
+// are left out.
 constexpr size_t kMostWork = 4'000'000;
 // Pairs of a piece and a triangle of a body, above which nothing is left out. Chosen: they take
 // about half a second; a body with so many pieces has screws and grilles, which hide little.
 constexpr size_t kMostTests = 200'000'000;
 
-/// Triangles that hang together.
+/// Triangles that are connected.
 struct Piece {
-  std::vector<std::uint32_t> triangles;  // number of the first index over 3
+  std::vector<std::uint32_t> triangles;  // first index of each triangle, divided by 3
   Eigen::AlignedBox3d box;
-  std::vector<Eigen::Vector4d> planes;  // outside where positive; empty where not convex
+  std::vector<Eigen::Vector4d> planes;  // positive outside; empty if the part is not convex
 };
 
 Vector3d place(const Triangles& surface, size_t index) {
@@ -40,7 +41,7 @@ std::vector<Piece> pieces_of(const Triangles& surface) {
   std::vector<std::uint32_t> place_of;
   for (const RenderVertex& vertex : surface.vertices) {
     KeyNumbers<3>::Key key;
-    for (size_t axis = 0; axis < 3; ++axis)  // -0 is 0
+    for (size_t axis = 0; axis < 3; ++axis)  // turns -0 into 0
       key[axis] = std::bit_cast<std::uint32_t>(vertex.position[Eigen::Index(axis)] + 0.0f);
     place_of.push_back(numbers.number(key));
   }
@@ -89,7 +90,7 @@ void find_planes(const Triangles& surface, Piece& piece) {
   piece.planes = std::move(planes);
 }
 
-/// Whether a triangle is inside: its corners are.
+/// Whether a triangle is inside: all of its corners are inside.
 bool is_inside(const Piece& piece, const std::array<Vector3d, 3>& corners) {
   if (piece.planes.empty() || !piece.box.contains(corners[0])) return false;
   const double flat = kFlat * piece.box.diagonal().norm();
@@ -101,7 +102,8 @@ bool is_inside(const Piece& piece, const std::array<Vector3d, 3>& corners) {
   });
 }
 
-/// Without those of its triangles that are inside one of the pieces, but not of their own.
+/// The body without those of its triangles that are inside one of the pieces, except in their own
+/// piece.
 void leave_out(Triangles& surface, const std::vector<Piece>& pieces,
                const std::vector<std::int64_t>& own) {
   std::vector<std::uint32_t> left;
@@ -130,7 +132,7 @@ void leave_out_hidden(std::vector<BodySurface>& robot) {
       for (const std::uint32_t triangle : pieces[k].triangles)
         own[triangle] = static_cast<std::int64_t>(k);
     }
-    // What is not convex hides nothing here.
+    // A part that is not convex hides nothing here.
     if (std::none_of(pieces.begin(), pieces.end(),
                      [](const Piece& piece) { return !piece.planes.empty(); }))
       continue;

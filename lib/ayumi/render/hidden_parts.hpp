@@ -1,6 +1,6 @@
 #pragma once
-// What no camera outside sees of a robot: triangles within a convex part of the same body, such as
-// the end of a tube that is put into a joint's housing.
+// Removes what no camera outside a robot can see: triangles within a convex part of the same body,
+// such as the end of a tube in the housing of a joint.
 
 #include <vector>
 

@@ -47,7 +47,7 @@ SurfacePointer render_text(const std::string& text, const TextStyle& style) {
   cairo_text_extents(measure.get(), text.c_str(), &extents);
   cairo_font_extents(measure.get(), &font);
   const double pad = std::ceil(0.35 * style.size);
-  // A name may be of any length. What is cut off here is outside every picture.
+  // A name may have any length. The part that is cut off here would be outside every picture.
   const int width =
       static_cast<int>(std::min(kWidestSurface, std::ceil(extents.x_advance + 2 * pad)));
   const int height = static_cast<int>(std::ceil(font.ascent + font.descent + 0.4 * pad));
@@ -90,7 +90,7 @@ std::shared_ptr<cairo_surface_t> text_surface(const std::string& text, const Tex
   return kept[key] = std::move(drawn);
 }
 
-/// Lays a premultiplied ARGB surface over the picture with its top left corner at (left, top).
+/// Puts a premultiplied ARGB surface over the picture, with its top left corner at (left, top).
 void compose(Image& image, cairo_surface_t* surface, int left, int top) {
   const int width = cairo_image_surface_get_width(surface);
   const int height = cairo_image_surface_get_height(surface);
@@ -98,7 +98,8 @@ void compose(Image& image, cairo_surface_t* surface, int left, int top) {
   const unsigned char* data = cairo_image_surface_get_data(surface);
   for (int y = std::max(0, -top); y < height && top + y < image.height; ++y) {
     for (int x = std::max(0, -left); x < width && left + x < image.width; ++x) {
-      const unsigned char* source = data + size_t(y) * stride + 4 * x;  // B G R A in memory
+      const unsigned char* source =
+          data + size_t(y) * stride + 4 * x;  // the order is B G R A in memory
       std::uint8_t* target = image.pixel(left + x, top + y);
       for (int channel = 0; channel < 3; ++channel)
         target[channel] = static_cast<std::uint8_t>(

@@ -22,7 +22,7 @@ BasePose mix(const BasePose& a, const BasePose& b, double share) {
   return {mix(a.position, b.position, share), a.attitude.slerp(share, b.attitude)};
 }
 
-/// Stretches of ticks in which just these feet (left, right) are planned on the ground.
+/// Intervals of ticks in which exactly these feet (left, right) are planned on the ground.
 std::vector<FlightRecord> stretches(const SimulationLog& log, const std::array<bool, 2>& feet) {
   std::vector<FlightRecord> result;
   bool before = false;
@@ -36,11 +36,11 @@ std::vector<FlightRecord> stretches(const SimulationLog& log, const std::array<b
   return result;
 }
 
-/// An instant that a picture should show, the higher its weight the sooner.
+/// An instant that a picture should show. Instants with a higher weight come first.
 struct Candidate {
-  double t = 0;                     ///< [s]
-  double weight = 0;                ///< of postures the size of the move [rad]; events have more
-  bool looks_like_another = false;  ///< and is worth a picture all the same
+  double t = 0;       ///< time [s]
+  double weight = 0;  ///< for postures, the size of the move [rad]; events have a higher weight
+  bool looks_like_another = false;  ///< near others, but worth a picture nevertheless
 };
 
 // Weights of events, above every posture: a joint moves by less than 10 rad.
@@ -55,18 +55,19 @@ constexpr double kSeenMove = 0.05, kSeenShare = 0.15;
 // quintic between rests 2 % of the way are left at four fifths of the time.
 constexpr double kReached = 0.02;
 
-/// Instants at which a curve turns back or comes to rest after a move of at least `least`, each
-/// with the size of that move.
+/// Instants at which a curve turns back or comes to rest after a move of at least `least`, with the
+/// sizes of these moves.
 void add_turns(const std::vector<double>& values, double dt, size_t first, double least,
                std::vector<Candidate>& out) {
   if (values.empty()) return;
   size_t low = 0, high = 0, from = 0;  // extremes since the last turn, and that turn
   int direction = 0;
   const auto turn = [&](size_t at) {
-    const double move = std::min(10.0, std::abs(values[at] - values[from]));  // below every event
+    const double move =
+        std::min(10.0, std::abs(values[at] - values[from]));  // below the weight of every event
     size_t reached = from;
     while (reached < at && std::abs(values[reached] - values[at]) > kReached * move) ++reached;
-    // Where it began, it has been seen.
+    // The place where the move began was already shown.
     const bool back = std::abs(values[at] - values[0]) < 0.3 * move;
     out.push_back({static_cast<double>(first + reached) * dt, back ? 0.5 * move : move});
     from = at;
@@ -90,11 +91,11 @@ void add_turns(const std::vector<double>& values, double dt, size_t first, doubl
       high = k;
     }
   }
-  // What it comes to and stays at.
+  // The value that the curve reaches and keeps.
   if (direction != 0) turn(direction > 0 ? high : low);
 }
 
-/// Postures of the ticks from `first` to before `last` in which joints, the trunk or the COG turn.
+/// Postures of the ticks first, ..., last - 1 in which joints, the trunk or the COG turn back.
 std::vector<Candidate> turning_postures(const SimulationLog& log, size_t first, size_t last) {
   std::vector<std::vector<double>> curves;
   const auto add = [&](const auto& value) {
@@ -104,7 +105,8 @@ std::vector<Candidate> turning_postures(const SimulationLog& log, size_t first, 
   };
   for (Eigen::Index i = 0; i < log.samples.front().state.theta.size(); ++i)
     add([i](const SimulationSample& s) { return s.state.theta[i]; });
-  // The COG against half its height above the ground, as if that were a joint's arm.
+  // The movement of the COG divided by half its height above the ground, as if it were the arm of a
+  // joint.
   const double height = std::max(1e-3, log.samples.front().cog.z() - log.world.height);
   add([&](const SimulationSample& s) { return 2 * s.cog.z() / height; });
   for (const int axis : {0, 1})  // the lean of the trunk
@@ -129,7 +131,8 @@ size_t tick_at(const SimulationLog& log, double t) {
   return static_cast<size_t>(std::clamp(std::round(t / log.dt), 0.0, last));
 }
 
-/// When the COG is highest in a flight, in the middle of what the samples cannot tell apart [s].
+/// The time at which the COG is highest in a flight; if several samples have the same height, the
+/// time in their middle [s].
 double apex_of(const SimulationLog& log, const FlightRecord& flight) {
   const size_t first = tick_at(log, flight.begin), last = tick_at(log, flight.end - log.dt);
   size_t low = first, high = first;
@@ -140,7 +143,8 @@ double apex_of(const SimulationLog& log, const FlightRecord& flight) {
   return 0.5 * static_cast<double>(low + high + (high == last ? 1 : 0)) * log.dt;
 }
 
-/// Where the robot has yielded most after each flight. The posture is that of the stoop before it.
+/// The time at which the robot has yielded most after each flight. The posture is similar to that
+/// of the stoop before it.
 std::vector<Candidate> landings(const SimulationLog& log, const std::vector<FlightRecord>& flown) {
   // A robot yields within this time [s]. Chosen: twice the time of a landing from 0.1 m.
   constexpr double kYield = 0.5;
@@ -155,14 +159,14 @@ std::vector<Candidate> landings(const SimulationLog& log, const std::vector<Flig
     const SimulationSample& highest = log.samples[tick_at(log, apex_of(log, flown[i]))];
     const double drop = highest.cog.z() - log.samples[low].cog.z();
     const double height = std::max(1e-3, highest.cog.z() - log.world.height);
-    if (2 * drop / height >= kSeenMove)  // as the COG in turning_postures()
+    if (2 * drop / height >= kSeenMove)  // in the same unit as the COG in turning_postures()
       out.push_back({static_cast<double>(low) * log.dt, 2 * drop / height, true});
   }
   return out;
 }
 
-/// How much two postures differ: the largest change of a joint [rad], or of the COG against half
-/// its height, as if that were a joint's arm.
+/// Difference of two postures: the largest change of a joint [rad], or the change of the COG
+/// divided by half its height, as if it were the arm of a joint.
 double difference(const SimulationLog& log, double a, double b) {
   const SimulationSample &one = log.samples[tick_at(log, a)], &two = log.samples[tick_at(log, b)];
   const double height = std::max(1e-3, std::abs(one.cog.z() - log.world.height));
@@ -173,7 +177,7 @@ double difference(const SimulationLog& log, double a, double b) {
   return most;
 }
 
-/// The least difference of the posture at t from those at these times.
+/// The smallest difference between the posture at t and the postures at these times.
 double news_at(const SimulationLog& log, double t, const std::vector<double>& times) {
   double least = INFINITY;
   for (const double other : times) least = std::min(least, difference(log, t, other));
@@ -188,8 +192,8 @@ void take(const SimulationLog& log, std::vector<Candidate> candidates, size_t co
           std::vector<double>& times) {
   // Weights of the same power of this are alike. Chosen: the steps of a walk differ by less.
   constexpr double kAlike = 1.25;
-  // The largest moves may be so near to each other and to the ends [s]. Chosen: half of the time of
-  // a quick step.
+  // The largest moves may be this near to each other and to the ends [s]. Chosen: half of the time
+  // of a quick step.
   constexpr double kShortest = 0.2;
   double heaviest = 0;
   for (const Candidate& c : candidates)
@@ -219,10 +223,11 @@ void take(const SimulationLog& log, std::vector<Candidate> candidates, size_t co
   }
 }
 
-/// Fills with postures that differ most from those at the times already taken; where none differs,
-/// with the middle of the longest gap.
+/// Adds the postures that differ most from those at the times already chosen. If none differs, adds
+/// the middle of the longest gap.
 void fill(const SimulationLog& log, size_t count, std::vector<double>& times) {
-  // Instants that are looked at. Chosen: as many pictures of a run as a person tells apart.
+  // Number of instants that are compared. Chosen: as many pictures of a run as a person can
+  // distinguish.
   constexpr int kLooked = 100;
   // The least spacing, because joints of a robot that falls turn quickly: a share of an even one,
   // and at most so long [s]. Chosen: a quarter, and half of a quick step.
@@ -250,8 +255,8 @@ void fill(const SimulationLog& log, size_t count, std::vector<double>& times) {
   }
 }
 
-/// When a robot that has fallen is no longer seen [s]: links without collision shapes sink into the
-/// ground.
+/// Time after which a robot that has fallen is no longer shown [s], because links without collision
+/// shapes sink into the ground.
 double sunk_at(const SimulationLog& log) {
   // Share of the height of the COG. Chosen: half of that of a robot that lies on the floor.
   constexpr double kSunk = 0.1;
@@ -262,10 +267,11 @@ double sunk_at(const SimulationLog& log) {
   return duration(log);
 }
 
-/// When the step or kick began in which the robot stands on one foot at `t` [s]; `t` otherwise.
+/// The time at which the step or kick began in which the robot stands on one foot at `t` [s];
+/// otherwise `t`.
 double step_began(const SimulationLog& log, double t) {
-  // The longest way back from t [s]. Chosen: longer than the kicks of the examples, and short
-  // beside a robot that only stands on one foot.
+  // Largest time before t [s]. Chosen: longer than the kicks of the examples, and short for a robot
+  // that only stands on one foot.
   constexpr double kSlow = 2;
   size_t k = tick_at(log, t);
   const std::array<bool, 2> feet = log.samples[k].planned_contact;
@@ -277,9 +283,9 @@ double step_began(const SimulationLog& log, double t) {
 /// The part of a run around its pushes or flights [s]; all of it where it has none, or where the
 /// robot moves more elsewhere.
 FlightRecord shown_part(const SimulationLog& log) {
-  // The push before the flights and the landing after them [s].
+  // The time of the push before the flights and of the landing after them [s].
   constexpr double kBefore = 0.25, kAfter = 0.35;
-  // From a push to the end of what it causes, and after a fall [s].
+  // The time from a push to the end of its effects, and the time after a fall [s].
   constexpr double kRecovery = 1.25;
   // A move elsewhere is shown as well where it is so much larger. Chosen: steps of one walk differ
   // by less; a kick moves the knee by twice as much as the steps around it.
@@ -320,7 +326,7 @@ double duration(const SimulationLog& log) {
 
 SimulationSample sample_at(const SimulationLog& log, double t) {
   const double position = std::clamp(t, 0.0, duration(log)) / log.dt;
-  // A time within a millionth of a tick is that tick's.
+  // A time within a millionth of a tick counts as the time of this tick.
   const double nearest = std::round(position);
   const double before = std::abs(position - nearest) < 1e-6 ? nearest : std::floor(position);
   const auto index = static_cast<size_t>(before);
@@ -363,7 +369,7 @@ bool floor_moves(const SimulationLog& log) {
 
 Eigen::Isometry3d marked_ground(const SimulationLog& log, double t,
                                 const SimulationSample& sample) {
-  constexpr double kLevel = 5e-4;  // [m] loaded soles sink in by less, steps are higher
+  constexpr double kLevel = 5e-4;  // loaded soles sink in by less, and steps are higher [m]
   Eigen::Isometry3d ground = ground_at(log, t);
   double height = 0;
   for (size_t side = 0; side < 2; ++side)
@@ -438,7 +444,7 @@ std::vector<double> telling_instants(const SimulationLog& log, int count) {
     candidates.push_back(c);
   for (const Candidate& c : landings(log, flown))
     if (within(c.t)) candidates.push_back(c);
-  // Of a walk, the middle of every step.
+  // For a walk, the middle of every step.
   for (const std::array<bool, 2> feet : {std::array{true, false}, std::array{false, true}})
     for (const FlightRecord& step : stretches(log, feet)) {
       const double middle = 0.5 * (step.begin + step.end);
@@ -454,7 +460,7 @@ std::vector<double> telling_instants(const SimulationLog& log, int count) {
     times = {part.begin};
     if (wanted > std::max<size_t>(2, 1 + events) && part.end > part.begin)
       times.push_back(part.end);
-    // Nearer to each other, pictures hardly differ.
+    // Pictures that are nearer to each other hardly differ.
     take(log, candidates, wanted, 0.4 * (part.end - part.begin) / std::max(1, count - 1), times);
     if (times.size() < wanted && times.size() == 1) times.push_back(part.end);
     if (times.size() > 1) fill(log, wanted, times);

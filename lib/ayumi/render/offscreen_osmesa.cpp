@@ -42,7 +42,7 @@ Library load() {
   return library;
 }
 
-// It stays until the process ends.
+// The library stays loaded until the process ends.
 const Library& library() {
   static const Library loaded = load();
   return loaded;

@@ -14,12 +14,12 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector4f;
 
-/// The ground plane and the size of the marks on it.
+/// The ground plane, and the size of the marks on it.
 struct Plane {
   Vector3d normal, u, v, origin;
-  double size;  ///< of the robot [m]
+  double size;  ///< height of the robot [m]
 
-  /// Down along gravity onto the plane, then `layer` steps above it.
+  /// The point below, along gravity, on the plane, then `layer` steps above it.
   Vector3d drop(const Vector3d& p, int layer) const {
     const Vector3d on = p - Vector3d::UnitZ() * (normal.dot(p - origin) / normal.z());
     return on + normal * (0.0008 * size * layer);
@@ -58,7 +58,7 @@ void add_trail(Triangles& target, const SimulationLog& log, double t, const Over
     const auto index =
         std::min(log.samples.size() - 1, static_cast<size_t>(std::llround((t - age) / log.dt)));
     const SimulationSample& sample = log.samples[index];
-    if (quantity == &SimulationSample::zmp && sample.fz <= 0) {  // there is none in flight
+    if (quantity == &SimulationSample::zmp && sample.fz <= 0) {  // there is no ZMP in flight
       add_band(target, points, colors, plane.normal, 0.006 * plane.size);
       points.clear();
       colors.clear();
@@ -92,7 +92,7 @@ void add_forces(Triangles& target, const SimulationSample& sample, double weight
   for (size_t side = 0; side < 2; ++side) {
     const double share = sample.foot_force[side].norm() / weight;
     if (share < 0.01) continue;
-    // Impacts exceed the weight many times; their arrow ends at twice the weight.
+    // Impacts exceed the weight many times, so their arrow ends at twice the weight.
     const Vector3d arrow =
         sample.foot_force[side].normalized() * (0.5 * plane.size * std::min(share, 2.0));
     add_arrow(target, sample.foot_cop[side], sample.foot_cop[side] + arrow, 0.008 * plane.size,
@@ -112,7 +112,8 @@ void add_pushes(Overlay& overlay, const std::vector<PushRecord>& pushed, double 
     const double fade_from = std::max(push.end, push.begin + 0.6 * options.push_hold);
     const double opacity = t <= fade_from ? 1.0 : (last - t) / (last - fade_from);
     const Vector3d direction = (push.impulse.norm() > 0 ? push.impulse : push.peak).normalized();
-    // The arrow's tip touches the robot there; it goes on with the COG while it fades.
+    // The tip of the arrow touches the robot at this point, and it moves on with the COG while it
+    // fades.
     const Vector3d tip = sample.cog + push.from_cog;
     const Vector3d tail = tip - options.push_length * size * direction;
     add_arrow(overlay.triangles, tail, tip, 0.014 * size, faded(overlay_color::kPush, opacity));
@@ -120,7 +121,8 @@ void add_pushes(Overlay& overlay, const std::vector<PushRecord>& pushed, double 
   }
 }
 
-/// 2/3 where a joint begins to be near a limit of its range, 1 at the limit; less where it is not.
+/// Returns 2/3 where a joint begins to be near a limit of its range, 1 at the limit, and less
+/// elsewhere.
 double position_use(const Dof& dof, double theta, double home) {
   // The part of the range that is near a limit. Chosen: a tenth is 10 to 20 degrees of most joints;
   // at half a warning comes late, at twice deep knees are always warm.
@@ -138,8 +140,8 @@ double position_use(const Dof& dof, double theta, double home) {
   return use;
 }
 
-// What the robot's files say: where the soles are, about which axes joints turn by positive angles
-// (right-handed about the arrow), and where ahead is.
+// Marks for what the robot's files say: the places of the soles, the axes about which joints turn
+// by positive angles (right-handed about the arrow), and the direction ahead.
 void add_model(Triangles& target, const RobotModel& model,
                const std::vector<Eigen::Isometry3d>& poses, const Plane& plane) {
   const double size = plane.size;

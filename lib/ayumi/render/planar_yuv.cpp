@@ -70,7 +70,7 @@ AYUMI_AVX2 inline __m256i pairs_of_weights(int first, int second) {
 }
 
 struct EightPixels {
-  __m256i red_green, green_blue;  // two numbers of 16 bits in 32
+  __m256i red_green, green_blue;  // two numbers of 16 bits in 32 bits
 };
 
 AYUMI_AVX2 inline void load(const std::uint8_t* rgb, EightPixels& out) {
@@ -122,7 +122,7 @@ AYUMI_AVX2 inline void store_chroma(const EightPixels& pixels, const std::array<
   out[3] = static_cast<std::uint8_t>(bytes >> 40);
 }
 
-/// Returns the pixel from which on the rest is to be done: loads reach beyond what they use.
+/// Returns the first pixel that is still to be converted, because loads read more than they use.
 AYUMI_AVX2 size_t convert_by_eight(const TwoRows& rows, size_t width) {
   size_t x = 0;
   for (; x + 10 <= width; x += 8) {

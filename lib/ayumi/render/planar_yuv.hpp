@@ -1,5 +1,5 @@
 #pragma once
-// Pictures as video encoders take them.
+// Pictures in the form that video encoders take.
 
 #include <cstdint>
 #include <vector>

@@ -8,12 +8,13 @@
 #include "ayumi/render/simplify.hpp"
 #include "ayumi/render/texture.hpp"
 
-// Order of a frame: the robot's shadow as coverage seen along the sun, read back and blurred;
-// ground, sky and shadow as a picture (ground_picture.hpp). Then, in OpenGL, only where anything
-// else is: the depth of the ground where it may hide something, robot, scenery, exposures, overlay.
-// These are drawn on nothing, with colours multiplied by how much of a pixel they cover, and laid
-// over the picture: ground, sky and shadow have no edges that samples would smooth (the grid
-// smooths its own lines), so one colour per pixel is the same as one per sample.
+// A frame is drawn in this order: first the robot's shadow, as coverage seen along the sun, which
+// is read back and blurred; then ground, sky and shadow as a picture (ground_picture.hpp). Then, in
+// OpenGL, only where anything else is: the depth of the ground where it may hide something, robot,
+// scenery, exposures, overlay. These are drawn on nothing, with colours multiplied by how much of a
+// pixel they cover, and laid over the picture: ground, sky and shadow have no edges that samples
+// would smooth (the grid smooths its own lines), so one colour per pixel is the same as one per
+// sample.
 //
 // An exposure is drawn twice, first into the depth alone, so that only its nearest surface shines
 // through. It lies a little behind where it is: what coincides with it is seen, without speckle.
@@ -25,7 +26,8 @@ namespace {
 using Eigen::Matrix4f;
 using Eigen::Vector3d;
 
-constexpr size_t kShadowTriangles = 4000;  // finer ones do not show in a shadow of kShadowSize
+constexpr size_t kShadowTriangles =
+    4000;  // finer triangles cannot be seen in a shadow of kShadowSize
 
 const Eigen::Vector4f kNoTint = Eigen::Vector4f::Zero();
 
@@ -39,7 +41,7 @@ Matrix4f pushed_back(const Scene& scene, const Matrix4f& view_projection, size_t
   const Camera& camera = scene.camera;
   const double away = (camera.eye - camera.target).norm();
   const double step = kBehind * away * double(steps), range = camera.far - camera.near;
-  // By how much the depth of OpenGL grows there.
+  // Growth of OpenGL's depth for this distance.
   const double deeper = camera.parallel_height > 0
                             ? 2 * step / range
                             : 2 * camera.far * camera.near / range * step / (away * (away + step));
@@ -48,7 +50,7 @@ Matrix4f pushed_back(const Scene& scene, const Matrix4f& view_projection, size_t
   return moved;
 }
 
-/// Of a body: its own colour where it is cold.
+/// The colour of a body, which is its own colour where it is cold.
 Eigen::Vector4f heat_tint(float heat) {
   Eigen::Vector4f tint = heat_color(heat);
   tint[3] = heat > 0 ? 0.35f + 0.65f * std::min(heat, 1.0f) : 0.0f;
@@ -167,7 +169,7 @@ void Renderer::Parts::light(const Scene& scene, const Matrix4f& view_projection,
   }
 }
 
-/// Bodies from the eye outwards: what is behind is then not shaded.
+/// Draws bodies from the eye outwards, so that hidden ones are not shaded.
 std::vector<size_t> Renderer::Parts::nearest_first(const Scene& scene) const {
   std::vector<std::pair<double, size_t>> away;
   for (size_t i = 0; i < boxes.size(); ++i)

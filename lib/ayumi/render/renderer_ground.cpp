@@ -10,9 +10,10 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr int kShadowBlur = 2;  // radius of the box [pixel of the coverage]
-constexpr int kSamples = 4;     // per pixel, where edges are smoothed; as the shader kMeanFragment
-constexpr int kRoom = 64;       // [pixel] by which targets grow
+constexpr int kShadowBlur = 2;  // radius of the box, in pixels of the coverage
+constexpr int kSamples =
+    4;  // samples per pixel where edges are smoothed, as in the shader kMeanFragment
+constexpr int kRoom = 64;  // pixels by which targets grow
 
 }  // namespace
 
@@ -68,7 +69,7 @@ PixelBox Renderer::Parts::below_ground(const Scene& scene, const Setting& settin
   };
   for (size_t i = 0; i < boxes.size(); ++i) {
     add(boxes[i], scene.poses[i]);
-    // These lie farther away than where they are.
+    // These are drawn farther away than they are.
     for (const Exposure& exposure : scene.exposures) region.add(boxes[i], exposure.poses[i]);
   }
   add(scenery_box, scene.floor);

@@ -1,6 +1,6 @@
 #pragma once
-// What the renderer holds of OpenGL. Bodies, marks and the order of a frame are in renderer.cpp;
-// the shadow, the plane that hides and the joining with the ground's picture in
+// The OpenGL objects that the renderer holds. Bodies, marks and the order of a frame are in
+// renderer.cpp; the shadow, the plane that hides and the joining with the ground's picture in
 // renderer_ground.cpp.
 
 #include <string>
@@ -15,9 +15,9 @@
 
 namespace ayumi {
 
-constexpr int kShadowSize = ShadowPicture::kSize;  ///< of the coverage [pixel]
+constexpr int kShadowSize = ShadowPicture::kSize;  ///< pixels of the coverage
 
-/// Where a frame's ground is.
+/// The place of the ground in a frame.
 struct Setting {
   GroundRectangle plane;
   Eigen::Matrix4f view_projection;
@@ -26,7 +26,7 @@ struct Setting {
 /// A body in the index buffer.
 struct BodyRanges {
   IndexRange closed, open;
-  std::vector<std::pair<IndexRange, GLuint>> textured;  // with their pictures
+  std::vector<std::pair<IndexRange, GLuint>> textured;  // surfaces with their pictures
 };
 
 struct Renderer::Parts {
@@ -36,20 +36,21 @@ struct Renderer::Parts {
   GLuint solid, textured, standing, ground, flat, mean;
   GlMesh robot, caster, overlay, scenery, bumps, square, runs;
   std::vector<BodyRanges> ranges;
-  std::vector<IndexRange> caster_ranges;   // by body: what throws the shadow
-  std::vector<Eigen::AlignedBox3d> boxes;  // of each body, body frame
-  std::vector<size_t> order;               // in which bodies are drawn
+  std::vector<IndexRange> caster_ranges;   // by body: triangles that throw the shadow
+  std::vector<Eigen::AlignedBox3d> boxes;  // box of each body, body frame
+  std::vector<size_t> order;               // order in which bodies are drawn
   std::vector<std::string> notes;
-  GlTarget drawn, finished;  // as large as what is before the ground; finished: without samples
+  GlTarget drawn, finished;  // as large as the part of the picture in front of the ground;
+                             // finished: without samples
   GlTarget flattened;
   GLuint coverage = 0;
-  std::vector<std::uint8_t> pixels;  // of a part of the picture, as OpenGL gives it
+  std::vector<std::uint8_t> pixels;  // pixels of a part of the picture, in the order of OpenGL
   Image spare;                       // memory for the next picture
   IndexRange all_scenery;
   Eigen::AlignedBox3d scenery_box;
   Eigen::AlignedBox2d hole_box;
-  Eigen::Vector4f hole = {0, 0, 0, 0};  // low x, y, high x, y; of the plane's coordinates
-  ShadowPicture shadow;                 // of the frame
+  Eigen::Vector4f hole = {0, 0, 0, 0};  // low x, y, high x, y, in the plane's coordinates
+  ShadowPicture shadow;                 // shadow of the frame
 
   Parts(const DrawnRobot& drawn_bodies, const RenderOptions& render_options,
         const Scenery& on_floor);
@@ -64,22 +65,23 @@ struct Renderer::Parts {
   void draw_bodies(const std::vector<Eigen::Isometry3d>& poses, double opacity, const Tint& tint);
   void draw_scenery(const Scene& scene, const Eigen::Matrix4f& flatten, bool with_shadow);
   void set_view(const Eigen::Matrix4f& view_projection);
-  /// From now on surfaces are as opaque as they say, and blended.
+  /// From now on, surfaces are drawn with their own opacity, and blended.
   void begin_mixing();
   void draw_exposures(const Scene& scene, const Eigen::Matrix4f& view_projection);
-  /// Where anything but the ground is.
+  /// The part of the picture with anything except the ground.
   PixelBox with_bodies(const Scene& scene, const Eigen::Matrix4f& view_projection) const;
-  /// Where anything is that the ground may hide.
+  /// The part of the picture with anything that the ground may hide.
   PixelBox below_ground(const Scene& scene, const Setting& setting) const;
-  /// The ground's depth where it may hide something; its colours are of a picture of its own.
+  /// Draws the depth of the ground where it may hide something. Its colours are in a separate
+  /// picture.
   void draw_plane_depth(const Scene& scene, const Setting& setting, const PixelBox& within);
   void draw_overlay(const Scene& scene);
-  /// The tiles of the box where anything but the ground is.
+  /// The tiles of the box that contain anything except the ground.
   std::vector<PixelBox> covered_runs(const Scene& scene, const Eigen::Matrix4f& view_projection,
                                      const PixelBox& box) const;
-  /// Targets for a part of the picture, its corner at theirs.
+  /// Targets for a part of the picture, with its corner at theirs.
   void make_room(const PixelBox& box);
-  /// Smoothed, over the picture of ground and sky.
+  /// Puts the smoothed colours over the picture of ground and sky.
   void lay_over(const PixelBox& box, const std::vector<PixelBox>& parts, Image& image);
 };
 

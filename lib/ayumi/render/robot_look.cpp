@@ -11,14 +11,14 @@
 namespace ayumi {
 namespace {
 
-/// Triangles of a robot beyond which nobody sees them all. Chosen: two for each pixel that a robot
-/// takes of a picture of 720 rows, of which one faces the eye; at half, robots of makers would lose
-/// triangles, at twice, snapshots take twice as long.
+/// Number of triangles of a robot above which not all of them can be seen. Chosen: two for each
+/// pixel that a robot takes of a picture of 720 rows, of which one faces the eye; at half, robots
+/// of makers would lose triangles, at twice, snapshots take twice as long.
 constexpr size_t kMostTriangles = 200'000;
 /// Rows of the picture in which a thinned robot looks like its meshes.
 constexpr double kRows = 720;
-/// By which a tolerance grows that left too many triangles, and how often. Chosen: at four times
-/// the first, outlines have corners of one pixel.
+/// Factor by which a tolerance grows if it left too many triangles, and the largest number of
+/// times. Chosen: at four times the first tolerance, outlines have corners of one pixel.
 constexpr double kGrowth = 2;
 constexpr int kTrials = 3;
 

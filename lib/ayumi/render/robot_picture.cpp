@@ -8,8 +8,8 @@ namespace ayumi {
 
 namespace {
 
-/// A posture on the ground with its COG, drawn as the instant of a run is. The lower sole is on the
-/// ground.
+/// A posture on the ground with its COG, which is drawn like an instant of a run. The lower sole is
+/// on the ground.
 SimulationLog stand_of(const RobotModel& model, const Eigen::VectorXd& theta) {
   SimulationLog log;
   log.joints = model.dof_names();
@@ -40,7 +40,7 @@ RobotPicture draw_robot(const RobotModel& model, const std::string& view, bool m
                         const Eigen::VectorXd* theta) {
   ClipOptions options;
   options.camera.view = view;
-  OverlayOptions& overlay = options.overlay;  // of those, a robot without motion has a COG
+  OverlayOptions& overlay = options.overlay;  // of the marks, a robot without motion has only a COG
   overlay.zmp = overlay.reference_zmp = overlay.support = overlay.forces = overlay.push = false;
   overlay.trails = overlay.caption = false;
   overlay.model = marks;

@@ -12,11 +12,11 @@ namespace ayumi {
 
 struct RobotPicture {
   Image image;
-  std::vector<std::string> notes;  ///< what is drawn otherwise than the robot's files say
+  std::vector<std::string> notes;  ///< notes about what is drawn differently from the robot's files
 };
 
-/// In its home posture, or at the joint angles `theta` [rad]. `marks`: with the outlines of the
-/// soles, the axes of the joints and an arrow ahead.
+/// Draws the home posture, or the posture with the joint angles `theta` [rad]. With `marks`, the
+/// picture has the outlines of the soles, the axes of the joints and an arrow ahead.
 RobotPicture draw_robot(const RobotModel& model, const std::string& view, bool marks,
                         const Eigen::VectorXd* theta = nullptr);
 

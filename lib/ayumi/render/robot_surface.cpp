@@ -7,7 +7,7 @@
 namespace ayumi {
 namespace {
 
-constexpr double kStick = 0.06;  // radius of sticks, as a share of the longest one's length
+constexpr double kStick = 0.06;  // radius of sticks, as a share of the length of the longest one
 
 void add_surface(BodySurface& body, Triangles surface, const Eigen::Isometry3d& pose) {
   Triangles& target = orient(surface) == SurfaceKind::closed ? body.closed : body.open;
@@ -25,7 +25,7 @@ void add_shape(BodySurface& body, const PlacedShape& placed, const Eigen::Isomet
     const bool textured =
         !part.texture_file.empty() && !placed.has_color && part.uvs.size() == part.vertices.size();
     if (textured) {
-      // The picture's own colours, not dyed by a colour that only says "none".
+      // The picture's own colours. They are not multiplied by a colour that only stands for "none".
       const Eigen::Vector4f white(1, 1, 1, part.has_color ? part.color[3] : 1.0f);
       Triangles surface = tessellate(part, white);
       orient(surface);
@@ -38,7 +38,8 @@ void add_shape(BodySurface& body, const PlacedShape& placed, const Eigen::Isomet
   }
 }
 
-/// From the frame of each body without a shape to those of the bodies that hang on it.
+/// Sticks from the frame of each body without a shape to the frames of the bodies that are attached
+/// to it.
 void add_sticks(const RobotModel& model, std::vector<BodySurface>& surface) {
   const auto length = [](const Body& body) { return body.placement.translation().norm(); };
   double longest = 0;

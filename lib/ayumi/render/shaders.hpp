@@ -35,8 +35,8 @@ void main() {
 }
 )";
 
-// The same with a picture instead of the colour: a program of its own, because
-// software renderers pay for a sampler even where it is not used.
+// The same with a picture in place of the colour. This is a separate program, because for software
+// renderers a sampler costs time even if it is not used.
 inline constexpr const char* kTextureInput = R"(
 in vec2 place;
 uniform sampler2D picture;
@@ -104,7 +104,7 @@ void main() {
   float shine = max(dot(n, half_way), 0.0);
   shine *= shine / max(dot(half_way, half_way), 1e-12);
   shine *= shine; shine *= shine; shine *= shine; shine *= shine;
-  // What is black still mirrors a little of the sky.
+  // A black surface still reflects a little of the sky.
   vec3 lit = own_color.rgb * (0.62 * ambient + 0.72 * direct) + 0.015 * ambient +
              0.10 * shine * direct;
   pixel = vec4(to_srgb(size < 1e-6 ? own_color.rgb : lit), max(own_color.a * opacity, least));
@@ -135,7 +135,7 @@ uniform vec4 hole;
 bool outside(vec2 p) { return any(lessThan(p, hole.xy)) || any(greaterThan(p, hole.zw)); }
 )";
 
-// For its depth alone.
+// Only for the depth of the ground.
 inline constexpr const char* kGroundFragment = R"(
 in vec2 plane;
 out vec4 pixel;

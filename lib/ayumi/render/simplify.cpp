@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-/// Cell of a point and, in the lowest three bits, the side its normal looks to.
+/// Cell of a point, and in the lowest three bits the side of a cube to which its normal points.
 std::uint64_t key_of(const RenderVertex& vertex, const Vector3f& origin, float edge,
                      bool with_side) {
   std::uint64_t key = 0;

@@ -14,7 +14,7 @@ void paste(const Image& tile, Image& sheet, int left, int top) {
     std::copy_n(tile.pixel(0, y), 3 * tile.width, sheet.pixel(left, top + y));
 }
 
-/// The sheet below one title and above one legend.
+/// A sheet of pictures below one title and above one legend.
 Image with_lines(const Image& tiled, int tile_height, const ClipRenderer& renderer, double end) {
   const double size = std::clamp(tile_height / 22.0, 10.0, 54.0);
   Image blank{tiled.width, static_cast<int>(3 * size), {}};

@@ -32,10 +32,11 @@ bool is_locked(const CorrectionSpec& spec, int column) {
   return column >= 6 && !spec.locked.empty() && spec.locked[column - 6];
 }
 
-// A posture that is at fault at an end has to move there. One variable moves all three control
-// points of that end, so that the motion still begins or ends with the speed it had.
+// If the first or last posture is at fault, it has to move. One variable then moves all three
+// control points of this end, so the motion still begins or ends with its original speed.
 void free_end(const CorrectionSpec& spec, int first, double time, CorrectionVariables& v) {
-  const double reach = (time == 0 ? 1 : -1) * v.zero.spacing;  // of the three control points
+  const double reach =
+      (time == 0 ? 1 : -1) * v.zero.spacing;  // reach of these three control points
   if (!inside_a_window(spec, time, time) || !spec.free_ends[first == 0 ? 0 : 1]) return;
   for (const double kept : spec.kept_times)
     if (std::abs(kept - time) <= v.zero.spacing) return;
@@ -69,7 +70,7 @@ SampleChoice choose_samples(const CommandSeries& series, const ContactPlan& plan
       choice.all.insert(interval.first);
       choice.all.insert(interval.last);
     }
-  // Beside the edges of a flight, where forces are known again.
+  // Points beside the edges of a flight, where differences of samples have a meaning again.
   for (int k = 1; k < count; ++k) {
     if (at_flight_edge(series, k) == at_flight_edge(series, k - 1)) continue;
     choice.all.insert(k - 1);
@@ -82,7 +83,7 @@ SampleChoice choose_samples(const CommandSeries& series, const ContactPlan& plan
   return choice;
 }
 
-// Contact, ground and places of one foot.
+// Contact, ground and planned places of one foot.
 void set_foot(const ContactPlan& plan, Side side, CollocationPoint& point) {
   const int s = static_cast<int>(side), k = point.sample;
   const int i = plan.index[s][k];

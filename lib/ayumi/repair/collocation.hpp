@@ -11,15 +11,17 @@ namespace ayumi {
 
 /// Which control points are free: a uniform cubic B-spline over base position, base rotation vector
 /// and joints. Its first and last three control points stay zero, so that the motion starts and
-/// ends as it did, or move as one where the posture there is at fault.
+/// ends as before. If the posture at this end is at fault, the three points move together.
 struct CorrectionVariables {
   CorrectionTrack zero;   ///< the track with zero coefficients
   Eigen::MatrixXi index;  ///< variable of control point (row) and column, or -1
   int count = 0;
 
-  Eigen::MatrixXd coefficients(const Eigen::VectorXd& x) const;       ///< control points of x
-  Eigen::VectorXd values(const Eigen::MatrixXd& coefficients) const;  ///< x of control points
-  bool act_at(const SplineWeights& weights) const;  ///< whether a free one acts there
+  Eigen::MatrixXd coefficients(
+      const Eigen::VectorXd& x) const;  ///< control points that the variables x give
+  Eigen::VectorXd values(
+      const Eigen::MatrixXd& coefficients) const;   ///< variables x that the control points give
+  bool act_at(const SplineWeights& weights) const;  ///< whether a free control point acts there
 };
 CorrectionVariables correction_variables(const RobotModel& model, const CommandSeries& series,
                                          const CorrectionSpec& spec);

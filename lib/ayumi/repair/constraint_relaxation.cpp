@@ -14,9 +14,10 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Rows of the relaxed program: the old ones, then the upper bounds of relaxed rows that have two.
+// Rows of the relaxed program: first the old rows, then the upper bounds of relaxed rows that have
+// two bounds.
 struct RelaxedLayout {
-  std::vector<int> twice;  ///< old rows that appear again
+  std::vector<int> twice;  ///< old rows that appear a second time
 };
 
 RelaxedLayout layout_of(const Nlp& nlp, const std::vector<int>& group) {
@@ -27,7 +28,7 @@ RelaxedLayout layout_of(const Nlp& nlp, const std::vector<int>& group) {
   return layout;
 }
 
-// The violation of the start by slack, in its unit.
+// The violation at the start for each slack, in the unit of the slack.
 VectorXd start_violations(const Nlp& nlp, const Slacks& slacks) {
   VectorXd g(nlp.constraint_lower.size()), violation = VectorXd::Zero(slacks.price.size());
   nlp.constraints(nlp.start, g);
@@ -66,14 +67,16 @@ Nlp relaxed(const Nlp& nlp, const Slacks& relaxation) {
   if (nlp.start_multipliers.size() > 0) {
     soft.start_multipliers.resize(m + extra);
     soft.start_multipliers << nlp.start_multipliers, VectorXd::Zero(extra);
-    for (Eigen::Index i = 0; i < extra; ++i) {  // of lower bounds below 0, of upper ones above
+    for (Eigen::Index i = 0; i < extra;
+         ++i) {  // parts of lower bounds that are below 0, and of upper bounds that are above 0
       double& first = soft.start_multipliers[layout->twice[i]];
       soft.start_multipliers[m + i] = std::max(0.0, first);
       first = std::min(0.0, first);
     }
   }
 
-  // Old nonzeros, then those of the second rows (at the old ones' columns), then the slacks'.
+  // First the old nonzeros, then those of the second rows (at the columns of the old rows), then
+  // those of the slacks.
   soft.jacobian = nlp.jacobian;
   std::vector<int> second(static_cast<size_t>(m), -1);
   for (Eigen::Index i = 0; i < extra; ++i) {
@@ -88,7 +91,8 @@ Nlp relaxed(const Nlp& nlp, const Slacks& relaxation) {
     repeated->push_back(k);
     soft.jacobian.add(second[nlp.jacobian.rows[k]], nlp.jacobian.columns[k]);
   }
-  auto sign = std::make_shared<std::vector<std::pair<int, int>>>();  // row, slack; by nonzero
+  auto sign =
+      std::make_shared<std::vector<std::pair<int, int>>>();  // row and slack of each nonzero
   auto value = std::make_shared<std::vector<double>>();
   auto add_slack = [&](int row, int slack, double s) {
     soft.jacobian.add(row, static_cast<int>(n) + slack);
@@ -148,7 +152,7 @@ VectorXd unrelaxed_multipliers(const Nlp& nlp, const Slacks& slacks, const Vecto
 }
 
 ViolationPrice price_of(const RowKind& kind) {
-  // Derived: the weighted change that costs 1 of the objective.
+  // Derived: the weighted change that costs 1 in the objective.
   constexpr double kChange = 2 / policy::change_weight::kObjectiveScale;
   const RowPrices prices = row_prices();
   if (kind.soft_goal)
@@ -166,7 +170,7 @@ class SlackCollector {
     slacks_.group.assign(static_cast<size_t>(problem.constraint_count()), -1);
   }
 
-  // The least `most` of the blocks that share a slack holds for it.
+  // Where blocks share a slack, the smallest `most` of these blocks holds for the slack.
   void add(const RowBlock& block, double unit, double price, double most) {
     const double t = problem_.points()[block.point].sample * dt_;
     const std::tuple key(block.kind, block.item, std::lround(t / window_));

@@ -11,31 +11,32 @@ namespace ayumi {
 
 /// Slack variables of a relaxed program.
 struct Slacks {
-  std::vector<int> group;  ///< by row: index of its slack, -1 for rows that stay hard
-  Eigen::VectorXd unit;    ///< by slack: violation of its rows for a slack of 1
-  Eigen::VectorXd price;   ///< by slack: penalty in the objective for a slack of 1
-  Eigen::VectorXd most;    ///< by slack: upper bound; empty: none
-  double start = repair_policy::solver::kSlackStart;  ///< beyond what the start needs
+  std::vector<int> group;  ///< index of the slack of each row; -1 for rows that stay hard
+  Eigen::VectorXd unit;    ///< violation of the rows of each slack, for a slack of 1
+  Eigen::VectorXd price;   ///< penalty of each slack in the objective, for a slack of 1
+  Eigen::VectorXd most;    ///< upper bound of each slack; empty: no bound
+  double start = repair_policy::solver::kSlackStart;  ///< distance of each slack from the value
+                                                      ///< that the start needs
 };
 
-/// One more variable s >= 0 per slack: g >= lower - unit s, g <= upper + unit s for its rows, and
-/// price . s in the objective (exact where the price exceeds the multipliers). Rows with two bounds
-/// appear twice. Refers to `nlp`, which must outlive it.
+/// Adds a variable s >= 0 for each slack: g >= lower - unit s, g <= upper + unit s for its rows,
+/// and price . s in the objective (exact where the price exceeds the multipliers). Rows with two
+/// bounds appear twice. Refers to `nlp`, which must outlive it.
 Nlp relaxed(const Nlp& nlp, const Slacks& slacks);
 
 /// Multipliers of the rows of `nlp` from those of relaxed(nlp, slacks).
 Eigen::VectorXd unrelaxed_multipliers(const Nlp& nlp, const Slacks& slacks,
                                       const Eigen::VectorXd& multipliers);
 
-/// Cost of a violation of rows beside the weighted change: `change` [s], in the measure of
+/// Cost of a violation of rows, in addition to the weighted change: `change` [s], in the measure of
 /// weighted_change(), for every `unit` of the largest violation of one limit in a `window` [s].
 struct ViolationPrice {
   double unit = 0, change = 0, window = 0;
 };
 ViolationPrice price_of(const RowKind& kind);
 
-/// The program of `problem` with every limit relaxed, per limit and window. Feet on the ground and
-/// flight are the last to be violated; locked postures never are.
+/// The program of `problem` in which every limit is relaxed, for each limit and window. Feet on the
+/// ground and flights are violated last, and locked postures never.
 Nlp with_all_limits_relaxed(const CorrectionProblem& problem, const Nlp& nlp, double dt);
 
 /// The slack variables that relax the soft goals of `problem`: the ZMP's safe margin down to the

@@ -19,21 +19,22 @@ struct PointState {
   Eigen::VectorXd change, rate, second;  ///< value of the correction and its derivatives (6 + dof)
   CorrectedMotion motion;
   RobotData data;                            ///< positions and velocities of `motion`
-  Eigen::VectorXd force;                     ///< of inverse_dynamics() (6 + dof)
-  Vector6d wrench = Vector6d::Zero();        ///< of the ground, about the base
-  std::array<Eigen::Isometry3d, 2> soles;    ///< by Side
-  Eigen::VectorXd torque;                    ///< where the point needs it [dof]
+  Eigen::VectorXd force;                     ///< result of inverse_dynamics() (6 + dof)
+  Vector6d wrench = Vector6d::Zero();        ///< wrench of the ground, about the base
+  std::array<Eigen::Isometry3d, 2> soles;    ///< poses of the soles, by Side
+  Eigen::VectorXd torque;                    ///< torques, where the point needs them [dof]
   std::array<Eigen::MatrixXd, 3> wrench_by;  ///< 6 x (6+dof) by value, rate, acceleration
   std::array<Eigen::MatrixXd, 2> sole_by;    ///< 6 x (6+dof) by value
   Eigen::MatrixXd cog_by;                    ///< 3 x (6+dof) by value
   std::array<Eigen::MatrixXd, 3> torque_by;  ///< dof x (6+dof)
 };
 
-/// What computes derivatives.
+/// Memory for the computation of derivatives.
 struct DerivativeWorkspace {
   explicit DerivativeWorkspace(const RobotModel& model) : dynamics(model) {}
   TreeDynamics dynamics;
-  InverseDynamicsDerivatives force_by;  ///< by the correction's value, rate and acceleration
+  InverseDynamicsDerivatives
+      force_by;  ///< derivatives by the correction's value, rate and acceleration
 };
 
 /// Fills all but the derivatives.
@@ -55,7 +56,8 @@ std::vector<int> block_columns(const RobotModel& model, const RowBlock& block);
 Eigen::VectorXd block_values(const RobotModel& model, const RowBlock& block,
                              const CollocationPoint& point, const PointState& state);
 
-/// By value, rate and acceleration, rows x (6+dof) each; an empty matrix where all is zero.
+/// Derivatives by value, rate and acceleration, rows x (6+dof) each. A matrix is empty if all of
+/// its entries are zero.
 std::array<Eigen::MatrixXd, 3> block_derivatives(const RobotModel& model, const RowBlock& block,
                                                  const CollocationPoint& point,
                                                  const PointState& state);

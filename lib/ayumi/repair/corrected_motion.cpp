@@ -19,7 +19,7 @@ using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<double, 9, 1>>;
 template <class Scalar>
 using Vector = Eigen::Matrix<Scalar, 3, 1>;
 
-// The sum over k of (-s)^k / (2k + offset)!, and its derivative by s.
+// The sum over k of (-s)^k / (2k + offset)!, and its derivative with respect to s.
 template <class Scalar>
 struct Series {
   Scalar value, slope;

@@ -16,13 +16,15 @@ struct CorrectedMotion {
   RobotState state;
   Eigen::VectorXd acceleration;
 
-  Eigen::Matrix3d tangent;                             ///< J(r): turn of the base by r
-  Eigen::Matrix3d w_value, w_rate;                     ///< derivatives of w by r and r'
-  Eigen::Matrix3d dw_value, dw_rate, dw_acceleration;  ///< derivatives of dw by r, r', r''
+  Eigen::Matrix3d tangent;          ///< J(r): turn of the base by r
+  Eigen::Matrix3d w_value, w_rate;  ///< derivatives of w with respect to r and r'
+  Eigen::Matrix3d dw_value, dw_rate,
+      dw_acceleration;  ///< derivatives of dw with respect to r, r', r''
 };
 
-/// Fills `state` and `acceleration`. `value`, `rate`, `second`: of base position, base rotation
-/// vector, theta (6 + dof). Allocates nothing where `motion` has its size.
+/// Fills `state` and `acceleration`. `value`, `rate` and `second` contain the correction of base
+/// position, base rotation vector and theta (6 + dof), and its first and second derivative.
+/// Allocates nothing if `motion` already has its size.
 void fill_motion(const CommandSample& sample, const Eigen::VectorXd& value,
                  const Eigen::VectorXd& rate, const Eigen::VectorXd& second,
                  CorrectedMotion& motion);

@@ -17,8 +17,8 @@
 
 namespace ayumi {
 
-/// Built once; model and series must outlive it. Its functions use several threads themselves and
-/// may not be called by several at once.
+/// Model and series must outlive this object. Its functions use several threads themselves, so only
+/// one thread may call them at a time.
 class CorrectionProblem {
  public:
   CorrectionProblem(const RobotModel& model, const CommandSeries& series,
@@ -32,7 +32,7 @@ class CorrectionProblem {
   const Eigen::VectorXd& upper() const { return rows_.upper; }
 
   Eigen::VectorXd constraints(const Eigen::VectorXd& x) const;
-  /// The rows of another motion over the same plan, sampled alike.
+  /// Values of the rows for another motion over the same plan, with the same samples.
   Eigen::VectorXd constraints_of(const CommandSeries& motion) const;
 
   /// Samples beside the points at which a single row is active (RowBlock::active).
@@ -59,12 +59,13 @@ class CorrectionProblem {
   CorrectionVariables variables_;
   std::vector<CollocationPoint> points_;
   PlacedRows rows_;
-  std::vector<size_t> first_block_;  ///< by point, and one more
-  std::vector<int> first_nonzero_;   ///< by block: of the Jacobian
+  std::vector<size_t> first_block_;  ///< first block of each point, and one more entry
+  std::vector<int> first_nonzero_;   ///< first nonzero of each block in the Jacobian
   SparsePattern jacobian_;
   ProgramHessian hessian_;
-  mutable PointStates states_;  ///< of the last x; the functions of one program run on one thread
-  mutable std::vector<PointCurvature> curvature_;  ///< by point
+  mutable PointStates
+      states_;  ///< states for the last x; the functions of one program run on one thread
+  mutable std::vector<PointCurvature> curvature_;  ///< curvature of each point
 };
 
 }  // namespace ayumi

@@ -21,58 +21,69 @@ namespace ayumi {
 struct ActiveLimit {
   int sample = 0;
   const RowKind* kind = nullptr;
-  int item = 0;  ///< as in its RowBlock
+  int item = 0;  ///< item of the limit, as in its RowBlock
 };
 
 struct CorrectionSpec {
   // What may move.
-  double spacing = repair_policy::knots::kSpacing;  ///< of the knots [s]
-  std::vector<TimeWindow> windows;                  ///< in which control points are free [s]
-  std::array<bool, 2> free_ends = {};               ///< the first, the last posture may move
-  std::vector<bool> locked;                         ///< by dof; empty: none
-  std::vector<TimeWindow> locked_windows;           ///< in which nothing may move [s]
-  std::vector<double> kept_times;                   ///< at which the posture may not change [s]
-  std::array<bool, 2> locked_feet = {};             ///< by Side: keep their paths
-  Eigen::VectorXd weights;  ///< factors on the weights of the joints [dof]; empty: 1
-  Eigen::MatrixXd initial;  ///< control points to start from; empty: no correction
+  double spacing = repair_policy::knots::kSpacing;  ///< time between the knots [s]
+  std::vector<TimeWindow> windows;         ///< windows in which control points are free [s]
+  std::array<bool, 2> free_ends = {};      ///< whether the first and the last posture may move
+  std::vector<bool> locked;                ///< locked joints by dof; empty: none
+  std::vector<TimeWindow> locked_windows;  ///< windows in which nothing may move [s]
+  std::vector<double> kept_times;          ///< times at which the posture may not change [s]
+  std::array<bool, 2> locked_feet = {};    ///< feet that keep their paths, by Side
+  Eigen::VectorXd weights;                 ///< factors on the weights of the joints [dof]; empty: 1
+  Eigen::MatrixXd initial;                 ///< control points to start from; empty: no correction
 
-  bool planned_feet = false;  ///< swinging feet follow the planned ones, not the given motion
+  bool planned_feet = false;  ///< swinging feet follow the plan and not the given motion
 
   // What is judged, as in the check.
   Trust trust = Trust::posture;
-  const CollisionModel* collisions = nullptr;  ///< null: clearances are not watched
-  std::vector<int> near_pairs;                 ///< pairs of bodies that are watched
-  std::string profile;                         ///< of the actuators
-  Tolerances tolerance = tolerances({});       ///< of the check
-  double friction = 0.8;                       ///< coefficient of the ground
+  const CollisionModel* collisions =
+      nullptr;                            ///< shapes whose clearances are watched; null: none are
+  std::vector<int> near_pairs;            ///< pairs of bodies that are watched
+  std::string profile;                    ///< limits of the actuators
+  Tolerances tolerance = tolerances({});  ///< tolerances of the check
+  double friction = 0.8;                  ///< friction coefficient of the ground
 
-  // How far inside the check's limits.
-  bool at_check_limits = false;  ///< every limit is where the check has it
-  double joint_margin = repair_policy::kFirstBackoff.joint_position;  ///< inside soft limits [rad]
-  double limit_share = repair_policy::kFirstBackoff.limit_share;  ///< of speed, torque, friction
-  double zmp_margin = repair_policy::zmp::kLeastMargin;           ///< least, inside the support [m]
-  double least_normal_force = repair_policy::kLeastNormalForce;   ///< over the weight
-  double sole_position = repair_policy::stance::kPosition;        ///< half the band of a sole [m]
-  double sole_angle = repair_policy::stance::kAngle;              ///< the same [rad]
-  double sole_at_knots = repair_policy::stance::kShareAtKnots;    ///< share of that band at knots
-  double clearance = repair_policy::clearance::kKept;             ///< between bodies [m]
+  // Distances that are kept from the check's limits.
+  bool at_check_limits = false;  ///< true: every limit is exactly where the check has it
+  double joint_margin =
+      repair_policy::kFirstBackoff.joint_position;  ///< distance inside soft limits [rad]
+  double limit_share = repair_policy::kFirstBackoff
+                           .limit_share;  ///< shares of the limits of speed, torque and friction
+  double zmp_margin =
+      repair_policy::zmp::kLeastMargin;  ///< smallest ZMP margin inside the support [m]
+  double least_normal_force =
+      repair_policy::kLeastNormalForce;  ///< smallest normal force as a share of the weight
+  double sole_position =
+      repair_policy::stance::kPosition;               ///< half the band of a sole's position [m]
+  double sole_angle = repair_policy::stance::kAngle;  ///< half the band of a sole's attitude [rad]
+  double sole_at_knots = repair_policy::stance::kShareAtKnots;  ///< share of that band at knots
+  double clearance = repair_policy::clearance::kKept;  ///< smallest distance between bodies [m]
 
   // Soft goals, beyond the check.
-  double safe_margin = 0;   ///< of the ZMP where the motion's own is below the least [m]
-  bool swing_goals = true;  ///< low soles level and over their places, the others high enough
-  double dcm_slack = repair_policy::dcm::kSlack;     ///< half the band of the DCM [m]
-  double zmp_slack = repair_policy::dcm::kZmpSlack;  ///< half the band of the ZMP with it [m]
+  double safe_margin =
+      0;  ///< wanted margin of the ZMP where the motion's own margin is below the least [m]
+  bool swing_goals =
+      true;  ///< low soles are level and over their places, and the others are high enough
+  double dcm_slack = repair_policy::dcm::kSlack;  ///< half the band of the DCM [m]
+  double zmp_slack =
+      repair_policy::dcm::kZmpSlack;     ///< half the band of the ZMP where the DCM is held [m]
   std::array<bool, 3> planned_cog = {};  ///< axes of the COG that stay near the commanded one
-  std::vector<TimeWindow> wrong_plan;    ///< in which the commanded COG or ZMP is at fault [s]
+  std::vector<TimeWindow>
+      wrong_plan;  ///< windows in which the commanded COG or ZMP is at fault [s]
 
   // Where rows are placed.
   int points_per_knot = repair_policy::collocation::kPerKnot;
   double watched_share = repair_policy::collocation::kWatchedShare;
-  std::vector<double> extra_times;         ///< more collocation points [s]
-  std::vector<ActiveLimit> active;         ///< rows of their own
-  std::vector<const CommandSeries*> seen;  ///< earlier results, the last one last
+  std::vector<double> extra_times;         ///< additional collocation points [s]
+  std::vector<ActiveLimit> active;         ///< limits that get rows at single samples
+  std::vector<const CommandSeries*> seen;  ///< earlier results, the latest one last
 
-  int threads = 0;  ///< of functions and derivatives; 0: all cores. They change no result.
+  int threads =
+      0;  ///< threads for functions and derivatives; 0: all cores. Their number changes no result.
 };
 
 }  // namespace ayumi

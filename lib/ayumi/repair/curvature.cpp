@@ -12,7 +12,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-// `above` is nearer to the root than `below`, or the same.
+// `above` is the joint nearer to the root, or both are the same joint.
 double pose_curvature(const PoseCurvature& w, const MatrixXd& J, int above, int below) {
   const Vector3d a = J.col(above).tail<3>(), b = J.col(below).tail<3>();
   return w.c.dot(a.cross(Vector3d(J.col(below).head<3>()))) + b.dot(w.K * a) -
@@ -28,7 +28,9 @@ void add_pose(const RobotModel& model, Side side, const PoseCurvature& w, const 
     for (size_t b = a; b < columns.size(); ++b) {
       const int i = columns[a], j = columns[b];
       double both = pose_curvature(w, J, i, j);
-      if (i >= 3 && j < 6) both = 0.5 * (both + pose_curvature(w, J, j, i));  // three turns at once
+      if (i >= 3 && j < 6)
+        both = 0.5 *
+               (both + pose_curvature(w, J, j, i));  // the base has three turns, which act at once
       both += w.square * rise[i] * rise[j];
       sum(i, j) += both;
       if (i != j) sum(j, i) += both;
@@ -61,8 +63,8 @@ void add_cog(const RobotModel& model, const Vector3d& c, const PointState& state
   }
 }
 
-// Adds the curvature of the ground wrench's power on the rigid motion that turns with `turn` and
-// moves the base origin with `slide`.
+// Adds the curvature of the power of the ground wrench on a rigid motion. This motion turns with
+// `turn` and moves the base origin with `slide`.
 void add_power(const RobotModel& model, const Vector3d& slide, const Vector3d& turn,
                const PointState& state, DerivativeWorkspace& workspace, Curvature& sum) {
   const Vector3d up(0, 0, kGravity);
@@ -85,7 +87,7 @@ void add_power(const RobotModel& model, const Vector3d& slide, const Vector3d& t
   add_cog(model, model.mass() * up.cross(turn), state, sum.value);
 }
 
-// Adds the curvature by the tangential force of rows of the ground wrench.
+// Adds the curvature that the tangential force of rows of the ground wrench has.
 void add_cone(const WrenchRows& rows, double multiplier, const Vector6d& wrench,
               const CollocationPoint& point, const PointState& state, Curvature& sum) {
   sum.cone += rows.curvature(wrench, multiplier);

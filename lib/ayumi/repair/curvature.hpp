@@ -21,18 +21,20 @@
 namespace ayumi {
 
 struct Curvature {
-  Eigen::MatrixXd value;         ///< (6+dof) square, symmetric: by value and value
-  Eigen::MatrixXd acceleration;  ///< by acceleration (rows) and value (columns)
-  Eigen::Matrix2d cone = Eigen::Matrix2d::Zero();  ///< by the tangential force
-  std::array<Eigen::MatrixXd, 3> force_by;  ///< that force by value, rate, acceleration [2 x 6+dof]
+  Eigen::MatrixXd value;  ///< second derivatives by value and value, (6+dof) square, symmetric
+  Eigen::MatrixXd acceleration;  ///< second derivatives by acceleration (rows) and value (columns)
+  Eigen::Matrix2d cone = Eigen::Matrix2d::Zero();  ///< second derivatives by the tangential force
+  std::array<Eigen::MatrixXd, 3> force_by;  ///< derivatives of the tangential force by value, rate
+                                            ///< and acceleration [2 x 6+dof]
 };
 
-/// `blocks` are those of `point`, `multipliers` those of all rows; `state` has derivatives.
+/// `blocks` are the row blocks of `point`, and `multipliers` are those of all rows. `state` must
+/// have derivatives.
 Curvature curvature_of(const RobotModel& model, std::span<const RowBlock> blocks,
                        const Eigen::VectorXd& multipliers, const CollocationPoint& point,
                        const PointState& state, DerivativeWorkspace& workspace);
 
-/// Whether nothing curves: curvature_of() then leaves its matrices empty.
+/// Whether no row is curved. Then curvature_of() leaves its matrices empty.
 bool is_flat(const Curvature& curvature);
 
 }  // namespace ayumi

@@ -30,7 +30,7 @@ Vector2d planned_dcm(const CommandSample& plan) {
   return (plan.cog + pendulum_time(plan) * plan.dcog).head<2>();
 }
 
-// Whether the ground carries the robot there, so that the plan has a DCM.
+// Whether the ground carries the robot at this point, so that the plan has a DCM.
 bool has_dcm(const CollocationPoint& at, const CommandSample& plan) {
   return at.stands() && plan.cog.z() > plan.zmp.z();
 }

@@ -17,7 +17,8 @@ namespace policy = repair_policy;
 
 namespace {
 
-// The window and a few samples around it, played slower. Contacts stay those of the whole motion.
+// Plays the window and a few samples around it more slowly. The contacts are those of the whole
+// motion.
 CommandSeries slowed(const CommandSeries& series, const Finding& f, double factor) {
   CommandSeries part;
   part.dt = series.dt * factor;
@@ -62,7 +63,8 @@ InfeasibilityCause cause_of(const Finding& f) {
   return cause;
 }
 
-// Comparable for violations of different kinds: shares of a limit, centimetres, tenths of a radian.
+// Scales violations so that different kinds can be compared: shares of a limit, centimetres, tenths
+// of a radian.
 double severity_of(const InfeasibilityCause& cause) {
   if (cause.is_ratio) return cause.violation - 1;
   if (cause.finding.unit == "m") return cause.violation / policy::infeasible::kLength;
@@ -86,7 +88,7 @@ std::string words_of(const InfeasibilityCause& cause) {
   return violation_text(cause.finding, cause.violation) + " " + window_text(cause.finding);
 }
 
-// The worst of the findings of each kind and place.
+// The worst finding of each kind and place.
 template <class Wanted>
 std::vector<InfeasibilityCause> worst_of(const ConsistencyReport& report, const Wanted& wanted) {
   std::map<std::pair<std::string, std::string>, InfeasibilityCause> worst;
@@ -145,7 +147,7 @@ std::string remedy(const InfeasibilityCause& cause) {
          cause.finding.remedy;
 }
 
-// Which lock covers the time of a finding, in words; empty: none.
+// The lock that covers the time of a finding, in words. Empty if there is none.
 std::string time_lock(const Finding& f, const RepairOptions& options) {
   std::string posture;
   for (const auto& [begin, end] : options.locked_windows) {
@@ -219,8 +221,8 @@ void solve_relaxed(RepairState& state) {
   if (solution.status != NlpStatus::failed)
     state.status = state.relaxation_cut_short ? NlpStatus::iteration_limit : NlpStatus::infeasible;
   take(state, problem.track(solution.x.head(problem.variable_count())));
-  // A search that stopped before its end has made errors itself. Then the errors of the given
-  // motion show what stands in the way.
+  // If the search stopped early, its motion has errors that the search itself made. Then the errors
+  // of the given motion show what prevents a repair.
   RepairResult& result = state.result;
   if (!state.relaxation_cut_short &&
       total_violation(result.check) < total_violation(state.as_given.check))

@@ -19,7 +19,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Dofs that move one of the bodies and not the other.
+// Dofs that move only one of the two bodies.
 std::vector<int> joints_between(const RobotModel& model, int a, int b) {
   std::vector<int> count(static_cast<size_t>(model.dof_count()), 0), result;
   for (const int body : {a, b})
@@ -36,8 +36,8 @@ std::vector<int> joints_at_fault(const RobotModel& model, const Finding& f) {
   return bodies ? joints_between(model, bodies->a, bodies->b) : std::vector<int>();
 }
 
-// The difference between a cubic that leads a joint from one end of a window to the other, and the
-// motion itself.
+// The difference between the motion and a cubic that leads a joint from one end of a window to the
+// other.
 class StraightLine {
  public:
   StraightLine(const CommandSeries& series, int dof, const TimeWindow& window)
@@ -119,7 +119,7 @@ MatrixXd straight_line_guess(const RobotModel& model, const CommandSeries& serie
   for (const auto& [dof, of_joint] : windows)
     for (const TimeWindow& window : merged(of_joint)) {
       const StraightLine line(series, dof, window);
-      for (Index i = 0; i < rows; ++i) {  // a control point from the values at three knots
+      for (Index i = 0; i < rows; ++i) {  // a control point computed from the values at three knots
         const double t = static_cast<double>(i - 1) * spacing;
         result(i, 6 + dof) += (8 * line.at(t) - line.at(t - spacing) - line.at(t + spacing)) / 6;
       }

@@ -12,13 +12,13 @@
 
 namespace ayumi {
 
-/// Control points of the same uniform cubic spline with knots half as far apart.
+/// Control points of the same uniform cubic spline with half the distance between its knots.
 Eigen::MatrixXd with_halved_knots(const Eigen::MatrixXd& coefficients);
 
 /// `rows` control points, `spacing` [s] apart, that lead the joints at fault straight past the
 /// errors: from `reach` [s] before an error to `reach` after it, with the angles and speeds that
-/// the motion has at these two times. For a joint beyond its limit that is the joint itself, for
-/// two bodies that overlap all joints between them.
+/// the motion has at these two times. For a joint beyond its limit, only this joint is moved. For
+/// two bodies that overlap, all joints between them are moved.
 Eigen::MatrixXd straight_line_guess(const RobotModel& model, const CommandSeries& series,
                                     const std::vector<Finding>& findings, double reach,
                                     double spacing, Eigen::Index rows);
@@ -26,8 +26,8 @@ Eigen::MatrixXd straight_line_guess(const RobotModel& model, const CommandSeries
 /// The variables of the program at random control points.
 Eigen::VectorXd random_start(const CorrectionProblem& problem, const RandomStart& how);
 
-/// The point from which the program starts: no correction or, where that violates the least linear
-/// rows (soles and clearances) by far, the straight-line guess that violates them least.
+/// The point from which the program starts: no correction, or, if this violates the most nonlinear
+/// rows (soles and clearances) by far, the straight-line guess that violates these rows least.
 Eigen::VectorXd initial_guess(const CorrectionProblem& problem, const Nlp& nlp,
                               const RobotModel& model, const CommandSeries& series,
                               const std::vector<Finding>& findings);

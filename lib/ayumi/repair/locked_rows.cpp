@@ -11,22 +11,22 @@ namespace policy = repair_policy;
 
 namespace {
 
-// The correction is 0, and it is never violated.
+// The correction must be 0, and this row is never relaxed.
 const RowKind kPoseRows = {
     .name = "pose", .unit = &RowPrices::length, .relaxed = nullptr, .order = {1, 0}};
 
-// The pose of a sole against that of the given motion.
+// The pose of a sole must be that of the given motion.
 const RowKind kPathRows = {
     .name = "path", .unit = &RowPrices::length, .relaxed = &RowPrices::foot, .order = {2, 1}};
 
-// The COG against the commanded one, where a motion is generated.
+// The COG must follow the commanded COG when a motion is generated.
 const RowKind kGoalRows = {.name = "cog_goal",
                            .unit = &RowPrices::length,
                            .soft_goal = &RowPrices::dcm,
                            .relaxed = &RowPrices::dcm,
                            .order = {8, 1}};
 
-// A swinging sole on its planned path.
+// A swinging sole must stay on its planned path.
 void place_planned_foot(RowSite& site, int i, Side side) {
   const int foot = static_cast<int>(side);
   if (site.points[i].contact[foot] || site.settings.locked_feet[foot]) return;

@@ -1,7 +1,7 @@
 #pragma once
-// Rows of what a repair has to leave alone: postures at locked times and paths of locked feet; and
-// of what it has to follow where it generates a motion: planned feet and COG. They belong to no
-// limit.
+// Rows for what a repair must not change: postures at locked times, and paths of locked feet. When
+// a motion is generated, there are also rows for the planned feet and the planned COG. These rows
+// belong to no limit.
 
 #include "ayumi/limits/row_site.hpp"
 #include "ayumi/repair/correction_spec.hpp"

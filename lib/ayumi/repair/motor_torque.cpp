@@ -21,7 +21,7 @@ namespace {
 
 using FootWrenches = std::array<Vector6d, 2>;
 
-// Derivatives of the foot wrenches by base position and wrench, 6 x 9 by Side.
+// Derivatives of the foot wrenches by base position and wrench, 6 x 9, by Side.
 std::array<Eigen::Matrix<double, 6, 9>, 2> sharing_slope(const RobotModel& model,
                                                          const CollocationPoint& point,
                                                          const Vector3d& base,
@@ -51,7 +51,7 @@ std::array<Eigen::Matrix<double, 6, 9>, 2> sharing_slope(const RobotModel& model
   return slope;
 }
 
-// Gradient by a small rotation about a point at distance `r` from the joint.
+// Gradient with respect to a small rotation about a point at distance `r` from the joint.
 Vector3d by_rotation(const Body& body, const Vector3d& axis, const Vector3d& r, const Vector3d& m,
                      const Vector3d& f) {
   if (body.prismatic) return axis.cross(f);

@@ -10,8 +10,8 @@ namespace ayumi {
 void fill_motor_torques(const RobotModel& model, const ActuatorLimits& actuators,
                         const CollocationPoint& point, PointState& state);
 
-/// Fills state.torque_by. `force_by`: of inverse_dynamics() by the correction; the derivatives of
-/// the wrench must be set.
+/// Fills state.torque_by. `force_by` contains the derivatives of inverse_dynamics() by the
+/// correction. The derivatives of the wrench must be set.
 void fill_motor_torque_derivatives(const RobotModel& model, const ActuatorLimits& actuators,
                                    const CollocationPoint& point,
                                    const InverseDynamicsDerivatives& force_by, PointState& state);

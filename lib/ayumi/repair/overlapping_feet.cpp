@@ -31,7 +31,7 @@ double overlap_along_normals(const ConvexPolygon& a, const ConvexPolygon& b) {
   return least;
 }
 
-// Of both soles, along the ground of the first [m]; below 0 where they are apart.
+// Overlap of both soles along the ground of the first sole [m]; below 0 if they are apart.
 double overlap(const RobotModel& model, const Isometry3d& left, const Isometry3d& right) {
   std::vector<Vector2d> moved;
   for (const Vector2d& corner : model.sole(Side::right).polygon)
@@ -55,7 +55,7 @@ bool feet_collide(const RobotModel& model, const ConsistencyReport& report, doub
 std::optional<OverlappingFeet> overlapping_feet(const RobotModel& model,
                                                 const CommandSeries& series,
                                                 const ConsistencyReport& report) {
-  // What the bands of two standing soles can make good [m]. Derived.
+  // Overlap that the bands of two standing soles can remove [m]. Derived.
   constexpr double kMendable = 2 * policy::stance::kPosition;
   const ContactPlan plan = contact_plan(series);
   for (const ContactInterval& left : plan.intervals[0])

@@ -1,6 +1,6 @@
 #pragma once
 // Feet that are planned to stand in one place. A correction keeps the planned places of the feet,
-// so that no repair can part them.
+// so no repair can separate them.
 
 #include <optional>
 #include <string>
@@ -12,19 +12,20 @@
 namespace ayumi {
 
 struct OverlappingFeet {
-  Side landed = Side::left;                         ///< the foot that comes last
-  double begin = 0, end = 0;                        ///< both stand [s]
-  double depth = 0;                                 ///< least way that parts the soles [m]
-  Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< of the sole that came last, world [m]
+  Side landed = Side::left;   ///< the foot that lands later
+  double begin = 0, end = 0;  ///< time in which both stand [s]
+  double depth = 0;           ///< smallest displacement that separates the soles [m]
+  Eigen::Vector3d place =
+      Eigen::Vector3d::Zero();  ///< place of the sole that landed later, world [m]
 };
 
 /// The first contacts of both feet whose planned soles overlap and whose feet the report has
-/// colliding then; none where the plan parts them, or where the check lets them overlap.
+/// colliding then; none if the plan separates the soles, or if the check allows the overlap.
 std::optional<OverlappingFeet> overlapping_feet(const RobotModel& model,
                                                 const CommandSeries& series,
                                                 const ConsistencyReport& report);
 
-/// What is wrong, where, and what to do.
+/// Message: what is wrong, where it is wrong, and what to do.
 std::string words_of(const OverlappingFeet& feet);
 
 }  // namespace ayumi

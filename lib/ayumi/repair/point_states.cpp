@@ -6,9 +6,9 @@ using Eigen::MatrixXd;
 
 namespace {
 
-// Parts of the points that threads take, and points in each at least. Chosen: enough parts for the
-// cores of a workstation; a part of fewer points takes less time than to start a thread. Neither
-// changes a result.
+// Number of parts into which the points are divided for the threads, and the smallest number of
+// points in a part. Chosen: enough parts for the cores of a workstation; a part of fewer points
+// takes less time than to start a thread. Neither changes a result.
 constexpr size_t kMostParts = 16, kFewestPoints = 8;
 
 }  // namespace

@@ -1,7 +1,7 @@
 #pragma once
 // The states of all collocation points at one point of the program. Rows, Jacobian and curvature at
-// the same variables share them. Points do not depend on each other, so that they are computed on
-// several threads, with the same bytes for any number of them.
+// the same variables share them. Points do not depend on each other, so several threads compute
+// them, with the same bytes for any number of them.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace ayumi {
 
 class PointStates {
  public:
-  /// All must outlive it. `threads`: 0 for all cores.
+  /// All arguments must outlive this object. With `threads` = 0, all cores work.
   PointStates(const RobotModel& model, const ActuatorLimits& actuators, const CommandSeries& motion,
               const std::vector<CollocationPoint>& points, int threads);
 

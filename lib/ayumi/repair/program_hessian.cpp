@@ -34,7 +34,8 @@ void place_objective(const VectorXd& weights, const CorrectionVariables& v, Prog
       for (int d = 0; d < 4 && point - d >= 0; ++d) {
         const int one = v.index(point, column), other = v.index(point - d, column);
         if (one < 0 || other < 0) continue;
-        // Two control points that share a variable meet on the diagonal, where both orders count.
+        // If two control points share a variable, their entry is on the diagonal, where both orders
+        // count.
         const double share = d > 0 && one == other ? 2 : 1;
         h.pattern.add(std::max(one, other), std::min(one, other));
         values.push_back(
@@ -44,8 +45,8 @@ void place_objective(const VectorXd& weights, const CorrectionVariables& v, Prog
   h.objective = Eigen::Map<VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
-// Base and legs curve; arms add little on the ground. In flight they do not add little, and there
-// the whole curvature needed more iterations than none.
+// Columns of base and legs are curved. On the ground, arms add little. In flight they add more, but
+// there programs with the whole curvature needed more iterations than programs without any.
 std::vector<int> curved_columns(const RobotModel& model,
                                 const std::vector<CollocationPoint>& points) {
   if (!model.has_soles() ||
@@ -58,8 +59,8 @@ std::vector<int> curved_columns(const RobotModel& model,
   return {columns.begin(), columns.end()};
 }
 
-// Nonzeros of all pairs of variables that curve, up to three control points apart: by the later
-// point, by their distance, by columns.
+// Nonzeros of all pairs of variables with curved columns, up to three control points apart, ordered
+// by the later control point, by their distance, and by columns.
 void place_curvature(const CorrectionVariables& v, ProgramHessian& h) {
   const int columns = static_cast<int>(h.columns.size());
   if (columns == 0) return;

@@ -14,13 +14,13 @@
 namespace ayumi {
 
 struct ProgramHessian {
-  SparsePattern pattern;           ///< nonzeros of the objective, then those of the curvature
+  SparsePattern pattern;           ///< the nonzeros of the objective, then those of the curvature
   Eigen::VectorXd objective;       ///< values of the first nonzeros
-  std::vector<int> columns;        ///< columns of the correction that curve; empty: none
-  std::vector<int> first_nonzero;  ///< of four pairs for every control point
+  std::vector<int> columns;        ///< columns of the correction that are curved; empty: none
+  std::vector<int> first_nonzero;  ///< first nonzero of the four pairs of each control point
 };
 
-/// `weights`: change_weights() by column.
+/// `weights` are change_weights(), by column.
 ProgramHessian program_hessian(const RobotModel& model, const Eigen::VectorXd& weights,
                                const CorrectionVariables& variables,
                                const std::vector<CollocationPoint>& points);
@@ -29,19 +29,19 @@ ProgramHessian program_hessian(const RobotModel& model, const Eigen::VectorXd& w
 void objective_gradient(const ProgramHessian& hessian, const Eigen::VectorXd& x,
                         Eigen::VectorXd& gradient);
 
-/// Curvature of the rows of one point, for the columns that curve.
+/// Curvature of the rows of one point, for the columns that are curved.
 struct PointCurvature {
   SplineWeights weights;
   /// By value and value; by acceleration and value, and turned round. Empty where nothing curves.
   Eigen::MatrixXd value, mixed, turned;
-  Eigen::Matrix2d cone = Eigen::Matrix2d::Zero();  ///< by the tangential force
-  std::array<Eigen::MatrixXd, 4> force;            ///< that force by each control point
+  Eigen::Matrix2d cone = Eigen::Matrix2d::Zero();  ///< second derivatives by the tangential force
+  std::array<Eigen::MatrixXd, 4> force;  ///< derivatives of this force by each control point
 };
 PointCurvature curvature_at(const ProgramHessian& hessian, const SplineWeights& weights,
                             const Curvature& curvature);
 
 /// Adds the curvature of all points, which are in order of time, to the values of the nonzeros.
-/// `index`: of CorrectionVariables.
+/// `index` is that of CorrectionVariables.
 void add_curvature(const ProgramHessian& hessian, const Eigen::MatrixXi& index,
                    const std::vector<PointCurvature>& points, int threads, Eigen::VectorXd& values);
 

@@ -53,8 +53,9 @@ void give_reasons(RepairState& state) {
   const size_t named = std::min(count, policy::infeasible::kMostReasons);
   for (size_t i = 0; i < named; ++i) result.reasons.push_back(result.causes[i].text);
   if (count > named)
-    result.reasons.push_back(std::to_string(count - named) +
-                             (count - named == 1 ? " more error" : " more errors"));
+    result.reasons.push_back(count - named == 1
+                                 ? "there is 1 more error"
+                                 : "there are " + std::to_string(count - named) + " more errors");
   if (state.relaxation_cut_short)
     result.reasons.push_back(
         "the search stopped at its limit of iterations, so it is not known whether a "

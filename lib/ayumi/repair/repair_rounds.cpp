@@ -15,16 +15,16 @@ namespace policy = repair_policy;
 
 namespace {
 
-using FoundAt = std::pair<FindingKind, std::string>;  // kind and place
+using FoundAt = std::pair<FindingKind, std::string>;  // kind and place of a finding
 
-// What one round leaves to the next.
+// Values that one round passes to the next.
 struct RoundMemory {
   int round = 0;
-  int unsolved = 0;                          // rounds without a solution
-  int halvings = 0;                          // of the knots' spacing
+  int unsolved = 0;                          // number of rounds without a solution
+  int halvings = 0;                          // number of halvings of the spacing of the knots
   double pad = policy::rounds::kFreeAround;  // free time around a finding [s]
-  std::vector<Finding> findings = {};        // of all rounds
-  std::set<FoundAt> errors = {};             // left by the last round where it was solved
+  std::vector<Finding> findings = {};        // findings of all rounds
+  std::set<FoundAt> errors = {};             // errors that the last round left, if it was solved
 };
 
 // If a motion is repaired at all, a margin that is only a warning is repaired too.
@@ -34,7 +34,7 @@ bool has_full_margin(const ConsistencyReport& report) {
   });
 }
 
-// A result that passes although its program was not solved to the end gets one more round.
+// If a result passes although its program was not solved to the end, there is one more round.
 bool is_over(const RepairState& state, const RoundMemory& memory) {
   if (memory.round >= policy::rounds::kMost || memory.unsolved >= policy::rounds::kMostUnsolved)
     return true;
@@ -109,7 +109,7 @@ void solve_round(RepairState& state, RoundMemory& memory) {
   ++memory.round;
 }
 
-// The least violating point of a program that was stopped.
+// The point with the smallest violation of a program that was stopped.
 void keep_partial(RepairState& state) {
   state.result.partial = true;
   state.status = NlpStatus::iteration_limit;

@@ -1,6 +1,6 @@
 #pragma once
-// What a repair is asked for, as its programs need it, and what the report of the check says about
-// where and how finely a correction has to act.
+// Prepares the programs of a repair: the wishes of the caller, and the places and the spacing of
+// knots with which a correction has to act according to the report of the check.
 
 #include "ayumi/repair/correction_problem.hpp"
 #include "ayumi/repair/repair.hpp"
@@ -20,7 +20,7 @@ void add_near_pairs(const RobotModel& model, const CommandSeries& series,
 /// both sides; windows that overlap are one.
 std::vector<TimeWindow> windows_around(const std::vector<Finding>& findings, double pad);
 
-/// Windows in which the commanded COG or ZMP is itself at fault, not because a posture is wrong.
+/// Windows in which the commanded COG or ZMP itself is at fault, and not only because of a posture.
 std::vector<TimeWindow> wrong_plan(const ConsistencyReport& report);
 
 /// The track as it is written to a file: numbers of nine decimals, and only the control points and
@@ -28,15 +28,15 @@ std::vector<TimeWindow> wrong_plan(const ConsistencyReport& report);
 /// rest.
 CorrectionTrack trimmed(const CorrectionTrack& track);
 
-/// A trimmed track with its control points moved by the least amount for which nothing changes at
-/// `times`.
+/// The trimmed track, whose control points are moved by the smallest amount with which nothing
+/// changes at `times`.
 CorrectionTrack kept_at(CorrectionTrack track, const std::vector<double>& times);
 
 /// Whether the report has an error of free fall or of angular momentum.
 bool flight_is_at_fault(const ConsistencyReport& report);
 
-/// The largest distance of knots with which the violations can be undone [s]: in a flight at fault,
-/// and where a foot slips, with at least `finest` there; else no bound.
+/// The largest distance of knots with which violations in a faulty flight and slips of a foot can
+/// be removed [s], at least `finest`. Without such violations there is no bound.
 double spacing_of_faults(const CommandSeries& series, const ConsistencyReport& report,
                          double finest);
 
@@ -44,7 +44,7 @@ double spacing_of_faults(const CommandSeries& series, const ConsistencyReport& r
 /// posture is at fault: then there is nothing to solve.
 bool locked_out(const CorrectionSpec& spec, const ConsistencyReport& report);
 
-/// By end: whether the first and the last posture are themselves at fault, so that they may move.
+/// Whether the first and the last posture are themselves at fault and may move, by end.
 std::array<bool, 2> faulty_ends(const ConsistencyReport& report, double duration, double spacing);
 
 }  // namespace ayumi

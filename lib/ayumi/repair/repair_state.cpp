@@ -118,8 +118,8 @@ VectorXd kept_multipliers(const RepairState& state) {
   return multipliers;
 }
 
-// The start of a program. A warm start is near the solution. It is also known if the multipliers of
-// the last program come with it.
+// The start of a program. A warm start is near the solution. A known start also has the multipliers
+// of the last program.
 struct Start {
   bool warm = false, known = false;
 };
@@ -172,7 +172,9 @@ void solve_program(RepairState& state, const std::string& stage, double toleranc
   const bool at_random = first && state.options.random_start.size > 0;
   hard.start = at_random ? random_start(problem, state.options.random_start) : usual;
   NlpSolution solution = solve_relaxing_goals(state, hard, stage, tolerance);
-  if (at_random && solution.status != NlpStatus::solved) {  // a start that leads nowhere is dropped
+  if (at_random &&
+      solution.status !=
+          NlpStatus::solved) {  // a start from which no solution was found is not used again
     hard.start = usual;
     solution = solve_relaxing_goals(state, hard, stage, tolerance);
   }

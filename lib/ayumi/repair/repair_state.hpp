@@ -19,35 +19,36 @@
 namespace ayumi {
 
 struct RepairState {
-  // The question.
+  // The request.
   const RobotModel& model;
   const CommandSeries& series;
   const RepairOptions& options;
   const Progress& progress;
   const CollisionModel collisions;
   CorrectionSpec asked;  ///< specification of the first round
-  bool flight = false;   ///< a flight is at fault
+  bool flight = false;   ///< whether a flight is at fault
 
   // The rounds so far.
-  CorrectionSpec spec = {};                       ///< of the next program
-  std::optional<CorrectionProblem> problem = {};  ///< of the last program
-  NlpStatus status = NlpStatus::failed;           ///< of the last program
-  double objective = 0;                           ///< of the last program
-  double barrier = 0;                             ///< with which the last program ended, about
-  std::deque<CommandSeries> earlier = {};         ///< results of earlier rounds, named by `spec`
-  Eigen::VectorXd least_violating = {};           ///< of the last program
+  CorrectionSpec spec = {};                       ///< specification of the next program
+  std::optional<CorrectionProblem> problem = {};  ///< the last program
+  NlpStatus status = NlpStatus::failed;           ///< status of the last program
+  double objective = 0;                           ///< objective of the last program
+  double barrier = 0;  ///< approximate barrier parameter with which the last program ended
+  std::deque<CommandSeries> earlier = {};  ///< results of earlier rounds, which `spec` refers to
+  Eigen::VectorXd least_violating = {};  ///< point of the last program with the smallest violation
 
-  /// Of the rows of the last program that are not 0, by sample, kind, item and line: the next
-  /// program has most of these rows again.
+  /// Multipliers of the last program's rows that are not 0, by sample, kind, item and line. The
+  /// next program has most of these rows too.
   std::map<std::tuple<int, const RowKind*, int, int>, double> multipliers = {};
 
   // The result so far.
-  CorrectionTrack track = {};  ///< of the result, every control point
+  CorrectionTrack track = {};  ///< every control point of the result
   RepairResult result = {};
   RepairResult as_given = {};                   ///< the motion itself, with its own COG and ZMP
   std::optional<CorrectionTrack> passing = {};  ///< an earlier result that passes the check
-  bool relaxation_cut_short = false;            ///< by its limit of iterations
-  std::optional<OverlappingFeet> overlap = {};  ///< planned, so that nothing can be solved
+  bool relaxation_cut_short = false;  ///< the search was stopped by its limit of iterations
+  std::optional<OverlappingFeet> overlap =
+      {};  ///< feet that are planned in one place, so that nothing can be solved
 };
 
 /// The state before the first round, with the check of the motion as it is given.
@@ -64,14 +65,15 @@ ConsistencyReport report_of(const RepairState& state, const CommandSeries& serie
 /// Whether the result passes and its program was solved to the end.
 bool is_done(const RepairState& state);
 
-/// Solves one program from `spec` and takes its result; the next program starts there where it is
-/// solved or nearly so. Throws Interrupted.
+/// Solves one program from `spec` and takes its result; the next program starts from this result if
+/// the program was solved or nearly solved. Throws Interrupted.
 void solve_program(RepairState& state, const std::string& stage, double tolerance);
 
-/// Solver options, with those of a warm start from a point that violates little.
+/// Options of the solver, for a warm start if the start violates little.
 NlpOptions nlp_options(RepairState& state, bool warm);
 
-/// The work that may still be done, with a share of the whole kept back; below 0: it is used up.
+/// The work that may still be done when a share of the whole is reserved. It is below 0 if the
+/// limit is reached.
 double work_left(const RepairState& state, double kept_back);
 
 /// Adds the work of one solution to the result.

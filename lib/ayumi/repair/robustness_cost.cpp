@@ -22,7 +22,7 @@ bool differ(const RobotState& a, const RobotState& b) {
          a.base.attitude.coeffs() != b.base.attitude.coeffs();
 }
 
-// Where the motions differ, widened by the reach of the control points that act there.
+// Times at which the motions differ, extended by the reach of the control points that act there.
 std::vector<TimeWindow> windows_of_change(const CommandSeries& before, const CommandSeries& after,
                                           double spacing) {
   const double pad = 4 * spacing;  // a cubic spline has four control points at each time
@@ -35,7 +35,7 @@ std::vector<TimeWindow> windows_of_change(const CommandSeries& before, const Com
   return merged(std::move(windows));
 }
 
-// Feet stay in their places whatever robustness is worth.
+// The feet stay in their places for every factor of robustness.
 double price_factor(const RowKind& kind, double safety) {
   return kind.relaxed == &RowPrices::foot ? 1 : safety;
 }

@@ -1,8 +1,8 @@
 #pragma once
 // Robustness cost of a motion: the soft goals of a repair, evaluated on a motion. They are the
-// ZMP's safe margin, soles held in their places more closely than the check asks for, swinging feet
+// ZMP's safe margin, soles that are closer to their places than the check asks for, swinging feet
 // off the ground and low only over their places, bodies apart, joints within their limits, and DCM
-// and ZMP where the plan has them.
+// and ZMP near the plan.
 
 #include "ayumi/repair/repair.hpp"
 

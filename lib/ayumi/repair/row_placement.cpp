@@ -63,7 +63,8 @@ RowSettings row_settings(const CorrectionSpec& spec) {
   return s;
 }
 
-// In the order in which the program has them, without those of points that have a few rows only.
+// The rows in the order in which the program has them, without the rows of points that have only a
+// few.
 std::vector<RowBlock> ordered(std::vector<RowBlock> all,
                               const std::vector<CollocationPoint>& points) {
   std::erase_if(all, [&](const RowBlock& block) {

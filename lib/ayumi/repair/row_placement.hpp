@@ -1,7 +1,7 @@
 #pragma once
-// The rows of a program: those that the limits place where the motion, or an earlier result, is
-// near them, and the repair's own, which belong to no limit of the check. The check of the result
-// looks at the rest.
+// The rows of a program. The limits place rows where the motion, or an earlier result, is near the
+// limit. The repair itself places further rows, which belong to no limit of the check. The check of
+// the result covers everything else.
 
 #include <vector>
 
@@ -12,12 +12,12 @@ namespace ayumi {
 
 /// The rows of the program.
 struct PlacedRows {
-  std::vector<RowBlock> blocks;           ///< in order of their points, there by RowOrder
-  std::vector<std::vector<int>> columns;  ///< by block: on which it depends
+  std::vector<RowBlock> blocks;  ///< ordered by their points, and within a point by RowOrder
+  std::vector<std::vector<int>> columns;  ///< by block: the columns on which it depends
   Eigen::VectorXd lower, upper;           ///< bounds of the rows
 };
 
-/// All rows, and the fields of `points` that go with them.
+/// Places all rows, and fills the fields of `points` that the rows need.
 PlacedRows place_rows(const RobotModel& model, const CommandSeries& series,
                       const CorrectionSpec& spec, const ContactPlan& plan,
                       std::vector<CollocationPoint>& points);

@@ -17,7 +17,8 @@ CorrectionSpec at_check_limits(const CorrectionSpec& spec, const CorrectionSpec&
   CorrectionSpec limits = spec;
   limits.zmp_margin = asked.zmp_margin;
   limits.safe_margin = reached ? asked.safe_margin : asked.zmp_margin;
-  // Swing goals may have been given up to make progress, although there was a solution with them.
+  // The goals of the swings may have been left out in the rounds, although there is a solution with
+  // them.
   limits.swing_goals = spec.swing_goals || (reached && asked.swing_goals);
   limits.at_check_limits = true;
   limits.joint_margin = policy::kRounding;
@@ -50,23 +51,23 @@ CorrectionTrack between(const CorrectionTrack& a, const CorrectionTrack& b, doub
 
 namespace {
 
-// Whether a table of the result passes, in which rates are differences of its rows.
+// Whether the table of the result passes. In a table, rates are differences of rows.
 bool table_passes(const RepairState& state) {
   CommandSeries table = state.result.series;
   fill_rates(table.samples, table.dt, false);
   return report_of(state, table).consistent;
 }
 
-// The correction that passed before, and whether its table did.
+// The previous correction that passed, and whether its table passed.
 struct PassingResult {
   RepairResult result;
   CorrectionTrack track;
   bool as_table;
 };
 
-// Takes the result itself, or a motion that passes between it and the passing one, at most a share
-// of the way back. False where there is none; the result is then unchanged. Where the
-// farthest of these motions does not pass, the others are not tried: they are less far back.
+// Keeps the result, or replaces it by a motion that passes, at most a share of the way back to the
+// correction that passed. Returns false if there is none, without a change of the result. If the
+// motion that is farthest back does not pass, the others are not tried.
 bool take_first_passing(RepairState& state, const PassingResult& passing, double most_back) {
   auto passes = [&] {
     return state.result.check.consistent && (!passing.as_table || table_passes(state));

@@ -19,12 +19,12 @@ std::string quoted(const std::string& text);
 struct Table {
   std::string caption;
   std::vector<std::string> head;               ///< text
-  std::vector<std::vector<std::string>> rows;  ///< HTML; numbers are set to the right
+  std::vector<std::vector<std::string>> rows;  ///< HTML; numbers are aligned to the right
 };
 /// The first cell of a row is its heading.
 std::string table(const Table& table);
 
-/// A time [s] with three digits, which takes the replay there.
+/// A time [s] with three digits. A click on it moves the replay to this time.
 std::string time_link(double t);
 
 /// <section id=...><h2>title</h2>contents</section>

@@ -17,7 +17,7 @@ namespace {
 using Eigen::Vector3d;
 using html::quoted;
 
-// Nodes along a side of a field of heights; 9216 heights keep the page small.
+// Largest number of nodes along a side of a field of heights; 9216 heights keep the page small.
 constexpr int kFieldNodes = 96;
 
 const std::vector<std::string> kColumns = {"t",
@@ -54,7 +54,7 @@ std::string list(const Vector3d& v) {
   return list({text::exact(v.x()), text::exact(v.y()), text::exact(v.z())});
 }
 
-/// Where a moving floor is, behind the columns above.
+/// The pose of a moving floor, after the columns above.
 const std::vector<std::string> kFloorColumns = {"floor.x",  "floor.y",  "floor.z", "floor.qx",
                                                 "floor.qy", "floor.qz", "floor.qw"};
 
@@ -133,7 +133,7 @@ std::string pushes_words(const SimulationLog& log) {
   return list(words);
 }
 
-/// Corners of triangles, each a place and a colour, in the floor's frame.
+/// Corners of triangles, each with its place and colour, in the floor's frame.
 std::string scenery_bytes(const World& world) {
   const Triangles scenery = make_scenery(world, kFieldNodes);
   std::string bytes;
@@ -162,7 +162,7 @@ std::string bumps_words(const RobotModel& model, const SimulationLog& log) {
   return list(words);
 }
 
-/// What the script has to know of the robot and of the world, without braces.
+/// The data about the robot and the world that the script needs, without braces.
 std::string common_words(const RobotModel& model, double height, const SimulationLog& log,
                          double rate, double start, const std::string& label) {
   return "\"rate\":" + text::exact(rate) + ",\"height\":" + text::exact(height) +
@@ -180,7 +180,7 @@ std::string quoted_list(const std::vector<std::string>& names) {
   return list(items);
 }
 
-/// How each body hangs on its parent, in the order of their numbers.
+/// The place of each body in its parent, in the order of their numbers.
 std::string bodies_words(const RobotModel& model) {
   std::vector<std::string> words;
   for (const Body& body : model.bodies()) {

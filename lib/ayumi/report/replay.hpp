@@ -1,6 +1,6 @@
 #pragma once
-// What a report's replay and the live page for authoring are made of: the robot with its motions,
-// the quantities of a motion as a table, and what the script has to know of them.
+// The data of a report's replay and of the live page for authoring: the robot with its motions, the
+// quantities of a motion as a table, and the data about both that the script needs.
 
 #include <string>
 
@@ -10,7 +10,7 @@ namespace ayumi {
 
 struct ReplayPlan {
   double rate = 50;           ///< [Hz]
-  size_t triangles = 60'000;  ///< at most, of the robot
+  size_t triangles = 60'000;  ///< largest number of triangles of the robot
 };
 
 struct ReplayData {
@@ -34,7 +34,7 @@ std::string live_model(const RobotModel& model, const SimulationLog& log, size_t
 /// and torque of every joint; "base." and "q.", "dq.", "tau." begin their names.
 std::string live_config(const RobotModel& model, const SimulationLog& log, double rate);
 
-/// The table: a row of 32-bit floats, little-endian, each 1/rate seconds and at the end.
+/// The table: one row of 32-bit floats, little-endian, for each 1/rate seconds, and one at the end.
 std::string live_series(const SimulationLog& log, double rate);
 
 /// As ReplayData::scenery.

@@ -21,13 +21,14 @@
 namespace ayumi {
 namespace {
 
-// To keep the page within its size: keys of the replay, triangles to which the robot is simplified
-// at most, and lowest rate of keys [Hz], between which the replay interpolates.
+// Values that keep the page within its size: the number of keys of the replay, the largest number
+// of triangles of the robot, and the lowest rate of keys [Hz], between which the replay
+// interpolates.
 constexpr double kMostKeys = 4000;
 constexpr size_t kFewestTriangles = 4000;
 constexpr double kLeastRate = 10;
 
-/// Allows what is in the page and nothing else.
+/// Allows only what is in the page.
 constexpr const char* kPolicy =
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; "
     "img-src data: blob:; connect-src data: blob:; base-uri 'none'; form-action 'none'";
@@ -49,7 +50,7 @@ std::string inline_svg(const Drawing& drawing) {
 // within its margins. Letters of 11 pixels stay that large there.
 constexpr double kWideCurves = 600, kNarrowCurves = 326;
 
-/// Curves against time and from above, for one width.
+/// Curves over time and from above, for one width.
 std::string curves(const RobotModel& model, const ReportInput& input, double width,
                    const std::string& kind) {
   const std::vector<LociRun> runs = loci_runs(input);
@@ -59,7 +60,7 @@ std::string curves(const RobotModel& model, const ReportInput& input, double wid
   options.width = width;
   const Drawing time = draw_loci(runs, options);
   const Interval range = plot::time_range(runs, options);
-  double top = time.height;  // of the panels, where the cursor begins
+  double top = time.height;  // top of the panels, where the cursor begins
   for (const auto& item : time.items)
     if (const auto* path = std::get_if<DrawnPath>(&item); path && path->closed)
       for (const Eigen::Vector2d& point : path->points) top = std::min(top, point.y());
@@ -157,7 +158,7 @@ std::string data_element(const std::string& id, const std::string& type,
   return "<script type=\"" + type + "\" id=\"" + id + "\">" + contents + "</script>\n";
 }
 
-/// The pieces that do not depend on the plan of the replay.
+/// The parts of the page that do not depend on the plan of the replay.
 struct Pieces {
   std::string poster, loci, snapshots;
 };
@@ -195,7 +196,7 @@ std::string page(const RobotModel& model, const RobotLook& look, const ReportInp
              data_element("replay-model", "text/plain", html::base64(data.model)) + "<script>\n" +
              std::string(kReplayScript) + "</script>\n";
   }
-  // The scene stays in sight beside the curves, or above them where the window is narrow.
+  // The scene stays visible beside the curves, or above them if the window is narrow.
   return head + html::verdict_section(input) + "<div id=\"watch\">\n" +
          html::section("replay", plan.with_replay ? "Replay" : "Picture", scene) + pieces.loci +
          "</div>\n" + html::findings_section(model, input) + html::thresholds_section(input) +
@@ -204,7 +205,7 @@ std::string page(const RobotModel& model, const RobotLook& look, const ReportInp
          script + "</body>\n</html>\n";
 }
 
-/// Makes the plan smaller; false when nothing is left to reduce.
+/// Reduces the plan. Returns false if nothing is left to reduce.
 bool reduce(Plan& plan, size_t& triangles) {
   if (plan.with_replay && triangles > kFewestTriangles) {
     triangles = std::max(kFewestTriangles, triangles / 2);

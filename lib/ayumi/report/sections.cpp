@@ -15,21 +15,21 @@
 namespace ayumi::html {
 namespace {
 
-/// Three significant digits, and whole numbers above.
+/// Three significant digits; whole numbers if the value is larger.
 std::string three_digits(double value) {
   return std::abs(value) >= 999.5 ? text::fixed(value, 0) : text::brief(value, 3);
 }
 
 std::string degrees(double radians) { return three_digits(radians * 180 / M_PI); }
 std::string millimetres(double metres) {
-  // What is less than a hundredth of a millimetre is none.
+  // A value below a hundredth of a millimetre counts as zero.
   return std::abs(metres) < 5e-6 ? "0" : three_digits(1e3 * metres);
 }
 std::string percent(double ratio) { return text::fixed(100 * ratio, 0); }
 
 enum class Tone { good, neutral, bad };
 
-/// Only what is good is green.
+/// Only good outcomes are green.
 std::string marked(Tone tone, const std::string& words) {
   if (tone == Tone::neutral) return escaped(words);
   return std::string("<span class=\"") + (tone == Tone::good ? "good" : "bad") + "\">" +
@@ -75,8 +75,8 @@ Table run_table(const ReportInput& input) {
 std::string export_words(const ExportNote& note, bool good) {
   if (note.safe)
     return "<p>" + marked(good ? Tone::good : Tone::neutral, "The joint table is safe to replay") +
-           ": its largest step is " + percent(note.max_step_ratio) + " % of the limit (" +
-           escaped(note.worst_joint) + ").</p>\n";
+           ": its largest step from row to row is " + percent(note.max_step_ratio) +
+           " % of the limit (" + escaped(note.worst_joint) + ").</p>\n";
   std::string words =
       "<p>" + marked(Tone::bad, "The joint table is not safe to replay") + ":</p>\n<ul>";
   for (const std::string& violation : note.violations)
@@ -84,7 +84,7 @@ std::string export_words(const ExportNote& note, bool good) {
   return words + "</ul>\n";
 }
 
-/// Which of the runs the tables are from, where the runs of this page were disturbed.
+/// Which of the runs the tables come from, if the runs of this page were disturbed.
 std::string source_of_tables(const SimulationLog& log) {
   if (log.scenario.empty()) return "";
   return "<p>The tables <code>reference.csv</code> and <code>hoap.csv</code> are from the run "
@@ -98,8 +98,9 @@ std::string margin(double metres) {
 }
 
 Table moved_table(const RepairNote& note) {
-  constexpr size_t kMostRows = 8;                // rows, so that the table stays short
-  constexpr double kLeast = 0.005 * M_PI / 180;  // what would be 0.00 deg is no move
+  constexpr size_t kMostRows = 8;  // largest number of rows, so that the table stays short
+  constexpr double kLeast =
+      0.005 * M_PI / 180;  // a joint whose move would be printed as 0.00 deg counts as not moved
   Table table = {
       "What the repair moved", {"joint", "by [deg]", "at [s]", "from [s]", "to [s]"}, {}};
   for (const RepairNote::Moved& j : note.joints)
@@ -149,8 +150,8 @@ Table finding_table(const ConsistencyReport& check) {
 }
 
 Table summary_table(const RobotModel& model, const CheckSummary& summary) {
-  // What is below this in the unit of its figure is the rounding of the computation. Chosen: no
-  // figure is judged by as little.
+  // A value below this, in the unit of its figure, counts as rounding of the computation. Chosen:
+  // no limit of a figure is as small.
   constexpr double kRounding = 1e-6;
   Table table = {"Figures of the check", {}, {}};
   for (const FindingSpec* spec : summary_figures()) {
@@ -199,7 +200,7 @@ std::string verdict_section(const ReportInput& input) {
 
 namespace {
 
-/// The map of thresholds that a study found, in its order.
+/// The map of push limits that a study found, in the order of the study.
 PushMap threshold_map(const std::vector<PushThreshold>& thresholds) {
   PushMap map;
   map.title = "Largest survivable impulse by phase and direction";
@@ -253,7 +254,7 @@ std::string findings_section(const RobotModel& model, const ReportInput& input) 
 
 namespace {
 
-// A phase with its time, which may be its name; a short one stays on one line.
+// A phase with its time, which may be its name. A short one stays on one line.
 std::string phase_words(const PushThreshold& threshold) {
   const std::string at = text::fixed(threshold.at, 3) + " s";
   if (threshold.phase == "t = " + at)
@@ -345,7 +346,7 @@ std::string events_section(const ReportInput& input) {
 
 namespace {
 
-// A foot falls in one simulator and stands in another where they differ in this.
+// If two simulators differ in this, a foot may fall in one and stand in the other.
 std::string softness_of_soles(const RobotModel& model, const std::string& plant) {
   if (!model.has_soles()) return "no soles";
   std::vector<std::string> soles;

@@ -1,5 +1,5 @@
 #pragma once
-// The sections of a report that are words and tables.
+// The sections of a report that consist of text and tables.
 
 #include <string>
 
@@ -9,10 +9,10 @@
 namespace ayumi::html {
 
 std::string verdict_section(const ReportInput& input);
-/// Empty without a check.
+/// Empty if there is no check.
 std::string findings_section(const RobotModel& model, const ReportInput& input);
-std::string thresholds_section(const ReportInput& input);  ///< empty without a study
-std::string comparison_section(const ReportInput& input);  ///< empty without a recording
+std::string thresholds_section(const ReportInput& input);  ///< empty if there is no study
+std::string comparison_section(const ReportInput& input);  ///< empty if there is no recording
 std::string events_section(const ReportInput& input);
 std::string provenance_section(const RobotModel& model, const ReportInput& input,
                                const std::vector<std::string>& caps);

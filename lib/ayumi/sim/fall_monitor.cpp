@@ -81,7 +81,7 @@ Isometry3d plan_to_world(const RobotModel& model, const RobotData& data,
     cosine += from.dot(to);
     ++count;
   }
-  // The mean heading of the soles, without an angle.
+  // The mean heading of the soles, as a direction and without an angle.
   const double length = std::sqrt(sine * sine + cosine * cosine);
   Eigen::Matrix3d about_z = Eigen::Matrix3d::Identity();
   if (length > 0) {
@@ -128,7 +128,7 @@ void FallMonitor::observe_figures(double t, const CommandSample& command,
                                   const StepReport& report, double dt) {
   const double weight = model_->mass() * kGravity;
   SimulationResult& r = result_;
-  // In flight the command rises too; the apex is relative to the height at lift-off.
+  // In flight the command rises too, so the apex is relative to the height at lift-off.
   if (command.support != Support::none) level_ = command.cog.z();
   r.max_penetration = std::max(r.max_penetration, report.max_penetration);
   r.max_contact_residual = std::max(r.max_contact_residual, report.contact_residual);
@@ -212,8 +212,8 @@ void FallMonitor::observe_feet(double t, const CommandSample& command, const Rob
     double fz = 0;
     for (const SoleForce& cell : report.soles[i]) fz += normal().dot(cell.force);
     const bool loaded = fz > kTouchLoad * weight;
-    // A foot that still touches the ground has not left it, however little it bears. Once it has
-    // been off it for long enough, the next load is its touchdown.
+    // A foot that still touches the ground has not left it, however small its load is. When it has
+    // been off the ground for long enough, the next load is its touchdown.
     const bool lifted = unloaded_[i] > kMinFootFlight;
     if (loaded && lifted) {
       ++result_.steps;

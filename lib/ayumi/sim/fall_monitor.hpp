@@ -17,8 +17,8 @@ inline constexpr double kTouchLoad = 0.05;
 
 /// The largest errors of a run until its end or its fall.
 struct LargestErrors {
-  double cog = 0;        ///< of the COG relative to the feet, horizontal [m]
-  double foot_tilt = 0;  ///< of a loaded foot that is planned to support the robot [rad]
+  double cog = 0;        ///< error of the COG relative to the feet, horizontal [m]
+  double foot_tilt = 0;  ///< tilt of a loaded foot that is planned to support the robot [rad]
 };
 
 /// Gathers a run's figures tick by tick.
@@ -26,7 +26,7 @@ class FallMonitor {
  public:
   FallMonitor(const RobotModel& model, const ActuatorLimits& limits, const World& world);
 
-  /// Pose of the floor from now on; the initial one is that of the world.
+  /// Sets the pose of the floor from now on. The initial pose is that of the world.
   void set_ground(const Eigen::Isometry3d& pose) {
     ground_ = pose;
     to_ground_ = pose.inverse();
@@ -38,8 +38,9 @@ class FallMonitor {
   bool observe(double t, const CommandSample& command, const SimulationSample& sample,
                const RobotData& truth, const StepReport& report, double dt);
 
-  /// The same for the verdict alone: of the result, the outcome with its time, the largest tilt,
-  /// and the figures of the end. Of `sample` only the COG and the true ZMP with its force are read.
+  /// The same for the verdict alone. The result then has only the outcome with its time, the
+  /// largest tilt and the figures of the end. Of `sample`, only the COG and the true ZMP with its
+  /// force are read.
   bool observe_verdict(double t, const CommandSample& command, const SimulationSample& sample,
                        const RobotData& truth, const StepReport& report, double dt);
 
@@ -71,15 +72,16 @@ class FallMonitor {
   long zmp_count_ = 0;
   double iterations_ = 0;
   long ticks_ = 0;
-  double level_ = 0;        // commanded COG height, that of the lift-off during a flight [m]
-  double airborne_ = 0;     // of the present flight [s]
-  double flight_apex_ = 0;  // of the present flight, over level_ [m]
-  std::vector<Eigen::Vector2d> last_zmp_;    // of the last ticks, a ring [m]
-  size_t next_zmp_ = 0;                      // place in that ring
+  double level_ = 0;        // commanded COG height; during a flight, that of the lift-off [m]
+  double airborne_ = 0;     // duration of the present flight [s]
+  double flight_apex_ = 0;  // apex of the present flight, over level_ [m]
+  std::vector<Eigen::Vector2d> last_zmp_;    // ZMP of the last ticks, as a ring [m]
+  size_t next_zmp_ = 0;                      // next place in that ring
   double tick_ = 0;                          // control tick [s]
-  std::array<double, 2> unloaded_ = {0, 0};  // time each foot has been off the ground [s]
+  std::array<double, 2> unloaded_ = {0, 0};  // time for which each foot has been off the ground [s]
   std::array<bool, 2> in_stance_ = {false, false};
-  std::array<Eigen::Vector3d, 2> stance_start_;  // in the floor's frame [m]
+  std::array<Eigen::Vector3d, 2>
+      stance_start_;  // place where each foot first carried load, in the floor's frame [m]
 };
 
 }  // namespace ayumi

@@ -11,7 +11,7 @@ namespace ayumi {
 
 class LoadCell {
  public:
-  /// `readings`: at least 1, of which the mean is reported.
+  /// `readings` is the number of readings whose mean is reported, at least 1.
   LoadCell(const CellResponse& response, int readings);
 
   /// What the cell feels of the force of this reading, times the gain [N]:
@@ -20,18 +20,18 @@ class LoadCell {
   /// by more than the hysteresis, and x + hysteresis/2 while it falls.
   double felt(double force);
 
-  /// Takes the value [N] of this reading, with what noise and rounding have made of it. The mean of
-  /// the last readings, or of all until there are enough; each at most the saturation.
+  /// Takes the value [N] of this reading, after noise and rounding. Returns the mean of the last
+  /// readings, or of all readings if there are fewer. Each reading is at most the saturation.
   double reported(double value);
 
  private:
   CellResponse response_;
   double played_ = 0;             // y
-  std::vector<double> readings_;  // the last ones, the newest at newest_
+  std::vector<double> readings_;  // the last readings; the newest is at newest_
   size_t newest_ = 0, filled_ = 0;
 };
 
-/// The cells at the corners of a sole; empty where the sidecar states no errors of load cells.
+/// The cells at the corners of a sole. Empty if the sidecar states no errors of load cells.
 std::vector<LoadCell> load_cells(const RobotModel& model, Side side);
 
 }  // namespace ayumi

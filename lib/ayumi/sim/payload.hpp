@@ -1,5 +1,5 @@
 #pragma once
-// Loads that a robot carries become part of its links.
+// Makes the loads that a robot carries a part of its links.
 
 #include <vector>
 
@@ -8,7 +8,7 @@
 
 namespace ayumi {
 
-/// The robot with point masses on its links, as a model of its own.
+/// A model of the robot with point masses on its links.
 RobotModel with_payloads(const RobotModel& model, const std::vector<CarriedMass>& payloads);
 
 }  // namespace ayumi

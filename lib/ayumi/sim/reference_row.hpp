@@ -1,5 +1,5 @@
 #pragma once
-// What a sample of a run asks of the robot, as a row of a table.
+// The reference of a sample of a run as a row of a table.
 
 #include "ayumi/motion/reference_trajectory.hpp"
 #include "ayumi/sim/simulation_log.hpp"

@@ -1,20 +1,20 @@
 #pragma once
-// What a person has to know before a robot receives the table of a run.
+// Cautions that a person must read before a robot receives the table of a run.
 
 #include "ayumi/motion/table_caution.hpp"
 #include "ayumi/sim/simulation_log.hpp"
 
 namespace ayumi {
 
-/// The disturbances in words: "1.1 N s on cog at 2.35 s; latency of 0.004 s at 0 s". Empty where
-/// there are none.
+/// The disturbances in words: "1.1 N s on cog at 2.35 s; latency of 0.004 s at 0 s". Empty if there
+/// are none.
 std::string words_of(const std::vector<Disturbance>& scenario);
 
-/// Why the table of this run is not for a robot: "the run fell at 2.31 s (trunk tilt)", "the run
-/// did not settle"; empty for a run that stands.
+/// The reason why the table of this run is not for a robot: "the run fell at 2.31 s (trunk tilt)",
+/// "the run did not settle"; Empty for a run that stands.
 std::string unfit_words(const SimulationLog& log);
 
-/// Both of a run.
+/// Both cautions of a run.
 TableCaution caution_of(const SimulationLog& log);
 
 }  // namespace ayumi

@@ -244,9 +244,9 @@ void Schedule::fill(long k, const RobotData& data, StepInput& input) {
             [&](const FrictionChange& d) { input.friction = d.friction; },
             [&](const Bump& d) { input.bumps.push_back(disc(entry, d, k, data)); },
             [&](const EncoderOffset& d) { fault(d); }, [&](const JointFriction& d) { fault(d); },
-            [&](const GainLoss& d) { fault(d); }, [](const FloorPath&) {},  // input.floor
-            [](const Latency&) {},                                          // sensor_fault()
-            [](const SensorBias&) {},                                       // sensor_fault()
+            [&](const GainLoss& d) { fault(d); }, [](const FloorPath&) {},  // see input.floor
+            [](const Latency&) {},                                          // see sensor_fault()
+            [](const SensorBias&) {},                                       // see sensor_fault()
         },
         entry.source.what);
   }

@@ -14,7 +14,7 @@ namespace ayumi {
 
 /// Errors of the sensors in a tick.
 struct SensorFault {
-  double latency = 0;                              ///< added to the robot's own [s]
+  double latency = 0;                              ///< latency that is added to the robot's own [s]
   Eigen::Vector2d tilt = Eigen::Vector2d::Zero();  ///< bias of the attitude, world axes [rad]
   Eigen::Vector3d gyro = Eigen::Vector3d::Zero();  ///< [rad/s]
   double force = 0;                                ///< bias of every load cell [N]
@@ -46,9 +46,10 @@ class Schedule {
   struct Entry {
     Disturbance source;
     long first = 0, count = 1;
-    int link = -1, joint = -1;               ///< -1: the COG, all joints
-    double per_step = 0;                     ///< force or torque of a rectangle [N] or [N m]
-    std::optional<Eigen::Vector2d> place{};  ///< of a bump that has risen, ground's frame [m]
+    int link = -1, joint = -1;  ///< -1: the COG; all joints
+    double per_step = 0;        ///< force or torque of a rectangle [N] or [N m]
+    std::optional<Eigen::Vector2d>
+        place{};  ///< place of a bump that has risen, in the ground's frame [m]
   };
   bool acts(const Entry& entry, long k) const;
   ExternalWrench wrench(const Entry& entry, const Push& push, long k, const RobotData& data) const;

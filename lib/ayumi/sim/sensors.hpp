@@ -43,23 +43,25 @@ class Sensors {
   Eigen::Vector3d specific_force(const RobotData& truth, const Eigen::Quaterniond& attitude);
 
   const RobotModel* model_;
-  Eigen::VectorXd offset_;  // of the encoders [rad, m]
-  Eigen::VectorXd counts_;  // per rad; 0: not known
-  int imu_;                 // link
+  Eigen::VectorXd offset_;  // offsets of the encoders [rad, m]
+  Eigen::VectorXd counts_;  // counts per rad; 0: not known
+  int imu_;                 // link of the IMU
   double dt_;
   bool noise_;
   Random random_;
-  std::vector<double> numbers_;  // normal, of one reading
-  size_t used_ = 0;              // of them
+  std::vector<double> numbers_;  // normal random numbers of one reading
+  size_t used_ = 0;              // how many of them are used
   Eigen::VectorXd previous_theta_;
   TiltEstimate tilt_;
-  Eigen::Vector3d imu_velocity_ = Eigen::Vector3d::Zero();  // at the last reading, world [m/s]
-  // Of the robot's own joint angles, IMU and load cells, and the longest of them [ticks].
+  Eigen::Vector3d imu_velocity_ =
+      Eigen::Vector3d::Zero();  // velocity at the last reading, world [m/s]
+  // Latency of the robot's own joint angles, of its IMU and of its load cells, and the longest of
+  // these [ticks].
   size_t encoder_latency_ = 0, imu_latency_ = 0, force_latency_ = 0, latency_ = 0;
   std::array<std::vector<LoadCell>, 2> cells_;  // by Side and corner; empty: exact cells
   std::vector<Measurement> ring_;  // longest latency + 1 readings, the newest at newest_
   size_t newest_ = 0, filled_ = 0;
-  Measurement together_;  // of readings of different ages
+  Measurement together_;  // readings of different ages, combined
 };
 
 }  // namespace ayumi

@@ -1,7 +1,7 @@
 #pragma once
-// What every plant needs of a servo beside its linear law: the delay of its target, its error with
-// dead band and counts, its dry friction, and the torque that its motor can give.
-// docs/theory_plant.md, "Servos".
+// Properties of a servo that every plant needs in addition to the linear law: the delay of its
+// target, its error with dead band and counts, its dry friction, and the torque that its motor can
+// give. docs/theory_plant.md, "Servos".
 
 #include <Eigen/Dense>
 #include <vector>
@@ -33,18 +33,18 @@ struct TorqueRange {
   double low = 0, high = 0;
   bool low_by_voltage = false, high_by_voltage = false;
 };
-/// By peak torque, speed limit and voltage. Beyond its no-load speed a motor brakes, with more than
-/// its peak torque where it must.
+/// The torques that peak torque, speed limit and voltage allow. Beyond its no-load speed a motor
+/// brakes, if necessary with more than its peak torque.
 TorqueRange torque_range(const ActuatorLimits& limits, int dof, double rate);
 
 /// The bound of the torque over the rate is a chain of straight pieces: the peak torque up to the
-/// speed limit, its fall beyond, nothing, and what the voltage gives.
+/// speed limit, its fall beyond this limit, zero, and the bound by the voltage.
 enum class TorquePiece { peak, fall, none, voltage };
 
 /// One of these pieces in one direction: torque - slope rate, both counted in that direction.
 struct TorqueBound {
   TorquePiece piece = TorquePiece::none;
-  double torque = 0;  ///< at rest [N m, N]
+  double torque = 0;  ///< torque at rest [N m, N]
   double slope = 0;   ///< loss of torque with speed [N m s/rad, N s/m]
 };
 /// The piece that bounds the torque in `direction` (+1 or -1) at this rate.
@@ -54,22 +54,24 @@ TorqueBound torque_bound(const ActuatorLimits& limits, int dof, double rate, dou
 /// everything else exerts `external` on the joint [N m].
 double dry_friction(const ServoDescription& servo, double rate, double motor, double external);
 
-/// What the position loop does with its target during one step.
+/// The input of the position loop during one step.
 struct ServoError {
   double target = 0;    ///< with which kp (target - phi) is the torque of the position error
   bool inside = false;  ///< within the dead band: the position error exerts no torque
 };
-/// Of the servo of `dof` whose motor is at `phi` at the start of the step; `target` as it receives
-/// it [rad].
+/// The input of the servo of `dof`, whose motor is at `phi` at the start of the step. `target` is
+/// the target that the servo receives [rad].
 ServoError servo_error(const ServoDescription& servo, const Dof& dof, double target, double phi);
 
-/// The targets that servos act on: those they received their delay ago. A target holds from one
-/// step to the next; a delay that is not a whole number of steps gives the mean over the step.
+/// The targets that the servos use. Each servo uses the target that it received one delay ago. A
+/// target holds from one step to the next; a delay that is not a whole number of steps gives the
+/// mean over the step.
 class TargetDelay {
  public:
   explicit TargetDelay(const std::vector<ServoDescription>& servos);
 
-  /// Forgets the targets: before the first step the servos have always had its targets.
+  /// Forgets the targets. The servos then behave as if they had always had the targets of the next
+  /// step.
   void reset() { count_ = 0; }
 
   /// `targets` [rad, m] hold during the coming step of `dt` [s]. The result holds until the next
@@ -79,10 +81,10 @@ class TargetDelay {
  private:
   double mean(Eigen::Index joint, double delay, double dt) const;
 
-  std::vector<double> delay_;  // by dof [s]
+  std::vector<double> delay_;  // delay by dof [s]
   double longest_ = 0;         // [s]
-  Eigen::MatrixXd ring_;       // targets, dof x steps; the newest in column newest_
-  std::vector<double> dt_;     // of each column [s]
+  Eigen::MatrixXd ring_;       // targets, dof x steps; the newest target is in column newest_
+  std::vector<double> dt_;     // duration of each column [s]
   Eigen::Index newest_ = 0, count_ = 0;
   Eigen::VectorXd now_;
 };

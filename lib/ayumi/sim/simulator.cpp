@@ -81,7 +81,7 @@ Simulator::Simulator(const RobotModel& model, const CommandSeries& series,
   for (Eigen::Index j = 0; j < counts_.size(); ++j)
     counts_[j] =
         std::abs(model_->dofs()[static_cast<size_t>(j)].encoder.counts_per_degree) * 180 / M_PI;
-  model.sole(Side::left);  // throws when the robot has no soles
+  model.sole(Side::left);  // throws if the robot has no soles
   set_scenario(options.scenario);
   if (options.targets)
     events_.push_back({0, "controller", "the servo targets are those of the caller's function"});
@@ -157,7 +157,7 @@ const CommandSample& Simulator::command(long k) const {
 
 double Simulator::time() const { return static_cast<double>(tick_) * series_->dt; }
 
-/// Energy of the robot without its loads, rotors included [J].
+/// Energy of the robot without its loads, with its rotors [J].
 double Simulator::energy() const {
   const RobotData& data = plant_.data();
   double twice = 0;
@@ -178,8 +178,8 @@ double Simulator::energy() const {
   return 0.5 * twice;
 }
 
-/// The true state in the world in place of the estimate in the plan frame. The ZMP keeps its value
-/// in flight.
+/// Puts the true state in the world in place of the estimate in the plan frame. The ZMP keeps its
+/// value in flight.
 void Simulator::replace_estimate_by_truth() {
   const RobotData& data = plant_.data();
   Estimate& e = true_estimate_;

@@ -28,8 +28,8 @@ class Simulator {
   /// Error(bad_pattern) for an unknown link.
   void set_scenario(const std::vector<Disturbance>& scenario);
 
-  /// Keeps a sample per tick (the default) or only the figures of the verdict. Without samples the
-  /// energy is not computed.
+  /// Keeps a sample for each tick (the default), or only the figures of the verdict. Without
+  /// samples, the energy is not computed.
   void keep_samples(bool keep) { keep_samples_ = keep; }
 
   /// From now on gathers the verdict alone: of result() the outcome with its time, the largest tilt
@@ -52,10 +52,10 @@ class Simulator {
   bool advance(long ticks, const Progress& progress = {});
 
   long tick() const { return tick_; }  ///< number of ticks done
-  double time() const;                 ///< of the next tick [s]
+  double time() const;                 ///< time of the next tick [s]
   bool fell() const { return fell_; }
   const RobotState& state() const { return plant_.state(); }     ///< true state
-  const SimulationSample& last_sample() const { return last_; }  ///< of the last tick done
+  const SimulationSample& last_sample() const { return last_; }  ///< sample of the last tick done
   const Estimate& last_estimate() const { return estimate(); }
   /// The controller's plan for the last tick done: the command relative to the feet, or VIIP's own
   /// motion.
@@ -91,12 +91,12 @@ class Simulator {
   void take_forces();
   void note(double t, const std::vector<std::string>& texts);
 
-  const RobotModel* model_;      // of the robot that is simulated
-  const RobotModel* law_model_;  // by which the controller works
+  const RobotModel* model_;      // model of the robot that is simulated
+  const RobotModel* law_model_;  // model that the controller uses
   const CommandSeries* series_;
   SimulateOptions options_;
-  ActuatorLimits limits_;  // of the robot that is simulated
-  double h_;               // integrator step [s]
+  ActuatorLimits limits_;  // limits of the robot that is simulated
+  double h_;               // length of the integrator step [s]
   PlantInterface plant_;
   Sensors sensors_;
   Estimator estimator_;
@@ -104,23 +104,25 @@ class Simulator {
   Schedule schedule_;
   StepInput input_;
   Controller controller_;
-  ControlOutput changed_;           // the law's with the targets of the caller, or in counts
-  bool counts_targets_;             // servos receive whole counts of their encoders
-  Eigen::VectorXd counts_;          // per rad, where counts_targets_; 0: not known
-  Measurement corrected_;           // readings less encoder_offset_
-  Eigen::VectorXd encoder_offset_;  // estimated while standing [rad, m]; empty: none was found
-  CommandSample plan_;              // of the last tick done
+  ControlOutput changed_;   // output of the law with the caller's targets, or with whole counts
+  bool counts_targets_;     // servos receive whole counts of their encoders
+  Eigen::VectorXd counts_;  // counts per rad, for counts_targets_; 0: not known
+  Measurement corrected_;   // readings minus encoder_offset_
+  Eigen::VectorXd
+      encoder_offset_;  // offsets estimated while the robot stands [rad, m]; empty: none was found
+  CommandSample plan_;  // plan of the last tick done
   StepReport report_;
   Eigen::Vector3d zmp_ = Eigen::Vector3d::Zero();
   std::set<std::string> noted_;
-  std::vector<char> saturated_;  // by dof: an event exists
+  std::vector<char> saturated_;  // by dof: whether an event exists
   std::vector<SimulationEvent> events_;
   SimulationSample last_;
-  Estimate true_estimate_;  // in place of the estimator's, where the law knows the true state
+  Estimate
+      true_estimate_;  // used in place of the estimator's value if the law knows the true state
   std::vector<SimulationSample> samples_;
   SampleSink sink_;  // empty: samples are kept
   bool keep_samples_ = true, verdict_only_ = false, fell_ = false;
-  bool touched_ = false;  // itself: an event exists
+  bool touched_ = false;  // whether an event says that the robot touched itself
   EnergyBalance work_;
   long tick_ = 0, planned_ = 0, end_ = 0;  // ticks done, ticks without a fall, last tick
 };

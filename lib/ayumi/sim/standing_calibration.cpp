@@ -21,25 +21,25 @@ namespace {
 // degrees leaves HOAP-1 0.6.
 constexpr double kOnEdge = 0.15;
 
-// The same up to which an ankle turns, and from which its sole is at rest. Chosen: halfway, and
-// less, so that the noise of the load cells does not end a rest.
+// Share of this distance up to which an ankle turns, and share from which its sole is at rest.
+// Chosen: half of it, and less, so that the noise of the load cells does not end a rest.
 constexpr double kInside = 0.5;
 constexpr double kAtRest = 0.3;
 
-// Tilt and distance of a sole of the planned posture from its planned place that count as none
-// [rad], [m]. Chosen: what a solved posture leaves is a thousandth of it; recorded postures are off
-// by more.
+// Tilt and distance of a sole of the planned posture from its planned place that count as zero
+// [rad], [m]. Chosen: solved postures are a thousand times closer, and recorded postures are off by
+// more.
 constexpr double kPlanned = 1e-3;
 constexpr double kNear = 1e-3;
 
-// Share of the weight that a foot bears at least when it stands. Chosen: as in control/estimator.
+// Smallest share of the weight on a foot that stands. Chosen: as in control/estimator.
 constexpr double kLeastLoad = 0.05;
 
 // Rate of an ankle whose sole stands on its edge [rad/s]. Chosen: one degree takes 0.6 s, slow
 // beside the rocking of the robot.
 constexpr double kTurnRate = 0.03;
 
-// Rate at which a tilt that both soles share is taken back [1/s]. Chosen: slow beside kTurnRate.
+// Rate at which a common tilt of both soles is undone [1/s]. Chosen: slow beside kTurnRate.
 constexpr double kLevelRate = 3;
 
 // Low pass of the centre of pressure [s]. Chosen: a period of the rocking at 30 Hz.
@@ -55,11 +55,11 @@ constexpr double kTiltFilter = 0.1;
 constexpr double kLevel = 0.0035;
 constexpr double kRest = 0.6;
 
-// Least offset that is reported [rad]. Chosen: a third of a degree, beyond the bias of HOAP-1's IMU
-// of 5 mrad, by which all ankles turn.
+// Smallest offset that is reported [rad]. Chosen: a third of a degree, beyond the bias of HOAP-1's
+// IMU of 5 mrad, by which all ankles turn.
 constexpr double kReported = 0.006;
 
-constexpr int kAnkleJoints = 2;  // Definition: of a leg, the ones nearest to the foot
+constexpr int kAnkleJoints = 2;  // Definition: the joints of a leg that are nearest to the foot
 
 }  // namespace
 
@@ -107,8 +107,9 @@ bool StandingCalibration::needed(const Measurement& m, const CommandSample& plan
   return false;
 }
 
-// The ground turns a sole that stands on its toes back by its force there; the ankle follows. A
-// body that leans over flat soles stands up when its soles turn on with the lean.
+// If a sole stands on its toes, the force of the ground turns it back, and the ankle follows. If
+// the body leans over flat soles, it becomes upright when the soles turn further in the direction
+// of the lean.
 void StandingCalibration::update(const Measurement& m, const Estimate& e,
                                  const std::array<Isometry3d, 2>& feet) {
   const double least = kLeastLoad * model_->mass() * kGravity;

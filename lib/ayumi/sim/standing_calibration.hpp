@@ -1,8 +1,9 @@
 #pragma once
 // Offsets of the ankles' encoders, estimated while the robot stands before its motion. A sole whose
-// ankle reads wrongly stands on an edge, because stiff servos hold what is read. The ankles then
-// turn until every sole bears inside and the soles are level by the IMU; what they have turned is
-// what their encoders read in excess. docs/theory_plant.md, "Encoders that are off".
+// ankle encoder has an offset stands on an edge, because a stiff servo holds the angle that its
+// encoder reads. The ankles then turn until every sole carries its load inside its edges and,
+// according to the IMU, the soles are level. The angle by which an ankle has turned is the offset
+// of its encoder. docs/theory_plant.md, "Encoders that are off".
 
 #include <array>
 
@@ -13,28 +14,31 @@ namespace ayumi {
 
 class StandingCalibration {
  public:
-  /// The model must outlive this object. `dt`: of one update [s].
+  /// The model must outlive this object. `dt` is the time of one update [s].
   StandingCalibration(const RobotModel& model, double dt);
 
-  /// Whether a sole bears on an edge, or does not bear at all, although the posture of the plan
+  /// Whether a sole carries load on an edge, or no load at all, although the posture of the plan
   /// puts both soles flat on the ground and its ZMP well inside their hull.
   bool needed(const Measurement& measurement, const CommandSample& plan);
 
   /// One tick at rest on both feet: the offsets change. `measurement` has readings that are already
-  /// corrected by offsets(), and `estimate` is of it; `feet`: planned sole frames.
+  /// corrected by offsets(), and `estimate` is computed from it. `feet` are the planned sole
+  /// frames.
   void update(const Measurement& measurement, const Estimate& estimate,
               const std::array<Eigen::Isometry3d, 2>& feet);
 
-  /// Whether the two feet have turned differently. Otherwise the ground may as well slope.
+  /// Whether the two feet have turned by different angles. If they have turned by the same angle,
+  /// the ground may slope.
   bool found() const;
 
-  /// Every sole has borne inside, and level, for some time.
+  /// Whether every sole has carried its load inside its edges, and level, for some time.
   bool done() const;
 
-  /// By how much the encoders read too much [rad], by dof; zero but at the ankles.
+  /// The offset of each encoder, reading minus true angle [rad], by dof. It is zero for all joints
+  /// except the ankles.
   const Eigen::VectorXd& offsets() const { return offsets_; }
 
-  /// One line for each ankle whose offset is worth a word.
+  /// One line for each ankle whose offset is large enough to report.
   std::vector<std::string> lines() const;
 
  private:
@@ -46,10 +50,11 @@ class StandingCalibration {
   std::array<ConvexPolygon, 2> sole_;
   std::array<double, 2> widest_;  // distance of the middle of each sole from its edge [m]
   Eigen::VectorXd offsets_;
-  std::array<Eigen::Vector3d, 2> turn_;             // of each sole up to now [rad]
-  std::array<Eigen::Vector2d, 2> cop_;              // from the middle of the sole, low pass [m]
-  Eigen::Vector3d tilt_ = Eigen::Vector3d::Zero();  // of both soles, low pass [rad]
-  double at_rest_ = 0;                              // time for which there was nothing to turn [s]
+  std::array<Eigen::Vector3d, 2> turn_;  // turn of each sole up to now [rad]
+  std::array<Eigen::Vector2d, 2>
+      cop_;  // centre of pressure relative to the middle of the sole, after a low pass [m]
+  Eigen::Vector3d tilt_ = Eigen::Vector3d::Zero();  // tilt of both soles, after a low pass [rad]
+  double at_rest_ = 0;                              // time without anything to turn [s]
 };
 
 }  // namespace ayumi

@@ -19,7 +19,7 @@ class TiltEstimate {
   void update(const Eigen::Vector3d& gyro, const Eigen::Vector3d& force, double dt);
 
   const Eigen::Quaterniond& attitude() const { return attitude_; }  ///< unit to world
-  const Eigen::Vector3d& gyro_bias() const { return bias_; }        ///< [rad/s]
+  const Eigen::Vector3d& gyro_bias() const { return bias_; }        ///< bias of the gyro [rad/s]
 
  private:
   bool started_ = false;

@@ -15,8 +15,8 @@ namespace ayumi {
 
 namespace {
 
-/// Cases between two looks of the test. Chosen: enough for many threads; at most so many cases are
-/// run in vain. The results do not depend on it.
+/// Number of cases between two examinations by the test. Chosen: enough for many threads. At most
+/// so many cases are run without need. The results do not depend on it.
 constexpr long kBatch = 64;
 /// Largest number of runs, in units of those without a failure. Chosen: a robot that fails with a
 /// fifth of the permitted probability is then certified with a probability of 96 % (p0 = 0.01,
@@ -83,7 +83,7 @@ KnownResults run_cases(const UncertainTask& task, const CertifyOptions& options,
   long failures = 0;
   for (long begin = 0; begin < most;) {
     long end = std::min(most, begin + kBatch * options.shards);
-    // Without another failure the test stops there, and what comes behind would be run in vain.
+    // Without another failure the test stops there, and later cases would be run without need.
     if (!whole && failures < static_cast<long>(test.plan().size()))
       end = std::min(end, std::max(begin + 1, test.plan()[static_cast<size_t>(failures)]));
     std::vector<long> wanted;
@@ -165,7 +165,7 @@ std::vector<ValueInfluence> influences(const UncertainTask& task, const CertifyO
       found[i].rate[half] =
           clopper_pearson(found[i].failures[half], found[i].runs[half], options.confidence);
   }
-  // A value that is the same in all runs, such as a stated size of a push, says nothing.
+  // A value that is the same in all runs, such as a fixed size of a push, shows no influence.
   std::vector<ValueInfluence> varying;
   for (size_t i = 0; i < found.size(); ++i)
     if (std::adjacent_find(drawn[i].begin(), drawn[i].end(), std::not_equal_to<>()) !=

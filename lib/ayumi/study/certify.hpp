@@ -18,19 +18,19 @@ namespace ayumi {
 
 struct CertifyOptions {
   double failure = 0.01;     ///< p0
-  double confidence = 0.95;  ///< of every statement
-  long most = 0;             ///< number of runs at most; 0: ten times failure_free_runs()
+  double confidence = 0.95;  ///< confidence of every statement
+  long most = 0;             ///< largest number of runs; 0: ten times failure_free_runs()
   bool all = false;          ///< run all of them; the verdict stays that of the sequential test
   std::uint64_t seed = 1;
   int threads = 0;  ///< 0: all cores; results do not depend on it
-  /// Only the cases whose number leaves the remainder `shard` by `shards`, all of them, without a
-  /// verdict.
+  /// Runs only the cases whose number divided by `shards` leaves the remainder `shard`. It runs all
+  /// of them, without a verdict.
   long shard = 0, shards = 1;
 };
 
-/// Results by the number of the case; empty: not known.
+/// Results by the number of the case. Empty if a result is not known.
 using KnownResults = std::vector<std::optional<CaseResult>>;
-/// Called between runs with everything that is known, never from two threads at once.
+/// Called between runs with all known results, and never from two threads at once.
 using ResultsKnown = std::function<void(const KnownResults&)>;
 
 /// Number of cases that the options may need.
@@ -52,7 +52,7 @@ void run_numbers(const UncertainTask& task, const std::vector<long>& numbers,
 /// infinitely bad; infinite: no bound.
 struct QuantileBounds {
   double cog_error = 0, torque = 0, foot_tilt = 0;
-  long runs = 0;  ///< 0: the test stopped before
+  long runs = 0;  ///< number of runs; 0: the test stopped before
 };
 
 struct Certificate {
@@ -68,15 +68,17 @@ Certificate certificate(const CertifyOptions& options, const KnownResults& resul
 /// The failures of two laws or patterns in the same cases.
 struct PairedComparison {
   long pairs = 0, both = 0, only_first = 0, only_second = 0;
-  double p_value = 1;       ///< McNemar's exact test, two-sided
-  RateInterval difference;  ///< of the failure probabilities, first - second
+  double p_value = 1;  ///< McNemar's exact test, two-sided
+  RateInterval
+      difference;  ///< interval of the difference of the failure probabilities, first - second
 };
 PairedComparison compare(const KnownResults& first, const KnownResults& second, double confidence);
 
-/// What one value does to the robot.
+/// The influence of one value on the outcome of the runs.
 struct ValueInfluence {
   std::string name;
-  double correlation = 0;  ///< Spearman's, of the value and the severity() of the run
+  double correlation =
+      0;  ///< Spearman's rank correlation of the value and the severity() of the run
   /// Failures and runs of the lower and the upper half of the values; each half has the same
   /// probability.
   std::array<long, 2> failures = {0, 0}, runs = {0, 0};

@@ -12,7 +12,7 @@ namespace ayumi {
 
 namespace {
 
-/// Standing on both feet, and on the left one with the COG over its middle.
+/// The robot stands on both feet, or on the left foot with the COG over its middle.
 std::vector<Reach> reaches(const RobotModel& model) {
   CommandSeries both = sample(model, stand_pattern(model, 0.01));
   CommandSeries left = both;

@@ -18,47 +18,49 @@ namespace ayumi {
 
 namespace {
 
-// Share of the room between standing still and a limit that a timing may use at first. Chosen: what
-// the smoothing and the ticks between two points change is less.
+// Share of the room between standing still and a limit that a timing may use at first. Chosen: the
+// smoothing and the ticks between two points change less than the rest.
 constexpr double kFirstShare = 0.97;
-// Factor on it around an error of the check: the limit over the value, within these bounds, and the
-// time to either side [s of the path]. Chosen: one to three rounds remove the errors that were
-// seen.
+// Factor on this share around an error of the check: the limit over the value, within these bounds,
+// and the time to either side [s of the path]. Chosen: one to three rounds remove the errors that
+// were seen.
 constexpr double kLeastShareStep = 0.9, kMostShareStep = 0.94;
 constexpr double kAround = 0.04;
-// Courses of time that are checked. Chosen: twice the most that a walk needed.
+// Largest number of timings that are checked. Chosen: twice the largest number that a walk needed.
 constexpr int kMostRounds = 10;
-// Timings of which each gives the tangents of the next, in the first and in later rounds. Measured:
-// the third changes the duration by less than 0.1 %; a later round begins near its result.
+// Number of timings, each of which gives the tangents of the next one, in the first and in later
+// rounds. Measured: the third changes the duration by less than 0.1 %; a later round begins near
+// its result.
 constexpr int kTimings = 3, kLaterTimings = 2;
 
 // Width of one of the three boxes that smooth a timing [s]: s'' then has no jump and no
 // kink. Chosen: servos of small robots answer within 30 ms, and the motion gets 36 ms longer.
 constexpr double kBox = 0.013;
 
-// Period of sampling where the pace of the path is sought [s]. Chosen: a tenth of the usual work.
+// Period of sampling in the search for the pace of the path [s]. Chosen: a tenth of the usual work.
 constexpr double kSearchPeriod = 0.01;
-// Spacing of the points there [s]. Chosen: the peaks of a swing of 0.2 s have several.
+// Spacing of the points in this search [s]. Chosen: the peaks of a swing of 0.2 s have several.
 constexpr double kSearchSpacing = 0.02;
 // Relative accuracy of that pace, and by how much the path is then slower. Chosen: coarse samples
 // miss the peaks by about a percent.
 constexpr double kPaceAccuracy = 0.02;
 constexpr double kPaceSpare = 1.01;
-// Factor between paces where the ZMP leaves the support, which no row foretells. Chosen.
+// Factor between paces if the ZMP leaves the support, because no row predicts this. Chosen.
 constexpr double kSlowerPace = 1.25;
-// Paces that are tried. Chosen: more than the search needs from one end of its range to the other.
+// Largest number of paces that are tried. Chosen: more than the search needs from one end of its
+// range to the other.
 constexpr int kMostPaces = 25;
-// Factor by which the path is slower where the limits stand against each other, and how often.
-// Chosen: the share of the limits that is used asks for 1.5 %.
+// Factor by which the path becomes slower where limits contradict each other, and the largest
+// number of times. Chosen: the share of the limits that is used asks for 1.5 %.
 constexpr double kSlowerPath = 1.03;
 constexpr int kMostSlower = 6;
 
-// Least factor on the time of the still part of a pause, where its ends last longer than on the
-// path. Definition: the largest pace is four times that of the path.
+// Smallest factor on the time of the part of a pause without motion, if its ends last longer than
+// on the path. Definition: the largest pace is four times that of the path.
 constexpr double kLeastStill = 0.25;
 
-// Margin of the ZMP that is kept where 80 % of its own is less, over half the width of the narrower
-// sole. Chosen: a quarter.
+// Margin of the ZMP that is kept where 80 % of the path's margin is smaller, as a share of half the
+// width of the narrower sole. Chosen: a quarter.
 constexpr double kLeastMargin = 0.25;
 
 bool keys_fly(const Pattern& pattern) {
@@ -86,8 +88,8 @@ class LocalSearch {
 
   LocalPace run() {
     result_.path_scale = keys_fly(pattern_) ? 1 : path_scale();
-    // The least margin is given up first, because a posture may stand nearer to the edge at any
-    // pace; then the path is slower.
+    // The smallest margin is given up first, because a posture may be nearer to the edge at every
+    // pace. After that, the path becomes slower.
     double least_margin = kLeastMargin * half_sole_width(model_);
     for (int trial = 0; trial <= kMostSlower; ++trial) {
       result_.limited_by.clear();
@@ -104,14 +106,14 @@ class LocalSearch {
     std::vector<double> u, x;
   };
 
-  /// A pause on the path, and the part of it that is still there, too.
+  /// A pause on the path, and the part of the pause without motion.
   struct Pause {
     double begin = 0, end = 0;  ///< places
     double length = 0;          ///< of the given pattern [s]
     TimeSpan still;             ///< places
   };
 
-  // At one pace, but for the pauses that are kept.
+  // Plays the path at one pace, except in the pauses that are kept.
   Pattern at_scale(double scale) const {
     Pattern path = retimed(model_, pattern_, scale);
     std::vector<TimeSpan> scaled = pauses_;
@@ -119,7 +121,7 @@ class LocalSearch {
     return pauses_.empty() ? path : with_pauses_stretched(model_, path, scaled, 1 / scale);
   }
 
-  // A faster path may come to rest only later in a pause.
+  // On a faster path, the motion in a pause may come to rest later.
   void find_pauses() {
     kept_.clear();
     if (pauses_.empty()) return;
@@ -155,7 +157,7 @@ class LocalSearch {
     timing_ = {};
   }
 
-  // Until the check passes, or the limits that are left stand against each other.
+  // Repeats until the check passes, or until the remaining limits contradict each other.
   bool play_rounds() {
     for (int round = 1; round <= kMostRounds; ++round) {
       const std::optional<Timing> timing = quickest();
@@ -169,8 +171,8 @@ class LocalSearch {
     return false;
   }
 
-  // The smallest scale at which the whole path keeps its limits, by coarse samples; the largest one
-  // that was tried where none does.
+  // The smallest scale at which the whole path keeps its limits, found with coarse samples. If
+  // there is none, the largest scale that was tried.
   double path_scale() {
     PathLimitOptions path = options_.path;
     path.own_margin = 0;
@@ -206,7 +208,7 @@ class LocalSearch {
     }
   }
 
-  // The timing of this round; none where the limits stand against each other.
+  // The timing of this round. None if the limits contradict each other.
   std::optional<Timing> quickest() {
     const std::vector<TimingPoint>& points = limits_->points();
     const int timings = timing_.x.empty() ? kTimings : kLaterTimings;
@@ -230,7 +232,7 @@ class LocalSearch {
     return timing_;
   }
 
-  // Samples and checks; true when the check passes.
+  // Samples and checks the result. Returns true if the check passes.
   bool play(const Timing& timing) {
     report(progress_, {"retime", -1, "round " + std::to_string(result_.rounds)});
     const std::vector<double> times = times_of(timing.x);
@@ -263,7 +265,7 @@ class LocalSearch {
       if (limits_->points()[i].at >= begin && limits_->points()[i].at <= end) share_[i] *= factor;
   }
 
-  // A place on the path as a time of the given pattern.
+  // The time of the given pattern at a place on the path.
   double given_time(double place) const {
     double time = place / result_.path_scale;
     for (const Pause& pause : kept_) {
@@ -273,7 +275,8 @@ class LocalSearch {
     return time;
   }
 
-  // The time by point. The still part of a pause lasts until the whole pause has its length.
+  // The time of each point. The part of a pause without motion lasts until the whole pause has its
+  // length.
   std::vector<double> times_of(const std::vector<double>& x) const {
     const std::vector<TimingPoint>& points = limits_->points();
     std::vector<double> times = times_along(points, x);
@@ -298,7 +301,7 @@ class LocalSearch {
     return times;
   }
 
-  // The place s by ticks, smoothed by three boxes, from rest to rest.
+  // The place s at each tick, smoothed by three boxes, from rest to rest.
   TimeCourse course_of(const std::vector<double>& x, const std::vector<double>& times) const {
     const std::vector<TimingPoint>& points = limits_->points();
     const int half = std::max(1, static_cast<int>(std::lround(kBox / options_.dt / 2)));
@@ -311,7 +314,7 @@ class LocalSearch {
       const double t = options_.dt * static_cast<double>(k);
       while (i + 2 < times.size() && times[i + 1] <= t) ++i;
       const double step = points[i + 1].at - points[i].at;
-      const double lasts = 2 * step / (std::sqrt(x[i]) + std::sqrt(x[i + 1]));  // but in a pause
+      const double lasts = 2 * step / (std::sqrt(x[i]) + std::sqrt(x[i + 1]));  // except in a pause
       const double later = (t - times[i]) * lasts / (times[i + 1] - times[i]);
       const double u = (x[i + 1] - x[i]) / (2 * step);
       at.push_back(std::min(points[i].at + later * (std::sqrt(x[i]) + 0.5 * u * later), end));
@@ -355,14 +358,14 @@ class LocalSearch {
   const Progress& progress_;
   const double given_duration_;
   LocalPace result_;
-  std::vector<TimeSpan> pauses_;  // of the given pattern, where they are kept
+  std::vector<TimeSpan> pauses_;  // pauses of the given pattern, if they are kept
   std::vector<Pause> kept_;
   Pattern path_pattern_;
   CommandSeries path_;
   std::optional<PathLimits> limits_;
   Timing timing_;
-  std::vector<double> share_;  // by point
-  bool stuck_ = false;         // the limits stand against each other
+  std::vector<double> share_;  // share of the room that may be used, by point
+  bool stuck_ = false;         // the limits contradict each other
 };
 
 }  // namespace

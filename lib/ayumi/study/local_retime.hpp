@@ -3,7 +3,7 @@
 // path is the motion at the fastest pace that all of it keeps, because the COG that is solved from
 // the ZMP depends on the pace. Along the path, math/path_timing finds the quickest timing within
 // the rows of study/path_limits, which is then made smooth, sampled and checked. Where the check
-// finds an error, less of the limits may be used, and the next round begins.
+// finds an error, a smaller share of the limits may be used, and the next round begins.
 //
 // Where nothing moves, no limit binds: such pauses keep their length, or are passed at the largest
 // pace.
@@ -19,23 +19,24 @@
 namespace ayumi {
 
 struct LocalRetimeOptions {
-  PathLimitOptions path;                ///< its least margin and pauses are set by the search
-  bool keep_pauses = false;             ///< they last as long as in the given pattern
-  double dt = 0.001;                    ///< of sampling [s]
+  PathLimitOptions path;                ///< the search sets its smallest margin and its pauses
+  bool keep_pauses = false;             ///< pauses last as long as in the given pattern
+  double dt = 0.001;                    ///< period of sampling [s]
   double fastest = 0.05, slowest = 20;  ///< range of the uniform scale of the path
 };
 
 struct LocalPace {
-  bool found = false;                 ///< a timing passes the check
-  Pattern pattern;                    ///< with this timing, as a table
-  CommandSeries series;               ///< its samples
-  ConsistencyReport report;           ///< of them
-  double scale = 1;                   ///< duration over that of the given pattern
-  double path_scale = 1;              ///< of the path, uniform
-  std::vector<BindingLimit> binding;  ///< what limits the pace, the longest first
-  int rounds = 0;                     ///< timings that were checked
-  std::string limited_by;             ///< why none was found, in words
-  bool by_posture = false;            ///< because of the posture, which no timing changes
+  bool found = false;        ///< a timing passes the check
+  Pattern pattern;           ///< the pattern with this timing, as a table
+  CommandSeries series;      ///< samples of the pattern
+  ConsistencyReport report;  ///< check of the samples
+  double scale = 1;          ///< duration divided by that of the given pattern
+  double path_scale = 1;     ///< uniform scale of the path
+  std::vector<BindingLimit>
+      binding;              ///< limits that decide the pace, the one with the largest share first
+  int rounds = 0;           ///< number of timings that were checked
+  std::string limited_by;   ///< the reason why none was found, in words
+  bool by_posture = false;  ///< limited by the posture, which no timing changes
 };
 
 /// The table of the result gets the file name `table`. Flights keep their pace. Throws

@@ -15,7 +15,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Least s'. Definition: at a hundredth of the path's pace the robot stands as good as still.
+// Least s'. Definition: at a hundredth of the path's pace the robot is practically at rest.
 constexpr double kLeastPace = 0.01;
 
 // Time beside a flight in which s' stays 1, besides the samples whose rates mix it with support
@@ -37,8 +37,8 @@ constexpr double kBinds = 0.01;
 // Definition: the name of the rows of limits/support.cpp.
 const char* const kSupportRows = "support";
 
-// Limits of the posture and of the commands say nothing of time, and what is said of a landing is a
-// wish.
+// Limits of the posture and of the commands do not depend on time, and the rows of a landing are
+// only soft goals.
 bool bounds_time(const Limit& limit) {
   return limit.place_rows &&
          std::any_of(limit.findings.begin(), limit.findings.end(), [](const FindingSpec& spec) {
@@ -52,7 +52,7 @@ bool is_linear_in_time(const RowBlock& block) {
          std::holds_alternative<JointRow>(block.rule);
 }
 
-// What a block's rows need of a point: values at (u, x) and slopes.
+// Values and slopes of a block's rows at (u, x), for one point.
 struct Slopes {
   VectorXd value, of_u, of_x;
 };
@@ -198,7 +198,7 @@ void PathLimits::linearize_point(size_t i, double u, double x, double share) {
     origins_[i].push_back(&block);
   };
   const auto add_both = [&](const RowBlock& block, int row, double value, double a, double b) {
-    const double still = value - a * u - b * x;  // by the tangent
+    const double still = value - a * u - b * x;  // bounds by the tangent
     if (block.upper[row] < kUnbounded) add(block, a, b, block.upper[row] - still);
     if (block.lower[row] > -kUnbounded) add(block, -a, -b, still - block.lower[row]);
   };
@@ -310,7 +310,7 @@ std::vector<BindingLimit> PathLimits::binding(const std::vector<double>& u,
     const TimingPoint& point = timing_[i];
     std::string limit;
     double least = kBinds;
-    for (size_t end : {i, i + 1}) {  // the rows of both ends hold for u
+    for (size_t end : {i, i + 1}) {  // the rows of both ends also hold for u
       for (size_t r = 0; r < timing_[end].rows.size(); ++r) {
         const TimingRow& row = timing_[end].rows[r];
         const double room = row.most - row.u * u[i] - row.x * x[end];

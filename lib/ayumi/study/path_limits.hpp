@@ -18,18 +18,20 @@ namespace ayumi {
 
 struct PathLimitOptions {
   CheckOptions check;
-  double spacing = 0.01;    ///< of the points on the path [s]
-  double own_margin = 0.8;  ///< share of the ZMP's margin at the path's own pace that is kept
-  double least_margin = 0;  ///< kept where that is less [m]
+  double spacing = 0.01;  ///< spacing of the points on the path [s]
+  double own_margin =
+      0.8;  ///< share of the ZMP's margin at the path's own pace that the timing keeps
+  double least_margin = 0;          ///< margin that is kept where this share is smaller [m]
   double most_margin = kUnbounded;  ///< no larger margin is kept [m]
   double most_pace = 4;             ///< largest s'
-  std::vector<TimeSpan> pauses;     ///< of the path, where s' is at most 1 [s]
+  std::vector<TimeSpan> pauses;     ///< windows of the path in which s' is at most 1 [s]
 };
 
-/// Which limit binds a timing, and for how much of it.
+/// A limit that decides a timing, and for which share of the time.
 struct BindingLimit {
-  std::string limit;  ///< name of its rows; "pace": the largest s'; "pause"; "" where none binds
-  double share = 0;   ///< of the duration
+  std::string
+      limit;  ///< name of its rows; "pace": the largest s'; "pause"; "" where no limit is active
+  double share = 0;  ///< share of the duration
 };
 
 /// A row of one point with its origin.
@@ -44,7 +46,7 @@ class PathLimits {
   /// `series` is the path. Model and series must outlive this.
   PathLimits(const RobotModel& model, const CommandSeries& series, const PathLimitOptions& options);
 
-  /// Of the path, with rows from linearize().
+  /// Points of the path, with rows after linearize().
   const std::vector<TimingPoint>& points() const { return timing_; }
 
   /// Makes the rows about a timing with these u and x by point. `share` by point: of the room
@@ -60,18 +62,19 @@ class PathLimits {
 
   bool flies() const { return flies_; }
 
-  /// What the path allows when it is played at one pace.
+  /// The values that the path allows if it is played at one pace.
   struct UniformPace {
     bool keeps = false;  ///< its own pace keeps all rows
-    double pace = 0;     ///< the largest that keeps them, but for those of the ZMP
+    double pace = 0;     ///< the largest pace that keeps all rows except those of the ZMP
   };
   UniformPace uniform_pace();
 
-  /// Which rows bind a timing with these times by point, the longest first.
+  /// The rows that are active for a timing with these times by point, the one with the largest
+  /// share first.
   std::vector<BindingLimit> binding(const std::vector<double>& u, const std::vector<double>& x,
                                     const std::vector<double>& times) const;
 
-  /// Names of the rows that standing still breaks at a point.
+  /// Names of the rows that a robot at rest violates at a point.
   std::string broken_at(int point) const;
 
  private:
@@ -100,7 +103,7 @@ class PathLimits {
   std::vector<Forces> forces_;                         ///< by point
   std::vector<TimingPoint> timing_;
   std::vector<std::vector<const RowBlock*>> origins_;  ///< of the rows in timing_
-  std::vector<const RowKind*> cap_;                    ///< by point: what bounds x; null: nothing
+  std::vector<const RowKind*> cap_;  ///< by point: the limit that bounds x; null: none
 };
 
 }  // namespace ayumi

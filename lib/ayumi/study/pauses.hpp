@@ -1,6 +1,6 @@
 #pragma once
-// Pauses of a motion: spans in which nothing moves. No limit binds there, so no limit says how long
-// they last: their length is the author's.
+// Pauses of a motion: spans in which nothing moves. No limit is active there, so the author decides
+// how long they last.
 
 #include <utility>
 #include <vector>

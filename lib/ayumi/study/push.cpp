@@ -66,10 +66,10 @@ double near_distance(const Simulator& run) {
 /// A whole run without a push.
 struct Unpushed {
   RecordedRun states;
-  // By tick, the largest from there on.
+  // Values by tick: the largest from this tick on.
   std::vector<double> divergence = {};  // in units of z
-  std::vector<double> foot_tilt = {};   // of the stance foot [rad]
-  double trunk_tilt = 0;                // largest of the whole run [rad]
+  std::vector<double> foot_tilt = {};   // tilt of the stance foot [rad]
+  double trunk_tilt = 0;                // largest tilt of the trunk in the whole run [rad]
 };
 
 /// A simulator just before the pushes of a phase, how the run goes on without a push, and whether
@@ -117,11 +117,11 @@ class Search {
   const PushOptions& options_;
   const PushCase& case_;
   double dt_;
-  bool plan_moves_;  // the plan follows the robot, so that nearness to it shows nothing
+  bool plan_moves_;  // the plan follows the robot, so a small distance from it shows nothing
   const std::atomic<bool>& stop_;
   std::vector<Variation> variations_;
   std::map<int, bool> tried_;
-  size_t hardest_ = 0;  // the variation that failed last: it is tried first
+  size_t hardest_ = 0;  // the variation that failed last is tried first
   int runs_ = 0;
 };
 
@@ -136,7 +136,7 @@ Simulator Search::pushed(double impulse, const Variation& variation) const {
   return run;
 }
 
-// Until the run is in the set from which the robot stands, or to its end.
+// Simulates until the run is in the set from which the robot stands, or until its end.
 bool Search::survives(Simulator& run) {
   const double after = case_.phase.at + options_.time_spread + options_.duration;
   while (run.advance(kTicksPerTest) && !run.fell()) {
@@ -255,7 +255,7 @@ struct Study {
   const PushOptions& options;
   CommandSeries stand;
   std::vector<PushPhase> phases;
-  std::vector<ControllerSpec> controllers;  // open loop first
+  std::vector<ControllerSpec> controllers;  // open loop comes first
   std::vector<PushBaseline> baselines;      // phase by phase, controller by controller
   std::atomic<bool> stop = false;
 
@@ -269,7 +269,7 @@ struct Study {
   void search(size_t i, PushCase& found);
 };
 
-// Of a controller, standing or not: up to its end, copied on the way for each phase.
+// The run of a controller to its end, standing or not. It is copied on the way for each phase.
 void Study::run_baselines(size_t controller, bool standing) {
   std::vector<std::pair<long, PushBaseline*>> branches;  // by tick
   for (size_t p = 0; p < phases.size(); ++p)

@@ -28,7 +28,7 @@ std::vector<Interval> left_steps(const CommandSeries& series) {
   return steps;
 }
 
-/// The series with the supports of the steps that VIIP makes.
+/// The series in which the supports are those of the steps that VIIP makes.
 CommandSeries with_viip_supports(const RobotModel& model, const CommandSeries& series,
                                  const SimulateOptions& options) {
   SimulateOptions simulate = options;

@@ -17,25 +17,25 @@ namespace {
 // Bounds of the set. Measured by ayumi_early_verdicts (docs/measurements/pushes.md, "Early
 // verdicts").
 
-/// Of the deviation of the DCM, in units of z: 4.4 mm on HOAP-1. Chosen: with 0.045, the robot fell
-/// or did not come to rest in 5 of 305 pushes in open loop after an early verdict, with 0.03 in
-/// none.
+/// Bound of the deviation of the DCM, in units of z: 4.4 mm on HOAP-1. Chosen: with 0.045, the
+/// robot fell or did not come to rest in 5 of 305 pushes in open loop after an early verdict, with
+/// 0.03 in none.
 constexpr double kDcm = 0.02;
-/// Of the deviation of the ZMP, in units of z: 10 mm on HOAP-1. Chosen: with 0.09 and a bound of
-/// 0.03 for the DCM, 2 of 305 early verdicts in open loop are wrong.
+/// Bound of the deviation of the ZMP, in units of z: 10 mm on HOAP-1. Chosen: with 0.09 and a bound
+/// of 0.03 for the DCM, 2 of 305 early verdicts in open loop are wrong.
 constexpr double kZmp = 0.045;
-/// Of the tilt of the base and of the stance foot [rad]. Chosen: at twice the value, the mean time
-/// to a verdict changes by less than 1 %.
+/// Bound of the tilt of the base and of the stance foot [rad]. Chosen: at twice the value, the mean
+/// time to a verdict changes by less than 1 %.
 constexpr double kTilt = 0.003;
-/// Of the deflection of a joint from the reference [rad, m]. Chosen: at a third and at twice the
-/// value, the mean time to a verdict changes by less than 1 %.
+/// Bound of the deflection of a joint from the reference [rad, m]. Chosen: at a third and at twice
+/// the value, the mean time to a verdict changes by less than 1 %.
 constexpr double kDeflection = 0.01;
-/// Of the posture of the reference [rad, m], which the law itself leads back. Chosen: about twice
-/// the largest turn by which DTAD absorbs a push (control/angular_momentum). At twice the value,
-/// verdicts come 3 % sooner.
+/// Bound of the deviation of the reference's posture [rad, m], which the law itself removes.
+/// Chosen: about twice the largest turn by which DTAD absorbs a push (control/angular_momentum). At
+/// twice the value, verdicts come 3 % sooner.
 constexpr double kReference = 0.8;
 /// Time before the end after which no verdict is early [s]. Chosen: the ZMP is judged over the last
-/// half second, and half a second before that takes back what is left of a deviation.
+/// half second, and a deviation decays in the half second before that.
 constexpr double kTimeLeft = 1;
 
 bool is_same_everywhere(const World& world) {
@@ -113,7 +113,7 @@ double RecordedRun::deviation(const Simulator& run) const {
                 largest(here.deflection - there->deflection) / kDeflection,
                 largest(here.reference_theta - there->reference_theta) / kReference,
                 angle_between(here.reference_attitude, there->reference_attitude) / kReference});
-  if (!same_everywhere_)  // elsewhere, the ground is another
+  if (!same_everywhere_)  // at another place, the ground is different
     d = std::max({d, (here.position - there->position).norm() / (kDcm * z),
                   angle_between(here.attitude, there->attitude) / kTilt});
   return d;
@@ -121,7 +121,7 @@ double RecordedRun::deviation(const Simulator& run) const {
 
 bool RecordedRun::contains(const Simulator& run, double share) const {
   if (states_.empty() || states_.back().time - run.time() < kTimeLeft) return false;
-  // The DCM comes back last in most runs, and costs least to compare.
+  // In most runs, the DCM returns last, and it is the cheapest to compare.
   const State* const there = state_at(run.tick());
   if (!there) return false;
   State here;

@@ -16,8 +16,8 @@ class RecordedRun {
   /// Appends the state after the last tick done. The ticks must grow.
   void record(const Simulator& run);
 
-  /// How far the state of `run` after its last tick is from the recorded one: 1 at the edge of the
-  /// set. Infinite where that tick was not recorded.
+  /// Distance of the state of `run` after its last tick from the recorded state. It is 1 at the
+  /// edge of the set, and infinite if this tick was not recorded.
   double deviation(const Simulator& run) const;
 
   /// The same of the DCM and the tilts alone, which decide whether the robot stands. A landing that
@@ -28,7 +28,8 @@ class RecordedRun {
   /// too little time is left for the robot to come to rest.
   bool contains(const Simulator& run, double share = 1) const;
 
-  /// Turn of the reference of `run` against the recorded one [rad]. The law leads it back to 0.
+  /// Turn of the reference of `run` relative to the recorded reference [rad]. The law reduces it to
+  /// 0.
   double reference_turn(const Simulator& run) const;
 
   /// Bounds of the set for the deviation of the DCM, in units of z, and for the tilts of the base
@@ -40,15 +41,15 @@ class RecordedRun {
   /// In the plan frame, thus without the place and the heading in the world.
   struct State {
     double time = 0;             // [s]
-    double height = 0;           // of the planned COG over the planned ZMP [m]
-    Eigen::Vector2d dcm, zmp;    // estimated [m]
-    Eigen::Vector2d tilt;        // of the base against the reference [rad]
-    Eigen::Vector3d foot_tilt;   // of the stance foot against the plan [rad]
-    Eigen::VectorXd deflection;  // of the joints against the reference [rad, m]
+    double height = 0;           // height of the planned COG over the planned ZMP [m]
+    Eigen::Vector2d dcm, zmp;    // estimated DCM and ZMP [m]
+    Eigen::Vector2d tilt;        // tilt of the base against the reference [rad]
+    Eigen::Vector3d foot_tilt;   // tilt of the stance foot against the plan [rad]
+    Eigen::VectorXd deflection;  // deflection of the joints from the reference [rad, m]
     Eigen::Quaterniond reference_attitude;
     Eigen::VectorXd reference_theta;  // [rad, m]
-    Eigen::Vector3d position;         // of the base in the world [m]
-    Eigen::Quaterniond attitude;      // of the base in the world
+    Eigen::Vector3d position;         // place of the base in the world [m]
+    Eigen::Quaterniond attitude;      // attitude of the base in the world
   };
   static State state_of(const Simulator& run);
   static void take_dcm(const Simulator& run, State& state);
@@ -57,8 +58,8 @@ class RecordedRun {
   const State* state_at(long tick) const;
 
   std::vector<State> states_;
-  std::vector<long> ticks_;  // of the states
-  bool same_everywhere_;     // the ground, in every direction
+  std::vector<long> ticks_;  // ticks of the states
+  bool same_everywhere_;     // whether the ground is the same in every direction
 };
 
 }  // namespace ayumi

@@ -93,7 +93,7 @@ class PaceSearch {
     return result;
   }
 
-  // The smallest scale that passes between one that passes and one that does not.
+  // The smallest scale that passes, between a scale that passes and one that does not.
   double edge(double passing, double failing) {
     while (passing / failing > 1 + options_.resolution) {
       const double middle = std::sqrt(passing * failing);
@@ -116,7 +116,7 @@ class PaceSearch {
     return found;
   }
 
-  // Rounded up to three decimals (four below 0.5) where this scale passes too.
+  // The scale is rounded up to three decimals (four below 0.5) if the rounded scale passes too.
   double rounded(double scale) {
     const double digits = scale < 0.5 ? 1e4 : 1e3;
     const double up = std::ceil(digits * scale) / digits;
@@ -159,7 +159,7 @@ class PaceSearch {
   const Pattern& pattern_;
   const RetimeOptions& options_;
   const Progress& progress_;
-  std::string reason_;  // of the last scale that failed
+  std::string reason_;  // reason why the last scale failed
   int evaluations_ = 0;
 };
 

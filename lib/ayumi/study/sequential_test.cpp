@@ -20,10 +20,10 @@ constexpr int kHalvings = 60;
 /// that go on.
 class Paths {
  public:
-  /// At most `most` failures are followed.
+  /// Only numbers of failures up to `most` are followed.
   Paths(double p, size_t most) : p_(p), going_(most + 1, 0.0) { going_[0] = 1; }
 
-  /// One more run. Returns the probability of a failure beyond `most`.
+  /// Adds one more run. Returns the probability of a failure beyond `most`.
   double run() {
     const double beyond = going_.back() * p_;
     for (size_t k = going_.size() - 1; k > 0; --k)

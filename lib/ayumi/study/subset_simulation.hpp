@@ -15,9 +15,9 @@
 namespace ayumi {
 
 struct SubsetOptions {
-  long runs = 1000;    ///< of each level; a multiple of 1 / share
-  double share = 0.1;  ///< of the samples that exceed the next level
-  int levels = 8;      ///< at most; the smallest probability is then share^levels
+  long runs = 1000;    ///< samples of each level; a multiple of 1 / share
+  double share = 0.1;  ///< share of the samples that exceed the next level
+  int levels = 8;      ///< largest number of levels; the smallest probability is share^levels
   std::uint64_t seed = 1;
   int threads = 0;  ///< 0: all cores; results do not depend on it
 };
@@ -28,9 +28,9 @@ struct SubsetResult {
   double variation = 0;
   /// Approximate, from a normal distribution of the logarithm; not exact, as clopper_pearson() is.
   RateInterval interval;
-  std::vector<double> levels;  ///< of the severity
+  std::vector<double> levels;  ///< levels of the severity
   long runs = 0;
-  bool reached = false;  ///< false: no failure was found; `probability` is then an upper figure
+  bool reached = false;  ///< false: no failure was found, and `probability` is an upper bound
 };
 
 /// Probability that `severity` is at least `threshold`. `severity` is called from several threads.

@@ -28,8 +28,8 @@ constexpr double kImprovement = 1e-3;
 /// equal up to the push, so that the objective changes only in its eighth digit. Figures change by
 /// less than 5 % from half to twice.
 constexpr double kBranchLead = 0.02;
-/// Factor below which the search ends. Chosen: the third root in sequence of the default factor 1.3
-/// is 1.033, so that three rounds without an improvement are searched on. No measured case changes
+/// Factor below which the search ends. Chosen: three square roots of the default factor 1.3 give
+/// 1.033, so the search continues for three rounds without an improvement. No measured case changes
 /// from half to twice (constants.md).
 constexpr double kSmallestFactor = 1.03;
 
@@ -86,7 +86,7 @@ Simulator Tuner::begin(const PushPhase& phase, const Gains& gains) const {
   return run;
 }
 
-/// omega times the integral of |DCM - planned DCM| / z; kFall when the robot fell.
+/// omega times the integral of |DCM - planned DCM| / z; kFall if the robot fell.
 double Tuner::push(const Simulator& baseline, const PushPhase& phase, int direction) const {
   const double angle = 2 * M_PI * direction / options.directions;
   const CommandSeries& plan = series_of(phase);
@@ -223,9 +223,9 @@ TuneResult tune_gains(const RobotModel& model, const CommandSeries& series,
         }
         const TuneFigures figures = tuner.evaluate(gains);
         ++result.choices;
-        report(progress,
-               {"tune", static_cast<double>(round) / options.rounds,
-                name + " = " + text::brief(value) + ": " + text::fixed(figures.objective, 4)});
+        report(progress, {"tune", static_cast<double>(round) / options.rounds,
+                          "objective " + text::fixed(figures.objective, 4) + " with " + name +
+                              " = " + text::brief(value)});
         if (figures.objective > (1 - kImprovement) * result.after.objective) continue;
         result.gains = gains;
         result.after = figures;

@@ -63,7 +63,7 @@ bool has_noise(const SensorDescription& s) {
   return s.attitude_noise > 0 || s.gyro_noise > 0 || s.accelerometer_noise > 0 || s.force_noise > 0;
 }
 
-/// The least value that a quantity of this kind can have.
+/// The smallest value that a quantity of this kind can have.
 double least_of(UncertainKind kind) {
   // A push of a negative size would be one in the opposite direction, with another capture bound.
   if (kind == UncertainKind::push_size || kind == UncertainKind::push_time) return 0;
@@ -232,7 +232,7 @@ std::vector<double> UncertainTask::draw(const CaseNumbers& numbers) const {
   std::vector<double> result = shares(numbers);
   for (size_t i = 0; i < values_.size(); ++i) {
     const DrawnValue& value = values_[i];
-    // The phases of a pattern are known here alone.
+    // Only here the phases of a pattern are known.
     const bool phase = value.push >= 0 && value.quantity->kind == UncertainKind::push_time &&
                        uncertainty_->pushes[static_cast<size_t>(value.push)].phases;
     result[i] = phase ? std::floor(result[i] * static_cast<double>(phases_.size()))
@@ -273,7 +273,7 @@ RobotUnit UncertainTask::unit(const std::vector<double>& drawn) const {
   ActuatorLimits actuators = model_->limits(options_.profile);
   std::vector<CarriedMass> loads;
   for (const Side side : {Side::left, Side::right}) {
-    // What the model derives of its own mass stays as it is when the mass changes.
+    // Values that the model derived from its own mass do not change when the mass changes.
     SoleDescription& sole = d.soles.at(side == Side::left ? "left" : "right");
     sole.stiffness = model_->sole(side).stiffness;
     sole.damping_time = model_->sole(side).damping_time;
@@ -344,7 +344,7 @@ RobotUnit UncertainTask::unit(const std::vector<double>& drawn) const {
         d.sensors.set_latency(v);
         break;
       default:
-        break;  // of the ground, a bias or a push: options()
+        break;  // a value of the ground, a bias or a push: see options()
     }
   }
   RobotModel model(std::move(d));
@@ -431,7 +431,7 @@ SimulateOptions UncertainTask::options(const CaseNumbers& numbers,
         biased = true;
         break;
       default:
-        break;  // of the robot: unit()
+        break;  // a value of the robot: see unit()
     }
   }
   if (biased) {

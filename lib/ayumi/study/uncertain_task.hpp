@@ -34,13 +34,13 @@ struct CaseNumbers {
   std::uint64_t noise = 1;
 };
 
-/// What is kept of one run.
+/// The results of one run that are kept.
 struct CaseResult {
   Outcome outcome = Outcome::unsettled;
-  double fell_at = -1;   ///< [s]; negative when it did not fall
-  double cog_error = 0;  ///< largest [m]
-  double torque = 0;     ///< largest, in units of the limit
-  double foot_tilt = 0;  ///< largest of a supporting foot [rad]
+  double fell_at = -1;   ///< time of the fall [s]; negative if the robot did not fall
+  double cog_error = 0;  ///< largest COG error [m]
+  double torque = 0;     ///< largest torque, in units of the limit
+  double foot_tilt = 0;  ///< largest tilt of a supporting foot [rad]
   bool failed() const { return outcome != Outcome::stands; }
   bool operator==(const CaseResult&) const = default;
 };
@@ -53,9 +53,9 @@ double severity(const CaseResult& result);
 
 class UncertainTask {
  public:
-  /// Model, series and uncertainty outlive it. `options`: law, profile, world and scenario; the
-  /// pushes of the uncertainty replace the scenario. Throws Error(bad_pattern) "file: place: what"
-  /// for a quantity or factor that nothing in this robot or study uses.
+  /// Model, series and uncertainty must outlive this object. `options` has law, profile, world and
+  /// scenario. The pushes of the uncertainty replace the scenario. Throws Error(bad_pattern) "file:
+  /// place: what" for a quantity or factor that nothing in this robot or study uses.
   UncertainTask(const RobotModel& model, const CommandSeries& series,
                 const Uncertainty& uncertainty, const SimulateOptions& options);
 
@@ -93,14 +93,14 @@ class UncertainTask {
 
   const RobotModel* model_;
   const CommandSeries* series_;
-  Controller controller_;  // before its first tick
+  Controller controller_;  // the controller before its first tick
   const Uncertainty* uncertainty_;
   SimulateOptions options_;
   std::vector<DrawnValue> values_;
-  std::vector<std::string> normal_names_;  // of the independent numbers
+  std::vector<std::string> normal_names_;  // names of the independent numbers
   size_t dimension_ = 0;
-  std::vector<PushPhase> phases_;       // where a push names phases
-  std::vector<CaptureRegion> regions_;  // of these phases
+  std::vector<PushPhase> phases_;       // phases, if a push names phases
+  std::vector<CaptureRegion> regions_;  // capture regions of these phases
 };
 
 }  // namespace ayumi

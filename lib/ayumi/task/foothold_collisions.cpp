@@ -20,7 +20,7 @@ namespace {
 
 using Eigen::Isometry3d;
 
-// Chosen: each costs up to two checks; a walk whose every step collides has one cause.
+// Chosen: each cause costs up to two checks. A walk whose every step collides has one cause.
 constexpr size_t kMostFootholds = 3;
 // Chosen: what an author writes, and what is looked for at most.
 constexpr double kSideGrain = 1e-3, kMostSide = 0.2;  // [m]
@@ -95,7 +95,8 @@ class Footholds {
     return high - low;
   }
 
-  // Of the feet at the end of a phase, as the pattern plans them; nothing where it plans none.
+  // Poses of the feet at the end of a phase, as the pattern plans them. Nothing if the pattern
+  // plans none.
   std::optional<double> clearance_at_end(const Pattern& pattern, size_t phase) {
     std::array<Isometry3d, 2> soles;
     try {
@@ -125,7 +126,7 @@ class Footholds {
     return pattern;
   }
 
-  // What the check finds then; nothing where the robot cannot do it.
+  // The report of the check for this change. Nothing if the robot cannot do the motion.
   std::optional<size_t> errors_with(const Pattern& pattern) const {
     try {
       const CommandSeries series = sample_at_servo_period(task_.robot, pattern, {}, task_.threads);
@@ -152,14 +153,14 @@ class Footholds {
     return {};
   }
 
-  // The foot further out, as the other foot sees it.
+  // The foot moved outwards, as seen from the other foot.
   std::optional<Remedy> to_the_side(size_t phase) {
     const Swing& swing = *task_.pattern.phases[phase].swing;
     const double outwards = swing.foot == Side::left ? 1 : -1;
     const FootPlan plan(task_.robot, task_.pattern);
     const Isometry3d stance = plan.pose(other(swing.foot), task_.pattern.phases[phase].until);
     return first_apart(phase, static_cast<int>(std::lround(kMostSide / kSideGrain)), [&](int n) {
-      // Whole grains beyond the written value, outwards.
+      // Number of whole grains beyond the written value, outwards.
       const double from = swing.step ? outwards * swing.step->side : 0;
       const double to = kSideGrain * (std::floor(from / kSideGrain + kRounding) + n);
       const Eigen::Vector3d shift = (to - from) * outwards * stance.linear().col(1);
@@ -178,7 +179,7 @@ class Footholds {
     });
   }
 
-  // The foot turned less against the other one than it is written.
+  // The foot turned less against the other foot than the pattern says.
   std::optional<Remedy> less_turned(size_t phase) {
     const Swing& swing = *task_.pattern.phases[phase].swing;
     if (!swing.step || std::abs(swing.step->turn) < kRounding) return {};
@@ -195,7 +196,7 @@ class Footholds {
 
   std::optional<Mistake> mistake_at(size_t phase) {
     const std::optional<double> clearance = clearance_at_end(task_.pattern, phase);
-    if (!clearance || *clearance >= 0) return {};  // they meet on the way
+    if (!clearance || *clearance >= 0) return {};  // the feet meet on the way
     if (-*clearance > kGrazing * width_of_sole()) return {};
     const Swing& swing = *task_.pattern.phases[phase].swing;
     std::string words = std::string("the ") + name_of(swing.foot) + " foot lands " +
@@ -223,7 +224,7 @@ class Footholds {
 
 std::vector<Mistake> foothold_collisions(const Task& task, const CheckOptions& options,
                                          const ConsistencyReport& report) {
-  if (task.pattern.table) return {};  // nobody wrote its postures by hand
+  if (task.pattern.table) return {};  // nobody wrote the postures of a table by hand
   return Footholds(task, options, report).found(report);
 }
 
@@ -237,7 +238,7 @@ std::vector<Mistake> likely_causes(const Task& task, const CheckOptions& options
            foothold.place.starts_with(mistakes[0].place);
   };
   std::erase_if(causes, explained);
-  // A collision on the way to what explains everything is said after it.
+  // A collision of the feet is named after a cause that explains everything.
   const bool enough = std::any_of(mistakes.begin(), mistakes.end(),
                                   [](const Mistake& mistake) { return mistake.explains_all; });
   causes.insert(enough ? causes.begin() : causes.end(), mistakes.begin(), mistakes.end());

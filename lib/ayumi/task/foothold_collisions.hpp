@@ -11,14 +11,15 @@
 namespace ayumi {
 
 /// The swings that bring a foot a little inside the other one, at most three of them, each with the
-/// least step to the side and the largest turn with which the feet are apart and the check finds
+/// smallest step to the side and the largest turn with which the feet are apart and the check finds
 /// fewer errors. Where the feet overlap by more, as after an exchange of left and right,
 /// likely_mistakes() says it better. Samples and checks the pattern up to twice for each.
 std::vector<Mistake> foothold_collisions(const Task& task, const CheckOptions& options,
                                          const ConsistencyReport& report);
 
-/// What is likely to be wrong in an inconsistent pattern: those footholds, then likely_mistakes(),
-/// which stand alone where they name one value of the same phase that explains everything.
+/// The likely mistakes of an inconsistent pattern: first these footholds, then likely_mistakes().
+/// If likely_mistakes() names one value of the same phase that explains everything, only this is
+/// returned.
 std::vector<Mistake> likely_causes(const Task& task, const CheckOptions& options,
                                    const ConsistencyReport& report, const Progress& progress = {});
 

@@ -18,11 +18,11 @@ constexpr int kMassSteps = 5;
 
 std::string mass_text(double mass) { return text::brief(mass, 4) + " kg"; }
 
-// In whole grams, not above the mass itself.
+// The mass in whole grams, not above the mass itself.
 double rounded_down(double mass) { return 1e-3 * std::floor(1e3 * mass); }
 
-// The errors that this payload brings when its mass is multiplied by `share`. What is carried at
-// the same time is carried together with it.
+// The errors that this payload brings when its mass is multiplied by `share`. Payloads that are
+// carried at the same time are included.
 std::vector<Finding> errors_with(const Task& task, const CheckOptions& options,
                                  const ConsistencyReport& plain, size_t which, double share) {
   std::vector<Disturbance> scenario = task.pattern.scenario;
@@ -33,7 +33,7 @@ std::vector<Finding> errors_with(const Task& task, const CheckOptions& options,
   return errors_brought_by(carried, check_consistency(loaded, task.series, options), plain);
 }
 
-// A payload that brings errors, and the largest mass that brings none.
+// A payload that causes errors, and the largest mass that causes none.
 struct HeavyPayload {
   size_t which = 0;
   std::vector<Finding> errors;
@@ -86,7 +86,7 @@ std::vector<Mistake> judge_payloads(const Task& task, const CheckOptions& option
                             ", which is too heavy for this motion; the robot can carry " +
                             bearable + " there"});
   }
-  // Errors stay in front, and causes are counted among them.
+  // Errors come first in the report, and causes are counted among them.
   std::vector<size_t> order(findings.size());
   std::iota(order.begin(), order.end(), size_t(0));
   std::stable_sort(order.begin(), order.end(),

@@ -1,5 +1,5 @@
 #pragma once
-// What the payloads of the scenario mean for the verdict. The author knows that the robot carries
+// The effect of the scenario's payloads on the verdict. The author knows that the robot carries
 // them, unlike a push, so the motion has to bear them: while a payload is carried, the motion is
 // judged for the robot with its mass.
 
@@ -17,7 +17,7 @@ namespace ayumi {
 std::vector<Mistake> judge_payloads(const Task& task, const CheckOptions& options,
                                     ConsistencyReport& report);
 
-/// As judge() of task.hpp, and the payloads that are too heavy where they are asked for.
+/// As judge() of task.hpp. Also returns the payloads that are too heavy, if they are wanted.
 Judgement judge(const Task& task, const CheckOptions& options, std::vector<Mistake>* payloads);
 
 }  // namespace ayumi

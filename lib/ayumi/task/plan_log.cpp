@@ -11,7 +11,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Where the moment of a foot's wrench about `base` is vertical, at the height of its sole.
+// The point at the height of a foot's sole about which the moment of the foot's wrench is vertical.
+// The wrench is given about `base`.
 Vector3d pressure(const Vector6d& wrench, const Vector3d& base, const Vector3d& sole) {
   const Vector3d f = wrench.head<3>(), n = wrench.tail<3>();
   const double down = base.z() - sole.z();

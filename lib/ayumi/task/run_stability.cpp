@@ -74,7 +74,7 @@ StabilitySeries run_stability(const RobotModel& model, const ActuatorLimits& act
     double height = std::numeric_limits<double>::infinity();
     add_corners(model, now, carries, corners, height);
     keep_least(out.zmp_margin[i], ConvexPolygon(corners).margin(s.zmp.head<2>()));
-    if (s.cog.z() <= height) continue;  // the robot lies
+    if (s.cog.z() <= height) continue;  // the robot has fallen
     if (const int at = next[static_cast<size_t>(k)]; at >= 0) {
       const SimulationSample& then = log.samples[static_cast<size_t>(at)];
       if (at != later_at) update_positions(model, then.state, later);

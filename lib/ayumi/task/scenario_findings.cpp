@@ -21,7 +21,7 @@ std::vector<std::string> findings_under_scenario(const Task& task, const CheckOp
                   [](const Disturbance& d) { return std::holds_alternative<Payload>(d.what); });
   for (const Disturbance& d : task.pattern.scenario) {
     if (!std::holds_alternative<FrictionChange>(d.what)) continue;
-    // What acts at the same time acts together with it.
+    // Disturbances that act at the same time act together.
     CheckOptions loaded = options;
     for (const Disturbance& other : task.pattern.scenario)
       if (const auto* friction = std::get_if<FrictionChange>(&other.what);
@@ -30,7 +30,7 @@ std::vector<std::string> findings_under_scenario(const Task& task, const CheckOp
     const std::vector<CarriedMass> carried =
         masses_carried_while(d, task.pattern.scenario, task.robot);
     const RobotModel robot = with_payloads(task.robot, carried);
-    // The verdict counts what comes with the payloads alone.
+    // The verdict counts only the errors that the payloads cause.
     const ConsistencyReport& counted =
         carried.empty() ? plain : check_consistency(robot, task.series, options);
     const std::vector<Finding> errors =

@@ -14,7 +14,7 @@ namespace ayumi {
 
 namespace {
 
-// One number where all joints have the same, else one per joint.
+// One number if all joints have the same value, otherwise one number for each joint.
 template <class Value>
 std::string list_of(const ActuatorLimits& limits, const Value& value) {
   std::vector<std::string> texts;
@@ -24,12 +24,13 @@ std::string list_of(const ActuatorLimits& limits, const Value& value) {
   return equal && !texts.empty() ? texts.front() : text::join(texts, " ");
 }
 
-// A law that measures sends the posture that it has moved to in the tick, the next row's.
+// A law that uses measurements sends the posture to which it has moved in the tick. This is the
+// posture of the next row.
 size_t rows_ahead(const SimulationLog& log) {
   return log.controller && log.controller->kind != ControllerKind::none ? 1 : 0;
 }
 
-// The rate of the posture sent(k) by its neighbours.
+// The rate of the posture sent(k), computed from its neighbours.
 template <class Sent>
 Eigen::VectorXd sent_rate(const Sent& sent, size_t k, size_t last, double dt) {
   const size_t before = k > 0 ? k - 1 : 0, after = std::min(k + 1, last);
@@ -98,7 +99,7 @@ ReferenceTrajectory table_of_postures(const RobotModel& model, const std::string
     const auto sent = [&](size_t i) -> const Eigen::VectorXd& {
       return posture(std::min(i + ahead, last));
     };
-    // The zero makes 0 of a target of -0, as a sag of 0 does.
+    // Adding 0 makes 0 of a target of -0, as a sag of 0 does.
     rows[k].theta = sent(k) + lead.cwiseProduct(sent_rate(sent, k, last, about.dt)) + zero;
   }
   return table;

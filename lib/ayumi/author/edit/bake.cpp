@@ -37,7 +37,7 @@ Pattern baked(const RobotModel& model, const Pattern& pattern, const CommandSeri
   result.keyframes = kept_keys(pattern);
   result.correction.reset();
   result.parameters.clear();
-  // The last tick may be slightly after the end.
+  // The last tick may be slightly after the end of the motion.
   const auto has_step = [](const Phase& phase) { return phase.swing && phase.swing->step; };
   if (std::any_of(result.phases.begin(), result.phases.end(), has_step))
     result.phases = FootPlan(model, pattern).phases();

@@ -67,10 +67,10 @@ GaitCycle gait_cycle(const RobotModel& model, const MotionPart& motion, int swin
 
 namespace {
 
-// Times closer than this are one [s]. Chosen: above rounding, below a tick.
+// Times closer than this are equal [s]. Chosen: above rounding, below a tick.
 constexpr double kSameTick = 1e-6;
 
-// The phases that are not over at `begin`, up to `end`, from time 0 on.
+// The phases that end after `begin`, up to `end`, with times from 0 on.
 std::vector<Phase> phases_within(const std::vector<Phase>& phases, double begin, double end) {
   std::vector<Phase> result;
   double from = 0;
@@ -103,7 +103,7 @@ Pattern cut(const RobotModel& model, const MotionPart& motion, long first, long 
                                        " s a foot is in the air; let the part begin and end where "
                                        "both feet are on the ground");
   Pattern result = baked(model, motion.pattern, series, table);
-  result.repair = {};  // its times and joints are those of the whole
+  result.repair = {};  // times and joints are those of the whole walk
   DenseTable& dense = *result.table;
   const long rows = last - first + 1;
   dense.theta = dense.theta.middleRows(first, rows).eval();
@@ -126,7 +126,7 @@ Pattern cut(const RobotModel& model, const MotionPart& motion, long first, long 
     return each.at < begin - kSameTick || each.at > end - kSameTick;
   });
   for (Disturbance& each : result.scenario) each.at -= begin;
-  // Weights that were given before hold on.
+  // Weights that were given before `begin` still apply.
   Keyframe before;
   for (const Keyframe& key : motion.pattern.keyframes)
     if (key.t < begin - kSameTick)

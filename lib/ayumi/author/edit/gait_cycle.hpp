@@ -12,11 +12,12 @@
 namespace ayumi {
 
 struct GaitCycle {
-  long begin = 0, end = 0;       ///< samples at both ends
+  long begin = 0, end = 0;       ///< first and last sample
   Side first = Side::right;      ///< foot that swings first
-  Eigen::Vector2d displacement;  ///< of the robot in one cycle, in its heading at the begin [m]
-  double turn = 0;               ///< in one cycle, left positive [rad]
-  LoopGap gap;                   ///< between the end and the begin
+  Eigen::Vector2d displacement;  ///< displacement of the robot in one cycle, in its heading at the
+                                 ///< beginning [m]
+  double turn = 0;               ///< turn in one cycle, left positive [rad]
+  LoopGap gap;                   ///< difference between the end and the beginning
 };
 
 /// The cycle that begins before swing `swing`, counted from 0. Throws Error(bad_pattern) where the
@@ -24,9 +25,9 @@ struct GaitCycle {
 GaitCycle gait_cycle(const RobotModel& model, const MotionPart& motion, int swing);
 
 /// The samples of a walk, in which the end of the cycle is its beginning to the last digit, moved
-/// over the ground. What is missing (less than what a loop may leave open, else it stays visible)
-/// is spread over the cycle and taken back after it, because a jump of a tenth of a micrometre in a
-/// millisecond moves the ZMP by millimetres.
+/// over the ground. The remaining difference is spread over the cycle and removed after it, because
+/// a jump of a tenth of a micrometre in a millisecond moves the ZMP by millimetres. A difference
+/// that is larger than a loop may have stays visible.
 CommandSeries with_closed_cycle(const CommandSeries& series, const GaitCycle& cycle);
 
 /// The samples `first` to `last` of a motion, such as a cycle, as a motion of its own: a table of

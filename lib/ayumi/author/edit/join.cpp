@@ -35,8 +35,8 @@ namespace {
 
 using Feet = std::array<Isometry3d, 2>;
 
-/// Largest difference of place [m] and angle [rad] of soles that stand alike. Chosen: below what
-/// the check's tolerances for slip and sink allow at the join.
+/// Largest difference of place [m] and angle [rad] with which soles count as standing alike.
+/// Chosen: below what the check's tolerances for slip and sink allow at the join.
 constexpr double kSamePlace = 1e-3;
 constexpr double kSameAngle = 0.01;
 /// Largest jump of base [m] and joints [rad] at a join without a transition. Chosen: a jump of 2e-4
@@ -81,7 +81,7 @@ void move_foothold(const Isometry3d& shift, Foothold& foothold) {
   foothold.rpy = matrix_to_rpy(shift.linear() * rpy_to_matrix(foothold.rpy));
 }
 
-// Moves footholds, keys that a table keeps, and the scenario in place and time.
+// Moves footholds, the keys that a table keeps, and the scenario, in place and time.
 void move_plan(const Isometry3d& shift, double later, Pattern& pattern) {
   for (Phase& phase : pattern.phases) {
     phase.until += later;
@@ -159,7 +159,7 @@ std::vector<RobotState> transition(const RobotModel& model, const RobotState& fr
 Pattern plain(const RobotModel& model, const Pattern& pattern, const CommandSeries& series,
               const std::string& table, size_t rows) {
   Pattern result = baked(model, pattern, series, table);
-  result.repair = {};  // preferences for joints and times of another motion are invalid
+  result.repair = {};  // preferences for joints and times of another motion are not valid
   DenseTable& dense = *result.table;
   dense.cog.clear();
   dense.zmp.clear();
@@ -249,7 +249,7 @@ Pattern joined(const RobotModel& model, const MotionPart& first, const MotionPar
 
 namespace {
 
-// What keys of a pattern lead, and their values over time.
+// The tracks that have keys in a pattern, and their values over time.
 struct KeyedTracks {
   KeyedTracks(const RobotModel& model, const Pattern& of)
       : pattern(of),
@@ -286,7 +286,7 @@ struct KeyedTracks {
   InverseKinematics legs;
   PatternTracks tracks;
   std::set<std::string> joints, weights;
-  std::map<std::string, bool> hands;  ///< by link; true: led at the end
+  std::map<std::string, bool> hands;  ///< by link; true: a target leads the link at the end
   std::optional<bool> gaze;
 };
 
@@ -303,7 +303,7 @@ Keyframe keys_at(const RobotModel& model, const KeyedTracks& of, double t, const
   if (tracks.zmp) {
     ZmpKey zmp;
     zmp.point = {(*tracks.zmp)[0].at(t).value, (*tracks.zmp)[1].at(t).value};
-    // Rounding apart.
+    // Equality except for rounding.
     if ((zmp.point - of.feet.support_center(t).head<2>()).norm() < 1e-9)
       zmp.place = ZmpKey::Place::center;
     key.zmp = zmp;
@@ -355,7 +355,7 @@ void require_same_tracks(const KeyedTracks& a, const KeyedTracks& b) {
     stop("keys of the trunk, although the feet turn");
 }
 
-// Keyframes of the second pattern as they read in the first one.
+// Keyframes of the second pattern in the form that they have in the first one.
 Keyframe translated(const RobotModel& model, const Pattern& from, const Pattern& to, Keyframe key) {
   key.pointer.clear();
   if (!key.interpolation && from.interpolation != to.interpolation)
@@ -465,8 +465,8 @@ LoopGap loop_gap(const RobotModel& model, const MotionPart& motion) {
   gap.base = (end.state.base.position - again.base.position).norm();
   gap.rate =
       (end.state.velocity() - begin.state.velocity()).tail(model.dof_count()).cwiseAbs().maxCoeff();
-  // Largest difference of a joint's rate that is none [rad/s]. Chosen: as a jump of the posture by
-  // kSameJoint in a millisecond.
+  // Largest difference of a joint's rate that counts as zero [rad/s]. Chosen: a jump of the posture
+  // by kSameJoint in a millisecond.
   constexpr double kSameRate = 1e3 * kSameJoint;
   gap.closed = gap.feet < kSamePlace && turn < kSameAngle && gap.posture < kSameJoint &&
                gap.base < kSameBase && gap.rate < kSameRate;

@@ -62,7 +62,7 @@ Pattern with_key_edited(const RobotModel& model, const Pattern& pattern, const K
     alone.keyframes = {key};
     alone = mirrored(model, alone);
     key = alone.keyframes.front();
-    // A posture that is not symmetric has another image than its name.
+    // The image of a posture that is not symmetric is not the posture of this name.
     if (key.posture && alone.postures != pattern.postures) {
       const auto angles = posture_joints(model, alone, *key.posture, key.place);
       key.posture.reset();
@@ -95,7 +95,7 @@ Pattern with_key_edited(const RobotModel& model, const Pattern& pattern, const K
 
 namespace {
 
-// Where the swinging foot lands as the other one sees it, in a plan that has both.
+// The landing place of the swinging foot relative to the other foot, in a plan that has both.
 RelativeStep step_seen(const FootPlan& plan, const Phase& phase, const Isometry3d& beside) {
   const Swing& swing = *phase.swing;
   const Isometry3d seen = plan.pose(other(swing.foot), phase.until).inverse() * pose_of(swing.to);
@@ -105,7 +105,7 @@ RelativeStep step_seen(const FootPlan& plan, const Phase& phase, const Isometry3
   step.up = seen.translation().z();
   step.turn = std::remainder(matrix_to_rpy(seen.linear()).z() - matrix_to_rpy(beside.linear()).z(),
                              2 * M_PI);
-  // Rounded to what is written: a hundredth of a millimetre, a thousandth of a degree.
+  // Rounded as it is written: to a hundredth of a millimetre and a thousandth of a degree.
   const auto rounded = [](double value, double unit) { return unit * std::round(value / unit); };
   step.forward = rounded(step.forward, 1e-5);
   step.side = rounded(step.side, 1e-5);
@@ -114,7 +114,7 @@ RelativeStep step_seen(const FootPlan& plan, const Phase& phase, const Isometry3
   return step;
 }
 
-// A pose on the ground: its place and its heading.
+// A pose on the ground: place and heading.
 Isometry3d on_level_ground(const Isometry3d& pose) {
   Isometry3d result = Isometry3d::Identity();
   result.translation() = pose.translation();

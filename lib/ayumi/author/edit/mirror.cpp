@@ -32,7 +32,7 @@ struct Counterpart {
   double distance = 0;
 };
 
-// The nearest body whose joint lies on the image of this one's axis.
+// The nearest body whose joint lies on the image of this body's axis.
 Counterpart counterpart(const RobotModel& model, const RobotData& data, int i) {
   const Body& body = model.bodies()[i];
   const Vector3d p = image(data.position[i]);
@@ -85,7 +85,7 @@ MirrorMap mirror_map(const RobotModel& model) {
                                      "' has no counterpart on the other side, so the robot has "
                                      "no mirror image");
     body[i] = found.body;
-    if (model.dofs()[here.dof].body != i) continue;  // a mimic joint follows its driver
+    if (model.dofs()[here.dof].body != i) continue;  // a mimic joint is mirrored with its driver
     map.dof[here.dof] = model.bodies()[found.body].dof;
     map.sign[here.dof] = found.sign;
   }
@@ -219,7 +219,8 @@ class Mirror {
     if (key.gaze) key.gaze = of(*key.gaze);
   }
 
-  // Columns keep their order where the table has both sides; else they get the other side's name.
+  // Columns keep their order if the table has both sides. Otherwise they get the name of the other
+  // side.
   void mirror(DenseTable& table) const {
     const std::string place = "table " + table.file;
     const Eigen::MatrixXd theta = table.theta;
@@ -243,7 +244,7 @@ class Mirror {
   }
 
   void mirror(CorrectionTrack& track) const {
-    for (const int column : {1, 3, 5})  // y, and the rotations about x and z
+    for (const int column : {1, 3, 5})  // mirrored: y, and the rotations about x and z
       track.coefficients.col(column) *= -1;
     for (size_t j = 0; j < track.joints.size(); ++j) {
       const int dof = dof_of(track.joints[j], "correction");

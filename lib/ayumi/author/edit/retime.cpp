@@ -34,8 +34,9 @@ Pattern retimed(const RobotModel& model, const Pattern& pattern, double scale) {
     end *= scale;
   }
   if (result.table) {
-    *result.table = postures_of(model, model.limits(result.profile),
-                                *result.table);  // the lead is a property of the robot
+    *result.table =
+        postures_of(model, model.limits(result.profile),
+                    *result.table);  // the lead is a property of the robot, so it does not change
     result.table->dt *= scale;
     result.table->zmp.clear();
     result.table->fz.clear();

@@ -26,8 +26,8 @@ using Eigen::Vector3d;
 // friction and weight loads the joint.
 constexpr double kSweepTime = 0.7;
 constexpr double kPause = 0.2;
-// Time in which the weight goes from both feet to one, and in which a foot is lifted [s]. Chosen:
-// as in a slow walk.
+// Time in which the weight moves from both feet to one foot, and in which a foot is lifted [s].
+// Chosen: as in a slow walk.
 constexpr double kShiftTime = 1.2, kLiftTime = 0.5;
 // Rest on both feet between two stands on one [s]. Chosen: the motors then stay within what they
 // can bear for long.
@@ -45,11 +45,11 @@ constexpr double kStepShare = 0.33;
 constexpr double kJointAngle = 0.25;
 constexpr double kFootAngle = 0.1;
 // Roll of the foot in the air, outer edge up, as its leg leans [rad]. Chosen: the middle of the
-// lean that the weight on one foot takes, so that the ankle stays within its range.
+// lean with which the robot puts its weight on one foot, so that the ankle stays within its range.
 constexpr double kFootLean = 0.17;
 constexpr double kLimitMargin = 0.05;
-// How far the foot in the air moves ahead, aside and up, and how high it is lifted, for HOAP-1 [m].
-// Chosen: without touching the other leg or the ground.
+// Distances by which the foot in the air moves forward, sideways and up, and the height to which it
+// is lifted, for HOAP-1 [m]. Chosen: without touching the other leg or the ground.
 constexpr double kAhead = 0.02, kAside = 0.012, kUp = 0.012, kLift = 0.03;
 // Share of the sole over which the ZMP sweeps, and the depth of the squat on one leg in that of a
 // squat. Chosen: half, for the other half is needed against disturbances.
@@ -95,7 +95,7 @@ class Motion {
   SetKey set_;
 };
 
-// What the robot does on one foot. Each is short, so that no motor gets hot.
+// The motions on one foot. Each of them is short, so that no motor gets hot.
 enum class OnOneFoot { squat, sway_ahead, sway_aside, swing_ahead, swing_aside };
 
 // The robot stands on the foot `side`, and then on both feet again. Slow sweeps of the leg that
@@ -146,7 +146,7 @@ void add_stand_on(const RobotModel& model, PatternBuilder& writer, double& t, Si
     if (what == OnOneFoot::sway_ahead) point.x() += kSoleShare * scale * half.x() * u;
     if (what == OnOneFoot::sway_aside) point.y() += kSoleShare * scale * half.y() * u;
     zmp(key, point);
-    // Down only: the legs may be nearly straight.
+    // Only downwards, because the legs may be nearly straight.
     const double down =
         what == OnOneFoot::squat ? 0.5 * (1 - elementary::cos(M_PI * std::abs(u))) : 0.0;
     key.cog_height = height - depth * down;
@@ -160,7 +160,8 @@ void add_stand_on(const RobotModel& model, PatternBuilder& writer, double& t, Si
   writer.add(t += kShiftTime, first);
 }
 
-// Place of each joint that is not of a leg in its own chain: joints of one place move together.
+// Place of each joint that does not belong to a leg in its own chain. Joints with the same place
+// move together.
 std::map<int, std::vector<int>> other_joints(const RobotModel& model) {
   std::map<int, std::vector<int>> by_place;
   for (int j = 0; j < model.dof_count(); ++j) {

@@ -40,7 +40,7 @@ constexpr double kStairLeg = 0.905;
 /// 1/omega. Chosen: the anticipation of the COG has fallen to exp(-4.5) = 1 % at the ends.
 constexpr double kZmpRest = 4.5, kZmpShift = 2.6;
 
-/// Distance by which a sole reaches ahead of its frame and behind it [m].
+/// Distance by which the sole reaches forward of its frame and behind it [m].
 struct SoleLength {
   double front = 0, back = 0;
 };
@@ -68,8 +68,8 @@ void check_stairs(const RobotModel& model, const WalkParameters& p) {
                                text::brief(sole.front + sole.back + 2 * kStairClearance) + " m");
 }
 
-/// Stairs under the footholds; each begins in the middle between the soles on it and those before
-/// it.
+/// Stairs under the footholds. Each stair begins in the middle between the soles on it and the
+/// soles before it.
 World stairs(const RobotModel& model, const WalkParameters& p) {
   const SoleLength sole = sole_length(model);
   const double spare = 0.5 * (p.stride - sole.front - sole.back);
@@ -136,7 +136,7 @@ Keyframe stance_key(const RobotModel& model, const WalkParameters& p, Side stanc
   return key;
 }
 
-// Half-way from the middle between the soles to the ZMP over one of the feet.
+// The point half-way between the middle of the soles and the ZMP over one of the feet.
 Keyframe half_key(const RobotModel& model, const WalkParameters& p, Side side,
                   const std::array<Isometry3d, 2>& feet) {
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();

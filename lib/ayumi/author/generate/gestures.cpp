@@ -121,7 +121,8 @@ namespace {
 
 double to_millimetre(double x) { return 1e-3 * std::round(1e3 * x); }
 
-// As a pattern in degrees is read, so that it is written with one digit.
+// Rounded like an angle that is read from a pattern in degrees, so that it is written with one
+// digit.
 double to_tenth_degree(double radians) {
   constexpr double degree = std::numbers::pi / 180;
   return std::round(10 * radians / degree) / 10 * degree + 0.0;
@@ -134,19 +135,21 @@ double rest_time(const RobotModel& model) {
 Keyframe height_and_pitch(double height, double pitch) {
   Keyframe key;
   key.cog_height = to_tenth_millimetre(height);
-  // What was asked for in tenths of a degree stays; the rest is written to 1e-4 rad.
+  // Angles that were requested in tenths of a degree stay. Other angles are written to 1e-4 rad.
   const double asked = to_tenth_degree(pitch);
   const bool exact = std::abs(asked - pitch) < 1e-9;
   key.torso = Vector3d(0, exact ? asked : 1e-4 * std::round(1e4 * pitch), 0);
   return key;
 }
 
-// How far the COG sinks when all that the legs carry turns ahead about the hips by `angle` [m].
+// Distance by which the COG sinks when everything above the hips turns forward about them by
+// `angle` [m].
 double sinks_by_bowing(const RobotModel& model, double angle) {
   RobotData data(model);
   update_positions(model, model.rest_state(), data);
   const int hip = model.dofs()[model.leg(Side::left).front()].body;
-  double moment = 0;  // of what is above the hips, about their height, over the robot's mass
+  double moment = 0;  // first moment of the parts above the hips about their height, divided by the
+                      // robot's mass
   for (size_t b = 0; b < model.bodies().size(); ++b) {
     bool in_leg = false;
     for (int i = static_cast<int>(b); i >= 0; i = model.bodies()[static_cast<size_t>(i)].parent)
@@ -167,7 +170,7 @@ void require_seat(const char* name, const RobotModel& model, const SeatParameter
   require_range(name, "period", p.period, 0.2, 60, " s");
 }
 
-// From one height to the other with the trunk ahead between.
+// Moves from one height to the other, and the trunk leans forward in between.
 Pattern seat_pattern(const RobotModel& model, const char* name, const SeatParameters& p,
                      bool down) {
   require_seat(name, model, p);
@@ -179,7 +182,7 @@ Pattern seat_pattern(const RobotModel& model, const char* name, const SeatParame
   first.zmp = ZmpKey{ZmpKey::Place::center, Vector2d::Zero()};
   writer.add(0, first);
   writer.add(rest, height_and_pitch(from, 0));
-  // The height has no key half-way, so that it goes in one part.
+  // The height has no key half-way, so the movement has only one part.
   Keyframe middle;
   middle.torso = height_and_pitch(0, p.lean).torso;
   writer.add(rest + 0.5 * p.period, middle);
@@ -239,8 +242,8 @@ WaveParameters wave_defaults(const RobotModel& model) {
 }
 
 Pattern wave_pattern(const RobotModel& model, const WaveParameters& p) {
-  // Room of the arm's joints beside their soft limits [rad]. Chosen: what the lead of the servos'
-  // targets needs at the ends of a wave.
+  // Distance of the arm's joints from their soft limits [rad]. Chosen: the lead of the servo
+  // targets needs this distance at the ends of a wave.
   constexpr double kWaveRoom = 0.05;
   require_range("wave", "cycles", p.cycles, 1, 1000, "");
   require_range("wave", "period", p.period, 0.2, 60, " s");
@@ -281,7 +284,8 @@ Pattern wave_pattern(const RobotModel& model, const WaveParameters& p) {
       const Vector3d place = shoulder + length * Vector3d(ends[i][0], out * ends[i][1], ends[i][2]);
       const ReachSolution solution = reach(model, found, hand, point, place, arm, room);
       worst = std::max(worst, solution.missing);
-      raised[i] = found.theta = solution.theta;  // the other end is sought near this one
+      raised[i] = found.theta =
+          solution.theta;  // the search for the other end begins near this one
     }
     missing = missing == 0 ? worst : std::min(missing, worst);
     if (worst <= 0.25 * length) break;
@@ -310,7 +314,8 @@ Pattern wave_pattern(const RobotModel& model, const WaveParameters& p) {
   const auto at = [&](double t, const Eigen::VectorXd& theta) {
     Keyframe key;
     for (const int dof : arm) {
-      const bool still = theta[dof] == home[dof];  // not rounded, so that it ends where it began
+      const bool still =
+          theta[dof] == home[dof];  // not rounded, so that the motion ends where it began
       key.joints[model.dofs()[static_cast<size_t>(dof)].name] =
           still ? theta[dof] : to_tenth_degree(theta[dof]);
     }
@@ -322,7 +327,7 @@ Pattern wave_pattern(const RobotModel& model, const WaveParameters& p) {
   } else {
     writer.key(0, ZmpKey::Place::center);
   }
-  // It is raised and lowered in the time of two swings.
+  // The arm is raised and lowered in the time of two swings.
   double t = rest;
   at(t, home);
   at(t += 2 * p.period, raised[0]);
@@ -364,7 +369,7 @@ Pattern kick_pattern(const RobotModel& model, const KickParameters& p) {
     Keyframe key;
     Foothold foot;
     const Vector3d moved = place * Vector3d(ahead, 0, up);
-    // Where the foot stands, the kinematics leave rounding errors beside its place [m, rad].
+    // Rounding errors of the kinematics beside the place where the foot stands [m, rad].
     const auto without_rounding = [](double x) { return std::round(1e9 * x) / 1e9; };
     for (int i = 0; i < 3; ++i)
       foot.position[i] = up == 0 ? without_rounding(moved[i]) : to_tenth_millimetre(moved[i]);

@@ -17,7 +17,8 @@ namespace ayumi {
 
 namespace {
 
-/// Fraction of the stoop by which a push may sink before it rises. Chosen: small against the stoop.
+/// Fraction of the stoop by which the COG may sink before it rises in a push. Chosen: small
+/// compared with the stoop.
 constexpr double kSink = 0.02;
 /// Time of standing at both ends, in units of 1/omega. Chosen: as kZmpRest of the walk.
 constexpr double kStanding = 4.5;

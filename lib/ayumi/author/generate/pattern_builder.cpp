@@ -20,6 +20,10 @@ constexpr double kHoap1Height = 0.245;
 /// one. Chosen: a leg at 97 % has 28 deg of knee angle left, too little to move a foot or the COG.
 constexpr double kStraightLeg = 0.97, kBentLeg = 0.94;
 
+/// Digits with which a refused value is printed. Derived: a double has 15 exact digits, and
+/// conversions of units round the last ones (120 deg becomes 119.99999999999999 deg).
+constexpr int kShownDigits = 12;
+
 }  // namespace
 
 double to_millisecond(double t) { return std::round(1e3 * t) / 1e3; }
@@ -29,9 +33,9 @@ void require_range(const char* pattern, const char* name, double value, double l
                    const char* unit) {
   if (value >= low && value <= high) return;
   const auto bound = [](double x) { return x >= 1e3 ? text::fixed(x, 0) : text::brief(x); };
-  fail(ErrorCode::usage, std::string(pattern) + ": " + name + " " + text::exact(value) + unit +
-                             " is out of range; it may be from " + bound(low) + " to " +
-                             bound(high) + unit);
+  fail(ErrorCode::usage,
+       std::string(pattern) + ": " + name + " " + text::brief(value, kShownDigits) + unit +
+           " is out of range; it may be from " + bound(low) + " to " + bound(high) + unit);
 }
 
 double leg_length(const RobotModel& model) {

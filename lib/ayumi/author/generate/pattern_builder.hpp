@@ -15,8 +15,8 @@ void require_range(const char* pattern, const char* name, double value, double l
 /// Sum of the link lengths from hip to sole [m].
 double leg_length(const RobotModel& model);
 
-/// COG height of the home posture, lowered where its legs are too straight to move a foot or the
-/// COG [m]; 0 keeps the height of home.
+/// COG height in the home posture, lowered if the legs there are too straight to move a foot or the
+/// COG [m]. It is 0 if the height of home can be kept.
 double bent_height(const RobotModel& model);
 
 /// Ratio of the home COG height to that of HOAP-1: it scales lengths, and its root scales times.

@@ -33,12 +33,12 @@ constexpr double kLevel = 0.003;
 /// Chosen: twice kRestSpeed, because recorded commands compensate the compliance of loaded legs. No
 /// measured case changes from half to twice (constants.md).
 constexpr double kHandoverSpeed = 0.04;
-/// The same: time before and after the change in which both feet may support [s]. Chosen: about
+/// At such a change: time before and after it in which both feet may support [s]. Chosen: about
 /// half a step of the generated walk (0.55 s). No measured case changes from half to twice
 /// (constants.md).
 constexpr double kHandoverTime = 0.3;
-/// The same: largest difference in height [m]. Chosen: two thirds of the lift of the generated walk
-/// (15 mm). No measured case changes from half to twice (constants.md).
+/// At such a change: largest difference in height [m]. Chosen: two thirds of the lift of the
+/// generated walk (15 mm). No measured case changes from half to twice (constants.md).
 constexpr double kHandoverHeight = 0.01;
 /// Speeds are differences over twice this time [s]. Derived: one count of a HOAP servo (8e-5 rad)
 /// at 0.3 m is then 1 mm/s, small against kRestSpeed.
@@ -104,7 +104,7 @@ void add_handovers(const Soles& soles, double dt, std::vector<int>& labels) {
   const auto ground_normal = [&](int k) {
     return Vector3d((soles[0][k].linear().col(2) + soles[1][k].linear().col(2)).normalized());
   };
-  // In the axes of the left foot, which hardly moves at these times.
+  // Computed in the axes of the left foot, which hardly moves at these times.
   const auto between = [&](int k) -> Vector3d {
     return soles[0][k].linear().transpose() *
            (soles[1][k].translation() - soles[0][k].translation());
@@ -154,8 +154,8 @@ std::vector<double> loads_of(const RobotModel& model, const RawMotion& motion) {
   return loads;
 }
 
-// Rows in which nothing rests, but the robot does not fall either: feet near the lowest height of
-// these moments that are slow enough.
+// Rows in which no sole rests although the robot does not fall: feet that are near the lowest
+// height of these moments and slow enough.
 void carry_loaded_rows(const RobotModel& model, const RawMotion& motion, const Soles& soles,
                        std::vector<Support>& supports) {
   if (std::find(supports.begin(), supports.end(), Support::none) == supports.end()) return;
@@ -164,7 +164,7 @@ void carry_loaded_rows(const RobotModel& model, const RawMotion& motion, const S
   std::array<std::vector<double>, 2> low;
   for (int s : {0, 1})
     for (int k = 0; k < n; ++k) low[s].push_back(lowest_point(model, soles, s, k));
-  // Half of the time in which the lowest sole is looked for [s]. Chosen: a step.
+  // Half of the time in which the search looks for the lowest sole [s]. Chosen: a step.
   constexpr double kWindow = 0.5;
   const int window = std::max(1, static_cast<int>(std::lround(kWindow / motion.dt)));
   const int look = std::max(1, static_cast<int>(std::lround(kLook / motion.dt)));
@@ -208,7 +208,8 @@ std::vector<Support> supports_with_base(const RobotModel& model, const Soles& so
   return result;
 }
 
-// The shortest interval below the limit joins its longer neighbour, until there is none.
+// The shortest interval below the limit is joined with its longer neighbour, until no such interval
+// is left.
 std::vector<Support> without_blinks(std::vector<Support> supports, double dt) {
   const int least = static_cast<int>(std::lround(kShortestSupport / dt));
   while (true) {
@@ -227,7 +228,7 @@ std::vector<Support> without_blinks(std::vector<Support> supports, double dt) {
   }
 }
 
-// How far the COG lies outside a sole in row k, as seen from above the sole; below 0: inside.
+// Distance of the COG from a sole in row k, seen from above the sole; below 0: the COG is inside.
 double cog_outside(const RobotModel& model, const RawMotion& motion, const Soles& soles, int foot,
                    int k) {
   RobotState state = model.rest_state();
@@ -254,7 +255,8 @@ std::vector<Support> without_doubtful_moments(const RobotModel& model, const Raw
     if (run.support == Support::both || run.support == Support::none || rows * motion.dt > kMoment)
       continue;
     const int foot = run.support == Support::left ? 0 : 1;
-    // Distance at which the COG cannot be carried [m]. Chosen: half the width of the sole.
+    // Distance of the COG from the sole at which one foot cannot carry it [m]. Chosen: half the
+    // width of the sole.
     Eigen::AlignedBox2d sole;
     for (const Eigen::Vector2d& corner : model.sole(static_cast<Side>(foot)).polygon)
       sole.extend(corner);
@@ -271,7 +273,7 @@ std::vector<Support> without_doubtful_moments(const RobotModel& model, const Raw
   return supports;
 }
 
-// Height of a sole's centre over the other sole, over the ground where the motion has a base.
+// Height of a sole's centre over the other sole, or over the ground if the motion has a base.
 double height_of(const RobotModel& model, const RawMotion& motion, const Soles& soles, int foot,
                  int k) {
   const Eigen::Vector2d& c = model.sole(static_cast<Side>(foot)).center;
@@ -283,8 +285,8 @@ double height_of(const RobotModel& model, const RawMotion& motion, const Soles& 
 // rest before the middle of this interval, the contact begins (or ends) at the rest.
 void end_swings(const RobotModel& model, const RawMotion& motion, const Soles& soles,
                 std::vector<Support>& supports) {
-  // Height over its place at rest [m]. Chosen: above the rounding of tables. Half: contact 1 of
-  // the imported walk ends at 1.678 s, not 1.681 s; twice: at 1.683 s.
+  // A foot this much above its place at rest has left it [m]. Chosen: above the rounding of tables.
+  // Half: contact 1 of the imported walk ends at 1.678 s, not 1.681 s; twice: at 1.683 s.
   constexpr double kAtRest = 1e-5;
   for (const Stretch& run : stretches(supports)) {
     if (run.support != Support::both) continue;
@@ -297,7 +299,7 @@ void end_swings(const RobotModel& model, const RawMotion& motion, const Soles& s
       const int middle = (run.first + run.last) / 2;
       int least = edge;
       while (least != middle && height(least + step) < height(least)) least += step;
-      if (least == middle) continue;  // it sinks all the time, which is a load and no swing
+      if (least == middle) continue;  // the sole sinks all the time, which is a load and no swing
       const double place = height(least);
       for (int k = edge; k != least && height(k) > place + kAtRest; k += step)
         supports[k] = supports[outside];

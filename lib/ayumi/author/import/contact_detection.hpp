@@ -11,7 +11,7 @@ namespace ayumi {
 
 using Soles = std::array<std::vector<Eigen::Isometry3d>, 2>;  ///< frames by Side, then row
 
-/// Sole frames in the world where the motion has a base, else in the base.
+/// Sole frames in the world if the motion has a base, otherwise in the base.
 Soles soles_of(const RobotModel& model, const RawMotion& motion);
 
 /// Height of the lowest corner of a sole in row k; `foot` by Side.

@@ -56,7 +56,7 @@ class Grounding {
   }
 
  private:
-  // The last row has no time of its own: a change in it belongs to what is before.
+  // The last row has no time of its own, so a change in it belongs to the rows before.
   static std::vector<Stretch> with_last_row(std::vector<Stretch> runs) {
     if (runs.size() < 2 || runs.back().first < runs.back().last) return runs;
     runs[runs.size() - 2].last = runs.back().last;
@@ -67,7 +67,7 @@ class Grounding {
   std::string millimetres(double length) const { return text::brief(1000 * length, 3) + " mm"; }
 
   std::vector<std::string> notes() const {
-    // Below these lengths nothing is said [m]. Chosen: what the compliance of a sole hides.
+    // Lengths below these are not reported [m]. Chosen: the compliance of a sole hides them.
     constexpr double kSaid = 0.001;
     double floats = 0, sinks = 0, slides = 0, flight = 0;
     std::vector<std::string> flights;
@@ -97,7 +97,7 @@ class Grounding {
           millimetres(sinks) + " below the ground" +
           " (--ground moves the robot up and down, so that the supporting soles touch the ground)");
     if (slides > kSaid) result.push_back("supporting soles slide by up to " + millimetres(slides));
-    constexpr size_t kMost = 6;  // Chosen: a line that a person still reads
+    constexpr size_t kMost = 6;  // Chosen: a line that a person can still read
     if (flight > 0)
       result.push_back("no sole rests on the ground for " + text::brief(flight, 3) + " s (" +
                        text::join_first(flights, kMost) +
@@ -247,11 +247,13 @@ void require_motion(const RobotModel& model, const RawMotion& motion) {
 
 // ---- Ends that were cut
 
-/// Speeds that count as rest [rad/s, m/s]. Chosen: what a table for a robot may begin with
-/// (limits/table_safety.hpp), and half of what a sole that carries may slide with.
+/// Speeds that count as rest [rad/s, m/s]. Chosen: the speed with which a table for a robot may
+/// begin (limits/table_safety.hpp), and half of the speed with which a sole that carries the robot
+/// may slide.
 constexpr double kRestRate = 0.1, kRestSlide = 0.05;
 
-// Speed over the row pair that begins at `k`, and which joint has it; empty: at rest.
+// Speed of the row pair that begins at `k`, and the joint that has this speed. Empty if the motion
+// is at rest.
 std::string movement_at(const RobotModel& model, const RawMotion& motion, Eigen::Index k) {
   Eigen::Index joint = 0;
   const double rate =
@@ -294,7 +296,7 @@ auto between_rows(double x, int rows, const ValueAt& value_at) {
   const int i = std::clamp(static_cast<int>(x), 0, rows - 2);
   const double u = x - i;
   const auto p1 = value_at(i), p2 = value_at(i + 1);
-  decltype(value_at(i)) p0 = 2 * p1 - p2, p3 = 2 * p2 - p1;  // straight on beyond the ends
+  decltype(value_at(i)) p0 = 2 * p1 - p2, p3 = 2 * p2 - p1;  // straight line beyond the ends
   if (i > 0) p0 = value_at(i - 1);
   if (i + 2 < rows) p3 = value_at(i + 2);
   return (p1 +
@@ -383,7 +385,8 @@ RawMotion with_ramps(const RobotModel& model, RawMotion motion, double seconds) 
                                      " s is too long for a motion of " +
                                      text::brief((rows - 1) * motion.dt) + " s; choose less than " +
                                      text::brief((rows - 1) * motion.dt) + " s");
-  // Slow soles look as if they carried, so the contacts are those of the motion as it was.
+  // Soles that move slowly look as if they carried the robot, so the contacts are those of the
+  // original motion.
   if (motion.support.empty()) motion.support = detect_supports(model, motion);
   for (size_t k = 1; k < motion.base.size(); ++k)
     if (motion.base[k].attitude.dot(motion.base[k - 1].attitude) < 0)

@@ -46,14 +46,14 @@ constexpr double kOffsetLimit = 0.09;
 // 10 mm off (scenarios/imported_motions_test).
 constexpr double kContradiction = 0.004;
 
-// Time after which the tilt of a foot that lies on the ground counts as the ground's, in 1/omega:
-// 50 ms on HOAP-1. Chosen: docs/theory.md, "A foot on a bump". Half: pushed walk, touchdowns 6 to
-// 5; twice: rough walk, touchdowns 6 to 7.
+// Time after which the tilt of a foot that lies on the ground counts as a slope of the ground, in
+// 1/omega: 50 ms on HOAP-1. Chosen: docs/theory.md, "A foot on a bump". Half: pushed walk,
+// touchdowns 6 to 5; twice: rough walk, touchdowns 6 to 7.
 constexpr double kContactTiltTime = 0.33;
 
 using GainFields = std::map<std::string, double*>;
 
-/// Of the body, whatever chooses the ZMP.
+/// Gains of the body, which apply whatever chooses the ZMP.
 GainFields body_gain_fields(DtadParams& p) {
   return {{"ka", &p.zmp_gain},           {"ks", &p.pull_rate},      {"kd", &p.pull_damping},
           {"damp", &p.rocking_damping},  {"tau_z", &p.zmp_filter},  {"margin", &p.margin},
@@ -62,7 +62,7 @@ GainFields body_gain_fields(DtadParams& p) {
           {"momentum", &p.momentum_gain}};
 }
 
-/// Of what chooses the ZMP.
+/// Gains of the method that chooses the ZMP.
 GainFields zmp_gain_fields(DtadParams& p) {
   if (p.kind == ControllerKind::preview)
     return {{"effort", &p.preview_effort},
@@ -86,8 +86,8 @@ GainFields gain_fields(DtadParams& p) {
   return fields;
 }
 
-/// Tilt of the plan's trunk about the world's x and y axes [rad]. `data`: of a posture whose waist
-/// is that of the plan.
+/// Tilt of the plan's trunk about the world's x and y axes [rad]. `data` belongs to a posture whose
+/// waist is that of the plan.
 Vector2d planned_tilt(const RobotModel& model, const RobotData& data, const RobotState& plan) {
   const Vector3d in_base = data.rotation[0].transpose() * data.rotation[model.trunk_body()].col(2);
   const Vector3d up = plan.base.attitude * in_base;
@@ -103,7 +103,8 @@ Vector2d bounded_offset(Vector2d offset, double z) {
   return offset;
 }
 
-/// The offset less the part of it that a plan's contradiction has made: -contradiction at most.
+/// The offset without the part that comes from a contradiction of the plan, which is at most
+/// -contradiction.
 Vector2d without_contradiction(const Vector2d& offset, const Vector2d& contradiction) {
   const double size = contradiction.norm();
   if (size == 0) return offset;
@@ -111,8 +112,8 @@ Vector2d without_contradiction(const Vector2d& offset, const Vector2d& contradic
   return offset + std::clamp(-offset.dot(along), 0.0, size) * along;
 }
 
-/// Mean of the planned ZMP less the COG over the first or the last time 1/omega of a plan that
-/// rests there; zero where it moves, or where both agree.
+/// Mean of the planned ZMP minus the COG over the first or the last time 1/omega of a plan that is
+/// at rest there. It is zero if the plan moves there, or if both agree.
 Vector2d contradiction(const CommandSeries& series, bool at_end, double w) {
   const std::vector<CommandSample>& samples = series.samples;
   const auto count =
@@ -184,7 +185,7 @@ DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec) {
       fail(code, where + ": " + name_of(p.kind) + " has no gain '" + name + "'" +
                      text::suggestion(name, names) + " (known: " + text::join(names, ", ") + ")");
   };
-  // Those of the body are the robot's own under every law.
+  // The parameters of the body are the robot's own under every law.
   DtadParams dtad;
   GainFields of_dtad = gain_fields(dtad);
   for (const char* name : {"k", "d"}) of_dtad[name] = nullptr;
@@ -257,7 +258,7 @@ Dtad::Dtad(const RobotModel& model, const ActuatorLimits& limits, const DtadPara
   if (params.kind == ControllerKind::foot_guided)
     guide_.emplace(command_.series(), params.least_guide_time);
   if (plan().support == Support::right) anchor_ = Side::right;
-  // Where legs lack joints, the trunk leans as the COG needs it, and has no turn of its own left.
+  // Where legs lack joints, the trunk leans as the COG needs it, so it cannot turn for the balance.
   if (InverseKinematics(model, model.posture()).lacks_joints()) params_.momentum_gain = 0;
 }
 
@@ -290,7 +291,7 @@ CogReference Dtad::cog_reference(const Estimate& estimate, LawTerms& terms) {
   CogReference ref;
   const ConvexPolygon& polygon =
       region_.update(*model_, command.feet, command.support, p.margin * z);
-  // A planned ZMP outside the support, as imported motions have it, is no error to be answered.
+  // A planned ZMP outside the support, as in imported motions, is not an error to answer.
   const Vector2d planned =
       polygon.empty() ? Vector2d(command.zmp.head<2>()) : polygon.project(command.zmp.head<2>());
   const Vector2d wanted =
@@ -302,9 +303,9 @@ CogReference Dtad::cog_reference(const Estimate& estimate, LawTerms& terms) {
   ref.fz = admissible_force(
       long_term_force(command.fz, m, p.height_stiffness * w * w, p.height_damping * w, error), m);
 
-  // At rest the ZMP is under the COG. Its distance from the one asked for is an offset already:
-  // servos that sag, a floor that slopes, a plan whose ZMP is not that of its COG. The last one
-  // ends with the plan.
+  // At rest the ZMP is under the COG. Its distance from the wanted ZMP is an offset from the
+  // beginning. It comes from servos that sag, from a floor that slopes, or from a plan whose ZMP is
+  // not that of its COG. The last of these three parts ends with the plan.
   if (first_ && p.offset_time > 0 && !polygon.empty()) {
     const Vector2d asked = polygon.project(planned - K * error.position.head<2>());
     offset_ = -error.position.head<2>() - (asked - planned);
@@ -358,7 +359,7 @@ CogReference Dtad::cog_reference(const Estimate& estimate, LawTerms& terms) {
   return ref;
 }
 
-// Measured ZMP less ref ZMP and the offset, which follows slowly.
+// The measured ZMP minus ref ZMP and minus the offset, which follows slowly.
 Vector2d Dtad::zmp_gap(const Vector2d& ref_zmp, double w, double z) {
   const Vector2d gap = filter_.zmp() - ref_zmp - offset_;
   if (params_.offset_time > 0) {
@@ -368,7 +369,7 @@ Vector2d Dtad::zmp_gap(const Vector2d& ref_zmp, double w, double z) {
   return gap;
 }
 
-// L' = m g e_z x (Z* - ref Z): a moment about the COG does to the COG what the ZMP cannot.
+// L' = m g e_z x (Z* - ref Z): this moment has the effect on the COG that the ZMP cannot have.
 void Dtad::turn_upper_body(double w) {
   const Vector3d moment =
       model_->mass() * kGravity * params_.momentum_gain * Vector3d(-outside_.y(), outside_.x(), 0);
@@ -383,8 +384,8 @@ bool Dtad::in_flight(const Estimate& estimate) {
   return flying_;
 }
 
-// Off the ground nothing that a law does moves the COG, and the measured one says where the feet
-// are, not where the robot is. The posture returns to the command, the legs to the vertical.
+// Off the ground, no law can change the path of the COG, and the measured COG depends on the feet
+// and not on the place of the robot. The posture returns to the command, the legs to the vertical.
 void Dtad::fly(const Estimate& e, const CommandSample& next, ControlOutput& out) {
   const CommandSample& command = plan();
   out.terms = {.stage = LawStage::follow_flight};

@@ -1,6 +1,6 @@
 #pragma once
 // Open loop: the servos receive the command with its feedforward, or the targets that the series
-// has in its place; nothing is measured.
+// has in place of the command. Nothing is measured.
 
 #include <memory>
 
@@ -10,9 +10,10 @@ namespace ayumi {
 
 class OpenLoop {
  public:
-  /// `torque_lead`: offsets of the servo targets by sample of the pattern [rad], one column:
-  /// throughout (control/torque_feedforward). `target`: last servo targets [rad]. `targets`: what
-  /// is sent by sample of the series, dof x samples; it outlives this and its copies.
+  /// `torque_lead` has the offsets of the servo targets by sample of the pattern [rad]; a single
+  /// column holds for all samples (control/torque_feedforward). `target` has the last servo targets
+  /// [rad]. `targets` has the targets by sample of the series, dof x samples; it must outlive this
+  /// law and its copies.
   OpenLoop(const ActuatorLimits& actuators, CommandPlan command,
            std::shared_ptr<const Eigen::MatrixXd> torque_lead, const Eigen::VectorXd& target,
            const Eigen::MatrixXd& targets);
@@ -20,7 +21,7 @@ class OpenLoop {
   /// The command of the coming tick.
   const CommandSample& plan() const { return command_.now(); }
 
-  /// Whether what is measured changes what it sends: only where the command's footholds move.
+  /// Whether the targets depend on measurements: only if the footholds of the command move.
   bool measures() const { return command_.measures(); }
 
   void update(const Estimate& estimate, ControlOutput& out);

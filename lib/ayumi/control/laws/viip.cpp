@@ -40,14 +40,14 @@ namespace {
 // 0.499 to 0.452; twice: pushed viip walk, touchdowns 5 to 4.
 constexpr double kLeastTimeToLanding = 0.06;
 
-// Distance of the DCM from where the first step starts at which the weight shift ends, times z:
-// 6 mm on HOAP-1. Chosen with the prototype: nearer costs time, farther throws the DCM off. No
-// measured case changes from half to twice (constants.md).
+// The weight shift ends when the DCM is within this distance of the place where the first step
+// starts, times z: 6 mm on HOAP-1. Chosen with the prototype: nearer costs time, farther throws the
+// DCM off. No measured case changes from half to twice (constants.md).
 constexpr double kShiftDone = 0.027;
 
 // Least length of the weight shift, times 1/omega: 0.36 s on HOAP-1. Chosen with the prototype: the
-// regulator settles in it. Half: pushed steps, slip 0.0809 to 1.96 mm; twice: the steps are
-// refused.
+// regulator settles within this time. Half: pushed steps, slip 0.0809 to 1.96 mm; twice: the steps
+// are refused.
 constexpr double kShiftTime = 2.4;
 
 // Time kept for standing after timed steps, times 1/omega. Chosen: exp(-5) of an error is left.
@@ -55,8 +55,8 @@ constexpr double kShiftTime = 2.4;
 constexpr double kSettleTime = 5;
 
 // Share of the swing before which a force on the swing foot is not a landing. Chosen with the
-// prototype: a foot still drags after its lift-off, and lands early at most by a third of a swing.
-// Half: no change; twice: steps, touchdowns 2 to 4.
+// prototype: a foot still drags after its lift-off, and a landing is early by at most a third of a
+// swing. Half: no change; twice: steps, touchdowns 2 to 4.
 constexpr double kStepLandingAfter = 0.6;
 
 // Fastest clock of a step that comes sooner, times its own pace. Chosen: joint speeds bound the
@@ -69,16 +69,18 @@ constexpr double kStepTimeScaleLimit = 4;
 constexpr double kBiasShare = 0.5;
 
 // Largest landing bias, times z: 3.3 mm on HOAP-1. Chosen: twice the error that lagging servos make
-// (1.5 mm); what is more is a push. No measured case changes from half to twice (constants.md).
+// (1.5 mm). A larger error comes from a push. No measured case changes from half to twice
+// (constants.md).
 constexpr double kLandingBiasLimit = 0.015;
 
-// Time after which a lasting tilt of the stance foot counts as the ground's, times 1/omega: 1 s on
-// HOAP-1. Chosen: as the offset time of DTAD. Figures change by less than 5 % from half to twice.
+// Time after which a lasting tilt of the stance foot counts as a slope of the ground, times
+// 1/omega: 1 s on HOAP-1. Chosen: equal to the offset time of DTAD. Figures change by less than 5 %
+// from half to twice.
 constexpr double kSlopeTime = 6.6;
 
-// Time constant of the low pass of the vertical push that is found in the load cells, beside the
-// lag of the servos [s]. Derived: with a low pass T and a force that is late by d, the loop obeys
-// T s = -exp(-s d), which is stable for d < T pi/2. Sensors may be 10 ms late.
+// Time constant of the low pass of the vertical push that the load cells measure, without the lag
+// of the servos [s]. Derived: with a low pass T and a force that is late by d, the loop obeys T s =
+// -exp(-s d), which is stable for d < T pi/2. Sensors may be 10 ms late.
 constexpr double kPushFilterTime = 0.010;
 
 // The longest lag of a servo of the legs [s].
@@ -264,7 +266,7 @@ void Viip::set_goal(const ViipGoal& goal, long ticks) {
   plan_ = next_;
 }
 
-// How many swings: as asked, or as many as fit.
+// Number of swings: the requested number, or as many as fit.
 void Viip::start_steps() {
   const double period = (params_.single_support + params_.double_support) / omega_;
   const double time = static_cast<double>(ticks_left_) * dt_ - (kSettleTime + kShiftTime) / omega_;
@@ -287,7 +289,7 @@ Vector3d Viip::standing_velocity(const Vector3d& velocity) const {
   return rotated(velocity, ground_middle(*model_, next_.feet).yaw);
 }
 
-// The nearest admissible ZMP, section 3.3 of the paper.
+// The admissible ZMP that is nearest, section 3.3 of the paper.
 Vector2d Viip::inside_support(const Vector2d& zmp) const {
   const ConvexPolygon polygon =
       support_polygon(*model_, plan_.feet, plan_.support).shrunk(params_.margin * height_);
@@ -322,7 +324,7 @@ Viip::WantedZmp Viip::regulate(const Vector2d& dcm, int state) const {
     return regulating_zmp(standing_goal(displacement_[2]).head<2>(), params_.pole_ratio,
                           dcm - ahead);
   };
-  const auto growth = [&](double time) {  // of zmp_to_arrive()
+  const auto growth = [&](double time) {  // derivative of zmp_to_arrive() with respect to the DCM
     const double E = elementary::exp(omega_ * time);
     return E / (E - 1);
   };
@@ -370,7 +372,7 @@ CogReference Viip::cog_reference(const Estimate& e, LawTerms& terms) {
   const Vector3d goal = standing_goal(displacement_[2]);
   const double z = body_.cog().z() - ground, dz = body_.dcog().z() - goal_velocity_[2].z();
   CogReference ref;
-  // Without feedback the contact is the planned one.
+  // Without feedback, the planned contact is used.
   const bool both = params_.feedback
                         ? bears(*model_, e, Side::left) == bears(*model_, e, Side::right)
                         : plan_.support == Support::both;
@@ -449,7 +451,7 @@ void Viip::choose_time_scale(const PlannedStep& step, const Vector2d& dcm) {
   time_scale_ = std::clamp(left / time, 1.0, kStepTimeScaleLimit);
 }
 
-// Where the DCM will need the foot, within reach and beside the stance foot.
+// The place where the DCM will need the foot, limited to the reach and kept beside the stance foot.
 Vector2d Viip::landing_point(const PlannedStep& step, const Vector2d& dcm) const {
   const Side foot = other(anchor_);
   const double growth = elementary::exp(omega_ * time_to_landing());
@@ -469,7 +471,8 @@ Vector2d Viip::landing_point(const PlannedStep& step, const Vector2d& dcm) const
   return stance.position + Eigen::Rotation2Dd(stance.yaw) * beside_stance;
 }
 
-// The swing foot lifts off, goes to the landing point, which moves, and comes down.
+// The path of the swing foot: it lifts off, moves to the landing point, which moves too, and comes
+// down.
 void Viip::move_swing_foot(const Vector2d& dcm) {
   const double length = params_.single_support / omega_;
   const Side foot = other(anchor_);
@@ -492,8 +495,9 @@ void Viip::move_swing_foot(const Vector2d& dcm) {
       sole_frame(*model_, foot, at, ground + swing_height(after) * params_.lift * height_);
 }
 
-// Where the landed foot stands beside the other one, less where the plan has it: the plan does not
-// follow, its path does. It is asked when the foot bears: at first touch it still moves.
+// The place of the landed foot relative to the other foot, minus its planned place. The path of the
+// plan is moved by this difference. The difference is measured when the foot carries load, because
+// the foot still moves at first touch.
 Vector2d Viip::landing_error(const Estimate& e, Side foot) {
   update_positions(*model_, e.state, data_);
   const auto off = [&](Side side) -> Vector3d {
@@ -528,7 +532,7 @@ void Viip::step_state_machine(const Estimate& e) {
                                         : divergent_component(body_.cog(), body_.dcog(), omega_);
   const double single = params_.single_support / omega_, both = params_.double_support / omega_;
   if (stage_ == Stage::weight_shift) {
-    // The DCM is where the regulator wants it when the ZMP it asks for is the DCM itself.
+    // The DCM has arrived when the ZMP that the regulator asks for is the DCM itself.
     const double gap = (zmp_[0] - dcm.head<2>()).norm() / params_.pole_ratio;
     if (steps_left_ == 0)
       stage_ = Stage::stand;
@@ -568,7 +572,7 @@ void Viip::step_state_machine(const Estimate& e) {
   next_.support = stage_ == Stage::single_support ? on(anchor_) : Support::both;
 }
 
-// COG, ZMP and trunk of the plan that the judge and the resolution see.
+// COG, ZMP and trunk of the plan, for the fall monitor and the resolution.
 void Viip::finish_plan() {
   const GroundPose feet = ground_middle(*model_, next_.feet);
   const double yaw_before = matrix_to_rpy(plan_.state.base.attitude.toRotationMatrix()).z();

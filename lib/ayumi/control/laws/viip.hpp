@@ -1,7 +1,7 @@
 #pragma once
 // VIIP: variable impedant inverted pendulum manipulation, section 4 of the paper. The commanded
-// motion is the pendulum's own: a regulator chooses ref ZMP, (24) the vertical force, the feet are
-// placed where the pendulum will need them. Law and derivation: docs/theory.md.
+// motion is the pendulum's own: a regulator chooses ref ZMP, (24) the vertical force, and the feet
+// are placed where the pendulum will need them. docs/theory.md derives the law.
 
 #include "ayumi/control/feedback.hpp"
 #include "ayumi/control/footsteps.hpp"
@@ -17,16 +17,16 @@ namespace ayumi {
 /// in units of the COG height z. The names in files and on the command line are those in brackets.
 /// Where the values come from: docs/theory.md, "VIIP".
 struct ViipParams {
-  double pole_ratio = 0.75;       ///< [q] second pole of the standing regulator
-  double goal_lag = 0.3;          ///< [goal] time constant of each of two lags of a displacement
-  double zmp_gain = 1;            ///< [ka] short-term loop on the measured ZMP
-  double velocity_leak = 3;       ///< [av] pull of the reference velocity to the measured one
-  double position_leak = 1;       ///< [ax] pull of the reference COG to the measured one
-  double rocking_damping = 8;     ///< [damp] of the robot's rocking on its soles and servos
-  double zmp_filter = 0.01;       ///< [tau_z] low pass of the measured ZMP
-  double margin = 0.01;           ///< [margin] kept inside the support region
-  double height_rate = 1.5;       ///< [kz] sqrt(K_Pz / m) of (24) while both feet bear
-  double one_foot_rate = 1.06;    ///< [kz_one] the same while one foot bears
+  double pole_ratio = 0.75;    ///< [q] second pole of the standing regulator
+  double goal_lag = 0.3;       ///< [goal] time constant of each of two lags of a displacement
+  double zmp_gain = 1;         ///< [ka] short-term loop on the measured ZMP
+  double velocity_leak = 3;    ///< [av] pull of the reference velocity to the measured one
+  double position_leak = 1;    ///< [ax] pull of the reference COG to the measured one
+  double rocking_damping = 8;  ///< [damp] of the robot's rocking on its soles and servos
+  double zmp_filter = 0.01;    ///< [tau_z] low pass of the measured ZMP
+  double margin = 0.01;      ///< [margin] distance that is kept from the edge of the support region
+  double height_rate = 1.5;  ///< [kz] sqrt(K_Pz / m) of (24) while both feet bear
+  double one_foot_rate = 1.06;    ///< [kz_one] `height_rate` while one foot bears
   double height_damping = 1;      ///< [dz] K_Dz / (2 sqrt(m K_Pz)): (25) asks for at least 1
   double momentum_share = 0.3;    ///< [moment] share of the moment of a swing that the COG takes
   double yielding = 1;            ///< [yield] share of a vertical push that standing yields to
@@ -47,7 +47,7 @@ struct ViipParams {
 /// unknown gain or a value out of range, for dz with (25).
 ViipParams viip_params(const RobotModel& model, const ControllerSpec& spec);
 
-/// Its gains by the names of files, in alphabetical order.
+/// The gains by the names that files use, in alphabetical order.
 std::vector<std::pair<std::string, double>> gains_of(ViipParams params);
 
 /// The pendulum that VIIP regulates: its state and the ZMP its regulator asks for [m], [m/s].
@@ -68,7 +68,7 @@ Eigen::Vector2d viip_acceleration(const ViipParams& params, double omega, double
 /// changes at `momentum_rate` [N m] keeps its ZMP [m/s^2].
 Eigen::Vector2d turning_acceleration(const Eigen::Vector3d& momentum_rate, double mass, double z);
 
-/// How long `steps` counted steps take from standing to standing [s].
+/// Duration of `steps` counted steps, from standing to standing [s].
 double stepping_time(const ViipParams& params, double omega, int steps);
 
 /// K_Pz and K_Dz of (24) while `feet` feet bear; a robot in the air keeps those of both feet.
@@ -79,13 +79,13 @@ double viip_force(const HeightGains& gains, double mass, double goal, double z, 
 
 class Viip {
  public:
-  /// Goes on from `start`. `held`: the posture and COG that the pattern holds meanwhile; the COG
-  /// over the middle of its feet is what displacements start from.
+  /// Continues from `start`. `held` has the posture and COG that the pattern holds during the
+  /// phase. Displacements start from its COG relative to the middle of its feet.
   Viip(const RobotModel& model, const ActuatorLimits& limits, const ViipParams& params, double dt,
        const Handover& start, const CommandSample& held);
 
-  /// CogGoal, CogVelocityGoal or StepGoal from the coming tick on, for `ticks`: steps without a
-  /// count end in time, and a velocity ends with them.
+  /// Sets the goal from the coming tick on, for `ticks` ticks. Steps without a number end in time,
+  /// and a velocity ends with these ticks.
   void set_goal(const ViipGoal& goal, long ticks);
 
   double omega() const { return omega_; }  ///< sqrt(g / z) of the held posture [1/s]
@@ -95,7 +95,7 @@ class Viip {
 
   void update(const Estimate& estimate, ControlOutput& out);
 
-  /// W = diag(weight) of (29) from now on [dof].
+  /// Sets the weights W = diag(weight) of (29) from now on [dof].
   void weigh(const Eigen::VectorXd& weight) { body_.weigh(weight); }
 
   Handover handover() const {
@@ -108,7 +108,8 @@ class Viip {
   Eigen::Vector3d standing_goal(const Eigen::Vector3d& displacement) const;
   Eigen::Vector3d standing_velocity(const Eigen::Vector3d& velocity) const;
   LawStage law_stage() const;
-  /// A ZMP before the nearest point of the support is taken [m], and its growth with the DCM [1].
+  /// The ZMP before its projection to the support [m], and its derivative with respect to the DCM
+  /// [1].
   struct WantedZmp {
     Eigen::Vector2d zmp;
     double gain = 0;
@@ -133,13 +134,14 @@ class Viip {
   ViipParams params_;
   double dt_, omega_, height_;
   double push_filter_;   // time constant of push_ [s]
-  CommandPlan command_;  // of the pattern, for the next law
+  CommandPlan command_;  // command of the pattern, for the next law
   ReferenceBody body_;
   ReferenceDynamics dynamics_;
   RobotData data_;
   CommandSample held_, plan_, next_;
   Eigen::Vector3d offset_;  // held COG from the middle of the feet, axes of the feet [m]
-  // COG displacement: as asked, after one lag and after two, where it is followed [m].
+  // COG displacement: the requested one, after one lag, and after two lags, which the reference
+  // follows [m].
   std::array<Eigen::Vector3d, 3> displacement_ = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),
                                                   Eigen::Vector3d::Zero()};
   // Goal velocity, ref v_G, with the same lags [m/s]; the displacement follows it.
@@ -149,20 +151,20 @@ class Viip {
   int steps_left_ = 0;
   long ticks_left_ = 0;
   Stage stage_ = Stage::stand;
-  double elapsed_ = 0;        // in this stage, by its clock [s]
-  double time_scale_ = 1;     // of that clock: a step that comes sooner runs faster
+  double elapsed_ = 0;        // time in this stage, by the clock of the stage [s]
+  double time_scale_ = 1;     // rate of this clock: it is above 1 for a step that comes sooner
   Side anchor_ = Side::left;  // foot the reference stands on
   double early_ = 0;          // height at which the plan has a foot that has met the ground [m]
   Footsteps footsteps_;
-  // Systematic error of each foot's landing, axes of the foot [m].
+  // Systematic landing error of each foot, in the axes of the foot [m].
   std::array<Eigen::Vector2d, 2> landing_bias_ = {Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
   ReactionFilter filter_;  // measured ZMP
-  double sag_ = 0;         // of the measured COG under the reference's, low pass of 1/omega [m]
-  double push_ = 0;        // vertical, what the load cells have beyond the reference's f_z [N]
-  double lift_ = 0;        // vertical acceleration of the reference in the last tick [m/s^2]
-  SwingReplan<3> swing_;   // x, y, yaw of the foot in the air
-  // Ref ZMP inside the support by the measured and by the reference state: now, and at the end of
-  // the last single support.
+  double sag_ = 0;         // measured COG below the reference, low pass of 1/omega [m]
+  double push_ = 0;       // vertical force of the load cells in addition to the reference's f_z [N]
+  double lift_ = 0;       // vertical acceleration of the reference in the last tick [m/s^2]
+  SwingReplan<3> swing_;  // x, y, yaw of the foot in the air
+  // Ref ZMP inside the support by the measured state and by the reference state: now, and at the
+  // end of the last single support.
   std::array<Eigen::Vector2d, 2> zmp_, zmp_before_;
 };
 

@@ -58,21 +58,23 @@ constexpr double kStoopLean = 1.2;
 constexpr double kSettleRate = 2.2;
 
 // Ground force that counts as none [N], and the time for which it must last [s]. Measured with the
-// prototype: without that time the release goes by chattering contacts, apex 10 mm instead of 20.
+// prototype: without this time, chattering contacts trigger the release, and the apex is at 10 mm
+// instead of 20 mm.
 constexpr double kNoForce = 0.5;
 constexpr double kNoForceTime = 0.015;
 
-// Largest step of a servo target, times the joint's speed limit: targets lead the joint by
-// (delay + kd/kp) dtheta + tau/kp. Chosen: that lead must build up within the push. Half: viip
-// jump, slip 1.3 to 2.69 mm; twice: ZMP error 3.39 to 1.31 mm.
+// Largest rate of a servo target, times the joint's speed limit: targets lead the joint by (delay +
+// kd/kp) dtheta + tau/kp. Chosen: that lead must build up within the push. Half: viip jump, slip
+// 1.3 to 2.69 mm; twice: ZMP error 3.39 to 1.31 mm.
 constexpr double kTargetRate = 3;
 
 // Time over which the torque feedforward is faded in and out [s]. Chosen: within the stoop, and
 // long against the lag of servos, up to 20 ms. Figures change by less than 5 % from half to twice.
 constexpr double kTorqueFadeTime = 0.3;
 
-// The legs run on after release with this time constant [s]. Source: docs/theory_flight.md,
-// "Flight": stopping them at once asks for tens of newton metres. The prototype had 20 ms.
+// Time constant with which the motion of the legs fades after release [s]. Source:
+// docs/theory_flight.md, "Flight": stopping them at once asks for tens of newton metres. The
+// prototype had 20 ms.
 constexpr double kRunOnTime = 0.030;
 
 // Before touchdown the legs give way to the ground, up to this share of the falling speed. They
@@ -85,8 +87,8 @@ constexpr double kRetractionTime = 0.050;
 constexpr double kRetractionHold = 0.010;
 constexpr double kRetractionShare = 0.9;
 
-// Longest retraction as a share of the flight. Chosen: the legs still have the flight's middle to
-// swing to where they land. Half: viip hops, slip 1.44 to 1.7 mm; twice: no change.
+// Longest retraction as a share of the flight. Chosen: the legs then have the middle of the flight
+// to swing to their landing places. Half: viip hops, slip 1.44 to 1.7 mm; twice: no change.
 constexpr double kRetractionFlightShare = 0.4;
 
 // Time after release in which forces are not a touchdown yet [s]. Chosen with the prototype: the
@@ -272,7 +274,7 @@ double ViipJump::vertical_force(LawTerms& terms) const {
   return towards(height_, kSettleRate * omega_);
 }
 
-// Share of a push or a landing that is done, 0 to 1.
+// The share of a push or a landing that has passed, 0 to 1.
 double ViipJump::progress() const {
   const double z = data_.cog.z() - ground_of(plan_.feet);
   return std::clamp(std::abs(z - from_) / depth_, 0.0, 1.0);
@@ -292,7 +294,8 @@ CogReference ViipJump::cog_reference(const Estimate& e, LawTerms& terms) {
   Vector2d goal = middle_of_soles(*model_, plan_.feet) + offset_;
   Vector2d rate = Vector2d::Zero(), acceleration = Vector2d::Zero();
   if (stage_ == Stage::push && goal_.forward != 0) {
-    // Speed for the distance over push, flight and the same again on landing.
+    // Horizontal speed with which the robot moves the distance during push, flight and landing,
+    // which lasts as long as the push.
     const JumpFigures f = jump_figures(goal_);
     const double yaw = heading_of_feet(plan_.feet), s = std::min(1.0, elapsed_ / f.push);
     const Vector2d speed =
@@ -342,7 +345,7 @@ bool ViipJump::leaves_now() {
   return true;
 }
 
-// Forwards, as far as the legs' push and landing turn the trunk back [rad].
+// Forward lean of the trunk that compensates for its turn during push and landing [rad].
 double ViipJump::lean() const {
   const double most = kStoopLean * goal_.stoop / height_;
   if (stage_ == Stage::stoop) return most * smooth_rise(elapsed_ * omega_ / kStoopTime);
@@ -356,7 +359,7 @@ Resolution ViipJump::resolve_standing(const Vector3d& trunk_rate, double level) 
   wanted.state.base_angular_velocity = trunk_rate;
   ResolverOptions options;
   options.trunk_rate *= level;
-  options.in_order = false;  // docs/theory.md says why
+  options.in_order = false;  // docs/theory_flight.md gives the reason
   const double yaw = heading_of_feet(plan_.feet);
   options.turn.lean = lean() * Vector3d(-elementary::sin(yaw), elementary::cos(yaw), 0);
   return resolve(*model_, limits_, reference_, data_, anchor_, dcog_, wanted, wanted, dt_, weight_,
@@ -377,7 +380,8 @@ Resolution ViipJump::resolve_with_momentum(double share) {
   return resolve_standing(share * rate, 1 - share);
 }
 
-// Of the servos for the motion of the reference: the ground's wrench is shared by both feet.
+// Torques of the servos for the motion of the reference. Both feet share the ground's wrench
+// equally.
 VectorXd ViipJump::torque(const VectorXd& velocity) {
   const VectorXd acceleration = velocity_.size() == 0 ? VectorXd(VectorXd::Zero(velocity.size()))
                                                       : VectorXd((velocity - velocity_) / dt_);
@@ -406,7 +410,8 @@ VectorXd ViipJump::torque(const VectorXd& velocity) {
   return torque;
 }
 
-// The servo target leads by what damping and torque would hold the joint back.
+// The servo target leads the posture by the angle that damping and torque would hold the joint
+// back.
 void ViipJump::move_joints(const VectorXd& velocity, ControlOutput& out) {
   const VectorXd tau = torque(velocity);
   const bool last = stage_ == Stage::settle && elapsed_ > kTorqueFadeTime;
@@ -460,7 +465,7 @@ void ViipJump::stand(const Estimate& e, ControlOutput& out) {
       break;
     case Stage::push: {
       unloaded_ = e.fz < kNoForce ? unloaded_ + dt_ : 0;
-      // Legs that cannot follow the spring any more leave the ground there.
+      // If the legs cannot follow the spring any more, they leave the ground at this moment.
       const bool behind = r.scale < 1 && z > height_;
       if (last || behind || unloaded_ > kNoForceTime) {
         release();
@@ -483,7 +488,7 @@ void ViipJump::stand(const Estimate& e, ControlOutput& out) {
   }
 }
 
-// The flight begins at the posture the joints have just been moved to.
+// The flight begins at the posture to which the joints were moved in this tick.
 void ViipJump::release() {
   const VectorXd rates = anchored_velocity_map(*model_, data_, anchor_) * reference_.dtheta;
   MatrixXd M;
@@ -516,11 +521,11 @@ void ViipJump::release() {
   enter(Stage::flight);
 }
 
-// By how much the legs have given way to the coming ground, t after release: the integral of the
-// share of the falling speed at which they do, which rises, holds and fades.
+// Distance by which the legs have retracted before the coming touchdown, t after release. It is the
+// integral of a share of the falling speed. The share rises, stays constant and fades.
 double ViipJump::retraction(double t) const {
   const double T = flight_.duration, rise = flight_.rise, hold = flight_.hold;
-  const double begin = T - hold - rise;  // [s] after release
+  const double begin = T - hold - rise;  // times after release [s]
   if (t <= begin) return 0;
   const auto falling = [&](double at) { return flight_.touchdown_speed + kGravity * (at - T); };
   const double u = std::min(1.0, (t - begin) / rise);
@@ -534,8 +539,8 @@ double ViipJump::retraction(double t) const {
   return kRetractionShare * way;
 }
 
-// Of a sole from the COG, t after release. The legs run on with the speed they had, swing to where
-// they land, and begin to give way shortly before that.
+// Place of a sole relative to the COG, t after release. The legs first keep the speed that they
+// had, swing to the landing places, and retract shortly before the landing.
 Vector3d ViipJump::foot_position(int side, double t) const {
   const Flight& f = flight_;
   const auto s = static_cast<size_t>(side);
@@ -566,7 +571,7 @@ void ViipJump::fly(const Estimate& e, ControlOutput& out) {
   MatrixXd M;
   mass_matrix(*model_, data_, M);
   const int n = model_->dof_count();
-  Eigen::Matrix<double, 6, 1> momentum;  // about the base origin
+  Eigen::Matrix<double, 6, 1> momentum;  // vectors about the base origin
   momentum << model_->mass() * dcog_,
       flight_.momentum + data_.cog_offset.cross(model_->mass() * dcog_);
   const MatrixXd base_inertia = M.topLeftCorner<6, 6>();
@@ -602,7 +607,7 @@ void ViipJump::fly(const Estimate& e, ControlOutput& out) {
       dtheta[j] = std::clamp(dtheta[j], (dof.lower - reference_.theta[j]) / dt_,
                              (dof.upper - reference_.theta[j]) / dt_);
   }
-  // Of both soles.
+  // Rows of both soles.
   const VectorXd left = J * dtheta - u;
   out.residuals = {};
   out.residuals.foot = elementary::hypot(left.head<3>().norm(), left.segment<3>(6).norm());
@@ -634,7 +639,7 @@ void ViipJump::measure_speed(const Estimate& e) {
     speed_ += dt_ * kGravity * ((load > kTouchdownShare ? load : 0.0) - 1);
 }
 
-// The reference goes on from the posture and speed of the landing.
+// The reference continues from the posture and speed at the landing.
 void ViipJump::touch_down(const Estimate& e) {
   momentum_rate_.setZero();
   velocity_.resize(0);

@@ -1,6 +1,6 @@
 #pragma once
 // The jump of VIIP, section 4.1 of the paper: stoop, (24)(25); push, (26); flight; absorb, (27);
-// settle, (24)(25). Law and closed forms: docs/theory_flight.md.
+// settle, (24)(25). docs/theory_flight.md has the law and the closed forms.
 
 #include "ayumi/control/laws/viip.hpp"
 
@@ -8,8 +8,8 @@ namespace ayumi {
 
 /// What a jump by (26) does to a point mass [m], [m/s], [s]; heights above ref z_G.
 struct JumpFigures {
-  double apex = 0;              ///< z_H released at ref z_G, z_H + z_d^2/(4 z_H) held to f_z = 0
-  double lift_off = 0;          ///< 0, or z_d^2/(2 z_H)
+  double apex = 0;      ///< z_H if released at ref z_G; z_H + z_d^2/(4 z_H) if held until f_z = 0
+  double lift_off = 0;  ///< 0, or z_d^2/(2 z_H)
   double lift_off_speed = 0;    ///< upwards
   double touchdown_speed = 0;   ///< downwards, at ref z_G
   double push = 0, flight = 0;  ///< durations
@@ -18,8 +18,8 @@ JumpFigures jump_figures(const JumpGoal& goal);
 
 class ViipJump {
  public:
-  /// Goes on from `start`. `held`: the posture that the pattern holds meanwhile; the height of its
-  /// COG is ref z_G. Throws Error(bad_pattern) for a goal that is no jump.
+  /// Continues from `start`. `held` has the posture that the pattern holds during the phase. The
+  /// height of its COG is ref z_G. Throws Error(bad_pattern) for a goal that is no jump.
   ViipJump(const RobotModel& model, const ActuatorLimits& limits, const ViipParams& params,
            double dt, const Handover& start, const CommandSample& held, const JumpGoal& goal);
 
@@ -28,7 +28,7 @@ class ViipJump {
 
   void update(const Estimate& estimate, ControlOutput& out);
 
-  /// W = diag(weight) of (29) from now on [dof].
+  /// Sets the weights W = diag(weight) of (29) from now on [dof].
   void weigh(const Eigen::VectorXd& weight) { weight_ = weight; }
 
   Handover handover() const { return {reference_, dcog_, target_, plan_, command_}; }
@@ -36,15 +36,16 @@ class ViipJump {
  private:
   enum class Stage { stoop, push, flight, landing, settle };
 
-  // What one flight keeps from its release on.
+  // Values of one flight, from its release on.
   struct Flight {
     Eigen::Vector3d cog = Eigen::Vector3d::Zero(), velocity = Eigen::Vector3d::Zero();
-    Eigen::Vector3d momentum = Eigen::Vector3d::Zero();  // angular, about the COG [N m s]
-    std::array<Eigen::Vector3d, 2> feet, landing;        // from the COG [m]
-    double duration = 0;                                 // to the expected touchdown [s]
-    double touchdown_speed = 0;                          // that is expected, down [m/s]
-    double rise = 0, hold = 0;  // of the rate at which the legs give way before it [s]
-    double retraction = 0;      // of the legs before it [m]
+    Eigen::Vector3d momentum = Eigen::Vector3d::Zero();  // angular momentum about the COG [N m s]
+    std::array<Eigen::Vector3d, 2> feet, landing;        // place relative to the COG [m]
+    double duration = 0;                                 // time to the expected touchdown [s]
+    double touchdown_speed = 0;  // expected touchdown speed, downwards [m/s]
+    double rise = 0,
+           hold = 0;        // rise and hold of the rate of retraction before the touchdown [s]
+    double retraction = 0;  // retraction of the legs before the touchdown [m]
   };
 
   void enter(Stage stage);
@@ -73,7 +74,7 @@ class ViipJump {
   double dt_;
   JumpGoal goal_;
   double height_, omega_;  // ref z_G above the ground, sqrt(g / z)
-  CommandPlan command_;    // of the pattern, for the next law
+  CommandPlan command_;    // command of the pattern, for the next law
   CommandSample held_, plan_;
   Eigen::Vector2d offset_;  // held COG from the middle of the feet [m]
   mutable RobotData data_;
@@ -84,19 +85,20 @@ class ViipJump {
   ReactionFilter filter_;  // measured ZMP
   Eigen::Vector2d zmp_;    // ref ZMP [m]
   Stage stage_ = Stage::stoop;
-  double elapsed_ = 0;        // in this stage [s]
+  double elapsed_ = 0;        // time in this stage [s]
   double unloaded_ = 0;       // time without ground force at the end of a spring push [s]
   double loaded_ = 0;         // time with ground force at the end of a flight [s]
-  double speed_ = 0;          // vertical, of the COG, measured [m/s]
-  double speed_before_ = 0;   // the same when the feet last bore no load [m/s]
+  double speed_ = 0;          // measured vertical velocity of the COG [m/s]
+  double speed_before_ = 0;   // this velocity when the feet carried no load for the last time [m/s]
   double forward_ = 0;        // share of the torque that is fed forward, 0 to 1
-  Eigen::VectorXd velocity_;  // generalised, of the last tick; empty after an impact
-  int left_ = 1;              // jumps to go, this one included
+  Eigen::VectorXd velocity_;  // generalised velocity of the last tick; empty after an impact
+  int left_ = 1;              // remaining jumps, with this one
   double from_ = 0;           // COG height at which the stage began [m]
   double stiffness_ = 0;      // K_Pz / m of (26) or (27) [1/s^2]
-  double depth_ = 0;          // of the push or of the landing [m]
-  Eigen::Vector3d momentum_ = Eigen::Vector3d::Zero();       // of the reference, angular [N m s]
-  Eigen::Vector3d momentum_rate_ = Eigen::Vector3d::Zero();  // on the ground [N m]
+  double depth_ = 0;          // depth of the push or of the landing [m]
+  Eigen::Vector3d momentum_ = Eigen::Vector3d::Zero();  // angular momentum of the reference [N m s]
+  Eigen::Vector3d momentum_rate_ =
+      Eigen::Vector3d::Zero();  // rate of momentum_ on the ground [N m]
   Flight flight_;
 };
 

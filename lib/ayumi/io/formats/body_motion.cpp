@@ -95,10 +95,10 @@ class BodyMotionReader {
       left_out_.push_back(content.empty() ? type : content);
   }
 
-  // Rows of `width` numbers (0: that of the first), without their times.
+  // Reads rows of `width` numbers without their times; a width of 0 is that of the first row.
   std::vector<std::vector<double>> rows_of(const YamlNode& frames, size_t width) {
     std::vector<std::vector<double>> rows;
-    if (frames.items.empty() && !frames.numbers.empty())  // one list of single numbers
+    if (frames.items.empty() && !frames.numbers.empty())  // the value is one list of single numbers
       for (const double number : frames.numbers) rows.push_back({number});
     for (const YamlNode& frame : frames.items) {
       const YamlNode* row = &frame;

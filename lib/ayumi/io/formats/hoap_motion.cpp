@@ -1,6 +1,7 @@
-// Real sequence files are no clean tables: line ends of two kinds, blanks around cells, "-0",
-// requests where others have hobby servo words, commands to single devices between the rows; and
-// what robots answer, or other programs write for them, is bare: no intervals, counts or radians.
+// Real sequence files are not clean tables. They have line ends of two kinds, blanks around cells,
+// "-0", requests where others have words for hobby servos, and commands to single devices between
+// the rows. What robots answer, or what other programs write for them, has no intervals, and is
+// counts or radians.
 #include "ayumi/io/formats/hoap_motion.hpp"
 
 #include <algorithm>
@@ -21,8 +22,8 @@ void refuse_lost_motion(const HoapFile& sequence, int device, const RobotModel& 
   const auto [least, most] = std::minmax_element(
       sequence.rows.begin(), sequence.rows.end(),
       [&](const HoapRow& a, const HoapRow& b) { return a.values[column] < b.values[column]; });
-  // Movement of an axis that holds its place. Chosen: 0.05 degrees, half of what servos do not
-  // follow (kOfCounts of motion_import.cpp); as counts those of an encoder of 209 counts per
+  // An axis that moves less than this holds its place. Chosen: 0.05 degrees, half of what servos do
+  // not follow (kOfCounts of motion_import.cpp); as counts those of an encoder of 209 counts per
   // degree.
   constexpr double kTremblingCounts = 10, kTremblingAngle = 0.05 * EIGEN_PI / 180;
   const double low = least->values[column], high = most->values[column];
@@ -46,7 +47,7 @@ void refuse_zeros(const HoapFile& sequence, const std::string& file) {
          file + ": every value of every motor is 0, so nothing was recorded; record again");
 }
 
-// A step that no motor board passes on: the file has a jump, or rows are missing.
+// A step that no motor board passes on shows that the file has a jump, or that rows are missing.
 void say_largest_step(const HoapFile& sequence, std::vector<std::string>& filled) {
   if (sequence.layout.radians) return;
   const double limit = SafetyOptions().counts_per_ms;
@@ -69,7 +70,7 @@ void say_largest_step(const HoapFile& sequence, std::vector<std::string>& filled
                      " counts/ms; rows may be missing there");
 }
 
-/// Joints whose angles leave their position limits somewhere.
+/// The joints whose angles leave their position limits in some row.
 std::vector<std::string> beyond_limits(const RobotModel& model, const Eigen::MatrixXd& theta) {
   constexpr double kSlack = 1e-6;  // Chosen: rounding of decimals [rad]; no knee bends by it
   std::vector<std::string> names;
@@ -82,7 +83,8 @@ std::vector<std::string> beyond_limits(const RobotModel& model, const Eigen::Mat
   return names;
 }
 
-// Angles in radians: says which of them were negated, and whether the other reading fits better.
+// The angles in radians. The notes say which of them were negated, and whether the other reading
+// fits better.
 void apply_signs(const RobotModel& model, bool encoder_signs, Eigen::MatrixXd& theta,
                  std::vector<std::string>& notes) {
   std::vector<std::string> negative;

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 std::string blanks() { return " \t"; }
 
-// A file beside the .pos: one row for each of its rows.
+// A file beside the .pos file, which has one row for each row of it.
 std::optional<NumberRows> rows_beside(const MotionInput& source, const std::string& extension,
                                       size_t rows) {
   const std::optional<std::string> bytes = source.beside(extension);
@@ -49,7 +49,8 @@ Eigen::Vector3d vector_at(const std::vector<double>& row, size_t at) {
   return {row[at], row[at + 1], row[at + 2]};
 }
 
-// x y z and roll pitch yaw, or the older form with the rotation matrix, row by row.
+// A row has x y z and roll pitch yaw, or, in the older form, x y z and the rotation matrix row by
+// row.
 BasePose waist_of(const std::vector<double>& row) {
   BasePose base;
   base.position = vector_at(row, 1);
@@ -126,7 +127,7 @@ MotionFile read_hrpsys(const MotionInput& source) {
         const Eigen::Quaterniond q(rpy_to_matrix(vector_at(hip->rows[k], 1)));
         most = std::max(most, elementary::angle_between(q, motion.base[k].attitude));
       }
-      // Difference that rounding to six decimals explains. Chosen [rad].
+      // The largest difference that rounding to six decimals explains. Chosen [rad].
       constexpr double kRounding = 1e-5;
       if (most > kRounding) {
         for (size_t k = 0; k < rows; ++k)
@@ -149,8 +150,8 @@ MotionFile read_hrpsys(const MotionInput& source) {
         motion.zmp.push_back(motion.base[k].position + motion.base[k].attitude * local);
         off = std::max(off, std::abs(motion.zmp.back().z()));
       }
-      // Height of a ZMP over the ground that a frame of the waist explains. Chosen: a tenth of the
-      // height of a small robot's waist [m].
+      // The lowest height of a ZMP over the ground that shows it to be in the frame of the waist.
+      // Chosen: a tenth of the height of a small robot's waist [m].
       constexpr double kNearGround = 0.03;
       motion.notes.push_back(
           off < kNearGround

@@ -26,14 +26,14 @@ bool has_key(const MotionInput& source, const std::string& key) {
   return source.bytes.find("\"" + key + "\"") != std::string::npos;
 }
 
-// Degrees with the digits that a number of radians keeps.
+// Degrees with as many digits as a number in radians keeps.
 std::string degrees_text(double radians) {
   char text[40];
   std::snprintf(text, sizeof text, "%.12g", radians / kRadiansPerDegree);
   return text;
 }
 
-// Rows of the same number of finite numbers.
+// Reads rows, each with the same number of finite numbers.
 std::vector<std::vector<double>> frames_of(const MotionInput& source, const JsonNode& root,
                                            size_t least) {
   std::vector<std::vector<double>> rows;
@@ -73,7 +73,7 @@ void set_values(const std::vector<std::vector<double>>& rows, size_t first, size
           rows[k][first + j];
 }
 
-// y up to z up: x stays, y becomes z.
+// Turns a rotation from y up to z up: x stays, and y becomes z.
 const Eigen::Quaterniond& upright() {
   static const Eigen::Quaterniond turn(
       elementary::turn_quaternion(EIGEN_PI / 2, Eigen::Vector3d::UnitX()));

@@ -11,8 +11,9 @@ MotionFile read_poppy_move(const MotionInput& source);
 std::vector<WrittenFile> write_poppy_move(const RobotModel& model, const MotionFile& motion);
 
 std::string recognize_deep_mimic(const MotionInput& source);
-/// "FrameDuration" beside the frames: root x y z, quaternion x y z w, joints, z up. Without it,
-/// each frame begins with its duration, and has the quaternion w x y z, y up.
+/// With "FrameDuration" beside the frames, a frame has the root x y z, the quaternion x y z w and
+/// the joints, and z is up. Without it, each frame begins with its duration, has the quaternion w x
+/// y z, and y is up.
 MotionFile read_deep_mimic(const MotionInput& source);
 std::vector<WrittenFile> write_deep_mimic(const RobotModel& model, const MotionFile& motion);
 

@@ -22,8 +22,8 @@ using Eigen::Vector3d;
 using OrderedJson = nlohmann::ordered_json;
 
 constexpr const char* kWorld = "world";
-// [Hz] Chosen: what is drawn has fewer times than the numbers, about as many as a screen shows. At
-// half of it a file of the bundled walk is 1.4 % smaller, at twice 2.7 % larger.
+// [Hz] Chosen: what is drawn has fewer rows per second than the numbers have, about as many as a
+// screen shows. At half of it a file of the bundled walk is 1.4 % smaller, at twice 2.7 % larger.
 constexpr double kDrawRate = 50;
 
 std::uint64_t nanoseconds(double t) { return static_cast<std::uint64_t>(std::llround(1e9 * t)); }
@@ -278,7 +278,7 @@ std::string joint_states(const SimulationLog& log, const SimulationSample& s, st
 
 struct Node {
   std::string key;
-  int column = -1;  ///< of a number; -1: an object
+  int column = -1;  ///< column of a number; -1: an object
   std::string unit = {};
   std::vector<Node> inside = {};
 

@@ -27,13 +27,13 @@ class McapWriter {
   std::uint16_t add_channel(const std::string& topic, const std::string& schema_name,
                             const std::string& json_schema);
 
-  /// `time` [ns]; not before that of the message before.
+  /// `time` [ns] must not be before that of the message before.
   void add_message(std::uint16_t channel, std::uint64_t time, const std::string& json);
 
-  /// The whole file. Nothing can be added afterwards.
+  /// Returns the whole file. Nothing can be added afterwards.
   std::string finish();
 
-  /// Messages so far, per channel.
+  /// The number of messages so far of each channel.
   const std::map<std::uint16_t, std::uint64_t>& counts() const { return counts_; }
 
  private:
@@ -60,7 +60,7 @@ class McapWriter {
   std::uint64_t first_ = 0, last_ = 0;  ///< times of all messages
   bool any_ = false;
 
-  // The chunk in the making.
+  // The chunk that is being filled.
   std::string chunk_;
   std::uint64_t chunk_begin_ = 0;
   std::map<std::uint16_t, std::vector<Entry>> chunk_entries_;

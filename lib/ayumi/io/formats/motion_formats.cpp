@@ -32,7 +32,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Foreign {
-  std::string sign;  ///< bytes that the file begins with
+  std::string sign;  ///< the bytes that the file begins with
   std::string words, advice;
 };
 
@@ -93,7 +93,8 @@ std::string lower_extension(const std::string& file) {
   return extension;
 }
 
-// Lines at the beginning that say what a text is. Chosen: heads of the formats above are shorter.
+// The number of lines at the beginning that may say what a text is. Chosen: heads of the formats
+// above are shorter.
 constexpr size_t kHeadLines = 50;
 
 std::vector<std::string_view> head_lines(const MotionInput& source) {
@@ -104,7 +105,8 @@ std::vector<std::string_view> head_lines(const MotionInput& source) {
   return lines;
 }
 
-// Cells of a line that are numbers, and pairs of words with nothing but blanks between them.
+// The number of cells of a line that are numbers, and of pairs of words with nothing but blanks
+// between them.
 struct LineParts {
   size_t numbers = 0, cells = 0, word_pairs = 0;
 };
@@ -127,7 +129,7 @@ LineParts parts_of(std::string_view line) {
   return parts;
 }
 
-// Sentences: words between blanks, and no row of numbers.
+// Whether a text is sentences: words between blanks, and no row of numbers.
 bool is_prose(const MotionInput& source) {
   size_t pairs = 0;
   for (const std::string_view line : head_lines(source)) {
@@ -150,7 +152,7 @@ bool is_asf(const MotionInput& source) {
   return false;
 }
 
-// Kinds that the first bytes prove.
+// The kinds of files that their first bytes prove.
 const Foreign* signed_kind(const MotionInput& source) {
   for (const Foreign& kind : foreign_files())
     if (source.bytes.starts_with(kind.sign)) return &kind;
@@ -171,7 +173,7 @@ const Foreign* signed_kind(const MotionInput& source) {
   return nullptr;
 }
 
-// Kinds that the text shows.
+// The kinds of files that their text shows.
 const Foreign* text_kind(const MotionInput& source) {
   static const Foreign mtnx = {"", "a motion of ROBOTIS R+ Motion (.mtnx)",
                                "write the motion as CSV, or as an action file (.bin)"};
@@ -277,7 +279,7 @@ std::vector<std::string> written_format_names() {
 
 Recognized recognize(const MotionInput& source) {
   const Foreign* kind = signed_kind(source);
-  // Bytes of 0 at the beginning are no text, whatever stands before them.
+  // A text does not begin with bytes of 0, whatever stands before them.
   constexpr size_t kBeginning = 100;
   const bool binary = source.bytes.substr(0, kBeginning).find('\0') != std::string::npos;
   for (const MotionFormat& format : motion_formats()) {

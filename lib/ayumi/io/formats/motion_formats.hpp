@@ -23,39 +23,39 @@ enum FormatPart : unsigned {
 };
 
 struct MotionFormat {
-  std::string name;   ///< of --format
+  std::string name;   ///< its name for --format
   std::string words;  ///< "Webots .motion"
   unsigned holds = 0;
   bool played = false;  ///< a robot's own program plays such files
   bool binary = false;  ///< the content is no text
-  /// Why the content is of this format; "" where it is not. Null: it is only written.
+  /// Says why the content is of this format; "" where it is not. Null: the format is only written.
   std::string (*recognize)(const MotionInput&) = nullptr;
   MotionFile (*read)(const MotionInput&) = nullptr;
-  /// Null: it is only read.
+  /// Null: the format is only read.
   std::vector<WrittenFile> (*write)(const RobotModel&, const MotionFile&) = nullptr;
-  /// In place of `read`: the keys of a pattern; adds what was assumed, in words.
+  /// In place of `read`: makes the keys of a pattern, and adds to the notes what was assumed.
   Pattern (*read_keys)(const MotionInput&, std::vector<std::string>& notes) = nullptr;
 };
 
-/// In the order in which content is compared with them.
+/// All formats, in the order in which content is compared with them.
 const std::vector<MotionFormat>& motion_formats();
 
 /// The format of that name; null where there is none.
 const MotionFormat* find_motion_format(const std::string& name);
 
-/// Names of the formats that are read, or of those that are written.
+/// The names of the formats that are read, or of those that are written.
 std::vector<std::string> read_format_names();
 std::vector<std::string> written_format_names();
 
 struct Recognized {
   const MotionFormat* format = nullptr;
-  std::string reason;  ///< in words
+  std::string reason;  ///< what it is, in words
 };
-/// Throws Error(bad_file) that names the formats that are read, and what the file is where Ayumi
-/// knows its kind but does not read it.
+/// Throws Error(bad_file). The message names the formats that are read, and says what the file is
+/// where Ayumi knows its kind but does not read it.
 Recognized recognize(const MotionInput& source);
 
-/// What of the motion the format cannot hold, in words; empty: nothing is lost.
+/// What the format cannot hold of the motion, in words; empty: nothing is lost.
 std::string cannot_hold(const MotionFormat& format, const MotionFile& motion);
 
 }  // namespace ayumi

@@ -1,4 +1,4 @@
-// From the content of a motion file to evenly spaced postures of a robot.
+// This file makes evenly spaced postures of a robot from the content of a motion file.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,18 +18,19 @@ namespace ayumi {
 
 namespace {
 
-/// Rows of a file and of a motion. Chosen: a motion of this length and 60 columns takes 200 MB.
+/// Most rows of a file and of a motion. Chosen: a motion of this length and 60 columns takes 200
+/// MB.
 constexpr size_t kMostRows = 400'000;
 
 /// The rows of a motion: every quantity is a column, so that all are treated alike.
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 std::string shortened(const std::vector<std::string>& names) {
-  constexpr size_t kMost = 40;  // Chosen: a line that a person still reads
+  constexpr size_t kMost = 40;  // names. Chosen: a line that a person still reads
   return text::join_first(names, kMost);
 }
 
-// Text as the readers take it: no mark, lines end with a line feed.
+// The text as the readers take it: it has no byte order mark, and its lines end with a line feed.
 std::string plain_text(const std::string& bytes) {
   std::string text = bytes.starts_with("\xEF\xBB\xBF") ? bytes.substr(3) : bytes;
   if (text.find('\n') == std::string::npos) std::replace(text.begin(), text.end(), '\r', '\n');
@@ -43,7 +44,7 @@ size_t line_at(const std::string& bytes, size_t at) {
          1;
 }
 
-// Two bytes for each character, of which one is 0 in plain letters and digits.
+// The text has two bytes for each character, one of which is 0 in plain letters and digits.
 bool is_utf16(std::string_view bytes) {
   if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) return true;
   const std::string_view head = bytes.substr(0, 200);
@@ -71,14 +72,15 @@ void refuse_other_encodings(const MotionInput& source) {
 
 // ---- Size, before a reader takes memory for it
 
-/// Values of one row, and characters of one value. Chosen: no robot comes near; tables whose rows
-/// are joints have as many values in a row as there may be rows.
+/// Most values of one row, and most characters of one value. Chosen: no robot comes near; tables
+/// whose rows are joints have as many values in a row as there may be rows.
 constexpr size_t kMostInRow = kMostRows, kLongestValue = 100'000;
-/// Lists of numbers and elements in text that is not one row a line. Chosen: 500 s of 20 joints at
-/// 50 rows per second in the format with the most (a list for each joint); a parser takes about 0.4
-/// kB and 1 us for each.
+/// Most lists of numbers and most elements in text that does not have one row in each line. Chosen:
+/// 500 s of 20 joints at 50 rows per second in the format with the most (a list for each joint); a
+/// parser takes about 0.4 kB and 1 us for each.
 constexpr size_t kMostLists = 500'000;
-/// Elements inside each other. Chosen: motions need five; parsers descend by recursion.
+/// Largest depth of elements inside each other. Chosen: motions need five; parsers descend by
+/// recursion.
 constexpr int kDeepestElement = 200;
 
 void refuse_too_many(const MotionInput& source, const std::string& text) {
@@ -112,7 +114,7 @@ void refuse_too_many(const MotionInput& source, const std::string& text) {
   }
 }
 
-// Numbers with decimal commas, whatever else the text contains.
+// The number of numbers with decimal commas, whatever else the text contains.
 bool has_decimal_commas(const std::string& text) {
   size_t points = 0, commas = 0;
   for (size_t i = 1; i + 1 < text.size(); ++i) {
@@ -121,12 +123,12 @@ bool has_decimal_commas(const std::string& text) {
                         std::isdigit(static_cast<unsigned char>(text[i + 1]));
     (text[i] == '.' ? points : commas) += inside;
   }
-  // Points in versions and names. Chosen: one in fifty.
+  // The share of points that may be those of versions and names. Chosen: one in fifty.
   return commas > 2 && points * 50 < commas;
 }
 
-// The end of every message about a motion's content: the remedy that the content suggests, and how
-// the format was recognized (null: it was not).
+// The end of every message about a motion's content. It says which remedy the content suggests, and
+// how the format was recognized (null: it was not).
 std::string remedy(const MotionFormat* format, const ImportedMotion& motion,
                    const std::string& bytes, const std::string& message) {
   std::string words;
@@ -146,14 +148,14 @@ std::string remedy(const MotionFormat* format, const ImportedMotion& motion,
   return words + ")";
 }
 
-// A text that was cut may end within a number, which nothing else can show.
+// A text that was cut off may end within a number, and nothing but that end can show it.
 bool may_be_cut(const std::string& text) {
   const auto last = static_cast<unsigned char>(text.back());
   return std::isdigit(last) || last == '.' || last == '-';
 }
 
-// The format of the file; `source` then has its content as readers take it, `result` the name of
-// the format and the reason.
+// The format of the file. Then `source` has its content as readers take it, and `result` the name
+// of the format and the reason.
 const MotionFormat& format_of(const std::string& bytes, MotionInput& source,
                               ImportedMotion& result) {
   const ImportOptions& options = source.options;
@@ -239,7 +241,7 @@ std::vector<std::string> column_names(const MotionFile& motion, const RobotModel
   return motion.joints;
 }
 
-/// Angle of a joint with limits from which on a column is in degrees [rad]. Chosen: more than one
+/// From this angle of a joint with limits on, a column is in degrees [rad]. Chosen: more than one
 /// and a half turns, which no joint with limits makes.
 constexpr double kNoAngle = 10;
 
@@ -343,7 +345,7 @@ std::vector<int> map_joints(const MotionFile& motion, const RobotModel& model,
 
 // ---- Rows
 
-// theta of the robot, then what else the motion has, as columns. NaN: not set.
+// The columns: theta of the robot, then what else the motion has. NaN: not set.
 Rows rows_of(const MotionFile& motion, const std::vector<int>& columns, const RobotModel& model,
              bool degrees) {
   const Eigen::Index rows = motion.rows(), dofs = model.dof_count();
@@ -364,7 +366,7 @@ Rows rows_of(const MotionFile& motion, const std::vector<int>& columns, const Ro
     Eigen::Index c = dofs;
     if (!motion.base.empty()) {
       Eigen::Quaterniond q = motion.base[at].attitude;
-      // From row to row the quaternion must not change its sign where rows are interpolated.
+      // Where rows are interpolated, the quaternion must not change its sign from row to row.
       if (k > 0 &&
           all.row(k - 1).segment<4>(c + 3).dot(Eigen::RowVector4d(q.w(), q.x(), q.y(), q.z())) < 0)
         q.coeffs() *= -1;
@@ -379,7 +381,7 @@ Rows rows_of(const MotionFile& motion, const std::vector<int>& columns, const Ro
   return all;
 }
 
-/// One column between the rows in which it is set.
+/// Fills one column between the rows in which it is set.
 class SetColumn {
  public:
   SetColumn(const std::vector<double>& times, const Eigen::VectorXd& values, bool smooth) {
@@ -390,7 +392,7 @@ class SetColumn {
       }
     slope_.assign(t_.size(), 0);
     // Monotone cubics (Fritsch and Carlson 1980, with the harmonic mean of Fritsch and Butland
-    // 1984): they do not swing over the keys, and rest at the first and the last one.
+    // 1984): they do not go beyond the keys, and are at rest at the first and the last one.
     for (size_t i = 1; smooth && i + 1 < t_.size(); ++i) {
       const double h0 = t_[i] - t_[i - 1], h1 = t_[i + 1] - t_[i];
       const double d0 = (x_[i] - x_[i - 1]) / h0, d1 = (x_[i + 1] - x_[i]) / h1;
@@ -436,7 +438,7 @@ struct Spacing {
   bool even = false;
 };
 
-// The median step, else the mean one where the format rounds its times.
+// The median step, or the mean one where the format rounds its times.
 Spacing spacing_of(const std::vector<double>& times, double time_step) {
   std::vector<double> steps;
   for (size_t k = 1; k < times.size(); ++k) steps.push_back(times[k] - times[k - 1]);
@@ -489,11 +491,11 @@ std::vector<double> times_of(const MotionFile& motion, const ImportOptions& opti
   return times;
 }
 
-/// Step from row to row from which on rows are key postures [s]. Chosen: recordings have at least
-/// 20 rows per second, and players do not hold a posture for longer.
+/// From this step on, rows are key postures [s]. Chosen: recordings have at least 20 rows per
+/// second, and players do not hold a posture for longer.
 constexpr double kKeyStep = 0.06;
-/// Rows between key postures [s]. Chosen: half of the interval of hobby servos (20 ms); for action
-/// files the unit of their times, so that their keys are rows.
+/// The step of the rows between key postures [s]. Chosen: half of the interval of hobby servos (20
+/// ms); for action files the unit of their times, so that their keys are rows.
 constexpr double kKeyTick = 0.01, kActionTick = 0.008;
 
 Rows even_rows(const MotionFile& motion, const Rows& rows, const ImportOptions& options,
@@ -539,7 +541,8 @@ void set_motion(const Rows& rows, const MotionFile& file, Eigen::Index dofs, Raw
       base.position = vector();
       const auto q = rows.row(k).segment<4>(c);
       base.attitude = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
-      // Definition: what Ayumi's own tables take for a unit quaternion; its bits are then kept.
+      // Definition: the tolerance of Ayumi's own tables for a unit quaternion, whose bits are then
+      // kept.
       constexpr double kUnit = 1e-6;
       if (!(std::abs(base.attitude.norm() - 1) < kUnit)) base.attitude.normalize();
       motion.base.push_back(base);
@@ -551,7 +554,7 @@ void set_motion(const Rows& rows, const MotionFile& file, Eigen::Index dofs, Raw
   }
 }
 
-// Contacts of the nearest rows.
+// Each row gets the contacts of the row that is nearest to it.
 std::vector<Support> supports_on_ticks(const MotionFile& motion, size_t count, double dt) {
   if (motion.support.empty() || motion.support.size() == count) return motion.support;
   std::vector<Support> result;
@@ -587,7 +590,8 @@ void hold_last_row(Eigen::Index least, ImportedMotion& imported) {
                             " rows, the least number for a check");
 }
 
-// A motion begins and ends at rest: as if it returned along its own path.
+// A motion begins and ends at rest, so its rows go on beyond both ends as if it returned along its
+// own path.
 Eigen::VectorXd smoothed_from_rest(const Eigen::VectorXd& raw, double band, double cutoff) {
   const Eigen::Index n = raw.size();
   const auto more = std::min<Eigen::Index>(n - 1, static_cast<Eigen::Index>(2 / cutoff));

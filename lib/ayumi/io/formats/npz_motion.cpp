@@ -16,7 +16,7 @@ using Arrays = std::map<std::string, NpyArray>;
 
 bool is_archive(const MotionInput& source) { return source.bytes.starts_with("PK\x03\x04"); }
 
-// Names of files are in an archive as they are, so they can be found without unpacking it.
+// An archive holds the names of its files as plain text, so they can be found without unpacking it.
 bool has_array(const MotionInput& source, const std::string& name) {
   return source.bytes.find(name + ".npy") != std::string::npos;
 }
@@ -44,7 +44,7 @@ class ArrayReader {
     return *array;
   }
 
-  // Rows x width (0: any), or rows x bodies x width.
+  // The array must be rows x width (0: any width), or rows x bodies x width.
   const NpyArray& rows(const std::string& name, size_t dimensions, size_t width,
                        size_t rows) const {
     const NpyArray& array = at(name);
@@ -89,7 +89,7 @@ Eigen::MatrixXd matrix_of(const NpyArray& array) {
       static_cast<Eigen::Index>(array.shape[1]));
 }
 
-// The first body of each row; quaternions w x y z, or x y z w.
+// The pose of the first body in each row. Its quaternion is w x y z or x y z w.
 std::vector<BasePose> roots_of(const MotionInput& source, const NpyArray& position,
                                const NpyArray& turn, bool scalar_first) {
   std::vector<BasePose> roots;
@@ -113,7 +113,7 @@ void append(std::vector<double>& list, const Eigen::Vector3d& v) {
   list.insert(list.end(), {v.x(), v.y(), v.z()});
 }
 
-// Differences over two rows, over one at the ends.
+// Differences are taken over two rows, and over one row at the ends.
 template <typename Difference>
 auto rate_at(size_t k, size_t rows, double rate, const Difference& difference) {
   const size_t a = k > 0 ? k - 1 : 0, b = std::min(k + 1, rows - 1);
@@ -157,7 +157,7 @@ MotionFile read_tracking_npz(const MotionInput& source) {
 
 namespace {
 
-/// `beside` rows at the beginning and at the end each are not written.
+/// `beside` rows at the beginning and `beside` rows at the end are not written.
 std::string tracking_npz(const RobotModel& model, const MotionFile& motion, size_t beside) {
   const auto rows = static_cast<size_t>(motion.rows()), bodies = model.bodies().size();
   const size_t kept = rows - 2 * beside;

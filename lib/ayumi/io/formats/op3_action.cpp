@@ -22,7 +22,7 @@ constexpr double kTick = 0.008;              // [s]
 constexpr double kCount = EIGEN_PI / kZero;  // [rad]
 // How long a page of one posture lasts [s]. Chosen: long enough to be judged, in units of 8 ms.
 constexpr double kHeld = 0.8;
-// Damaged pages that a note names. Chosen: they fit on a line.
+// Most damaged pages that a note names. Chosen: they fit on a line.
 constexpr size_t kNamedPages = 5;
 
 size_t byte_at(const std::string& bytes, size_t at) {
@@ -63,7 +63,8 @@ std::string recognize_op3_action(const MotionInput& source) {
   const std::string& bytes = source.bytes;
   if (bytes.find('\0') == std::string::npos) return "";
   if (bytes.size() == kPages * kPageBytes) return "the file has 256 pages of 512 bytes";
-  // A file that was cut, or that goes on behind its pages: its whole pages are sound or empty.
+  // In a file that was cut off, or that goes on behind its pages, the whole pages are sound or
+  // empty.
   size_t sound = 0, others = 0;
   for (size_t page = 0; (page + 1) * kPageBytes <= std::min(bytes.size(), kPages * kPageBytes);
        ++page) {
@@ -106,7 +107,7 @@ MotionFile read_op3_action(const MotionInput& source) {
   std::vector<size_t> starts;
   for (const size_t page : full)
     if (!follows[page]) starts.push_back(page);
-  if (starts.empty()) starts = full;  // they go round in circles
+  if (starts.empty()) starts = full;  // the pages follow each other in a circle
   std::vector<std::string> names;
   for (const size_t page : starts) names.push_back(page_name(bytes, page));
   MotionFile motion;

@@ -1,13 +1,13 @@
 #pragma once
-// Action files of ROBOTIS OP3 (.bin): 256 pages of 512 bytes, each with up to 7 steps of 31
-// positions (4096 a turn, 2048 at 0) by the number of the servo, a pause and a time.
+// Action files of ROBOTIS OP3 (.bin): 256 pages of 512 bytes, each with up to 7 steps. A step has
+// 31 positions (4096 a turn, 2048 at 0) in the order of the servos' numbers, a pause and a time.
 
 #include "ayumi/io/formats/motion_file.hpp"
 
 namespace ayumi {
 
 std::string recognize_op3_action(const MotionInput& source);
-/// The first page with steps, and the pages that follow it. Servos are the robot's devices
+/// Reads the first page with steps, and the pages that follow it. Servos are the robot's devices
 /// ("encoders" of its sidecar); others are named "ID 5", for which a sidecar may have an alias.
 MotionFile read_op3_action(const MotionInput& source);
 std::vector<WrittenFile> write_op3_action(const RobotModel& model, const MotionFile& motion);

@@ -21,11 +21,11 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-// Differences of a foot that stands still from key to key [m, rad]. Chosen: editors of key poses
-// print nine digits, and solvers of postures leave some micrometres.
+// A foot that differs less than this from key to key stands still [m, rad]. Chosen: editors of key
+// poses print nine digits, and solvers of postures leave some micrometres.
 constexpr double kSamePlace = 1e-3, kSameTurn = 2e-3;
-// Keys of a file. Chosen: a motion edited by hand has some hundred. A file of 20,000 keys takes
-// half a second and 70 MB.
+// Most keys of a file. Chosen: a motion edited by hand has some hundred. A file of 20,000 keys
+// takes half a second and 70 MB.
 constexpr size_t kMostKeys = 20'000;
 
 /// One key of the file.
@@ -82,7 +82,7 @@ class PoseSequenceReader {
     return node.numbers;
   }
 
-  // How often a word stands in the text, at the beginning of a line or behind a blank or a brace.
+  // How often a word stands at the beginning of a line, or behind a blank or a brace.
   size_t words(std::string_view word) const {
     const std::string& text = source_.bytes;
     size_t count = 0;
@@ -92,7 +92,7 @@ class PoseSequenceReader {
     return count;
   }
 
-  // Before the text is parsed, and afterwards.
+  // This is asked before the text is parsed, and again afterwards.
   void require_few(size_t keys) const {
     if (keys > kMostKeys)
       source_.refuse(0, "the file has " + std::to_string(keys) +
@@ -201,7 +201,7 @@ class PoseSequenceReader {
     left_out_.insert(name->text);
   }
 
-  // Ids as joints of the robot: by --joints, or by order on request.
+  // Gives the ids joints of the robot: as --joints says, or by their order if the user asks for it.
   void map_ids(const YamlNode& root) {
     int most = -1;
     for (const PoseKey& key : keys_)
@@ -235,8 +235,8 @@ class PoseSequenceReader {
     return true;
   }
 
-  // Where the COG is in every key that places the base link: legs bent so that both feet have their
-  // places and the base link its own. Empty: the legs do not reach, or the key has no base.
+  // The position of the COG in every key that places the base link: the legs bend so that both feet
+  // and the base link have their places. Empty: the legs do not reach, or the key has no base link.
   std::vector<std::optional<Vector3d>> cogs_of_bases(const InverseKinematics& solver) const {
     std::vector<std::optional<Vector3d>> result;
     RobotState state = model_.rest_state();
@@ -262,8 +262,8 @@ class PoseSequenceReader {
       target.trunk = key.base->linear();
       update_positions(model_, state, data);
       target.cog = data.cog;
-      // The COG moves with the base nearly one to one, so few passes are enough. Chosen: as many as
-      // leave less than a micrometre.
+      // The COG moves with the base nearly one to one, so a few passes are enough. Chosen: after so
+      // many, the error is less than a micrometre.
       constexpr int kPasses = 8;
       bool reached = true;
       for (int pass = 0; reached && pass < kPasses; ++pass) {
@@ -299,7 +299,7 @@ class PoseSequenceReader {
     const PoseKey* before = nullptr;
     for (PoseKey& key : keys_) {
       if (!key.feet[foot]) continue;
-      if (key.touching[foot]) {  // level on the ground
+      if (key.touching[foot]) {  // the foot is level on the ground
         Isometry3d& pose = *key.feet[foot];
         const double yaw = matrix_to_rpy(pose.linear()).z();
         if (std::abs(pose.translation().z()) < kSamePlace) pose.translation().z() = 0;
@@ -418,7 +418,8 @@ class PoseSequenceReader {
 
   // The ZMP of a file that states it once or never, as the editor of such files generates it: under
   // the standing foot, and between steps from foot to foot. Before the first and after the last
-  // step it is where the file has it, else between the feet, as far as the next key pose allows.
+  // step it is where the file states it. If the file states none, it is between the feet, as far as
+  // the next key pose allows.
   void add_zmp_of_feet(const std::vector<Phase>& phases) {
     const auto set = [&](double time, ZmpKey zmp) { frame_at(time).zmp = zmp; };
     const auto first = std::find_if(phases.begin(), phases.end(), is_single);

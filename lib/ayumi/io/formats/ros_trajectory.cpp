@@ -62,7 +62,7 @@ Trajectory trajectory_of(const MotionInput& source, const YamlNode& names, const
       source.refuse(yaml_line(point), "a point needs positions and time_from_start");
     if (!positions->items.empty())
       source.refuse(yaml_line(*positions), "the positions are not finite numbers");
-    // They are not used, but a file with such values is broken.
+    // These values are not used, but a file in which they are wrong is broken.
     for (const char* const key : {"velocities", "accelerations", "effort"}) {
       const YamlNode* const list = point.find(key);
       if (!list) continue;
@@ -91,7 +91,7 @@ void find_trajectories(const MotionInput& source, const YamlNode& node,
   for (const YamlNode& item : node.items) find_trajectories(source, item, found);
 }
 
-// The documents of a stream, which lines of three hyphens part; lines keep their numbers.
+// The documents of a stream, which lines of three hyphens separate. Lines keep their numbers.
 std::vector<std::string> documents_of(const std::string& text) {
   std::vector<std::string> documents(1);
   size_t lines = 0;
@@ -113,7 +113,7 @@ std::vector<std::string> documents_of(const std::string& text) {
 }
 
 MotionFile joined(const MotionInput& source, std::vector<Trajectory> all) {
-  // Those of the same joints, one after the other.
+  // Joins the trajectories of the same joints, one after the other.
   std::vector<Trajectory> groups;
   MotionFile motion;
   for (Trajectory& one : all) {

@@ -9,11 +9,11 @@ std::string recognize_ros_trajectory(const MotionInput& source);
 /// Several trajectories of the same joints follow each other; those of other joints run beside each
 /// other.
 MotionFile read_ros_trajectory(const MotionInput& source);
-/// ROS 2 form: sec and nanosec.
+/// Writes the form of ROS 2, with sec and nanosec.
 std::vector<WrittenFile> write_ros_trajectory(const RobotModel& model, const MotionFile& motion);
 
 std::string recognize_play_motion(const MotionInput& source);
-/// The first motion of the file.
+/// Reads the first motion of the file.
 MotionFile read_play_motion(const MotionInput& source);
 std::vector<WrittenFile> write_play_motion(const RobotModel& model, const MotionFile& motion);
 

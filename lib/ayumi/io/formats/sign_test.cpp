@@ -10,7 +10,7 @@ namespace ayumi {
 
 namespace {
 
-// Size of the motion. Chosen: clearly seen by a person, and no joint reaches anything by it. Half
+// Size of the motion. Chosen: a person sees it clearly, and no joint touches anything with it. Half
 // of it is hard to see at a wrist; with twice of it, feet of a robot touch each other.
 constexpr double kAngle = 5 * EIGEN_PI / 180;  // [rad]
 constexpr double kSlide = 0.01;                // [m]

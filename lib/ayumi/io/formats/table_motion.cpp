@@ -20,7 +20,7 @@ namespace {
   fail(ErrorCode::bad_file, file + ": " + reason);
 }
 
-// "r_knee[deg]" and "r_knee (deg)" are a name and its unit; so are "time_s" and "time_ms".
+// "r_knee[deg]" and "r_knee (deg)" are a name and its unit, and so are "time_s" and "time_ms".
 struct ColumnName {
   std::string name, unit;
 };

@@ -24,7 +24,7 @@ std::vector<std::string_view> split(std::string_view line, char separator) {
   }
 }
 
-// [[MM:]SS:]mmm
+// Reads a time of the form [[MM:]SS:]mmm.
 double time_of(const MotionInput& source, std::string_view cell, size_t line) {
   const std::vector<std::string_view> parts = split(cell, ':');
   if (parts.size() > 3)
@@ -136,7 +136,7 @@ std::vector<WrittenFile> write_webots_durations(const RobotModel&, const MotionF
   for (Eigen::Index k = 0; k < motion.rows(); ++k) {
     text += "play";
     for (const double value : motion.values.row(k)) text += "%" + text::exact(value);
-    // The first pose is reached in the time of one row, too.
+    // The first pose, too, is reached in the time of one row.
     const auto at = static_cast<size_t>(k);
     const double time = k > 0 ? motion.times[at] - motion.times[at - 1] : 1 / motion.rate;
     text += "%" + text::exact(time) + "\n";

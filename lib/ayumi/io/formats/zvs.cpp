@@ -29,8 +29,8 @@ std::vector<std::string_view> tokens_of(std::string_view line) {
   }
 }
 
-// The joints that move, in the order of their values, of the robot beside the motion; says in
-// `notes` why there are none although there is such a robot.
+// The joints that move, in the order of their values, of the robot beside the motion. If there is
+// such a robot but it gives no joints, `notes` says why.
 std::vector<std::string> joints_beside(const MotionInput& source, size_t width,
                                        std::vector<std::string>& notes) {
   const std::optional<std::string> bytes = source.beside(".ztk");
@@ -133,7 +133,7 @@ std::vector<WrittenFile> write_zvs(const RobotModel& model, const MotionFile& mo
       text += " " + text::exact(value);
     text += " )\n";
   }
-  // RoKi reads the motion for the robot beside it, whose links have the same order.
+  // RoKi applies the motion to the robot beside it, whose links have the same order.
   return {{"", text}, {".ztk", ztk_text(model.description(), model.dof_names())}};
 }
 

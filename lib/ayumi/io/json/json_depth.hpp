@@ -13,8 +13,8 @@ namespace ayumi {
 // need less than 1 kB of the 8 MB stack for each.
 inline constexpr int kDeepestNesting = 200;
 
-/// Where the text opens the first array or object that lies too deep; nothing where none does.
-/// Strings and comments are passed over.
+/// The place at which the text opens the first array or object that is nested too deeply. Nothing
+/// if there is none. Strings and comments are skipped.
 inline std::optional<size_t> nested_too_deep(const std::string& bytes) {
   int depth = 0;
   bool in_string = false;

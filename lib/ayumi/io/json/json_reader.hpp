@@ -17,7 +17,7 @@ namespace ayumi {
 
 using Json = nlohmann::json;
 
-/// Where a value stands: a file and a JSON pointer in it.
+/// The place of a value: a file and a JSON pointer in this file.
 struct JsonPlace {
   std::string file, pointer;
 };
@@ -26,7 +26,7 @@ struct JsonPlace {
 /// is not listed stands below the place of the nearest value around it.
 using JsonPlaces = std::map<std::string, JsonPlace>;
 
-/// A key as it stands in a JSON pointer.
+/// A key in the form that it has in a JSON pointer.
 std::string json_pointer_token(const std::string& key);
 
 /// One value of a JSON document together with its place. Cheap to copy; the document outlives it.
@@ -49,10 +49,11 @@ class JsonNode {
   [[noreturn]] void complain(const std::string& message) const;
 
   bool has(const std::string& key) const;
-  JsonNode at(const std::string& key) const;                   ///< complains when missing
-  std::optional<JsonNode> find(const std::string& key) const;  ///< none when missing
-  std::vector<JsonNode> items() const;                         ///< of an array, complains otherwise
-  std::vector<std::pair<std::string, JsonNode>> members() const;  ///< of an object, sorted by key
+  JsonNode at(const std::string& key) const;                   ///< complains if it is missing
+  std::optional<JsonNode> find(const std::string& key) const;  ///< none if it is missing
+  std::vector<JsonNode> items() const;  ///< items of an array; complains otherwise
+  std::vector<std::pair<std::string, JsonNode>> members()
+      const;  ///< members of an object, sorted by key
   size_t size() const { return value_->size(); }
 
   void expect_object() const;
@@ -60,8 +61,8 @@ class JsonNode {
   /// Complains about the first key outside `known`, with the nearest known one.
   void only_keys(const std::vector<std::string>& known) const;
 
-  double number() const;  ///< finite
-  /// Complains with the limit when outside [lower, upper].
+  double number() const;  ///< the number must be finite
+  /// Complains with the limit if the number is outside [lower, upper].
   double number_within(double lower, double upper) const;
   int integer() const;
   std::uint64_t unsigned_integer() const;
@@ -84,7 +85,7 @@ class JsonNode {
   const JsonPlaces* places_;
 };
 
-/// Parses `bytes`. Throws Error(code) "file:line:column: what" when it is not JSON.
+/// Parses `bytes`. Throws Error(code) "file:line:column: what" if they are not JSON.
 Json parse_json(const std::string& bytes, const std::string& file, ErrorCode code);
 
 /// The root of a parsed document.

@@ -12,8 +12,8 @@ namespace ayumi {
 
 namespace {
 
-// Characters of a word or number that are quoted in a message. Chosen: a line of a terminal holds
-// the message with it.
+// Largest number of characters of a word or number that a message quotes. Chosen: a line of a
+// terminal holds the message with it.
 constexpr size_t kQuoted = 24;
 
 enum class Token { end, open, close, comma, colon, string, number, word, other };
@@ -23,7 +23,7 @@ bool is_word_char(char c) {
 }
 bool is_decimal(char c) { return c >= '0' && c <= '9'; }
 
-// What a number, or something that resembles one, consists of.
+// Characters of a number, or of a word that resembles a number.
 bool continues_number(char c) {
   return is_decimal(c) || is_word_char(c) || c == '.' || c == '+' || c == '-';
 }
@@ -51,7 +51,7 @@ bool is_json_number(std::string_view number) {
   return i == number.size();
 }
 
-// The marks with which other programs write quotation: typographic ones and the grave accent.
+// The quotation marks of other programs: typographic ones and the grave accent.
 constexpr std::array<std::string_view, 7> kOtherQuotes = {"\xe2\x80\x9c",
                                                           "\xe2\x80\x9d",
                                                           "\xe2\x80\x9e",
@@ -76,7 +76,7 @@ std::string json_word(std::string_view word) {
   return "";
 }
 
-// A bracket that is open, and what was read in it last.
+// An open bracket, and what was read last inside it.
 struct Open {
   char bracket = '{';
   size_t at = 0;
@@ -114,7 +114,7 @@ class SlipFinder {
 
   std::string quoted(size_t begin, size_t end) const {
     if (end - begin <= kQuoted) return text_.substr(begin, end - begin);
-    size_t cut = begin + kQuoted;  // not within a letter of several bytes
+    size_t cut = begin + kQuoted;  // not inside a letter of several bytes
     while (cut > begin && (text_[cut] & 0xc0) == 0x80) --cut;
     return text_.substr(begin, cut - begin) + "...";
   }
@@ -128,23 +128,22 @@ class SlipFinder {
 
   static char closing(char bracket) { return bracket == '{' ? '}' : ']'; }
 
-  // "t: 0.5, "zmp": the mark that should open a word closed the one before.
+  // "t: 0.5, "zmp": the mark that should open a word closed the word before it.
   bool opens_in_word() const {
     return token_ == Token::word && last_ == Token::string && text_[at_ - 1] == '"';
   }
 
-  // The mark is missing behind the word, before what belongs to the text again.
+  // The mark is missing after the word, before the characters that belong to the text again.
   void say_unclosed(size_t begin) {
     size_t end = begin + 1;
     while (end < text_.size() &&
            std::string_view(",:]}\"\r\n").find(text_[end]) == std::string_view::npos)
       ++end;
     const size_t word = text_.find_last_not_of(" \t", end - 1) + 1;
-    say(end, "a quotation mark is missing: " + quoted(begin, word) +
-                 " begins with a quotation mark and does not end with one");
+    say(end, "a quotation mark is missing at the end of " + quoted(begin, word));
   }
 
-  // Reads the next token; says what is wrong with it where it is none of JSON.
+  // Reads the next token. Reports what is wrong if the token is not JSON.
   void next() {
     before_ = end_;
     skip();
@@ -183,7 +182,7 @@ class SlipFinder {
     }
   }
 
-  // Spaces and comments; `end_` is behind them.
+  // Skips spaces and comments. `end_` is after them.
   void skip() {
     while (end_ < text_.size()) {
       const char c = text_[end_];
@@ -196,7 +195,7 @@ class SlipFinder {
         if (close == std::string::npos) return say(end_, "this comment has no end: */ is missing");
         end_ = close + 2;
       } else if (end_ == 0 && from(0).starts_with("\xef\xbb\xbf")) {
-        end_ = 3;  // the mark of UTF-8
+        end_ = 3;  // the byte order mark of UTF-8
       } else {
         return;
       }
@@ -226,9 +225,9 @@ class SlipFinder {
     say_unclosed(at_);
   }
 
-  // An expression belongs to it as a whole: ${stride} * 2.
+  // An expression belongs to a token as a whole: ${stride} * 2.
   void read_word() {
-    int open = 0;  // braces of ${...}
+    int open = 0;  // number of open braces of ${...}
     for (; end_ < text_.size(); ++end_) {
       const char c = text_[end_];
       if (c == '{' && text_[end_ - 1] == '$')
@@ -244,7 +243,7 @@ class SlipFinder {
 
   Open& inside() { return open_.back(); }
 
-  // What follows from a value or bracket that is complete.
+  // What may follow after a value or bracket that is complete.
   void completed() {
     value_begin_ = at_;
     inside().expects = Expects::comma;
@@ -269,7 +268,7 @@ class SlipFinder {
     }
   }
 
-  // Closes the innermost bracket where the token does.
+  // Closes the innermost bracket if the token is its closing bracket.
   bool closes() {
     if (token_ != Token::close) return false;
     if (at_top()) {
@@ -290,8 +289,9 @@ class SlipFinder {
     return true;
   }
 
-  // Whether this bracket begins a line, farther to the left than the line of the one it closes. A
-  // line is looked through only for a bracket that begins one: a long line may have many brackets.
+  // Whether this bracket begins a line that is indented less than the line of the bracket that it
+  // closes. A line is examined only for a bracket that begins the line, because a long line may
+  // have many brackets.
   bool stands_left_of(size_t opening) const {
     const auto is_blank = [&](size_t at) { return text_[at] == ' ' || text_[at] == '\t'; };
     size_t line = at_;
@@ -322,7 +322,7 @@ class SlipFinder {
     take_name(after_comma);
   }
 
-  // Not a name in quotation marks, where an object needs one.
+  // Reports a token that is not a name in quotation marks, where an object needs a name.
   void take_name(bool after_comma) {
     if (token_ == Token::word) {
       if (text_[end_] == '"')
@@ -345,7 +345,7 @@ class SlipFinder {
     say_other();
   }
 
-  // The end of what stands before the last comma.
+  // The end of the token before the last comma.
   size_t before_value() const {
     const size_t comma = text_.rfind(',', at_);
     return comma == std::string::npos ? at_ : comma;
@@ -504,9 +504,9 @@ class SlipFinder {
   std::vector<Open> open_;
   std::optional<JsonSlip> slip_;
   Token token_ = Token::end;
-  size_t at_ = 0, end_ = 0;  // of the token
-  size_t before_ = 0;        // the end of the token before
-  Token last_ = Token::end;  // the token before, and its place
+  size_t at_ = 0, end_ = 0;  // begin and end of the token
+  size_t before_ = 0;        // end of the previous token
+  Token last_ = Token::end;  // the previous token, and its place
   size_t last_at_ = 0;
   std::optional<size_t> doubtful_;  // a bracket that perhaps closes a bracket of another one
   size_t name_at_ = 0, name_end_ = 0, value_begin_ = 0;

@@ -12,7 +12,7 @@ namespace {
 
 bool is_space(char c) { return std::isspace(static_cast<unsigned char>(c)); }
 
-/// The end of the comment that begins at `i`, or `i` where none begins.
+/// The end of the comment that begins at `i`, or `i` if none begins there.
 size_t after_comment(const std::string& text, size_t i) {
   if (text.compare(i, 2, "//") == 0) return std::min(text.find('\n', i), text.size());
   if (text.compare(i, 2, "/*") == 0) {
@@ -22,7 +22,7 @@ size_t after_comment(const std::string& text, size_t i) {
   return i;
 }
 
-/// The next place that is neither space nor comment.
+/// The next place that is neither a space nor in a comment.
 size_t skip(const std::string& text, size_t i) {
   while (i < text.size()) {
     if (is_space(text[i])) {
@@ -108,8 +108,8 @@ std::vector<std::string> tokens_of(const std::string& pointer) {
 }
 
 struct Found {
-  const JsonTree* value = nullptr;   ///< the innermost that is there
-  const JsonTree* around = nullptr;  ///< what it is a part of
+  const JsonTree* value = nullptr;   ///< the innermost part that exists
+  const JsonTree* around = nullptr;  ///< the part to which it belongs
   bool exact = false;
 };
 
@@ -148,7 +148,7 @@ std::string indent_at(const std::string& text, size_t place) {
   return text.substr(begin, end - begin);
 }
 
-/// Whether a part is the first thing on its line.
+/// Whether a part comes first on its line.
 bool begins_line(const std::string& text, size_t place) {
   return line_begin(text, place) + indent_at(text, place).size() == place;
 }
@@ -158,7 +158,8 @@ bool at_line_end(const std::string& text, size_t i) {
   return i >= text.size() || text[i] == '\n' || text.compare(i, 2, "\r\n") == 0;
 }
 
-/// Behind what stands on the rest of the line when that is only space and one comment.
+/// The end of the line if the rest of the line is only space and one comment; otherwise the same
+/// place.
 size_t after_remark(const std::string& text, size_t place) {
   const auto after_space = [&](size_t i) {
     while (i < text.size() && (text[i] == ' ' || text[i] == '\t')) ++i;
@@ -171,12 +172,12 @@ size_t after_remark(const std::string& text, size_t place) {
   return at_line_end(text, i) ? i : place;
 }
 
-/// As the text ends its lines.
+/// The line end that the text uses.
 std::string line_break_of(const std::string& text) {
   return text.find("\r\n") == std::string::npos ? "\n" : "\r\n";
 }
 
-/// Behind the comma that follows a part.
+/// The place after the comma that follows a part.
 size_t after_comma(const std::string& text, size_t end) { return skip(text, end) + 1; }
 
 std::string inserted(const std::string& text, const JsonTree& list, size_t index,
@@ -274,7 +275,7 @@ std::string without_value(const std::string& text, const std::string& pointer) {
     return before.substr(0, line_begin(before, begin)) +
            (next == std::string::npos ? "" : text.substr(next + 1));
   }
-  // Within a line: one space stays between the neighbours.
+  // Inside a line, one space stays between the neighbours.
   size_t next = end;
   while (next < text.size() && text[next] == ' ') ++next;
   if (index + 1 < parts.size()) return before + text.substr(next);

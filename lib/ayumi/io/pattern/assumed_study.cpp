@@ -15,9 +15,10 @@ using StudyJson = nlohmann::ordered_json;
 // Chosen: the ranges of robots/hoap1/uncertainty.json that are not measured there. Half or twice of
 // a range changes what a certificate says of the robot; so every one is printed as assumed.
 
-/// Place of the centre of mass of the heaviest link, in COG heights. Chosen: 5 mm for HOAP-1.
+/// Displacement of the centre of mass of the heaviest link, in COG heights. Chosen: 5 mm for
+/// HOAP-1.
 constexpr double kCogShare = 0.02;
-/// Latency of the sensors beyond that of the sidecar [s]. Chosen: two ticks of 1 ms.
+/// Additional latency of the sensors, beyond that of the sidecar [s]. Chosen: two ticks of 1 ms.
 constexpr double kMoreLatency = 0.002;
 
 double tidy(double value) { return 1e-4 * std::round(1e4 * value); }

@@ -6,10 +6,10 @@
 
 namespace ayumi {
 
-/// As a study file, which can be written and edited.
+/// The uncertainty as a study file, which can be written and edited.
 std::string assumed_study_text(const RobotModel& robot);
 
-/// The same, read. Its name of a file says that it is assumed.
+/// The same uncertainty after reading. Its file name says that it is assumed.
 Study assumed_study(const RobotModel& robot);
 
 }  // namespace ayumi

@@ -17,7 +17,8 @@ namespace ayumi {
 
 namespace {
 
-// Nested brackets. Chosen: far more than anybody writes, far less than the stack holds.
+// Largest depth of nested brackets. Chosen: far more than anybody writes, far less than the stack
+// holds.
 constexpr int kMaxDepth = 64;
 
 struct Function {

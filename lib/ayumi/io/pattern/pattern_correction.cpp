@@ -1,6 +1,6 @@
 // Only the member "correction" of the top object is touched: comments, expressions and layout of
 // everything else stay as the author wrote them. The text has been read as a pattern before, so it
-// is well-formed; strings and comments are stepped over.
+// is well-formed. Strings and comments are skipped.
 #include <optional>
 
 #include "ayumi/base/error.hpp"
@@ -10,11 +10,12 @@ namespace ayumi {
 
 namespace {
 
-/// Where things of the top object are in the text.
+/// Places in the text of the top object.
 struct TopObject {
-  size_t open = 0, close = 0;  ///< its braces
-  size_t last = 0;             ///< its last character that is neither space nor comment
-  size_t begin = 0, end = 0;   ///< value of "correction"; both 0 when there is none
+  size_t open = 0, close = 0;  ///< places of the braces of the object
+  size_t last = 0;  ///< place of the object's last character that is neither space nor comment
+  size_t begin = 0,
+         end = 0;  ///< begin and end of the value of "correction"; both are 0 if there is none
 };
 
 size_t skip_comment(const std::string& text, size_t i) {

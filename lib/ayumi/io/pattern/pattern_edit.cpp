@@ -17,13 +17,13 @@ namespace ayumi {
 
 namespace {
 
-/// Edits are written to a millionth of the unit. Chosen: far below a tick, a tenth of a millimetre
+/// Edits are rounded to a millionth of the unit. Chosen: far below a tick, a tenth of a millimetre
 /// and a thousandth of a degree, so that sums do not show digits of rounding.
 constexpr double kFinest = 1e-6;
 
 double rounded(double value) { return std::round(value / kFinest) * kFinest; }
 
-// Zero has no sign.
+// Zero is written without a sign.
 std::string number_text(double value) {
   return text::exact(std::stod(text::fixed(value, 6)) + 0.0);
 }
@@ -31,7 +31,7 @@ std::string number_text(double value) {
 using Parameters = std::map<std::string, double>;
 
 // The parameters that an expression at this place may name, with the values that are set from
-// outside. The count of a block around it is 0, as in its first round.
+// outside. The count of a block around the place is 0, as in its first round.
 Parameters parameters_at(const Json& document, const std::string& pointer, const Parameters& set) {
   Parameters parameters = set;
   if (document.is_object() && document.contains("parameters"))
@@ -68,7 +68,7 @@ std::string replacing(const Json& document, const std::string& pointer, const Js
     const double now = evaluate_expression(expression, parameters_at(document, pointer, parameters),
                                            "the pattern");
     return Json(shifted_expression(expression, value - now)).dump();
-  } catch (const Error&) {  // an expression without a value: the number mends it
+  } catch (const Error&) {  // an expression without a value: the number replaces it
     return number_text(value);
   }
 }
@@ -112,7 +112,7 @@ std::string set(const std::string& text, const Json& document, const PatternEdit
                       plain ? replacing(document, edit.pointer, before, wanted, parameters)
                             : spaced_in_order(edit.value));
   }
-  // The innermost object that is there gets what is missing, as one member.
+  // The missing members are added to the innermost object that exists, as one member.
   Place place = split(edit.pointer);
   std::string value = spaced_in_order(edit.value);
   while (!find_value(text, place.around)) {
@@ -158,7 +158,7 @@ std::string repeated(const std::string& text, const PatternEdit& edit) {
                        : std::nullopt;
   if (!begin || !end)
     fail(ErrorCode::usage, "'" + edit.pointer + "' and the items after it are not there");
-  const size_t line = text.rfind('\n', begin->begin) + 1;  // 0 where there is no line before
+  const size_t line = text.rfind('\n', begin->begin) + 1;  // 0 if there is no line before
   const size_t word = text.find_first_not_of(" \t", line);
   const bool own_line = word == begin->begin;
   const std::string indent = own_line ? text.substr(line, word - line) : "";
@@ -182,7 +182,7 @@ std::string applied(const std::string& text, const PatternEdit& edit,
   return set(text, document, edit, parameters);
 }
 
-// Whether an edit moves the items behind it.
+// Whether an edit moves the items after it.
 bool moves_items(const Json& document, const PatternEdit& edit) {
   if (edit.kind == PatternEdit::Kind::insert || edit.kind == PatternEdit::Kind::repeat) return true;
   if (edit.kind == PatternEdit::Kind::set) return false;
@@ -205,8 +205,8 @@ std::vector<PatternEdit> in_working_order(const Json& document,
   const auto place = [&](const PatternEdit& edit) { return item_index(edit, size_around(edit)); };
   std::stable_sort(last.begin(), last.end(),
                    [&](const PatternEdit& a, const PatternEdit& b) { return place(a) > place(b); });
-  // Of several items behind the last one, the last is put there first, and each other one before
-  // it.
+  // If several items are added at the end, the last one is added first, and each other item is put
+  // before it.
   std::set<std::string> extended;
   for (PatternEdit& edit : last) {
     const Place at = split(edit.pointer);
@@ -245,7 +245,8 @@ std::string shifted_expression(const std::string& expression, double change) {
     if (read.ec == std::errc() && read.ptr == end && binary && expression[begin] != '-') {
       if (expression[sign] == '-') number = -number;
       head = expression.substr(0, before + 1);
-      spaces = expression.substr(before + 1, sign - before - 1);  // as the author writes them
+      spaces = expression.substr(before + 1,
+                                 sign - before - 1);  // in the form in which the author writes them
       spaces_after = expression.substr(sign + 1, begin - sign - 1);
     } else {
       number = 0;

@@ -11,13 +11,13 @@ namespace ayumi {
 
 struct PatternEdit {
   enum class Kind {
-    set,     ///< replace the value, or add it where it is missing, with the objects around it
-    insert,  ///< a new item of an array, at the index that ends the pointer; "-": behind the last
-    remove,  ///< a member or an item
-    repeat   ///< items of an array, from the pointer on, become the content of a block that repeats
+    set,  ///< replaces the value, or adds it if it is missing, together with the objects around it
+    insert,  ///< adds a new item to an array, at the index that ends the pointer; "-": at the end
+    remove,  ///< removes a member or an item
+    repeat   ///< puts items of an array, from the pointer on, into a block that repeats
   };
   Kind kind = Kind::set;
-  std::string pointer;  ///< JSON pointer
+  std::string pointer;  ///< place as a JSON pointer
   /// JSON text; empty for remove. For repeat: { "items": how many, and what the block has, as
   /// "repeat" and "count" }.
   std::string value;
@@ -32,12 +32,13 @@ std::string edited_text(const std::string& text, const std::vector<PatternEdit>&
                         const std::map<std::string, double>& set = {});
 
 /// Value of the number or expression at a place of the text; the counts of blocks that repeat are
-/// those of their first round. Throws Error(usage) for a place without one.
+/// those of their first round. Throws Error(usage) for a place without a number.
 double value_in_text(const std::string& text, const std::string& pointer,
                      const std::map<std::string, double>& set = {});
 
-/// The expression whose value is higher by `change`, a multiple of 1e-6: a number that is added to
-/// or subtracted from the whole at its end is changed, else one is appended.
+/// The expression with a value that is higher by `change`, a multiple of 1e-6. If the expression
+/// ends with a number that is added to or subtracted from the rest, this number is changed.
+/// Otherwise a number is appended.
 std::string shifted_expression(const std::string& expression, double change);
 
 }  // namespace ayumi

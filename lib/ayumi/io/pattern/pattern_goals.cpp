@@ -8,8 +8,9 @@ namespace ayumi {
 
 namespace {
 
-constexpr double kMostSteps = 10000;  // Chosen: longer than kLongestPattern at 0.36 s each
-constexpr double kFastest = 10;       // [m/s], [rad/s]. Chosen: any speed beyond is a mistake
+constexpr double kMostSteps =
+    10000;                       // most steps. Chosen: longer than kLongestPattern at 0.36 s each
+constexpr double kFastest = 10;  // [m/s], [rad/s]. Chosen: any speed beyond is a mistake
 
 int read_count(const JsonNode& node, PatternScope& scope, double most) {
   const double count = read_number(node, scope, 1, most);

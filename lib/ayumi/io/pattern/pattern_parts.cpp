@@ -22,7 +22,8 @@ Support read_support(const JsonNode& node) {
 // The highest that a foot is lifted [m]. Chosen: more than any legs can.
 constexpr double kLargestLift = 10;
 
-// Sums of times are rounded, so that they print as they would be written [1/s].
+// Sums of times are rounded to this number of parts of a second, so that they print as they would
+// be written [1/s].
 constexpr double kTimeSteps = 1e9;
 
 // The time that `absolute` gives, or `relative` as counted from `before` [s].
@@ -130,7 +131,7 @@ Eigen::Vector3d read_torso(const JsonNode& node, PatternScope& scope) {
   return rpy;
 }
 
-// [x, y, z], "free", or an object of kind `kind`.
+// Reads [x, y, z], "free", or an object of kind `kind`.
 LinkTarget read_link_target(const JsonNode& node, const std::string& kind, PatternScope& scope) {
   LinkTarget target;
   if (node.value().is_string()) {

@@ -18,7 +18,8 @@ namespace fs = std::filesystem;
 // Phases and keyframes of a file, repeated ones included. Chosen: one each 0.1 s of the longest
 // pattern is less than half of it.
 constexpr size_t kMostItems = 100000;
-// Rounds of a block, and blocks in each other. Chosen: far more than anybody writes.
+// Largest number of rounds of a block, and largest depth of blocks in each other. Chosen: far more
+// than anybody writes.
 constexpr double kMostRounds = 10000;
 constexpr int kMostBlocks = 8;
 
@@ -34,7 +35,7 @@ void require_parameter_name(const std::string& name, const JsonNode& place) {
     place.complain("the name of a parameter must not be empty and must not contain $, { or }");
 }
 
-// Numbers of "parameters", replaced by those set from outside.
+// The numbers of "parameters"; those that are set from outside are replaced.
 void read_parameters(const JsonNode& root, const std::map<std::string, double>& set,
                      PatternScope& scope) {
   if (const auto parameters = root.find("parameters"))
@@ -97,7 +98,7 @@ fs::path named_file(const JsonNode& name, const fs::path& folder) {
   return path;
 }
 
-// Posture libraries beside the pattern; returns their bytes for the fingerprint.
+// Reads the posture libraries beside the pattern, and returns their bytes for the fingerprint.
 std::string read_includes(const JsonNode& root, const fs::path& folder, Pattern& pattern) {
   const auto include = root.find("include");
   if (!include) return {};
@@ -134,7 +135,7 @@ void read_start(const JsonNode& root, PatternScope& scope, Pattern& pattern) {
       pattern.start_feet[static_cast<size_t>(side)] = read_foothold(*foot, scope);
 }
 
-// A count is a parameter while its block is read.
+// While a block is read, its count is a parameter.
 class Counter {
  public:
   Counter(const JsonNode& block, PatternScope& scope) : scope_(scope) {
@@ -159,7 +160,8 @@ class Counter {
   std::string name_;
 };
 
-// Calls work(node) for the items of `list`; the items of a block that repeats as often as it says.
+// Calls work(node) for the items of `list`, and for the items of a block that repeats as often as
+// the block says.
 template <class Work>
 void each_item(const JsonNode& list, const std::string& name, PatternScope& scope, int depth,
                const Work& work) {
@@ -196,7 +198,8 @@ void each_item(const JsonNode& list, const std::string& name, PatternScope& scop
                 " items; repeat less often");
 }
 
-// A time so many times later than the next one is out by a power of ten. Chosen: half of ten.
+// If a time is later than the next one by this factor, it is probably wrong by a power of ten.
+// Chosen: half of ten.
 constexpr double kGrossTime = 5;
 
 // "; /keyframes/4 may be meant at 2.3 s": where the time before the one that is too early would be
@@ -204,7 +207,7 @@ constexpr double kGrossTime = 5;
 // both.
 std::string meant_time(double before, double previous, const std::string& place_of_previous,
                        double t, const std::string& otherwise) {
-  // A time that is a little too late has no decimal point out of place.
+  // If a time is only a little too late, its decimal point is not in a wrong place.
   const bool gross = previous > kGrossTime * t;
   for (const double slip : number_slips(previous))
     if (slip > before && slip < t && (gross || slip > previous / kGrossTime))
@@ -216,7 +219,7 @@ std::string meant_time(double before, double previous, const std::string& place_
   return "; give a later time" + otherwise;
 }
 
-// Times that are counted from the one before, where the file has them from the beginning on.
+// The end of a message about a time from the beginning on that may be counted from the time before.
 std::string meant_span(const JsonNode& node, const std::string& absolute,
                        const std::string& relative, double value) {
   if (!node.has(absolute) || !(value > 0)) return "";

@@ -16,40 +16,41 @@ inline constexpr double kLargestNumber = 1e6;
 /// Longest pattern [s]. Source: docs/formats.md.
 inline constexpr double kLongestPattern = 3600;
 
-/// What the values of one file need to be understood.
+/// The context that is needed to read the values of one file.
 struct PatternScope {
   std::map<std::string, double> parameters;
-  std::set<std::string> used;              ///< parameters met in expressions
-  std::optional<double> radians_per_unit;  ///< none: the file names no angle unit
+  std::set<std::string> used;              ///< names of parameters in expressions
+  std::optional<double> radians_per_unit;  ///< empty: the file names no angle unit
 };
 
 /// Whether a pattern's "robot" is a path rather than a bundled name.
 bool names_a_path(const std::string& robot);
 
-/// Complains about keys that pattern_keys() does not list for `kind`.
+/// Makes an error of every key that pattern_keys() does not list for `kind`.
 void only_pattern_keys(const JsonNode& node, const std::string& kind);
 
-/// Number or "${name}" expression, finite, at most kLargestNumber in size.
+/// Reads a number or an expression such as "${name}"; it must be finite, and at most kLargestNumber
+/// in size.
 double read_number(const JsonNode& node, PatternScope& scope);
 double read_number(const JsonNode& node, PatternScope& scope, double lower, double upper);
-/// As read_number, in the file's angle unit; result in rad.
+/// As read_number(), but in the file's angle unit; the result is in rad.
 double read_angle(const JsonNode& node, PatternScope& scope);
 double read_time(const JsonNode& node, PatternScope& scope);
-/// `least` to `most` numbers of an array, `form` says how the array is written.
+/// Reads an array of `least` to `most` numbers; `form` says how the array is written.
 std::vector<double> read_numbers(const JsonNode& node, PatternScope& scope, size_t least,
                                  size_t most, const std::string& form);
 Eigen::Vector3d read_vector3(const JsonNode& node, PatternScope& scope);
-/// [x, y], [x, y, z], [x, y, z, yaw] or {"position": [x, y, z], "rpy": [r, p, y]}.
+/// Reads [x, y], [x, y, z], [x, y, z, yaw] or {"position": [x, y, z], "rpy": [r, p, y]}.
 Foothold read_foothold(const JsonNode& node, PatternScope& scope);
-/// {"joint": angle, ...}
+/// Reads {"joint": angle, ...}.
 std::map<std::string, double> read_joint_angles(const JsonNode& node, PatternScope& scope);
 Interpolation read_interpolation(const JsonNode& node);
 
-/// {"units": {...}} of a pattern or posture library into the scope.
+/// Reads {"units": {...}} of a pattern or posture library into the scope.
 void read_units(const JsonNode& root, PatternScope& scope);
 
 ViipGoal read_viip_goal(const JsonNode& node, PatternScope& scope);
-/// A phase or keyframe after one that ends at `before` [s].
+/// Reads a phase or a keyframe after one that ends at `before` [s].
 Phase read_phase(const JsonNode& node, double before, PatternScope& scope);
 Keyframe read_keyframe(const JsonNode& node, double before, PatternScope& scope);
 World read_world(const JsonNode& node, PatternScope& scope);
@@ -57,7 +58,7 @@ ControllerSpec read_controller(const JsonNode& node, PatternScope& scope);
 Disturbance read_disturbance(const JsonNode& node, PatternScope& scope);
 CorrectionTrack read_correction(const JsonNode& node);
 Uncertainty read_uncertainty(const JsonNode& node, PatternScope& scope);
-/// `keyframes`: how many the pattern has.
+/// `keyframes` is the number of keyframes of the pattern.
 RepairPreferences read_repair(const JsonNode& node, int keyframes, PatternScope& scope);
 
 }  // namespace ayumi

@@ -10,10 +10,10 @@
 
 namespace ayumi {
 
-/// Where the table of a pattern written to `path` goes: the same name, ending in .csv.
+/// The place of the table of a pattern that is written to `path`: the same name, ending in .csv.
 std::filesystem::path table_beside(const std::filesystem::path& path);
 
-/// Where the sequence goes from which that table was imported: the same name, ending in
+/// The place of the sequence from which this table was imported: the same name, ending in
 /// .sequence.csv.
 std::filesystem::path sequence_beside(const std::filesystem::path& path);
 
@@ -21,11 +21,11 @@ std::filesystem::path sequence_beside(const std::filesystem::path& path);
 /// read_pattern when it is missing or no JSON.
 std::vector<std::filesystem::path> pattern_files(const std::filesystem::path& path);
 
-/// As write_pattern; a table's data go to table_beside(path), and the pattern names it. The bytes
-/// of the `sequence` that the table was imported from go to sequence_beside(path), and the head of
-/// the table names it; a table that names one already keeps the name as long as its angles are
-/// those of the import. Either all files are there afterwards or none. The head of the table says
-/// what there is to say of the run that it is from.
+/// Writes as write_pattern() does. The data of a table go to table_beside(path), and the pattern
+/// names that file. The bytes of the `sequence` that the table was imported from go to
+/// sequence_beside(path), and the head of the table names it; a table that names one already keeps
+/// the name as long as its angles are those of the import. Either all files are there afterwards or
+/// none. The head of the table says what there is to say of the run that it is from.
 void write_pattern_and_table(const std::filesystem::path& path, const Pattern& pattern,
                              const std::vector<std::string>& comments = {},
                              const TableCaution& caution = {}, const std::string& sequence = {});

@@ -257,7 +257,7 @@ class Writer {
   const Pattern& pattern_;
 };
 
-// A relative path written for files in `from`, so that it holds for files in `to`.
+// A relative path of files in `from`, changed so that it is right for files in `to`.
 std::string rebased(const std::string& name, const fs::path& from, const fs::path& to) {
   if (fs::path(name).is_absolute() || from.lexically_normal() == to.lexically_normal()) return name;
   std::error_code ignored;
@@ -308,7 +308,8 @@ void write_pattern(const fs::path& path, const Pattern& pattern,
     if (moved.table) moved.table->file = rebased(moved.table->file, from, to);
     if (names_a_path(moved.robot)) {
       moved.robot = rebased(moved.robot, from, to);
-      // A folder beside the pattern, or the pattern's own: its name alone would be a bundled robot.
+      // This is a folder beside the pattern, or the pattern's own; its name alone would be a
+      // bundled robot.
       if (!names_a_path(moved.robot)) moved.robot = "./" + moved.robot;
     }
     if (!moved.schema.empty() && moved.schema.find("://") == std::string::npos)

@@ -1,4 +1,4 @@
-// World and disturbances of a pattern file.
+// Reads the world and the disturbances of a pattern file.
 
 #include <algorithm>
 #include <cmath>
@@ -12,9 +12,10 @@ using Eigen::Vector2d;
 
 namespace {
 
-// Ground over its origin, and shift of the floor [m]. Chosen: more is a mistake.
+// Largest height of the ground over its origin, and largest shift of the floor [m]. Chosen: more is
+// a mistake.
 constexpr double kHighest = 10;
-// Nodes along a side of a field of heights. Source: docs/formats.md.
+// Most nodes along a side of a field of heights. Source: docs/formats.md.
 constexpr size_t kLargestField = 512;
 
 Vector2d read_vector2(const JsonNode& node, PatternScope& scope) {
@@ -141,7 +142,8 @@ What read_push(const JsonNode& node, PatternScope& scope) {
   if (!(length > 1e-9))
     node.at("direction")
         .complain("the vector has no direction; give a vector whose length is above 0");
-  // A unit vector stays as it is, so that writing and reading is the identity.
+  // A unit vector is not normalized again, so that a scenario is the same after writing and
+  // reading.
   if (std::abs(length - 1) > 1e-15) push.direction /= length;
   if (const auto shape = node.find("shape"))
     push.shape = shape->one_of({"rectangle", "half_sine"}) == "rectangle" ? PushShape::rectangle
@@ -159,7 +161,7 @@ What read_payload(const JsonNode& node, PatternScope& scope) {
 }
 
 What read_floor(const JsonNode& node, PatternScope& scope) {
-  return read_motion(node, scope).path;  // its times are those of the disturbance
+  return read_motion(node, scope).path;  // its times are those of its disturbance
 }
 
 What read_friction(const JsonNode& node, PatternScope& scope) {
@@ -195,7 +197,7 @@ What read_bias(const JsonNode& node, PatternScope& scope) {
   return bias;
 }
 
-/// "": all joints.
+/// An empty name means all joints.
 std::string read_joint(const JsonNode& node) {
   const auto joint = node.find("joint");
   return joint ? joint->string() : "";
@@ -223,8 +225,8 @@ What read_gain_loss(const JsonNode& node, PatternScope& scope) {
 /// How the disturbances of one type are read.
 struct DisturbanceFormat {
   std::string type;
-  bool ends;                      ///< it needs a duration; the others may last
-  std::vector<std::string> keys;  ///< besides type, at and duration
+  bool ends;                      ///< it needs a duration; other types may do without
+  std::vector<std::string> keys;  ///< keys besides type, at and duration
   What (*read)(const JsonNode&, PatternScope&);
 };
 

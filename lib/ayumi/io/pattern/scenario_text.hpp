@@ -18,8 +18,8 @@ inline std::string quoted(const std::string& text) {
 
 inline std::string number(double value) { return value == 0 ? "0" : text::exact(value); }
 
-// Shortest number of degrees that reads back to the same radians; where no double does, the
-// nearest.
+// The shortest number of degrees that reads back to the same radians, or the nearest one where no
+// double does.
 inline std::string degrees(double radians) {
   const double value = radians / kRadiansPerDegree;
   for (int digits = 1; digits <= 17; ++digits) {
@@ -47,7 +47,7 @@ class Members {
     return items_.empty() ? "{}" : "{ " + text::join(items_, ", ") + " }";
   }
   std::string array() const { return "[" + text::join(items_, ", ") + "]"; }
-  /// One member per line.
+  /// With one member on each line.
   std::string lines(char open, char close, const std::string& indent) const {
     return open + ("\n" + indent + "  ") + text::join(items_, ",\n" + indent + "  ") + "\n" +
            indent + close;
@@ -68,7 +68,7 @@ inline std::string vector_text(const Eigen::Ref<const Eigen::VectorXd>& v) {
 }
 
 std::string world_text(const World& world, bool in_degrees);
-/// "uncertainty" of a pattern file.
+/// The object "uncertainty" of a pattern file.
 std::string uncertainty_text(const Uncertainty& uncertainty, bool in_degrees);
 std::string disturbance_text(const Disturbance& disturbance, bool in_degrees);
 

@@ -13,14 +13,14 @@ namespace ayumi {
 struct Study {
   std::string name;
   std::string file;    ///< source, for messages
-  std::string sha256;  ///< of its bytes
+  std::string sha256;  ///< hash of its bytes
   Uncertainty uncertainty;
 };
 
-/// Strict, as read_pattern(): throws Error(bad_pattern) "file: /json/pointer: what, what to do",
-/// and Error(bad_file) when the file cannot be read.
+/// Reads strictly, as read_pattern() does. Throws Error(bad_pattern) "file: /json/pointer: what,
+/// what to do", and Error(bad_file) when the file cannot be read.
 Study read_study(const std::filesystem::path& path);
-/// The same of the bytes of a study file; `path` names it in messages.
+/// Reads the bytes of a study file in the same way; `path` names it in messages.
 Study study_of_text(const std::string& text, const std::filesystem::path& path);
 
 /// The default uncertainty of a robot, `uncertainty.json` beside its sidecar; empty where there is

@@ -58,7 +58,7 @@ namespace {
 using Part = SweepStudy::Part;
 
 constexpr const char* kPrefixes[] = {"set.", "gain.", "value."};
-/// Settings whose values are words, whole numbers, and switches.
+/// The settings whose values are words, whole numbers, and switches.
 const std::vector<std::string> kWords = {"pattern",    "robot", "profile",
                                          "controller", "world", "disturbances"};
 const std::vector<std::string> kWholeNumbers = {"seed", "draw", "substeps"};
@@ -243,8 +243,8 @@ void collect(const Part& part, const std::string& setting, std::set<std::string>
   for (const Part& each : part.parts) collect(each, setting, words);
 }
 
-/// Names of settings that differ between cases: those of every axis with several values, and those
-/// that some entry of a list has and another has not, or with another value.
+/// The names of settings that differ between cases: those of every axis with several values, and
+/// those that only some entries of a list have, or that have different values there.
 void differing(const Part& part, const Settings& fixed, std::set<std::string>& names) {
   if (part.kind == Part::Kind::axis && part.values.size() > 1) names.insert(part.name);
   if (part.kind == Part::Kind::hypercube) names.insert(part.names.begin(), part.names.end());
@@ -411,7 +411,7 @@ SweepStudy::SweepStudy(const std::string& text, const std::filesystem::path& pat
     const auto number = [&](const char* key, double least, double most, double& into) {
       if (const auto node = given->find(key)) into = node->number_within(least, most);
     };
-    // The ranges of `ayumi push`.
+    // The same ranges as those of `ayumi push`.
     count("directions", 1, 360, t.directions);
     count("replicas", 0, 100, t.replicas);
     number("step", 0.005, 1, t.step);

@@ -19,7 +19,7 @@ namespace ayumi {
 
 /// A number or a word. Switches are 0 or 1.
 using SettingValue = std::variant<double, std::string>;
-/// By name: "pattern", "set.stride", "gain.ka", ...
+/// The settings by name: "pattern", "set.stride", "gain.ka", ...
 using Settings = std::map<std::string, SettingValue>;
 
 /// What is kept of each case.
@@ -30,7 +30,7 @@ struct SweepMeasures {
 
 /// The push study of the measure "thresholds".
 struct SweepThresholds {
-  std::vector<double> times;  ///< empty: the phases of a push study [s]
+  std::vector<double> times;  ///< times of the pushes [s]; empty: the phases of a push study
   int directions = 8, replicas = 0;
   double step = 0.06, cap = 2.4, duration = 0.02;
 };
@@ -40,7 +40,7 @@ class SweepStudy {
   /// Largest number of cases. Chosen: their numbers take some 100 MB of memory.
   static constexpr long kMostCases = 100'000'000;
 
-  /// Of the bytes of a study file; `path` names it in messages. Throws Error(bad_pattern) "file:
+  /// Reads the bytes of a study file; `path` names it in messages. Throws Error(bad_pattern) "file:
   /// /json/pointer: what, what to do".
   SweepStudy(const std::string& text, const std::filesystem::path& path);
 
@@ -67,8 +67,8 @@ class SweepStudy {
   };
   const std::map<std::string, Named>& named() const { return named_; }
 
-  /// World and disturbances that the settings name; none: those of the pattern. Throws
-  /// Error(bad_pattern) with the place in the file.
+  /// The world and the disturbances that the settings name; if they name none, those of the
+  /// pattern. Throws Error(bad_pattern) with the place in the file.
   std::optional<World> world(const Settings& settings) const;
   std::optional<std::vector<Disturbance>> disturbances(const Settings& settings) const;
 

@@ -1,4 +1,4 @@
-// "uncertainty" of a pattern or study file.
+// Reads "uncertainty" of a pattern or study file.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -21,7 +21,7 @@ constexpr const char* kSpreads[] = {"uniform", "normal", "truncated", "choice"};
 
 std::string place_of(const JsonNode& node) { return node.file() + ": " + node.pointer(); }
 
-/// Numbers in the unit of the file, as SI.
+/// Turns numbers in the unit of the file into SI.
 std::vector<double> numbers(const JsonNode& node, bool angle, PatternScope& scope) {
   node.expect_array();
   std::vector<double> values;

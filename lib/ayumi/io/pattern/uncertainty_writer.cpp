@@ -1,4 +1,4 @@
-// "uncertainty" of a pattern file as text.
+// Writes "uncertainty" of a pattern file as text.
 #include "ayumi/io/pattern/scenario_text.hpp"
 
 namespace ayumi {

@@ -28,10 +28,10 @@ namespace fs = std::filesystem;
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-// Elements of a body, those behind an alias counted wherever it stands. Chosen: a robot has some
-// thousand; without a bound, aliases inside aliases would never end.
+// Largest number of elements of a body. Elements behind an alias count each time that the alias is
+// used. Chosen: a robot has some thousand; without a bound, aliases inside aliases would never end.
 constexpr int kMostBodyElements = 20000;
-// Elements inside each other. Chosen: as parsers of other formats.
+// Largest depth of nested elements. Chosen: the same as in the parsers of other formats.
 constexpr int kDeepestBodyElement = 100;
 
 class BodyReader {
@@ -188,7 +188,7 @@ class BodyReader {
           "link " + link + ": the joint type '" + type +
               "' is not supported; the supported types are revolute, prismatic, fixed and free");
     joint.type = known->second;
-    joint.axis = Vector3d::UnitZ();  // the format's default
+    joint.axis = Vector3d::UnitZ();  // default of the format
     if (const YAML::Node axis = member(node, "joint_axis", "jointAxis")) joint.axis = axis_of(axis);
     if (joint.type == JointType::revolute || joint.type == JointType::prismatic) {
       const double unit = joint.type == JointType::revolute ? angle_ : 1;
@@ -331,7 +331,7 @@ class BodyReader {
     };
     PlacedShape placed;
     placed.pose = at;
-    // Along y in the file, along z here.
+    // The axis is y in the file and z here.
     const Isometry3d upright(elementary::turn_matrix(-std::numbers::pi / 2, Vector3d::UnitX()));
     if (type == "Box") {
       placed.shape = Box{vector(geometry["size"])};
@@ -424,7 +424,7 @@ class BodyReader {
         fail(ErrorCode::bad_file, path_.string() + ": the joints " + ids_[i - 1].second + " and " +
                                       ids_[i].second + " have the same joint_id " +
                                       std::to_string(ids_[i].first) + "; give each its own");
-    if (ids_.size() != moving) return;  // not all have one
+    if (ids_.size() != moving) return;  // not all joints have an id
     for (const auto& [id, name] : ids_) robot_.joint_order.push_back(name);
   }
 

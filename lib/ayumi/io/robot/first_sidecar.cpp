@@ -35,7 +35,7 @@ constexpr double kLatency = 0.002;
 
 std::string json_text(const std::string& text) { return nlohmann::json(text).dump(); }
 
-// As many digits as make the written value the rounded one.
+// The number of digits with which the written value equals the rounded one.
 std::string rounded_text(double value, int digits) {
   double unit = 1;
   for (int i = 0; i < digits; ++i) unit *= 10;
@@ -393,7 +393,8 @@ std::string held_text(const std::vector<std::string>& massless,
 
 // ---- inertias
 
-// The box around all shapes of a link, and how far they reach from its centre of mass.
+// The box around all shapes of a link, and the distance that they reach from the link's centre of
+// mass.
 struct LinkExtent {
   Eigen::AlignedBox3d box;
   double reach = 0;
@@ -411,8 +412,8 @@ LinkExtent extent_of(const LinkDescription& link) {
 }
 
 // An inertia that the link cannot have: none, one that no body has, or one of a body larger than
-// its shape, as model/diagnose says. `largest`: the largest reach of all links, for a link without
-// a shape [m].
+// its shape, as model/diagnose says. `largest` is the largest reach of all links, for a link
+// without a shape [m].
 bool is_inertia_of_no_link(const LinkDescription& link, const LinkExtent& extent, double largest) {
   const Eigen::Matrix3d& tensor = link.inertia.about_com;
   const Vector3d moments = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(tensor).eigenvalues();
@@ -436,7 +437,7 @@ Eigen::Matrix3d inertia_of_extent(const LinkDescription& link, const LinkExtent&
   return mass / 12 * (Vector3d::Constant(square.sum()) - square).asDiagonal().toDenseMatrix();
 }
 
-// Gives links that cannot have the inertia of their file that of a box; their names.
+// Gives links that cannot have the inertia of their file the inertia of a box. Returns their names.
 std::vector<std::string> take_inertias_of_shapes(RobotDescription& robot) {
   std::vector<LinkExtent> extents;
   double largest = 0;

@@ -13,21 +13,22 @@
 namespace ayumi {
 
 struct FirstSidecar {
-  std::string text;                ///< robot.json
-  std::vector<std::string> to_do;  ///< what a person should check or state, most important first
-  RobotDescription robot;          ///< with the guesses
+  std::string text;  ///< text of robot.json
+  std::vector<std::string>
+      to_do;               ///< points that a person should check or state, the most important first
+  RobotDescription robot;  ///< the robot with the guesses
 };
 
 /// Gains of DTAD for a robot, which io cannot compute.
 struct SidecarGains {
-  std::vector<std::pair<std::string, double>> dtad;  ///< by name; empty: the defaults
-  std::string why, check;                            ///< of the guess
-  std::string to_do;                                 ///< "": nothing
+  std::vector<std::pair<std::string, double>> dtad;  ///< gains by name; empty: the defaults
+  std::string why, check;                            ///< reason of the guess
+  std::string to_do;                                 ///< point for the to-do list; "": nothing
 };
 
 /// `robot` is a file or folder as load_robot() takes it; the sidecar names its URDF relative to
 /// `folder`, where the sidecar will be. Throws as load_robot(), and Error(usage) for a robot that
-/// has a sidecar already. `gains`: called for the robot with the guesses, where it has soles.
+/// has a sidecar already. `gains` is called for the robot with the guesses, if it has soles.
 FirstSidecar first_sidecar(const std::string& robot, const std::filesystem::path& folder,
                            const RobotSearch& search = {},
                            const std::function<SidecarGains(const RobotModel&)>& gains = {});

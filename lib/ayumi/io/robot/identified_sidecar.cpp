@@ -12,7 +12,7 @@ namespace {
 
 using OrderedJson = nlohmann::ordered_json;
 
-// Digits that the interval of a value leaves, one more.
+// One digit more than the interval of a value determines.
 double sidecar_number(double value) { return std::stod(text::brief(value, 5)); }
 
 // A zero offset that a sidecar may state [rad]. Definition: the reader of sidecars takes no more.
@@ -49,7 +49,7 @@ OrderedJson servo_group(const IdentifiedJoint& joint, const IdentifiedJoint& sou
   return group;
 }
 
-// Whether the profile of `model` states servos of its own, which hide those of the robot.
+// Whether the profile of `model` states servos of its own, which override those of the robot.
 bool profile_has_servos(const RobotModel& model) {
   for (const ActuatorProfile& profile : model.description().profiles)
     if (profile.name == model.limits().name) return !profile.servos.empty();
@@ -82,7 +82,8 @@ std::string identified_sidecar(const RobotModel& model, const Identification& fo
       {"servos", groups},
       {"assumptions",
        {"servos: identified from " + names.measured + " with the command " + names.command}}};
-  // Servos of a profile hide those of the robot, so what was found stands there too.
+  // Servos of a profile override those of the robot, so the constants that were found are written
+  // there too.
   if (profile_has_servos(model))
     json["profiles"] = {{{"name", model.limits().name}, {"servos", groups}}};
   return json.dump(2) + "\n";

@@ -1,5 +1,5 @@
 #pragma once
-// The servos that a recording shows, as a sidecar over that of the robot.
+// The servos that a recording shows, written as a sidecar with the robot as its base.
 
 #include <string>
 
@@ -9,9 +9,9 @@
 namespace ayumi {
 
 struct IdentifiedNames {
-  std::string base;               ///< of the robot, as the new sidecar names it
-  std::string name;               ///< of the new sidecar
-  std::string command, measured;  ///< of the recordings
+  std::string base;               ///< name of the robot, as the new sidecar states it
+  std::string name;               ///< name of the new sidecar
+  std::string command, measured;  ///< names of the recordings
 };
 
 /// The text of the sidecar. Joints that did not move have the constants of their motor type.

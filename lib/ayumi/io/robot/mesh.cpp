@@ -22,14 +22,15 @@ namespace {
 namespace fs = std::filesystem;
 using Exchange = ChildProcess::Exchange;
 
-// Readers side by side. Chosen: each takes 3 ms to start, and a robot has about 20 small meshes.
+// Largest number of readers at the same time. Chosen: each takes 3 ms to start, and a robot has
+// about 20 small meshes.
 constexpr size_t kMeshReaders = 4;
-// Companion files of one mesh. Chosen: an OBJ has one, a glTF a handful.
+// Largest number of companion files of one mesh. Chosen: an OBJ has one, a glTF a handful.
 constexpr int kMostCompanions = 64;
 constexpr size_t kMostCompanionBytes = size_t{1} << 30;
 constexpr size_t kLongestCompanionName = 4096;
-// How long the caller waits before it asks whether the work shall go on. Chosen: Ctrl-C is answered
-// at once, and the wait costs nothing.
+// Longest wait of the caller before it asks whether the work shall go on. Chosen: Ctrl-C is
+// answered at once, and the wait costs nothing.
 constexpr std::chrono::milliseconds kPause(50);
 // [bytes] Chosen: a line or two of a message for people.
 constexpr size_t kLongestRefusal = 400;
@@ -40,7 +41,7 @@ constexpr size_t kAnswerPiece = size_t{4} << 20;
 const std::vector<std::string> kReaderEnvironment = {"LD_LIBRARY_PATH", "ASAN_OPTIONS",
                                                      "UBSAN_OPTIONS", "LSAN_OPTIONS"};
 #ifdef __SANITIZE_ADDRESS__
-constexpr bool kReaderErrors = true;  // where the sanitizer reports
+constexpr bool kReaderErrors = true;  // the sanitizer reports there
 #else
 constexpr bool kReaderErrors = false;
 #endif
@@ -54,7 +55,7 @@ std::string lower_extension(const fs::path& path) {
   return extension;
 }
 
-// What the reader says may come from the mesh file.
+// The messages of the reader may contain text from the mesh file.
 std::string harmless(std::string words) {
   if (words.size() > kLongestRefusal) words = words.substr(0, kLongestRefusal) + "...";
   for (char& c : words)
@@ -64,8 +65,8 @@ std::string harmless(std::string words) {
 
 std::string mebibytes(std::uint64_t bytes) { return std::to_string(bytes >> 20) + " MiB"; }
 
-// A mesh that a reader could not finish. Where other meshes were read before by the same reader,
-// they may be the reason.
+// A mesh that a reader could not finish. If the same reader read other meshes before, they may be
+// the cause.
 struct ReaderLost {
   std::string message;
   bool try_again = true;
@@ -96,7 +97,7 @@ class MeshReader {
         child_.reset();
         if (fresh || !lost.try_again) complain(lost.message);
       } catch (...) {
-        child_.reset();  // a question of the reader may be open
+        child_.reset();  // the reader may have asked a question
         throw;
       }
     }
@@ -107,13 +108,13 @@ class MeshReader {
     fail(ErrorCode::bad_file, path_.string() + ": " + message);
   }
 
-  // The request and everything up to its answer.
+  // The request, and everything until its answer.
   TriangleMesh ask_reader(const MeshRequest& request, const std::string& bytes, bool fresh) {
     companions_ = 0;
     companion_bytes_ = 0;
     child_->set_time(reading_.time);
-    // First its greeting: a program that ends or says something else is told apart from one that
-    // the file has crashed.
+    // The first message is the greeting. So a program that ends or says something else can be
+    // distinguished from a reader that crashed because of the file.
     if (fresh) receive_hello();
     send_request(request, bytes);
     while (true) {
@@ -220,7 +221,7 @@ class MeshReader {
                      "). The file is broken or hostile" + kRemedy};
   }
 
-  // Sends the companion file of this name, or that there is none.
+  // Sends the companion file of this name, or the message that there is none.
   void answer(const std::string& name) {
     if (++companions_ > kMostCompanions)
       throw ReaderLost{"the mesh file names more than " + std::to_string(kMostCompanions) +
@@ -233,8 +234,8 @@ class MeshReader {
     need(child_->send(bytes->data(), bytes->size()));
   }
 
-  // A reader that a mesh has taken over may ask for any file: it gets none but those that may
-  // belong to a mesh.
+  // A reader that a mesh has taken over may ask for any file. It only gets files that may belong to
+  // a mesh.
   std::optional<std::string> companion(const std::string& name) {
     const fs::path relative = name;
     const std::string extension = lower_extension(relative);

@@ -13,7 +13,7 @@
 
 namespace ayumi {
 
-/// What reading one mesh may take, and by which program it is read.
+/// The resources that reading one mesh may use, and the program that reads it.
 struct MeshReading {
   std::filesystem::path program;  ///< empty: find_mesh_reader()
   /// Memory beside the reader itself: a base [bytes], and as much for each byte of the mesh file
@@ -48,14 +48,14 @@ struct MeshRequest {
   Eigen::Vector3d scale = Eigen::Vector3d::Ones();  ///< as in load_mesh()
 };
 
-/// Why a mesh of several could not be read: the first one in their order.
+/// The reason why a mesh of several could not be read: the first failure in their order.
 struct MeshFailure {
-  size_t request = 0;        ///< which
-  std::exception_ptr error;  ///< what load_mesh() throws for it; empty: all were read
+  size_t request = 0;        ///< index of the mesh
+  std::exception_ptr error;  ///< error that load_mesh() throws for it; empty: all meshes were read
 };
 
 /// Several meshes as load_mesh() reads them, in the order of `requests`, by at most four readers
-/// side by side. The same files give the same bytes. With a failure, what comes behind it is empty.
+/// side by side. The same files give the same bytes. After a failure, all further meshes are empty.
 /// `progress` is asked by the calling thread all the time.
 std::vector<TriangleMesh> load_meshes(const std::vector<MeshRequest>& requests,
                                       MeshFailure& failure, const MeshReading& reading = {},

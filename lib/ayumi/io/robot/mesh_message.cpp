@@ -32,7 +32,7 @@ class MeshDecoder {
   TriangleMesh decode() {
     std::uint64_t parts = 0;
     take(&parts, 1);
-    // Each has a head, so the bytes that are left bound the count.
+    // Each part has a head, so the number of remaining bytes bounds the count.
     if (parts > left_.size() / sizeof(PartHead)) complain("more parts than bytes");
     TriangleMesh mesh;
     for (part_ = 0; part_ < parts; ++part_) mesh.parts.push_back(decode_part());

@@ -26,7 +26,8 @@ namespace ayumi {
 constexpr std::uint64_t kMeshMessageVersion = 1;
 
 enum class MeshMessage : std::uint32_t {
-  hello = 0x4d595901,  ///< no small number, so that another program is not taken for the reader
+  hello =
+      0x4d595901,  ///< not a small number, so that another program is not mistaken for the reader
   request,
   ask,
   file,
@@ -38,18 +39,20 @@ enum class MeshMessage : std::uint32_t {
 struct MeshMessageHead {
   MeshMessage kind = MeshMessage::refusal;
   std::uint32_t unused = 0;
-  std::uint64_t size = 0;  ///< bytes that follow
+  std::uint64_t size = 0;  ///< number of bytes that follow
 };
 
 struct MeshRequestHead {
   double scale[3] = {1, 1, 1};
-  std::uint64_t base_memory = 0;      ///< [bytes] that reading may take, whatever the file's size
-  std::uint64_t memory_per_byte = 0;  ///< [bytes] more for each byte of the mesh and its companions
-  std::uint64_t cpu_time = 0;         ///< [s] of the processor for this mesh
-  std::uint64_t name_size = 0;        ///< bytes of the name
+  std::uint64_t base_memory = 0;  ///< memory for reading, for every size of the file [bytes]
+  std::uint64_t memory_per_byte =
+      0;  ///< additional memory for each byte of the mesh and its companions [bytes]
+  std::uint64_t cpu_time = 0;   ///< processor time for this mesh [s]
+  std::uint64_t name_size = 0;  ///< number of bytes of the name
 };
 
-/// Triangles of all parts of a mesh file. Chosen: at 96 bytes each they take 0.5 GB.
+/// Largest number of triangles of all parts of a mesh file. Chosen: at 96 bytes each they take 0.5
+/// GB.
 constexpr size_t kMostMeshTriangles = 5'000'000;
 
 /// The first byte of MeshPart::texture_file in an encoded mesh, which holds no resolved path: the

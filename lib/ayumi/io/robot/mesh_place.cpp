@@ -13,11 +13,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Folders above the robot's file whose neighbours are looked at. Chosen: a URDF lies in
+// Number of folders above the robot's file whose neighbours are searched. Chosen: a URDF lies in
 // package/urdf/ or package/robots/name/, and packages lie beside each other.
 constexpr int kNeighbours = 4;
-// Neighbours that are looked at in one folder. Chosen: a workspace has fewer packages; a folder
-// with more is not one.
+// Largest number of neighbours that are searched in one folder. Chosen: a workspace has fewer
+// packages; a folder with more is not one.
 constexpr int kMostNeighbours = 500;
 
 bool names_package(const fs::path& folder, const std::string& name) {
@@ -31,13 +31,14 @@ bool names_package(const fs::path& folder, const std::string& name) {
   return tag && tag->GetText() && name == tag->GetText();
 }
 
-// The package in a folder or among the folders in it; empty when there is none.
+// The package in a folder, or in one of its subfolders. Empty if there is none.
 fs::path package_in(const fs::path& folder, const std::string& name, bool neighbours) {
   std::error_code ignored;
   if (folder.filename() == name || names_package(folder, name)) return folder;
   if (fs::is_directory(folder / name, ignored)) return folder / name;
   if (!neighbours) return {};
-  std::vector<fs::path> found;  // in the order of their names, whatever the file system says
+  std::vector<fs::path>
+      found;  // in the order of their names, which does not depend on the file system
   int seen = 0;
   for (const auto& entry : fs::directory_iterator(folder, ignored)) {
     if (++seen > kMostNeighbours) break;
@@ -52,7 +53,7 @@ std::string lower_name(std::string name) {
   return name;
 }
 
-// The file whose name differs from `file` by capitals alone; empty when there is none.
+// The file whose name differs from `file` only in capital letters. Empty if there is none.
 fs::path with_other_capitals(const fs::path& file) {
   fs::path found = file.is_absolute() ? file.root_path() : fs::path(".");
   std::error_code ignored;
@@ -77,7 +78,7 @@ void add_once(std::vector<std::string>& words, const std::string& word) {
 
 }  // namespace
 
-// Empty: the package of the name is not there.
+// Empty if the package with this name does not exist.
 fs::path MeshPlaces::named_file(const std::string& name) const {
   if (name.starts_with("file://")) return name.substr(7);
   for (const std::string scheme : {"package://", "model://"}) {

@@ -1,6 +1,6 @@
 #pragma once
-// Where the meshes lie that a robot's file names. What is not there is remembered, so that all of
-// it can be said at once. Included by io/*.cpp only.
+// Finds the meshes that a robot's file names. Missing meshes are remembered, so that all of them
+// can be listed at once. Included by io/*.cpp only.
 
 #include <filesystem>
 #include <string>
@@ -23,10 +23,10 @@ class MeshPlaces {
   /// capitals alone is taken. Empty where there is no such file.
   std::string find(const std::string& link, const std::string& name);
 
-  /// The folder "model://NAME" or "package://NAME"; empty where there is none.
+  /// The folder "model://NAME" or "package://NAME". Empty if there is none.
   std::filesystem::path folder(const std::string& name) const { return named_file(name); }
 
-  /// What a person should know: every mesh that was taken although its name differs.
+  /// Notes for a person: every mesh that was used although its name differs.
   std::vector<std::string> notes() const;
 
   /// Every mesh that is missing, with its link.

@@ -61,7 +61,7 @@ std::vector<fs::path> places_without_variable() {
 std::vector<fs::path> mesh_reader_places() {
   const char* named = std::getenv(kReaderVariable);
   if (named && *named) return {named};
-  // The file that holds this code does not change while it runs.
+  // The file that contains this code does not change while it runs.
   static const std::vector<fs::path> places = places_without_variable();
   return places;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Where the program ayumi-mesh-reader is.
+// The place of the program ayumi-mesh-reader.
 
 #include <filesystem>
 #include <vector>
@@ -13,8 +13,8 @@ namespace ayumi {
 /// /usr/local.
 std::vector<std::filesystem::path> mesh_reader_places();
 
-/// The first of those places that has a file. Throws Error(bad_file) naming all of them, and what
-/// to do.
+/// The first of those places at which there is a file. Throws Error(bad_file), which names all of
+/// them and what to do.
 std::filesystem::path find_mesh_reader();
 
 }  // namespace ayumi

@@ -34,7 +34,7 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using Model = std::unique_ptr<mjModel, void (*)(mjModel*)>;
 
-// MuJoCo ends the program on an error unless its hook does not return; and it prints warnings.
+// On an error, MuJoCo ends the program unless its hook does not return. It also prints warnings.
 [[noreturn]] void throw_words(const char* words) {
   fail(ErrorCode::bad_model, std::string("MuJoCo: ") + words);
 }
@@ -72,7 +72,7 @@ std::string one_line(std::string words) {
 
 const MjcfSchema& schema_of_mujoco() {
   static const MjcfSchema schema = [] {
-    constexpr int size = 1 << 20;  // its text takes some 20 kB
+    constexpr int size = 1 << 20;  // its text takes about 20 kB
     std::string printed(size, '\0');
     const int length = mj_printSchema("", printed.data(), size, 0, 0);
     printed.resize(static_cast<size_t>(std::clamp(length, 0, size)));
@@ -186,7 +186,7 @@ class MjcfReader {
   }
 
  private:
-  // Puts the vertices of a file in the place of the probe of an asset.
+  // Puts the vertices of a file in the place of an asset's probe.
   void use_true_mesh(const std::string& name, const MjcfMesh& mesh, const std::string& file,
                      Files& files) {
     std::vector<Eigen::Vector3f> vertices;
@@ -266,10 +266,10 @@ class MjcfReader {
     const std::string name = body_name(body);
     const bool floats = parent.empty();  // the root's own joints to the world are its free joint
     const int count = floats ? 0 : m_->body_jntnum[body], first = m_->body_jntadr[body];
-    Isometry3d shift = Isometry3d::Identity();  // of the body's frame, in the frame of its link
+    Isometry3d shift = Isometry3d::Identity();  // pose of the body's frame in the frame of its link
     std::string above = parent;
     Isometry3d placement = parent_shift * pose_at(m_->body_pos, m_->body_quat, body);
-    Vector3d anchor = Vector3d::Zero();  // in the body's frame, of what is placed next
+    Vector3d anchor = Vector3d::Zero();  // place in the body's frame of what is placed next
     int moving = 0;
     for (int i = first; i < first + count; ++i) {
       if (m_->jnt_type[i] == mjJNT_BALL)
@@ -393,7 +393,7 @@ class MjcfReader {
       placed.shape = MeshShape{file, mesh->second.scale, {}};
       return true;
     }
-    MeshPart part;  // its vertices stand in the model
+    MeshPart part;  // its vertices are in the model
     const int vertex = m_->mesh_vertadr[id], face = m_->mesh_faceadr[id];
     for (int i = 0; i < m_->mesh_facenum[id]; ++i) {
       const int* corner = m_->mesh_face + 3 * (face + i);
@@ -415,7 +415,7 @@ class MjcfReader {
     return found == joint_index_.end() ? nullptr : &robot_.joints[found->second];
   }
 
-  // A joint equality with a straight line is a mimic joint.
+  // A joint equality that is a straight line is a mimic joint.
   void read_equalities() {
     size_t loops = 0, curves = 0;
     for (int i = 0; i < m_->neq; ++i) {
@@ -433,7 +433,7 @@ class MjcfReader {
         continue;
       }
       const double own = m_->qpos0[m_->jnt_qposadr[m_->eq_obj1id[i]]];
-      if (!driver) {  // held at a value
+      if (!driver) {  // the joint is held at a value
         const double held = own + poly[0];
         joint->origin = joint->type == JointType::prismatic
                             ? joint->origin * Eigen::Translation3d(held * joint->axis)
@@ -504,7 +504,7 @@ class MjcfReader {
       JointDescription& joint = robot_.joints[index];
       if (driven.contains(index) || joint.type == JointType::fixed || !joint.mimic.empty())
         continue;
-      joint.effort = 0;  // no motor acts there, whatever limits its force
+      joint.effort = 0;  // no motor acts there, whatever limits the force
       ServoDescription servo;
       servo.rotor_inertia = m_->dof_armature[m_->jnt_dofadr[id]];
       servo.viscous = joint.damping;
@@ -545,8 +545,8 @@ class MjcfReader {
   Model compiled_{nullptr, mj_deleteModel}, weighed_{nullptr, mj_deleteModel};
   const mjModel* m_ = nullptr;
   RobotDescription robot_;
-  std::map<int, size_t> joint_index_;  // of MuJoCo's joints among those of the robot
-  std::map<int, Isometry3d> shift_;    // of the bodies of the robot
+  std::map<int, size_t> joint_index_;  // place of each of MuJoCo's joints among those of the robot
+  std::map<int, Isometry3d> shift_;    // shifts of the robot's bodies
 };
 
 }  // namespace

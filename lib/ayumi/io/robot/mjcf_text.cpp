@@ -18,11 +18,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Files inside each other. Chosen: models include a handful of parts, one or two deep.
+// Largest depth of files that include each other. Chosen: models include a handful of parts, one or
+// two deep.
 constexpr int kDeepestMjcfInclude = 20;
-// Elements of a model with all that it includes. Chosen: a robot has some thousand.
+// Largest number of elements of a model with all included files. Chosen: a robot has some thousand.
 constexpr size_t kMostMjcfElements = 200000;
-// Bytes of an included file. Chosen: text of a model takes kilobytes.
+// Largest number of bytes of an included file. Chosen: text of a model takes kilobytes.
 constexpr size_t kLargestMjcfPart = size_t{64} << 20;
 
 // Sections that do not describe the robot itself: settings of the simulation, of the picture, and
@@ -30,12 +31,13 @@ constexpr size_t kLargestMjcfPart = size_t{64} << 20;
 const std::set<std::string> kNotTheRobot = {"option",   "size",      "visual",    "statistic",
                                             "keyframe", "custom",    "sensor",    "tendon",
                                             "skin",     "extension", "deformable"};
-// Elements inside of others that only look, or that carry no part of a rigid robot.
+// Elements inside of others that only affect the picture, or that describe no part of a rigid
+// robot.
 const std::set<std::string> kOnlyLooks = {"light", "camera", "texture", "skin", "hfield", "layer"};
 // Attributes of later versions of MuJoCo that are read here, or have no meaning for a robot.
 const std::set<std::string> kReadHere = {"actuatorfrcrange", "actuatorfrclimited", "dampratio",
                                          "kv", "inheritrange"};
-// Attributes that hold words, and so no mjcf_numbers.
+// Attributes that contain words, so that no numbers are read from them.
 const std::set<std::string> kMjcfWords = {
     "name",  "class", "childclass", "mesh", "material", "texture", "joint",  "type",  "file",
     "angle", "model", "site",       "body", "body1",    "body2",   "joint1", "joint2"};
@@ -134,7 +136,7 @@ class Cleaner {
     }
   }
 
-  // MuJoCo takes "nan" and the beginning of "1.5x".
+  // MuJoCo accepts "nan" and the beginning of "1.5x".
   void check_numbers(const TiXmlElement* element) const {
     for (const TiXmlAttribute* each = element->FirstAttribute(); each; each = each->Next()) {
       if (kMjcfWords.contains(each->Name())) continue;
@@ -206,7 +208,7 @@ class Cleaner {
     }
   }
 
-  // An attribute of an element, else that of its class, or of the classes above.
+  // The attribute of an element, or else that of its class, or of the classes above.
   std::string found(const TiXmlElement* element, const char* attribute,
                     const std::string& child_class) const {
     if (const char* own = element->Attribute(attribute)) return own;
@@ -254,7 +256,7 @@ class Cleaner {
       for (auto* mesh = asset->FirstChildElement("mesh"); mesh;
            mesh = mesh->NextSiblingElement("mesh")) {
         const char* file = mesh->Attribute("file");
-        if (!file) continue;  // its vertices stand in the text
+        if (!file) continue;  // its vertices are in the text
         std::string name = file;
         if (strip_) name = fs::path(name).filename().string();
         MjcfMesh made;

@@ -16,25 +16,25 @@ namespace ayumi {
 /// Name of the file that stands for every mesh in the text.
 constexpr const char* kMjcfProbe = "probe.msh";
 
-/// A mesh asset: MuJoCo gets a probe in its place.
+/// A mesh asset, in place of which MuJoCo gets a probe.
 struct MjcfMesh {
-  std::string file;  ///< as resolved in the mesh folder, or a URL
+  std::string file;  ///< file as found in the mesh folder, or a URL
   Eigen::Vector3d scale = Eigen::Vector3d::Ones();
-  Eigen::Isometry3d reference = Eigen::Isometry3d::Identity();  ///< refpos and refquat
+  Eigen::Isometry3d reference = Eigen::Isometry3d::Identity();  ///< refpos and refquat of the asset
 };
 
 struct MjcfText {
   std::string xml;
   std::string files;                             ///< bytes of included files, one after the other
-  std::map<std::string, MjcfMesh> meshes;        ///< by the name of the asset
+  std::map<std::string, MjcfMesh> meshes;        ///< assets by name
   std::map<std::string, double> force_limits;    ///< actuatorfrcrange of joints [N m, N]
   std::map<std::string, double> damping_ratios;  ///< dampratio of actuators, by joint
   std::map<std::string, double> velocity_gains;  ///< kv of position actuators, by joint
-  std::string imu_site;                          ///< of the gyroscope, else the accelerometer
-  std::vector<std::string> weighed_meshes;       ///< assets that give a body its mass
+  std::string imu_site;                     ///< site of the gyroscope, or else of the accelerometer
+  std::vector<std::string> weighed_meshes;  ///< assets that give a body its mass
   std::map<std::string, std::string> fitted_meshes;  ///< assets that only give primitives their
                                                      ///< size, with the name in `meshes`
-  std::vector<std::string> notes;                    ///< what was left out, in words
+  std::vector<std::string> notes;  ///< descriptions of everything that was left out
 };
 
 /// Elements, and the attributes of each, that a MuJoCo knows.
@@ -43,7 +43,7 @@ using MjcfSchema = std::map<std::string, std::set<std::string>>;
 /// The schema in the words of mj_printSchema().
 MjcfSchema mjcf_schema(const std::string& printed);
 
-/// Whether the file of a mesh that a body names is there.
+/// Whether the file of a mesh that a body names exists.
 using MeshIsThere = std::function<bool(const std::string& body, const std::string& file)>;
 
 /// A primitive whose size follows from a mesh that is not there is left out. Throws Error(bad_file)

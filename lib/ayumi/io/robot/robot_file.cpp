@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kSidecarName = "robot.json";
 
-// The robot.json or the only other robot of a folder; empty: it has neither.
+// The robot.json of a folder, or its only other robot. Empty if it has neither.
 fs::path file_in_folder(const fs::path& folder) {
   std::error_code ignored;
   // Also where it is a named pipe or a link to nothing: read_file() says so, and the robot is not
@@ -57,16 +57,16 @@ fs::path find_file(const std::string& name, const RobotSearch& search) {
                                 text::suggestion(name, known));
 }
 
-// What the robot touches with is always read; what it looks like only where it is drawn.
+// Shapes for contacts are always read. Shapes for pictures are read only where something is drawn.
 void fill_meshes(RobotDescription& robot, bool visuals, const Progress& progress) {
-  std::vector<MeshRequest> requests;    // each mesh once
-  std::vector<std::string> first_link;  // that needs it
+  std::vector<MeshRequest> requests;    // each mesh only once
+  std::vector<std::string> first_link;  // the first link that needs it
   std::map<std::string, size_t> known;
   std::vector<std::pair<MeshShape*, size_t>> wanted;
   const auto want = [&](std::vector<PlacedShape>& shapes, const std::string& link) {
     for (PlacedShape& placed : shapes) {
       auto* shape = std::get_if<MeshShape>(&placed.shape);
-      if (!shape || !shape->mesh.parts.empty()) continue;  // some formats bring their triangles
+      if (!shape || !shape->mesh.parts.empty()) continue;  // some formats contain their triangles
       const std::string key = shape->file + " " + text::exact(shape->scale.x()) + " " +
                               text::exact(shape->scale.y()) + " " + text::exact(shape->scale.z());
       const auto [place, fresh] = known.emplace(key, requests.size());

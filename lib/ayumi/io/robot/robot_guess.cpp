@@ -41,7 +41,7 @@ constexpr double kTouching = 0.001;
 // Cosine of the largest angle by which an underside is turned to be level. Chosen: 45 deg, so that
 // the back of a heel is no sole.
 constexpr double kMostTilt = 0.7071;
-// Feet are at least this far apart [m]. Chosen: half of the distance of HOAP-1's feet (78 mm).
+// Smallest distance of the feet [m]. Chosen: half of the distance of HOAP-1's feet (78 mm).
 constexpr double kApart = 0.02;
 // Difference of the heights of both feet, as a share of the robot's height. Chosen: below the
 // distance of an ankle from its sole.
@@ -123,7 +123,7 @@ Points points_above_ground(const PlacedShape& placed, const Isometry3d& link) {
   return points;
 }
 
-// What a body touches with, else what it looks like, in the root frame.
+// The shapes with which a body touches others, or else its visible shapes, in the root frame.
 Points body_points(const RobotModel& model, const std::vector<Isometry3d>& poses, int body) {
   Points points;
   for (const bool collisions : {true, false}) {
@@ -148,7 +148,7 @@ double lowest_of(const Points& points) {
 
 struct Foot {
   int body = -1;
-  Points points;  // root frame, every joint at 0
+  Points points;  // in the root frame, with every joint at 0
   double lowest = std::numeric_limits<double>::infinity();
 };
 
@@ -187,7 +187,7 @@ std::vector<Foot> find_feet(const RobotModel& model, const std::vector<Isometry3
     if (body.parent >= 0) leaf[body.parent] = false;
   std::vector<Foot> ends;
   double highest = -std::numeric_limits<double>::infinity();
-  std::vector<int> bare;  // end bodies without a shape
+  std::vector<int> bare;  // end bodies that have no shape
   for (int body = 1; body < static_cast<int>(leaf.size()); ++body) {
     highest = std::max(highest, poses[body].translation().z());
     if (!leaf[body]) continue;
@@ -251,7 +251,7 @@ int first_is_left(const std::string& first, const std::string& second) {
   return side;
 }
 
-// Of the links and joints from two feet upwards.
+// Names of the links and joints from two feet upwards.
 int first_foot_is_left(const RobotModel& model, int first, int second) {
   while (first > 0 && second > 0) {
     const Body &a = model.bodies()[first], &b = model.bodies()[second];
@@ -287,7 +287,8 @@ void find_facing(const RobotModel& model, RobotGuess& guess) {
   }
   Vector3d across = poses[feet[0].body].translation() - poses[feet[1].body].translation();
   across.z() = 0;
-  const Vector3d ahead = across.normalized().cross(Vector3d::UnitZ());  // if the first is left
+  const Vector3d ahead =
+      across.normalized().cross(Vector3d::UnitZ());  // if the first foot is the left one
   double front = 0, back = 0;
   for (const Foot& foot : feet)
     for (const Vector3d& point : foot.points) {
@@ -516,8 +517,8 @@ bool within_limits(const RobotModel& model, const InverseKinematics& ik, const V
   return true;
 }
 
-// Knees bent and the COG over the middle of the soles, other joints as in `zero`; false: the legs
-// reach no such posture.
+// Bends the knees and puts the COG over the middle of the soles, with the other joints as in
+// `zero`. Returns false if the legs cannot reach such a posture.
 bool balance(RobotGuess& guess, const VectorXd& zero) {
   RobotDescription& robot = guess.robot;
   const RobotModel model(robot);
@@ -620,7 +621,7 @@ class ArmsBesideLegs {
   double wanted() const { return wanted_; }
   const std::vector<int>& bodies(int side) const { return arms_[side]; }
 
-  /// Least distance of the arm on this side from the legs, with joints of the arms moved [m].
+  /// Smallest distance of the arm on this side from the legs, if joints of the arms are moved [m].
   double clearance(int side, const std::map<int, double>& moved) {
     double least = std::numeric_limits<double>::infinity();
     for (const VectorXd& posture : postures_) {
@@ -637,7 +638,7 @@ class ArmsBesideLegs {
     return least;
   }
 
-  /// Whether the arm on this side is in the trunk, in the head or in the other arm.
+  /// Whether the arm on this side overlaps the trunk, the head or the other arm.
   bool meets_trunk(int side, const std::map<int, double>& moved) {
     RobotState state = model_.rest_state();
     for (const auto& [dof, angle] : moved) state.theta[dof] += angle;
@@ -672,12 +673,12 @@ class ArmsBesideLegs {
   InverseKinematics ik_;
   std::vector<VectorXd> postures_;
   std::vector<int> legs_;
-  std::array<std::vector<int>, 2> arms_;  // left, right
+  std::array<std::vector<int>, 2> arms_;  // left and right
   double wanted_ = 0;
 };
 
-// Angles by which joints of the arms are moved, so that the arms stay clear of the legs: of one
-// joint where this is enough, the least angle that is.
+// Angles by which joints of the arms are moved, so that the arms do not come near the legs. If one
+// joint is sufficient, only this joint is moved, by the smallest angle.
 std::map<int, double> arms_aside(const RobotModel& model) {
   // Angles that are tried, and joints that are moved. Chosen: arms beside the legs are clear of
   // them with 10 to 25 deg of one shoulder joint.
@@ -793,11 +794,11 @@ void find_servos(RobotGuess& guess) {
     ++inferred;
     double effort = joint.effort;
     if (effort <= 0 || is_placeholder(guess.placeholders, "effort limits", joint.name)) {
-      // A sliding joint has the force of a turning one at the lever of the COG's height.
+      // A sliding joint gets the force of a turning joint with the COG height as its lever.
       effort = (leg ? kLegEffort : kOtherEffort) * weight * (dof.prismatic ? 1 : z);
       ++estimated;
     }
-    const double unit = dof.prismatic ? z : 1;  // [m] in the place of a radian
+    const double unit = dof.prismatic ? z : 1;  // in [m] in place of radians
     ServoDescription servo;
     servo.kp = effort / (kFullEffortError * unit);
     if (leg) servo.kp = std::max(servo.kp, kLegStiffness * weight * z / (unit * unit));
@@ -836,7 +837,7 @@ void find_servos(RobotGuess& guess) {
 }  // namespace
 
 std::vector<std::string> hold_joints_without_mass(RobotDescription& robot) {
-  std::map<std::string, double> mass;  // of a link and all that it carries
+  std::map<std::string, double> mass;  // mass of a link and of all that it carries
   std::map<std::string, const JointDescription*> above;
   for (const JointDescription& joint : robot.joints) above[joint.child] = &joint;
   for (const LinkDescription& link : robot.links) {

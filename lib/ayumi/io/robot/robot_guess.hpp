@@ -10,7 +10,7 @@
 
 namespace ayumi {
 
-/// Why the values of one key were chosen, and what a person should check.
+/// The reason for the values of one key, and what a person should check.
 struct GuessReason {
   std::string why, check;
 };
@@ -19,11 +19,11 @@ struct GuessReason {
 /// "effort limits".
 struct PlaceholderLimits {
   std::string what;
-  std::string value;  ///< as it is written, with its unit
+  std::string value;  ///< value as it is written, with its unit
   std::vector<std::string> joints;
 };
 
-/// A robot as guess_robot() completes it.
+/// A robot that guess_robot() has completed.
 struct RobotGuess {
   RobotDescription robot;
   std::string facing = "x";  ///< of the URDF's root link; `robot` faces x
@@ -56,8 +56,8 @@ std::vector<std::string> hold_play_of_gears(RobotDescription& robot);
 /// Joints that a motor could move, but that have no actuator in files that state actuators.
 std::vector<std::string> passive_joints(const RobotDescription& robot);
 
-/// What the files leave open beside what is guessed: joints without an actuator, and meshes that
-/// are missing, of which `most` are named. One sentence for each.
+/// The open points in addition to the guesses: joints without an actuator, and missing meshes, of
+/// which `most` are named. One sentence for each.
 std::vector<std::string> gaps_of_the_files(const RobotDescription& robot, size_t most);
 
 /// Limits that are placeholders. The same position limits on most joints, speeds above 60 rad/s,

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 constexpr double kRadiansPerDeg = std::numbers::pi / 180;
 
-// Lists in which a later entry overrides an earlier one, or adds to it.
+// Lists in which a later entry overrides an earlier one or adds to it.
 const std::set<std::string> kAppended = {"servos", "joint_weight", "limits", "collision_ignore",
                                          "assumptions"};
 
@@ -24,7 +24,7 @@ class SidecarOverlay {
  public:
   SidecarOverlay(MergedSidecar& under, const std::string& file) : under_(under), file_(file) {}
 
-  // `over` stands at `place` of its own file, `under` at `pointer` of the merged document.
+  // `over` is at `place` of its own file, and `under` is at `pointer` of the merged document.
   void merge(Json& under, const Json& over, const std::string& pointer, const std::string& place,
              const std::string& key = "") {
     if (under.is_object() && over.is_object()) {
@@ -81,7 +81,7 @@ void scale_numbers(Json& value, double factor) {
     for (auto& [key, member] : value.items()) scale_numbers(member, factor);
 }
 
-// What a file states in radians may be over a value in degrees, and the other way round.
+// A value in radians may override a value in degrees, and the reverse.
 void use_units_of(const Json& over, Json& under) {
   const auto convert = [&](Json& from, Json& to, const std::string& key, double factor) {
     to[key] = from[key];

@@ -1,7 +1,7 @@
 #pragma once
-// A sidecar over another one: {"base": "hoap1", ...} holds only what differs. Objects are merged by
-// key, the lists of groups are appended so that the later group counts, profiles are merged by
-// name, everything else is replaced. Included by io/*.cpp only.
+// Merges a sidecar with its base: {"base": "hoap1", ...} contains only what differs. Objects are
+// merged by key, the lists of groups are appended so that the later group counts, profiles are
+// merged by name, everything else is replaced. Included by io/*.cpp only.
 
 #include <filesystem>
 #include <functional>
@@ -11,16 +11,16 @@
 
 namespace ayumi {
 
-/// A sidecar with all its bases under it.
+/// A sidecar merged with all its bases.
 struct MergedSidecar {
-  Json document;      ///< without "base"
-  JsonPlaces places;  ///< where each value stands in the files
-  std::string bytes;  ///< of all files, the last base first
+  Json document;      ///< the document without "base"
+  JsonPlaces places;  ///< the place of each value in the files
+  std::string bytes;  ///< bytes of all files, the last base first
 
   JsonNode root() const { return {document, "", "", ErrorCode::bad_file, &places}; }
 };
 
-/// The file of a robot by its name; throws Error when there is none.
+/// The file of a robot with this name. Throws Error if there is none.
 using FindRobot = std::function<std::filesystem::path(const std::string&)>;
 
 /// Reads `file` and its bases. A base is a path relative to the file that names it, or what `find`

@@ -12,17 +12,18 @@ namespace ayumi {
 
 enum class RobotFormat { sidecar, urdf, mjcf, sdf, body, ztk };
 
-/// The format of a robot's file, by its content; its name decides only where the content is none of
-/// them. Throws Error(bad_file) for a file that is something else, saying what it is where that can
-/// be recognised.
+/// The format of a robot's file, recognized by its content. The name decides only if the content
+/// does not show the format. Throws Error(bad_file) for a file that is something else, saying what
+/// it is where that can be recognised.
 RobotFormat robot_format(const std::string& bytes, const std::filesystem::path& path);
 
-/// Links and joints of a file that is no sidecar. `packages` are further folders with the packages
-/// of meshes. Throws Error(bad_file) and Error(bad_model) as the readers of the formats do.
+/// Links and joints of a file that is not a sidecar. `packages` are further folders with the
+/// packages of meshes. Throws Error(bad_file) and Error(bad_model) as the readers of the formats
+/// do.
 RobotDescription parse_robot(const std::string& bytes, const std::filesystem::path& path,
                              const std::vector<std::filesystem::path>& packages);
 
-/// Whether a file may be a robot by the ending of its name, in capitals or not.
+/// Whether the ending of a file's name, with or without capitals, may be that of a robot.
 bool has_robot_ending(const std::filesystem::path& path);
 
 }  // namespace ayumi

@@ -28,12 +28,13 @@ namespace fs = std::filesystem;
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-// Position limits from which on a joint has none. Source: the format's own default is 1e16.
+// Position limits from which on a joint counts as unlimited. Source: the format's own default is
+// 1e16.
 constexpr double kUnlimited = 1e15;
-// Models inside each other, by nesting or inclusion. Chosen: robots have two or three.
+// Largest depth of models in each other, by nesting or inclusion. Chosen: robots have two or three.
 constexpr int kDeepestModel = 20;
 constexpr double kUnstatedMass = 1;  // [kg], [kg m^2]. Source: the format's defaults for a link.
-// Bytes of an included file. Chosen: text of a model takes kilobytes.
+// Largest number of bytes of an included file. Chosen: text of a model takes kilobytes.
 constexpr size_t kLargestSdfPart = size_t{64} << 20;
 constexpr const char* kModelFrame = "__model__";
 
@@ -112,7 +113,7 @@ class SdfReader {
     const std::string text = required(root, "version");
     const std::vector<double> numbers =
         xml_numbers(path_.string(), root, "<sdf version>: ", text, 1);
-    // 1.10 and 1.11 come after 1.9.
+    // Version 1.10 and 1.11 come after 1.9.
     const size_t dot = text.find('.');
     const double minor = dot == std::string::npos ? 0 : std::atof(text.c_str() + dot + 1);
     if (std::floor(numbers[0]) != 1 || minor < 4)
@@ -120,7 +121,7 @@ class SdfReader {
     return minor;
   }
 
-  // Joints, and where these are equal links.
+  // Joints, and the places where they mean links.
   static std::pair<int, int> size_of(const TiXmlElement* model) {
     std::pair<int, int> size = {0, 0};
     for (auto* each = model->FirstChildElement(); each; each = each->NextSiblingElement()) {
@@ -251,7 +252,7 @@ class SdfReader {
     }
   }
 
-  // `place` has the pose: the model itself, or the <include> that names it.
+  // The element `place` has the pose: the model itself, or the <include> that names it.
   void add_nested(const TiXmlElement* model, const TiXmlElement* place, const std::string& name,
                   const std::string& scope, int depth) {
     const std::string inner = scope + name + "::";
@@ -260,7 +261,7 @@ class SdfReader {
     read_model(model, inner, depth + 1);
     const std::string placed = xml_attribute(place, "placement_frame", "");
     if (placed.empty()) return;
-    // The named frame of the model, and not its own, is where the pose says.
+    // The pose gives the place of the named frame of the model, and not of the model's own frame.
     const std::string key = inner + kModelFrame;
     frames_[key] = {Isometry3d::Identity(), "", model, false};
     const Isometry3d offset = resolved(inner + placed, place);
@@ -389,7 +390,7 @@ class SdfReader {
   void read_axis(const JointSource& source, const char* name, const Isometry3d& at,
                  JointDescription& joint) {
     const TiXmlElement* axis = source.element->FirstChildElement(name);
-    joint.axis = Vector3d::UnitZ();  // the format's default
+    joint.axis = Vector3d::UnitZ();  // default of the format
     if (!axis) complain(source.element, "joint " + source.name + " has no <" + name + ">");
     if (const TiXmlElement* xyz = axis->FirstChildElement("xyz")) {
       const std::vector<double> v = numbers(xyz, 3);
@@ -409,7 +410,9 @@ class SdfReader {
     joint.has_limits = joint.lower > -kUnlimited && joint.upper < kUnlimited;
     if (!joint.has_limits) joint.lower = joint.upper = 0;
     const auto stated = [](double value) {
-      return value > 0 && value < kUnlimited ? value : 0;  // below 0 and infinite: no limit
+      return value > 0 && value < kUnlimited
+                 ? value
+                 : 0;  // below 0 and infinite mean that there is no limit
     };
     joint.effort = stated(number(limit, "effort", -1));
     joint.velocity = stated(number(limit, "velocity", -1));
@@ -540,7 +543,7 @@ class SdfReader {
 
   const fs::path& path_;
   MeshPlaces places_;
-  double version_ = 0;  // the number behind "1."
+  double version_ = 0;  // the number after "1."
   std::string file_, files_;
   RobotDescription robot_;
   std::map<std::string, Frame> frames_;

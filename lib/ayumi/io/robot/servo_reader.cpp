@@ -11,7 +11,7 @@ namespace ayumi {
 
 namespace {
 
-/// Limits of servo constants, to catch a wrong unit. Chosen: stiffness, inertia, torque and
+/// Limits of servo constants, which detect a wrong unit. Chosen: stiffness, inertia, torque and
 /// friction a hundred times those of a humanoid of 50 kg; a zero offset of 0.5 rad, beyond which a
 /// horn is on another tooth of its shaft. Delay and play: model/device_limits.hpp.
 constexpr double kMostStiffness = 1e7;  // [N m/rad]
@@ -23,7 +23,7 @@ constexpr double kMostRate = 1e4;       // [rad/s]
 /// Share of a gear's torque that its friction takes. Definition: at 1 the gear cannot turn.
 constexpr double kMostLoadFriction = 1;
 
-/// Values that a constant of a servo can have, with its unit and what to do about others.
+/// The values that a constant of a servo may have, with its unit and the advice for other values.
 struct Bounds {
   double least, most;
   const char* unit;
@@ -71,7 +71,7 @@ double positive(const JsonNode& node, const Bounds& bounds) {
   return value;
 }
 
-/// A key of a group, the field it fills, and the values that a servo can have.
+/// A key of a group, the field that it fills, and the values that a servo may have.
 struct Field {
   const char* key;
   double ServoDescription::*value;
@@ -124,7 +124,7 @@ struct Motor {
   double resistance = 0;       ///< [ohm]
 };
 
-/// Which parts of the file each of BAM's models has.
+/// The parts of the file that each of BAM's models has.
 struct BamModel {
   const char* name;
   bool stribeck, load, directional, quadratic;
@@ -162,7 +162,7 @@ LoadFriction bam_load(const JsonNode& root, const BamModel& model) {
   return load;
 }
 
-// The zero offset of the file is that of the bench, so it stays there.
+// The zero offset in the file belongs to the test bench, so it is not used.
 Motor read_bam(const JsonNode& node, ServoDescription& servo, std::string& bytes) {
   const std::filesystem::path path =
       std::filesystem::path(node.file()).parent_path() / node.string();
@@ -216,7 +216,7 @@ void read_speed_loop(const JsonNode& group, ServoDescription& servo) {
   servo.kp = position * servo.kd;
 }
 
-/// Keys that state the same thing in two ways.
+/// Keys that state the same in two ways.
 void refuse_both(const JsonNode& group, const char* one, const char* other) {
   if (group.has(one) && group.has(other))
     group.complain("the group has both '" + std::string(one) + "' and '" + other +
@@ -244,7 +244,7 @@ void check_group(const JsonNode& group) {
                                               "' too; keep one of them");
 }
 
-// What no field alone can show.
+// Checks that concern more than one field.
 void check_servo(const JsonNode& group, const std::string& joint, const ServoDescription& servo) {
   if (servo.stribeck_torque > 0 && servo.stribeck_rate <= 0)
     group.complain("joint " + joint +

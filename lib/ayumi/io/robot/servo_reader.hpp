@@ -15,7 +15,7 @@ namespace ayumi {
 struct ServoGroups {
   std::map<std::string, ServoDescription> servos;
   std::map<std::string, bool> stated;
-  std::string files;  ///< bytes of the parameter files that were read, in their order
+  std::string files;  ///< bytes of the parameter files that were read, in this order
 };
 
 /// Reads one group into the servos of `joints`; a later group changes what it names. A parameter

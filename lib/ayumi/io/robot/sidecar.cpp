@@ -168,7 +168,7 @@ void read_encoders(const JsonNode& node, RobotDescription& robot) {
   }
 }
 
-// {"LHipYaw": "l_hip_yaw"}: names of joints in motion files.
+// {"LHipYaw": "l_hip_yaw"}: names of joints in files with motions.
 void read_aliases(const JsonNode& node, RobotDescription& robot) {
   const std::vector<std::string> names = moving_joints(robot);
   for (const auto& [alias, joint] : node.members()) {
@@ -357,7 +357,7 @@ void lock_joints(const JsonNode& node, RobotDescription& robot) {
   }
 }
 
-// Mass properties over those of the URDF; what an entry leaves out stays.
+// Mass properties that replace those of the URDF. Values that an entry leaves out stay.
 void read_links(const JsonNode& node, RobotDescription& robot) {
   std::vector<std::string> names;
   for (const LinkDescription& link : robot.links) names.push_back(link.name);
@@ -442,7 +442,7 @@ const std::vector<std::string> kKeys = {"$schema",
                                         "collision_ignore",
                                         "assumptions"};
 
-// Counts can be rounded to only where the encoder has some.
+// A servo can round to counts only if the encoder has some.
 void check_counts(const JsonNode& root, const RobotDescription& robot) {
   const auto check = [&](const char* key, const std::map<std::string, ServoDescription>& servos) {
     for (const auto& [joint, servo] : servos)

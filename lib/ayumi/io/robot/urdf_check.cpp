@@ -20,12 +20,13 @@ namespace {
 constexpr const char* kXacro =
     "this is a xacro file; expand it with `xacro FILE > robot.urdf` of ROS, and use robot.urdf";
 
-// Links of a robot. Chosen: humanoids with hands have about a hundred; urdfdom and the tree of the
-// robot descend a chain of links by recursion, and some steps take the square of their number.
+// Largest number of links of a robot. Chosen: humanoids with hands have about a hundred; urdfdom
+// and the tree of the robot descend a chain of links by recursion, and some steps take the square
+// of their number.
 constexpr size_t kMostLinks = 1000;
 // A numeric attribute and how many numbers it holds.
 struct NumericAttribute {
-  const char* element;  // "*": any
+  const char* element;  // "*" means any element
   const char* name;
   int count;
 };
@@ -245,8 +246,8 @@ void refuse_xacro(const TiXmlElement* element, const Checker& checker) {
     refuse_xacro(each, checker);
 }
 
-/// Materials that visuals define, as materials of the robot: a visual may name one that a later
-/// visual defines, which urdfdom would leave without colour. The first definition holds.
+/// Makes materials that visuals define materials of the robot. A visual may name a material that a
+/// later visual defines, and urdfdom would leave it without colour. The first definition counts.
 void share_materials(TiXmlElement* root) {
   std::set<std::string> known;
   const auto name_of = [](const TiXmlElement* material) {

@@ -10,8 +10,8 @@ namespace ayumi {
 /// What the check found and urdfdom does not report.
 struct UrdfText {
   std::string xml;                         ///< repaired for urdfdom: unstated limits filled in
-  std::map<std::string, int> link_place;   ///< of each <link> in the file's order, by name
-  std::map<std::string, int> joint_place;  ///< of each <joint> in the file's order, by name
+  std::map<std::string, int> link_place;   ///< place of each <link> in the file's order, by name
+  std::map<std::string, int> joint_place;  ///< place of each <joint> in the file's order, by name
   std::set<std::string> unlimited;         ///< joints that state no position limits
 };
 

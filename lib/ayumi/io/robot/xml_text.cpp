@@ -11,11 +11,11 @@ namespace ayumi {
 
 namespace {
 
-// Nested elements. Chosen: a URDF needs five, and the stack holds far more.
+// Largest depth of nested elements. Chosen: a URDF needs five, and the stack holds far more.
 constexpr int kDeepestXml = 200;
 
-// Attributes of an element. Chosen: URDF knows at most eight; TinyXML compares all of an element
-// with each other.
+// Largest number of attributes of an element. Chosen: URDF knows at most eight; TinyXML compares
+// all of an element with each other.
 constexpr int kMostAttributes = 100;
 
 // TinyXML descends by recursion: refuse text that nests deeper than any robot's.

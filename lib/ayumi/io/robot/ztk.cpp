@@ -26,7 +26,8 @@ namespace fs = std::filesystem;
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-// Corners and faces of all shapes. Chosen: the robots of mi-lib have some thousand.
+// Largest number of corners and faces of all shapes. Chosen: the robots of mi-lib have some
+// thousand.
 constexpr size_t kMostZtkFields = 500'000;
 
 // The shortest turn of z to a direction.
@@ -41,7 +42,7 @@ Eigen::Matrix3d turn_of_z(const Vector3d& direction) {
 
 struct ZtkField {
   std::string key;
-  std::string value;  // up to the next key
+  std::string value;  // the fields up to the next key
   size_t line = 0;
 };
 struct Section {
@@ -223,7 +224,7 @@ class ZtkReader {
     return value;
   }
 
-  // Between the centres of both ends.
+  // The cylinder between the centres of both ends.
   void read_round(const Section& section, bool cylinder, PlacedShape& placed) const {
     std::vector<Vector3d> ends;
     for (const ZtkField& field : section.fields)
@@ -299,7 +300,7 @@ class ZtkReader {
           for (Eigen::Vector3f& point : *points) point = turn.cast<float>() * point;
         for (auto& triangle : part.triangles) std::swap(triangle[1], triangle[2]);
       }
-    } else {  // primitives are their own mirror images
+    } else {  // primitives are equal to their mirror images
       copy.pose.translation() = turn * copy.pose.translation();
       copy.pose.linear() = turn * copy.pose.linear() * turn;
     }
@@ -424,7 +425,7 @@ class ZtkWriter {
       // Meshes to look at are not always loaded, those of contacts are.
       if (!shapes_.contains(link.name)) write_shapes(link, link.collisions);
     }
-    // The root, what the joints move in their order, and what is fixed.
+    // The order is: the root, the links that joints move, and the fixed links.
     std::vector<const LinkDescription*> links;
     for (const LinkDescription& link : robot_.links)
       if (!children.contains(link.name)) links.push_back(&link);
@@ -551,9 +552,10 @@ class ZtkWriter {
   }
 
   const RobotDescription& robot_;
-  std::set<std::string> moved_;                   // joints in the order of the motion
-  std::map<std::string, Eigen::Matrix3d> turns_;  // of links whose z is not the axis of their joint
-  std::map<std::string, std::string> names_;      // by the link's own name
+  std::set<std::string> moved_;  // joints in the order of the motion
+  std::map<std::string, Eigen::Matrix3d>
+      turns_;  // turns of links whose z is not the axis of their joint
+  std::map<std::string, std::string> names_;  // by the link's own name
   std::map<std::string, std::vector<std::string>> shapes_;
   std::string text_;
 };

@@ -68,8 +68,8 @@ class AppendValues {
   std::string& bytes_;
 };
 
-// What a quantity nearly follows from. A source without the part of a column is not of it; a source
-// may be named with its part.
+// The quantities from which one quantity nearly follows. A column has only those sources that have
+// its part, and a source may be named with its part.
 struct QuantitySources {
   const char* name;
   std::vector<const char*> sources;
@@ -110,7 +110,7 @@ std::vector<LogQuantity> log_quantities(const std::vector<std::string>& joints) 
 }
 
 std::vector<std::vector<size_t>> log_sources(const std::vector<std::string>& joints) {
-  std::map<std::string, size_t> columns;  // by name and part
+  std::map<std::string, size_t> columns;  // columns by name and part
   std::vector<std::pair<std::string, std::string>> places;
   for (const LogQuantity& quantity : log_quantities(joints))
     for (size_t i = 0; i < quantity.columns(); ++i) {

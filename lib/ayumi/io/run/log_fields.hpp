@@ -94,11 +94,12 @@ struct LogQuantity {
   std::string column(size_t index) const;
 };
 
-/// Those of a sample with these joints.
+/// The quantities of a sample with these joints.
 std::vector<LogQuantity> log_quantities(const std::vector<std::string>& joints);
 
-/// By column, those that it nearly follows from in the same row: angles from rates, torques from
-/// targets and angles, equal values from each other. The log is compressed with them.
+/// For each column, the columns from which it nearly follows in the same row: angles follow from
+/// rates, torques from targets and angles, equal values from each other. The log is compressed with
+/// them.
 std::vector<std::vector<size_t>> log_sources(const std::vector<std::string>& joints);
 
 /// The values of all columns, 8 bytes each, behind `bytes`. Throws Error(internal) when a joint

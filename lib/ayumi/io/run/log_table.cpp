@@ -68,7 +68,7 @@ std::vector<LogQuantity> quantities_of(const RobotModel& model, const Simulation
   return list;
 }
 
-// By central differences; at both ends of the log by the difference that is there.
+// The rate is the central difference, and at both ends of the log the difference on the one side.
 Vector3d rate_at(const SimulationLog& log, Vector3d SimulationSample::*quantity, size_t k) {
   const size_t last = log.samples.size() - 1;
   const size_t before = k == 0 ? 0 : k - 1, after = std::min(k + 1, last);
@@ -125,7 +125,7 @@ class DerivedValues {
   static double support_of(const std::array<bool, 2>& feet) {
     return (feet[0] ? 1 : 0) + (feet[1] ? 2 : 0);
   }
-  // As sim/schedule counts, with a tick as the step of the integrator.
+  // Samples are counted as sim/schedule counts them, with a tick as the step of the integrator.
   bool acts(const Disturbance& disturbance, long k) const {
     const long first = std::lround(disturbance.at / log_.dt);
     return k >= first && k < first + std::max(1l, std::lround(disturbance.duration / log_.dt));

@@ -31,7 +31,7 @@ class LogWriter {
 
  private:
   struct Block {
-    size_t begin, size, rows;  // bytes in the scratch file, rows
+    size_t begin, size, rows;  // begin and size in the scratch file [bytes]
   };
   ScratchFile scratch_;
   std::vector<Block> written_;
@@ -55,7 +55,7 @@ class LogHash {
   std::filesystem::path folder_;
   size_t joints_;
   std::optional<ScratchFile> scratch_;
-  std::string rows_;  // that are not in the scratch file
+  std::string rows_;  // rows that are not in the scratch file
   size_t count_ = 0;
   bool in_memory_ = false;
 };

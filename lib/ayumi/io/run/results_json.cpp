@@ -15,7 +15,7 @@ std::string dumped(const OrderedJson& json) {
   return json.dump(2, ' ', false, OrderedJson::error_handler_t::replace);
 }
 
-// A figure that does not exist (never fell, nothing to measure) is null.
+// A figure that does not exist (the robot never fell, nothing to measure) is null.
 OrderedJson figure(double value, bool exists = true) {
   return exists && std::isfinite(value) ? OrderedJson(value) : OrderedJson(nullptr);
 }

@@ -13,8 +13,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Hidden folders in the target: the run in the making, and the run that it replaces, which is there
-// only while a delivery is under way.
+// Hidden folders in the target. One holds the run that is being made; the other holds the run that
+// it replaces, and is there only while a delivery is under way.
 constexpr const char* kStaging = ".ayumi_part";
 constexpr const char* kReplaced = ".ayumi_replaced";
 constexpr const char* kRunJson = "run.json";
@@ -66,7 +66,7 @@ std::vector<fs::path> delivered_files(const fs::path& target) {
     if (name == kRunJson || is_there(staging / name)) continue;
     try {
       if (is_file_of_run(staging, target / name)) files.push_back(target / name);
-    } catch (const Error&) {  // it is not there, or no file
+    } catch (const Error&) {  // the file is not there, or no file
     }
   }
   return files;
@@ -83,7 +83,8 @@ void undo_delivery(const fs::path& target) {
     for (const fs::path& file : delivered_files(target)) fs::remove(file, ignored);
     for (const std::string& name : names_in(target / kReplaced))
       if (!is_there(target / name)) fs::rename(target / kReplaced / name, target / name, ignored);
-    fs::remove(target / kReplaced, ignored);  // stays where a file of it could not go back
+    fs::remove(target / kReplaced,
+               ignored);  // the folder stays where a file of it could not go back
   } else {
     fs::remove_all(target / kReplaced, ignored);
   }
@@ -123,7 +124,7 @@ RunOutput::RunOutput(const fs::path& folder, bool replace)
   undo_delivery(target_);
   require_run_target(target_, replace_, {});
   std::error_code error;
-  fs::remove_all(staging_, error);  // of a process that ended before its run was complete
+  fs::remove_all(staging_, error);  // left by a process that ended before its run was complete
   fs::create_directory(staging_, error);
   if (error)
     fail(ErrorCode::bad_file,
@@ -134,7 +135,7 @@ RunOutput::~RunOutput() {
   try {
     std::error_code ignored;
     fs::remove_all(staging_, ignored);
-  } catch (const std::exception&) {  // no memory; the next run removes it
+  } catch (const std::exception&) {  // there was no memory; the next run removes it
   }
 }
 

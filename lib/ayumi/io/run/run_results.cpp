@@ -9,7 +9,7 @@
 namespace ayumi {
 namespace {
 
-/// null is a figure that does not exist.
+/// A figure that does not exist is null.
 double read_figure(const JsonNode& node) {
   return node.value().is_null() ? std::numeric_limits<double>::quiet_NaN() : node.number();
 }
@@ -46,7 +46,7 @@ CheckSummary summary_of(const JsonNode& node) {
   return summary;
 }
 
-// A run of an older version has none.
+// A run of an older version does not have these.
 FigurePlaces places_of(const JsonNode& check) {
   FigurePlaces places;
   const auto node = check.find("summary_at");

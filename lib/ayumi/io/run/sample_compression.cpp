@@ -37,7 +37,7 @@ double prediction(int order, const Past& past) {
 
 void advance(Past& past, double value) { past = {value, past[0], past[1], past[2]}; }
 
-// Floats and these integers are in the same order, from the largest negative one to the largest
+// Floats have the same order as these integers, from the largest negative one to the largest
 // positive one.
 constexpr std::uint64_t kSign = std::uint64_t{1} << 63;
 std::uint64_t rank_of(double value) {
@@ -172,7 +172,7 @@ Relation fitted_relation(const std::vector<Column>& columns, size_t c,
   return relation;
 }
 
-// The predictor with the shortest residuals, and these.
+// The predictor with the shortest residuals, and these residuals.
 Predictor best_predictor(const std::vector<Column>& columns, size_t c,
                          const std::vector<size_t>& sources, std::vector<std::uint64_t>& numbers) {
   Predictor best;
@@ -193,7 +193,8 @@ Predictor best_predictor(const std::vector<Column>& columns, size_t c,
   return best;
 }
 
-// The columns so that each one comes after its sources; shorter where some wait for each other.
+// The columns in an order in which each one comes after its sources; shorter where some columns
+// wait for each other.
 std::vector<size_t> decoding_order(const std::vector<Predictor>& predictors) {
   std::vector<size_t> order;
   std::vector<char> known(predictors.size(), 0);
@@ -229,7 +230,7 @@ std::string head_of(const std::vector<Predictor>& predictors) {
   return head;
 }
 
-// Reads what head_of() wrote; `at` is then behind it. Empty when it is not that of `columns`.
+// Reads what head_of() wrote, and moves `at` behind it. Empty when it is not a head of `columns`.
 std::vector<Predictor> predictors_of(const std::string& plain, size_t columns, size_t& at) {
   std::vector<Predictor> predictors(columns);
   bool good = plain.size() >= columns;

@@ -17,21 +17,21 @@
 
 namespace ayumi {
 
-/// By column, those that it may be predicted from; empty: none. No two columns may follow from
-/// each other, directly or through others.
+/// For each column, the columns from which it may be predicted; empty: none. No two columns may
+/// follow from each other, directly or through others.
 using ColumnSources = std::vector<std::vector<size_t>>;
 
 /// `rows` holds rows of `columns` floats, one after the other. Move it here: the function frees it
 /// early, and takes twice its memory at most.
 std::string compress_samples(std::string rows, size_t columns, const ColumnSources& sources = {});
 
-/// The results of compress_samples() that stand one after the other in `bytes`, which are `count`.
-/// Throws Error(bad_file), beginning with `file`, when they are not: truncated, damaged, more or
-/// fewer. Each may still be of another size than expected.
+/// The `count` results of compress_samples() that stand one after the other in `bytes`. Throws
+/// Error(bad_file), beginning with `file`, when they are not: truncated, damaged, more or fewer.
+/// Each may still be of another size than expected.
 std::vector<std::string_view> sample_frames(std::string_view bytes, size_t count,
                                             const std::string& file);
 
-/// The rows again. Throws Error(bad_file), beginning with `file`, when `bytes` is not the whole
+/// Returns the rows. Throws Error(bad_file), beginning with `file`, when `bytes` is not the whole
 /// result of compress_samples() for that many columns and rows.
 std::string decompress_samples(std::string_view bytes, size_t columns, size_t rows,
                                const std::string& file);

@@ -12,7 +12,7 @@ class Sha256Stream {
   Sha256Stream();
   ~Sha256Stream();
   void add(std::string_view bytes);
-  /// Of all bytes so far, as sha256() writes it; nothing may be added after it.
+  /// The hash of all bytes so far, as sha256() writes it. Nothing may be added after it.
   std::string digits();
 
  private:

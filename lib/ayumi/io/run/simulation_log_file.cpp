@@ -181,7 +181,7 @@ void read_header(const JsonNode& header, SimulationLog& log) {
   log.joints = header.at("joints").strings();
 }
 
-// Whatever reads a log may trust its numbers.
+// These checks let whatever reads a log trust its numbers.
 void require_finite(std::string_view values, size_t first_row,
                     const std::vector<std::string>& columns,
                     const std::function<void(const std::string&)>& stop) {
@@ -230,7 +230,7 @@ void for_rows_of(const SimulationLog& log, const std::function<void(const std::s
   }
 }
 
-// Appends the rows, which have been read.
+// Appends the rows that have been read.
 void append_samples(std::string_view values, size_t joints, size_t rows,
                     std::vector<SimulationSample>& samples) {
   const char* at = values.data();

@@ -19,7 +19,7 @@ std::string_view first_row(std::string_view rest) {
   return {};
 }
 
-// What stands between the cells of the head row, which has no decimal commas.
+// The character between the cells of the head row, which has no decimal commas.
 char separator_of(std::string_view row, const std::string& file) {
   for (const char candidate : {';', ',', '\t'})
     if (row.find(candidate) != std::string_view::npos) return candidate;

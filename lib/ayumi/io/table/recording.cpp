@@ -22,8 +22,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Speed of a joint, in its motor's limit, above which a step between two rows is no motion. Chosen:
-// commands may step, and measured angles then move at most twice as fast as the motor's limit.
+// A step between two rows is no motion if the joint is faster than so many times its motor's limit.
+// Chosen: commands may step, and measured angles then move at most twice as fast as the motor's
+// limit.
 constexpr double kJumpSpeed = 5;
 
 // The same speed where the robot's files give no limit [rad/s]. Chosen: five times that of quick
@@ -56,7 +57,7 @@ std::optional<double> number_of(std::string_view cell) {
   return value;
 }
 
-// A file that was put together from two has lines of both kinds.
+// A file that was put together from two files has lines of both kinds.
 void require_one_line_end(const std::string& bytes, const std::string& file) {
   bool with = false, without = false;
   size_t line = 0;
@@ -76,7 +77,7 @@ void require_one_line_end(const std::string& bytes, const std::string& file) {
 struct BareRows {
   std::vector<std::vector<double>> rows;
   std::vector<size_t> lines;
-  double dt = 0;  // [s], 0: not in the file
+  double dt = 0;  // [s]; 0: the file does not state it
 };
 
 std::vector<double> numbers_of(const std::vector<std::string_view>& cells, size_t begin, size_t end,
@@ -97,7 +98,8 @@ bool is_sequence(const std::vector<std::string_view>& cells) {
   return std::any_of(cells.begin(), cells.end(), [](std::string_view c) { return c == "R"; });
 }
 
-// A sequence: interval, 2, targets, words and requests. Only the devices of the robot are read.
+// A row of a sequence has the interval, 2, targets, words and requests. Only the devices of the
+// robot are read.
 BareRows sequence_rows(std::string_view rest, const std::string& file, size_t devices) {
   struct Row {
     int at;
@@ -196,7 +198,7 @@ void require_less_than_a_turn(const AngleTable& table, int j, const RobotModel& 
 
 void require_motion(const AngleTable& table, const std::vector<size_t>& lines,
                     const RobotModel& model, const std::string& file) {
-  // Angles in degrees jump too, so the unit comes first; counts can wrap.
+  // Angles in degrees have jumps, too, so the unit is checked first. Counts can wrap.
   for (int j = 0; j < model.dof_count(); ++j)
     if (table.resolution[j] <= 0) require_less_than_a_turn(table, j, model, file);
   bool any = false;
@@ -263,7 +265,7 @@ std::string lower(std::string text) {
   return text;
 }
 
-// Times of a table with names: the column and its unit in seconds.
+// The times of a table with names, from their column and its unit in seconds.
 struct TimeColumn {
   int column = -1;
   double unit = 1;
@@ -308,7 +310,7 @@ double interval_of(const NumberTable& table, const RecordingOptions& options,
   return (t[rows - 1] - t[0]) / static_cast<double>(rows - 1);
 }
 
-// The joint of a column and the factor to radians; `has_unit` when the name says the unit.
+// The joint of a column and the factor to radians; `has_unit` says whether the name has the unit.
 struct JointColumn {
   int dof = -1;
   double factor = 1;

@@ -10,8 +10,8 @@
 namespace ayumi {
 
 struct RecordingOptions {
-  bool degrees = false;  ///< unit of joint columns whose names have none
-  double rate = 0;       ///< of rows without time [1/s]; 0: 1000
+  bool degrees = false;  ///< the unit of joint columns whose names have none
+  double rate = 0;       ///< rows per second if the file has no times [1/s]; 0: 1000
 };
 
 /// Joint angles: a HOAP sequence (interval, 2, counts, ...), rows of counts (one column for each

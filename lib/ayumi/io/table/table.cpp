@@ -60,7 +60,8 @@ std::vector<double> cells_of(const ReferenceTrajectory& reference, size_t k) {
   return cells;
 }
 
-// "1,2,3"; JSON needs "-0.0" where CSV's "-0" already reads back as negative zero.
+// Numbers in the form "1,2,3". JSON needs "-0.0" where CSV's "-0" already reads back as negative
+// zero.
 void append_cells(std::string& text, const std::vector<double>& cells, bool json) {
   for (size_t i = 0; i < cells.size(); ++i) {
     require(std::isfinite(cells[i]), "a table value is not finite");
@@ -76,7 +77,7 @@ std::string header_value(const std::string& value) {
   return plain ? value : Json(value).dump(-1, ' ', true, Json::error_handler_t::replace);
 }
 
-// Key and value of the lines above a table, in order.
+// The keys and values of the lines above a table, in order.
 using HeaderLines = std::vector<std::pair<std::string, std::string>>;
 
 std::string csv_header(const HeaderLines& lines) {
@@ -115,7 +116,8 @@ HeaderLines servo_lines(const TableServo& servo) {
           {"servo_lag", servo.lag}};
 }
 
-// What a person has to know before a robot receives the table; nothing for most tables.
+// What a person has to know before a robot receives the table; most tables have nothing of the
+// kind.
 HeaderLines caution_lines(const TableCaution& caution) {
   HeaderLines lines;
   if (!caution.disturbances.empty()) lines.emplace_back("disturbances", caution.disturbances);
@@ -174,7 +176,8 @@ void read_import(const std::map<std::string, std::string>& header,
   std::from_chars(interval.data(), interval.data() + interval.size(), dense.interval_ms);
   const std::string file = line("sequence");
   if (file.empty()) return;
-  // As write_pattern_and_table() names it: where the folder is, whatever links lead there.
+  // The name is the one that write_pattern_and_table() gives: relative to the real folder, whatever
+  // links lead there.
   const std::filesystem::path named = std::filesystem::absolute(table).parent_path() / file;
   dense.sequence = {std::filesystem::weakly_canonical(named), line("sequence_sha256"),
                     line("theta_sha256")};

@@ -49,7 +49,8 @@ void require_known(const std::string& column, const std::string& file) {
                  (hint.empty() ? "; the known columns are " + text::join(known, ", ") : hint));
 }
 
-// Header values of a JSON table as text, objects flattened: robot.name, provenance.pattern, ...
+// The header values of a JSON table as text, with objects flattened: robot.name,
+// provenance.pattern, ...
 void flatten(const Json& value, const std::string& prefix,
              std::map<std::string, std::string>& header) {
   for (const auto& [key, item] : value.items()) {

@@ -17,7 +17,7 @@ namespace ayumi {
 
 namespace {
 
-// Reads the text where it is, without a copy.
+// Reads the text in its place, without a copy.
 class TextBuffer : public std::streambuf {
  public:
   explicit TextBuffer(const std::string& text) {
@@ -26,7 +26,8 @@ class TextBuffer : public std::streambuf {
   }
 };
 
-// Begins the number of a list in a text with marks. Texts that have this character get no marks.
+// Character before the number of a list in a text with marks. Texts that contain this character get
+// no marks.
 constexpr char kMark = '\x7f';
 
 /// A text in which each flow list of finite numbers on one line is replaced by its number,
@@ -36,7 +37,7 @@ struct MarkedText {
   std::vector<std::vector<double>> lists;
 };
 
-// Whether the flow list in `inside` holds finite numbers alone, which `numbers` then has.
+// Whether the flow list in `inside` contains only finite numbers, which are then in `numbers`.
 bool reads_numbers(std::string_view inside, std::vector<double>& numbers) {
   numbers.clear();
   const auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
@@ -62,7 +63,7 @@ MarkedText with_marks(std::string_view text) {
     const size_t end = std::min(text.find_first_of("\r\n"), text.size() - 1) + 1;
     std::string_view line = text.substr(0, end);
     text.remove_prefix(end);
-    // What is in quotes or in a comment is no list.
+    // Characters in quotes or in a comment are not a list.
     const bool plain = line.find_first_of("\"'#") == std::string_view::npos;
     for (size_t open; plain && (open = line.find('[')) != std::string_view::npos;) {
       const size_t next = line.find_first_of("[]", open + 1);
@@ -87,7 +88,7 @@ class TreeBuilder : public YAML::EventHandler {
   explicit TreeBuilder(std::vector<std::vector<double>>& lists) : lists_(lists) {}
 
   YamlNode root;
-  bool mark_in_text = false;  ///< what was taken for a list is a part of a text
+  bool mark_in_text = false;  ///< the supposed list is a part of a text
   std::string refused;
   int refused_line = 0;
 
@@ -123,7 +124,7 @@ class TreeBuilder : public YAML::EventHandler {
   };
 
   void scalar(const YAML::Mark& mark, const std::string& value) {
-    // Without lists there are no marks: the character is the text's own.
+    // A text without lists has no marks, so the character belongs to the text itself.
     if (!lists_.empty() && value.find(kMark) != std::string::npos) {
       size_t place = lists_.size();
       std::from_chars(value.data() + 1, value.data() + value.size(), place);
@@ -185,7 +186,7 @@ class TreeBuilder : public YAML::EventHandler {
       parent.node.keys.push_back(std::move(parent.key));
       parent.has_key = false;
     }
-    for (const double number : parent.node.numbers) {  // the list does not hold numbers alone
+    for (const double number : parent.node.numbers) {  // the list does not contain only numbers
       YamlNode item;
       item.line = parent.node.line;
       item.text = text::exact(number);
@@ -226,7 +227,7 @@ YamlNode parse_yaml(const std::string& text, const std::string& file) {
       refuse(builder.refused_line, builder.refused);
     return std::pair{std::move(builder.root), builder.mark_in_text};
   };
-  // The character, or an escape that may stand for it.
+  // The character itself, or an escape for it.
   if (text.find(kMark) == std::string::npos && text.find('\\') == std::string::npos) {
     MarkedText marked = with_marks(text);
     auto [root, mark_in_text] = parse(marked.text, std::move(marked.lists));

@@ -12,10 +12,11 @@ namespace ayumi {
 struct YamlNode {
   enum class Kind { scalar, list, map };
   Kind kind = Kind::scalar;
-  int line = 0;                      ///< from 1
-  std::string text = {};             ///< of a scalar
-  std::vector<double> numbers = {};  ///< of a list of finite numbers alone
-  std::vector<YamlNode> items = {};  ///< of any other list; of a map in the order of `keys`
+  int line = 0;                      ///< line, counted from 1
+  std::string text = {};             ///< text of a scalar
+  std::vector<double> numbers = {};  ///< numbers of a list that contains only finite numbers
+  std::vector<YamlNode> items =
+      {};  ///< items of any other list, or of a map in the order of `keys`
   std::vector<std::string> keys = {};
 
   bool is_map() const { return kind == Kind::map; }

@@ -37,9 +37,9 @@ using Eigen::VectorXd;
 // Definition: classes of unknowns that are eliminated alone; the others have a place >= 0 in the
 // band.
 constexpr int kSlack = -1;  // has a single neighbour
-constexpr int kRow = -2;    // has slacks and places for neighbours
+constexpr int kRow = -2;    // has slacks and places as neighbours
 
-// Of the solve that runs on this thread. Definition.
+// The solve that runs on this thread. Definition.
 thread_local const kernels::Kernels* kernels_in_use = &kernels::best_kernels();
 
 struct Nonzeros {
@@ -55,7 +55,7 @@ struct Band {
   static constexpr int kPanel = 32;
   int width = 1, places = 0;  // farthest entry below the diagonal; columns in use
   int columns() const { return (places + kPanel - 1) / kPanel * kPanel; }
-  int length() const { return width + kPanel; }  // of a stored column
+  int length() const { return width + kPanel; }  // length of a stored column
   Index size() const { return static_cast<Index>(columns()) * length(); }
 };
 
@@ -120,7 +120,7 @@ Band place(int n, const Nonzeros& entries, std::vector<int>& place) {
   band.places = static_cast<int>(order.size());
   for (int p = 0; p < band.places; ++p) place[order[p]] = p;
 
-  // All places of a row meet when the row is eliminated; of an unknown in the band, only the
+  // All places of a row meet when the row is eliminated. For an unknown in the band, only the
   // entries of its own column count.
   std::vector<int> first(n, n), last(n, -1);
   for_sides(entries, [&](int i, int j) {
@@ -137,7 +137,7 @@ Band place(int n, const Nonzeros& entries, std::vector<int>& place) {
   return band;
 }
 
-// The target of every nonzero, as a sequence of integers.
+// The target of every nonzero, as a sequence of integers:
 struct Plan {
   std::vector<int> diagonal;  // unknown, nonzero
   std::vector<int> links;     // slack, its neighbour, nonzero
@@ -287,10 +287,10 @@ void for_product(const kernels::Kernels& kernels, Lines& A, Lines& B, int depth,
 
 // Places that follow one another.
 struct Run {
-  int first, end;  // of the group's places
+  int first, end;  // among the places of the group
 };
 
-// Fills the runs of places; false where a place is there twice.
+// Fills the runs of places. Returns false if a place appears twice.
 bool find_runs(const Group& g, std::vector<Run>& runs) {
   runs.clear();
   bool once = true;
@@ -328,7 +328,7 @@ void eliminate_rows(const Factors& f) {
       double* column = &f.at(0, g.place[j]);
       if (!once) {
         column[g.place[j]] += sum[0];
-        for (int i = j + 1; i < g.places; ++i)  // a nonzero in parts meets itself twice
+        for (int i = j + 1; i < g.places; ++i)  // a nonzero in several parts meets itself
           column[g.place[i]] += g.place[i] == g.place[j] ? 2 * sum[i - j] : sum[i - j];
         return;
       }
@@ -554,7 +554,7 @@ void route_set_defaults(int* icntl, double* cntl) {
   if (routed) routed(icntl, cntl);
 }
 
-/// Solves that hold the place, over all threads.
+/// Number of solves that hold the place, over all threads.
 struct Holders {
   std::mutex mutex;
   int count = 0;

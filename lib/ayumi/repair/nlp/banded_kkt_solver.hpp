@@ -30,7 +30,7 @@ class BandedKktScope {
   BandedKktScope(const BandedKktScope&) = delete;
   BandedKktScope& operator=(const BandedKktScope&) = delete;
 
-  /// False where it was not wanted, or where the host program has an MA27 of its own.
+  /// False if the solver was not wanted, or if the host program has an MA27 of its own.
   bool active() const { return active_; }
 
  private:
@@ -39,8 +39,8 @@ class BandedKktScope {
   bool active_;
 };
 
-/// While it lives, the thread that made it is not served: for callbacks, which may run other
-/// programs.
+/// While this object lives, this solver does not serve the thread that made it: for callbacks,
+/// which may run other programs.
 class BandedKktPause {
  public:
   BandedKktPause();

@@ -34,7 +34,7 @@ class Adapter : public Ipopt::TNLP {
 
   NlpSolution solution;
   bool out_of_work = false;
-  std::exception_ptr thrown;  // by a callback; Ipopt must not see exceptions
+  std::exception_ptr thrown;  // set by a callback; Ipopt must not see exceptions
 
   bool get_nlp_info(Index& n, Index& m, Index& jacobian, Index& hessian,
                     IndexStyleEnum& style) override {
@@ -144,7 +144,7 @@ class Adapter : public Ipopt::TNLP {
     return true;
   }
 
-  // From the gradient of the Lagrangian, which they make zero: z_lower - z_upper.
+  // Multipliers of the bounds that make the gradient of the Lagrangian zero: z_lower - z_upper.
   void bound_multipliers(Index n, Number* lower, Number* upper) const {
     VectorXd sum = VectorXd::Zero(n), J = VectorXd::Zero(nlp_.jacobian.size());
     nlp_.gradient(nlp_.start, sum);
@@ -208,7 +208,7 @@ void set_linear_solver(Ipopt::OptionsList& list, bool banded) {
   list.SetNumericValue("ma27_liw_init_factor", 1);
 }
 
-// The start has multipliers; `push` keeps them and the start from their bounds.
+// The start has multipliers. `push` keeps them, and the start, away from their bounds.
 void start_with_multipliers(Ipopt::OptionsList& list, double push) {
   list.SetStringValue("warm_start_init_point", "yes");
   for (const char* name :

@@ -54,19 +54,21 @@ double violation_at_start(const Nlp& nlp);
 
 struct NlpOptions {
   int max_iterations = repair_policy::rounds::kMostIterations;
-  /// Of the optimality conditions. A smaller one than the default holds for complementarity alone,
-  /// which says how far the limits push the solution away; the gradient has the default.
+  /// Tolerance of the optimality conditions. A value below the default applies to complementarity
+  /// only, which says how far the limits push the solution away. The tolerance of the gradient is
+  /// the default.
   double tolerance = repair_policy::solver::kTolerance;
   /// Initial barrier, and distance to which the start is pushed from its bounds; both are smaller
   /// for a warm start.
   double start_barrier = repair_policy::solver::kStartBarrier;
   double start_push = repair_policy::solver::kStartPush;
   double constraint_tolerance = repair_policy::solver::kConstraintTolerance;  ///< of g, unscaled
-  bool mumps = false;          ///< for the linear systems of any program
-  bool plain_kernels = false;  ///< linear systems without the widest vectors; the same bits
+  bool mumps = false;  ///< use MUMPS for the linear systems of every program
+  bool plain_kernels =
+      false;  ///< solves linear systems without the widest vectors; the bits are the same
   /// The solution ends with the status iteration_limit when its work reaches this.
   double most_work = kNoBound;
-  /// Where not null: updated with the point of least violation seen, for work that is stopped.
+  /// If not null, the point with the smallest violation is stored here, for work that is stopped.
   Eigen::VectorXd* least_violating = nullptr;
 };
 
@@ -79,8 +81,9 @@ struct NlpSolution {
   int iterations = 0;
   double objective = 0;
   double violation = 0;  ///< largest violation of a constraint or bound
-  /// Evaluations and iterations, each times the nonzeros of the program and what it takes for each
-  /// of them: the same for the same program, on every machine and for any number of threads.
+  /// Evaluations and iterations, each multiplied by the number of nonzeros and the work for each of
+  /// them. The number is the same for the same program, on every machine and for any number of
+  /// threads.
   double work = 0;
   double function_seconds = 0;  ///< processor time in the functions of the program
   double solver_seconds = 0;    ///< processor time in Ipopt itself

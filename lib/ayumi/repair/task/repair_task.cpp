@@ -18,8 +18,8 @@ std::vector<CarriedMass> payloads_of(const Task& task) {
   return masses;
 }
 
-// The result of a repair of the robot alone. What its motion does not bear makes it no repair, and
-// gives the reasons.
+// The result of a repair of the robot alone. If its motion does not bear the payloads, this is not
+// a repair, and the errors become the reasons.
 RepairResult with_payload_errors(const Task& task, const CheckOptions& options,
                                  RepairResult result) {
   Task moved = task;
@@ -32,7 +32,7 @@ RepairResult with_payload_errors(const Task& task, const CheckOptions& options,
   return result;
 }
 
-// The correction of a robot with its payloads, judged as that of the robot of the task.
+// The correction for a robot with its payloads, judged with the robot of the task.
 RepairResult of_robot_alone(const Task& task, const CheckOptions& options, RepairResult loaded,
                             const ConsistencyReport& before) {
   Pattern corrected = task.pattern;

@@ -1,5 +1,6 @@
 #pragma once
-// The repair of a task with all that its verdict counts, the payloads of its scenario included.
+// The repair of a task. The motion must pass everything that the verdict of the task counts, with
+// the payloads of its scenario.
 
 #include "ayumi/repair/repair_pattern.hpp"
 #include "ayumi/task/task.hpp"
@@ -7,8 +8,8 @@
 namespace ayumi {
 
 /// repair() of the motion of a task, which has to bear the payloads of its scenario, as the verdict
-/// of judge() demands. Where the nearest motion of the robot alone does not bear them, the nearest
-/// one of the robot that carries all of them all the time is tried. Throws as repair().
+/// of judge() demands. If the nearest motion of the robot alone does not bear them, the nearest
+/// motion of a robot that carries all of them all the time is tried. Throws as repair().
 RepairResult repair_task(const Task& task, const RepairOptions& options,
                          const Progress& progress = {});
 

@@ -13,14 +13,14 @@ namespace ayumi {
 struct ContactPoint {
   int body = 0;
   Eigen::Vector3d position;  ///< body frame [m]
-  double radius = 0;         ///< of the sphere around it [m]
+  double radius = 0;         ///< radius of the sphere around it [m]
   /// Radius of a circle around it whose lowest point touches: an end of a cylinder that rolls [m].
   /// A level circle has no lowest point; other points then carry the cylinder.
   double rim = 0;
-  Eigen::Vector3d axis = Eigen::Vector3d::Zero();  ///< of the circle, body frame
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();  ///< axis of the circle, body frame
   double stiffness = 0;                            ///< [N/m]
   double damping_time = 0;                         ///< damping / stiffness [s]
-  int side = -1, vertex = -1;                      ///< of a sole; -1: no sole
+  int side = -1, vertex = -1;                      ///< Side of the sole; -1: no sole
 };
 
 /// Consecutive points of one body and a sphere that contains them, body frame.

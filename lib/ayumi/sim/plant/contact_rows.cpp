@@ -222,7 +222,7 @@ void ContactRows::fill_problem(const RobotData& data, const TreeCholesky& factor
     A.diagonal().segment<3>(3 * static_cast<Eigen::Index>(i)).array() += compliance_[i];
 }
 
-// The part of A that two blocks make; `other` was filled before or is the same block.
+// The part of A that two blocks make. `other` was filled before, or is the same block.
 void ContactRows::couple(const Block& block, const Block& other, const RobotData& data,
                          const TreeCholesky& factor) {
   auto A = solver_.A();

@@ -13,21 +13,23 @@ namespace ayumi {
 
 /// A point that touches, or may touch before the step ends.
 struct ActiveContact {
-  long key = 0;     ///< the same in each step: the index of the ContactPoint, or a larger number
-                    ///< where edges, nodes of the height field or links touch
-  int body = 0;     ///< body that is pushed along the normal
-  int other = -1;   ///< body that is touched; -1: the ground
-  int side = -1;    ///< Side of the sole, -1 for a body that is no sole
-  int vertex = -1;  ///< corner of the sole; -1: between its corners, or no sole
+  long key = 0;  ///< name of the point, the same in each step: the index of the ContactPoint, or a
+                 ///< larger number
+  int body = 0;  ///< body that is pushed along the normal
+  int other = -1;                   ///< body that is touched; -1: the ground
+  int side = -1;                    ///< Side of the sole, -1 for a body that is no sole
+  int vertex = -1;                  ///< corner of the sole; -1: between its corners, or no sole
   double stiffness = 0;             ///< [N/m]
   double damping_time = 0;          ///< damping / stiffness [s]
-  double gap = 0;                   ///< along the normal, negative inside [m]
+  double gap = 0;                   ///< gap along the normal, negative inside [m]
   Eigen::Vector3d position;         ///< world [m]
   Eigen::Matrix3d to_contact;       ///< rows: normal, first and second tangent, world axes
   Eigen::Vector3d ground_velocity;  ///< world [m/s]
   double friction = 0;              ///< coefficient of friction
-  Eigen::Vector3d impulse = Eigen::Vector3d::Zero();     ///< of the last step, contact axes [N s]
-  Eigen::Vector2d deflection = Eigen::Vector2d::Zero();  ///< of the tangential spring [m]
+  Eigen::Vector3d impulse =
+      Eigen::Vector3d::Zero();  ///< impulse of the last step, contact axes [N s]
+  Eigen::Vector2d deflection =
+      Eigen::Vector2d::Zero();  ///< deflection of the tangential spring [m]
 };
 
 class ContactSet {
@@ -84,8 +86,9 @@ class ContactSet {
   std::vector<PointGroup> groups_;
   double widest_ = 0;  // largest distance of a point's far side from its body's origin [m]
   LinkContacts links_;
-  double link_friction_ = 0, link_stiffness_ = 0;  // where links touch each other or an edge
-  std::vector<char> is_foot_;                      // by body
+  double link_friction_ = 0,
+         link_stiffness_ = 0;  // where links touch each other, or where an edge touches
+  std::vector<char> is_foot_;  // by body
   std::vector<ActiveContact> active_, previous_;
   // Workspace of collect().
   Eigen::Matrix3d level_;  // contact axes on the plane

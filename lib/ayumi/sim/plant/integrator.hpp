@@ -8,7 +8,7 @@
 
 namespace ayumi {
 
-/// The motion that the pressing contacts leave the whole robot with its joints locked.
+/// The motion that the pressing contacts allow the whole robot with its joints locked.
 struct Pivot {
   int freedom = 0;  ///< 3: turns about a point; 1: about a line; 0: no motion
   Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< world [m]
@@ -52,9 +52,9 @@ class Integrator {
 
   RobotState state_;
   RobotData data_;
-  Momentum
-      momentum_;  // about the COG: the sum of what gravity and the outside have given the robot
-  Pivot pivot_;   // of the last step
+  Momentum momentum_;  // momentum about the COG: the sum of what gravity and outside forces have
+                       // given the robot
+  Pivot pivot_;        // pivot of the last step
 };
 
 }  // namespace ayumi

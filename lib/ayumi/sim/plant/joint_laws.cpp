@@ -118,8 +118,9 @@ void JointLaws::set(const VectorXd& targets, const std::vector<JointFault>& faul
   }
 }
 
-// What moves is expected to slide on. Within a solve a joint that has left its servo's law or the
-// flank of its gear does not return, and friction that was expected to slide sticks once at most.
+// A motor that moves is expected to continue sliding. Within a solve a joint that has left its
+// servo's law or the flank of its gear does not return, and friction that was expected to slide
+// sticks once at most.
 void JointLaws::start(const VectorXd& theta, const double* rate, double dt) {
   for (size_t j = 0; j < joints_.size(); ++j) {
     Joint& joint = joints_[j];

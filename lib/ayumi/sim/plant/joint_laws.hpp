@@ -66,33 +66,33 @@ class JointLaws {
  private:
   enum class Flank { low, none, high };
   struct Joint {
-    double kp = 0, kd = 0;            // with the faults of the step [N m/rad, N m s/rad]
+    double kp = 0, kd = 0;            // gains with the faults of the step [N m/rad, N m s/rad]
     double viscous = 0, coulomb = 0;  // [N m s/rad, N m]
     bool has_gear = false, needs_friction = false;
     bool plain_error = false;      // neither counts nor a dead band: servo_error() adds the offset
-    double offset = 0;             // of the encoder [rad]
+    double offset = 0;             // offset of the encoder [rad]
     double most = 0, fastest = 0;  // peak torque, and the speed up to which it holds [N m, rad/s]
     double stall = 0, back_emf = 0;     // voltage_torque(); a stall torque of 0: no bound
     double speed_command = 0;           // limit of the speed loop's command [rad/s]
     double gear = 0, gear_damping = 0;  // [N m/rad, N m s/rad]
-    double rotor = 0, half_play = 0;    // of a motor behind a gear [kg m^2, rad]
-    double stop = 0, stop_damping = 0;  // end stop, as kp and kd
+    double rotor = 0, half_play = 0;  // inertia and backlash of a motor behind a gear [kg m^2, rad]
+    double stop = 0, stop_damping = 0;  // end stop, in the form of kp and kd
     double lower = 0, upper = 0;        // range [rad, m]
     bool limited = false;
     double target = 0;         // with which kp (target - phi) is the error's torque [rad, m]
     bool inside_band = false;  // the position error exerts no torque
     double phi = 0, dphi = 0;  // motor behind a gear [rad, rad/s]
-    double external = 0;       // on the joint from outside in the last step [N m]
-    double last_torque = 0, last_rate = 0;  // of the motor in the last step
-    // Of the solve.
+    double external = 0;       // torque on the joint from outside in the last step [N m]
+    double last_torque = 0, last_rate = 0;  // torque and rate of the motor in the last step
+    // State of one solve.
     bool saturated = false, sliding = false, speed_bound = false, gear_changed = false;
-    bool stuck = false;  // the friction slid at first
+    bool stuck = false;  // the friction sticks, but slid at first
     Flank flank = Flank::none;
-    double direction = 0;              // of the torque while saturated
-    TorqueBound bound;                 // which the torque then follows
+    double direction = 0;              // direction of the torque while it is saturated
+    TorqueBound bound;                 // piece of the bound that the torque then follows
     int bound_changes = 0;             // in this solve
     double speed_torque = 0;           // while speed_bound: speed_torque - kd dphi [N m, N]
-    double slip_torque = 0;            // of the dry friction while it slides [N m, N]
+    double slip_torque = 0;            // torque of the dry friction while it slides [N m, N]
     double momentum = 0, inertia = 0;  // of a motor: inertia dphi+ = momentum + slope dtheta+
     double mesh = 0, slope = 0;        // impulse of a gear: mesh + slope (dphi+ - dtheta+)
     bool beyond_range(double theta) const { return limited && (theta < lower || theta > upper); }

@@ -11,11 +11,11 @@ namespace ayumi {
 
 /// A point in which two bodies touch, or may touch before the step ends.
 struct LinkTouch {
-  long key = 0;              ///< the same in the next step
+  long key = 0;              ///< name of the point, the same in the next step
   int a = 0, b = 0;          ///< bodies
   Eigen::Vector3d position;  ///< world [m]
   Eigen::Vector3d normal;    ///< from b to a, world, unit
-  double gap = 0;            ///< negative inside [m]
+  double gap = 0;            ///< gap, negative inside [m]
 };
 
 /// The distance of two bodies is computed only when they may have come near each other since the
@@ -57,9 +57,9 @@ class LinkContacts {
   /// For each pair of shapes of two bodies the direction of the smallest distance, a's frame; zero:
   /// not known.
   std::vector<Eigen::Vector3d> lines_;
-  std::vector<Eigen::Vector3d> center_;  ///< of a body's shapes, body frame
+  std::vector<Eigen::Vector3d> center_;  ///< centre of the shapes of a body, body frame
   std::vector<double> radius_;           ///< 0: no shape
-  std::vector<int> bodies_;              ///< bodies that are in a pair
+  std::vector<int> bodies_;              ///< bodies that belong to a pair
   double moved_ = 0;    ///< upper bound of the approach of two bodies since reset() [m]
   double least_ = 0;    ///< least_ - moved_ is a lower bound of all distances [m]
   double last_dt_ = 0;  ///< [s]

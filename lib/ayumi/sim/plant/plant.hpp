@@ -23,7 +23,9 @@ class Plant {
   Plant(const RobotModel& model, const ActuatorLimits& limits, const World& world);
 
   const RobotState& state() const { return integrator_.state(); }
-  const RobotData& data() const { return integrator_.data(); }  ///< of state()
+  const RobotData& data() const {
+    return integrator_.data();
+  }  ///< positions and velocities of state()
   /// Puts the robot in this state and forgets the contacts. Throws Error(usage) that names what is
   /// not a number.
   void set_state(const RobotState& state);
@@ -51,7 +53,7 @@ class Plant {
   ContactSet contacts_;
   StepSystem system_;
   Integrator integrator_;
-  double time_ = 0;  // since set_state() [s]
+  double time_ = 0;  // time since set_state() [s]
   StepReport report_;
   std::vector<char> limited_;    // by dof: at the torque limit in a part of the step
   std::vector<double> weights_;  // workspace of share_among_cells()

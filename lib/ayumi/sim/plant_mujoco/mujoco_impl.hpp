@@ -29,7 +29,7 @@ struct MujocoPlant::Impl {
         delay(actuators.servo),
         motor_torque(Eigen::VectorXd::Zero(robot.dof_count())),
         external(motor_torque) {
-    // The points are small balls that are fixed to their bodies: a cylinder rolls on its eight
+    // The points are small balls that are fixed to their bodies, so a cylinder rolls on its eight
     // corners.
     std::erase_if(points, [](const ContactPoint& point) { return point.rim > 0; });
     build(false);
@@ -98,13 +98,13 @@ struct MujocoPlant::Impl {
   MujocoData d{nullptr, mj_deleteData};
   bool bumps = false;               // the model has geoms for bumps
   std::vector<int> velocity, body;  // MuJoCo's index of each dof and body
-  std::vector<int> gear;            // of the joint of each dof's gear; -1: none
-  std::vector<int> point_of;        // by geom: point; -1: the ground; -2 - side: a plate
+  std::vector<int> gear;            // index of the joint of each dof's gear; -1: none
+  std::vector<int> point_of;  // by geom: number of the point; -1: the ground; -2 - side: a plate
   std::array<int, 2> plate = {-1, -1};
   int floor_id = 0;
   std::optional<RobotModel> loaded;
   std::vector<CarriedMass> carried;
-  FloorPose floor;            // of the last step
+  FloorPose floor;            // its pose in the last step
   std::vector<double> rates;  // by geom: rate at which a bump rises [m/s]
   TargetDelay delay;
   Eigen::VectorXd motor_torque, external;  // on each dof in MuJoCo's last step [N m]

@@ -31,8 +31,8 @@ constexpr double kDepth = 0.2;
 /// Width of the ground around a height field that dips below the plane [m]. Chosen: longer than any
 /// run of a humanoid.
 constexpr double kWide = 50;
-/// Points of a body that are all kept. Chosen: the corners of four boxes; bodies with more are
-/// meshes.
+/// Up to this number, all points of a body are kept. Chosen: the corners of four boxes; bodies with
+/// more are meshes.
 constexpr size_t kFewPoints = 32;
 /// Most contacts and rows of constraints at once. Chosen: every point of a robot of 20 bodies that
 /// lies on the ground.
@@ -101,7 +101,7 @@ std::string field_asset(const HeightField& field) {
          "'/></asset>";
 }
 
-/// The plane; or four boxes around a field that dips below the plane.
+/// Adds the plane, or four boxes around a field that dips below the plane.
 std::string plane_text(const World& world) {
   const bool dips = !world.fields.empty() && world.fields[0].heights.minCoeff() < world.height;
   if (!dips)
@@ -118,7 +118,7 @@ std::string bump_name(int i, int part) {
   return "bump" + std::to_string(i) + "-" + std::to_string(part);
 }
 
-/// Geoms of a bump: a cylinder and the rods of its eight edges, which set_bump() places.
+/// Adds the geoms of a bump: a cylinder and the rods of its eight edges, which set_bump() places.
 std::string bump_text(int i) {
   std::string out =
       "<geom name='" + bump_name(i, 8) + "' type='cylinder' size='1 1' pos='0 0 -9" + kUnderBall;
@@ -151,8 +151,8 @@ std::string point_text(const RobotModel& model, const ContactPoint& point, size_
          "' pos='" + triple(center) + "' contype='1' conaffinity='2'/>";
 }
 
-/// The plate over a rectangular sole. Another polygon gets a box around its middle half, so that
-/// the plate never reaches beyond the sole.
+/// Adds the plate over a rectangular sole. Another polygon gets a box around its middle half, so
+/// that the plate never reaches beyond the sole.
 std::string plate_text(const Sole& sole, int side) {
   Vector2d low = sole.polygon[0], high = low;
   for (const Vector2d& p : sole.polygon) low = low.cwiseMin(p), high = high.cwiseMax(p);
@@ -166,9 +166,9 @@ std::string plate_text(const Sole& sole, int side) {
          quadruple(Quaterniond(sole.frame.linear())) + "' contype='4' conaffinity='8'/>";
 }
 
-/// A gear with backlash or stiffness as a second joint behind the motor's. The flanks are the
-/// limits of its range, whose stiffness and damping MuJoCo takes per unit of inertia; the rotor's
-/// is by far the smaller of the two that meet there.
+/// Models a gear with backlash or stiffness as a second joint behind the motor's. The flanks are
+/// the limits of its range, whose stiffness and damping MuJoCo takes per unit of inertia; the
+/// rotor's is by far the smaller of the two that meet there.
 std::string gear_text(const Body& body, const ServoDescription& servo) {
   if (!mujoco_has_gear(servo)) return {};
   std::string out = "<joint name='gear" + std::to_string(body.dof) + "' type='" +

@@ -35,17 +35,17 @@ inline bool mujoco_has_gear(const ServoDescription& servo) {
   return servo.kp > 0 && servo.has_gear();
 }
 
-/// Index of a named object; -1 when there is none.
+/// The index of a named object; -1 when there is none.
 int mujoco_id(const mjModel* m, mjtObj type, const std::string& name);
 
-/// Of bodies with many points, as meshes have them, those farthest out in 26 directions: MuJoCo
-/// moves and compares each point in each step.
+/// Keeps, of bodies with many points (as meshes have), only the points farthest out in 26
+/// directions, because MuJoCo moves and compares each point in each step.
 std::vector<ContactPoint> outermost_points(const std::vector<ContactPoint>& points);
 
 void set_inertia(const Inertia& inertia, int body, mjModel* m);
-/// Geom of a part of bump `i`: 0..7 are the rods of its edges, 8 is its cylinder.
+/// The geom of a part of bump `i`: 0..7 are the rods of its edges, 8 is its cylinder.
 int bump_geom(const mjModel* m, int i, int part);
-/// Places bump `i`; removes it when `bump` is null.
+/// Places bump `i`, or removes it when `bump` is null.
 void set_bump(const RisingDisc* bump, int i, mjModel* m);
 
 }  // namespace ayumi

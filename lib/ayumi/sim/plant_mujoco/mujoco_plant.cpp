@@ -131,7 +131,7 @@ void MujocoPlant::Impl::limit_torques() {
   }
 }
 
-// Work at the mean rates of the step. MuJoCo does not separate contacts, end stops and dry
+// Adds the work at the mean rates of the step. MuJoCo does not separate contacts, end stops and dry
 // friction.
 void MujocoPlant::Impl::account(double dt) {
   const auto of = [&](const mjtNum* v) { return Eigen::Map<const VectorXd>(v, m->nv); };
@@ -146,7 +146,7 @@ void MujocoPlant::Impl::account(double dt) {
   report.work.outside += dt * before.dot(mean);
 }
 
-// Forces are summed over MuJoCo's steps, then divided by their number.
+// Forces are summed over MuJoCo's steps, and then divided by their number.
 void MujocoPlant::Impl::begin_report() {
   report.torque.setZero();
   report.work = EnergyBalance{};
@@ -184,7 +184,7 @@ void MujocoPlant::Impl::check_input(const VectorXd& targets, const StepInput& in
                                      "; use --plant ayumi");
 }
 
-// Ground, loads, joints and pushes of this step.
+// Sets the ground, loads, joints and pushes of this step.
 void MujocoPlant::Impl::take_input(const VectorXd& targets, const StepInput& input) {
   ground.set(input);
   load(input.payloads);
@@ -208,7 +208,8 @@ void MujocoPlant::Impl::take_joints(const VectorXd& targets, const StepInput& in
                input.joints.empty() ? JointFault{} : input.joints[static_cast<size_t>(j)]);
 }
 
-// The law of this step of MuJoCo: what depends on the state is taken at its start.
+// Evaluates the law in this step of MuJoCo; what depends on the state is taken at the start of the
+// step.
 void MujocoPlant::Impl::take_servo(int j, double target, const JointFault& fault) {
   const ServoDescription& servo = limits.servo[static_cast<size_t>(j)];
   const int column = velocity[static_cast<size_t>(j)];
