@@ -18,17 +18,14 @@ done
 mkdir -p "${1:-build/arm64}"
 place=$(cd "${1:-build/arm64}" && pwd)
 root=$place/root triplet=aarch64-linux-gnu
-keys=/usr/share/keyrings/debian-archive-keyring.gpg
 
-# A second apt, which knows ARM64 alone and believes that nothing is installed.
+# A second apt, which has the sources of this machine's but knows ARM64 alone and believes that nothing
+# is installed.
 if [[ ! -e $root/complete ]]; then
   rm -rf "$root"
-  mkdir -p "$place"/apt/{etc,state,lists/partial,cache/archives/partial}
+  mkdir -p "$place"/apt/{state,lists/partial,cache/archives/partial}
   touch "$place/apt/state/status"
-  for archive in debian:bookworm debian:bookworm-updates debian-security:bookworm-security; do
-    echo "deb [signed-by=$keys] http://deb.debian.org/${archive%:*} ${archive#*:} main"
-  done >"$place/apt/etc/sources.list"
-  get=(apt-get -q -y --no-install-recommends -o "Dir::Etc=$place/apt/etc" -o "Dir::State=$place/apt/state"
+  get=(apt-get -q -y --no-install-recommends -o "Dir::State=$place/apt/state"
     -o "Dir::State::status=$place/apt/state/status" -o "Dir::State::Lists=$place/apt/lists"
     -o "Dir::Cache=$place/apt/cache" -o APT::Architecture=arm64 -o APT::Architectures=arm64
     -o APT::Sandbox::User= -o Debug::NoLocking=1 -o Acquire::Languages=none)
