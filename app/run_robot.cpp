@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "ayumi/base/error.hpp"
-#include "ayumi/base/text.hpp"
+#include "ayumi/io/run/log_robot.hpp"
 
 namespace ayumi::app {
 
@@ -19,19 +19,22 @@ RobotModel robot_of_run(const Context& context, const std::string& chosen,
   return load_robot(chosen.empty() ? recorded : chosen, robot_search(context), options);
 }
 
-RobotModel robot_of_log(const Context& context, const std::string& chosen, const SimulationLog& log,
-                        const std::string& source, const LoadOptions& options) {
-  RobotModel model = robot_of_run(context, chosen, log.provenance.robot, options);
-  if (model.dof_names() != log.joints)
-    fail(ErrorCode::bad_file, source + ": the joints of the run (" + text::join(log.joints, ", ") +
-                                  ") are not those of the robot '" + model.name() + "' (" +
-                                  text::join(model.dof_names(), ", ") +
-                                  "); name the robot of the run with --robot");
+void require_log_of(const RobotModel& model, const std::string& chosen, const SimulationLog& log,
+                    const std::string& source) {
+  require_joints_of(model, log, source);
+  if (!chosen.empty()) return;
   const std::string& made_with = log.provenance.robot_sha256;
-  if (chosen.empty() && !made_with.empty() && made_with != model.description().sha256)
+  if (!made_with.empty() && made_with != model.description().sha256)
     fail(ErrorCode::bad_file, source + ": the robot '" + model.name() +
                                   "' has changed since the run was made; make the run again, or "
                                   "give --robot to use the present robot");
+  require_robot_of(model, log, source);
+}
+
+RobotModel robot_of_log(const Context& context, const std::string& chosen, const SimulationLog& log,
+                        const std::string& source, const LoadOptions& options) {
+  RobotModel model = robot_of_run(context, chosen, log.provenance.robot, options);
+  require_log_of(model, chosen, log, source);
   return model;
 }
 

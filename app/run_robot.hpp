@@ -12,9 +12,14 @@ namespace ayumi::app {
 RobotModel robot_of_run(const Context& context, const std::string& chosen,
                         const std::string& recorded, const LoadOptions& options = {});
 
-/// The same for a log, which must fit it: Error(bad_file), beginning with `source`, says that the
-/// joints are others, or that the recorded robot is not the one any more that made the log. A robot
-/// that `chosen` names may differ in everything but its joints.
+/// A log must fit its robot: Error(bad_file), beginning with `source`, says that the joints are
+/// others, that the recorded robot is not the one any more that made the log, or that the postures
+/// of the log are not that robot's. A robot that `chosen` names may differ in everything but its
+/// joints.
+void require_log_of(const RobotModel& model, const std::string& chosen, const SimulationLog& log,
+                    const std::string& source);
+
+/// The robot of a log, which fits it.
 RobotModel robot_of_log(const Context& context, const std::string& chosen, const SimulationLog& log,
                         const std::string& source, const LoadOptions& options = {});
 

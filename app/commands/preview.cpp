@@ -154,6 +154,8 @@ ClipSummary draw_run(const PreviewOptions& options, const std::string& input, co
                                  "give another pattern, a RUN, or 'command'");
     ghost = elsewhere ? log_of(context, options.ghost, options.log)
                       : log_of(context, input, options.ghost);
+    if (!elsewhere)  // another log of this run
+      require_log_of(model, options.robot, *ghost, input + ", " + options.ghost);
     own.clip.ghost.name =
         elsewhere ? fs::path(options.ghost).lexically_normal().stem().string() : options.ghost;
   }

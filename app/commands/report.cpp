@@ -42,10 +42,9 @@ void report_run(ReportCommand options, Context& context) {
       options.push.empty() ? (fs::path(options.input) / "push.json").string() : options.push;
   if (!options.push.empty() || fs::exists(push)) input.thresholds = read_push_thresholds(push);
   const RobotModel model =
-      run.logs.empty()
-          ? robot_of_run(context, options.robot, run.provenance.robot, {.meshes = true})
-          : robot_of_log(context, options.robot, run.logs.begin()->second, options.input,
-                         {.meshes = true});
+      robot_of_run(context, options.robot, run.provenance.robot, {.meshes = true});
+  for (const auto& [name, log] : run.logs)
+    require_log_of(model, options.robot, log, options.input + ", " + name);
   const Report made = make_report(model, input, options.report, context.progress());
   write_file(options.output, made.html);
   context.print(options.output + ": " + std::to_string(made.html.size() / 1000) + " kB\n");

@@ -4,6 +4,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "ayumi/io/run/run_folder.hpp"
 #include "tests/cli/program.hpp"
 
 namespace ayumi::test {
@@ -249,6 +250,57 @@ TEST_F(LogExport, LightRunThatIsUnfitIsRefused) {
   EXPECT_NE(output.out.find("not written, because"), std::string::npos) << output.out;
   EXPECT_NE(output.out.find("fell at"), std::string::npos) << output.out;
   EXPECT_FALSE(fs::exists(folder->path() / "fell.csv"));
+}
+
+// A run whose postures were changed after it was made, with all hashes made to fit.
+TEST_F(LogExport, ForgedPosturesAreRefused) {
+  for (const std::string name : {"closed_loop", "open_loop"}) {
+    RunFolder forged = read_run(folder->path() / "run");
+    for (SimulationSample& sample : forged.logs.at(name).samples)
+      std::swap(sample.state.theta[2], sample.state.theta[9]);
+    fs::remove_all(folder->path() / "forged");
+    fs::copy(folder->path() / "run", folder->path() / "forged");
+    write_run(folder->path() / "forged", forged);
+    std::vector<std::vector<std::string>> commands = {{"report", "forged", "-o", "f.html"}};
+    if (name == "closed_loop")
+      commands.insert(
+          commands.end(),
+          {{"preview", "forged", "-o", "f.png"},
+           {"preview", "forged", "-o", "f.glb"},
+           {"preview", "forged", "--log", "open_loop", "--ghost", "closed_loop", "-o", "f.png"},
+           {"plot", "forged", "-o", "f.svg"},
+           {"explain", "18", "forged@0.3"},
+           {"export", "forged", "--pushed", "--format", "csv", "-o", "f.csv"},
+           {"export", "forged", "--format", "csv-log", "-o", "f.csv"}});
+    for (const std::vector<std::string>& command : commands) {
+      const Output output = run_program(command, folder->path());
+      EXPECT_EQ(output.exit_code, 3) << command[0] << output.out;
+      EXPECT_NE(output.err.find("' differs from the COG in the log at the same posture"),
+                std::string::npos)
+          << command[0] << output.err;
+    }
+  }
+  for (const auto& entry : fs::directory_iterator(folder->path()))
+    EXPECT_NE(entry.path().stem(), "f") << entry.path();
+}
+
+// Their COG is not that of the robot as its files describe it.
+TEST_F(LogExport, RunsWithAPayloadAndCasesOfAStudyAreExported) {
+  std::string text = kPushed;
+  const size_t at = text.find("{ \"type\": \"impulse\"");
+  text.replace(at, text.find("]", text.find("}", at)) - at,
+               R"({ "type": "payload", "at": 0, "duration": 0.5, "on": "torso", "mass": 0.3 })");
+  write(folder->path() / "loaded.json", text);
+  for (const std::vector<std::string>& more :
+       {std::vector<std::string>{}, std::vector<std::string>{"--case", "1"}}) {
+    std::vector<std::string> command = {"simulate", "-q", "--force", "-o", "loaded"};
+    command.push_back(more.empty() ? "loaded.json" : "p.json");
+    command.insert(command.end(), more.begin(), more.end());
+    const Output made = run_program(command, folder->path());
+    ASSERT_EQ(made.exit_code, 0) << made.out << made.err;
+    const Output output = ayumi({"loaded", "--force", "--format", "csv-log", "-o", "loaded.csv"});
+    EXPECT_EQ(output.exit_code, 0) << output.err;
+  }
 }
 
 }  // namespace

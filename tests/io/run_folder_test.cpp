@@ -219,6 +219,16 @@ TEST(SimulationLogFile, OnlyFiniteNumbersAreRead) {
   }
 }
 
+// With a tick of 1e-300 s, the export to MCAP divided by 0.
+TEST(SimulationLogFile, TicksAreServoPeriods) {
+  for (const double dt : {0.0, 1e-300, 1e-8, 11.0, 1e300}) {
+    SimulationLog log = random_log(3);
+    log.dt = dt;
+    EXPECT_EQ(parse_message(log_bytes(log)),
+              "x.bin (header): /dt: the tick must be from 1e-7 to 10 s, as a servo period");
+  }
+}
+
 TEST(SimulationLogFile, HashIsOfTheMotionNotOfTheCommandLine) {
   SimulationLog log = random_log(4);
   const std::string hash = log_hash(log);

@@ -2,11 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 #include "ayumi/author/generate/generate.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/motion/controller_spec.hpp"
 #include "ayumi/motion/differentiate.hpp"
 #include "ayumi/plan/sample.hpp"
 #include "tests/support/biped.hpp"
+#include "tests/support/error_message.hpp"
 #include "tests/support/random_robot.hpp"
 
 namespace ayumi {
@@ -108,6 +113,47 @@ TEST(Correction, NamesWhatIsWrong) {
   EXPECT_NE(message(track).find("did you mean 'l_knee'"), std::string::npos);
   track.joints.pop_back();
   EXPECT_NE(message(track).find("8 columns"), std::string::npos);
+}
+
+// A track that does not fit the robot, or is no track, is refused.
+TEST(Correction, TracksThatDoNotFitAreRefused) {
+  const RobotModel model = test::biped();
+  const CommandSeries series = sample(model, stand_pattern(model, 0.5));
+  const auto refused = [&](const CorrectionTrack& track) {
+    return test::error_message([&] { apply_correction(model, series, track); },
+                               ErrorCode::bad_pattern);
+  };
+  const CorrectionTrack good = random_track(model, 0.001);
+  EXPECT_EQ(refused(good), "no error");
+  CorrectionTrack track = good;
+  track.joints.pop_back();
+  EXPECT_EQ(refused(track), "correction: there are 8 columns, but base and joints need 7");
+  const std::string finite =
+      "correction: the spacing must be above 0 and every coefficient a finite number";
+  for (const double spacing : {0.0, -0.1, std::nan("")}) {
+    track = good;
+    track.spacing = spacing;
+    EXPECT_EQ(refused(track), finite) << spacing;
+  }
+  track = good;
+  track.begin = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(refused(track), finite);
+  track = good;
+  track.coefficients(5, 7) = std::nan("");
+  EXPECT_EQ(refused(track), finite);
+  track = good;
+  track.joints[1] = "r_shouldr";
+  EXPECT_NE(refused(track).find("r_shouldr"), std::string::npos) << refused(track);
+}
+
+TEST(Controllers, AnUnknownNameIsRefusedWithTheNearest) {
+  for (const std::string& name : controller_names())
+    EXPECT_EQ(name_of(controller_type(name)), name);
+  const std::string message =
+      test::error_message([] { controller_type("dtadd"); }, ErrorCode::usage);
+  EXPECT_NE(message.find("unknown controller 'dtadd'; did you mean 'dtad'? (known: "),
+            std::string::npos)
+      << message;
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "ayumi/author/generate/generate.hpp"
 #include "ayumi/plan/sample.hpp"
 #include "tests/support/biped.hpp"
+#include "tests/support/error_message.hpp"
 
 namespace ayumi {
 namespace {
@@ -211,6 +212,34 @@ TEST(SampleErrors, SamplingStep) {
   }
   expect_words(message_of([](Pattern& p) { p.phases.back().until = 1e9; }),
                {"phases", "only 5 to 4e6 are possible"});
+}
+
+TEST(SampleErrors, NumbersThatAreNotFinite) {
+  const double nan = std::nan("");
+  expect_words(message_of([&](Pattern& p) {
+                 for (Phase& phase : p.phases)
+                   if (phase.swing) phase.swing->lift = nan;
+               }),
+               {"walk.json: phases/", "/swing", "not finite or the lift is below 0"});
+  expect_words(message_of([&](Pattern& p) {
+                 for (Phase& phase : p.phases)
+                   if (phase.swing) phase.swing->lift = -0.01;
+               }),
+               {"/swing", "the lift is below 0"});
+}
+
+TEST(SampleErrors, StepsThatDoNotFitTheMotion) {
+  const RobotModel model = test::biped();
+  const Pattern pattern = stand_pattern(model, 1);
+  const auto refused = [&](double dt, ErrorCode code) {
+    return test::error_message([&] { sample(model, pattern, {.dt = dt}); }, code);
+  };
+  EXPECT_EQ(refused(0, ErrorCode::usage), "sampling step 0 s must be above 0");
+  EXPECT_EQ(refused(std::nan(""), ErrorCode::usage), "sampling step nan s must be above 0");
+  EXPECT_EQ(refused(0.2, ErrorCode::bad_pattern), "no error");
+  for (const double dt : {0.3, 2e-7})
+    expect_words(refused(dt, ErrorCode::bad_pattern),
+                 {"phases", "1 s at a step of", "only 5 to 4e6 are possible"});
 }
 
 }  // namespace

@@ -3,10 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "ayumi/author/generate/generate.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
 #include "ayumi/plan/sample.hpp"
+#include "ayumi/study/tune.hpp"
+#include "tests/support/error_message.hpp"
 
 namespace ayumi {
 namespace {
@@ -126,6 +130,51 @@ TEST(Push, RefusesTimesOutsideThePattern) {
               std::string::npos)
         << error.what();
   }
+}
+
+// Studies that cannot be done are refused before any work.
+TEST(Push, RefusesStudiesThatCannotBeDone) {
+  const auto refused = [](const std::function<void(Stand&)>& change) {
+    Stand stand;
+    change(stand);
+    return test::error_message(
+        [&] { push_limits(stand.model, stand.series, stand.options, {}, {}); });
+  };
+  const std::string resolution =
+      "push: the resolution of the search must be above 0 and at most the largest push (--cap)";
+  EXPECT_EQ(refused([](Stand& s) { s.options.directions = 0; }),
+            "push: directions: 0; give 1 to 360");
+  EXPECT_EQ(refused([](Stand& s) { s.options.directions = 361; }),
+            "push: directions: 361; give 1 to 360");
+  EXPECT_EQ(refused([](Stand& s) { s.options.step = 0; }), resolution);
+  EXPECT_EQ(refused([](Stand& s) { s.options.cap = 0.3; }), resolution);
+  EXPECT_EQ(refused([](Stand& s) { s.options.replicas = -1; }),
+            "push: the number of replicas must not be negative");
+  EXPECT_EQ(refused([](Stand& s) { s.series.samples.clear(); }),
+            "the motion has no samples; sample a pattern first");
+  EXPECT_NE(refused([](Stand& s) { s.options.phases = {{"late", 0.99, false}}; }), "no error");
+}
+
+TEST(Tune, RefusesSearchesThatCannotBeDone) {
+  const auto refused = [](const std::function<void(TuneOptions&)>& change) {
+    const Stand stand;
+    TuneOptions options;
+    options.simulate.controller.type = ControllerKind::dtad;
+    options.phases = stand.options.phases;
+    change(options);
+    return test::error_message([&] { tune_gains(stand.model, stand.series, options); },
+                               ErrorCode::usage);
+  };
+  EXPECT_EQ(refused([](TuneOptions& o) { o.simulate.controller.type = ControllerKind::viip; }),
+            "tune: controller 'viip' has no gains to tune; use dtad");
+  EXPECT_EQ(refused([](TuneOptions& o) { o.directions = 0; }), "tune: directions: give 1 to 360");
+  EXPECT_EQ(refused([](TuneOptions& o) { o.level = 0; }), "tune: level must be positive");
+  EXPECT_EQ(refused([](TuneOptions& o) { o.factor = 1; }), "tune: factor must exceed 1");
+  EXPECT_EQ(refused([](TuneOptions& o) { o.rounds = 0; }), "tune: rounds must be at least 1");
+  EXPECT_EQ(refused([](TuneOptions& o) { o.gains.clear(); }), "tune: give at least one gain");
+  const std::string unknown = refused([](TuneOptions& o) { o.gains = {"ksx"}; });
+  EXPECT_NE(unknown.find("tune: gain 'ksx' cannot be tuned; did you mean 'ks'?"), std::string::npos)
+      << unknown;
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/dynamics/zmp.hpp"
+#include "ayumi/io/run/log_robot.hpp"
 #include "ayumi/math/polygon.hpp"
 #include "ayumi/model/gravity.hpp"
 
@@ -17,27 +18,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// [m] Chosen: rounding is below 1e-12; another mass or length of a robot moves its COG by more. A
-// half or twice of it changes nothing.
-constexpr double kSameRobot = 1e-6;
-
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-void require_robot(const RobotModel& model, const SimulationLog& log, const std::string& file) {
-  if (log.samples.empty()) fail(ErrorCode::bad_file, file + ": the log has no samples");
-  if (log.joints != model.dof_names())
-    fail(ErrorCode::bad_file, file + ": the log has the joints " + text::join(log.joints, ", ") +
-                                  ", but robot '" + model.name() + "' has " +
-                                  text::join(model.dof_names(), ", ") +
-                                  "; name the robot of the run with --robot");
-  RobotData data(model);
-  update_positions(model, log.samples.front().state, data);
-  if (!((data.cog - log.samples.front().cog).norm() < kSameRobot))
-    fail(ErrorCode::bad_file,
-         file + ": the COG of robot '" + model.name() +
-             "' differs from the COG in the log at the same posture; this is another robot, or the "
-             "robot has changed since the run; run the pattern again");
-}
 
 // A joint vector is listed for revolute joints; a prismatic joint has another unit.
 std::string unit_of(const std::string& revolute) {
@@ -147,7 +128,8 @@ std::vector<std::string> LogTable::column_names() const {
 }
 
 LogTable log_table(const RobotModel& model, const SimulationLog& log, const std::string& file) {
-  require_robot(model, log, file);
+  if (log.samples.empty()) fail(ErrorCode::bad_file, file + ": the log has no samples");
+  require_robot_of(model, log, file);
   LogTable table;
   table.quantities = quantities_of(model, log);
   for (const LogQuantity& quantity : table.quantities) table.columns += quantity.columns();

@@ -18,6 +18,7 @@
 #include "ayumi/io/run/provenance_fields.hpp"
 #include "ayumi/io/run/sample_compression.hpp"
 #include "ayumi/io/run/sha256_stream.hpp"
+#include "ayumi/model/validate.hpp"
 
 namespace ayumi {
 
@@ -159,7 +160,8 @@ std::string header_of(const SimulationLog& log, size_t rows, const std::string& 
 
 void read_header(const JsonNode& header, SimulationLog& log) {
   log.dt = header.at("dt").number();
-  if (!(log.dt > 0)) header.at("dt").complain("the tick must be above 0 s");
+  if (!(log.dt >= kShortestServoPeriod && log.dt <= kLongestServoPeriod))
+    header.at("dt").complain("the tick must be from 1e-7 to 10 s, as a servo period");
   const JsonNode controller = header.at("controller");
   if (!controller.string().empty())
     log.controller = controller_type(controller.one_of(controller_names()));

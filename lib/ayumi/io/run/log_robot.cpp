@@ -1,0 +1,93 @@
+#include "ayumi/io/run/log_robot.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <variant>
+#include <vector>
+
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
+
+namespace ayumi {
+
+namespace {
+
+using Eigen::Vector3d;
+
+// [m] Chosen: rounding is below 1e-12; another mass or length of a robot moves its COG by more. A
+// half or twice of it changes nothing.
+constexpr double kSameRobot = 1e-6;
+
+struct Carried {
+  double begin = 0, end = 0;  // [s]
+  int body = 0;
+  Vector3d point;  // frame of the body
+  double mass = 0;
+};
+
+// A case of a study draws a robot whose masses and lengths the log does not have.
+bool is_of_drawn_robot(const SimulationLog& log) {
+  return std::any_of(log.events.begin(), log.events.end(),
+                     [](const SimulationEvent& event) { return event.kind == "case"; });
+}
+
+std::vector<Carried> carried_of(const RobotModel& model, const SimulationLog& log,
+                                const std::string& source) {
+  std::vector<Carried> list;
+  for (const Disturbance& d : log.scenario) {
+    const auto* payload = std::get_if<Payload>(&d.what);
+    if (!payload) continue;
+    const int link = model.find_link(payload->on);
+    if (link < 0)
+      fail(ErrorCode::bad_file, source + ": the scenario of the log has a payload on link '" +
+                                    payload->on + "', which the robot '" + model.name() +
+                                    "' does not have; name the robot of the run with --robot");
+    const Link& on = model.links()[static_cast<size_t>(link)];
+    // What acts from the beginning acts while the robot comes to rest before it, too.
+    list.push_back({d.at > 0 ? d.at : -1, d.at + d.duration, on.body, on.pose * payload->point,
+                    payload->mass});
+  }
+  return list;
+}
+
+}  // namespace
+
+void require_joints_of(const RobotModel& model, const SimulationLog& log,
+                       const std::string& source) {
+  if (log.joints != model.dof_names())
+    fail(ErrorCode::bad_file, source + ": the joints of the run (" + text::join(log.joints, ", ") +
+                                  ") are not those of the robot '" + model.name() + "' (" +
+                                  text::join(model.dof_names(), ", ") +
+                                  "); name the robot of the run with --robot");
+}
+
+void require_robot_of(const RobotModel& model, const SimulationLog& log,
+                      const std::string& source) {
+  require_joints_of(model, log, source);
+  if (is_of_drawn_robot(log)) return;
+  const std::vector<Carried> carried = carried_of(model, log, source);
+  RobotData data(model);
+  for (size_t k = 0; k < log.samples.size(); ++k) {
+    const SimulationSample& sample = log.samples[k];
+    const double t = static_cast<double>(k) * log.dt;
+    update_positions(model, sample.state, data);
+    double mass = model.mass();
+    Vector3d moment = mass * data.cog;
+    bool known = true;
+    for (const Carried& load : carried) {
+      // The tick in which it comes or goes may have it or not.
+      known &= std::abs(t - load.begin) > 1.5 * log.dt && std::abs(t - load.end) > 1.5 * log.dt;
+      if (t < load.begin || t > load.end) continue;
+      mass += load.mass;
+      moment += load.mass * (data.pose(load.body) * load.point);
+    }
+    if (known && !((moment / mass - sample.cog).norm() < kSameRobot))
+      fail(ErrorCode::bad_file,
+           source + ": at t = " + text::fixed(t, 3) + " s the COG of robot '" + model.name() +
+               "' differs from the COG in the log at the same posture; this is another robot, or "
+               "the robot or the log has changed since the run; run the pattern again");
+  }
+}
+
+}  // namespace ayumi
