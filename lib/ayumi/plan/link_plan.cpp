@@ -359,13 +359,13 @@ std::vector<LinkPlan::Aim> LinkPlan::aims_at(const Group& group, double t, const
   std::vector<Vector3d> by_keys(group.targets.size()), ahead(group.targets.size());
   RobotState led_by_keys = state;
   for (const int dof : group.dofs) led_by_keys.theta[dof] = keyed[dof];
-  update_positions(*model_, led_by_keys, data);
+  move_limb(*model_, led_by_keys, group.path, data);
   for (size_t i = 0; i < group.targets.size(); ++i) {
     const Target& target = group.targets[i];
     by_keys[i] = data.pose(target.body) * target.point;
     ahead[i] = data.rotation[target.body] * target.axis;
   }
-  update_positions(*model_, state, data);
+  move_limb(*model_, state, group.path, data);
   const Eigen::Isometry3d frame = data.pose(trunk);
   for (size_t i = 0; i < group.targets.size(); ++i) {
     const Target& target = group.targets[i];
@@ -480,8 +480,6 @@ double LinkPlan::minimize(const Group& group, const std::vector<Aim>& aims, cons
       }
     }
   };
-  put(q);
-  update_positions(*model_, state, data);
   for (int step = 0; step < kMostSteps; ++step) {
     derive(q);
     std::vector<Eigen::Index> free;
@@ -525,12 +523,14 @@ double LinkPlan::minimize(const Group& group, const std::vector<Aim>& aims, cons
     if (longest < kLastStep) break;
   }
   put(q);
-  update_positions(*model_, state, data);
+  move_limb(*model_, state, group.path, data);
   return (q - start).cwiseAbs().maxCoeff();
 }
 
 double LinkPlan::solve(double t, const VectorXd& keyed, RobotState& state, RobotData& data) const {
   double change = 0;
+  if (!leads(t)) return change;
+  update_positions(*model_, state, data);
   for (const Group& group : groups_) {
     if (!group.at(t)) continue;
     const VectorXd before = state.theta;
@@ -548,6 +548,7 @@ double LinkPlan::solve(double t, const VectorXd& keyed, RobotState& state, Robot
       aims = with;
     }
     minimize(group, aims, keyed, state, data);
+    update_positions(*model_, state, data);
     if (!reached(aims, data)) complain(group, t, aims, keyed, state, data);
     change = std::max(change, (state.theta - before).cwiseAbs().maxCoeff());
   }

@@ -104,6 +104,8 @@ class LinkPlan {
   void add_target(const std::string& name, bool gaze, const std::vector<bool>& solved);
   void fill_tracks(Target& target) const;
   void put_in_group(Target target);
+  // Both move the bodies of the group's path alone: the rest of `data` belongs to the state
+  // already.
   std::vector<Aim> aims_at(const Group& group, double t, const Eigen::VectorXd& keyed,
                            const RobotState& state, RobotData& data, bool directions) const;
   double minimize(const Group& group, const std::vector<Aim>& aims, const Eigen::VectorXd& keyed,
