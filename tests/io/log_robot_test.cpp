@@ -76,6 +76,22 @@ TEST(LogRobot, OtherJointsAreRefused) {
   EXPECT_EQ(test::error_message([&] { require_joints_of(hoap1(), log, "run"); }).find("run: "), 0u);
 }
 
+TEST(LogRobot, AttitudesAreRotations) {
+  const SimulationLog log = standing();
+  for (BasePose SimulationSample::*base :
+       {&SimulationSample::reference_base, &SimulationSample::command_base})
+    for (const double length : {0.0, 1.01, 1e200}) {
+      SimulationLog other = log;
+      (other.samples[7].*base).attitude.coeffs() *= length;
+      EXPECT_EQ(refused(other).find("run: at t = 0.007 s the quaternion of an attitude"), 0u);
+    }
+  SimulationLog other = log;
+  other.samples[7].state.base.attitude.coeffs().setZero();
+  EXPECT_EQ(refused(other),
+            "run: at t = 0.007 s the quaternion of an attitude has the length 0 and not 1; the log "
+            "has changed; run the pattern again");
+}
+
 // Its masses are in no file.
 TEST(LogRobot, ADrawnRobotMayHaveOtherMasses) {
   SimulationLog log = standing();

@@ -19,6 +19,18 @@ using Eigen::Vector3d;
 // half or twice of it changes nothing.
 constexpr double kSameRobot = 1e-6;
 
+// Chosen: rounding is below 1e-12. A half or twice of it changes nothing.
+constexpr double kUnitQuaternion = 1e-6;
+
+void require_attitudes(const SimulationSample& sample, double t, const std::string& source) {
+  for (const BasePose* base : {&sample.state.base, &sample.reference_base, &sample.command_base})
+    if (!(std::abs(base->attitude.norm() - 1) < kUnitQuaternion))
+      fail(ErrorCode::bad_file, source + ": at t = " + text::fixed(t, 3) +
+                                    " s the quaternion of an attitude has the length " +
+                                    text::brief(base->attitude.norm()) +
+                                    " and not 1; the log has changed; run the pattern again");
+}
+
 struct Carried {
   double begin = 0, end = 0;  // [s]
   int body = 0;
@@ -65,6 +77,8 @@ void require_joints_of(const RobotModel& model, const SimulationLog& log,
 void require_robot_of(const RobotModel& model, const SimulationLog& log,
                       const std::string& source) {
   require_joints_of(model, log, source);
+  for (size_t k = 0; k < log.samples.size(); ++k)
+    require_attitudes(log.samples[k], static_cast<double>(k) * log.dt, source);
   if (is_of_drawn_robot(log)) return;
   const std::vector<Carried> carried = carried_of(model, log, source);
   RobotData data(model);
