@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "ayumi/base/counted.hpp"
+#include "ayumi/base/in_brackets.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/check/finding_groups.hpp"
 #include "ayumi/limits/amount_text.hpp"
@@ -147,6 +148,10 @@ std::string shares_of_limits(const ConsistencyReport& report, const RobotModel& 
                                                            figure_place(report, spec->kind)
                                                      : "without limits"));
   return text::join(shares, ", ");
+}
+
+std::string painted_verdict(const ConsistencyReport& report) {
+  return painted(report.consistent ? Paint::good : Paint::bad, verdict_of(report));
 }
 
 std::vector<AnswerPart> finding_parts(const ConsistencyReport& report, const RobotModel& model,

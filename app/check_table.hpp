@@ -15,6 +15,9 @@ enum class Shown {
   findings  ///< every finding
 };
 
+/// The verdict of the check, coloured.
+std::string painted_verdict(const ConsistencyReport& report);
+
 /// Chosen: an author corrects causes one after the other, and then checks again.
 inline constexpr int kMostGroups = 10;
 

@@ -7,7 +7,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/control/gain_design.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
-#include "ayumi/limits/amount_text.hpp"
+#include "ayumi/render/log_reading.hpp"
 #include "ayumi/sim/run_caution.hpp"
 #include "option_checks.hpp"
 #ifdef AYUMI_HAS_MUJOCO
@@ -169,9 +169,9 @@ namespace {
 // share of exactly 0 has no limit.
 std::string shares_text(const SimulationLog& log) {
   const SimulationResult& r = log.result;
-  const std::string speed = "joint speed " + share_text(log, r.max_speed_ratio, r.speed_peak);
-  const std::string torque = "torque " + share_text(log, r.max_torque_ratio, r.torque_peak);
-  const bool has_speed = r.max_speed_ratio > 0, has_torque = r.max_torque_ratio > 0;
+  const std::string speed = "joint speed " + share_text(log, r.speed);
+  const std::string torque = "torque " + share_text(log, r.torque);
+  const bool has_speed = r.speed.ratio > 0, has_torque = r.torque.ratio > 0;
   if (has_speed && has_torque) return speed + " and " + torque + " of the limits";
   if (has_speed) return speed + " of the limits, torque without limits";
   if (has_torque) return torque + " of the limits, joint speed without limits";
@@ -180,10 +180,8 @@ std::string shares_text(const SimulationLog& log) {
 
 }  // namespace
 
-std::string share_text(const SimulationLog& log, double share, const JointPeak& peak) {
-  const std::string text = text::fixed(100 * share, 0) + " %";
-  return peak.dof < 0 ? text
-                      : text + in_brackets(log.joints[static_cast<size_t>(peak.dof)], peak.at);
+std::string share_text(const SimulationLog& log, const JointShare& share) {
+  return text::fixed(100 * share.ratio, 0) + " %" + place_in_brackets(log, share);
 }
 
 std::string outcome_text(const SimulationLog& log) { return outcome_text(log, log.samples.size()); }

@@ -51,7 +51,7 @@ TableCaution table_caution(const Task& input, const SimulationLog& log,
 Eigen::MatrixXd torques_of(const SimulationLog& log);
 
 /// "72 % (l_knee at 2.90 s)"; without the place where it is unknown.
-std::string share_text(const SimulationLog& log, double share, const JointPeak& peak);
+std::string share_text(const SimulationLog& log, const JointShare& share);
 
 /// "with dtad, the robot stands, final COG error 0.20 mm, largest trunk tilt 1.3 deg, ..."
 std::string outcome_text(const SimulationLog& log);

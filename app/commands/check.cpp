@@ -212,12 +212,10 @@ Checked checked_one(const Context& context, const CheckCommand& options, const s
   const double wall =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   Checked checked;
-  std::vector<AnswerPart> parts = {{Worth::verdict,
-                                    {file + ": " +
-                                     (report.consistent ? painted(Paint::good, "consistent")
-                                                        : painted(Paint::bad, "INCONSISTENT")) +
-                                     ", " + text::fixed(input.series.duration(), 2) +
-                                     " s, actuators " + report.profile + "\n"}}};
+  std::vector<AnswerPart> parts = {
+      {Worth::verdict,
+       {file + ": " + painted_verdict(report) + ", " + text::fixed(input.series.duration(), 2) +
+        " s, actuators " + report.profile + "\n"}}};
   append(parts, mistake_parts(mistakes, report.consistent));
   append(parts, remark_parts(painted(Paint::caution, "scenario:") + " ", disturbed));
   if (!need.text.empty()) append(parts, remark_parts("", {need.text}));
@@ -370,7 +368,7 @@ void check(Context& context, const CheckCommand& options) {
     all.push_back(checked.json);
     consistent = consistent && all.back()["verdict"] == "consistent";
   }
-  const Json many = {{"verdict", consistent ? "consistent" : "inconsistent"}, {"checks", all}};
+  const Json many = {{"verdict", verdict_of(consistent)}, {"checks", all}};
   context.print_json((all.size() == 1 ? all[0] : many).dump(2));
   context.exit_code = consistent ? 0 : 1;
 }

@@ -35,14 +35,13 @@ double contacts_differ_at(const CommandSeries& a, const CommandSeries& b) {
 Json side_json(const std::string& file, const Task& input, const ConsistencyReport& report) {
   return {{"pattern", file},
           {"duration_s", input.series.duration()},
-          {"verdict", report.consistent ? "consistent" : "inconsistent"},
+          {"verdict", verdict_of(report)},
           {"min_zmp_margin_m", report.summary[FindingKind::support_margin]}};
 }
 
 std::string side_words(const std::string& file, const Task& input,
                        const ConsistencyReport& report) {
-  return file + ": " + (report.consistent ? "consistent" : "inconsistent") + ", " +
-         text::fixed(input.series.duration(), 2) + " s\n";
+  return file + ": " + verdict_of(report) + ", " + text::fixed(input.series.duration(), 2) + " s\n";
 }
 
 // Weighted as in a repair of A.

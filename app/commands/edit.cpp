@@ -87,10 +87,9 @@ void write_edited(Context& context, const EditCommand& options, const Pattern& e
   refuse_overwriting(context, options.out);
   if (edited.table) refuse_overwriting(context, table_beside(options.out));
   write_pattern_and_table(options.out, edited, {}, result.caution);
-  std::vector<AnswerPart> parts = {
-      {Worth::verdict,
-       {options.out + ": " + (result.report.consistent ? "consistent" : "INCONSISTENT") + ", " +
-        text::fixed(result.series.duration(), 2) + " s\n" + words}}};
+  std::vector<AnswerPart> parts = {{Worth::verdict,
+                                    {options.out + ": " + painted_verdict(result.report) + ", " +
+                                     text::fixed(result.series.duration(), 2) + " s\n" + words}}};
   append(parts, result.check);
   context.print(fitted(parts, room_of(rows_for(result.report)), where_more_is(result.report)));
   json["output"] = options.out;

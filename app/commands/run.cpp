@@ -125,10 +125,9 @@ constexpr size_t kRowsOfOtherStages = 14;
 
 // The verdict with the shares of the limits, and without.
 AnswerPart check_part(const ConsistencyReport& report, const RobotModel& model) {
-  const std::string verdict =
-      (report.consistent ? painted(Paint::good, "consistent")
-                         : painted(Paint::bad, "inconsistent")) +
-      ": ZMP margin " + text::fixed(1e3 * report.summary[FindingKind::support_margin], 1) + " mm";
+  const std::string verdict = painted_verdict(report) + ": ZMP margin " +
+                              text::fixed(1e3 * report.summary[FindingKind::support_margin], 1) +
+                              " mm";
   return {Worth::figure,
           {stage_line("check", verdict + ", limits of " + report.profile + ": " +
                                    shares_of_limits(report, model)),
@@ -157,11 +156,9 @@ std::vector<std::string> worse_than_open_loop(const SimulationLog& open_run,
   if (closed.max_tilt > open.max_tilt + kMoreTilt)
     worse.push_back("the largest trunk tilt is " + degrees(closed.max_tilt) + " with control and " +
                     degrees(open.max_tilt) + " in open loop");
-  if (closed.max_torque_ratio > open.max_torque_ratio + kMoreTorque)
-    worse.push_back("the largest torque is " +
-                    share_text(closed_run, closed.max_torque_ratio, closed.torque_peak) +
-                    " of the limit with control and " +
-                    share_text(open_run, open.max_torque_ratio, open.torque_peak) +
+  if (closed.torque.ratio > open.torque.ratio + kMoreTorque)
+    worse.push_back("the largest torque is " + share_text(closed_run, closed.torque) +
+                    " of the limit with control and " + share_text(open_run, open.torque) +
                     " in open loop");
   return worse;
 }

@@ -79,11 +79,11 @@ std::string push_text(const Context& context) {
 
 const std::array<Job, 5> kJobs = {{
     {"walk", "a walk with a push and DTAD", walk_text,
-     "2d9764e3c3ea7a57a06f20ddc4e2b9b5d87d7c86cabd9a4a59648df333cbfc65"},
+     "765f4dd12c70ca7772c3d3e405eb1c98eec50d5aa8ac71df575b03c731f07041"},
     {"jump", "a jump", jump_text,
-     "7ff40b6f3804e9a477df705bce9564569434951d3ba3b8d2d8124e60a6cbabaf"},
+     "418a63c346d3a1c34f23c2cfad2461c15fd69eaecf6c88a64168d34972fd7abd"},
     {"viip", "a walk by VIIP", viip_text,
-     "a87c0184cfa0b6153244b2fa9be994925fa0918e778f6a53998919d5d29b58de"},
+     "ee8c70c2b6d78c2811cfab7d1e3d233264e3e50c90569ecb8169da942549c63f"},
     {"repair", "a repaired walk", repair_text,
      "16a496a391adf500cd5316e5b640ab9626fce3f2cea47a77d8aa2ad8a57cf4d8"},
     {"push", "limits of pushes", push_text,

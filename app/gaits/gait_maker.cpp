@@ -211,7 +211,7 @@ void GaitMaker::simulate(const Task& task, Json& json, const Progress& progress)
   const SimulationResult r = run.result();
   json["simulation"] = {{"outcome", name_of(r.outcome)},
                         {"max_cog_error_m", run.largest_errors().cog},
-                        {"max_torque_ratio", r.max_torque_ratio}};
+                        {"max_torque_ratio", r.torque.ratio}};
   if (r.outcome != Outcome::stands)
     throw Missing{"simulate",
                   std::string("the simulated robot ") +

@@ -414,7 +414,7 @@ std::vector<Cell> run_figures(const Task& task, const SimulateOptions& options,
   const CaseResult kept = {.outcome = r.outcome,
                            .fell_at = r.fell_at,
                            .cog_error = largest.cog,
-                           .torque = r.max_torque_ratio,
+                           .torque = r.torque.ratio,
                            .foot_tilt = largest.foot_tilt};
   std::vector<Cell> cells = {std::string(name_of(r.outcome)),
                              r.fell_at >= 0 ? cell(r.fell_at) : Cell(),
@@ -427,7 +427,7 @@ std::vector<Cell> run_figures(const Task& task, const SimulateOptions& options,
     for (const double value : more) cells.push_back(cell(value));
   };
   if (measures.margins)
-    add({r.max_torque_ratio, r.max_speed_ratio, r.zmp_tracking_rms, r.max_slip, r.flight});
+    add({r.torque.ratio, r.speed.ratio, r.zmp_tracking_rms, r.max_slip, r.flight});
   if (measures.energy) {
     const SimulationSample& last = run.last_sample();
     const double distance = first > 0 ? (last.cog.head<2>() - start).norm() : 0;

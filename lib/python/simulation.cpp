@@ -266,10 +266,12 @@ void bind_log(py::module_& m) {
       .def_property_readonly(
           "zmp_tracking_rms", result(&SimulationResult::zmp_tracking_rms),
           "Root mean square of the distance from the measured ZMP to the reference ZMP [m].")
-      .def_property_readonly("max_torque_ratio", result(&SimulationResult::max_torque_ratio),
-                             "Largest torque as a share of its limit.")
-      .def_property_readonly("max_speed_ratio", result(&SimulationResult::max_speed_ratio),
-                             "Largest joint speed as a share of its limit.")
+      .def_property_readonly(
+          "max_torque_ratio", [](const Log& l) { return l.data().result.torque.ratio; },
+          "Largest torque as a share of its limit.")
+      .def_property_readonly(
+          "max_speed_ratio", [](const Log& l) { return l.data().result.speed.ratio; },
+          "Largest joint speed as a share of its limit.")
       .def_property_readonly(
           "events", [](const Log& l) { return l.data().events; },
           "Events of the run, in the order of time.")

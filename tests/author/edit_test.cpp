@@ -224,5 +224,36 @@ TEST(Bake, SamplesToTheSameMotion) {
   EXPECT_EQ(dense.keyframes.size(), 1u);  // the weights
 }
 
+// A foot that one motion leads by keys and the other one by swings has both motions in a table.
+TEST(Join, ATableOfKeysAndSwingsOfAFoot) {
+  KickParameters low;
+  low.height = 0.018;
+  const Pattern walk = walk_pattern(hoap1(), {.steps = 3});
+  const Pattern kick = kick_pattern(hoap1(), low);
+  const std::vector<std::pair<Pattern, Pattern>> orders = {{walk, kick}, {kick, walk}};
+  for (const auto& [first, second] : orders) {
+    const CommandSeries a = sample(hoap1(), first), b = sample(hoap1(), second);
+    for (const double over : {0.0, 0.8}) {
+      const Pattern both = joined(hoap1(), {first, a}, {second, b}, over, "t.csv");
+      const CommandSeries all = sample(hoap1(), both);
+      ASSERT_GE(all.samples.size() + 1, a.samples.size() + b.samples.size());
+      for (size_t k = 0; k + 1 < a.samples.size(); ++k)
+        for (const size_t foot : {0, 1})
+          ASSERT_LT(
+              (all.samples[k].feet[foot].translation() - a.samples[k].feet[foot].translation())
+                  .norm(),
+              1e-4)
+              << k;
+      // The second motion is elsewhere; how its feet stand to each other is not.
+      const auto between = [](const CommandSample& s) {
+        return (s.feet[0].inverse() * s.feet[1]).translation().eval();
+      };
+      const size_t begin = all.samples.size() - b.samples.size();
+      for (size_t k = 0; k < b.samples.size(); ++k)
+        ASSERT_LT((between(all.samples[begin + k]) - between(b.samples[k])).norm(), 2e-4) << k;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace ayumi::test

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <map>
 #include <numbers>
 #include <regex>
 #include <set>
@@ -540,6 +541,104 @@ TEST(PlantedMistakes, AStoopFarTooDeepIsNamed) {
   const std::vector<Mistake> found = likely_mistakes(small(), hop, options_of(hop));
   ASSERT_FALSE(found.empty());
   EXPECT_EQ(found.front().words.rfind("the COG height is 0.19 m", 0), 0u) << found.front().text();
+}
+
+// A hop whose flight is longer than its author thought: the COG sinks below the key of the stoop,
+// and is not at its lowest where the author wrote it.
+TEST(PlantedMistakes, ACogThatSinksBelowItsStoopIsNamed) {
+  Pattern hop;
+  hop.robot = "hoap1";
+  hop.profile = "hoap1-strong";
+  for (const auto& [until, support] :
+       {std::pair(1.5, Support::both), {1.65, Support::none}, {3.5, Support::both}}) {
+    Phase phase;
+    phase.until = until;
+    phase.support = support;
+    hop.phases.push_back(phase);
+  }
+  for (const auto& [t, height] :
+       {std::pair(0.5, 0.245), {1.2, 0.2}, {1.5, 0.22}, {1.65, 0.22}, {1.75, 0.2}, {2.8, 0.245}})
+    key_at(hop, t).cog_height = height;
+  const std::vector<Mistake> found = likely_mistakes(small(), hop, options_of(hop));
+  ASSERT_FALSE(found.empty());
+  EXPECT_TRUE(std::regex_search(
+      found.front().text(),
+      std::regex(
+          "^/keyframes/1: t is 1.2 s, so the segment from here to the lift-off lasts 0.3 s, "
+          "and the COG, .* 0.74 m/s .*, sinks .* mm below the height of this key; with t = ")))
+      << found.front().text();
+}
+
+// A kick with a level foot: the pose of the foot is named for every key in which its leg leans, and
+// with all that is named the pattern is consistent.
+TEST(PlantedMistakes, EveryKeyOfALevelFootIsNamed) {
+  Pattern kick;
+  kick.robot = "hoap1";
+  kick.degrees = true;
+  kick.cog_height = 0.235;
+  kick.phases = {{.until = 1.5, .swing = {}},
+                 {.until = 3.2, .support = Support::right, .swing = {}},
+                 {.until = 5, .swing = {}}};
+  key_at(kick, 0.5).zmp = ZmpKey{ZmpKey::Place::center};
+  key_at(kick, 1.3).zmp = ZmpKey{ZmpKey::Place::right};
+  key_at(kick, 1.5).feet[0] = Foothold{{0, 0.039, 0}};
+  key_at(kick, 2.0).feet[0] = Foothold{{-0.04, 0.039, 0.03}};
+  key_at(kick, 2.3).feet[0] = Foothold{{0.07, 0.039, 0.05}};
+  key_at(kick, 3.2).feet[0] = Foothold{{0, 0.039, 0}};
+  key_at(kick, 3.4).zmp = ZmpKey{ZmpKey::Place::right};
+  key_at(kick, 4.2).zmp = ZmpKey{ZmpKey::Place::center};
+  std::string found;
+  for (const Mistake& mistake : likely_mistakes(small(), kick, options_of(kick)))
+    found += mistake.text() + "\n";
+  std::smatch lean;
+  ASSERT_TRUE(std::regex_search(
+      found, lean,
+      std::regex(
+          "\"position\": \\[0.07, 0.039, ([0-9.]+)\\], \"rpy\": \\[0, (-[0-9]+), 0\\]\\}; in "
+          "/keyframes/3, \"left\": \\{\"position\": \\[-0.04, 0.039, 0.03\\], \"rpy\": \\[0, "
+          "([0-9]+), 0\\]\\}\\), the pattern is consistent")))
+      << found;
+  kick.keyframes[4].feet[0]->position.z() = std::stod(lean[1]);
+  kick.keyframes[4].feet[0]->rpy.y() = std::stod(lean[2]) * kDegree;
+  kick.keyframes[3].feet[0]->rpy.y() = std::stod(lean[3]) * kDegree;
+  EXPECT_TRUE(check_consistency(small(), sample(small(), kick), options_of(kick)).consistent)
+      << found;
+}
+
+// The first key of an arm has the angle of home, as it should: the next key is at fault.
+TEST(PlantedMistakes, AKeyThatHoldsTheHomePostureIsNotNamed) {
+  Pattern raise;
+  raise.robot = "hoap1";
+  Phase phase;
+  phase.until = 7;
+  raise.phases.push_back(phase);
+  for (const auto& [t, angle] : {std::pair(0.5, 90), {1.5, -60}, {4.0, -60}, {5.5, 90}})
+    key_at(raise, t).joints["r_shoulder_pitch"] = angle * kDegree;
+  const std::vector<Mistake> found = likely_mistakes(small(), raise, options_of(raise));
+  ASSERT_FALSE(found.empty());
+  for (const Mistake& mistake : found) EXPECT_NE(mistake.place, "/keyframes/0") << mistake.text();
+}
+
+// The rounds of a block are one line in the file, whatever the counter makes of it.
+TEST(PlantedMistakes, ALineOfABlockIsNamedOnce) {
+  for (const double stride : {0.12, 0.4}) {
+    Pattern pattern = quarter_turn();
+    int round = 0;
+    for (size_t i = 0; i < pattern.phases.size(); ++i) {
+      Phase& one = pattern.phases[i];
+      if (!one.swing) continue;
+      const bool left = one.swing->foot == Side::left;
+      one.swing->step.reset();
+      one.swing->to = {{stride * (++round - 0.5), left ? 0.039 : -0.039, 0}, {}};
+      one.pointer = left ? "/phases/1/phases/0" : "/phases/1/phases/2";
+    }
+    std::map<std::string, int> places;
+    for (const Mistake& mistake : likely_mistakes(small(), pattern, options_of(pattern)))
+      EXPECT_EQ(++places[mistake.place], 1) << mistake.text();
+    places.clear();
+    for (const Mistake& mistake : impossible_values(small(), pattern))
+      EXPECT_EQ(++places[mistake.place], 1) << mistake.text();
+  }
 }
 
 // Footholds in good order are not called exchanged, whatever is wrong.

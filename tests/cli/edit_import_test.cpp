@@ -333,7 +333,7 @@ TEST_F(Edit, WatchChecksAgainUntilStopped) {
   const std::string key = R"("friction": 0.8)";
   slippery.replace(slippery.find(key), key.size(), R"("friction": 0.05)");
   write(folder / "w.json", slippery);
-  EXPECT_TRUE(appears(out, "w.json: INCONSISTENT"));
+  EXPECT_TRUE(appears(out, "w.json: inconsistent"));
   EXPECT_TRUE(appears(out, "0 errors, now "));
   ::kill(child, SIGINT);
   int status = 0;

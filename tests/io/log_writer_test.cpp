@@ -162,6 +162,20 @@ TEST(LogInBlocks, IsReadBackWhole) {
   EXPECT_FALSE(header(short_bytes).contains("block_rows"));
 }
 
+// A file without the places of the largest shares is one from before they were stored.
+TEST(LogInBlocks, KeepsTheJointAndTheTimeOfTheLargestShares) {
+  SimulationLog log = log_of_rows(20);
+  const SimulationLog old = parse_log(log_bytes(log), "x.bin");
+  EXPECT_EQ(old.result.torque.joint, -1);
+  log.result.torque = {.ratio = 0.7, .joint = 0, .at = 0.01};
+  const SimulationLog back = parse_log(log_bytes(log), "x.bin");
+  EXPECT_EQ(back.result.torque.ratio, 0.7);
+  EXPECT_EQ(back.result.torque.joint, 0);
+  EXPECT_EQ(back.result.torque.at, 0.01);
+  EXPECT_EQ(back.result.speed.joint, -1);
+  EXPECT_TRUE(log_hash(back) == log_hash(log));
+}
+
 TEST(LogInBlocks, BrokenFilesGetOneClearMessage) {
   const std::string& good = long_bytes();
   EXPECT_NE(log_error(good.substr(0, good.size() - 1)).find("truncated or damaged"),

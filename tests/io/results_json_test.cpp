@@ -84,6 +84,13 @@ TEST(ResultsJson, SimulationHasTheKeysOfTheCommandLine) {
   log.result.flight = 0.2;
   log.result.apex = 0.03;
   EXPECT_EQ(Json::parse(simulation_json(log)).at("apex_m"), 0.03);
+  EXPECT_TRUE(json.at("figures_at").empty());
+  log.joints = {"knee", "hip"};
+  log.result.torque = {.ratio = 0.5, .joint = 1, .at = 2.9};
+  json = Json::parse(simulation_json(log));
+  EXPECT_EQ(json.at("max_torque_ratio"), 0.5);
+  EXPECT_EQ(json.at("figures_at"),
+            Json::parse(R"({"max_torque_ratio": {"where": "hip", "at_s": 2.9}})"));
 }
 
 TEST(ResultsJson, SafetyNamesEveryViolation) {

@@ -99,6 +99,16 @@ TEST(Report, SaysWhichLimitsAreNotStatedAndHowSoftTheSolesAre) {
 }
 
 // Lengths in mm and angles in deg wherever they stand, with three digits.
+TEST(Report, NamesTheJointAndTheTimeOfTheLargestShares) {
+  Made made;
+  ReportOptions plain;
+  plain.replay = false;
+  EXPECT_EQ(make_report(made.model, made.input, plain).html.find(">42 ("), std::string::npos);
+  made.closed.result.torque = {.ratio = 0.42, .joint = 0, .at = 0.25};
+  const std::string cell = ">42 (" + made.closed.joints[0] + " at 0.25 s)</td>";
+  EXPECT_NE(make_report(made.model, made.input, plain).html.find(cell), std::string::npos) << cell;
+}
+
 TEST(Report, HasOneUnitPerQuantity) {
   Made made;
   ConsistencyReport check;

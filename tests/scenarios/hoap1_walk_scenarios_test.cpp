@@ -52,7 +52,7 @@ TEST(Hoap1Walk, StandsUnpushedWithAndWithoutControl) {
     SCOPED_TRACE(controller);
     const SimulationResult r = run(unpushed(controller));
     expect_stands(r, 0.002);
-    EXPECT_LE(r.max_speed_ratio, 1.0);
+    EXPECT_LE(r.speed.ratio, 1.0);
     EXPECT_LE(r.final_speed, 0.001);
     EXPECT_GE(r.steps, 9);
   }

@@ -83,7 +83,7 @@ TEST(Simulator, WithoutSamplesTheVerdictIsTheSame) {
   const SimulationResult a = kept.result(), b = bare.result();
   EXPECT_EQ(a.outcome, b.outcome);
   EXPECT_EQ(a.final_cog_error, b.final_cog_error);
-  EXPECT_EQ(a.max_torque_ratio, b.max_torque_ratio);
+  EXPECT_EQ(a.torque.ratio, b.torque.ratio);
   EXPECT_TRUE(bare.take_log().samples.empty());
   EXPECT_EQ(kept.take_log().samples.size(), 801u);
 }

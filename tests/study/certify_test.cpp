@@ -225,7 +225,7 @@ TEST(UncertainTask, ARobotEqualToItsModelRunsAsWithoutUncertainty) {
   options.seed = numbers.noise;
   const SimulationLog log = simulate(hoap1(), same.series, options);
   EXPECT_EQ(result.outcome, Outcome::stands);
-  EXPECT_EQ(result.torque, log.result.max_torque_ratio);
+  EXPECT_EQ(result.torque, log.result.torque.ratio);
   double worst = 0;
   for (const SimulationSample& s : log.samples)
     worst = std::max(worst, (s.cog - s.command_cog).head<2>().norm());

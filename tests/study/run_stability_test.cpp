@@ -51,8 +51,8 @@ TEST(RunStability, SharesAreThoseOfTheResult) {
   const CommandSeries series = sample(hoap(), walk_pattern(hoap(), {.steps = 2}));
   const SimulationLog log = run_of(series, 0);
   const StabilitySeries strip = run_stability(hoap(), hoap().limits(""), log);
-  EXPECT_NEAR(largest(strip.speed), log.result.max_speed_ratio, 1e-9);
-  EXPECT_NEAR(largest(strip.torque), log.result.max_torque_ratio, 1e-9);
+  EXPECT_NEAR(largest(strip.speed), log.result.speed.ratio, 1e-9);
+  EXPECT_NEAR(largest(strip.torque), log.result.torque.ratio, 1e-9);
   EXPECT_NEAR(strip.dt * static_cast<double>(strip.speed.size()),
               log.dt * static_cast<double>(log.samples.size()), strip.dt);
 }

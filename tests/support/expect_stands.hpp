@@ -11,7 +11,7 @@ namespace ayumi::test {
 inline void expect_stands(const SimulationResult& result, double final_error) {
   EXPECT_EQ(result.outcome, Outcome::stands) << "fell at " << result.fell_at;
   EXPECT_LE(result.final_cog_error, final_error);
-  EXPECT_LE(result.max_torque_ratio, 1 + 1e-9);
+  EXPECT_LE(result.torque.ratio, 1 + 1e-9);
 }
 
 }  // namespace ayumi::test

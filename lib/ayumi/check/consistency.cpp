@@ -146,6 +146,8 @@ ConsistencyReport report_of(JudgedMotion& motion) {
 
 }  // namespace
 
+const char* verdict_of(bool consistent) { return consistent ? "consistent" : "inconsistent"; }
+
 ConsistencyReport check_consistency(const RobotModel& model, const CommandSeries& series,
                                     const CheckOptions& options) {
   if (!model.has_soles())

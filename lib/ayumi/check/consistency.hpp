@@ -20,6 +20,12 @@ struct ConsistencyReport {
   std::string profile;      ///< actuator profile judged against
 };
 
+/// "consistent" or "inconsistent", in answers, files and pages.
+const char* verdict_of(bool consistent);
+inline const char* verdict_of(const ConsistencyReport& report) {
+  return verdict_of(report.consistent);
+}
+
 /// Throws Error(usage) for an unknown tolerance name.
 ConsistencyReport check_consistency(const RobotModel& model, const CommandSeries& series,
                                     const CheckOptions& options = {});

@@ -98,13 +98,19 @@ class Suspicions {
   }
 
  private:
+  /// The mistakes that a rule finds in one phase or key.
+  enum class Finds { one_in_a_place, several_in_a_place };
+
   /// The first few mistakes of one rule, and the number of the others. The rounds of a block that
-  /// repeats have one text in the file.
-  void say(std::vector<Mistake> each) {
+  /// repeats have one text in the file: of a rule that finds at most one mistake in a phase or key,
+  /// the first round is named, however far the others are off.
+  void say(std::vector<Mistake> each, Finds finds = Finds::one_in_a_place) {
     std::vector<Mistake> found;
     for (Mistake& mistake : each)
-      if (std::none_of(found.begin(), found.end(),
-                       [&](const Mistake& said) { return said.text() == mistake.text(); }))
+      if (std::none_of(found.begin(), found.end(), [&](const Mistake& said) {
+            return said.place == mistake.place &&
+                   (finds == Finds::one_in_a_place || said.words == mistake.words);
+          }))
         found.push_back(std::move(mistake));
     const size_t more = found.size() > kNamed ? found.size() - kNamed : 0;
     found.resize(found.size() - more);
@@ -132,7 +138,7 @@ class Suspicions {
         look(key_place(i), joint, angle);
     for (const auto& [name, joints] : pattern_.postures)
       for (const auto& [joint, angle] : joints) look("/postures/" + name, joint, angle);
-    say(found);
+    say(found, Finds::several_in_a_place);
   }
 
   // Radians in a pattern whose unit is deg: several angles, none of which is more than a turn in
@@ -393,7 +399,7 @@ class Suspicions {
                    "with keys of \"cog\": {\"height\": ...}, or lower /defaults/cog_height"});
       }
     }
-    say(found);
+    say(found, Finds::several_in_a_place);
   }
 
   void leg_keys() {

@@ -8,6 +8,7 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <tuple>
 
 #include "ayumi/author/edit/edit.hpp"
 #include "ayumi/author/generate/pattern_builder.hpp"
@@ -16,7 +17,9 @@
 #include "ayumi/base/number_slips.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/math/elementary.hpp"
+#include "ayumi/math/quintic.hpp"
 #include "ayumi/math/rotation.hpp"
+#include "ayumi/model/gravity.hpp"
 #include "ayumi/motion/pattern_context.hpp"
 #include "ayumi/plan/folded_legs.hpp"
 #include "ayumi/plan/foot_plan.hpp"
@@ -51,6 +54,9 @@ constexpr double kNoAngle = 1e-6;
 // A level foot below a leg that leans by less than this is no reason [rad]. Chosen: five degrees,
 // which every ankle bends.
 constexpr double kNotedLean = 0.09;
+// Further keys of a foot that are named with their turn. Chosen: a kick has two or three in the
+// air.
+constexpr size_t kTurnedKeys = 3;
 // Below this, the turn of a foot against the other one is ignored [rad]. Chosen: ten degrees.
 constexpr double kNotedTurn = 0.17;
 // A COG that is farther than this from the middle of the feet is beside them; a share of the length
@@ -61,6 +67,15 @@ constexpr double kMostLean = 0.9;
 // A segment that lasts less than this share of its neighbour is too short before a value is out by
 // a power of ten. Chosen: keys of one motion are seldom so unequal.
 constexpr double kShortSegment = 0.15;
+// A COG that sinks by less than this share of its stoop below the key before a lift-off, or after a
+// landing, does what its author sees in the keys. Chosen: 3 mm of a stoop of 30 mm.
+constexpr double kNotedSink = 0.1;
+// Points of a segment at which its lowest value is looked for. Chosen: those between two of them
+// are lower by less than 1e-3 of the stoop.
+constexpr int kSinkPoints = 100;
+// Halvings of a time that is looked for. Chosen: a second becomes a microsecond; times are written
+// in milliseconds.
+constexpr int kHalvings = 20;
 
 std::string seconds(double t) { return text::brief(t, 5) + " s"; }
 
@@ -96,6 +111,7 @@ class Hypotheses::Maker {
     std::vector<Hypothesis> made;
     turns(made);
     level_feet(made);
+    stoops(made);
     all_sides(made);
     crossed_footholds(made);
     key_times(made);
@@ -116,6 +132,7 @@ class Hypotheses::Maker {
     leg_keys(made);
     interpolations(made);
     level_feet(made);
+    stoops(made);
     return made;
   }
 
@@ -330,6 +347,74 @@ class Hypotheses::Maker {
           add(Rank::amount, std::round(1000 * t) / 1000, lasts);
         const double back = in < out ? keys[i].t - share * in : keys[i].t + share * out;
         add(Rank::amount, std::round(1000 * back) / 1000, lasts);
+      }
+    }
+  }
+
+  // The lowest height between rest at 0 and a lift-off from `rise` with this speed, after `lasts`.
+  // A landing is the same backwards in time.
+  static double lowest(double rise, double speed, double lasts) {
+    double low = 0;
+    for (int i = 1; i < kSinkPoints; ++i)
+      low = std::min(
+          low,
+          quintic_at({0, 0, 0, 0}, {lasts, rise, speed, -kGravity}, lasts * i / kSinkPoints).value);
+    return low;
+  }
+
+  // The longest time from rest to this lift-off without a noted sink, at most `lasts` [s].
+  static double longest_push(double rise, double speed, double lasts) {
+    double possible = rise / speed, impossible = lasts;
+    for (int i = 0; i < kHalvings; ++i) {
+      const double middle = 0.5 * (possible + impossible);
+      (lowest(rise, speed, middle) < -kNotedSink * rise ? impossible : possible) = middle;
+    }
+    return possible;
+  }
+
+  // Where the COG has a long time between the lowest key and the lift-off, or the landing and the
+  // lowest key, it sinks below that key: its speed at the ground is that of the flight.
+  void stoops(std::vector<Hypothesis>& made) const {
+    std::vector<size_t> keys;  // those of the COG height
+    for (size_t i = 0; i < pattern_.keyframes.size(); ++i)
+      if (pattern_.keyframes[i].cog_height) keys.push_back(i);
+    const auto key_at = [&](double t) {
+      return std::find_if(keys.begin(), keys.end(), [&](size_t k) {
+        return std::abs(pattern_.keyframes[k].t - t) < kSameTime * std::max(t, 1.0);
+      });
+    };
+    for (size_t i = 1; i < pattern_.phases.size(); ++i) {
+      const Phase& phase = pattern_.phases[i];
+      if (phase.support != Support::none || phase.viip) continue;
+      const auto off = key_at(begin_of(i)), on = key_at(phase.until);
+      if (off == keys.end() || on == keys.end() || on != off + 1) continue;
+      const double flight = phase.until - begin_of(i);
+      const Keyframe &leaves = pattern_.keyframes[*off], &lands = pattern_.keyframes[*on];
+      const double mean = (*lands.cog_height - *leaves.cog_height) / flight;
+      // The key beside the flight, its end of the flight, and the speed away from the key.
+      std::vector<std::tuple<size_t, const Keyframe*, double>> sides;
+      if (off != keys.begin()) sides.emplace_back(*(off - 1), &leaves, mean);
+      if (on + 1 != keys.end()) sides.emplace_back(*(on + 1), &lands, -mean);
+      for (const auto& [k, end, drift] : sides) {
+        const Keyframe& low = pattern_.keyframes[k];
+        const double rise = *end->cog_height - *low.cog_height;
+        const double speed = drift + kGravity * flight / 2, lasts = std::abs(end->t - low.t);
+        if (is_repeated(k) || rise <= kNoLength || speed * lasts <= rise) continue;
+        const double sink = -lowest(rise, speed, lasts);
+        if (sink < kNotedSink * rise) continue;
+        const bool before = low.t < end->t;
+        const double push = longest_push(rise, speed, lasts);
+        const double t = std::round(1000 * (before ? end->t - push : end->t + push)) / 1000;
+        made.push_back({Rank::geometry,
+                        {key_place(k),
+                         "t is " + seconds(low.t) + ", so the segment " +
+                             (before ? "from here to the lift-off" : "from the landing to here") +
+                             " lasts " + seconds(lasts) + ", and the COG, whose speed there is " +
+                             text::brief(speed, 2) + " m/s after the length of the flight, sinks " +
+                             text::fixed(1000 * sink, 0) + " mm below the height of this key",
+                         "with t = " + seconds(t)},
+                        [k = k, t](Pattern& p) { p.keyframes[k].t = t; },
+                        -sink});
       }
     }
   }
@@ -971,6 +1056,16 @@ class Hypotheses::Maker {
         if (std::abs(amount(most)) < kNotedLean) continue;
         for (const double share : {1.0, 0.6}) {
           const auto degrees = [share](double lean) { return whole_degrees(share * lean); };
+          const auto turned = [&](const Lean& lean) {
+            return turned_foot(side, pattern_.keyframes[lean.key].feet[s].value(),
+                               roll ? degrees(lean.roll) : 0, roll ? 0 : degrees(lean.pitch));
+          };
+          std::string others;
+          size_t more = 0;
+          for (const Lean& lean : leans)
+            if (lean.key != most.key && degrees(amount(lean)) != 0 && ++more <= kTurnedKeys)
+              others += "; in " + key_place(lean.key) + ", " + turned(lean);
+          if (more > kTurnedKeys) others += "; in its later keys, by the lean of the leg there";
           made.push_back(
               {Rank::geometry,
                {key_place(most.key),
@@ -980,13 +1075,7 @@ class Hypotheses::Maker {
                      : amount(most) < 0 ? "ahead"
                                         : "back") +
                     ", so the ankle bends by the same angle",
-                "with the foot turned with the leg (" +
-                    turned_foot(side, pattern_.keyframes[most.key].feet[s].value(),
-                                roll ? degrees(most.roll) : 0, roll ? 0 : degrees(most.pitch)) +
-                    (leans.size() > 1
-                         ? "; in the other keys of this foot, by the lean of the leg there)"
-                         : ")") +
-                    ","},
+                "with the foot turned with the leg (" + turned(most) + others + "),"},
                [leans, amount, degrees, roll, s](Pattern& p) {
                  for (const Lean& lean : leans)
                    p.keyframes[lean.key].feet[s]->rpy[roll ? 0 : 1] = degrees(amount(lean));

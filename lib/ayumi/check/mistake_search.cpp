@@ -204,12 +204,15 @@ class Search {
   void look_at(const WrittenValue& value, const TrialOutcome& without, Measure measure,
                double least) {
     double possible = least, impossible = 1;
+    TrialOutcome at_limit = without;
     int within = 0;
     for (int i = 0; i < kMostBisections && within < kBisections; ++i) {
       const double share = 0.5 * (possible + impossible);
       const TrialOutcome outcome =
           trials_.after(pattern_, [&](Pattern& p) { value.pull(p, share); });
-      (is_better(without, outcome, measure) ? impossible : possible) = share;
+      const bool worse = is_better(without, outcome, measure);
+      (worse ? impossible : possible) = share;
+      if (!worse) at_limit = outcome;
       if (possible > 0) ++within;
     }
     const WrittenNumber& number = value.numbers.front();
@@ -224,10 +227,12 @@ class Search {
                   : up_to;
     tried_.push_back({{Rank::amount,
                        {value.place, written, "with values " + range},
-                       [value, least](Pattern& p) { value.pull(p, least); },
+                       // What is found after this change holds for the least one, which an
+                       // author takes.
+                       [value, possible](Pattern& p) { value.pull(p, possible); },
                        number.value == 0 ? 1 : std::abs(1 - limit / number.value),
                        std::abs(number.value - limit) / value.unit(model_)},
-                      without});
+                      at_limit});
     if (found_.slight || least > 0) return;
     std::vector<Hypothesis> slips;
     // Almost no value of this sign is possible, and the size of this value is usual.
@@ -286,16 +291,27 @@ class Search {
   }
 
   /// Whether a change can be a cause: it leaves no more errors than the other changes that may be
-  /// named after it could remove, if each removed as many. A value that is wrong by much is worth a
-  /// look in any case.
-  bool is_believable(const Candidate& c) const {
+  /// named after it could remove, if each removed as many.
+  bool leaves_few(const Candidate& c) const {
     if (found_.errors == kUnsampled) return true;
     const int changes = std::max(2, rounds_);  // the last one removes at least half
-    const auto leaves_few = [&](int left, int of) { return left * changes <= of * (changes - 1); };
-    if (c.outcome.errors == found_.errors) return leaves_few(c.outcome.findings, found_.findings);
-    return leaves_few(c.outcome.errors, found_.errors) ||
-           (c.hypothesis.rank == Rank::amount &&
+    const auto few = [&](int left, int of) { return left * changes <= of * (changes - 1); };
+    return c.outcome.errors == found_.errors ? few(c.outcome.findings, found_.findings)
+                                             : few(c.outcome.errors, found_.errors);
+  }
+
+  /// A value that is wrong by much is worth a look in any case, after those that leave few.
+  bool is_believable(const Candidate& c) const {
+    return leaves_few(c) ||
+           (c.outcome.errors < found_.errors && c.hypothesis.rank == Rank::amount &&
             (c.hypothesis.change >= kSmallChange || c.hypothesis.size >= kLargeChange));
+  }
+
+  /// What contradicts the geometry of the motion counts where it leaves fewer findings, even if
+  /// some of these were consequences before.
+  bool helps(const Candidate& c, Measure measure) const {
+    return is_better(c.outcome, found_, measure) ||
+           (c.hypothesis.rank == Rank::geometry && is_better(c.outcome, found_, Measure::findings));
   }
 
   /// The fewest errors that remain, then the most particular rank; the first few of these.
@@ -304,7 +320,7 @@ class Search {
     for (const Measure measure : {Measure::errors, Measure::findings}) {
       if (!sorted.empty()) break;
       for (const Candidate& c : tried_)
-        if (is_better(c.outcome, found_, measure) && is_believable(c)) sorted.push_back(c);
+        if (helps(c, measure) && is_believable(c)) sorted.push_back(c);
     }
     // Another sign or another digit counts as meant only where nothing is left to mend.
     const auto is_guess = [](const Candidate& c) { return c.hypothesis.change == kGuessed; };
@@ -315,10 +331,11 @@ class Search {
         c.hypothesis.change = kGuessed;
       }
     if (!std::all_of(sorted.begin(), sorted.end(), is_guess)) std::erase_if(sorted, is_guess);
-    std::stable_sort(sorted.begin(), sorted.end(), [](const Candidate& a, const Candidate& b) {
-      return std::tie(a.outcome.errors, a.hypothesis.rank, a.hypothesis.change) <
-             std::tie(b.outcome.errors, b.hypothesis.rank, b.hypothesis.change);
-    });
+    const auto key = [&](const Candidate& c) {
+      return std::tuple(!leaves_few(c), c.outcome.errors, c.hypothesis.rank, c.hypothesis.change);
+    };
+    std::stable_sort(sorted.begin(), sorted.end(),
+                     [&](const Candidate& a, const Candidate& b) { return key(a) < key(b); });
     std::vector<Candidate> best;
     for (const Candidate& c : sorted) {
       if (c.outcome.errors != sorted.front().outcome.errors ||
@@ -350,6 +367,16 @@ std::string result_words(const TrialOutcome& before, const TrialOutcome& after) 
   if (after.errors >= before.errors)
     return text::remaining(after.findings, before.findings, "finding");
   return text::remaining(after.errors, before.errors, "error");
+}
+
+// Whether a phase or a keyframe is one of several rounds of a block, which have one text in the
+// file: a change of another round is the same line again.
+bool is_repeated(const Pattern& pattern, const std::string& place) {
+  const auto rounds = [&](const auto& items) {
+    return std::count_if(items.begin(), items.end(),
+                         [&](const auto& item) { return item.pointer == place; });
+  };
+  return rounds(pattern.phases) > 1 || rounds(pattern.keyframes) > 1;
 }
 
 // "with t = 1 s, ": the beginning of a sentence.
@@ -385,6 +412,11 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
         best = search->best();
       }
     }
+    std::erase_if(best, [&](const Candidate& c) {
+      const auto is_here = [&](const Explanation& e) { return e.place == c.hypothesis.says.place; };
+      return is_repeated(pattern, c.hypothesis.says.place) &&
+             std::any_of(result.found.begin(), result.found.end(), is_here);
+    });
     if (best.empty()) break;
     for (Candidate& c : best) {
       if (c.outcome.good() && !trials.exact()) {
@@ -402,6 +434,10 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
       c.hypothesis.says.enough = c.outcome.good();
       // The changes of the previous rounds are also needed.
       if (round > 0) c.hypothesis.says.instead += " (together with the change named before)";
+      // What was named beside another change is enough only after it.
+      std::erase_if(result.found, [&](const Explanation& e) {
+        return e.place == c.hypothesis.says.place && e.written == c.hypothesis.says.written;
+      });
       result.found.push_back(c.hypothesis.says);
     }
     Pattern mended = current;

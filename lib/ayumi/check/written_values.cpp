@@ -19,6 +19,10 @@ namespace ayumi {
 
 namespace {
 
+// A number that differs by less than this is the same, in any unit. Definition: what the
+// conversion of degrees and rounded limits leave.
+constexpr double kSame = 1e-6;
+
 using In = std::function<double&(Pattern&)>;
 
 struct TrackNumber {
@@ -107,20 +111,23 @@ class Reader {
     found_.push_back(std::move(made));
   }
 
-  // Runs of equal numbers, and all that are equal, where these are more.
+  // Runs of equal numbers, and all that are equal, where these are more. A first run that holds
+  // what was there before is no value of the author's: it only says when the next one begins. Nor
+  // are all that return to it.
   void add(const NumberTrack& track) {
+    const auto is_start = [&](double held) { return std::abs(held - track.start) < kSame; };
     std::map<double, std::vector<size_t>> equal;
     for (size_t i = 0; i < track.numbers.size();) {
       std::vector<size_t> run;
       const double held = value(track.numbers[i]);
       for (; i < track.numbers.size() && value(track.numbers[i]) == held; ++i) run.push_back(i);
-      add(track, run);
+      if (run.front() > 0 || !is_start(held)) add(track, run);
       auto& all = equal[held];
       all.insert(all.end(), run.begin(), run.end());
     }
     for (const auto& [held, members] : equal) {
       const bool is_run = members.back() - members.front() + 1 == members.size();
-      if (!is_run) add(track, members);
+      if (!is_run && (members.front() > 0 || !is_start(held))) add(track, members);
     }
   }
 

@@ -38,12 +38,6 @@ inline std::string amount_text(const Finding& finding) {
   return quantity(finding.worst, more) + ", limit " + quantity(finding.limit, more);
 }
 
-/// " (l_knee at 1.20 s)", which follows the largest value of a figure. Without a place: " (at 1.20
-/// s)".
-inline std::string in_brackets(const std::string& place, double at) {
-  return " (" + place + (place.empty() ? "" : " ") + "at " + text::fixed(at, 2) + " s)";
-}
-
 /// "joint_speed of l_knee", "friction of the left foot"
 inline std::string kind_and_place(FindingKind kind, const std::string& where) {
   return name_of(kind) + (where.empty() ? "" : " of " + place_words(where, true));

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/in_brackets.hpp"
 #include "ayumi/base/text.hpp"
 
 namespace ayumi {
@@ -317,6 +318,10 @@ FlightRecord shown_part(const SimulationLog& log) {
 }
 
 }  // namespace
+
+std::string place_in_brackets(const SimulationLog& log, const JointShare& share) {
+  return share.joint < 0 ? "" : in_brackets(log.joints[static_cast<size_t>(share.joint)], share.at);
+}
 
 double duration(const SimulationLog& log) {
   if (log.samples.empty())

@@ -2,6 +2,7 @@
 // A run's log as pictures and plots need it: the sample at any time, the pushes, the ground.
 
 #include <Eigen/Geometry>
+#include <string>
 #include <vector>
 
 #include "ayumi/sim/simulation_log.hpp"
@@ -10,6 +11,9 @@ namespace ayumi {
 
 /// Last time of the log [s]. Throws Error(usage) when the log has no samples.
 double duration(const SimulationLog& log);
+
+/// " (l_knee at 2.90 s)", behind the share; "" where its place is unknown.
+std::string place_in_brackets(const SimulationLog& log, const JointShare& share);
 
 /// The sample at `t` (held within the log), continuous quantities interpolated between ticks;
 /// contacts and push as of the tick before.

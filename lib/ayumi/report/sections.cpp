@@ -7,6 +7,7 @@
 
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
+#include "ayumi/check/consistency.hpp"
 #include "ayumi/plot/compare_plot.hpp"
 #include "ayumi/plot/push_map.hpp"
 #include "ayumi/render/log_reading.hpp"
@@ -54,6 +55,11 @@ std::string push_words(const SimulationLog& log) {
   return words;
 }
 
+/// "72 (l_knee at 2.90 s)"
+std::string share_cell(const SimulationLog& log, const JointShare& share) {
+  return percent(share.ratio) + escaped(place_in_brackets(log, share));
+}
+
 Table run_table(const ReportInput& input) {
   Table table = {"The simulated runs", {"run", "outcome"}, {}};
   for (const char* name :
@@ -65,7 +71,7 @@ Table run_table(const ReportInput& input) {
     const SimulationResult& r = run.log->result;
     table.rows.push_back({escaped(name_of(run)), outcome_cell(r), degrees(r.max_tilt),
                           millimetres(r.final_cog_error), millimetres(r.zmp_tracking_rms),
-                          percent(r.max_speed_ratio), percent(r.max_torque_ratio),
+                          share_cell(*run.log, r.speed), share_cell(*run.log, r.torque),
                           text::fixed(r.flight, 2), std::to_string(r.steps),
                           millimetres(r.max_slip)});
   }
@@ -182,12 +188,12 @@ std::string verdict_section(const ReportInput& input) {
                     escaped(name_of(judged)) + " " + outcome_cell(result) +
                     escaped(push_words(*judged.log));
   if (input.results.check)
-    out += "; the pattern is " + marked(consistent ? Tone::good
-                                        : repaired ? Tone::neutral
-                                                   : Tone::bad,
-                                        consistent ? "consistent"
-                                        : repaired ? "inconsistent as written, and was repaired"
-                                                   : "inconsistent");
+    out += "; the pattern is " +
+           marked(consistent ? Tone::good
+                  : repaired ? Tone::neutral
+                             : Tone::bad,
+                  verdict_of(consistent) +
+                      std::string(!consistent && repaired ? " as written, and was repaired" : ""));
   out += ".</p>\n" + table(run_table(input));
   if (input.results.repair) out += repair_words(*input.results.repair);
   if (input.results.safety) {

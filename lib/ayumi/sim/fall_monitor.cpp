@@ -135,15 +135,12 @@ void FallMonitor::observe_figures(double t, const CommandSample& command,
   r.max_contact_iterations = std::max(r.max_contact_iterations, report.contact_iterations);
   iterations_ += static_cast<double>(report.contact_iterations);
   r.mean_contact_iterations = iterations_ / static_cast<double>(++ticks_);
-  const auto raise = [t](double& most, JointPeak& peak, int dof, double ratio) {
-    if (!(ratio > most)) return;
-    most = ratio;
-    peak = {dof, t};
+  const auto raise = [t](JointShare& most, int joint, double ratio) {
+    if (ratio > most.ratio) most = {ratio, joint, t};
   };
   for (int j = 0; j < model_->dof_count(); ++j) {
-    raise(r.max_speed_ratio, r.speed_peak, j, std::abs(sample.state.dtheta[j]) / limits_.speed[j]);
-    raise(r.max_torque_ratio, r.torque_peak, j,
-          std::abs(sample.torque[j]) / limits_.peak_torque[j]);
+    raise(r.speed, j, std::abs(sample.state.dtheta[j]) / limits_.speed[j]);
+    raise(r.torque, j, std::abs(sample.torque[j]) / limits_.peak_torque[j]);
   }
   if (sample.fz > kTouchLoad * weight) {
     zmp_square_sum_ += (sample.measured_zmp - sample.reference_zmp).head<2>().squaredNorm();

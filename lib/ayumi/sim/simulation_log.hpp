@@ -66,10 +66,11 @@ struct SimulationEvent {
 enum class Outcome { stands, unsettled, fell };
 const char* name_of(Outcome outcome);
 
-/// Where a figure of the joints is the largest. Files do not store it.
-struct JointPeak {
-  int dof = -1;   ///< -1: unknown
-  double at = 0;  ///< [s]
+/// The largest share of a limit that a joint takes, and where.
+struct JointShare {
+  double ratio = 0;  ///< of the limit
+  int joint = -1;    ///< its place in SimulationLog::joints; -1: unknown, as in older files
+  double at = 0;     ///< [s]
 };
 
 /// Verdict and figures of a run, as docs/cli.md defines them.
@@ -85,14 +86,13 @@ struct SimulationResult {
   double flight = 0;                ///< time without ground contact [s]
   double apex = 0;                  ///< of the COG above its command [m]
   int steps = 0;                    ///< touchdowns
-  double max_speed_ratio = 0;       ///< joint speed / limit
-  double max_torque_ratio = 0;      ///< applied torque / limit
+  JointShare speed = {};            ///< the largest joint speed / limit
+  JointShare torque = {};           ///< the largest applied torque / limit
   double max_penetration = 0;       ///< of a sole vertex [m]
   double max_slip = 0;              ///< of a supporting foot while planned in contact [m]
   double max_contact_residual = 0;  ///< [m/s]
   int max_contact_iterations = 0;
   double mean_contact_iterations = 0;
-  JointPeak speed_peak = {}, torque_peak = {};  ///< of the ratios
 };
 
 struct SimulationLog {

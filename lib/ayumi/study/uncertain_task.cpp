@@ -456,7 +456,7 @@ CaseResult UncertainTask::run(const CaseNumbers& numbers) const {
   return {.outcome = result.outcome,
           .fell_at = result.fell_at,
           .cog_error = largest.cog,
-          .torque = result.max_torque_ratio,
+          .torque = result.torque.ratio,
           .foot_tilt = largest.foot_tilt};
 }
 

@@ -170,6 +170,49 @@ Pattern plain(const RobotModel& model, const Pattern& pattern, const CommandSeri
   return result;
 }
 
+void add_key(std::vector<Keyframe>& keys, const Keyframe& key) {
+  // Times closer than this are equal [s]. Chosen: above rounding.
+  constexpr double kSame = 1e-9;
+  if (!keys.empty() && std::abs(keys.back().t - key.t) < kSame)
+    merge(keys.back(), key);
+  else
+    keys.push_back(key);
+}
+
+bool has_keys(const Pattern& pattern, Side side) {
+  return std::any_of(pattern.keyframes.begin(), pattern.keyframes.end(), [&](const Keyframe& key) {
+    return key.feet[static_cast<size_t>(side)].has_value();
+  });
+}
+
+// A foot has keys or swings, but not both. Where one part has keys of a foot, the swings of this
+// foot in the other part become keys along the same way. The posture is that of the table.
+void write_swings_as_keys(const RobotModel& model, Side side, Pattern& pattern) {
+  constexpr int kKeys = 16;  // of one swing; chosen: its curve between them differs by below 0.1 mm
+  const FootPlan feet(model, pattern);
+  std::vector<Keyframe> keys = std::move(pattern.keyframes);
+  double begin = 0;
+  for (Phase& phase : pattern.phases) {
+    if (phase.swing && phase.swing->foot == side) {
+      for (int i = 0; i <= kKeys; ++i) {
+        Keyframe key;
+        key.t = begin + (phase.until - begin) * i / kKeys;
+        const Isometry3d pose = feet.pose(side, i < kKeys ? key.t : phase.until);
+        key.feet[static_cast<size_t>(side)] =
+            Foothold{pose.translation(), matrix_to_rpy(pose.linear())};
+        key.interpolation = i == 0 ? Interpolation::hold : Interpolation::spline;
+        keys.push_back(std::move(key));
+      }
+      phase.swing.reset();
+    }
+    begin = phase.until;
+  }
+  std::stable_sort(keys.begin(), keys.end(),
+                   [](const Keyframe& a, const Keyframe& b) { return a.t < b.t; });
+  pattern.keyframes.clear();
+  for (const Keyframe& key : keys) add_key(pattern.keyframes, key);
+}
+
 double angle_between(const Matrix3d& a, const Matrix3d& b) {
   return elementary::angle_between(Eigen::Quaterniond(a), Eigen::Quaterniond(b));
 }
@@ -233,13 +276,16 @@ Pattern joined(const RobotModel& model, const MotionPart& first, const MotionPar
   const size_t skip = ticks > 0 ? 0 : 1;
   const size_t rows = a.samples.size() + between.size() + b.samples.size() - skip;
   Pattern result = plain(model, first.pattern, a, table, rows);
+  Pattern rest = plain(model, second.pattern, b, table, b.samples.size());
+  for (const Side side : {Side::left, Side::right})
+    if (has_keys(result, side) != has_keys(rest, side))
+      write_swings_as_keys(model, side, has_keys(result, side) ? rest : result);
   for (const RobotState& state : between) add_row(*result.table, state);
   for (size_t k = skip; k < b.samples.size(); ++k)
     add_row(*result.table, moved(shift, b.samples[k].state));
 
   const double later = a.duration() + ticks * a.dt;
   if (ticks > 0) result.phases.push_back(both_feet_until(later));
-  Pattern rest = plain(model, second.pattern, b, table, b.samples.size());
   move_plan(shift, later, rest);
   result.phases.insert(result.phases.end(), rest.phases.begin(), rest.phases.end());
   result.keyframes.insert(result.keyframes.end(), rest.keyframes.begin(), rest.keyframes.end());
@@ -369,15 +415,6 @@ Keyframe translated(const RobotModel& model, const Pattern& from, const Pattern&
     }
   }
   return key;
-}
-
-void add_key(std::vector<Keyframe>& keys, const Keyframe& key) {
-  // Times closer than this are equal [s]. Chosen: above rounding.
-  constexpr double kSame = 1e-9;
-  if (!keys.empty() && std::abs(keys.back().t - key.t) < kSame)
-    merge(keys.back(), key);
-  else
-    keys.push_back(key);
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ OrderedJson json_of(const FigurePlaces& places) {
 OrderedJson json_of(const ConsistencyReport& report) {
   OrderedJson findings = OrderedJson::array();
   for (const Finding& finding : report.findings) findings.push_back(json_of(finding));
-  return {{"verdict", report.consistent ? "consistent" : "inconsistent"},
+  return {{"verdict", verdict_of(report)},
           {"profile", report.profile},
           {"findings", findings},
           {"summary", json_of(report.summary)},
@@ -156,6 +156,11 @@ OrderedJson json_of_run(const SimulationLog& log, size_t rows, const std::string
   OrderedJson events = OrderedJson::array();
   for (const SimulationEvent& event : log.events)
     events.push_back({{"t_s", event.t}, {"kind", event.kind}, {"text", event.text}});
+  OrderedJson places = OrderedJson::object();
+  for (const auto& [key, share] :
+       {std::pair("max_joint_speed_ratio", r.speed), {"max_torque_ratio", r.torque}})
+    if (share.joint >= 0)
+      places[key] = {{"where", log.joints[static_cast<size_t>(share.joint)]}, {"at_s", share.at}};
   const double duration = rows == 0 ? 0 : log.dt * static_cast<double>(rows - 1);
   return {{"controller", log.controller ? name_of(*log.controller) : ""},
           {"plant", log.plant},
@@ -171,13 +176,14 @@ OrderedJson json_of_run(const SimulationLog& log, size_t rows, const std::string
           {"flight_s", figure(r.flight)},
           {"apex_m", figure(r.apex, r.flight > 0)},
           {"steps", r.steps},
-          {"max_joint_speed_ratio", figure(r.max_speed_ratio)},
-          {"max_torque_ratio", figure(r.max_torque_ratio)},
+          {"max_joint_speed_ratio", figure(r.speed.ratio)},
+          {"max_torque_ratio", figure(r.torque.ratio)},
           {"max_penetration_m", figure(r.max_penetration)},
           {"max_foot_slip_m", figure(r.max_slip)},
           {"max_contact_residual_m_s", figure(r.max_contact_residual)},
           {"max_contact_iterations", r.max_contact_iterations},
           {"mean_contact_iterations", figure(r.mean_contact_iterations)},
+          {"figures_at", places},
           {"events", events},
           {"log_hash", log_hash}};
 }

@@ -4,6 +4,7 @@
 
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/check/consistency.hpp"
 #include "ayumi/io/json/json_reader.hpp"
 
 namespace ayumi {
@@ -59,7 +60,8 @@ FigurePlaces places_of(const JsonNode& check) {
 
 ConsistencyReport check_of(const JsonNode& node) {
   ConsistencyReport report;
-  report.consistent = node.at("verdict").one_of({"consistent", "inconsistent"}) == "consistent";
+  report.consistent =
+      node.at("verdict").one_of({verdict_of(false), verdict_of(true)}) == verdict_of(true);
   report.profile = node.at("profile").string();
   for (const JsonNode& finding : node.at("findings").items())
     report.findings.push_back(finding_of(finding));

@@ -105,8 +105,8 @@ void for_each_figure(Result& r, const Visit& visit) {
   visit("flight", r.flight);
   visit("apex", r.apex);
   visit("steps", r.steps);
-  visit("max_speed_ratio", r.max_speed_ratio);
-  visit("max_torque_ratio", r.max_torque_ratio);
+  visit("max_speed_ratio", r.speed.ratio);
+  visit("max_torque_ratio", r.torque.ratio);
   visit("max_penetration", r.max_penetration);
   visit("max_slip", r.max_slip);
   visit("max_contact_residual", r.max_contact_residual);
@@ -114,14 +114,32 @@ void for_each_figure(Result& r, const Visit& visit) {
   visit("mean_contact_iterations", r.mean_contact_iterations);
 }
 
-OrderedJson json_of(const SimulationResult& result) {
+// visit(key, share) for the place of every share; files from before it was known have none.
+template <typename Result, typename Visit>
+void for_each_place(Result& r, const Visit& visit) {
+  visit("max_speed_at", r.speed);
+  visit("max_torque_at", r.torque);
+}
+
+OrderedJson json_of(const SimulationResult& result, const std::vector<std::string>& joints) {
   OrderedJson json = {{"outcome", kOutcomes[static_cast<int>(result.outcome)]}};
   for_each_figure(result, [&](const char* key, auto figure) { json[key] = figure; });
+  for_each_place(result, [&](const char* key, const JointShare& share) {
+    if (share.joint >= 0)
+      json[key] = {{"joint", joints.at(static_cast<size_t>(share.joint))}, {"t", share.at}};
+  });
   return json;
 }
 
-SimulationResult result_of(const JsonNode& node) {
+SimulationResult result_of(const JsonNode& node, const std::vector<std::string>& joints) {
   SimulationResult result;
+  for_each_place(result, [&](const char* key, JointShare& share) {
+    const auto place = node.find(key);
+    if (!place) return;
+    const std::string joint = place->at("joint").one_of(joints);
+    share.joint = static_cast<int>(std::find(joints.begin(), joints.end(), joint) - joints.begin());
+    share.at = place->at("t").number();
+  });
   result.outcome = static_cast<Outcome>(index_of(node.at("outcome"), kOutcomes));
   for_each_figure(result, [&](const char* key, auto& figure) {
     const JsonNode value = node.at(key);
@@ -150,7 +168,7 @@ std::string header_of(const SimulationLog& log, size_t rows, const std::string& 
   header["events"] = OrderedJson::array();
   for (const SimulationEvent& event : log.events)
     header["events"].push_back({{"t", event.t}, {"kind", event.kind}, {"text", event.text}});
-  header["result"] = json_of(log.result);
+  header["result"] = json_of(log.result, log.joints);
   header["joints"] = log.joints;
   header["columns"] = columns_of(log.joints);
   header["rows"] = rows;
@@ -179,8 +197,8 @@ void read_header(const JsonNode& header, SimulationLog& log) {
   for (const JsonNode& node : header.at("events").items())
     log.events.push_back(
         {node.at("t").number(), node.at("kind").string(), node.at("text").string()});
-  log.result = result_of(header.at("result"));
   log.joints = header.at("joints").strings();
+  log.result = result_of(header.at("result"), log.joints);
 }
 
 // These checks let whatever reads a log trust its numbers.
