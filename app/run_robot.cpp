@@ -23,15 +23,16 @@ RobotModel robot_of_log(const Context& context, const std::string& chosen, const
                         const std::string& source, const LoadOptions& options) {
   RobotModel model = robot_of_run(context, chosen, log.provenance.robot, options);
   if (model.dof_names() != log.joints)
-    fail(ErrorCode::bad_file, source + ": the joints of the run (" + text::join(log.joints, ", ") +
-                                  ") are not those of the robot '" + model.name() + "' (" +
-                                  text::join(model.dof_names(), ", ") +
-                                  "); name the robot of the run with --robot");
+    fail(ErrorCode::bad_file, {source},
+         "the joints of the run (" + text::join(log.joints, ", ") +
+             ") are not those of the robot '" + model.name() + "' (" +
+             text::join(model.dof_names(), ", ") + "); name the robot of the run with --robot");
   const std::string& made_with = log.provenance.robot_sha256;
   if (chosen.empty() && !made_with.empty() && made_with != model.description().sha256)
-    fail(ErrorCode::bad_file, source + ": the robot '" + model.name() +
-                                  "' has changed since the run was made; make the run again, or "
-                                  "give --robot to use the present robot");
+    fail(ErrorCode::bad_file, {source},
+         "the robot '" + model.name() +
+             "' has changed since the run was made; make the run again, or "
+             "give --robot to use the present robot");
   return model;
 }
 

@@ -14,9 +14,11 @@ inline constexpr double kLargestMass = 1e6;
 inline constexpr double kLargestLength = 1e4;
 
 /// Throws "urdf file: message".
-[[noreturn]] void complain_urdf(const RobotDescription& robot, const std::string& message);
+[[noreturn]] void complain_urdf(const RobotDescription& robot, const std::string& inside,
+                                const std::string& message);
 /// Throws "sidecar file: message".
-[[noreturn]] void complain_sidecar(const RobotDescription& robot, const std::string& message);
+[[noreturn]] void complain_sidecar(const RobotDescription& robot, const std::string& inside,
+                                   const std::string& message);
 
 /// Names, finite numbers, masses and inertia tensors of all links.
 void validate_links(const RobotDescription& robot);

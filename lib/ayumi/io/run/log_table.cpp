@@ -24,17 +24,17 @@ constexpr double kSameRobot = 1e-6;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 void require_robot(const RobotModel& model, const SimulationLog& log, const std::string& file) {
-  if (log.samples.empty()) fail(ErrorCode::bad_file, file + ": the log has no samples");
+  if (log.samples.empty()) fail(ErrorCode::bad_file, {file}, "the log has no samples");
   if (log.joints != model.dof_names())
-    fail(ErrorCode::bad_file, file + ": the log has the joints " + text::join(log.joints, ", ") +
-                                  ", but robot '" + model.name() + "' has " +
-                                  text::join(model.dof_names(), ", ") +
-                                  "; name the robot of the run with --robot");
+    fail(ErrorCode::bad_file, {file},
+         "the log has the joints " + text::join(log.joints, ", ") + ", but robot '" + model.name() +
+             "' has " + text::join(model.dof_names(), ", ") +
+             "; name the robot of the run with --robot");
   RobotData data(model);
   update_positions(model, log.samples.front().state, data);
   if (!((data.cog - log.samples.front().cog).norm() < kSameRobot))
-    fail(ErrorCode::bad_file,
-         file + ": the COG of robot '" + model.name() +
+    fail(ErrorCode::bad_file, {file},
+         "the COG of robot '" + model.name() +
              "' differs from the COG in the log at the same posture; this is another robot, or the "
              "robot has changed since the run; run the pattern again");
 }
