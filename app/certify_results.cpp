@@ -63,7 +63,7 @@ std::string add_case_results(const std::filesystem::path& file, const Json& stud
   if (!must_exist && !std::filesystem::exists(file)) return "";
   std::string shard;
   const auto refuse = [&](const std::string& why) {
-    fail(ErrorCode::bad_file, file.string() + ": " + why);
+    fail(ErrorCode::bad_file, {file.string()}, why);
   };
   // A file that is merged must exist; any other one is the file of -o.
   const std::string remedy =

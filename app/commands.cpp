@@ -215,11 +215,15 @@ std::string shortened(const std::string& message) {
 }
 
 // The error on standard error for people and, with --json, as an object on standard output.
-int failed(const Context& context, const std::string& text, int exit_code) {
+int failed(const Context& context, const std::string& text, int exit_code,
+           const SourcePlace& place = {}) {
   const std::string message = shortened(text);
   complain(message);
-  context.print_json(nlohmann::ordered_json{{"error", message}, {"exit_code", exit_code}}.dump(
-      2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  nlohmann::ordered_json object = {{"error", message}, {"exit_code", exit_code}};
+  if (!place.file.empty()) object["file"] = place.file;
+  if (place.line > 0) object["line"] = place.line;
+  if (!place.inside.empty()) object["place"] = shortened(place.inside);
+  context.print_json(object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
   return exit_code;
 }
 
@@ -242,7 +246,7 @@ int parse_and_run(CLI::App& app, Context& context, int argc, char** argv) {
   } catch (const Interrupted&) {
     return failed(context, "stopped", kStoppedExitCode);
   } catch (const Error& error) {
-    return failed(context, error.what(), exit_code_of(error.code()));
+    return failed(context, error.what(), exit_code_of(error.code()), error.place());
   } catch (const std::bad_alloc&) {
     return failed(
         context,
@@ -317,14 +321,15 @@ void refuse_words(int argc, char** argv) {
     const std::string place = "argument " + std::to_string(i) +
                               (i > 1 ? ", after '" + std::string(argv[i - 1]) + "'" : "");
     if (word.empty() || (word.starts_with("-") && word.ends_with("=")))
-      fail(ErrorCode::usage, place + ": an empty text was given" +
-                                 (word.empty() ? "" : " in '" + word + "'") +
-                                 ", but a value is needed");
+      fail(ErrorCode::usage, {"", place},
+           "an empty text was given" + (word.empty() ? "" : " in '" + word + "'") +
+               ", but a value is needed");
     if (!is_utf8(word))
-      fail(ErrorCode::usage, place + ": '" + word +
-                                 "' is not UTF-8 text, so Ayumi cannot write this text into "
-                                 "results; give UTF-8 text, and "
-                                 "rename a file whose name is not UTF-8 text");
+      fail(ErrorCode::usage, {"", place},
+           "'" + word +
+               "' is not UTF-8 text, so Ayumi cannot write this text into "
+               "results; give UTF-8 text, and "
+               "rename a file whose name is not UTF-8 text");
   }
 }
 
@@ -376,7 +381,7 @@ int parse_and_run(int argc, char** argv) {
     refuse_words(argc, argv);
   } catch (const Error& error) {
     context.json = is_among(argc, argv, "--json");
-    return failed(context, error.what(), exit_code_of(error.code()));
+    return failed(context, error.what(), exit_code_of(error.code()), error.place());
   }
   return parse_and_run(app, context, argc, argv);
 }

@@ -38,16 +38,18 @@ void require_options(const LogExport& options, const Command& command) {
                                  " writes the log of a run; leave this option out");
   }
   if (fs::path(options.output).extension() != extension_of(options.format))
-    fail(ErrorCode::usage, options.output + ": --format " + options.format +
-                               " needs a file name that ends in " + extension_of(options.format));
+    fail(ErrorCode::usage, {options.output},
+         "--format " + options.format + " needs a file name that ends in " +
+             extension_of(options.format));
 }
 
 SimulationLog log_of(const LogExport& options) {
   if (fs::is_regular_file(options.input)) {
     if (!is_log_file(options.input))
-      fail(ErrorCode::bad_file, options.input + ": --format " + options.format +
-                                    " needs a RUN, the folder that `ayumi run` or `ayumi simulate` "
-                                    "wrote, or a log file from this folder; give one of these");
+      fail(ErrorCode::bad_file, {options.input},
+           "--format " + options.format +
+               " needs a RUN, the folder that `ayumi run` or `ayumi simulate` "
+               "wrote, or a log file from this folder; give one of these");
     if (!options.log.empty())
       fail(ErrorCode::usage, "--log " + options.log + ": " + options.input +
                                  " is a single log, and --log chooses one of the logs of a RUN "

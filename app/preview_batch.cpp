@@ -34,9 +34,9 @@ std::vector<fs::path> targets_of(const PreviewBatch& batch) {
         batch.folder /
         ((is_run_folder(input) ? clean.filename() : clean.stem()).string() + batch.extension);
     if (std::find(targets.begin(), targets.end(), target) != targets.end())
-      fail(ErrorCode::usage,
-           input + ": another run has the same name, so both clips would be written to " +
-               target.string() + "; run the command once for each of these runs");
+      fail(ErrorCode::usage, {input},
+           "another run has the same name, so both clips would be written to " + target.string() +
+               "; run the command once for each of these runs");
     targets.push_back(target);
   }
   return targets;
@@ -107,12 +107,12 @@ std::vector<Drawn> draw_all(const PreviewBatch& batch, const std::vector<fs::pat
 void run_batch(const PreviewBatch& batch, Context& context) {
   const std::vector<fs::path> targets = targets_of(batch);
   if (!batch.sheet.empty() && fs::path(batch.sheet).extension() != ".png")
-    fail(ErrorCode::usage, batch.sheet + ": --sheet needs a file name that ends in .png");
+    fail(ErrorCode::usage, {batch.sheet}, "--sheet needs a file name that ends in .png");
   std::error_code error;
   fs::create_directories(batch.folder, error);
   if (!fs::is_directory(batch.folder))
-    fail(ErrorCode::bad_file, batch.folder.string() + ": this folder cannot be made (" +
-                                  (error ? error.message() : "a file has this name") + ")");
+    fail(ErrorCode::bad_file, {batch.folder.string()},
+         "this folder cannot be made (" + (error ? error.message() : "a file has this name") + ")");
   std::vector<Drawn> outcomes = draw_all(batch, targets, context.progress());
   Json runs = Json::array(), failures = Json::array();
   std::vector<Image> tiles;

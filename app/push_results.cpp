@@ -123,8 +123,8 @@ KnownCases read_results(const std::filesystem::path& file, const Json& study, si
   KnownCases known(count);
   if (!std::filesystem::exists(file)) return known;
   const auto refuse = [&](const std::string& why) {
-    fail(ErrorCode::bad_file,
-         file.string() + ": " + why + "; choose another name, or replace the file with --force");
+    fail(ErrorCode::bad_file, {file.string()},
+         why + "; choose another name, or replace the file with --force");
   };
   const std::string bytes = read_file(file);
   try {

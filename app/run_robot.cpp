@@ -25,9 +25,10 @@ void require_log_of(const RobotModel& model, const std::string& chosen, const Si
   if (!chosen.empty()) return;
   const std::string& made_with = log.provenance.robot_sha256;
   if (!made_with.empty() && made_with != model.description().sha256)
-    fail(ErrorCode::bad_file, source + ": the robot '" + model.name() +
-                                  "' has changed since the run was made; make the run again, or "
-                                  "give --robot to use the present robot");
+    fail(ErrorCode::bad_file, {source},
+         "the robot '" + model.name() +
+             "' has changed since the run was made; make the run again, or give --robot to use the "
+             "present robot");
   require_robot_of(model, log, source);
 }
 

@@ -10,8 +10,8 @@ Study load_study(const Task& input, const std::string& file) {
   if (!file.empty()) {
     Study study = read_study(file);
     if (study.uncertainty.empty())
-      fail(ErrorCode::bad_pattern,
-           file + ": the study has no uncertainty; add \"uncertainty\" to it");
+      fail(ErrorCode::bad_pattern, {file},
+           "the study has no uncertainty; add \"uncertainty\" to it");
     return study;
   }
   if (!input.pattern.uncertainty.empty())
@@ -35,10 +35,9 @@ std::string fit_to_plant(Study& study, const std::string& plant, bool stated) {
   for (const UncertainQuantity& q : all) {
     if (!unused(q)) continue;
     if (stated)
-      fail(ErrorCode::bad_pattern,
-           q.place +
-               ": this quantity has no effect, because with --plant mujoco the soles have the " +
-               "stiffness and the damping of MuJoCo's contacts; remove the quantity");
+      fail(ErrorCode::bad_pattern, q.place,
+           "this quantity has no effect, because with --plant mujoco the soles have the "
+           "stiffness and the damping of MuJoCo's contacts; remove the quantity");
     names.push_back(q.name);
   }
   std::erase_if(all, unused);

@@ -35,8 +35,8 @@ class TemporaryFile {
     stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     stream.close();
     if (!stream)
-      fail(ErrorCode::bad_file,
-           beside.string() + ": the file cannot be written (" + std::strerror(errno) + ")");
+      fail(ErrorCode::bad_file, {beside.string()},
+           std::string("the file cannot be written (") + std::strerror(errno) + ")");
   }
   ~TemporaryFile() {
     std::error_code ignored;
@@ -69,8 +69,8 @@ bool replace_text(const fs::path& file, const std::string& expected, const std::
   std::error_code error;
   fs::rename(written.path(), file, error);
   if (error)
-    fail(ErrorCode::bad_file,
-         file.string() + ": the file cannot be written (" + error.message() + ")");
+    fail(ErrorCode::bad_file, {file.string()},
+         "the file cannot be written (" + error.message() + ")");
   return true;
 }
 

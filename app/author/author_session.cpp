@@ -10,7 +10,6 @@
 #include "author/author_pose.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
-#include "ayumi/base/placed_error.hpp"
 #include "ayumi/io/json/json_text.hpp"
 #include "ayumi/io/pattern/pattern_edit.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
@@ -249,15 +248,14 @@ void AuthorSession::refresh() {
     auto motion = author_motion(text, *robot_, setting_);
     if (next->motion && next->motion->judgement.good()) next->ghost = next->motion;
     next->motion = std::move(motion);
-  } catch (const PlacedError& error) {
+  } catch (const Error& error) {
     const SourcePlace& at = error.place();
+    const std::string pointer = at.inside.starts_with("/") ? at.inside : "";
     const bool here = at.file == setting_.file.string();
-    next->error = {{"message", without_file(error.what(), setting_.file)}, {"pointer", at.pointer}};
+    next->error = {{"message", without_file(error.what(), setting_.file)}, {"pointer", pointer}};
     if (here && at.line > 0) (*next->error)["line"] = at.line;
     if (here && at.line == 0)
-      (*next->error)["line"] = line_at(text, nearest_value(text, at.pointer).begin);
-  } catch (const Error& error) {
-    next->error = OrderedJson::object({{"message", without_file(error.what(), setting_.file)}});
+      (*next->error)["line"] = line_at(text, nearest_value(text, pointer).begin);
   }
   if (next->error) {
     try {

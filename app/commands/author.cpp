@@ -43,10 +43,10 @@ void author(Context& context, const AuthorCommand& options) {
   std::error_code missing;
   std::filesystem::path file = std::filesystem::canonical(options.pattern, missing);
   if (missing && !std::filesystem::exists(options.pattern))
-    fail(ErrorCode::bad_file, options.pattern + ": no such file; `ayumi new stand -o " +
-                                  options.pattern +
-                                  "` writes a pattern to begin with, and `ayumi new --list` names "
-                                  "other kinds of motion");
+    fail(ErrorCode::bad_file, {options.pattern},
+         "no such file; `ayumi new stand -o " + options.pattern +
+             "` writes a pattern to begin with, and `ayumi new --list` names "
+             "other kinds of motion");
   if (missing) file = options.pattern;
   AuthorSession session(context, {file, read_pairs(options.set, "--set"), options.profile});
   serve_author(

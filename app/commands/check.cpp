@@ -12,7 +12,6 @@
 
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
-#include "ayumi/base/placed_error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/check/likely_mistakes.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
@@ -170,7 +169,7 @@ std::vector<std::string> plot_joints_against_limits(const Task& task,
   try {
     sample_at_servo_period(robot, pattern, {}, context.threads);
   } catch (const Error& first) {
-    if (names_its_value(first))
+    if (first.place().names_value)
       std::erase_if(mistakes, [](const Mistake& mistake) { return !mistake.explains_all; });
     throw_with_message(first, with_mistakes(first.what(), pattern, mistakes));
   }
@@ -181,7 +180,8 @@ Task load_or_explain(const Context& context, const std::string& file, const Chec
   try {
     return load_pattern(context, file, options.input);
   } catch (const Error& error) {
-    const bool is_of_numbers = error.code() == ErrorCode::bad_pattern && !is_of_unknown_name(error);
+    const bool is_of_numbers =
+        error.code() == ErrorCode::bad_pattern && !error.place().unknown_name;
     if (!is_of_numbers || file == "-") throw;
     explain(context, error, file, options);
   }

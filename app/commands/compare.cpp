@@ -57,8 +57,8 @@ Recordings read_recordings(const CompareCommand& options, const RobotModel& mode
       return;
     }
     if (all.angles)
-      fail(ErrorCode::usage,
-           file + ": another file already holds joint angles; give only one such file");
+      fail(ErrorCode::usage, {file},
+           "another file already holds joint angles; give only one such file");
     all.angles = read_angles(bytes, file, model, options.reading);
   };
   for (const std::string& file : options.measured) add(file, false);

@@ -155,15 +155,14 @@ FastestPace limits_of(const Context& context, const EditCommand& options, const 
   retime.dt = input.series.dt;
   FastestPace pace = fastest_pace(input.robot, input.pattern, retime, context.progress());
   if (pace.by_posture)
-    fail(ErrorCode::solver,
-         options.pattern + ": the check fails at every pace. First error: " + pace.limited_by +
+    fail(ErrorCode::solver, {options.pattern},
+         "the check fails at every pace. First error: " + pace.limited_by +
              ". Another pace cannot help, because a posture of the table is wrong. Try "
              "`ayumi repair`");
   if (!pace.found)
-    fail(ErrorCode::solver, options.pattern + ": no time scale up to " +
-                                text::brief(retime.slowest) +
-                                " passes the check. First error: " + pace.limited_by +
-                                ". More time alone is not enough. Try `ayumi repair`");
+    fail(ErrorCode::solver, {options.pattern},
+         "no time scale up to " + text::brief(retime.slowest) + " passes the check. First error: " +
+             pace.limited_by + ". More time alone is not enough. Try `ayumi repair`");
   return pace;
 }
 
@@ -188,9 +187,8 @@ void retime_locally(Context& context, const EditCommand& options, const Task& in
   LocalPace pace = fastest_local_pace(
       input.robot, input.pattern, table_beside(options.out).string(), local, context.progress());
   if (!pace.found)
-    fail(ErrorCode::solver,
-         options.pattern +
-             ": the check fails with every timing of this motion. First error: " + pace.limited_by +
+    fail(ErrorCode::solver, {options.pattern},
+         "the check fails with every timing of this motion. First error: " + pace.limited_by +
              (pace.by_posture ? ". Another timing cannot help, because a posture is wrong"
                               : ". More time alone is not enough") +
              ". Try `ayumi repair`");
@@ -301,10 +299,10 @@ void join(Context& context, const EditCommand& options) {
   for (size_t i = 1; i < options.patterns.size(); ++i) {
     const Task next = load_pattern(context, options.patterns[i], options.input);
     if (next.robot.description().sha256 != input.robot.description().sha256)
-      fail(ErrorCode::bad_pattern, options.patterns[i] + ": /robot: the robot is '" +
-                                       next.pattern.robot + "', but the robot of " +
-                                       options.patterns.front() + " is '" + input.pattern.robot +
-                                       "'; give patterns of the same robot");
+      fail(ErrorCode::bad_pattern, {options.patterns[i], "/robot"},
+           "the robot is '" + next.pattern.robot + "', but the robot of " +
+               options.patterns.front() + " is '" + input.pattern.robot +
+               "'; give patterns of the same robot");
     joins.push_back(input.series.duration());
     add_caution(input.caution, next.caution);
     CommandSeries series;
@@ -345,8 +343,8 @@ void loop_cycle(Context& context, const EditCommand& options) {
   const MotionPart walk{input.pattern, input.series};
   const GaitCycle cycle = best_cycle(input.robot, walk);
   if (!cycle.gap.closed)
-    fail(ErrorCode::bad_pattern,
-         options.pattern + ": the best cycle of two steps begins at " +
+    fail(ErrorCode::bad_pattern, {options.pattern},
+         "the best cycle of two steps begins at " +
              text::fixed(static_cast<double>(cycle.begin) * input.series.dt, 3) +
              " s, and its end does not meet its beginning: " + gap_words(cycle.gap) +
              "; take a walk that has more steps, all of the same length and period");
@@ -402,15 +400,14 @@ void loop(Context& context, const EditCommand& options) {
   const CommandSeries samples = input.series;
   if (!before.closed) {
     if (options.over <= 0)
-      fail(ErrorCode::bad_pattern,
-           options.pattern +
-               ": the end of the motion differs from its beginning: " + gap_words(before) +
+      fail(ErrorCode::bad_pattern, {options.pattern},
+           "the end of the motion differs from its beginning: " + gap_words(before) +
                "; --over S adds a transition of S seconds from the end to the beginning");
     // The beginning again, held for a moment: the first samples at rest.
     Pattern still = once;
     still.phases = {Phase{kRest, Support::both, {}, {}, {}}};
     Keyframe begin;
-    begin.place = "start";
+    begin.place.inside = "start";
     for (const Keyframe& key : once.keyframes) {
       if (key.t == 0) begin = key;
       // Tracks with keys later on begin where they are without one.
@@ -426,10 +423,9 @@ void loop(Context& context, const EditCommand& options) {
                         samples.samples.front());
     held.viip.clear();
     if (samples.samples.front().state.dtheta.cwiseAbs().maxCoeff() > 1e-9)
-      fail(ErrorCode::bad_pattern,
-           options.pattern +
-               ": joints move when the motion begins, so no transition can lead to its beginning; "
-               "let the motion begin at rest (edit ramp --in)");
+      fail(ErrorCode::bad_pattern, {options.pattern},
+           "joints move when the motion begins, so no transition can lead to its beginning; "
+           "let the motion begin at rest (edit ramp --in)");
     CommandSeries series;
     input.pattern =
         joined_pattern(context, options, input, {still, held}, options.over, series, reason);
@@ -437,9 +433,8 @@ void loop(Context& context, const EditCommand& options) {
   }
   const LoopGap closed = loop_gap(input.robot, {input.pattern, input.series});
   if (!closed.closed)
-    fail(ErrorCode::bad_pattern,
-         options.pattern +
-             ": the end of the motion still differs from its beginning: " + gap_words(closed) +
+    fail(ErrorCode::bad_pattern, {options.pattern},
+         "the end of the motion still differs from its beginning: " + gap_words(closed) +
              "; edit bake and edit ramp can bring both ends to rest in one "
              "posture");
   const Pattern round = input.pattern;

@@ -136,7 +136,7 @@ Source source_of_pattern(const ExportOptions& options, const Context& context) {
       load_pattern(context, options.input,
                    {.set = options.set, .profile = {}, .robot = options.robot}, draws(options));
   if (!input.series.viip.empty())
-    fail(ErrorCode::bad_pattern, options.input + ": phases: " + refusal_of_goals());
+    fail(ErrorCode::bad_pattern, {options.input, "/phases"}, refusal_of_goals());
   Source source{input.robot,
                 table_of_series(input.robot, profile_of(options, input.robot, input.profile),
                                 input.series, content_of(options)),
@@ -184,10 +184,10 @@ void set_rate(const ExportOptions& options, Source& source) {
     takes = takes || std::abs(ms - interval) < 1e-6;
   }
   if (!takes)
-    fail(ErrorCode::bad_file, options.output + ": the table has a row every " + text::brief(ms) +
-                                  " ms, but the layout '" + layout.name + "' of '" +
-                                  source.model.name() + "' allows only " + text::join(known, ", ") +
-                                  " ms; choose one of these with --interval");
+    fail(ErrorCode::bad_file, {options.output},
+         "the table has a row every " + text::brief(ms) + " ms, but the layout '" + layout.name +
+             "' of '" + source.model.name() + "' allows only " + text::join(known, ", ") +
+             " ms; choose one of these with --interval");
 }
 
 Source source_of_table(const ExportOptions& options, const Context& context,
@@ -201,8 +201,9 @@ Source source_of_table(const ExportOptions& options, const Context& context,
                 {}};
   require_joints(source.reference, source.model.dof_names(), options.input);
   if (!made.robot_sha256.empty() && made.robot_sha256 != source.model.description().sha256)
-    fail(ErrorCode::bad_file, options.input + ": robot '" + source.model.name() +
-                                  "' has changed since this table was made; run the pattern again");
+    fail(ErrorCode::bad_file, {options.input},
+         "robot '" + source.model.name() +
+             "' has changed since this table was made; run the pattern again");
   if (!caution.unfit.empty()) source.unfit.push_back(caution.unfit);
   return source;
 }
@@ -223,10 +224,9 @@ CautiousTable table_of_run(const ExportOptions& options, const RunFolder& run,
   if (!options.log.empty()) return {made(log), caution_of(log)};
   const bool disturbed = !log.scenario.empty();
   if (options.pushed && !(run.light ? disturbed : run.pushed.has_value()))
-    fail(ErrorCode::usage,
-         options.input +
-             ": --pushed needs a run with disturbances, and this run has none; leave "
-             "--pushed out");
+    fail(ErrorCode::usage, {options.input},
+         "--pushed needs a run with disturbances, and this run has none; leave "
+         "--pushed out");
   if (run.light) return {made(log), disturbed ? run.pushed_caution : run.reference_caution};
   const bool pushed = options.pushed || !run.reference;
   const TableCaution& caution = !pushed      ? run.reference_caution
@@ -283,9 +283,9 @@ Source source_of(const ExportOptions& options, const Context& context) {
   if (!is_reference_table(options.input)) return source_of_pattern(options, context);
   verify_run_of(options.input);
   if (!options.servo.empty())
-    fail(ErrorCode::usage, options.input +
-                               ": --servo cannot change the content of a table that exists; to "
-                               "choose the content, export the pattern or the run");
+    fail(ErrorCode::usage, {options.input},
+         "--servo cannot change the content of a table that exists; to "
+         "choose the content, export the pattern or the run");
   return source_of_table(options, context, read_reference(options.input),
                          read_table_caution(options.input));
 }
@@ -295,7 +295,7 @@ constexpr double kGltfRate = 60;  // keys of an animation [Hz]; viewers draw eve
 /// The table as an animation of the robot: to be looked at, so neither ramped nor judged.
 void export_gltf(const ExportOptions& options, Context& context) {
   if (fs::path(options.output).extension() != ".glb")
-    fail(ErrorCode::usage, options.output + ": --format gltf needs a file name that ends in .glb");
+    fail(ErrorCode::usage, {options.output}, "--format gltf needs a file name that ends in .glb");
   const Source source = source_of(options, context);
   const Motion motion = motion_of(source.reference, kGltfRate);
   const std::string bytes = glb_bytes(source.model, {motion});
@@ -595,7 +595,7 @@ void export_sign_test(const ExportOptions& options, Context& context) {
     files.emplace_back(folder / (test.name + ".png"), encode_png(sign_test_picture(model, test)));
   files.emplace_back(folder / "sheet.html", sign_test_page(model, tests, extension));
   if (fs::exists(folder) && !fs::is_directory(folder))
-    fail(ErrorCode::bad_file, options.output + ": this is not a folder");
+    fail(ErrorCode::bad_file, {options.output}, "this is not a folder");
   if (fs::exists(folder))
     for (const auto& [path, bytes] : files) refuse_overwriting(context, path);
   fs::create_directories(folder);

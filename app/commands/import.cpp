@@ -71,8 +71,9 @@ void refuse_own_input(const ImportCommand& options) {
   std::error_code ignored;
   for (const fs::path& path : files_of_import(options.out))
     if (fs::equivalent(path, options.file, ignored))
-      fail(ErrorCode::bad_file, options.file + ": the result would overwrite this file (" +
-                                    path.string() + "); choose another name with -o");
+      fail(ErrorCode::bad_file, {options.file},
+           "the result would overwrite this file (" + path.string() +
+               "); choose another name with -o");
 }
 
 void import_motion(const Context& context, const ImportCommand& options) {

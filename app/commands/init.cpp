@@ -38,7 +38,7 @@ class NewFolder {
     made_ = fs::create_directories(folder_, ignored);
     for (const char* name : {"robot.json", "robot.png", "TODO.md"}) {
       if (!fs::is_directory(folder_, ignored))
-        fail(ErrorCode::bad_file, folder_.string() + ": this folder cannot be made");
+        fail(ErrorCode::bad_file, {folder_.string()}, "this folder cannot be made");
       refuse_overwriting(context, folder_ / name);
     }
   }

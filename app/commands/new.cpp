@@ -91,6 +91,24 @@ Dial height_dial(const RobotModel& model, double given) {
   return result;
 }
 
+// Joints of the legs that no motor moves, in words; "" for none. They cannot carry a robot.
+std::string legs_without_motors(const RobotModel& model) {
+  const ActuatorLimits& limits = model.limits();
+  std::vector<std::string> names;
+  for (const Side side : {Side::left, Side::right})
+    for (const int dof : model.leg(side)) {
+      const auto at = static_cast<size_t>(dof);
+      const std::string& name = model.dofs()[at].name;
+      if (limits.has_servo[at] && limits.servo[at].kp <= 0 &&
+          std::find(names.begin(), names.end(), name) == names.end())
+        names.push_back(name);
+    }
+  return names.empty()
+             ? ""
+             : ". These joints of the legs have no motor (kp of their servo is 0): " +
+                   text::join(names, ", ") + "; if they have one, state kp in the sidecar";
+}
+
 // The values of the dials with which the robot can do the motion; the defaults where there are
 // none. Says what was changed, and what limits the robot.
 std::vector<double> values_that_pass(const Context& context, const RobotModel& model,
@@ -107,7 +125,8 @@ std::vector<double> values_that_pass(const Context& context, const RobotModel& m
     context.print("the check accepts this motion" + (changed.empty() ? "" : " with " + changed) +
                   ", but the robot falls in a simulation: " + result.falls + "; " +
                   std::to_string(result.tried) +
-                  " trials found no values that keep the robot standing\n");
+                  " trials found no values that keep the robot standing" +
+                  legs_without_motors(model) + "\n");
   else if (result.found)
     context.print(
         "the default values ask too much of " + model.name() + ". First error: " + result.limit +
@@ -261,8 +280,8 @@ void new_walk(const Context& context, NewOptions options) {
   } catch (const Error& error) {
     const std::string fits = error.code() == ErrorCode::bad_pattern ? what_fits(model, w) : "";
     if (error.code() != ErrorCode::bad_pattern) throw;
-    fail(error.code(), error.what() + (fits.empty() ? what_it_can_do(model, options.robot)
-                                                    : std::string("; ") + fits));
+    throw_with_message(error, error.what() + (fits.empty() ? what_it_can_do(model, options.robot)
+                                                           : std::string("; ") + fits));
   }
   const std::string fits = what_fits(model, w);
   if (!fits.empty()) context.print("  " + fits + "\n");

@@ -57,7 +57,7 @@ RobotModel robot_of_source(const Context& context, const PostureCommand& options
                            const std::string& named) {
   const std::string& robot = options.robot.empty() ? named : options.robot;
   if (robot.empty())
-    fail(ErrorCode::usage, options.source + ": the library names no robot; give --robot ROBOT");
+    fail(ErrorCode::usage, {options.source}, "the library names no robot; give --robot ROBOT");
   return load_robot(robot, robot_search(context), {.meshes = true});
 }
 
@@ -94,21 +94,22 @@ const Angles& posture_of(const PostureSource& source, const PostureCommand& opti
   if (found != source.postures.end()) return found->second;
   std::vector<std::string> names;
   for (const auto& [name, angles] : source.postures) names.push_back(name);
-  fail(ErrorCode::usage, options.source + ": there is no posture '" + options.name + "'" +
-                             text::suggestion(options.name, names) +
-                             " (known: " + text::join_first(names, kMostNamed) + ")");
+  fail(ErrorCode::usage, {options.source},
+       "there is no posture '" + options.name + "'" + text::suggestion(options.name, names) +
+           " (known: " + text::join_first(names, kMostNamed) + ")");
 }
 
-int dof_of(const RobotModel& model, const std::string& joint, const std::string& place) {
+int dof_of(const RobotModel& model, const std::string& joint, const SourcePlace& place) {
   const int dof = model.find_dof(joint);
   if (dof < 0)
-    fail(ErrorCode::usage, place + ": " + model.name() + " has no joint '" + joint + "'" +
-                               text::suggestion(joint, model.dof_names()));
+    fail(ErrorCode::usage, place,
+         model.name() + " has no joint '" + joint + "'" +
+             text::suggestion(joint, model.dof_names()));
   return dof;
 }
 
 // Joints that a posture of a pattern or a library leaves out are as in the robot's home posture.
-Eigen::VectorXd theta_of(const RobotModel& model, const Angles& angles, const std::string& place) {
+Eigen::VectorXd theta_of(const RobotModel& model, const Angles& angles, const SourcePlace& place) {
   Eigen::VectorXd theta = model.posture();
   for (const auto& [joint, angle] : angles) theta[dof_of(model, joint, place)] = angle;
   return theta;
@@ -170,8 +171,8 @@ std::string library_text(const Context& context, const PostureCommand& options,
   }
   const PostureLibrary library = read_posture_library(options.out);
   if (library.postures.contains(options.as) && !context.force)
-    fail(ErrorCode::bad_file,
-         options.out + ": the library already has a posture '" + options.as +
+    fail(ErrorCode::bad_file, {options.out},
+         "the library already has a posture '" + options.as +
              "'; choose another name with --as, or replace the posture with --force");
   return edited_text(read_file(options.out),
                      {{PatternEdit::Kind::set, pointer_of(options.as),
@@ -232,7 +233,7 @@ void draw(const Context& context, const PostureCommand& options) {
   const PostureSource source = source_of(context, options);
   const Angles& angles = posture_of(source, options);
   const RobotModel model = robot_of_source(context, options, source.robot);
-  const Eigen::VectorXd theta = theta_of(model, angles, options.source + ": " + options.name);
+  const Eigen::VectorXd theta = theta_of(model, angles, {options.source, options.name});
   const RobotPicture picture = draw_robot(model, options.view, false, &theta);
   write_png(options.out, picture.image);
   context.print(options.out + "\n");
@@ -247,7 +248,7 @@ void mirror(const Context& context, const PostureCommand& options) {
   const MirrorMap map = mirror_map(model);
   Angles image;
   for (const auto& [joint, angle] : angles) {
-    const auto dof = static_cast<size_t>(dof_of(model, joint, options.source));
+    const auto dof = static_cast<size_t>(dof_of(model, joint, {options.source}));
     image[model.dofs()[static_cast<size_t>(map.dof[dof])].name] = map.sign[dof] * angle;
   }
   save(context, options, model, source.robot, image);
@@ -258,7 +259,7 @@ void adjust(const Context& context, const PostureCommand& options) {
   Angles angles = posture_of(source, options);
   const RobotModel model = robot_of_source(context, options, source.robot);
   for (const auto& [joint, value] : read_pairs(options.joints, "--joint")) {
-    const Dof& dof = model.dofs()[dof_of(model, joint, "--joint")];
+    const Dof& dof = model.dofs()[dof_of(model, joint, {"", "--joint"})];
     angles[joint] = dof.prismatic || options.radians ? value : value * std::numbers::pi / 180;
   }
   save(context, options, model, options.robot.empty() ? source.robot : options.robot, angles);
@@ -314,7 +315,7 @@ void capture(const Context& context, const PostureCommand& options) {
   const RobotModel model = robot_of_run(context, options.robot, instant.robot);
   Angles angles;
   for (size_t i = 0; i < instant.joints.size(); ++i) {
-    dof_of(model, instant.joints[i], options.source);
+    dof_of(model, instant.joints[i], {options.source});
     const double angle = instant.theta[static_cast<Eigen::Index>(i)];
     angles[instant.joints[i]] = std::abs(angle) < kAtRest ? 0 : angle;
   }

@@ -165,8 +165,8 @@ ClipSummary draw_run(const PreviewOptions& options, const std::string& input, co
     return write_glb(model, log, path, own, ghost ? &*ghost : nullptr);
   if (options.strip > 0 || options.exposures > 0) {
     if (path.extension() != ".png")
-      fail(ErrorCode::usage,
-           path.string() + ": --strip and --exposures need a file name that ends in .png");
+      fail(ErrorCode::usage, {path.string()},
+           "--strip and --exposures need a file name that ends in .png");
     const StripOptions strip = strip_options(own, log);
     ClipSummary summary{strip.count, 0, 0, 0, {}};
     const Image image = draw_strip(model, log, strip, progress, &summary.notes);

@@ -74,7 +74,7 @@ RobotModel robot_of(const ReplayCommand& options, const Context& context,
   std::string recorded;
   if (options.robot.empty() && has_head(bytes)) recorded = robot_in_head(bytes, options.file);
   if (options.robot.empty() && recorded.empty())
-    fail(ErrorCode::usage, options.file + ": the file does not name its robot; give --robot ROBOT");
+    fail(ErrorCode::usage, {options.file}, "the file does not name its robot; give --robot ROBOT");
   return robot_of_run(context, options.robot, recorded);
 }
 

@@ -28,9 +28,8 @@ void report_run(ReportCommand options, Context& context) {
     fail(ErrorCode::usage, "--out " + options.output + ": the name must end in .html");
   refuse_overwriting(context, options.output);
   if (!is_run_folder(options.input))
-    fail(ErrorCode::bad_file,
-         options.input +
-             ": this is not a RUN (a folder that `ayumi run` or `ayumi simulate` wrote)");
+    fail(ErrorCode::bad_file, {options.input},
+         "this is not a RUN (a folder that `ayumi run` or `ayumi simulate` wrote)");
   if (!(options.max_megabytes > 0) || options.max_megabytes > 1000)
     fail(ErrorCode::usage, "--max-size: the size must be above 0 and at most 1000 MB");
   options.report.max_bytes = static_cast<size_t>(1e6 * options.max_megabytes);

@@ -406,8 +406,8 @@ void run_patterns(Context& context, const RunCommand& options) {
     const fs::path target =
         several ? fs::path(options.out) / fs::path(pattern).stem() : fs::path(options.out);
     if (std::find(targets.begin(), targets.end(), target) != targets.end())
-      fail(ErrorCode::usage,
-           pattern + ": another input has the same name, so both results would be written to " +
+      fail(ErrorCode::usage, {pattern},
+           "another input has the same name, so both results would be written to " +
                target.string() +
                "; run the command once for each of the two, each time with "
                "another -o");

@@ -56,8 +56,8 @@ std::vector<std::string> files_of_library(const fs::path& folder) {
 void require_target(const fs::path& folder, bool replace) {
   if (!is_there(folder)) return;
   if (!fs::is_directory(folder))
-    fail(ErrorCode::bad_file,
-         folder.string() + ": this is a file, but -o needs a folder; choose another name");
+    fail(ErrorCode::bad_file, {folder.string()},
+         "this is a file, but -o needs a folder; choose another name");
   if (is_there(folder / kStaging / kDelivering)) return;
   if (is_there(folder / kIndex)) {
     files_of_library(folder);
@@ -66,9 +66,9 @@ void require_target(const fs::path& folder, bool replace) {
   }
   for (const char* name : kTop)
     if (is_there(folder / name))
-      fail(ErrorCode::bad_file, (folder / name).string() +
-                                    ": this file already exists and is not a part of a library of "
-                                    "walks; move the file away or choose another folder");
+      fail(ErrorCode::bad_file, {(folder / name).string()},
+           "this file already exists and is not a part of a library of "
+           "walks; move the file away or choose another folder");
 }
 
 }  // namespace
@@ -80,18 +80,17 @@ LibraryFolder::LibraryFolder(const fs::path& folder, const Json& asked, bool rep
   std::error_code error;
   if (is_there(staging_ / kAsked) && !replace) {
     if (read_file(staging_ / kAsked) == text) return;
-    fail(ErrorCode::bad_file,
-         target_.string() +
-             ": this folder holds an unfinished library that was begun with other options; give "
-             "those options to go on, give --force to begin again, or choose another folder");
+    fail(ErrorCode::bad_file, {target_.string()},
+         "this folder holds an unfinished library that was begun with other options; give "
+         "those options to go on, give --force to begin again, or choose another folder");
   }
   // The same question goes on also with --force, unless it was finished and delivered before.
   if (is_there(staging_ / kAsked) && read_file(staging_ / kAsked) == text) return;
   fs::remove_all(staging_, error);
   fs::create_directories(staging_ / "done", error);
   if (error)
-    fail(ErrorCode::bad_file,
-         target_.string() + ": the folder cannot be written (" + error.message() + ")");
+    fail(ErrorCode::bad_file, {target_.string()},
+         "the folder cannot be written (" + error.message() + ")");
   write_file(staging_ / kAsked, text);
 }
 
@@ -134,8 +133,8 @@ void LibraryFolder::deliver(const Json& index, const std::vector<std::string>& p
     }
     fs::rename(staging_ / kIndex, target_ / kIndex);
   } catch (const fs::filesystem_error& error) {
-    fail(ErrorCode::bad_file,
-         target_.string() + ": the folder cannot be written (" + error.code().message() + ")");
+    fail(ErrorCode::bad_file, {target_.string()},
+         "the folder cannot be written (" + error.code().message() + ")");
   }
   std::error_code ignored;
   fs::remove_all(staging_, ignored);

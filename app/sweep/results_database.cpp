@@ -157,7 +157,7 @@ void ResultsDatabase::complain(const std::string& doing) const {
         "name";
   else if (code == SQLITE_BUSY)
     why = "another program is writing to this file; wait until that program has ended";
-  fail(ErrorCode::bad_file, file_.string() + ": " + doing + ": " + why);
+  fail(ErrorCode::bad_file, {file_.string()}, doing + ": " + why);
 }
 
 void ResultsDatabase::execute(const std::string& sql) const {
@@ -174,10 +174,10 @@ void ResultsDatabase::open(int flags) {
 
 ResultsDatabase::ResultsDatabase(const fs::path& file, Mode mode) : file_(file) {
   if (!fs::exists(file))
-    fail(ErrorCode::bad_file,
-         file.string() + ": this file does not exist; name a file that ayumi sweep wrote");
+    fail(ErrorCode::bad_file, {file.string()},
+         "this file does not exist; name a file that ayumi sweep wrote");
   if (!fs::is_regular_file(fs::symlink_status(file)))
-    fail(ErrorCode::bad_file, file.string() + ": this is not a regular file");
+    fail(ErrorCode::bad_file, {file.string()}, "this is not a regular file");
   // Also for reading: the last one who could write removes the files that SQLite keeps beside a
   // database. Where the file is write-protected, SQLite opens it for reading.
   open(SQLITE_OPEN_READWRITE);
@@ -289,14 +289,14 @@ void ResultsDatabase::read_head() {
     return statement.integer(0);
   };
   if (single("PRAGMA application_id") != kApplication)
-    fail(ErrorCode::bad_file,
-         file_.string() + ": this file does not hold results of ayumi sweep; choose another name");
+    fail(ErrorCode::bad_file, {file_.string()},
+         "this file does not hold results of ayumi sweep; choose another name");
   const long format = single("PRAGMA user_version");
   if (format != kDatabaseFormat)
-    fail(ErrorCode::bad_file, file_.string() + ": the results have version " +
-                                  std::to_string(format) + " of the format, but this program has " +
-                                  std::to_string(kDatabaseFormat) +
-                                  "; use the version of Ayumi that wrote the results");
+    fail(ErrorCode::bad_file, {file_.string()},
+         "the results have version " + std::to_string(format) +
+             " of the format, but this program has " + std::to_string(kDatabaseFormat) +
+             "; use the version of Ayumi that wrote the results");
   const auto rows = [&](const std::string& sql, const auto& take) {
     Statement statement(database_, sql);
     if (!statement.good()) complain("the file cannot be read");
@@ -345,8 +345,8 @@ void ResultsDatabase::require_study(const SweepHead& asked, const std::string& r
   if (differs.empty() && head_.fingerprint() != asked.fingerprint())
     differs = "the inputs are different";
   if (!differs.empty())
-    fail(ErrorCode::bad_file, file_.string() + ": this file holds the results of another study (" +
-                                  differs + "); " + remedy);
+    fail(ErrorCode::bad_file, {file_.string()},
+         "this file holds the results of another study (" + differs + "); " + remedy);
 }
 
 std::vector<std::string> ResultsDatabase::shards() const {
@@ -446,8 +446,8 @@ long ResultsDatabase::merge(const fs::path& other) {
     const ResultsDatabase theirs(other, Mode::read);
     if (theirs.head().fingerprint() != head_.fingerprint()) {
       theirs.require_study(head_, "leave this file out");
-      fail(ErrorCode::bad_file,
-           other.string() + ": this file holds the results of another study; leave this file out");
+      fail(ErrorCode::bad_file, {other.string()},
+           "this file holds the results of another study; leave this file out");
     }
   }
   execute("ATTACH DATABASE " + sql_text(other.string()) + " AS theirs");
@@ -471,10 +471,10 @@ long ResultsDatabase::merge(const fs::path& other) {
                           text::join(unequal, " OR ") + ") ORDER BY 1 LIMIT 1");
   if (!different.good()) complain("the files cannot be compared");
   if (different.step())
-    fail(ErrorCode::bad_file, other.string() + ": the result of case " +
-                                  std::to_string(different.integer(0)) +
-                                  " differs from the result in " + file_.string() +
-                                  "; nothing of " + other.string() + " was merged");
+    fail(ErrorCode::bad_file, {other.string()},
+         "the result of case " + std::to_string(different.integer(0)) +
+             " differs from the result in " + file_.string() + "; nothing of " + other.string() +
+             " was merged");
   if (!different.done()) complain("the files cannot be compared");
   different.reset();
   execute(
@@ -509,8 +509,9 @@ void ResultsDatabase::write_csv(const fs::path& file) const {
   std::ofstream stream(file, std::ios::binary);
   const auto require_written = [&] {
     if (!stream)
-      fail(ErrorCode::bad_file, file.string() + ": the table cannot be written: " +
-                                    std::strerror(errno) + "; make room and try again");
+      fail(ErrorCode::bad_file, {file.string()},
+           std::string("the table cannot be written: ") + std::strerror(errno) +
+               "; make room and try again");
   };
   csv([&](const std::string& line) {
     stream << line;

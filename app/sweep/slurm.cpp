@@ -183,10 +183,9 @@ State read_state(const fs::path& folder) {
     for (const SlurmJson& array : json.at("arrays"))
       state.arrays.push_back({array.at("number"), array.at("job")});
   } catch (const SlurmJson::exception&) {
-    fail(ErrorCode::bad_file,
-         file.string() +
-             ": this file does not hold the state of a sweep on Slurm, so the sweep cannot go on; "
-             "cancel the jobs of the sweep that still run, and remove the folder of this file");
+    fail(ErrorCode::bad_file, {file.string()},
+         "this file does not hold the state of a sweep on Slurm, so the sweep cannot go on; "
+         "cancel the jobs of the sweep that still run, and remove the folder of this file");
   }
   return state;
 }

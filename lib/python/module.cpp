@@ -9,30 +9,6 @@ namespace ayumi::python {
 
 namespace {
 
-/// Whether the first part of a message, which `rest` follows, is the name of a file: it has the
-/// form of a path, or a place in the file comes next.
-bool is_file(const std::string& part, const std::string& rest) {
-  return part.find('/') != std::string::npos || rest.starts_with("/") ||
-         rest.starts_with("line ") ||
-         (part.find(' ') == std::string::npos && part.find('.') != std::string::npos);
-}
-
-/// Beginning of a message "file: place: what is wrong": the file and, where there is one, the line
-/// or the place in the file. Empty where the message is not about a place.
-std::string place_of(const std::string& message) {
-  size_t end = 0;
-  while (true) {
-    const size_t colon = message.find(": ", end);
-    if (colon == std::string::npos) break;
-    const std::string part = message.substr(end, colon - end);
-    const bool file = end == 0 && is_file(part, message.substr(colon + 2));
-    const bool inside = end > 0 && (part.starts_with("/") || part.starts_with("line "));
-    if (!file && !inside) break;
-    end = colon + 2;
-  }
-  return end == 0 ? "" : message.substr(0, end - 2);
-}
-
 const char* name_of(ErrorCode code) {
   switch (code) {
     case ErrorCode::usage:
@@ -92,7 +68,7 @@ void bind_errors(py::module_& m) {
     } catch (const Error& e) {
       const py::object raised = error(e.what());
       raised.attr("code") = name_of(e.code());
-      raised.attr("place") = place_of(e.what());
+      raised.attr("place") = text_of(e.place());
       PyErr_SetObject(error.ptr(), raised.ptr());
     } catch (const Interrupted&) {
       PyErr_SetString(interrupted.ptr(), "the progress callback stopped the work");

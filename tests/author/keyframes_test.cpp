@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 Keyframe key_of(double t) {
   Keyframe key;
   key.t = t;
-  key.place = "keyframes";
+  key.place.inside = "/keyframes";
   return key;
 }
 

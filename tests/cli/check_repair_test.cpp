@@ -69,7 +69,7 @@ TEST_F(CheckRepair, TheMistakeIsNamedFirst) {
                          "decimal point one place further left (0.09 m), or with values up to "),
             std::string::npos)
       << far.err;
-  EXPECT_NE(far.err.find("the first error is: phases/5: t = "), std::string::npos);
+  EXPECT_NE(far.err.find("the first error is: /phases/5: t = "), std::string::npos);
   // A value that is wrong by a factor of a thousand has a range too, which holds what it is read
   // as.
   write(folder / "step.json", R"({"format": "ayumi.pattern/1", "robot": "hoap1",
@@ -138,7 +138,7 @@ TEST_F(CheckRepair, AFootThatItsKeysDragIsNamed) {
   write(folder / "dragged.json", text.replace(at, key.size(), R"("right": [0, -0.044])"));
   const Output answer = ayumi({"check", "dragged.json", "-q"});
   EXPECT_EQ(answer.exit_code, 3);
-  EXPECT_NE(answer.err.find("dragged.json: phases/0: the right foot stands at [0, -0.039, 0] m"),
+  EXPECT_NE(answer.err.find("dragged.json: /phases/0: the right foot stands at [0, -0.039, 0] m"),
             std::string::npos)
       << answer.err;
   EXPECT_NE(answer.err.find("is at [0, -0.044, 0] m, 5 mm away"), std::string::npos) << answer.err;
@@ -614,11 +614,11 @@ TEST_F(CheckRepair, WishesOfTheFile) {
     }
   }
   for (const auto& [wishes, message] : std::vector<std::pair<std::string, std::string>>{
-           {R"({"lock": {"joints": ["l_kne"]}})", "repair/lock/joints/0: the robot 'hoap1'"},
+           {R"({"lock": {"joints": ["l_kne"]}})", "/repair/lock/joints/0: the robot 'hoap1'"},
            {R"({"lock": {"windows": [[90, 91]]}})", "after the end of the motion at"},
            {R"({"lock": {"keyframes": [21]}})",
             "21 is not the number of a keyframe; keyframes are numbered from 0 to 20"},
-           {R"({"weights": {"l_kne": 2}})", "repair/weights/l_kne: the robot"}}) {
+           {R"({"weights": {"l_kne": 2}})", "/repair/weights/l_kne: the robot"}}) {
     with_wishes(wishes);
     const Output wrong = ayumi({"repair", "outside.json", "-o", "out.json"});
     EXPECT_EQ(wrong.exit_code, 3) << wishes;

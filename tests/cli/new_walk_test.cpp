@@ -33,6 +33,17 @@ TEST(NewWalk, StairsAreWrittenForTheProfileThatClimbsThem) {
   EXPECT_NE(check.out.find("(`export --format hoap` judges by these motors)"), std::string::npos);
 }
 
+TEST(NewWalk, LegsWithoutMotorsAreNamedWhereTheRobotFalls) {
+  Folder folder;
+  write(folder.path() / "limp" / "robot.json", R"({"format": "ayumi.robot/1", "base": "hoap1",
+    "servos": [{"joints": ["l_knee", "r_knee"], "kp": 0, "kd": 0}]})");
+  const Output out = made(folder, {"--robot", "limp", "--steps", "2"});
+  EXPECT_NE(out.out.find(
+                "These joints of the legs have no motor (kp of their servo is 0): l_knee, r_knee"),
+            std::string::npos)
+      << out.out << out.err;
+}
+
 TEST(NewWalk, OnTheLevelItIsTheRobotsOwn) {
   Folder folder;
   EXPECT_EQ(made(folder, {"--steps", "2"}).out.find("profile"), std::string::npos);

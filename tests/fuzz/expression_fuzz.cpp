@@ -11,7 +11,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   is_expression(text);
   double value = 0;
   if (fuzz::accepts([&] {
-        value = evaluate_expression(text, {{"a", 2.0}, {"stride", 0.05}, {"zero", 0.0}}, "here");
+        value = evaluate_expression(text, {{"a", 2.0}, {"stride", 0.05}, {"zero", 0.0}}, {"here"});
       }))
     fuzz::expect(std::isfinite(value), "the value of an expression is finite");
   return 0;

@@ -9,7 +9,7 @@ namespace ayumi {
 namespace {
 
 double value(const std::string& text) {
-  return evaluate_expression(text, {{"a", 3}, {"step length", 0.5}}, "f: /x");
+  return evaluate_expression(text, {{"a", 3}, {"step length", 0.5}}, {"f", "/x"});
 }
 
 std::string value_error(const std::string& text) {
@@ -28,7 +28,7 @@ TEST(Expression, FollowsTheUsualRules) {
 
 TEST(Expression, NamesWhatItUsed) {
   std::set<std::string> used;
-  evaluate_expression("${a} + ${a}", {{"a", 1}, {"b", 2}}, "", &used);
+  evaluate_expression("${a} + ${a}", {{"a", 1}, {"b", 2}}, {}, &used);
   EXPECT_EQ(used, std::set<std::string>{"a"});
 }
 

@@ -6,7 +6,6 @@
 
 #include "ayumi/author/edit/edit.hpp"
 #include "ayumi/base/error.hpp"
-#include "ayumi/base/placed_error.hpp"
 #include "ayumi/io/pattern/expression.hpp"
 #include "ayumi/io/pattern/pattern_edit.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"

@@ -155,7 +155,7 @@ TEST(Flight, AHandFollowsItsTargetInTheAir) {
       if (key == pattern.keyframes.end() || key->t > t + 1e-9) {
         Keyframe made;
         made.t = t;
-        made.place = "keyframes";
+        made.place.inside = "/keyframes";
         key = pattern.keyframes.insert(key, made);
       }
       return *key;

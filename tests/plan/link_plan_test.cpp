@@ -37,7 +37,7 @@ Keyframe& at(Pattern& pattern, double t) {
     if (key.t == t) return key;
   Keyframe key;
   key.t = t;
-  key.place = "keyframes/" + std::to_string(pattern.keyframes.size());
+  key.place.inside = "/keyframes/" + std::to_string(pattern.keyframes.size());
   pattern.keyframes.push_back(key);
   return pattern.keyframes.back();
 }

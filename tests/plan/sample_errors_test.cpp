@@ -20,7 +20,7 @@ std::string message_of(const std::function<void(Pattern&)>& change) {
   p.steps = 1;
   Pattern pattern = walk_pattern(model, p);
   pattern.file = "walk.json";
-  for (Keyframe& key : pattern.keyframes) key.place = "walk.json: /" + key.place;
+  for (Keyframe& key : pattern.keyframes) key.place.file = "walk.json";
   change(pattern);
   try {
     sample(model, pattern, {.dt = 0.005});
@@ -70,14 +70,14 @@ TEST(SampleErrors, UnknownPosture) {
   expect_words(message_of([](Pattern& p) { p.keyframes[0].posture = "squatt"; }),
                {"/keyframes/0", "squatt", "did you mean 'squat'", "known:"});
   expect_words(message_of([](Pattern& p) { p.default_posture = "hme"; }),
-               {"walk.json: defaults/posture", "hme"});
+               {"walk.json: /defaults/posture", "hme"});
 }
 
 TEST(SampleErrors, TimesOutOfOrder) {
   expect_words(message_of([](Pattern& p) { p.keyframes[2].t = p.keyframes[1].t; }),
                {"/keyframes/2", "times must increase"});
   expect_words(message_of([](Pattern& p) { p.phases[2].until = p.phases[1].until; }),
-               {"walk.json: phases/2", "give a later \"until\""});
+               {"walk.json: /phases/2", "give a later \"until\""});
 }
 
 TEST(SampleErrors, KeysBeyondTheEnd) {
@@ -107,7 +107,7 @@ TEST(SampleErrors, FlightNeedsMore) {
 TEST(SampleErrors, FootOutOfReach) {
   const std::string message =
       message_of([](Pattern& p) { p.phases[1].swing->to.position.x() = 0.35; });
-  expect_words(message, {"walk.json: phases/", "t = ", "foot is out of reach by", " mm",
+  expect_words(message, {"walk.json: /phases/", "t = ", "foot is out of reach by", " mm",
                          "lower the COG height"});
 }
 

@@ -214,7 +214,7 @@ TEST(Sample, WeightTimesAccelerationIsTheVerticalForce) {
   Keyframe key;
   key.t = 1.6;
   key.cog_height = 0.245;
-  key.place = "keyframes/x";
+  key.place.inside = "/keyframes/x";
   auto at = pattern.keyframes.begin();
   while (at != pattern.keyframes.end() && at->t < key.t) ++at;
   if (at != pattern.keyframes.end() && at->t == key.t) key.t += 0.0005;

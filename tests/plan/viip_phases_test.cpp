@@ -77,7 +77,7 @@ TEST(ViipPhases, ComplaintsNameThePlace) {
   Pattern keyed = after_goal(walk, 0.5);
   Keyframe key;
   key.t = 0.2;
-  key.place = "keyframes/0";
+  key.place.inside = "/keyframes/0";
   keyed.keyframes.insert(keyed.keyframes.begin(), key);
   EXPECT_NE(complaint(keyed).find("keyframes/0: the key at 0.2 s lies inside the VIIP phase"),
             std::string::npos);

@@ -271,6 +271,31 @@ class Errors(unittest.TestCase):
             ayumi.load_robot("no_such_robot")
         self.assertEqual(caught.exception.code, "bad_file")
 
+    def test_places_do_not_depend_on_the_words_of_a_message(self):
+        with tempfile.TemporaryDirectory() as folder:
+            # ": " in a name.
+            path = pathlib.Path(folder) / "new: walk.json"
+            path.write_text('{"format": 1}')
+            with self.assertRaises(ayumi.Error) as caught:
+                ayumi.read_pattern(path)
+            self.assertEqual(caught.exception.place, str(path) + ": /format")
+            # A phase that legs cannot do.
+            text = json.loads(ayumi.read_pattern(WALK).text())
+            text["defaults"]["cog_height"] = 0.4
+            path.write_text(json.dumps(text))
+            with self.assertRaises(ayumi.Error) as caught:
+                ayumi.load_task(path)
+            self.assertEqual(caught.exception.place, str(path) + ": /phases/0")
+            # A line of a table.
+            table = pathlib.Path(folder) / "motion"
+            table.write_text("t,r_knee\n0,0\n0.1,nan\n0.2,0\n")
+            with self.assertRaises(ayumi.Error) as caught:
+                ayumi.import_motion(table, ayumi.load_robot("hoap1", meshes=False))
+            self.assertEqual(caught.exception.place, f"{table}:3")
+        with self.assertRaises(ayumi.Error) as caught:
+            ayumi.read_pattern("nowhere")  # the name looks like no path
+        self.assertEqual(caught.exception.place, "nowhere")
+
     def test_wrong_calls(self):
         task = short_stand()
         with self.assertRaises(ayumi.Error) as caught:

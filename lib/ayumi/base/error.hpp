@@ -5,6 +5,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace ayumi {
 
@@ -17,13 +18,36 @@ enum class ErrorCode {
   internal      ///< a broken invariant of Ayumi itself (exit 5)
 };
 
+/// What an error is about, for programs. The message alone says everything to people.
+struct SourcePlace {
+  std::string file = {};
+  std::string inside = {};  ///< JSON pointer, or words for what has none; "" for the whole file
+  long line = 0;            ///< counted from 1; 0: not known
+  long column = 0;          ///< counted from 1; 0: not known
+  /// The error is about a name that nothing has, so that no other number mends it.
+  bool unknown_name = false;
+  /// The error names the value that is wrong. A cause that leaves other errors says less.
+  bool names_value = false;
+
+  bool empty() const { return file.empty() && inside.empty() && line == 0; }
+};
+
+/// "file:line:column: inside", without the parts that are not known.
+std::string text_of(const SourcePlace& place);
+
+/// A place within `place`: "/keyframes/3" and "/zmp" give "/keyframes/3/zmp".
+SourcePlace operator+(SourcePlace place, const std::string& inside);
+
 class Error : public std::runtime_error {
  public:
-  Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
+  Error(ErrorCode code, const std::string& message, SourcePlace place = {})
+      : std::runtime_error(message), code_(code), place_(std::move(place)) {}
   ErrorCode code() const { return code_; }
+  const SourcePlace& place() const { return place_; }
 
  private:
   ErrorCode code_;
+  SourcePlace place_;
 };
 
 /// Long work was stopped by its progress callback (see progress.hpp); the application exits 130.
@@ -32,8 +56,32 @@ class Interrupted : public std::runtime_error {
   Interrupted() : std::runtime_error("interrupted") {}
 };
 
-/// Throws Error(code, message).
+/// Throws Error(code, message) about no file.
 [[noreturn]] void fail(ErrorCode code, const std::string& message);
+
+/// Throws Error(code, "place: what", place).
+[[noreturn]] void fail(ErrorCode code, const SourcePlace& place, const std::string& what);
+
+/// Throws Error(bad_pattern) of a pattern that names what is not there.
+[[noreturn]] void fail_unknown_name(SourcePlace place, const std::string& what);
+
+/// Throws `error` again with another message; code and place stay.
+[[noreturn]] inline void throw_with_message(const Error& error, const std::string& message) {
+  throw Error(error.code(), message, error.place());
+}
+
+/// Calls `work`. An Error that leaves it without a place gets this one; its message stays.
+template <typename Work>
+auto at_place(SourcePlace place, const Work& work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    if (!error.place().empty()) throw;
+    place.unknown_name = error.place().unknown_name;
+    place.names_value = error.place().names_value;
+    throw Error(error.code(), error.what(), place);
+  }
+}
 
 /// Throws Error(internal, message) unless `condition` holds. For invariants, not for user input.
 inline void require(bool condition, const char* message) {

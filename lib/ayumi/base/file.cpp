@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 std::string read_file(const fs::path& path, size_t max_bytes) {
   const auto refuse = [&](const std::string& reason) {
-    fail(ErrorCode::bad_file, path.string() + ": " + reason);
+    fail(ErrorCode::bad_file, {path.string()}, reason);
   };
   // What the file is, is asked of the open file, which nobody can exchange any more. Without
   // O_NONBLOCK, opening a named pipe would wait for its writer.
@@ -70,10 +70,10 @@ void require_file_target(const fs::path& path) {
   const fs::path folder = folder_of(path);
   std::error_code error;
   if (!fs::is_directory(folder, error))
-    fail(ErrorCode::bad_file,
-         path.string() + ": the folder " + folder.string() + " does not exist; create it first");
+    fail(ErrorCode::bad_file, {path.string()},
+         "the folder " + folder.string() + " does not exist; create it first");
   const auto refuse = [&](const std::string& reason) {
-    fail(ErrorCode::bad_file, path.string() + ": " + reason);
+    fail(ErrorCode::bad_file, {path.string()}, reason);
   };
   switch (fs::symlink_status(path, error).type()) {
     case fs::file_type::not_found:
@@ -106,9 +106,8 @@ void require_file_target(const fs::path& path) {
 void refuse_existing(const fs::path& path) {
   std::error_code ignored;
   if (fs::exists(fs::symlink_status(path, ignored)))
-    fail(
-        ErrorCode::bad_file,
-        path.string() + ": this already exists; choose another name, or overwrite it with --force");
+    fail(ErrorCode::bad_file, {path.string()},
+         "this already exists; choose another name, or overwrite it with --force");
 }
 
 void write_file_with(const fs::path& path, const std::function<void(const fs::path&)>& produce) {
@@ -122,8 +121,8 @@ void write_file_with(const fs::path& path, const std::function<void(const fs::pa
   } catch (const fs::filesystem_error& error) {
     std::error_code ignored;
     fs::remove(temporary, ignored);
-    fail(ErrorCode::bad_file,
-         path.string() + ": the file cannot be written (" + error.code().message() + ")");
+    fail(ErrorCode::bad_file, {path.string()},
+         "the file cannot be written (" + error.code().message() + ")");
   } catch (...) {
     std::error_code ignored;
     fs::remove(temporary, ignored);
@@ -138,8 +137,8 @@ void write_file(const fs::path& path, const std::string& bytes) {
     stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     stream.close();
     if (!stream)
-      fail(ErrorCode::bad_file,
-           path.string() + ": the file cannot be written (" + std::strerror(errno) + ")");
+      fail(ErrorCode::bad_file, {path.string()},
+           std::string("the file cannot be written (") + std::strerror(errno) + ")");
   });
 }
 

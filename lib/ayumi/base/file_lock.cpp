@@ -33,7 +33,7 @@ LockedFolder lock_folder(const fs::path& folder, const std::string& name, const 
   const std::string own =
       name == folder.string() ? "the folder " : "the lock folder " + folder.string() + " ";
   const auto stop = [&](const std::string& reason) {
-    fail(ErrorCode::bad_file, name + ": " + (reason == busy ? "" : own) + reason);
+    fail(ErrorCode::bad_file, {name}, (reason == busy ? "" : own) + reason);
   };
   LockedFolder locked{.folder = folder, .file = folder / ".ayumi_lock"};
   for (int i = 0; i < kTries; ++i) {

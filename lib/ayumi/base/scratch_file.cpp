@@ -54,7 +54,7 @@ std::string ScratchFile::read(size_t begin, size_t count) const {
 }
 
 void ScratchFile::refuse(const std::string& what) const {
-  fail(ErrorCode::bad_file, folder_.string() + ": " + what + " (" + std::strerror(errno) + ")");
+  fail(ErrorCode::bad_file, {folder_.string()}, what + " (" + std::strerror(errno) + ")");
 }
 
 }  // namespace ayumi

@@ -267,8 +267,8 @@ Comparison compare(const RobotModel& model, const SimulationLog& log,
     result.end = fell;
   }
   if (result.end - result.begin < 10 * interval)
-    fail(ErrorCode::bad_file,
-         file + ": the recording lasts from " + text::fixed(result.shift, 3) + " to " +
+    fail(ErrorCode::bad_file, {file},
+         "the recording lasts from " + text::fixed(result.shift, 3) + " to " +
              text::fixed(result.shift + lasts, 3) + " s of the run, which lasts " +
              text::fixed(simulated.duration(), 3) + " s. The time to compare is " +
              text::fixed(std::max(0.0, result.end - result.begin), 3) + " s, but at least " +

@@ -189,9 +189,7 @@ std::vector<std::string> motion_complaints(const RobotModel& model, const AngleT
 
 void require_answer(const RobotModel& model, const AngleTable& command, const AngleTable& measured,
                     double longest_lag, const std::string& file) {
-  const auto complain = [&](const std::string& what) {
-    fail(ErrorCode::bad_file, file + ": " + what);
-  };
+  const auto complain = [&](const std::string& what) { fail(ErrorCode::bad_file, {file}, what); };
   std::vector<Index> dofs = moving_joints(command, measured);
   if (dofs.empty())
     complain("the command of this recording moves no joint by " + text::brief(kMoves / kDegree) +
@@ -251,19 +249,18 @@ void require_loads(const SensorTable& loads, const AngleTable& measured, double 
   if (const std::string wrong = loads_rows_complaint(loads, measured);
       !wrong.empty() && std::abs(loads.dt * static_cast<double>(loads.foot_load.rows() - 1) -
                                  measured.duration()) <= kLengthTime)
-    fail(ErrorCode::bad_file, file + ": " + wrong);
+    fail(ErrorCode::bad_file, {file}, wrong);
   const double lasts = loads.dt * static_cast<double>(loads.foot_load.rows() - 1);
   if (std::abs(lasts - measured.duration()) > kLengthTime)
-    fail(ErrorCode::bad_file, file + ": the recording lasts " + text::fixed(lasts, 3) +
-                                  " s, but the measured angles last " +
-                                  text::fixed(measured.duration(), 3) +
-                                  " s; the file of the load cells is incomplete, has another rate "
-                                  "(give --rate), or belongs to another recording");
+    fail(ErrorCode::bad_file, {file},
+         "the recording lasts " + text::fixed(lasts, 3) + " s, but the measured angles last " +
+             text::fixed(measured.duration(), 3) +
+             " s; the file of the load cells is incomplete, has another rate "
+             "(give --rate), or belongs to another recording");
   if (agreement < kStandingShare)
-    fail(ErrorCode::bad_file,
-         file + ": while one foot stands, its load cells carry only " +
-             text::fixed(100 * agreement, 0) + " % of the weight (at least " +
-             text::fixed(100 * kStandingShare, 0) +
+    fail(ErrorCode::bad_file, {file},
+         "while one foot stands, its load cells carry only " + text::fixed(100 * agreement, 0) +
+             " % of the weight (at least " + text::fixed(100 * kStandingShare, 0) +
              " % are expected); the readings of the load cells are shifted in time or "
              "belong to another recording, or left and right are exchanged");
 }

@@ -76,8 +76,8 @@ ImportedPattern of_rows(const RobotModel& model, ImportedMotion imported,
 ImportedPattern import_pattern(const std::string& bytes, const std::string& file,
                                const RobotModel& model, const PatternImport& options) {
   if (bytes.find("\"ayumi.pattern/") != std::string::npos)
-    fail(ErrorCode::bad_file,
-         file + ": this is a pattern already; import reads motions in the formats " +
+    fail(ErrorCode::bad_file, {file},
+         "this is a pattern already; import reads motions in the formats " +
              text::join(read_format_names(), ", "));
   std::optional<ImportedKeys> keys = read_key_poses(bytes, file, model, options.reading);
   ImportedPattern result =

@@ -29,7 +29,7 @@ Task load_task(Pattern pattern, const TaskOptions& options, const Progress& prog
       return load_robot(name, options.robots, {.meshes = options.meshes, .progress = progress});
     } catch (const Error& error) {
       if (!options.robot.empty() || error.code() != ErrorCode::bad_file) throw;
-      fail(error.code(), in_file(pattern, "/robot: ") + error.what());
+      fail(error.code(), in_file(pattern, "/robot"), error.what());
     }
   }();
   return load_task(std::move(pattern), {std::move(robot), name}, options.profile, progress,

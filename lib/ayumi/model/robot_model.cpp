@@ -119,11 +119,10 @@ class TreeBuilder {
       const int child = link_index(each.child);
       if (each.type == JointType::floating)
         complain_urdf(
-            robot_,
-            "joint " + each.name +
-                ": a floating joint may only carry the whole robot; its parent "
-                "must be the root link, and the root link must have no mass, no shape and no other "
-                "joint");
+            robot_, "joint " + each.name,
+            "a floating joint may only carry the whole robot; its parent "
+            "must be the root link, and the root link must have no mass, no shape and no other "
+            "joint");
       if (each.type == JointType::fixed)
         add_link(child, body, pose * each.origin);
       else
@@ -178,9 +177,8 @@ void require_masses(const RobotDescription& robot, const std::vector<Body>& bodi
       std::find_if(robot.links.begin(), robot.links.end(),
                    [&](const LinkDescription& link) { return link.name == first; });
   massless.erase(massless.begin());
-  complain_urdf(robot,
-                "link " + first + ": " +
-                    (description->has_inertial ? "its mass is 0" : "it has no <inertial>") +
+  complain_urdf(robot, "link " + first,
+                std::string(description->has_inertial ? "its mass is 0" : "it has no <inertial>") +
                     (first == bodies[0].name ? " although it is the root of a robot that moves"
                                              : " although a joint moves it") +
                     "; give it a mass and an inertia" +
@@ -245,10 +243,11 @@ void validate_postures(const RobotDescription& robot, const std::vector<Dof>& do
       const bool low = value < dof.lower;
       const double unit = dof.prismatic ? 1 : EIGEN_PI / 180;
       const std::string unit_name = dof.prismatic ? " m" : " deg";
-      complain_sidecar(robot, "posture '" + name + "': the joint '" + dof.name + "' is at " +
-                                  text::brief(value / unit) + unit_name +
-                                  (low ? ", below its limit of " : ", above its limit of ") +
-                                  text::brief((low ? dof.lower : dof.upper) / unit) + unit_name);
+      complain_sidecar(robot, "",
+                       "posture '" + name + "': the joint '" + dof.name + "' is at " +
+                           text::brief(value / unit) + unit_name +
+                           (low ? ", below its limit of " : ", above its limit of ") +
+                           text::brief((low ? dof.lower : dof.upper) / unit) + unit_name);
     }
 }
 
@@ -310,7 +309,7 @@ RobotModel::RobotModel(RobotDescription description) : description_(std::move(de
     legs_.push_back(dofs_to_root(bodies_, link.body));
   }
   if (has_soles() && soles_[0].body == soles_[1].body)
-    complain_sidecar(description_, "/soles: both feet are on one body; name two foot links");
+    complain_sidecar(description_, "/soles", "both feet are on one body; name two foot links");
   require_servos_that_fit(*this);
 }
 
@@ -334,7 +333,7 @@ int RobotModel::find_link(const std::string& link_name) const {
 
 const Sole& RobotModel::sole(Side side) const {
   if (!has_soles())
-    complain_sidecar(description_, "the robot has no soles; give /soles/left and /soles/right");
+    complain_sidecar(description_, "", "the robot has no soles; give /soles/left and /soles/right");
   return soles_[static_cast<int>(side)];
 }
 
@@ -347,8 +346,9 @@ const ActuatorLimits& RobotModel::limits(const std::string& profile) const {
   if (profile.empty()) return limits_.front();
   for (const ActuatorLimits& limits : limits_)
     if (limits.name == profile) return limits;
-  complain_sidecar(description_, "no actuator profile '" + profile +
-                                     "'; known: " + text::join(profile_names(), ", "));
+  complain_sidecar(
+      description_, "",
+      "no actuator profile '" + profile + "'; known: " + text::join(profile_names(), ", "));
 }
 
 std::vector<std::string> RobotModel::profile_names() const {
@@ -362,8 +362,9 @@ Eigen::VectorXd RobotModel::posture(const std::string& posture_name) const {
   if (found == description_.postures.end()) {
     std::vector<std::string> known;
     for (const auto& [name, values] : description_.postures) known.push_back(name);
-    complain_sidecar(description_, "no posture '" + posture_name +
-                                       "'; known: " + text::join_first(known, kMostNamed));
+    complain_sidecar(
+        description_, "",
+        "no posture '" + posture_name + "'; known: " + text::join_first(known, kMostNamed));
   }
   Eigen::VectorXd theta = Eigen::VectorXd::Zero(dof_count());
   for (int i = 0; i < dof_count(); ++i) theta[i] = value_or(found->second, dofs_[i].name, 0.0);

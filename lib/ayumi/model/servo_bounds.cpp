@@ -83,9 +83,9 @@ void require_servos_that_fit(const RobotModel& model) {
                                     ". Check the unit of the constant, and the masses of the links";
         const RobotDescription& robot = model.description();
         if (robot.sidecar_file.empty())
-          complain_urdf(robot, message);
+          complain_urdf(robot, "", message);
         else
-          complain_sidecar(robot, message);
+          complain_sidecar(robot, "", message);
       }
     }
   }

@@ -37,44 +37,48 @@ std::string twice(const std::vector<std::string>& names) {
 }
 
 void validate_inertia(const RobotDescription& robot, const LinkDescription& link) {
-  const std::string where = "link " + link.name + ": ";
+  const std::string where = "link " + link.name;
   const Inertia& inertia = link.inertia;
   if (!std::isfinite(inertia.mass) || !inertia.com.allFinite() || !inertia.about_com.allFinite())
-    complain_urdf(robot, where + "its inertia holds a number that is not finite; correct it");
+    complain_urdf(robot, where, "its inertia holds a number that is not finite; correct it");
   if (inertia.mass < 0)
-    complain_urdf(robot, where + "mass " + text::exact(inertia.mass) +
-                             " kg is negative; give the link its mass");
+    complain_urdf(robot, where,
+                  "mass " + text::exact(inertia.mass) + " kg is negative; give the link its mass");
   if (inertia.mass > kLargestMass)
-    complain_urdf(robot, where + "mass " + text::exact(inertia.mass) + " kg is above " +
-                             text::exact(kLargestMass) + " kg; URDF masses are in kilograms");
+    complain_urdf(robot, where,
+                  "mass " + text::exact(inertia.mass) + " kg is above " +
+                      text::exact(kLargestMass) + " kg; URDF masses are in kilograms");
   if (inertia.com.cwiseAbs().maxCoeff() > kLargestLength)
-    complain_urdf(robot, where + "its centre of mass lies farther than " +
-                             text::exact(kLargestLength) + " m away; URDF lengths are in metres");
+    complain_urdf(robot, where,
+                  "its centre of mass lies farther than " + text::exact(kLargestLength) +
+                      " m away; URDF lengths are in metres");
   const Eigen::Vector3d principal = symmetric_eigenvalues(inertia.about_com);
   if (principal.minCoeff() < -1e-9 * std::max(1e-6, principal.cwiseAbs().maxCoeff()))
-    complain_urdf(robot, where + "its inertia tensor has the negative principal moment " +
-                             text::brief(principal.minCoeff()) +
-                             " kg m^2, which no body can have; check the products of inertia");
+    complain_urdf(robot, where,
+                  "its inertia tensor has the negative principal moment " +
+                      text::brief(principal.minCoeff()) +
+                      " kg m^2, which no body can have; check the products of inertia");
 }
 
 void validate_joint_numbers(const RobotDescription& robot, const JointDescription& joint) {
-  const std::string where = "joint " + joint.name + ": ";
+  const std::string where = "joint " + joint.name;
   if (!joint.origin.matrix().allFinite() || !joint.axis.allFinite() ||
       !std::isfinite(joint.lower + joint.upper + joint.velocity + joint.effort + joint.damping +
                      joint.friction + joint.mimic_multiplier + joint.mimic_offset))
-    complain_urdf(robot, where + "a number of this joint is not finite; correct it");
+    complain_urdf(robot, where, "a number of this joint is not finite; correct it");
   if (joint.origin.translation().cwiseAbs().maxCoeff() > kLargestLength)
-    complain_urdf(robot, where + "its origin lies farther than " + text::exact(kLargestLength) +
-                             " m from its parent; URDF lengths are in metres");
+    complain_urdf(robot, where,
+                  "its origin lies farther than " + text::exact(kLargestLength) +
+                      " m from its parent; URDF lengths are in metres");
   if (joint.type == JointType::fixed || joint.type == JointType::floating) return;
   if (joint.axis.norm() < 1e-9)
-    complain_urdf(robot, where + "its axis has length zero; give it a direction");
+    complain_urdf(robot, where, "its axis has length zero; give it a direction");
   if (joint.has_limits && joint.lower > joint.upper)
-    complain_urdf(robot, where + "lower limit " + text::brief(joint.lower) +
-                             " exceeds the upper limit " + text::brief(joint.upper) +
-                             "; swap them");
+    complain_urdf(robot, where,
+                  "lower limit " + text::brief(joint.lower) + " exceeds the upper limit " +
+                      text::brief(joint.upper) + "; swap them");
   if (joint.velocity < 0 || joint.effort < 0 || joint.damping < 0 || joint.friction < 0)
-    complain_urdf(robot, where + "velocity, effort, damping and friction cannot be negative");
+    complain_urdf(robot, where, "velocity, effort, damping and friction cannot be negative");
 }
 
 void validate_mimic(const RobotDescription& robot, const JointDescription& joint) {
@@ -82,54 +86,63 @@ void validate_mimic(const RobotDescription& robot, const JointDescription& joint
     return std::find_if(robot.joints.begin(), robot.joints.end(),
                         [&](const JointDescription& other) { return other.name == name; });
   };
-  const std::string where = "joint " + joint.name + ": ";
+  const std::string where = "joint " + joint.name;
   const JointDescription* driver = &joint;
   for (size_t steps = 0; !driver->mimic.empty(); ++steps) {
     const auto next = find(driver->mimic);
     if (next == robot.joints.end())
-      complain_urdf(robot, where + "this joint mimics the joint '" + driver->mimic +
-                               "', which does not exist" +
-                               text::suggestion(driver->mimic, joint_names(robot)));
+      complain_urdf(robot, where,
+                    "this joint mimics the joint '" + driver->mimic + "', which does not exist" +
+                        text::suggestion(driver->mimic, joint_names(robot)));
     driver = &*next;
     if (steps > robot.joints.size())
-      complain_urdf(robot,
-                    where + "this joint mimics itself through other joints; break the circle");
+      complain_urdf(robot, where,
+                    "this joint mimics itself through other joints; break the circle");
   }
   if (driver->type == JointType::fixed || driver->type == JointType::floating)
-    complain_urdf(
-        robot, where + "this joint mimics the joint '" + driver->name + "', which does not move");
+    complain_urdf(robot, where,
+                  "this joint mimics the joint '" + driver->name + "', which does not move");
 }
 
 }  // namespace
 
-void complain_urdf(const RobotDescription& robot, const std::string& message) {
-  const std::string place = robot.urdf_file.empty() ? "robot " + robot.name : robot.urdf_file;
-  fail(ErrorCode::bad_model, place + ": " + message);
+namespace {
+
+[[noreturn]] void complain(const RobotDescription& robot, const std::string& file,
+                           const std::string& inside, const std::string& message) {
+  if (!file.empty()) fail(ErrorCode::bad_model, {file, inside}, message);
+  fail(ErrorCode::bad_model,
+       "robot " + robot.name + ": " + (inside.empty() ? "" : inside + ": ") + message);
 }
 
-void complain_sidecar(const RobotDescription& robot, const std::string& message) {
-  const std::string place = robot.sidecar_file.empty() ? "robot " + robot.name : robot.sidecar_file;
-  fail(ErrorCode::bad_model, place + ": " + message);
+}  // namespace
+
+void complain_urdf(const RobotDescription& robot, const std::string& inside,
+                   const std::string& message) {
+  complain(robot, robot.urdf_file, inside, message);
+}
+
+void complain_sidecar(const RobotDescription& robot, const std::string& inside,
+                      const std::string& message) {
+  complain(robot, robot.sidecar_file, inside, message);
 }
 
 void validate_links(const RobotDescription& robot) {
-  if (robot.links.empty()) complain_urdf(robot, "the robot has no link; add one");
+  if (robot.links.empty()) complain_urdf(robot, "", "the robot has no link; add one");
   const std::string name = twice(link_names(robot));
-  if (!name.empty())
-    complain_urdf(robot, "link " + name + ": two links have this name; rename one");
+  if (!name.empty()) complain_urdf(robot, "link " + name, "two links have this name; rename one");
   for (const LinkDescription& link : robot.links) validate_inertia(robot, link);
 }
 
 void validate_joints(const RobotDescription& robot) {
   const std::vector<std::string> links = link_names(robot);
   const std::string name = twice(joint_names(robot));
-  if (!name.empty())
-    complain_urdf(robot, "joint " + name + ": two joints have this name; rename one");
+  if (!name.empty()) complain_urdf(robot, "joint " + name, "two joints have this name; rename one");
   for (const JointDescription& joint : robot.joints) {
     for (const std::string& end : {joint.parent, joint.child})
       if (!contains(links, end))
-        complain_urdf(robot, "joint " + joint.name + ": the link '" + end + "' does not exist" +
-                                 text::suggestion(end, links));
+        complain_urdf(robot, "joint " + joint.name,
+                      "the link '" + end + "' does not exist" + text::suggestion(end, links));
     validate_joint_numbers(robot, joint);
     if (!joint.mimic.empty()) validate_mimic(robot, joint);
   }
@@ -141,21 +154,22 @@ int find_root_link(const RobotDescription& robot) {
   for (const JointDescription& joint : robot.joints) {
     const auto [other, fresh] = parent_joint.emplace(joint.child, joint.name);
     if (!fresh)
-      complain_urdf(robot, "link " + joint.child + ": the joints " + other->second + " and " +
-                               joint.name +
-                               " both lead to this link, but closed chains are not supported; "
-                               "remove one of these joints");
+      complain_urdf(robot, "link " + joint.child,
+                    "the joints " + other->second + " and " + joint.name +
+                        " both lead to this link, but closed chains are not supported; "
+                        "remove one of these joints");
     children.emplace(joint.parent, joint.child);
   }
   std::vector<std::string> roots;
   for (const LinkDescription& link : robot.links)
     if (!parent_joint.contains(link.name)) roots.push_back(link.name);
   if (roots.empty())
-    complain_urdf(robot, "link " + robot.links.front().name +
-                             ": the joints form a loop, so no link is the root; remove one joint");
+    complain_urdf(robot, "link " + robot.links.front().name,
+                  "the joints form a loop, so no link is the root; remove one joint");
   if (roots.size() > 1)
-    complain_urdf(robot, "there are several root links: " + text::join(roots, ", ") +
-                             "; add joints so that only one root link remains");
+    complain_urdf(robot, "",
+                  "there are several root links: " + text::join(roots, ", ") +
+                      "; add joints so that only one root link remains");
   std::set<std::string> reached = {roots[0]};
   std::vector<std::string> open = roots;
   while (!open.empty()) {
@@ -167,9 +181,8 @@ int find_root_link(const RobotDescription& robot) {
   for (const LinkDescription& link : robot.links)
     if (!reached.contains(link.name))
       complain_urdf(
-          robot,
-          "link " + link.name +
-              ": this link belongs to a loop of joints that is not connected to the root link " +
+          robot, "link " + link.name,
+          "this link belongs to a loop of joints that is not connected to the root link " +
               roots[0] + "; remove one joint of the loop");
   const auto root =
       std::find_if(robot.links.begin(), robot.links.end(),
@@ -189,20 +202,20 @@ std::vector<int> ordered_dof_joints(const RobotDescription& robot) {
   }
   if (robot.joint_order.empty()) return moving;
   const std::string name = twice(robot.joint_order);
-  if (!name.empty()) complain_sidecar(robot, "/joint_order: '" + name + "' appears twice");
+  if (!name.empty()) complain_sidecar(robot, "/joint_order", "'" + name + "' appears twice");
   std::vector<int> ordered;
   for (size_t i = 0; i < robot.joint_order.size(); ++i) {
     const std::string& wanted = robot.joint_order[i];
     const auto found = std::find(names.begin(), names.end(), wanted);
     if (found == names.end())
-      complain_sidecar(robot, "/joint_order/" + std::to_string(i) + ": '" + wanted +
-                                  "' is not a moving joint of the URDF" +
-                                  text::suggestion(wanted, names));
+      complain_sidecar(
+          robot, "/joint_order/" + std::to_string(i),
+          "'" + wanted + "' is not a moving joint of the URDF" + text::suggestion(wanted, names));
     ordered.push_back(moving[found - names.begin()]);
   }
   for (const std::string& missing : names)
     if (!contains(robot.joint_order, missing))
-      complain_sidecar(robot, "/joint_order: the joint '" + missing + "' is missing; add it");
+      complain_sidecar(robot, "/joint_order", "the joint '" + missing + "' is missing; add it");
   return ordered;
 }
 
@@ -214,16 +227,17 @@ void known_joints(const RobotDescription& robot, const std::string& pointer,
                   const std::map<std::string, Value>& map, const std::vector<std::string>& names) {
   for (const auto& [name, value] : map)
     if (!contains(names, name))
-      complain_sidecar(robot, pointer + ": '" + name + "' is not a moving joint of the robot" +
-                                  text::suggestion(name, names));
+      complain_sidecar(
+          robot, pointer,
+          "'" + name + "' is not a moving joint of the robot" + text::suggestion(name, names));
 }
 
 void known_link(const RobotDescription& robot, const std::string& pointer,
                 const std::string& name) {
   const std::vector<std::string> names = link_names(robot);
   if (!contains(names, name))
-    complain_sidecar(robot, pointer + ": the link '" + name + "' does not exist" +
-                                text::suggestion(name, names));
+    complain_sidecar(robot, pointer,
+                     "the link '" + name + "' does not exist" + text::suggestion(name, names));
 }
 
 void positive(const RobotDescription& robot, const std::string& what,
@@ -231,7 +245,7 @@ void positive(const RobotDescription& robot, const std::string& what,
   for (const auto& [name, value] : values)
     if (!(value > 0))
       complain_sidecar(
-          robot, what + " of '" + name + "' is " + text::exact(value) + "; it must be above 0");
+          robot, "", what + " of '" + name + "' is " + text::exact(value) + "; it must be above 0");
 }
 
 // Most corners of a sole. Each is a contact of the simulation, whose time grows with the third
@@ -243,41 +257,42 @@ void validate_sole(const RobotDescription& robot, const std::string& side,
                    const SoleDescription& sole) {
   const std::string pointer = "/soles/" + side;
   if (side != "left" && side != "right")
-    complain_sidecar(robot, pointer + ": unknown foot; the two feet are 'left' and 'right'");
+    complain_sidecar(robot, pointer, "unknown foot; the two feet are 'left' and 'right'");
   known_link(robot, pointer + "/link", sole.link);
   const auto& corners = sole.polygon;
   const std::string remedy =
       "; give at least three corners of a convex polygon, counter-clockwise "
       "seen from above";
-  if (corners.size() < 3) complain_sidecar(robot, pointer + "/polygon: too few corners" + remedy);
+  if (corners.size() < 3) complain_sidecar(robot, pointer + "/polygon", "too few corners" + remedy);
   if (corners.size() > kMostSoleCorners)
-    complain_sidecar(robot, pointer + "/polygon: the sole has " + std::to_string(corners.size()) +
-                                " corners, but at most " + std::to_string(kMostSoleCorners) +
-                                " are possible; leave out corners between which the "
-                                "outline is almost straight");
+    complain_sidecar(robot, pointer + "/polygon",
+                     "the sole has " + std::to_string(corners.size()) + " corners, but at most " +
+                         std::to_string(kMostSoleCorners) +
+                         " are possible; leave out corners between which the "
+                         "outline is almost straight");
   for (size_t i = 0; i < corners.size(); ++i) {
     const Eigen::Vector2d along = corners[(i + 1) % corners.size()] - corners[i];
     const Eigen::Vector2d next = corners[(i + 2) % corners.size()] - corners[i];
     if (!(along.x() * next.y() - along.y() * next.x() > 0))
-      complain_sidecar(robot,
-                       pointer + "/polygon/" + std::to_string((i + 1) % corners.size()) +
-                           ": at this corner, the polygon is not convex or not counter-clockwise" +
-                           remedy);
+      complain_sidecar(
+          robot, pointer + "/polygon/" + std::to_string((i + 1) % corners.size()),
+          "at this corner, the polygon is not convex or not counter-clockwise" + remedy);
   }
   if (!(sole.stiffness >= 0) || !(sole.damping_time >= 0))
-    complain_sidecar(robot, pointer + ": stiffness and damping_time cannot be negative");
+    complain_sidecar(robot, pointer, "stiffness and damping_time cannot be negative");
 }
 
 void validate_force_cells(const RobotDescription& robot) {
   for (const auto& [side, cells] : robot.sensors.force_cells) {
     const auto sole = robot.soles.find(side);
-    const std::string where = "/sensors/force_cells/" + side + ": ";
-    if (sole == robot.soles.end()) complain_sidecar(robot, where + "the robot has no such sole");
+    const std::string where = "/sensors/force_cells/" + side;
+    if (sole == robot.soles.end()) complain_sidecar(robot, where, "the robot has no such sole");
     const size_t corners = sole->second.polygon.size();
     if (cells.size() != 1 && cells.size() != corners)
-      complain_sidecar(robot, where + "there are " + std::to_string(cells.size()) +
-                                  " load cells, but the sole has " + std::to_string(corners) +
-                                  " corners; give one load cell for each corner, or one for all");
+      complain_sidecar(robot, where,
+                       "there are " + std::to_string(cells.size()) +
+                           " load cells, but the sole has " + std::to_string(corners) +
+                           " corners; give one load cell for each corner, or one for all");
   }
 }
 
@@ -285,7 +300,7 @@ void validate_servos(const RobotDescription& robot) {
   for (const auto& [name, servo] : robot.servos)
     if (!(servo.kp >= 0 && servo.kd >= 0 && servo.rotor_inertia >= 0 && servo.viscous >= 0 &&
           servo.coulomb >= 0))
-      complain_sidecar(robot, "/servos/" + name + ": servo constants cannot be negative");
+      complain_sidecar(robot, "/servos/" + name, "servo constants cannot be negative");
 }
 
 }  // namespace
@@ -293,7 +308,7 @@ void validate_servos(const RobotDescription& robot) {
 void validate_sidecar(const RobotDescription& robot, const std::vector<std::string>& names) {
   for (const auto& [side, sole] : robot.soles) validate_sole(robot, side, sole);
   if (robot.soles.size() == 1)
-    complain_sidecar(robot, "/soles: only one foot is given; name 'left' and 'right'");
+    complain_sidecar(robot, "/soles", "only one foot is given; name 'left' and 'right'");
   validate_force_cells(robot);
   for (const auto& [posture, values] : robot.postures)
     known_joints(robot, "posture '" + posture + "'", values, names);
@@ -312,7 +327,7 @@ void validate_sidecar(const RobotDescription& robot, const std::vector<std::stri
       positive(robot, pointer + what, *values);
     }
     if (!(profile.thermal_window > 0))
-      complain_sidecar(robot, pointer + ": thermal_window must be above 0 s");
+      complain_sidecar(robot, pointer, "thermal_window must be above 0 s");
   }
   if (!robot.trunk_link.empty()) known_link(robot, "/trunk_link", robot.trunk_link);
   if (!robot.sensors.imu_link.empty())
@@ -323,9 +338,9 @@ void validate_sidecar(const RobotDescription& robot, const std::vector<std::stri
     known_link(robot, "/collision_ignore/" + std::to_string(i) + "/1", b);
   }
   if (!(robot.servo_period >= kShortestServoPeriod && robot.servo_period <= kLongestServoPeriod))
-    complain_sidecar(robot, "/servo_period: the value must be from 1e-7 to 10 s");
+    complain_sidecar(robot, "/servo_period", "the value must be from 1e-7 to 10 s");
   if (!(robot.soft_limit_margin >= 0))
-    complain_sidecar(robot, "/soft_limit_margin: the value cannot be negative");
+    complain_sidecar(robot, "/soft_limit_margin", "the value cannot be negative");
 }
 
 }  // namespace ayumi

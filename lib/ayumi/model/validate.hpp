@@ -18,9 +18,11 @@ inline constexpr double kLargestLength = 1e4;
 inline constexpr double kShortestServoPeriod = 1e-7, kLongestServoPeriod = 10;
 
 /// Throws Error(bad_model) "urdf file: message".
-[[noreturn]] void complain_urdf(const RobotDescription& robot, const std::string& message);
+[[noreturn]] void complain_urdf(const RobotDescription& robot, const std::string& inside,
+                                const std::string& message);
 /// Throws Error(bad_model) "sidecar file: message".
-[[noreturn]] void complain_sidecar(const RobotDescription& robot, const std::string& message);
+[[noreturn]] void complain_sidecar(const RobotDescription& robot, const std::string& inside,
+                                   const std::string& message);
 
 /// Checks names, finite numbers, masses and inertia tensors of all links.
 void validate_links(const RobotDescription& robot);

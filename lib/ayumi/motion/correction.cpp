@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ayumi/base/placed_error.hpp"
+#include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/elementary.hpp"
@@ -99,8 +99,8 @@ CommandSeries apply_correction(const RobotModel& model, const CommandSeries& ser
   for (const std::string& joint : track.joints) {
     dofs.push_back(model.find_dof(joint));
     if (dofs.back() < 0)
-      fail_unknown_name("correction: the robot '" + model.name() + "' has no joint '" + joint +
-                        "'" + text::suggestion(joint, model.dof_names()));
+      fail_unknown_name({}, "correction: the robot '" + model.name() + "' has no joint '" + joint +
+                                "'" + text::suggestion(joint, model.dof_names()));
   }
   CommandSeries result = series;
   result.kept.reset();

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "ayumi/base/error.hpp"
 #include "ayumi/math/track.hpp"
 #include "ayumi/model/robot_model.hpp"
 #include "ayumi/motion/controller_spec.hpp"
@@ -100,7 +101,7 @@ struct Keyframe {
   std::map<std::string, LinkTarget> hands;         ///< by "left", "right" or the name of a link
   std::optional<LinkTarget> gaze;                  ///< the point that the head looks at
   std::map<std::string, double> weights;           ///< diagonal of W by joint name
-  std::string place;                               ///< its place in the file, for messages
+  SourcePlace place;                               ///< in the file, for messages
   std::string pointer = {};                        ///< JSON pointer of its source; empty: of none
 };
 

@@ -2,15 +2,14 @@
 
 #include <cmath>
 
-#include "ayumi/base/placed_error.hpp"
+#include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 
 namespace ayumi {
 
-std::string in_file(const Pattern& pattern, const std::string& place) {
-  const bool named = pattern.file.empty() || place.rfind(pattern.file, 0) == 0;
-  return named ? place : pattern.file + ": " + place;
+SourcePlace in_file(const Pattern& pattern, const std::string& inside) {
+  return {pattern.file, inside};
 }
 
 std::string pointer_of_phase(const Pattern& pattern, size_t i) {
@@ -23,32 +22,37 @@ std::string pointer_of_keyframe(const Pattern& pattern, size_t i) {
   return pointer.empty() ? "/keyframes/" + std::to_string(i) : pointer;
 }
 
-std::string place_of_phase(const Pattern& pattern, size_t i) {
-  return in_file(pattern, pointer_of_phase(pattern, i).substr(1));
+SourcePlace place_of_phase(const Pattern& pattern, size_t i) {
+  return in_file(pattern, pointer_of_phase(pattern, i));
 }
 
-int find_joint(const RobotModel& model, const std::string& joint, const std::string& place) {
+SourcePlace place_of_keyframe(const Pattern& pattern, size_t i) {
+  return in_file(pattern, pointer_of_keyframe(pattern, i));
+}
+
+int find_joint(const RobotModel& model, const std::string& joint, const SourcePlace& place) {
   const int dof = model.find_dof(joint);
   if (dof >= 0) return dof;
   for (const JointDescription& each : model.description().joints)
     if (each.name == joint)
-      fail_unknown_name(place + ": joint '" + joint + "' " +
-                        (each.mimic.empty() ? "does not move; remove the key"
-                                            : "follows '" + each.mimic + "' (mimic); set '" +
-                                                  each.mimic + "' in place of this joint"));
-  fail_unknown_name(place + ": the robot '" + model.name() + "' has no joint '" + joint + "'" +
-                    text::suggestion(joint, model.dof_names()));
+      fail_unknown_name(place,
+                        "joint '" + joint + "' " +
+                            (each.mimic.empty() ? "does not move; remove the key"
+                                                : "follows '" + each.mimic + "' (mimic); set '" +
+                                                      each.mimic + "' in place of this joint"));
+  fail_unknown_name(place, "the robot '" + model.name() + "' has no joint '" + joint + "'" +
+                               text::suggestion(joint, model.dof_names()));
 }
 
 std::map<std::string, double> posture_joints(const RobotModel& model, const Pattern& pattern,
-                                             const std::string& name, const std::string& place) {
+                                             const std::string& name, const SourcePlace& place) {
   const auto own = pattern.postures.find(name);
   if (own != pattern.postures.end()) {
     for (const auto& [joint, angle] : own->second) {
-      const std::string where = in_file(pattern, "postures/" + name + "/" + joint);
+      const SourcePlace where = in_file(pattern, "/postures/" + name + "/" + joint);
       find_joint(model, joint, where);
       if (!std::isfinite(angle))
-        fail(ErrorCode::bad_pattern, where + ": the angle is not a finite number");
+        fail(ErrorCode::bad_pattern, where, "the angle is not a finite number");
     }
     return own->second;
   }
@@ -61,16 +65,16 @@ std::map<std::string, double> posture_joints(const RobotModel& model, const Patt
   std::vector<std::string> known;
   for (const auto& entry : pattern.postures) known.push_back(entry.first);
   for (const auto& entry : model.description().postures) known.push_back(entry.first);
-  fail_unknown_name(in_file(pattern, place) + ": neither the pattern nor the robot '" +
-                    model.name() + "' has a posture '" + name + "'" +
-                    text::suggestion(name, known) + "; known: " + text::join(known, ", "));
+  fail_unknown_name(place, "neither the pattern nor the robot '" + model.name() +
+                               "' has a posture '" + name + "'" + text::suggestion(name, known) +
+                               "; known: " + text::join(known, ", "));
 }
 
 Eigen::VectorXd default_posture(const RobotModel& model, const Pattern& pattern) {
   Eigen::VectorXd theta =
       model.has_posture("home") ? model.posture("home") : Eigen::VectorXd::Zero(model.dof_count());
-  for (const auto& [joint, angle] :
-       posture_joints(model, pattern, pattern.default_posture, "defaults/posture"))
+  for (const auto& [joint, angle] : posture_joints(model, pattern, pattern.default_posture,
+                                                   in_file(pattern, "/defaults/posture")))
     theta[model.find_dof(joint)] = angle;
   return theta;
 }
@@ -78,8 +82,8 @@ Eigen::VectorXd default_posture(const RobotModel& model, const Pattern& pattern)
 double default_cog_height(const RobotModel& model, const Pattern& pattern) {
   if (pattern.cog_height != 0) {
     if (!(pattern.cog_height > 0) || !std::isfinite(pattern.cog_height))
-      fail(ErrorCode::bad_pattern, in_file(pattern, "defaults/cog_height") + ": " +
-                                       text::exact(pattern.cog_height) + " m is not above 0");
+      fail(ErrorCode::bad_pattern, in_file(pattern, "/defaults/cog_height"),
+           text::exact(pattern.cog_height) + " m is not above 0");
     return pattern.cog_height;
   }
   RobotState state = model.rest_state();

@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 
+#include "ayumi/base/error.hpp"
 #include "ayumi/model/robot_model.hpp"
 #include "ayumi/motion/pattern.hpp"
 
@@ -12,7 +13,7 @@ namespace ayumi {
 /// Joints that a posture sets [rad]: the named ones of the pattern's posture, all of the robot's.
 /// Throws Error(bad_pattern) "file: place: ..." for an unknown posture or joint.
 std::map<std::string, double> posture_joints(const RobotModel& model, const Pattern& pattern,
-                                             const std::string& name, const std::string& place);
+                                             const std::string& name, const SourcePlace& place);
 
 /// theta of the pattern's default posture [rad]; other joints are as in the robot's home.
 Eigen::VectorXd default_posture(const RobotModel& model, const Pattern& pattern);
@@ -22,17 +23,17 @@ Eigen::VectorXd default_posture(const RobotModel& model, const Pattern& pattern)
 double default_cog_height(const RobotModel& model, const Pattern& pattern);
 
 /// Index of a joint that a pattern names. Throws Error(bad_pattern) for an unknown or mimic joint.
-int find_joint(const RobotModel& model, const std::string& joint, const std::string& place);
+int find_joint(const RobotModel& model, const std::string& joint, const SourcePlace& place);
 
 /// JSON pointer of a phase or keyframe in the pattern's file. Those of a block that repeats share
 /// one; those of patterns that are no file count from the first.
 std::string pointer_of_phase(const Pattern& pattern, size_t i);
 std::string pointer_of_keyframe(const Pattern& pattern, size_t i);
 
-/// "file: phases/3", for messages.
-std::string place_of_phase(const Pattern& pattern, size_t i);
-
-/// "file: place", or `place` alone when it contains the file, as those of keyframes do.
-std::string in_file(const Pattern& pattern, const std::string& place);
+/// Places for messages: a phase; a keyframe; what a JSON pointer, or words, name in the pattern's
+/// file.
+SourcePlace place_of_phase(const Pattern& pattern, size_t i);
+SourcePlace place_of_keyframe(const Pattern& pattern, size_t i);
+SourcePlace in_file(const Pattern& pattern, const std::string& inside);
 
 }  // namespace ayumi

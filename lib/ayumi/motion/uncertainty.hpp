@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "ayumi/base/error.hpp"
+
 namespace ayumi {
 
 /// Distribution of the values of a quantity.
@@ -77,7 +79,7 @@ struct UncertainQuantity {
   std::string factor = {};  ///< factor that this quantity shares with others; empty: none
   double correlation = 0;   ///< with that factor, of the normal numbers behind both
   std::string source = {};  ///< where the numbers come from
-  std::string place = {};   ///< "file: pointer", for messages
+  SourcePlace place = {};   ///< for messages
 };
 
 /// A push that acts once during each run.
@@ -95,7 +97,8 @@ struct UncertainPush {
 
 /// A declared factor, which several quantities share.
 struct UncertainFactor {
-  std::string name, source, place;
+  std::string name, source;
+  SourcePlace place;
 };
 
 struct Uncertainty {

@@ -4,7 +4,7 @@
 #include <numbers>
 #include <span>
 
-#include "ayumi/base/placed_error.hpp"
+#include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/math/elementary.hpp"
 #include "ayumi/math/rotation.hpp"
@@ -53,13 +53,9 @@ namespace {
 
 [[noreturn]] void complain_reach(const SampleJob& job, double t, const CommandSample& sample,
                                  const PostureSolution& solution) {
-  const auto in_phase = [&](const std::string& message) {
-    return PlacedError(ErrorCode::bad_pattern, message,
-                       {job.pattern.file, pointer_of_phase(job.pattern, job.feet.phase(t))});
-  };
+  const SourcePlace place = place_of_phase(job.pattern, job.feet.phase(t));
   const double ground = job.feet.ground(t);
-  const std::string where = place_of_phase(job.pattern, job.feet.phase(t)) +
-                            ": t = " + text::fixed(t, 3) + " s: the " + name_of(solution.foot);
+  const std::string where = "t = " + text::fixed(t, 3) + " s: the " + name_of(solution.foot);
   // Coupled hips let a sole reach its place, but not its heading.
   const double allowed = lacking_tolerance(job.feet.hold(solution.foot, t));
   if (job.ik.lacks_joints() && !solution.knee_flipped && solution.missing <= allowed &&
@@ -69,34 +65,36 @@ namespace {
     };
     std::vector<std::string> shared;
     for (const int dof : job.ik.coupled()) shared.push_back(job.model.dofs()[dof].name);
-    throw in_phase(where + " foot is turned " + degrees(solution.turned) +
-                   " away from its attitude (allowed: " + degrees(allowed) + "). " +
-                   (shared.empty() ? "At this place, the legs cannot turn the sole as it is planned"
-                                   : "Both legs move with " + text::join(shared, ", ") +
-                                         ", so the feet cannot turn relative to each other") +
-                   ". Turn less in each step, or turn the trunk (\"torso\" of a key) over feet "
-                   "that stay");
+    fail(ErrorCode::bad_pattern, place,
+         where + " foot is turned " + degrees(solution.turned) +
+             " away from its attitude (allowed: " + degrees(allowed) + "). " +
+             (shared.empty() ? "At this place, the legs cannot turn the sole as it is planned"
+                             : "Both legs move with " + text::join(shared, ", ") +
+                                   ", so the feet cannot turn relative to each other") +
+             ". Turn less in each step, or turn the trunk (\"torso\" of a key) over feet "
+             "that stay");
   }
   if (job.ik.lacks_joints() && !solution.knee_flipped)
-    throw in_phase(where + " foot is out of reach by " + millimetres(solution.missing) +
-                   " (allowed: " + millimetres(allowed) +
-                   ", because a leg has fewer than six joints). With level soles, such legs cannot "
-                   "move the COG farther to the side. Make the COG sway less (shorten "
-                   "the step period, or move the ZMP towards the other foot with new walk "
-                   "--zmp-inwards), or lower the COG height");
+    fail(ErrorCode::bad_pattern, place,
+         where + " foot is out of reach by " + millimetres(solution.missing) +
+             " (allowed: " + millimetres(allowed) +
+             ", because a leg has fewer than six joints). With level soles, such legs cannot "
+             "move the COG farther to the side. Make the COG sway less (shorten "
+             "the step period, or move the ZMP towards the other foot with new walk "
+             "--zmp-inwards), or lower the COG height");
   const double height = sample.cog.z() - ground;
   const std::string remedy =
       std::string("; ") + (legs_are_folded(job.model, job.pattern, height) ? "raise" : "lower") +
       " the COG height (here " + text::fixed(height, 4) + " m above the soles)" +
       (job.tracks.torso ? ", tilt the torso less," : "") + " or shorten the stride";
   if (solution.knee_flipped)
-    throw in_phase(where + " knee would have to bend the wrong way" + remedy);
+    fail(ErrorCode::bad_pattern, place, where + " knee would have to bend the wrong way" + remedy);
   const std::string limit =
       solution.at_limit < 0
           ? ""
           : ", with " + job.model.dofs()[solution.at_limit].name + " at its position limit";
-  throw in_phase(where + " foot is out of reach by " + millimetres(solution.missing) + limit +
-                 remedy);
+  fail(ErrorCode::bad_pattern, place,
+       where + " foot is out of reach by " + millimetres(solution.missing) + limit + remedy);
 }
 
 }  // namespace
@@ -185,19 +183,19 @@ void require_body_tracks(const SampleJob& job) {
     const Phase& phase = job.feet.phases()[i];
     if (phase.support != Support::none) continue;
     const double begin = job.feet.begin(static_cast<int>(i));
-    const std::string place = place_of_phase(job.pattern, i);
+    const SourcePlace place = place_of_phase(job.pattern, i);
     if (begin <= 0 || i + 1 == job.feet.phases().size())
-      fail(ErrorCode::bad_pattern,
-           place + ": a flight (support none) needs a phase on the ground before and after it");
+      fail(ErrorCode::bad_pattern, place,
+           "a flight (support none) needs a phase on the ground before and after it");
     for (int axis = 0; axis < 3; ++axis) {
       const auto& track = job.tracks.cog[axis];
       if (axis < 2 && !track) continue;
       if (track && is_ballistic(*track, begin, phase.until)) continue;
       const std::string quantity = axis == 2 ? "the COG height" : axis == 0 ? "COG x" : "COG y";
-      fail(ErrorCode::bad_pattern,
-           place + ": in the flight from " + text::exact(begin) + " s to " +
-               text::exact(phase.until) + " s the COG follows a parabola; give a key of " +
-               quantity + " at lift-off and one at touchdown" +
+      fail(ErrorCode::bad_pattern, place,
+           "in the flight from " + text::exact(begin) + " s to " + text::exact(phase.until) +
+               " s the COG follows a parabola; give a key of " + quantity +
+               " at lift-off and one at touchdown" +
                (track ? "" : ", and one on the ground before and one after the flight"));
     }
   }

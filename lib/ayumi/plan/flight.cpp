@@ -198,10 +198,9 @@ TrunkTurn plan_trunk_turn(const SampleJob& job, const CogAt& cog) {
   for (size_t i = 0; i < phases.size(); ++i) {
     if (phases[i].support != Support::none) continue;
     if (job.links.leads_in_world(job.feet.begin(static_cast<int>(i)), phases[i].until))
-      fail(ErrorCode::bad_pattern,
-           place_of_phase(job.pattern, i) +
-               ": in a flight a hand or the gaze follows the trunk; give their keys before, in and "
-               "after the flight with \"frame\": \"trunk\"");
+      fail(ErrorCode::bad_pattern, place_of_phase(job.pattern, i),
+           "in a flight a hand or the gaze follows the trunk; give their keys before, in and "
+           "after the flight with \"frame\": \"trunk\"");
     Flight flight;
     flight.begin = job.feet.begin(static_cast<int>(i));
     flight.end = phases[i].until;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ayumi/base/placed_error.hpp"
+#include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/rotation.hpp"
@@ -30,8 +30,7 @@ constexpr double kStands = 1e-5;
 
 [[noreturn]] void complain(const Pattern& pattern, const std::string& place,
                            const std::string& message) {
-  throw PlacedError(ErrorCode::bad_pattern, in_file(pattern, place) + ": " + message,
-                    {pattern.file, "/" + place});
+  fail(ErrorCode::bad_pattern, in_file(pattern, place), message);
 }
 
 Isometry3d on_ground(const Vector3d& position, double yaw) {
@@ -89,7 +88,7 @@ bool same_place(const Isometry3d& a, const Isometry3d& b) {
     kept = kept || std::abs(pattern.keyframes[i].t - until) < kInstant;
   }
   if (by_curve)
-    complain(pattern, pointer_of_phase(pattern, phase).substr(1),
+    complain(pattern, pointer_of_phase(pattern, phase),
              std::string("the curve between the keys of the ") + name_of(side) +
                  " foot leaves the place where it stands; give these keys the interpolation "
                  "minimum_jerk, which does not overshoot");
@@ -111,9 +110,7 @@ bool same_place(const Isometry3d& a, const Isometry3d& b) {
       ", or move the foot in a phase in which it does not carry the robot";
   SourcePlace at = {pattern.file, pointer + "/feet"};
   at.names_value = true;
-  throw PlacedError(ErrorCode::bad_pattern,
-                    in_file(pattern, pointer_of_phase(pattern, phase).substr(1)) + ": " + message,
-                    at);
+  throw Error(ErrorCode::bad_pattern, text_of(place_of_phase(pattern, phase)) + ": " + message, at);
 }
 
 }  // namespace
@@ -142,7 +139,7 @@ std::array<Isometry3d, 2> start_feet(const RobotModel& model, const Pattern& pat
   for (const Side side : kSides) {
     const auto& foot = given[index(side)];
     if (!foot) continue;
-    if (!finite(*foot)) complain(pattern, "start", "a number of the foothold is not finite");
+    if (!finite(*foot)) complain(pattern, "/start", "a number of the foothold is not finite");
     const int here = index(side), there = index(other(side));
     if (!given[there]) feet[there] = pose_of(*foot) * feet[here].inverse() * feet[there];
     feet[here] = pose_of(*foot);
@@ -162,13 +159,13 @@ FootPlan::FootPlan(const RobotModel& model, const Pattern& pattern)
 
 void FootPlan::read_phases(const Pattern& pattern) {
   if (phases_.empty())
-    complain(pattern, "phases",
+    complain(pattern, "/phases",
              "the list is empty; give at least one phase, which says which feet carry the robot");
   std::array<Isometry3d, 2> now = start_;
   double begin = 0;
   for (size_t i = 0; i < phases_.size(); ++i) {
     Phase& phase = phases_[i];
-    const std::string place = pointer_of_phase(pattern, i).substr(1);
+    const std::string place = pointer_of_phase(pattern, i);
     if (!(phase.until > begin) || !std::isfinite(phase.until))
       complain(pattern, place,
                "the phase begins at " + text::exact(begin) + " s and ends at " +
@@ -222,8 +219,7 @@ void FootPlan::read_foot_keys(const Pattern& pattern, Side side) {
     const auto& foot = key.feet[index(side)];
     if (!foot) continue;
     const auto stop = [&](const std::string& message) {
-      throw PlacedError(ErrorCode::bad_pattern, key.place + ": " + message,
-                        {pattern.file, pointer_of_keyframe(pattern, i) + "/feet"});
+      fail(ErrorCode::bad_pattern, place_of_keyframe(pattern, i) + "/feet", message);
     };
     if (!finite(*foot)) stop("a number of the pose of the foot is not finite");
     if (!moves_[index(side)].empty())

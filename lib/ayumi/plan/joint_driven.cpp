@@ -36,10 +36,9 @@ Side first_anchor(const FootPlan& feet) {
 void refuse_flight(const SampleJob& job) {
   for (size_t i = 0; i < job.feet.phases().size(); ++i)
     if (job.feet.phases()[i].support == Support::none)
-      fail(ErrorCode::bad_pattern,
-           place_of_phase(job.pattern, i) +
-               ": in a flight phase (support none) no foot holds the base, and joint keys alone do "
-               "not determine the place of the base; give a table with base columns");
+      fail(ErrorCode::bad_pattern, place_of_phase(job.pattern, i),
+           "in a flight phase (support none) no foot holds the base, and joint keys alone do "
+           "not determine the place of the base; give a table with base columns");
 }
 
 void anchor_samples(const SampleJob& job, CommandSeries& series) {

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-#include "ayumi/base/placed_error.hpp"
+#include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/dynamics/reach.hpp"
@@ -150,12 +150,9 @@ void LinkPlan::add_target(const std::string& name, bool gaze, const std::vector<
   size_t first = 0;
   while (!asks(pattern_->keyframes[first])) ++first;
   const auto complain = [&](const std::string& message, bool unknown_name = false) {
-    SourcePlace place = {pattern_->file, pointer_of_keyframe(*pattern_, first) + "/" + target.key};
+    SourcePlace place = place_of_keyframe(*pattern_, first) + ("/" + target.key);
     place.unknown_name = unknown_name;
-    throw PlacedError(
-        ErrorCode::bad_pattern,
-        in_file(*pattern_, pattern_->keyframes[first].place + "/" + target.key) + ": " + message,
-        place);
+    fail(ErrorCode::bad_pattern, place, message);
   };
   if (gaze) {
     target.name = "gaze";
@@ -380,9 +377,8 @@ std::vector<LinkPlan::Aim> LinkPlan::aims_at(const Group& group, double t, const
                 target.place.in_trunk.at(t).value * frame.translation();
     const auto meet = [&](const Vector3d& sum) {
       if (sum.norm() < kNoDirection)
-        fail(ErrorCode::bad_pattern,
-             in_file(*pattern_, "keyframes") + ": t = " + text::fixed(t, 3) + " s: the " +
-                 target.name +
+        fail(ErrorCode::bad_pattern, in_file(*pattern_, "/keyframes"),
+             "t = " + text::fixed(t, 3) + " s: the " + target.name +
                  " would have to turn round between two keys of opposite directions; put a key "
                  "between them");
       return sum.normalized();
@@ -671,14 +667,12 @@ void LinkPlan::complain(const Group& group, double t, const std::vector<Aim>& ai
              numbers(in_trunk ? Vector3d(trunk.linear().transpose() * along) : along, 3) +
              in_frame + "; give this direction, or leave the direction out";
   }
-  const std::string message =
-      in_file(*pattern_, pattern_->keyframes[key.keyframe].place + "/" + target.key) +
-      ": t = " + text::fixed(t, 3) + " s" + (under_way ? ", on the way to this key" : "") + ": " +
-      what + limits + "; " + remedy;
-  const SourcePlace place = {pattern_->file,
-                             pointer_of_keyframe(*pattern_, key.keyframe) + "/" + target.key};
-  if (only_way) throw MissedOnTheWay(message, place, key.t);
-  throw PlacedError(ErrorCode::bad_pattern, message, place);
+  const SourcePlace place = place_of_keyframe(*pattern_, key.keyframe) + ("/" + target.key);
+  const std::string message = "t = " + text::fixed(t, 3) + " s" +
+                              (under_way ? ", on the way to this key" : "") + ": " + what + limits +
+                              "; " + remedy;
+  if (only_way) throw MissedOnTheWay(text_of(place) + ": " + message, place, key.t);
+  fail(ErrorCode::bad_pattern, place, message);
 }
 
 }  // namespace ayumi

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "ayumi/base/placed_error.hpp"
+#include "ayumi/base/error.hpp"
 #include "ayumi/dynamics/robot_data.hpp"
 #include "ayumi/math/track.hpp"
 #include "ayumi/motion/pattern.hpp"
@@ -18,10 +18,10 @@ namespace ayumi {
 
 /// A target is out of reach before the time of its key, while the trunk moves: whether the limb
 /// reaches it at that time is not known there.
-class MissedOnTheWay : public PlacedError {
+class MissedOnTheWay : public Error {
  public:
   MissedOnTheWay(const std::string& message, SourcePlace place, double key_time)
-      : PlacedError(ErrorCode::bad_pattern, message, std::move(place)), key_time_(key_time) {}
+      : Error(ErrorCode::bad_pattern, message, std::move(place)), key_time_(key_time) {}
   double key_time() const { return key_time_; }  ///< time of the key [s]
 
  private:

@@ -25,10 +25,9 @@ int sample_count(const Pattern& pattern, double duration, double dt) {
     fail(ErrorCode::usage, "sampling step " + text::exact(dt) + " s must be above 0");
   const double steps = std::ceil(duration / dt - 1e-6);
   if (steps < 5 || steps > kMostSamples)
-    fail(ErrorCode::bad_pattern, in_file(pattern, "phases") + ": " + text::exact(duration) +
-                                     " s at a step of " + text::exact(dt) + " s give " +
-                                     text::brief(steps) +
-                                     " steps, but only 5 to 4e6 are possible; choose another step");
+    fail(ErrorCode::bad_pattern, in_file(pattern, "/phases"),
+         text::exact(duration) + " s at a step of " + text::exact(dt) + " s give " +
+             text::brief(steps) + " steps, but only 5 to 4e6 are possible; choose another step");
   return static_cast<int>(steps) + 1;
 }
 
@@ -102,10 +101,9 @@ CommandSeries sample_keys(const RobotModel& model, const Pattern& pattern,
     try {
       sample_posture(model, pattern, options, progress, posture, on_the_way.key_time());
     } catch (const MissedOnTheWay&) {  // a later key: the first message is kept
-    } catch (const PlacedError& at_key) {
-      if (at_key.place().pointer == on_the_way.place().pointer) throw;
-    } catch (const Error& other) {
-      if (other.code() != ErrorCode::bad_pattern) throw;
+    } catch (const Error& at_key) {
+      const bool same = at_key.place().inside == on_the_way.place().inside;
+      if (same || at_key.code() != ErrorCode::bad_pattern) throw;
     }
     throw;
   }
@@ -124,9 +122,9 @@ CommandSeries sample_plan(const RobotModel& model, const Pattern& pattern,
                           const SampleOptions& options, const Progress& progress) {
   require_soles(model);
   if (has_viip_phases(pattern))
-    fail(ErrorCode::bad_pattern, in_file(pattern, "phases") +
-                                     ": the feet have no plan in a phase with a VIIP goal, because "
-                                     "VIIP chooses the footholds; leave these phases out");
+    fail(ErrorCode::bad_pattern, in_file(pattern, "/phases"),
+         "the feet have no plan in a phase with a VIIP goal, because "
+         "VIIP chooses the footholds; leave these phases out");
   Pattern plan = pattern;
   plan.full_model = false;
   return sample_keys(model, plan, options, progress, Posture::carried);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <functional>
 
-#include "ayumi/base/placed_error.hpp"
+#include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/math/quintic.hpp"
 #include "ayumi/model/gravity.hpp"
@@ -44,7 +44,7 @@ struct KeyReader {
 };
 
 [[noreturn]] void complain(const Keyframe& key, const std::string& message) {
-  fail(ErrorCode::bad_pattern, key.place + ": " + message);
+  fail(ErrorCode::bad_pattern, key.place, message);
 }
 
 void KeyReader::add(Keys& keys, const Keyframe& key, double value, double start,
@@ -184,7 +184,7 @@ Track table_track(double dt, size_t rows, const std::function<double(size_t)>& v
 }
 
 [[noreturn]] void complain_table(const Pattern& pattern, const std::string& message) {
-  fail(ErrorCode::bad_pattern, in_file(pattern, "table " + pattern.table->file) + ": " + message);
+  fail(ErrorCode::bad_pattern, in_file(pattern, "table " + pattern.table->file), message);
 }
 
 void check_table(const Pattern& pattern, const FootPlan& feet) {
@@ -274,8 +274,7 @@ PatternTracks read_tracks(const RobotModel& model, const Pattern& pattern, const
   KeyReader reader{model, pattern, feet, solved, height, {}, {}, {}, {}, {}, false, false, {}};
   reader.joints.resize(model.dof_count());
   for (size_t i = 0; i < pattern.keyframes.size(); ++i)
-    at_place({pattern.file, pointer_of_keyframe(pattern, i)},
-             [&] { reader.read(pattern.keyframes[i]); });
+    at_place(place_of_keyframe(pattern, i), [&] { reader.read(pattern.keyframes[i]); });
   for (int i = 0; i < 3; ++i)
     reader.cog[i] = with_flights(feet, reader.cog[i], i == 2 ? -kGravity : 0.0);
 

@@ -33,9 +33,9 @@ std::vector<Cut> cuts_of(const Pattern& pattern) {
   for (size_t i = 0; i < pattern.phases.size(); ++i) {
     const Phase& phase = pattern.phases[i];
     if (!(phase.until > begin))
-      fail(ErrorCode::bad_pattern, place_of_phase(pattern, i) + ": the phase begins at " +
-                                       text::exact(begin) + " s and ends at " +
-                                       text::exact(phase.until) + " s; give a later \"until\"");
+      fail(ErrorCode::bad_pattern, place_of_phase(pattern, i),
+           "the phase begins at " + text::exact(begin) + " s and ends at " +
+               text::exact(phase.until) + " s; give a later \"until\"");
     if (phase.viip) {
       cuts.push_back({i, begin, phase.until, before});
       before += phase.until - begin;
@@ -75,19 +75,17 @@ bool has_viip_phases(const Pattern& pattern) {
 void refuse_viip_phases(const Pattern& pattern, const std::string& done) {
   for (size_t i = 0; i < pattern.phases.size(); ++i)
     if (pattern.phases[i].viip)
-      fail(ErrorCode::bad_pattern,
-           place_of_phase(pattern, i) +
-               ": the controller decides the motion of a phase with a goal, so the pattern cannot "
-               "be " +
+      fail(ErrorCode::bad_pattern, place_of_phase(pattern, i),
+           "the controller decides the motion of a phase with a goal, so the pattern cannot "
+           "be " +
                done + "; simulate the pattern, and use the tables of the run");
 }
 
 Pattern without_viip_phases(const Pattern& pattern) {
   if (pattern.table)
-    fail(ErrorCode::bad_pattern,
-         in_file(pattern, "table") +
-             ": a pattern cannot have both a sampled motion and phases with "
-             "\"viip\"; keep one of them");
+    fail(ErrorCode::bad_pattern, in_file(pattern, "/table"),
+         "a pattern cannot have both a sampled motion and phases with "
+         "\"viip\"; keep one of them");
   const std::vector<Cut> cuts = cuts_of(pattern);
   Pattern result = pattern;
   result.correction.reset();
@@ -102,10 +100,10 @@ Pattern without_viip_phases(const Pattern& pattern) {
   for (const Keyframe& key : pattern.keyframes) {
     for (const Cut& cut : cuts)
       if (key.t > cut.begin && key.t < cut.end)
-        fail(ErrorCode::bad_pattern, key.place + ": the key at " + text::exact(key.t) +
-                                         " s lies inside the VIIP phase from " +
-                                         text::exact(cut.begin) + " to " + text::exact(cut.end) +
-                                         " s, in which goals replace keys; move the key");
+        fail(ErrorCode::bad_pattern, key.place,
+             "the key at " + text::exact(key.t) + " s lies inside the VIIP phase from " +
+                 text::exact(cut.begin) + " to " + text::exact(cut.end) +
+                 " s, in which goals replace keys; move the key");
     Keyframe moved = key;
     moved.t = time_without(cuts, key.t);
     if (!result.keyframes.empty() && moved.t <= result.keyframes.back().t + 1e-9)
@@ -129,20 +127,19 @@ CommandSeries with_viip_phases(const RobotModel& model, const Pattern& pattern,
     const long at = std::min(last, tick(each.begin - each.before));
     for (; done < at; ++done) series.samples.push_back(cut.samples[static_cast<size_t>(done)]);
     const CommandSample& from = cut.samples[static_cast<size_t>(at)];
-    const std::string place = place_of_phase(pattern, each.phase) + ": ";
+    const SourcePlace place = place_of_phase(pattern, each.phase);
     // At the last sample of a step the support is still that of the step.
     const CommandSample& rests = cut.samples[static_cast<size_t>(std::max(0l, at - 1))];
     if (from.support != Support::both && rests.support != Support::both)
-      fail(ErrorCode::bad_pattern,
-           place +
-               "the phase begins on one foot; put a phase with support \"both\" before this phase");
+      fail(ErrorCode::bad_pattern, place,
+           "the phase begins on one foot; put a phase with support \"both\" before this phase");
     const double z = from.cog.z() - from.zmp.z();
     const double limit = kAtRest * std::sqrt(kGravity * z);
     if (from.dcog.norm() > limit)
-      fail(ErrorCode::bad_pattern, place + "the phase begins while the COG moves at " +
-                                       text::fixed(from.dcog.norm(), 3) + " m/s (limit " +
-                                       text::fixed(limit, 3) +
-                                       " m/s); let the motion before the phase come to rest");
+      fail(ErrorCode::bad_pattern, place,
+           "the phase begins while the COG moves at " + text::fixed(from.dcog.norm(), 3) +
+               " m/s (limit " + text::fixed(limit, 3) +
+               " m/s); let the motion before the phase come to rest");
     const ViipSpan span{static_cast<long>(series.samples.size()), tick(each.end),
                         *pattern.phases[each.phase].viip};
     CommandSample rest = held(model, from);

@@ -201,8 +201,8 @@ void write_drawing(const std::filesystem::path& path, const Drawing& drawing, do
   else if (path.extension() == ".png")
     write_png(path, to_image(drawing, png_scale));
   else
-    fail(ErrorCode::usage, path.string() + ": the format '" + path.extension().string() +
-                               "' is not one of .svg, .png");
+    fail(ErrorCode::usage, {path.string()},
+         "the format '" + path.extension().string() + "' is not one of .svg, .png");
 }
 
 }  // namespace ayumi

@@ -298,14 +298,14 @@ void write_folder(const fs::path& path, bool overwrite,
   require_frame_folder(path, overwrite);
   const fs::path parent = path.has_parent_path() ? path.parent_path() : fs::path(".");
   if (!fs::is_directory(parent))
-    fail(ErrorCode::bad_file,
-         path.string() + ": the folder " + parent.string() + " does not exist; create it first");
+    fail(ErrorCode::bad_file, {path.string()},
+         "the folder " + parent.string() + " does not exist; create it first");
   const fs::path temporary =
       parent / (path.filename().string() + ".part" + std::to_string(::getpid()));
   std::error_code error, ignored;
   if (!fs::create_directory(temporary, error))
-    fail(ErrorCode::bad_file,
-         path.string() + ": the folder cannot be written (" +
+    fail(ErrorCode::bad_file, {path.string()},
+         "the folder cannot be written (" +
              (error ? error.message() : temporary.string() + " already exists") + ")");
   try {
     produce(temporary);
@@ -314,11 +314,12 @@ void write_folder(const fs::path& path, bool overwrite,
     fs::rename(temporary, path);
   } catch (const fs::filesystem_error& error) {
     fs::remove_all(temporary, ignored);
-    fail(ErrorCode::bad_file,
-         path.string() + ": the folder cannot be written (" + error.code().message() + ")");
+    fail(ErrorCode::bad_file, {path.string()},
+         "the folder cannot be written (" + error.code().message() + ")");
   } catch (const Error& error) {
     fs::remove_all(temporary, ignored);
-    fail(error.code(), with_name(error.what(), temporary.string(), path.string()));
+    throw Error(error.code(), with_name(error.what(), temporary.string(), path.string()),
+                {path.string()});
   } catch (...) {
     fs::remove_all(temporary, ignored);
     throw;
@@ -711,7 +712,8 @@ ClipSummary write_clip(const RobotModel& model, const SimulationLog& log, const 
         });
         encoder.finish();
       } catch (const Error& error) {
-        fail(error.code(), with_name(error.what(), temporary.string(), path.string()));
+        throw Error(error.code(), with_name(error.what(), temporary.string(), path.string()),
+                    {path.string()});
       }
     });
   }

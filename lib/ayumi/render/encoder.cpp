@@ -44,9 +44,9 @@ Arguments format_arguments(const std::filesystem::path& path, int width, int hei
   const std::string extension = path.extension().string();
   const bool even = width % 2 == 0 && height % 2 == 0;
   if (is_video(path) && !even)
-    fail(ErrorCode::usage, path.string() + ": the size is " + std::to_string(width) + "x" +
-                               std::to_string(height) + ", but " + extension +
-                               " needs an even width and height");
+    fail(ErrorCode::usage, {path.string()},
+         "the size is " + std::to_string(width) + "x" + std::to_string(height) + ", but " +
+             extension + " needs an even width and height");
   Arguments arguments;
   if (extension == ".mp4") {
     // Without small partitions and motion of half a pixel, a fifth of the time is saved, the file
@@ -70,9 +70,10 @@ Arguments format_arguments(const std::filesystem::path& path, int width, int hei
             "split[a][b];[a]palettegen=stats_mode=single[p];"
             "[b][p]paletteuse=new=1:dither=bayer:bayer_scale=4"};
   } else {
-    fail(ErrorCode::usage, path.string() + ": the format '" + extension +
-                               "' is not possible; give .mp4, .webm, .gif, .apng, .png or .glb, or "
-                               "a folder for PNG frames");
+    fail(ErrorCode::usage, {path.string()},
+         "the format '" + extension +
+             "' is not possible; give .mp4, .webm, .gif, .apng, .png or .glb, or "
+             "a folder for PNG frames");
   }
   arguments.insert(arguments.end(), kVideoColor.begin(), kVideoColor.end());
   return arguments;
@@ -147,9 +148,9 @@ ClipEncoder::ClipEncoder(const std::filesystem::path& path, int width, int heigh
   }
   for (const int file : {pipe_, log_})
     if (file >= 0) close(file);
-  fail(ErrorCode::bad_file, path.string() + ": the program '" + program + "' cannot be started (" +
-                                std::strerror(reason) +
-                                "); install ffmpeg, or write PNG frames into a folder instead");
+  fail(ErrorCode::bad_file, {path.string()},
+       "the program '" + program + "' cannot be started (" + std::strerror(reason) +
+           "); install ffmpeg, or write PNG frames into a folder instead");
 }
 
 ClipEncoder::~ClipEncoder() {
@@ -194,8 +195,9 @@ void ClipEncoder::fail_with_log() {
   while (!words.empty() && std::isspace(static_cast<unsigned char>(words.back()))) words.pop_back();
   const size_t line = words.size() > 400 ? words.find('\n', words.size() - 400) : std::string::npos;
   if (line != std::string::npos) words.erase(0, line + 1);
-  fail(ErrorCode::bad_file, path_.string() + ": " + program_ + " could not write the clip: " +
-                                (words.empty() ? "the program gave no reason" : words));
+  fail(ErrorCode::bad_file, {path_.string()},
+       program_ +
+           " could not write the clip: " + (words.empty() ? "the program gave no reason" : words));
 }
 
 void ClipEncoder::add(const Image& frame) {

@@ -28,8 +28,9 @@ double thin_to(std::vector<BodySurface>& surface, double tolerance, size_t most,
                const Progress& progress) {
   thin(surface, tolerance, progress);
   for (int trial = 1; trial < kTrials && triangle_count(surface) > most; ++trial) {
+    const double done = tolerance;
     tolerance *= kGrowth;
-    thin(surface, tolerance, progress);
+    thin(surface, tolerance, progress, done);
   }
   return tolerance;
 }

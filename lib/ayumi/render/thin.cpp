@@ -70,11 +70,12 @@ class Thinning {
     measure();
   }
 
-  Triangles result(const Progress& progress) {
+  Triangles result(const Progress& progress, double done) {
     size_t before = 0;
     for (int round = 1; round <= kRounds; ++round) {
-      report(progress, {"surface", -1, ""});
       const double share = double(round) / kRounds;
+      if (tolerance_ * share <= done) continue;
+      report(progress, {"surface", -1, ""});
       before = facets_.size();
       go_through(tolerance_ * share * tolerance_ * share);
       std::erase_if(facets_, [](const Facet& facet) { return facet.gone; });
@@ -271,14 +272,16 @@ class Thinning {
 
 }  // namespace
 
-Triangles thinned(const Triangles& surface, double tolerance, const Progress& progress) {
-  return Thinning(surface, tolerance).result(progress);
+Triangles thinned(const Triangles& surface, double tolerance, const Progress& progress,
+                  double done) {
+  return Thinning(surface, tolerance).result(progress, done);
 }
 
-void thin(std::vector<BodySurface>& surface, double tolerance, const Progress& progress) {
+void thin(std::vector<BodySurface>& surface, double tolerance, const Progress& progress,
+          double done) {
   for (BodySurface& body : surface)
     for (Triangles* part : {&body.closed, &body.open})
-      if (!part->indices.empty()) *part = thinned(*part, tolerance, progress);
+      if (!part->indices.empty()) *part = thinned(*part, tolerance, progress, done);
 }
 
 }  // namespace ayumi

@@ -55,8 +55,8 @@ bool has_form(std::string_view pattern, std::string_view name) {
   return false;
 }
 
-[[noreturn]] void refuse(const std::string& place, const std::string& why) {
-  fail(ErrorCode::bad_pattern, place + ": " + why);
+[[noreturn]] void refuse(const SourcePlace& place, const std::string& why) {
+  fail(ErrorCode::bad_pattern, place, why);
 }
 
 bool has_noise(const SensorDescription& s) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "ayumi/base/error.hpp"
-#include "ayumi/base/placed_error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/check/likely_mistakes.hpp"
 #include "ayumi/control/controller.hpp"
@@ -23,17 +22,17 @@ void refuse_unknown_places(const Pattern& pattern, const RobotModel& robot) {
   const std::vector<std::string> joints = robot.dof_names();
   for (size_t i = 0; i < pattern.scenario.size(); ++i) {
     const Disturbance& d = pattern.scenario[i];
-    const std::string place = pattern.file + ": /scenario/" + std::to_string(i);
+    const SourcePlace place = {pattern.file, "/scenario/" + std::to_string(i)};
     const auto refuse_link = [&](const std::string& name) {
       if (std::find(links.begin(), links.end(), name) == links.end())
-        fail_unknown_name(place + "/on: " + robot.name() + " has no link '" + name + "'" +
-                          text::suggestion(name, links) +
-                          "; 'cog' pushes through the centre of gravity");
+        fail_unknown_name(place + "/on", robot.name() + " has no link '" + name + "'" +
+                                             text::suggestion(name, links) +
+                                             "; 'cog' pushes through the centre of gravity");
     };
     const auto refuse_joint = [&](const std::string& name) {
       if (!name.empty() && std::find(joints.begin(), joints.end(), name) == joints.end())
-        fail_unknown_name(place + "/joint: " + robot.name() + " has no joint '" + name + "'" +
-                          text::suggestion(name, joints));
+        fail_unknown_name(place + "/joint", robot.name() + " has no joint '" + name + "'" +
+                                                text::suggestion(name, joints));
     };
     std::visit(
         [&](const auto& what) {
@@ -46,19 +45,19 @@ void refuse_unknown_places(const Pattern& pattern, const RobotModel& robot) {
 
 // A wrong name is wrong use of the library; where a file contains it, it is bad input.
 template <class Check>
-void with_place(const std::string& place, const Check& check) {
+void with_place(const SourcePlace& place, const Check& check) {
   try {
     check();
   } catch (const Error& error) {
-    fail_unknown_name(place + ": " + error.what());
+    fail_unknown_name(place, error.what());
   }
 }
 
 void refuse_unknown_gains(const Pattern& pattern, const RobotModel& robot) {
-  with_place(robot.description().sidecar_file + ": /control",
+  with_place({robot.description().sidecar_file, "/control"},
              [&] { check_controller(robot, {.type = pattern.controller.type, .gains = {}}); });
-  with_place(pattern.file + ": /controller", [&] { check_controller(robot, pattern.controller); });
-  with_place(pattern.file + ": /tolerances", [&] {
+  with_place({pattern.file, "/controller"}, [&] { check_controller(robot, pattern.controller); });
+  with_place({pattern.file, "/tolerances"}, [&] {
     CheckOptions options;
     options.tolerances = pattern.tolerances;
     tolerances(options);
@@ -83,7 +82,7 @@ Task make_task(Pattern pattern, RobotModel robot, const std::string& profile,
     try {
       return sample_at_servo_period(robot, pattern, progress, threads);
     } catch (const Error& error) {
-      const bool says_all = is_of_unknown_name(error) || names_its_value(error);
+      const bool says_all = error.place().unknown_name || error.place().names_value;
       if (error.code() != ErrorCode::bad_pattern || says_all) throw;
       throw_with_message(error,
                          with_mistakes(error.what(), pattern, impossible_values(robot, pattern)));

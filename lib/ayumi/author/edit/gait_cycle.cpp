@@ -37,10 +37,9 @@ GaitCycle gait_cycle(const RobotModel& model, const MotionPart& motion, int swin
     if (phases[i].swing) swings.push_back(i);
   const auto wanted = static_cast<size_t>(swing);
   if (swing < 0 || swings.size() < wanted + 3)
-    fail(ErrorCode::bad_pattern, in_file(motion.pattern, "phases") + ": the motion has " +
-                                     text::counted(swings.size(), "swing") + ", but at least " +
-                                     std::to_string(wanted + 3) +
-                                     " swings are needed to cut out a cycle of two steps");
+    fail(ErrorCode::bad_pattern, in_file(motion.pattern, "/phases"),
+         "the motion has " + text::counted(swings.size(), "swing") + ", but at least " +
+             std::to_string(wanted + 3) + " swings are needed to cut out a cycle of two steps");
   const double dt = motion.series.dt;
   const auto middle_before = [&](size_t i) {
     const size_t phase = swings[i];
@@ -98,10 +97,10 @@ Pattern cut(const RobotModel& model, const MotionPart& motion, long first, long 
   const CommandSample& start = series.samples[static_cast<size_t>(first)];
   for (const long k : {first, last})
     if (series.samples[static_cast<size_t>(k)].support != Support::both)
-      fail(ErrorCode::bad_pattern, in_file(motion.pattern, "phases") + ": at " +
-                                       text::exact(series.dt * static_cast<double>(k)) +
-                                       " s a foot is in the air; let the part begin and end where "
-                                       "both feet are on the ground");
+      fail(ErrorCode::bad_pattern, in_file(motion.pattern, "/phases"),
+           "at " + text::exact(series.dt * static_cast<double>(k)) +
+               " s a foot is in the air; let the part begin and end where "
+               "both feet are on the ground");
   Pattern result = baked(model, motion.pattern, series, table);
   result.repair = {};  // times and joints are those of the whole walk
   DenseTable& dense = *result.table;

@@ -63,10 +63,9 @@ Isometry3d stand(const Feet& feet) {
 
 void require_stand(const Pattern& pattern, const CommandSample& sample, const char* when) {
   if (sample.support != Support::both)
-    fail(ErrorCode::bad_pattern,
-         in_file(pattern, std::string(when)) +
-             ": a foot is in the air here, and motions can be joined only where both feet stand on "
-             "the ground; let both feet stand here");
+    fail(ErrorCode::bad_pattern, in_file(pattern, std::string(when)),
+         "a foot is in the air here, and motions can be joined only where both feet stand on "
+         "the ground; let both feet stand here");
 }
 
 RobotState moved(const Isometry3d& shift, const RobotState& state) {
@@ -222,8 +221,8 @@ void require_same_stand(const Pattern& second, const Feet& last, const Feet& fir
     const double distance = (last[i].translation() - first[i].translation()).norm();
     const double turn = angle_between(last[i].linear(), first[i].linear());
     if (distance < kSamePlace && turn < kSameAngle) continue;
-    fail(ErrorCode::bad_pattern,
-         in_file(second, "start") + ": the " + (i == 0 ? "left" : "right") + " foot is " +
+    fail(ErrorCode::bad_pattern, in_file(second, "/start"),
+         std::string("the ") + (i == 0 ? "left" : "right") + " foot is " +
              text::fixed(1000 * distance, 1) + " mm and " + text::fixed(turn * 180 / M_PI, 1) +
              " deg away from its place at the end of the first motion (limits " +
              text::fixed(1000 * kSamePlace, 1) + " mm and " +
@@ -239,15 +238,14 @@ void require_same_posture(const RobotModel& model, const Pattern& second, const 
   const double distance = (last.base.position - first.base.position).norm();
   const double turn = elementary::angle_between(last.base.attitude, first.base.attitude);
   if (distance > kSameBase || turn > kSameJoint)
-    fail(ErrorCode::bad_pattern, in_file(second, "start") + ": the base is " +
-                                     text::fixed(1000 * distance, 2) + " mm and " +
-                                     text::fixed(turn * 180 / M_PI, 2) +
-                                     " deg away from its place at the end of the first motion; "
-                                     "join the motions with `ayumi edit blend --over S`");
+    fail(ErrorCode::bad_pattern, in_file(second, "/start"),
+         "the base is " + text::fixed(1000 * distance, 2) + " mm and " +
+             text::fixed(turn * 180 / M_PI, 2) +
+             " deg away from its place at the end of the first motion; "
+             "join the motions with `ayumi edit blend --over S`");
   if (most < kSameJoint) return;
-  fail(ErrorCode::bad_pattern,
-       in_file(second, "start") + ": " + model.dofs()[worst].name + " is " +
-           text::fixed(most * 180 / M_PI, 2) +
+  fail(ErrorCode::bad_pattern, in_file(second, "/start"),
+       model.dofs()[worst].name + " is " + text::fixed(most * 180 / M_PI, 2) +
            " deg away from its angle at the end of the first motion; limit " +
            text::fixed(kSameJoint * 180 / M_PI, 2) +
            " deg; join the motions with `ayumi edit blend --over S`");
@@ -372,24 +370,27 @@ Keyframe keys_at(const RobotModel& model, const KeyedTracks& of, double t, const
 
 void require_keys(const KeyedTracks& part) {
   const Pattern& pattern = part.pattern;
-  const auto stop = [&](const std::string& place, const std::string& why) {
-    fail(ErrorCode::bad_pattern, in_file(pattern, place) + ": " + why +
-                                     ", so the motion cannot be joined to another one by keys");
+  const auto stop = [&](const SourcePlace& place, const std::string& why) {
+    fail(ErrorCode::bad_pattern, place,
+         why + ", so the motion cannot be joined to another one by keys");
   };
   if (part.tracks.joint_driven)
-    stop("keyframes", "the joints of the legs follow " + part.tracks.driver);
+    stop(in_file(pattern, "/keyframes"), "the joints of the legs follow " + part.tracks.driver);
   for (const Keyframe& key : pattern.keyframes)
     if (key.feet[0] || key.feet[1]) stop(key.place, "a foot has keys");
   for (const auto& [link, led] : part.hands)
-    if (led) stop("keyframes", "the target of " + link + " is kept until the end of the motion");
+    if (led)
+      stop(in_file(pattern, "/keyframes"),
+           "the target of " + link + " is kept until the end of the motion");
   if (part.gaze.value_or(false))
-    stop("keyframes", "the target of the gaze is kept until the end of the motion");
+    stop(in_file(pattern, "/keyframes"),
+         "the target of the gaze is kept until the end of the motion");
 }
 
 void require_same_tracks(const KeyedTracks& a, const KeyedTracks& b) {
   const auto stop = [&](const std::string& what) {
-    fail(ErrorCode::bad_pattern,
-         in_file(b.pattern, "keyframes") + ": only one of the two motions has " + what +
+    fail(ErrorCode::bad_pattern, in_file(b.pattern, "/keyframes"),
+         "only one of the two motions has " + what +
              "; the keys can be kept only if the two motions agree in this point");
   };
   if (a.tracks.zmp.has_value() != b.tracks.zmp.has_value()) stop("keys of the ZMP");
@@ -424,9 +425,9 @@ Pattern chained(const RobotModel& model, const MotionPart& first, const MotionPa
   for (const Pattern* pattern : {&first.pattern, &second.pattern}) {
     refuse_viip_phases(*pattern, "joined");
     if (pattern->table || pattern->correction)
-      fail(ErrorCode::bad_pattern, in_file(*pattern, pattern->table ? "table" : "correction") +
-                                       ": a pattern with a table or a correction has no keys that "
-                                       "could be kept");
+      fail(ErrorCode::bad_pattern, in_file(*pattern, pattern->table ? "/table" : "/correction"),
+           "a pattern with a table or a correction has no keys that "
+           "could be kept");
   }
   const CommandSeries &a = first.series, &b = second.series;
   require_stand(first.pattern, a.samples.back(), "end");
@@ -453,7 +454,7 @@ Pattern chained(const RobotModel& model, const MotionPart& first, const MotionPa
   if (over > 0) result.phases.push_back(both_feet_until(later));
   Keyframe at_start = keys_at(model, two, 0, one);
   for (const std::string& joint : one.weights)
-    at_start.weights[joint] = model.joint_weight()[find_joint(model, joint, "weights")];
+    at_start.weights[joint] = model.joint_weight()[find_joint(model, joint, {"", "weights"})];
   for (const auto& [link, led] : two.hands) at_start.hands[link] = {};
   if (two.gaze) at_start.gaze = LinkTarget{};
   move_key(shift, at_start);
@@ -516,8 +517,9 @@ namespace {
 RobotState standing_at(const RobotModel& model, const Pattern& pattern, const std::string& posture,
                        const RobotState& near) {
   RobotState state = near;
-  for (const auto& [joint, angle] : posture_joints(model, pattern, posture, "ramp"))
-    state.theta[find_joint(model, joint, "ramp")] = angle;
+  for (const auto& [joint, angle] :
+       posture_joints(model, pattern, posture, in_file(pattern, "ramp")))
+    state.theta[find_joint(model, joint, in_file(pattern, "ramp"))] = angle;
   RobotState home = model.rest_state();
   home.theta = state.theta;
   RobotData data(model);
@@ -543,8 +545,8 @@ RobotState standing_at(const RobotModel& model, const Pattern& pattern, const st
   }
   target.cog.head<2>() = middle.head<2>();
   if (!legs.solve(target, state, data).reached)
-    fail(ErrorCode::bad_pattern,
-         in_file(pattern, "ramp") + ": posture '" + posture +
+    fail(ErrorCode::bad_pattern, in_file(pattern, "ramp"),
+         "posture '" + posture +
              "' cannot be reached while the feet stay at their places in the motion; choose "
              "another posture");
   return state;

@@ -52,9 +52,9 @@ Pattern with_key_edited(const RobotModel& model, const Pattern& pattern, const K
   if (found == result.keyframes.end()) {
     std::vector<std::string> times;
     for (const Keyframe& key : pattern.keyframes) times.push_back(text::exact(key.t));
-    fail(ErrorCode::usage, in_file(pattern, "keyframes") + ": there is no keyframe at " +
-                               text::exact(edit.at) + " s; the times of the keyframes are " +
-                               text::join(times, ", ") + " s");
+    fail(ErrorCode::usage, in_file(pattern, "/keyframes"),
+         "there is no keyframe at " + text::exact(edit.at) + " s; the times of the keyframes are " +
+             text::join(times, ", ") + " s");
   }
   Keyframe key = *found;
   if (edit.mirror) {
@@ -72,14 +72,14 @@ Pattern with_key_edited(const RobotModel& model, const Pattern& pattern, const K
   if (edit.to) {
     const double end = pattern.phases.empty() ? pattern.duration() : pattern.phases.back().until;
     if (!(*edit.to >= 0 && *edit.to <= end))
-      fail(ErrorCode::usage, in_file(pattern, "keyframes") + ": the keyframe would be at " +
-                                 text::exact(*edit.to) + " s, but the motion lasts from 0 to " +
-                                 text::exact(end) + " s");
+      fail(ErrorCode::usage, in_file(pattern, "/keyframes"),
+           "the keyframe would be at " + text::exact(*edit.to) +
+               " s, but the motion lasts from 0 to " + text::exact(end) + " s");
     double begin = 0;
     for (size_t i = 0; i < pattern.phases.size(); begin = pattern.phases[i++].until)
       if (pattern.phases[i].viip && *edit.to > begin && *edit.to < pattern.phases[i].until)
-        fail(ErrorCode::usage,
-             place_of_phase(pattern, i) + ": the keyframe would be at " + text::exact(*edit.to) +
+        fail(ErrorCode::usage, place_of_phase(pattern, i),
+             "the keyframe would be at " + text::exact(*edit.to) +
                  " s, inside the VIIP phase from " + text::exact(begin) + " to " +
                  text::exact(pattern.phases[i].until) +
                  " s, in which goals replace keys; choose a time outside this phase");
@@ -151,9 +151,8 @@ void require_moved_together(const Isometry3d& shift, const Pattern& pattern) {
   const double yaw = matrix_to_rpy(shift.linear()).z();
   for (const Keyframe& key : pattern.keyframes)
     if (std::abs(yaw) > 1e-9 && key.cog_x.has_value() != key.cog_y.has_value())
-      fail(ErrorCode::bad_pattern,
-           in_file(pattern, key.place) +
-               ": a motion that turns needs keys of COG x and y together; give both");
+      fail(ErrorCode::bad_pattern, key.place,
+           "a motion that turns needs keys of COG x and y together; give both");
 }
 
 Pattern alternated(const RobotModel& model, const Pattern& pattern, int times, bool close) {
@@ -163,25 +162,23 @@ Pattern alternated(const RobotModel& model, const Pattern& pattern, int times, b
              std::to_string(times) + " times");
   refuse_viip_phases(pattern, "alternated with its mirror image");
   if (pattern.table || pattern.correction)
-    fail(ErrorCode::bad_pattern,
-         in_file(pattern, pattern.table ? "table" : "correction") +
-             ": a pattern with a table or a correction cannot alternate with its mirror image. "
-             "Each step has to begin where the last one has ended, and a table or a correction "
-             "cannot be moved to that place");
+    fail(ErrorCode::bad_pattern, in_file(pattern, pattern.table ? "/table" : "/correction"),
+         "a pattern with a table or a correction cannot alternate with its mirror image. "
+         "Each step has to begin where the last one has ended, and a table or a correction "
+         "cannot be moved to that place");
   const bool foot_keys =
       std::any_of(pattern.keyframes.begin(), pattern.keyframes.end(),
                   [](const Keyframe& key) { return key.feet[0] || key.feet[1]; });
   if (foot_keys)
-    fail(ErrorCode::bad_pattern,
-         in_file(pattern, "keyframes") +
-             ": the feet have keys; give swings in the phases, which can be steps relative to the "
-             "other foot");
+    fail(ErrorCode::bad_pattern, in_file(pattern, "/keyframes"),
+         "the feet have keys; give swings in the phases, which can be steps relative to the "
+         "other foot");
   const FootPlan plan(model, pattern);
   const auto first_swing = std::find_if(plan.phases().begin(), plan.phases().end(),
                                         [](const Phase& phase) { return phase.swing.has_value(); });
   if (first_swing == plan.phases().end())
-    fail(ErrorCode::bad_pattern,
-         in_file(pattern, "phases") + ": no foot swings, so there is no step to repeat");
+    fail(ErrorCode::bad_pattern, in_file(pattern, "/phases"),
+         "no foot swings, so there is no step to repeat");
   const std::array<Isometry3d, 2> start = start_feet(model, pattern);
   Pattern relative = pattern;
   for (size_t i = 0; i < relative.phases.size(); ++i) {

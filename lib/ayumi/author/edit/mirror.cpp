@@ -103,7 +103,7 @@ class Mirror {
 
   Pattern whole() {
     Pattern result = pattern_;
-    for (auto& [name, joints] : result.postures) joints = of(joints, "postures/" + name);
+    for (auto& [name, joints] : result.postures) joints = of(joints, "/postures/" + name);
     std::set<std::string> named = {pattern_.default_posture};
     for (const Keyframe& key : pattern_.keyframes)
       if (key.posture) named.insert(*key.posture);
@@ -123,14 +123,14 @@ class Mirror {
  private:
   using Joints = std::map<std::string, double>;
 
-  int dof_of(const std::string& joint, const std::string& place) const {
-    return find_joint(model_, joint, in_file(pattern_, place));
+  int dof_of(const std::string& joint, const std::string& inside) const {
+    return find_joint(model_, joint, in_file(pattern_, inside));
   }
 
-  Joints of(const Joints& joints, const std::string& place, bool with_sign = true) const {
+  Joints of(const Joints& joints, const std::string& inside, bool with_sign = true) const {
     Joints result;
     for (const auto& [joint, value] : joints) {
-      const int dof = dof_of(joint, place);
+      const int dof = dof_of(joint, inside);
       const double sign = with_sign ? map_.sign[dof] : 1;
       result[model_.dofs()[map_.dof[dof]].name] = value == 0 ? 0 : sign * value;
     }
@@ -141,8 +141,8 @@ class Mirror {
     RepairPreferences result = preferences;
     std::swap(result.feet[0], result.feet[1]);
     for (std::string& joint : result.joints)
-      joint = model_.dofs()[map_.dof[dof_of(joint, "repair/lock/joints")]].name;
-    result.weights = of(preferences.weights, "repair/weights", false);
+      joint = model_.dofs()[map_.dof[dof_of(joint, "/repair/lock/joints")]].name;
+    result.weights = of(preferences.weights, "/repair/weights", false);
     return result;
   }
 
@@ -200,8 +200,8 @@ class Mirror {
   }
 
   void mirror(Keyframe& key) const {
-    key.joints = of(key.joints, key.place);
-    key.weights = of(key.weights, key.place, false);
+    key.joints = of(key.joints, key.place.inside);
+    key.weights = of(key.weights, key.place.inside, false);
     if (key.zmp) {
       key.zmp->place = opposite(key.zmp->place);
       key.zmp->point.y() *= -1;
@@ -222,11 +222,11 @@ class Mirror {
   // Columns keep their order if the table has both sides. Otherwise they get the name of the other
   // side.
   void mirror(DenseTable& table) const {
-    const std::string place = "table " + table.file;
+    const std::string inside = "table " + table.file;
     const Eigen::MatrixXd theta = table.theta;
     std::vector<std::string> images;
     for (const std::string& joint : table.joints)
-      images.push_back(model_.dofs()[map_.dof[dof_of(joint, place)]].name);
+      images.push_back(model_.dofs()[map_.dof[dof_of(joint, inside)]].name);
     const bool whole = std::all_of(images.begin(), images.end(), [&](const std::string& joint) {
       return std::find(table.joints.begin(), table.joints.end(), joint) != table.joints.end();
     });
@@ -235,7 +235,7 @@ class Mirror {
                                   table.joints.begin()
                             : static_cast<std::ptrdiff_t>(j);
       table.theta.col(to) =
-          map_.sign[dof_of(table.joints[j], place)] * theta.col(static_cast<Eigen::Index>(j));
+          map_.sign[dof_of(table.joints[j], inside)] * theta.col(static_cast<Eigen::Index>(j));
     }
     if (!whole) table.joints = images;
     for (BasePose& base : table.base) base = {image(base.position), image(base.attitude)};
@@ -247,7 +247,7 @@ class Mirror {
     for (const int column : {1, 3, 5})  // mirrored: y, and the rotations about x and z
       track.coefficients.col(column) *= -1;
     for (size_t j = 0; j < track.joints.size(); ++j) {
-      const int dof = dof_of(track.joints[j], "correction");
+      const int dof = dof_of(track.joints[j], "/correction");
       track.coefficients.col(static_cast<Eigen::Index>(6 + j)) *= map_.sign[dof];
       track.joints[j] = model_.dofs()[map_.dof[dof]].name;
     }

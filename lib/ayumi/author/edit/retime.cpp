@@ -58,9 +58,9 @@ Pattern stretched(const RobotModel& model, const Pattern& pattern, double begin,
              "to 100");
   refuse_viip_phases(pattern, "stretched");
   if (pattern.table || pattern.correction)
-    fail(ErrorCode::bad_pattern, pattern.file +
-                                     ": a time window of a table or of a correction cannot be "
-                                     "stretched; stretch the whole motion");
+    fail(ErrorCode::bad_pattern, {pattern.file},
+         "a time window of a table or of a correction cannot be "
+         "stretched; stretch the whole motion");
   // Times closer than this are equal [s]. Chosen: above rounding.
   constexpr double kSame = 1e-9;
   const double weight = model.mass() * kGravity;

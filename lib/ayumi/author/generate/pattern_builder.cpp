@@ -74,7 +74,7 @@ void PatternBuilder::key(double at, ZmpKey::Place place) {
 
 void PatternBuilder::add(double at, Keyframe key) {
   key.t = to_millisecond(at);
-  key.place = "keyframes/" + std::to_string(pattern.keyframes.size());
+  key.place.inside = "/keyframes/" + std::to_string(pattern.keyframes.size());
   pattern.keyframes.push_back(key);
 }
 

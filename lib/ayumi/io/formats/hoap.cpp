@@ -73,7 +73,7 @@ class Reader {
       if (!line.empty()) read(line);
     }
     if (result_.rows.empty())
-      fail(ErrorCode::bad_file, file_ + ": the file has no row with targets for the motors");
+      fail(ErrorCode::bad_file, {file_}, "the file has no row with targets for the motors");
     const std::string &first = result_.first_words, &last = result_.last_words;
     if (!last.empty() && last.size() < first.size() && first.starts_with(last))
       stop("the row ends with '" + last + "', but the first row with '" + first +
@@ -85,7 +85,7 @@ class Reader {
 
  private:
   [[noreturn]] void stop(const std::string& reason) const {
-    fail(ErrorCode::bad_file, file_ + ":" + std::to_string(line_) + ": " + reason);
+    fail(ErrorCode::bad_file, {file_, "", static_cast<long>(line_)}, reason);
   }
 
   void read(std::string_view line) {
@@ -181,11 +181,12 @@ class Reader {
           layout.radians == fraction_)
         found = &layout;
     if (!found)
-      fail(ErrorCode::bad_file, file_ + ": the file has " + std::to_string(columns) +
-                                    " columns in " + (fraction_ ? "radians" : "counts") +
-                                    " and no interval column, and this robot has no such layout; "
-                                    "add this layout to \"layouts\" in "
-                                    "the sidecar");
+      fail(ErrorCode::bad_file, {file_},
+           "the file has " + std::to_string(columns) + " columns in " +
+               (fraction_ ? "radians" : "counts") +
+               " and no interval column, and this robot has no such layout; "
+               "add this layout to \"layouts\" in "
+               "the sidecar");
     result_.layout = *found;
     const int interval = given_ > 0                    ? given_
                          : found->intervals_ms.empty() ? 1

@@ -30,9 +30,9 @@ void refuse_lost_motion(const HoapFile& sequence, int device, const RobotModel& 
   const std::string unit = sequence.layout.radians ? " rad" : " counts";
   const std::string name = "device " + std::to_string(device);
   if (high - low > (sequence.layout.radians ? kTremblingAngle : kTremblingCounts))
-    fail(ErrorCode::bad_file,
-         file + ": " + name + " moves from " + text::brief(low) + " to " + text::brief(high) +
-             unit + ", but no joint of '" + model.name() +
+    fail(ErrorCode::bad_file, {file},
+         name + " moves from " + text::brief(low) + " to " + text::brief(high) + unit +
+             ", but no joint of '" + model.name() +
              "' has this device; add the device to \"encoders\" in the sidecar");
   filled.push_back(name + " is not on this robot and is ignored; its target is always " +
                    text::brief(low) + unit);
@@ -43,8 +43,8 @@ void refuse_zeros(const HoapFile& sequence, const std::string& file) {
     for (const double value : row.values)
       if (value != 0) return;
   if (sequence.rows.size() > 1)
-    fail(ErrorCode::bad_file,
-         file + ": every value of every motor is 0, so nothing was recorded; record again");
+    fail(ErrorCode::bad_file, {file},
+         "every value of every motor is 0, so nothing was recorded; record again");
 }
 
 // A step that no motor board passes on shows that the file has a jump, or that rows are missing.

@@ -23,7 +23,7 @@ std::optional<std::string> MotionInput::beside(const std::string& extension) con
 }
 
 void MotionInput::refuse(size_t line, const std::string& reason) const {
-  fail(ErrorCode::bad_file, file + (line > 0 ? ":" + std::to_string(line) : "") + ": " + reason);
+  fail(ErrorCode::bad_file, {file, "", static_cast<long>(line)}, reason);
 }
 
 double MotionInput::number(std::string_view cell, size_t line, const std::string& where) const {

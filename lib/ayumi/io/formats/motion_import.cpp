@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "ayumi/base/counted.hpp"
-#include "ayumi/base/placed_error.hpp"
+#include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/utf8.hpp"
 #include "ayumi/io/degrees.hpp"
@@ -214,23 +214,24 @@ std::vector<std::string> column_names(const MotionFile& motion, const RobotModel
   const std::string count = text::counted(columns, "joint column");
   if (!options.joints.empty()) {
     if (options.joints.size() != columns)
-      fail(ErrorCode::bad_file, file + ": the file has " + count + ", but --joints names " +
-                                    std::to_string(options.joints.size()));
+      fail(ErrorCode::bad_file, {file},
+           "the file has " + count + ", but --joints names " +
+               std::to_string(options.joints.size()));
     return options.joints;
   }
   const std::vector<std::string> own = model.dof_names();
   if (options.by_order) {
     if (own.size() != columns)
-      fail(ErrorCode::bad_file, file + ": the file has " + count + ", but '" + model.name() +
-                                    "' has " + text::counted(own.size(), "joint") +
-                                    "; --joints A,B,... names the columns");
+      fail(ErrorCode::bad_file, {file},
+           "the file has " + count + ", but '" + model.name() + "' has " +
+               text::counted(own.size(), "joint") + "; --joints A,B,... names the columns");
     notes.push_back("the columns are the joints in the order of the robot, as --order says: " +
                     shortened(own));
     return own;
   }
   if (motion.joints.empty())
-    fail(ErrorCode::bad_file,
-         file + ": the file has " + count + " without names" +
+    fail(ErrorCode::bad_file, {file},
+         "the file has " + count + " without names" +
              (own.size() == columns
                   ? "; give --order if the columns are the " + text::counted(own.size(), "joint") +
                         " of '" + model.name() + "' in the order of the robot (" + own.front() +
@@ -252,11 +253,11 @@ void refuse_degrees(const MotionFile& motion, Eigen::Index column, const std::st
   for (const double value : motion.values.col(column))
     if (std::abs(value) > most) most = std::abs(value);
   if (most > kNoAngle)
-    fail(ErrorCode::bad_file, file + ": column '" + name + "' reaches " + text::brief(most) +
-                                  " rad, which no joint reaches; " +
-                                  (motion.unit != MotionFile::Unit::of_format
-                                       ? "give --unit deg if the angles are in degrees"
-                                       : "this format holds radians, so correct the file"));
+    fail(ErrorCode::bad_file, {file},
+         "column '" + name + "' reaches " + text::brief(most) + " rad, which no joint reaches; " +
+             (motion.unit != MotionFile::Unit::of_format
+                  ? "give --unit deg if the angles are in degrees"
+                  : "this format holds radians, so correct the file"));
 }
 
 /// Farthest place of a motion from the origin of its world [m], and largest ground force in weights
@@ -265,8 +266,8 @@ constexpr double kFarthest = 10000, kMostWeights = 1000;
 
 void refuse_absurd(const MotionFile& motion, const RobotModel& model, const std::string& file) {
   const auto refuse = [&](size_t row, const std::string& what) {
-    fail(ErrorCode::bad_file,
-         file + ": row " + std::to_string(row + 1) + ": " + what + "; correct the file");
+    fail(ErrorCode::bad_file, {file},
+         "row " + std::to_string(row + 1) + ": " + what + "; correct the file");
   };
   const auto check = [&](size_t row, const char* name, const Eigen::Vector3d& place) {
     double most = 0;  // NaN: not set in this row
@@ -307,9 +308,9 @@ std::vector<int> map_joints(const MotionFile& motion, const RobotModel& model,
     }
     int& column = columns[static_cast<size_t>(dof)];
     if (column >= 0)
-      fail(ErrorCode::bad_file, file + ": the columns '" + names[static_cast<size_t>(column)] +
-                                    "' and '" + names[i] +
-                                    "' are the same joint; remove one of them");
+      fail(ErrorCode::bad_file, {file},
+           "the columns '" + names[static_cast<size_t>(column)] + "' and '" + names[i] +
+               "' are the same joint; remove one of them");
     const auto at = static_cast<Eigen::Index>(i);
     if (motion.values.col(at).array().isNaN().all()) continue;  // never set
     column = static_cast<int>(i);
@@ -319,8 +320,8 @@ std::vector<int> map_joints(const MotionFile& motion, const RobotModel& model,
   }
   const std::string robot = "'" + model.name() + "'";
   if (unknown.size() > matched.size())
-    fail(ErrorCode::bad_file,
-         file + ": this is a motion of another robot: " +
+    fail(ErrorCode::bad_file, {file},
+         "this is a motion of another robot: " +
              (matched.empty() ? "its joints " + shortened(unknown) + " are not joints of " + robot
                               : "of its " + text::counted(names.size(), "joint") + " only " +
                                     shortened(matched) + " are joints of " + robot + ", and " +
@@ -460,18 +461,17 @@ std::vector<double> times_of(const MotionFile& motion, const ImportOptions& opti
   std::vector<double> times = motion.times;
   const auto rows = static_cast<size_t>(motion.rows());
   if (rows < 2)
-    fail(ErrorCode::bad_file, file + ": the table has only one row; a motion needs more");
+    fail(ErrorCode::bad_file, {file}, "the table has only one row; a motion needs more");
   if (times.empty()) {
     if (motion.rate > 0 && options.rate > 0 && motion.file_rows == 0)
       notes.push_back("--rate is not used, because the file states its rate, " +
                       text::brief(motion.rate) + " rows per second");
     const double rate = motion.rate > 0 ? motion.rate : options.rate;
     if (!(rate > 0))
-      fail(ErrorCode::bad_file,
-           file +
-               ": this format does not state how many rows a second has; give --rate HZ (LAFAN1 "
-               "for Unitree G1 has 30 rows per second). If the rate is twice the true rate, all "
-               "speeds are 2 times and all accelerations 4 times too high");
+      fail(ErrorCode::bad_file, {file},
+           "this format does not state how many rows a second has; give --rate HZ (LAFAN1 "
+           "for Unitree G1 has 30 rows per second). If the rate is twice the true rate, all "
+           "speeds are 2 times and all accelerations 4 times too high");
     for (size_t k = 0; k < rows; ++k) times.push_back(static_cast<double>(k) / rate);
     return times;
   }
@@ -482,10 +482,10 @@ std::vector<double> times_of(const MotionFile& motion, const ImportOptions& opti
                     text::brief(times[0]) + " s");
   for (size_t k = 1; k < rows; ++k)
     if (!(times[k] > times[k - 1]))
-      fail(ErrorCode::bad_file, file + ": data row " + std::to_string(k + 1) + ": time " +
-                                    text::brief(times[k]) + " s does not come after " +
-                                    text::brief(times[k - 1]) +
-                                    " s of the row before; times must increase");
+      fail(ErrorCode::bad_file, {file},
+           "data row " + std::to_string(k + 1) + ": time " + text::brief(times[k]) +
+               " s does not come after " + text::brief(times[k - 1]) +
+               " s of the row before; times must increase");
   const double first = times[0];
   for (double& time : times) time -= first;
   return times;
@@ -507,9 +507,9 @@ Rows even_rows(const MotionFile& motion, const Rows& rows, const ImportOptions& 
   dt = keys ? tick : spacing.dt;
   const double last = times.back() / dt;
   if (last > static_cast<double>(kMostRows))
-    fail(ErrorCode::bad_file, file + ": the motion lasts " + text::brief(times.back()) +
-                                  " s, which is more than " + std::to_string(kMostRows) +
-                                  " rows at this rate; cut the file");
+    fail(ErrorCode::bad_file, {file},
+         "the motion lasts " + text::brief(times.back()) + " s, which is more than " +
+             std::to_string(kMostRows) + " rows at this rate; cut the file");
   const Eigen::Index count =
       spacing.even && !keys ? rows.rows() : static_cast<Eigen::Index>(std::floor(last + 1e-3)) + 1;
   if (keys)
@@ -687,9 +687,9 @@ void read_rows(const std::string& bytes, const std::string& file, const RobotMod
   constexpr int kLeastRows = 6;  // Derived: accelerations take five (motion/differentiate.hpp)
   if (!result.sequence.empty()) hold_last_row(kLeastRows, result);
   if (result.motion.theta.rows() < kLeastRows)
-    fail(ErrorCode::bad_file,
-         file + ": the motion has " + std::to_string(result.motion.theta.rows()) +
-             " rows, but at least " + std::to_string(kLeastRows) + " are needed");
+    fail(ErrorCode::bad_file, {file},
+         "the motion has " + std::to_string(result.motion.theta.rows()) + " rows, but at least " +
+             std::to_string(kLeastRows) + " are needed");
 }
 
 // Calls `read`; an Error about the file then says what the file was taken for.

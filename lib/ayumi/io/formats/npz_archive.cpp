@@ -84,10 +84,8 @@ std::string value_in_head(const std::string& head, const std::string& key) {
 /// Numbers of all arrays together. Chosen: 100 MB.
 constexpr size_t kMostNumbers = 100'000'000 / sizeof(double);
 
-NpyArray array_of(const std::string& bytes, const std::string& place) {
-  const auto refuse = [&](const std::string& reason) {
-    fail(ErrorCode::bad_file, place + ": " + reason);
-  };
+NpyArray array_of(const std::string& bytes, const SourcePlace& place) {
+  const auto refuse = [&](const std::string& reason) { fail(ErrorCode::bad_file, place, reason); };
   if (bytes.size() < 12 || bytes.compare(0, 6, kNpyMagic, 6) != 0)
     refuse("this is not a NumPy array; save the arrays with numpy.savez");
   // Definition: version 2 has a long head, version 3 has names in UTF-8.
@@ -237,7 +235,7 @@ std::map<std::string, NpyArray> read_npz(const std::string& bytes, const std::st
   zip_t* const archive = zip_open_from_source(source, ZIP_RDONLY, &error);
   if (!archive) {
     zip_source_free(source);
-    fail(ErrorCode::bad_file, file + ": the archive cannot be opened; the file may be truncated");
+    fail(ErrorCode::bad_file, {file}, "the archive cannot be opened; the file may be truncated");
   }
   std::map<std::string, NpyArray> arrays;
   std::string refused;
@@ -253,7 +251,7 @@ std::map<std::string, NpyArray> read_npz(const std::string& bytes, const std::st
       name.resize(name.size() - 4);
       total += stat.size;
       if (total > kMostNumbers * sizeof(double))
-        fail(ErrorCode::bad_file, file + ": the arrays are too large; Ayumi reads at most 100 MB");
+        fail(ErrorCode::bad_file, {file}, "the arrays are too large; Ayumi reads at most 100 MB");
       zip_file_t* const opened = zip_fopen_index(archive, at, 0);
       std::string content(stat.size, '\0');
       const zip_int64_t got = opened ? zip_fread(opened, content.data(), content.size()) : -1;
@@ -263,9 +261,9 @@ std::map<std::string, NpyArray> read_npz(const std::string& bytes, const std::st
           got == static_cast<zip_int64_t>(content.size()) && zip_fread(opened, &beyond, 1) == 0;
       if (opened) zip_fclose(opened);
       if (!whole)
-        fail(ErrorCode::bad_file,
-             file + ": " + name + ": the array cannot be unpacked; the file may be damaged");
-      arrays[name] = array_of(content, file + ": " + name);
+        fail(ErrorCode::bad_file, {file},
+             name + ": the array cannot be unpacked; the file may be damaged");
+      arrays[name] = array_of(content, {file, name});
     }
   } catch (...) {
     zip_discard(archive);

@@ -17,7 +17,7 @@ namespace ayumi {
 namespace {
 
 [[noreturn]] void refuse_table(const std::string& file, const std::string& reason) {
-  fail(ErrorCode::bad_file, file + ": " + reason);
+  fail(ErrorCode::bad_file, {file}, reason);
 }
 
 // "r_knee[deg]" and "r_knee (deg)" are a name and its unit, and so are "time_s" and "time_ms".

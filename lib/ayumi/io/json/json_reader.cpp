@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "ayumi/base/placed_error.hpp"
+#include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/json/json_depth.hpp"
 #include "ayumi/io/json/json_slip.hpp"
@@ -39,9 +39,7 @@ std::string kind_of(const Json& value) {
     column = bytes[i] == '\n' ? 1 : column + 1;
     line += bytes[i] == '\n';
   }
-  throw PlacedError(
-      code, file + ":" + std::to_string(line) + ":" + std::to_string(column) + ": " + message,
-      {file, "", line});
+  fail(code, {file, "", line, column}, message);
 }
 
 // "[json.exception...] parse error at line 1, column 2: what" -> "what"; "[...] what" -> "what"
@@ -128,7 +126,7 @@ std::string json_pointer_token(const std::string& key) {
 Json parse_json(const std::string& bytes, const std::string& file, ErrorCode code) {
   const bool blank =
       std::all_of(bytes.begin(), bytes.end(), [](unsigned char c) { return std::isspace(c); });
-  if (blank) fail(code, file + ": the file is empty; it must hold JSON");
+  if (blank) fail(code, {file}, "the file is empty; it must hold JSON");
   Json document;
   DocumentBuilder builder(document);
   try {
@@ -157,8 +155,8 @@ Json parse_json(const std::string& bytes, const std::string& file, ErrorCode cod
                  "arrays and objects are nested more than " + std::to_string(kDeepestNesting) +
                      " levels deep; correct the brackets");
   if (!builder.duplicate().empty())
-    fail(code,
-         file + ": the key '" + builder.duplicate() + "' appears twice in one object; keep one");
+    fail(code, {file},
+         "the key '" + builder.duplicate() + "' appears twice in one object; keep one");
   return document;
 }
 
@@ -173,9 +171,8 @@ JsonPlace JsonNode::place() const {
 
 void JsonNode::complain(const std::string& message) const {
   const JsonPlace at = place();
-  throw PlacedError(code_,
-                    at.file + ": " + (at.pointer.empty() ? "/" : at.pointer) + ": " + message,
-                    {at.file, at.pointer});
+  throw Error(code_, at.file + ": " + (at.pointer.empty() ? "/" : at.pointer) + ": " + message,
+              {at.file, at.pointer});
 }
 
 JsonNode JsonNode::child(const std::string& token, const Json& value) const {

@@ -53,7 +53,7 @@ std::string_view word_at(std::string_view text, size_t at) {
 class Parser {
  public:
   Parser(std::string_view text, const std::map<std::string, double>& parameters,
-         const std::string& where, std::set<std::string>* used)
+         const SourcePlace& where, std::set<std::string>* used)
       : text_(text), parameters_(parameters), where_(where), used_(used) {}
 
   double whole() {
@@ -65,7 +65,7 @@ class Parser {
 
  private:
   [[noreturn]] void stop(const std::string& reason) const {
-    fail(ErrorCode::bad_pattern, where_ + ": expression \"" + std::string(text_) + "\": " + reason);
+    fail(ErrorCode::bad_pattern, where_, "expression \"" + std::string(text_) + "\": " + reason);
   }
 
   bool at_end() {
@@ -189,7 +189,7 @@ class Parser {
 
   std::string_view text_;
   const std::map<std::string, double>& parameters_;
-  const std::string& where_;
+  const SourcePlace& where_;
   std::set<std::string>* used_;
   size_t at_ = 0;
   int depth_ = 0;
@@ -210,7 +210,7 @@ bool is_expression(std::string_view text) {
 }
 
 double evaluate_expression(std::string_view text, const std::map<std::string, double>& parameters,
-                           const std::string& where, std::set<std::string>* used) {
+                           const SourcePlace& where, std::set<std::string>* used) {
   return Parser(text, parameters, where, used).whole();
 }
 

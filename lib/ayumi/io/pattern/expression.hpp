@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "ayumi/base/error.hpp"
+
 namespace ayumi {
 
 /// Whether a string is meant as an expression: it names a parameter, "${name}", a function or pi.
@@ -16,6 +18,6 @@ bool is_expression(std::string_view text);
 /// Error(bad_pattern) "where: reason" for an unknown name, bad syntax or a result that is not
 /// finite.
 double evaluate_expression(std::string_view text, const std::map<std::string, double>& parameters,
-                           const std::string& where, std::set<std::string>* used = nullptr);
+                           const SourcePlace& where, std::set<std::string>* used = nullptr);
 
 }  // namespace ayumi

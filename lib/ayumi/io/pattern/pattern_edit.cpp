@@ -66,7 +66,7 @@ std::string replacing(const Json& document, const std::string& pointer, const Js
   const std::string expression = before;
   try {
     const double now = evaluate_expression(expression, parameters_at(document, pointer, parameters),
-                                           "the pattern");
+                                           {"the pattern"});
     return Json(shifted_expression(expression, value - now)).dump();
   } catch (const Error&) {  // an expression without a value: the number replaces it
     return number_text(value);
@@ -265,7 +265,7 @@ double value_in_text(const std::string& text, const std::string& pointer,
   if (value.is_number()) return value.get<double>();
   if (!value.is_string()) fail(ErrorCode::usage, "'" + pointer + "' is not the place of a number");
   return evaluate_expression(value.get<std::string>(), parameters_at(document, pointer, set),
-                             "the pattern: " + pointer);
+                             {"the pattern", pointer});
 }
 
 std::string edited_text(const std::string& text, const std::vector<PatternEdit>& edits,

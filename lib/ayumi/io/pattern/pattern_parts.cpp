@@ -182,7 +182,7 @@ Phase read_phase(const JsonNode& node, double before, PatternScope& scope) {
 Keyframe read_keyframe(const JsonNode& node, double before, PatternScope& scope) {
   only_pattern_keys(node, "keyframe");
   Keyframe key;
-  key.place = node.file() + ": " + node.pointer();
+  key.place = {node.file(), node.pointer()};
   key.pointer = node.pointer();
   key.t = read_moment(node, "t", "after", before, scope);
   if (const auto interpolation = node.find("interpolation"))

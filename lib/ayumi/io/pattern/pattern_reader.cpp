@@ -1,8 +1,8 @@
 #include <algorithm>
 
+#include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/number_slips.hpp"
-#include "ayumi/base/placed_error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/pattern/pattern_scope.hpp"
 #include "ayumi/io/robot/robot_source.hpp"
@@ -47,15 +47,16 @@ void read_parameters(const JsonNode& root, const std::map<std::string, double>& 
   std::vector<std::string> names;
   for (const auto& entry : scope.parameters) names.push_back(entry.first);
   for (const auto& [name, value] : set) {
-    const std::string place = root.file() + ": parameter '" + name + "'";
+    const SourcePlace place = {root.file(), "parameter '" + name + "'"};
     if (!scope.parameters.contains(name))
-      fail(ErrorCode::usage, place + " is not declared in the pattern" +
-                                 text::suggestion(name, names) +
-                                 (names.empty() ? "; the pattern declares no parameters"
-                                                : "; declared: " + text::join(names, ", ")));
+      fail(ErrorCode::usage, {root.file()},
+           "parameter '" + name + "' is not declared in the pattern" +
+               text::suggestion(name, names) +
+               (names.empty() ? "; the pattern declares no parameters"
+                              : "; declared: " + text::join(names, ", ")));
     if (!(std::abs(value) <= kLargestNumber))
-      fail(ErrorCode::usage, place + ": " + text::exact(value) +
-                                 " is out of range; numbers must be from -1e6 to 1e6");
+      fail(ErrorCode::usage, place,
+           text::exact(value) + " is out of range; numbers must be from -1e6 to 1e6");
     scope.parameters[name] = value;
   }
 }
@@ -183,11 +184,10 @@ void each_item(const JsonNode& list, const std::string& name, PatternScope& scop
       counter.set(round);
       try {
         each_item(block, name, scope, depth + 1, work);
-      } catch (const PlacedError& error) {
-        throw PlacedError(error.code(),
-                          std::string(error.what()) + " (round " + std::to_string(round + 1) +
-                              " of " + text::exact(times) + ")",
-                          error.place());
+      } catch (const Error& error) {
+        throw_with_message(error, std::string(error.what()) + " (round " +
+                                      std::to_string(round + 1) + " of " + text::exact(times) +
+                                      ")");
       }
     }
   }
@@ -343,8 +343,8 @@ Pattern pattern_of_text(const std::string& text, const fs::path& path,
   pattern.parameters = scope.parameters;
   for (const auto& [name, value] : set_parameters)
     if (!scope.used.contains(name))
-      fail(ErrorCode::usage, path.string() + ": parameter '" + name +
-                                 "' is declared, but nothing in the pattern uses it");
+      fail(ErrorCode::usage, {path.string()},
+           "parameter '" + name + "' is declared, but nothing in the pattern uses it");
 
   if (const auto table = root.find("table")) {
     const fs::path file = named_file(*table, path.parent_path());

@@ -67,7 +67,7 @@ void only_pattern_keys(const JsonNode& node, const std::string& kind) {
 
 namespace {
 
-std::string where(const JsonNode& node) { return node.file() + ": " + node.pointer(); }
+SourcePlace where(const JsonNode& node) { return {node.file(), node.pointer()}; }
 
 double plain_number(const JsonNode& node, PatternScope& scope) {
   if (!node.value().is_string()) return node.number();

@@ -39,10 +39,9 @@ void write_pattern_and_table(const fs::path& path, const Pattern& pattern,
   }
   const fs::path table = table_beside(path);
   if (table == path)
-    fail(ErrorCode::bad_file,
-         path.string() +
-             ": the command writes two files, the pattern and a table beside it, and the table "
-             "needs this name; give the pattern another ending, such as .json");
+    fail(ErrorCode::bad_file, {path.string()},
+         "the command writes two files, the pattern and a table beside it, and the table "
+         "needs this name; give the pattern another ending, such as .json");
   Pattern named = pattern;
   // The path is written as it holds from the pattern's old folder, and write_pattern() changes it
   // to the new one.

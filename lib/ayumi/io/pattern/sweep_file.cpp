@@ -376,9 +376,9 @@ SweepStudy::SweepStudy(const std::string& text, const std::filesystem::path& pat
     if (const auto all = sweep.find(list)) bodies += all->value().dump();
   for (const auto& [name, where] : named_)
     if (name.starts_with("value.") && bodies.find("${" + name.substr(6) + "}") == std::string::npos)
-      fail(ErrorCode::bad_pattern, file_.string() + ": " + where.pointer +
-                                       ": nothing uses the setting '" + name + "'; write \"${" +
-                                       name.substr(6) + "}\" in a world or a disturbance");
+      fail(ErrorCode::bad_pattern, {file_.string(), where.pointer},
+           "nothing uses the setting '" + name + "'; write \"${" + name.substr(6) +
+               "}\" in a world or a disturbance");
   if (const auto measure = sweep.find("measure")) {
     measures_.verdict = false;
     for (const JsonNode& item : measure->items()) {

@@ -19,7 +19,7 @@ constexpr double kFarthestRange = 30;
 
 constexpr const char* kSpreads[] = {"uniform", "normal", "truncated", "choice"};
 
-std::string place_of(const JsonNode& node) { return node.file() + ": " + node.pointer(); }
+SourcePlace place_of(const JsonNode& node) { return {node.file(), node.pointer()}; }
 
 /// Turns numbers in the unit of the file into SI.
 std::vector<double> numbers(const JsonNode& node, bool angle, PatternScope& scope) {
@@ -192,7 +192,7 @@ UncertainQuantity read_part(const JsonNode& node, UncertainKind kind,
   return q;
 }
 
-UncertainQuantity one_of_several(UncertainKind kind, const std::string& place, size_t count) {
+UncertainQuantity one_of_several(UncertainKind kind, const SourcePlace& place, size_t count) {
   UncertainQuantity q;
   q.kind = kind;
   q.place = place;

@@ -44,8 +44,8 @@ class BodyReader {
     try {
       root = YAML::Load(bytes);
     } catch (const YAML::Exception& error) {
-      fail(ErrorCode::bad_file, path_.string() + ":" + std::to_string(error.mark.line + 1) +
-                                    ": not YAML (" + error.msg + ")");
+      fail(ErrorCode::bad_file, {path_.string(), "", error.mark.line + 1},
+           "not YAML (" + error.msg + ")");
     }
     if (!root.IsMap())
       complain(root, "a Choreonoid body must be a map with format: ChoreonoidBody");
@@ -84,8 +84,7 @@ class BodyReader {
   enum class Use { both, visual, collision };
 
   [[noreturn]] void complain(const YAML::Node& at, const std::string& message) const {
-    fail(ErrorCode::bad_file,
-         path_.string() + ":" + std::to_string(at.Mark().line + 1) + ": " + message);
+    fail(ErrorCode::bad_file, {path_.string(), "", at.Mark().line + 1}, message);
   }
 
   static YAML::Node member(const YAML::Node& node, const char* key, const char* other) {
@@ -421,9 +420,10 @@ class BodyReader {
     std::stable_sort(ids_.begin(), ids_.end());
     for (size_t i = 1; i < ids_.size(); ++i)
       if (ids_[i].first == ids_[i - 1].first)
-        fail(ErrorCode::bad_file, path_.string() + ": the joints " + ids_[i - 1].second + " and " +
-                                      ids_[i].second + " have the same joint_id " +
-                                      std::to_string(ids_[i].first) + "; give each its own");
+        fail(ErrorCode::bad_file, {path_.string()},
+             "the joints " + ids_[i - 1].second + " and " + ids_[i].second +
+                 " have the same joint_id " + std::to_string(ids_[i].first) +
+                 "; give each its own");
     if (ids_.size() != moving) return;  // not all joints have an id
     for (const auto& [id, name] : ids_) robot_.joint_order.push_back(name);
   }
@@ -444,8 +444,7 @@ RobotDescription parse_choreonoid_body(const std::string& bytes, const fs::path&
   try {
     return BodyReader(path, packages).read(bytes);
   } catch (const YAML::Exception& error) {
-    fail(ErrorCode::bad_file,
-         path.string() + ":" + std::to_string(error.mark.line + 1) + ": " + error.msg);
+    fail(ErrorCode::bad_file, {path.string(), "", error.mark.line + 1}, error.msg);
   }
 }
 

@@ -543,8 +543,9 @@ FirstSidecar first_sidecar(const std::string& robot, const std::filesystem::path
                            const std::function<SidecarGains(const RobotModel&)>& gains) {
   RobotDescription stated = load_robot_description(robot, search, {.meshes = true, .guess = false});
   if (!stated.sidecar_file.empty())
-    fail(ErrorCode::usage, robot + ": this robot has a sidecar already, " + stated.sidecar_file +
-                               "; to begin anew, give the URDF of this robot");
+    fail(ErrorCode::usage, {robot},
+         "this robot has a sidecar already, " + stated.sidecar_file +
+             "; to begin anew, give the URDF of this robot");
   namespace fs = std::filesystem;
   const fs::path urdf = fs::weakly_canonical(fs::absolute(stated.urdf_file));
   const std::string urdf_as_written = seen_from(folder, urdf);

@@ -105,7 +105,7 @@ class MeshReader {
 
  private:
   [[noreturn]] void complain(const std::string& message) const {
-    fail(ErrorCode::bad_file, path_.string() + ": " + message);
+    fail(ErrorCode::bad_file, {path_.string()}, message);
   }
 
   // The request, and everything until its answer.
@@ -164,14 +164,13 @@ class MeshReader {
     MeshMessageHead head;
     const Exchange exchange = child_->receive(&head, sizeof head);
     if (exchange == Exchange::closed)
-      fail(ErrorCode::bad_file,
-           program_.string() + ": the mesh reader ended before it was ready (" +
-               child_->end().words() + "); start it by itself to see why, or install Ayumi again");
+      fail(ErrorCode::bad_file, {program_.string()},
+           "the mesh reader ended before it was ready (" + child_->end().words() +
+               "); start it by itself to see why, or install Ayumi again");
     need(exchange);
     if (head.kind != MeshMessage::hello || head.size != kMeshMessageVersion)
-      fail(ErrorCode::bad_file,
-           program_.string() +
-               ": this is not the mesh reader of this version of Ayumi; install Ayumi as a whole");
+      fail(ErrorCode::bad_file, {program_.string()},
+           "this is not the mesh reader of this version of Ayumi; install Ayumi as a whole");
   }
 
   MeshMessageHead receive_head() {

@@ -126,13 +126,13 @@ Model compile(const fs::path& path, const Files& files) {
   mj_defaultVFS(vfs.get());
   for (const auto& [name, bytes] : files) {
     if (mj_makeEmptyFileVFS(vfs.get(), name.c_str(), static_cast<int>(bytes.size())) != 0)
-      fail(ErrorCode::bad_model,
-           path.string() + ": the model has more mesh files than MuJoCo accepts; merge meshes");
+      fail(ErrorCode::bad_model, {path.string()},
+           "the model has more mesh files than MuJoCo accepts; merge meshes");
     std::memcpy(vfs->filedata[mj_findFileVFS(vfs.get(), name.c_str())], bytes.data(), bytes.size());
   }
   char words[1000] = "the model could not be read";
   Model model(mj_loadXML("model.xml", vfs.get(), words, sizeof words), mj_deleteModel);
-  if (!model) fail(ErrorCode::bad_model, path.string() + ": MuJoCo: " + one_line(words));
+  if (!model) fail(ErrorCode::bad_model, {path.string()}, "MuJoCo: " + one_line(words));
   return model;
 }
 
@@ -220,11 +220,10 @@ class MjcfReader {
         use_true_mesh(name, mesh->second, file, files);
     }
     if (!missing.empty())
-      fail(ErrorCode::bad_file, path_.string() +
-                                    ": the masses of bodies without <inertial> follow "
-                                    "from meshes that are missing: " +
-                                    text::join(missing, ", ") +
-                                    "; add the files, or give these bodies an <inertial>");
+      fail(ErrorCode::bad_file, {path_.string()},
+           "the masses of bodies without <inertial> follow "
+           "from meshes that are missing: " +
+               text::join(missing, ", ") + "; add the files, or give these bodies an <inertial>");
     files["model.xml"] = text_.xml;
     weighed_ = compile(path_, files);
   }
@@ -246,8 +245,8 @@ class MjcfReader {
     const int root =
         static_cast<int>(std::max_element(joints.begin(), joints.end()) - joints.begin());
     if (m_->nbody < 2 || root == 0)
-      fail(ErrorCode::bad_model,
-           path_.string() + ": the model has no body with a joint; name the file of a robot");
+      fail(ErrorCode::bad_model, {path_.string()},
+           "the model has no body with a joint; name the file of a robot");
     std::vector<std::string> others;
     for (int i = 1; i < m_->nbody; ++i)
       if (m_->body_parentid[i] == 0 && i != root) others.push_back(body_name(i));
@@ -273,8 +272,8 @@ class MjcfReader {
     int moving = 0;
     for (int i = first; i < first + count; ++i) {
       if (m_->jnt_type[i] == mjJNT_BALL)
-        fail(ErrorCode::bad_model, path_.string() + ": joint " + joint_name(i) +
-                                       ": ball joints are not supported; write three hinges");
+        fail(ErrorCode::bad_model, {path_.string()},
+             "joint " + joint_name(i) + ": ball joints are not supported; write three hinges");
       moving += m_->jnt_type[i] == mjJNT_HINGE || m_->jnt_type[i] == mjJNT_SLIDE;
     }
     int left = moving;
@@ -486,7 +485,7 @@ class MjcfReader {
       servo.coulomb = joint->friction;
       if (position) {
         servo.kp = gear * gear * gain;
-        servo.kd = -gear * gear * bias[2];
+        servo.kd = 0 - gear * gear * bias[2];  // 0, not -0
         if (const auto gain = text_.velocity_gains.find(joint->name);
             gain != text_.velocity_gains.end())
           servo.kd = gear * gear * gain->second;
@@ -564,11 +563,11 @@ namespace ayumi {
 
 RobotDescription parse_mjcf(const std::string&, const std::filesystem::path& path,
                             const std::vector<std::filesystem::path>&) {
-  fail(ErrorCode::bad_file, path.string() +
-                                ": this is an MJCF model, which Ayumi reads through MuJoCo, but "
-                                "this program was built without MuJoCo. To get MuJoCo: sudo "
-                                "apt-get install libmujoco-dev, then configure and build "
-                                "again; or convert the model to URDF");
+  fail(ErrorCode::bad_file, {path.string()},
+       "this is an MJCF model, which Ayumi reads through MuJoCo, but "
+       "this program was built without MuJoCo. To get MuJoCo: sudo "
+       "apt-get install libmujoco-dev, then configure and build "
+       "again; or convert the model to URDF");
 }
 
 }  // namespace ayumi

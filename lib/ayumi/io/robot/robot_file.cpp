@@ -49,8 +49,8 @@ fs::path find_file(const std::string& name, const RobotSearch& search) {
     known.push_back(entry.name);
   }
   if (folder)
-    fail(ErrorCode::bad_file,
-         name + ": this folder holds neither a " + kSidecarName +
+    fail(ErrorCode::bad_file, {name},
+         std::string("this folder holds neither a ") + kSidecarName +
              " nor exactly one robot in another format; name the file of the robot");
   fail(ErrorCode::bad_file, "robot '" + name + "': no such file, folder or bundled robot" +
                                 (known.empty() ? "" : "; known: " + text::join(known, ", ")) +
@@ -86,8 +86,8 @@ void fill_meshes(RobotDescription& robot, bool visuals, const Progress& progress
   if (failure.error) try {
       std::rethrow_exception(failure.error);
     } catch (const Error& error) {
-      fail(error.code(),
-           robot.urdf_file + ": link " + first_link[failure.request] + ": mesh " + error.what());
+      fail(error.code(), {robot.urdf_file, "link " + first_link[failure.request]},
+           std::string("mesh ") + error.what());
     }
   for (const auto& [shape, request] : wanted) shape->mesh = meshes[request];
 }

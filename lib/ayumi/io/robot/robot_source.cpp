@@ -55,7 +55,7 @@ std::string outermost_element(std::string_view text) {
 }
 
 [[noreturn]] void refuse_robot(const fs::path& path, const std::string& what) {
-  fail(ErrorCode::bad_file, path.string() + ": " + what + "; " + kReadRobots);
+  fail(ErrorCode::bad_file, {path.string()}, what + "; " + kReadRobots);
 }
 
 }  // namespace

@@ -180,8 +180,8 @@ RobotDescription parse_urdf(const std::string& bytes, const fs::path& path,
     if (complaint.empty()) complaint = log.first();
   }
   if (!source)
-    fail(ErrorCode::bad_file, path.string() + ": not a usable URDF: " +
-                                  (complaint.empty() ? "the reader gave no reason" : complaint));
+    fail(ErrorCode::bad_file, {path.string()},
+         "not a usable URDF: " + (complaint.empty() ? "the reader gave no reason" : complaint));
   RobotDescription robot;
   robot.name = source->getName();
   robot.urdf_file = path.string();

@@ -28,9 +28,9 @@ void refuse_deep_nesting(const std::string& bytes, const std::string& file,
       ++depth;
     if (bytes[i] == '/' && bytes[i + 1] == '>') --depth;
     if (depth > kDeepestXml)
-      fail(ErrorCode::bad_file, file + ": elements are nested more than " +
-                                    std::to_string(kDeepestXml) + " levels deep, too deep for " +
-                                    kind);
+      fail(ErrorCode::bad_file, {file},
+           "elements are nested more than " + std::to_string(kDeepestXml) +
+               " levels deep, too deep for " + kind);
   }
 }
 
@@ -53,8 +53,8 @@ void refuse_many_attributes(const std::string& bytes, const std::string& file) {
     if (bytes[i] == '<') count = 0;
     if (bytes[i] != '=') continue;
     if (++count > kMostAttributes)
-      fail(ErrorCode::bad_file, file + ":" + std::to_string(line) + ": an element has more than " +
-                                    std::to_string(kMostAttributes) + " attributes");
+      fail(ErrorCode::bad_file, {file, "", line},
+           "an element has more than " + std::to_string(kMostAttributes) + " attributes");
     size_t value = i + 1;
     while (value < bytes.size() && std::isspace(static_cast<unsigned char>(bytes[value]))) ++value;
     if (value >= bytes.size() || (bytes[value] != '"' && bytes[value] != '\'')) continue;
@@ -70,22 +70,22 @@ void parse_xml(TiXmlDocument& document, const std::string& bytes, const std::str
                const std::string& kind) {
   const bool blank =
       std::all_of(bytes.begin(), bytes.end(), [](unsigned char c) { return std::isspace(c); });
-  if (blank) fail(ErrorCode::bad_file, file + ": the file is empty, but " + kind + " is needed");
+  if (blank) fail(ErrorCode::bad_file, {file}, "the file is empty, but " + kind + " is needed");
   refuse_deep_nesting(bytes, file, kind);
   refuse_many_attributes(bytes, file);
   document.Parse(bytes.c_str(), nullptr, TIXML_ENCODING_UTF8);
   if (document.Error() && !document.RootElement())
-    fail(ErrorCode::bad_file,
-         file + ": not XML (" + document.ErrorDesc() + "); " + kind + " is needed");
+    fail(ErrorCode::bad_file, {file},
+         std::string("not XML (") + document.ErrorDesc() + "); " + kind + " is needed");
   if (document.Error())
-    fail(ErrorCode::bad_file, file + ":" + std::to_string(document.ErrorRow()) + ": not XML (" +
-                                  document.ErrorDesc() + ")");
+    fail(ErrorCode::bad_file, {file, "", document.ErrorRow()},
+         std::string("not XML (") + document.ErrorDesc() + ")");
   if (!document.RootElement())
-    fail(ErrorCode::bad_file, file + ": not XML (no element in it); " + kind + " is needed");
+    fail(ErrorCode::bad_file, {file}, "not XML (no element in it); " + kind + " is needed");
 }
 
 void complain_xml(const std::string& file, const TiXmlElement* at, const std::string& message) {
-  fail(ErrorCode::bad_file, file + ":" + std::to_string(at->Row()) + ": " + message);
+  fail(ErrorCode::bad_file, {file, "", at->Row()}, message);
 }
 
 std::string xml_attribute(const TiXmlElement* element, const char* name, const std::string& other) {

@@ -87,7 +87,7 @@ class ZtkReader {
 
  private:
   [[noreturn]] void complain(size_t line, const std::string& message) const {
-    fail(ErrorCode::bad_file, path_.string() + ":" + std::to_string(line) + ": " + message);
+    fail(ErrorCode::bad_file, {path_.string(), "", static_cast<long>(line)}, message);
   }
 
   void split(const std::string& bytes) {

@@ -25,10 +25,10 @@ constexpr double kUnitQuaternion = 1e-6;
 void require_attitudes(const SimulationSample& sample, double t, const std::string& source) {
   for (const BasePose* base : {&sample.state.base, &sample.reference_base, &sample.command_base})
     if (!(std::abs(base->attitude.norm() - 1) < kUnitQuaternion))
-      fail(ErrorCode::bad_file, source + ": at t = " + text::fixed(t, 3) +
-                                    " s the quaternion of an attitude has the length " +
-                                    text::brief(base->attitude.norm()) +
-                                    " and not 1; the log has changed; run the pattern again");
+      fail(ErrorCode::bad_file, {source},
+           "at t = " + text::fixed(t, 3) + " s the quaternion of an attitude has the length " +
+               text::brief(base->attitude.norm()) +
+               " and not 1; the log has changed; run the pattern again");
 }
 
 struct Carried {
@@ -52,9 +52,10 @@ std::vector<Carried> carried_of(const RobotModel& model, const SimulationLog& lo
     if (!payload) continue;
     const int link = model.find_link(payload->on);
     if (link < 0)
-      fail(ErrorCode::bad_file, source + ": the scenario of the log has a payload on link '" +
-                                    payload->on + "', which the robot '" + model.name() +
-                                    "' does not have; name the robot of the run with --robot");
+      fail(ErrorCode::bad_file, {source},
+           "the scenario of the log has a payload on link '" + payload->on +
+               "', which the robot '" + model.name() +
+               "' does not have; name the robot of the run with --robot");
     const Link& on = model.links()[static_cast<size_t>(link)];
     // What acts from the beginning acts while the robot comes to rest before it, too.
     list.push_back({d.at > 0 ? d.at : -1, d.at + d.duration, on.body, on.pose * payload->point,
@@ -68,10 +69,10 @@ std::vector<Carried> carried_of(const RobotModel& model, const SimulationLog& lo
 void require_joints_of(const RobotModel& model, const SimulationLog& log,
                        const std::string& source) {
   if (log.joints != model.dof_names())
-    fail(ErrorCode::bad_file, source + ": the joints of the run (" + text::join(log.joints, ", ") +
-                                  ") are not those of the robot '" + model.name() + "' (" +
-                                  text::join(model.dof_names(), ", ") +
-                                  "); name the robot of the run with --robot");
+    fail(ErrorCode::bad_file, {source},
+         "the joints of the run (" + text::join(log.joints, ", ") +
+             ") are not those of the robot '" + model.name() + "' (" +
+             text::join(model.dof_names(), ", ") + "); name the robot of the run with --robot");
 }
 
 void require_robot_of(const RobotModel& model, const SimulationLog& log,

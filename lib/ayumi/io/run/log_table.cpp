@@ -128,7 +128,7 @@ std::vector<std::string> LogTable::column_names() const {
 }
 
 LogTable log_table(const RobotModel& model, const SimulationLog& log, const std::string& file) {
-  if (log.samples.empty()) fail(ErrorCode::bad_file, file + ": the log has no samples");
+  if (log.samples.empty()) fail(ErrorCode::bad_file, {file}, "the log has no samples");
   require_robot_of(model, log, file);
   LogTable table;
   table.quantities = quantities_of(model, log);

@@ -42,8 +42,8 @@ WrittenLog LogWriter::finish(SimulationLog about, const std::filesystem::path& p
     std::ofstream stream(temporary, std::ios::binary);
     const auto require_written = [&] {
       if (!stream)
-        fail(ErrorCode::bad_file,
-             path.string() + ": the file cannot be written (" + std::strerror(errno) + ")");
+        fail(ErrorCode::bad_file, {path.string()},
+             std::string("the file cannot be written (") + std::strerror(errno) + ")");
     };
     const auto write = [&](const std::string& bytes) {
       stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));

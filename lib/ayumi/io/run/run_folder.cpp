@@ -28,12 +28,12 @@ constexpr size_t kLargestRunFile = size_t{4} << 30;
 void make_folder(const fs::path& folder) {
   std::error_code error;
   if (fs::exists(folder) && !fs::is_directory(folder))
-    fail(ErrorCode::bad_file,
-         folder.string() + ": this is a file, but a folder is needed; choose another name");
+    fail(ErrorCode::bad_file, {folder.string()},
+         "this is a file, but a folder is needed; choose another name");
   fs::create_directories(folder, error);
   if (error)
-    fail(ErrorCode::bad_file,
-         folder.string() + ": the folder cannot be made (" + error.message() + ")");
+    fail(ErrorCode::bad_file, {folder.string()},
+         "the folder cannot be made (" + error.message() + ")");
 }
 
 OrderedJson json_of(const TableCaution& caution) {
@@ -85,9 +85,9 @@ std::string sealed(const std::string& object) {
 }
 
 [[noreturn]] void complain_of_change(const fs::path& file) {
-  fail(ErrorCode::bad_file, file.string() +
-                                ": the file has changed since the run was written (its SHA-256 "
-                                "differs from the value in run.json); make the run again");
+  fail(ErrorCode::bad_file, {file.string()},
+       "the file has changed since the run was written (its SHA-256 "
+       "differs from the value in run.json); make the run again");
 }
 
 std::string checked_bytes(const fs::path& folder, const JsonNode& files, const std::string& name) {
@@ -120,13 +120,13 @@ struct RunFile {
 
   static std::string read(const fs::path& folder) {
     if (!fs::exists(folder))
-      fail(ErrorCode::bad_file, folder.string() +
-                                    ": no such folder; a RUN is needed (the folder "
-                                    "that `ayumi run` or `ayumi simulate` wrote)");
+      fail(ErrorCode::bad_file, {folder.string()},
+           "no such folder; a RUN is needed (the folder "
+           "that `ayumi run` or `ayumi simulate` wrote)");
     if (!is_run_folder(folder))
-      fail(ErrorCode::bad_file, folder.string() +
-                                    ": the folder has no run.json; a RUN is needed (the "
-                                    "folder that `ayumi run` or `ayumi simulate` wrote)");
+      fail(ErrorCode::bad_file, {folder.string()},
+           "the folder has no run.json; a RUN is needed (the "
+           "folder that `ayumi run` or `ayumi simulate` wrote)");
     return read_file(folder / kRunFile);
   }
 

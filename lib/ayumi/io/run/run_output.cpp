@@ -97,8 +97,8 @@ void require_run_target(const fs::path& folder, bool replace,
   if (!is_there(folder)) return;
   std::error_code error;
   if (!fs::is_directory(folder, error))
-    fail(ErrorCode::bad_file,
-         folder.string() + ": this is a file, but -o needs a folder; choose another name");
+    fail(ErrorCode::bad_file, {folder.string()},
+         "this is a file, but -o needs a folder; choose another name");
   if (!replace && is_there(folder / "run.json")) refuse_existing(folder);
   const std::set<std::string> previous = files_of_run_in(folder);
   for (const std::string& name : previous) require_own_file(folder / name);
@@ -109,10 +109,9 @@ void require_run_target(const fs::path& folder, bool replace,
   };
   for (const std::string& name : names)
     if (is_there(folder / name) && !may_go(name))
-      fail(ErrorCode::bad_file,
-           (folder / name).string() +
-               ": this file already exists and was not written by a run, so a run does not replace "
-               "it; move the file away or choose another folder");
+      fail(ErrorCode::bad_file, {(folder / name).string()},
+           "this file already exists and was not written by a run, so a run does not replace "
+           "it; move the file away or choose another folder");
 }
 
 RunOutput::RunOutput(const fs::path& folder, bool replace)
@@ -127,8 +126,8 @@ RunOutput::RunOutput(const fs::path& folder, bool replace)
   fs::remove_all(staging_, error);  // left by a process that ended before its run was complete
   fs::create_directory(staging_, error);
   if (error)
-    fail(ErrorCode::bad_file,
-         target_.string() + ": the folder cannot be written (" + error.message() + ")");
+    fail(ErrorCode::bad_file, {target_.string()},
+         "the folder cannot be written (" + error.message() + ")");
 }
 
 RunOutput::~RunOutput() {
@@ -152,8 +151,8 @@ void RunOutput::deliver() const {
     for (const std::string& name : names) fs::rename(staging_ / name, target_ / name);
   } catch (const fs::filesystem_error& error) {
     undo_delivery(target_);
-    fail(ErrorCode::bad_file,
-         target_.string() + ": the folder cannot be written (" + error.code().message() + ")");
+    fail(ErrorCode::bad_file, {target_.string()},
+         "the folder cannot be written (" + error.code().message() + ")");
   }
   std::error_code ignored;
   fs::remove_all(replaced_, ignored);

@@ -312,14 +312,15 @@ std::vector<std::string_view> sample_frames(std::string_view bytes, size_t count
   for (size_t i = 0; i < count; ++i) {
     const size_t whole = ZSTD_findFrameCompressedSize(bytes.data(), bytes.size());
     if (ZSTD_isError(whole) != 0)
-      fail(ErrorCode::bad_file,
-           file + ": the file is truncated or damaged, because the samples (zstd) are incomplete");
+      fail(ErrorCode::bad_file, {file},
+           "the file is truncated or damaged, because the samples (zstd) are incomplete");
     frames.push_back(bytes.substr(0, whole));
     bytes.remove_prefix(whole);
   }
   if (!bytes.empty())
-    fail(ErrorCode::bad_file, file + ": the file is damaged: there are " +
-                                  std::to_string(bytes.size()) + " bytes after the samples");
+    fail(ErrorCode::bad_file, {file},
+         "the file is damaged: there are " + std::to_string(bytes.size()) +
+             " bytes after the samples");
   return frames;
 }
 
@@ -327,7 +328,7 @@ std::string decompress_samples(std::string_view bytes, size_t columns, size_t ro
                                const std::string& file) {
   sample_frames(bytes, 1, file);
   const auto stop = [&](const std::string& what) {
-    fail(ErrorCode::bad_file, file + ": the file is damaged: " + what);
+    fail(ErrorCode::bad_file, {file}, "the file is damaged: " + what);
   };
   const std::string size =
       std::to_string(rows) + " rows of " + std::to_string(columns) + " columns";

@@ -313,9 +313,7 @@ std::string plain_log_bytes(const SimulationLog& log) {
 }
 
 SimulationLog parse_log(const std::string& bytes, const std::string& file) {
-  const auto stop = [&](const std::string& reason) {
-    fail(ErrorCode::bad_file, file + ": " + reason);
-  };
+  const auto stop = [&](const std::string& reason) { fail(ErrorCode::bad_file, {file}, reason); };
   if (bytes.empty()) stop("the file is empty, but a simulation log is needed");
   if (bytes.size() < kPrefix || bytes.compare(0, 8, kMagic) != 0)
     stop("this is not a simulation log; name a run folder or one of its .bin files");

@@ -24,8 +24,8 @@ char separator_of(std::string_view row, const std::string& file) {
   for (const char candidate : {';', ',', '\t'})
     if (row.find(candidate) != std::string_view::npos) return candidate;
   if (std::count(row.begin(), row.end(), ' ') > 1)
-    fail(ErrorCode::bad_file,
-         file + ": only blanks separate the columns; use commas, semicolons or tabs");
+    fail(ErrorCode::bad_file, {file},
+         "only blanks separate the columns; use commas, semicolons or tabs");
   return ',';
 }
 
@@ -33,7 +33,7 @@ char separator_of(std::string_view row, const std::string& file) {
 
 std::string plain_table_text(const std::string& bytes, const std::string& file) {
   if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF"))
-    fail(ErrorCode::bad_file, file + ": this is UTF-16 text; save it as UTF-8");
+    fail(ErrorCode::bad_file, {file}, "this is UTF-16 text; save it as UTF-8");
   std::string text = bytes.starts_with("\xEF\xBB\xBF") ? bytes.substr(3) : bytes;
   const std::string_view head = first_row(text);
   if (head.empty() || head.front() == '{') return text;

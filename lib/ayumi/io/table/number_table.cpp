@@ -28,7 +28,7 @@ class CsvParser {
 
   NumberTable whole() {
     if (rest_.find('\0') != std::string_view::npos)
-      fail(ErrorCode::bad_file, file_ + ": this is a binary file, but a CSV table is needed");
+      fail(ErrorCode::bad_file, {file_}, "this is a binary file, but a CSV table is needed");
     for (std::string_view line; next(line);) {
       if (line.empty()) continue;
       if (line.front() == '#') {
@@ -40,11 +40,11 @@ class CsvParser {
       }
     }
     if (table_.columns.empty())
-      fail(ErrorCode::bad_file, file_ +
-                                    ": the head row is missing; the first line must name the "
-                                    "columns (t[s],theta.<joint>[rad],...)");
+      fail(ErrorCode::bad_file, {file_},
+           "the head row is missing; the first line must name the "
+           "columns (t[s],theta.<joint>[rad],...)");
     if (cells_.empty())
-      fail(ErrorCode::bad_file, file_ + ": there is no data row below the head row");
+      fail(ErrorCode::bad_file, {file_}, "there is no data row below the head row");
     const auto width = static_cast<Eigen::Index>(table_.columns.size());
     table_.values = Eigen::Map<const decltype(table_.values)>(
         cells_.data(), static_cast<Eigen::Index>(cells_.size()) / width, width);
@@ -53,7 +53,7 @@ class CsvParser {
 
  private:
   [[noreturn]] void stop(const std::string& reason) const {
-    fail(ErrorCode::bad_file, file_ + ":" + std::to_string(line_) + ": " + reason);
+    fail(ErrorCode::bad_file, {file_, "", static_cast<long>(line_)}, reason);
   }
 
   bool next(std::string_view& line) {
@@ -119,7 +119,7 @@ int NumberTable::find(const std::string& column) const {
 }
 
 NumberTable parse_csv(const std::string& bytes, const std::string& file) {
-  if (bytes.empty()) fail(ErrorCode::bad_file, file + ": the file is empty");
+  if (bytes.empty()) fail(ErrorCode::bad_file, {file}, "the file is empty");
   return CsvParser(bytes, file).whole();
 }
 

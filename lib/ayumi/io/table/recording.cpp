@@ -42,11 +42,11 @@ constexpr double kGap = 0.5;
 constexpr double kStillCounts = 10;
 
 [[noreturn]] void complain(const std::string& file, const std::string& what) {
-  fail(ErrorCode::bad_file, file + ": " + what);
+  fail(ErrorCode::bad_file, {file}, what);
 }
 
 [[noreturn]] void complain(const std::string& file, size_t line, const std::string& what) {
-  fail(ErrorCode::bad_file, file + ":" + std::to_string(line) + ": " + what);
+  fail(ErrorCode::bad_file, {file, "", static_cast<long>(line)}, what);
 }
 
 std::optional<double> number_of(std::string_view cell) {

@@ -147,11 +147,12 @@ TableServo servo_of(const std::map<std::string, std::string>& header) {
 void require_format(const NumberTable& table, const char* format, const std::string& file) {
   const auto found = table.header.find("format");
   if (found == table.header.end())
-    fail(ErrorCode::bad_file,
-         file + ": the format line is missing; add '# format: " + format + "'");
+    fail(ErrorCode::bad_file, {file},
+         std::string("the format line is missing; add '# format: ") + format + "'");
   if (found->second != format)
-    fail(ErrorCode::bad_file, file + ": format '" + found->second +
-                                  "' cannot be read; this version of Ayumi reads '" + format + "'");
+    fail(ErrorCode::bad_file, {file},
+         "format '" + found->second + "' cannot be read; this version of Ayumi reads '" + format +
+             "'");
 }
 
 Eigen::Vector3d vector_of(const NumberTable& table, Eigen::Index row, const std::vector<int>& at) {
@@ -232,9 +233,9 @@ ReferenceTrajectory read_reference(const std::filesystem::path& path) {
   const TableLayout layout = layout_of(table, file);
   if (layout.joints.empty() || layout.cog.empty() || layout.zmp.empty() || layout.fz < 0 ||
       layout.base.empty() || layout.contact.empty())
-    fail(ErrorCode::bad_file, file +
-                                  ": a reference table has theta, cog, zmp, fz, base and "
-                                  "contact columns; some are missing");
+    fail(ErrorCode::bad_file, {file},
+         "a reference table has theta, cog, zmp, fz, base and "
+         "contact columns; some are missing");
   ReferenceTrajectory reference;
   reference.dt = tick_of(table, layout, file);
   reference.joints = layout.joints;
@@ -250,9 +251,9 @@ ReferenceTrajectory read_reference(const std::filesystem::path& path) {
     for (size_t i = 0; i < 2; ++i) {
       const double contact = table.values(k, layout.contact[i]);
       if (contact != 0 && contact != 1)
-        fail(ErrorCode::bad_file, file + ": row " + std::to_string(k + 1) + ": " +
-                                      kContactColumns[i] + " is " + text::exact(contact) +
-                                      ", but 0 or 1 is needed");
+        fail(ErrorCode::bad_file, {file},
+             "row " + std::to_string(k + 1) + ": " + kContactColumns[i] + " is " +
+                 text::exact(contact) + ", but 0 or 1 is needed");
       row.contact[i] = contact == 1;
     }
     reference.rows.push_back(std::move(row));
@@ -275,14 +276,15 @@ TableCaution read_table_caution(const std::filesystem::path& path) {
 void require_joints(const ReferenceTrajectory& reference, const std::vector<std::string>& joints,
                     const std::string& file) {
   if (reference.joints.size() != joints.size())
-    fail(ErrorCode::bad_file, file + ": the table has " + std::to_string(reference.joints.size()) +
-                                  " joints, but the robot has " + std::to_string(joints.size()) +
-                                  "; name the robot of the table");
+    fail(ErrorCode::bad_file, {file},
+         "the table has " + std::to_string(reference.joints.size()) +
+             " joints, but the robot has " + std::to_string(joints.size()) +
+             "; name the robot of the table");
   for (size_t i = 0; i < joints.size(); ++i)
     if (reference.joints[i] != joints[i])
-      fail(ErrorCode::bad_file, file + ": joint " + std::to_string(i + 1) + " of the table is '" +
-                                    reference.joints[i] + "', but joint " + std::to_string(i + 1) +
-                                    " of the robot is '" + joints[i] + "'");
+      fail(ErrorCode::bad_file, {file},
+           "joint " + std::to_string(i + 1) + " of the table is '" + reference.joints[i] +
+               "', but joint " + std::to_string(i + 1) + " of the robot is '" + joints[i] + "'");
 }
 
 std::string theta_sha256(const DenseTable& table) {
@@ -306,9 +308,9 @@ DenseTable read_dense_table(const std::filesystem::path& path) {
   read_import(table.header, path, dense);
   const Eigen::Index rows = table.values.rows();
   if (static_cast<double>(rows) * dense.dt > 3600)
-    fail(ErrorCode::bad_file, file + ": the table lasts " +
-                                  text::exact(static_cast<double>(rows) * dense.dt) +
-                                  " s, but Ayumi reads at most 3600 s");
+    fail(ErrorCode::bad_file, {file},
+         "the table lasts " + text::exact(static_cast<double>(rows) * dense.dt) +
+             " s, but Ayumi reads at most 3600 s");
   dense.theta.resize(rows, static_cast<Eigen::Index>(layout.joints.size()));
   for (Eigen::Index k = 0; k < rows; ++k) {
     dense.theta.row(k) = theta_of(table, k, layout.theta).transpose();

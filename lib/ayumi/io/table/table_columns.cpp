@@ -14,7 +14,7 @@ namespace ayumi {
 namespace {
 
 [[noreturn]] void stop(const std::string& file, const std::string& reason) {
-  fail(ErrorCode::bad_file, file + ": " + reason);
+  fail(ErrorCode::bad_file, {file}, reason);
 }
 
 std::vector<std::string> known_columns() {

@@ -210,7 +210,7 @@ const YamlNode* YamlNode::find(std::string_view key, std::string_view other) con
 
 YamlNode parse_yaml(const std::string& text, const std::string& file) {
   const auto refuse = [&](int line, const std::string& reason) {
-    fail(ErrorCode::bad_file, file + ":" + std::to_string(line) + ": " + reason);
+    fail(ErrorCode::bad_file, {file, "", line}, reason);
   };
   const auto parse = [&](const std::string& seen, std::vector<std::vector<double>> lists) {
     TextBuffer buffer(seen);
