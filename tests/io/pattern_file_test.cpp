@@ -30,7 +30,7 @@ TEST_F(PatternFile, SaysWhatTheAuthorWrote) {
   EXPECT_EQ(p.keyframes[4].posture, "home");
   EXPECT_DOUBLE_EQ(p.keyframes[4].joints.at("l_knee"), EIGEN_PI / 2);
   EXPECT_DOUBLE_EQ(p.keyframes[4].feet[0]->rpy.y(), -10 * kDegree);
-  EXPECT_NE(p.keyframes[4].place.find("p.json: /keyframes/4"), std::string::npos);
+  EXPECT_TRUE(text_of(p.keyframes[4].place).ends_with("p.json: /keyframes/4"));
   EXPECT_EQ(p.world.friction, 0.7);
   EXPECT_DOUBLE_EQ(p.world.slope.y(), 2 * kDegree);
   EXPECT_EQ(p.controller.gains.at(0).first, "q");
