@@ -201,15 +201,14 @@ std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
 }
 
 // A message with long words of a file in it, such as a name of a megabyte, without its middle.
-std::string shortened(const std::string& message) {
-  constexpr size_t kMost = 2000;  // [bytes] Chosen: a screen of 25 lines
-  if (message.size() <= kMost) return message;
+std::string shortened(const std::string& message, size_t most) {
+  if (message.size() <= most) return message;
   const auto whole = [&](size_t at) {  // not inside a character of UTF-8
     while ((static_cast<unsigned char>(message[at]) & 0xc0) == 0x80 && at + 1 < message.size())
       ++at;
     return at;
   };
-  const size_t begin = whole(kMost / 2), end = whole(message.size() - kMost / 2);
+  const size_t begin = whole(most / 2), end = whole(message.size() - most / 2);
   return message.substr(0, begin) + " ... (" + std::to_string(end - begin) + " bytes more) ... " +
          message.substr(end);
 }
@@ -217,12 +216,14 @@ std::string shortened(const std::string& message) {
 // The error on standard error for people and, with --json, as an object on standard output.
 int failed(const Context& context, const std::string& text, int exit_code,
            const SourcePlace& place = {}) {
-  const std::string message = shortened(text);
+  constexpr size_t kMost = 2000;      // [bytes] Chosen: a screen of 25 lines
+  constexpr size_t kMostPlace = 200;  // [bytes] Chosen: more than every place of a sound file
+  const std::string message = shortened(text, kMost);
   complain(message);
   nlohmann::ordered_json object = {{"error", message}, {"exit_code", exit_code}};
   if (!place.file.empty()) object["file"] = place.file;
   if (place.line > 0) object["line"] = place.line;
-  if (!place.inside.empty()) object["place"] = shortened(place.inside);
+  if (!place.inside.empty()) object["place"] = shortened(place.inside, kMostPlace);
   context.print_json(object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
   return exit_code;
 }

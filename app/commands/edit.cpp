@@ -621,7 +621,7 @@ void add_edit(Command& app, Context& context) {
   loop_command
       .add_option("--over", options.over,
                   "Duration of a transition from the end to the beginning [s]. It is added only if "
-                  "the motion ends in another posture than it begins.")
+                  "the motion does not end in the posture in which it begins.")
       ->check(number_within(0.02, 60.0))
       ->type_name("S");
   loop_command.add_flag("--cycle", options.cycle,

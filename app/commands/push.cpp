@@ -265,11 +265,12 @@ void add_push(Command& app, Context& context) {
       ->type_name("N")
       ->capture_default_str();
   command
-      ->add_option(
-          "--times", options->times,
-          "Times of the pushes [s] (default: for a walk with keys, one while the robot stands "
-          "and four in one step; for VIIP, three in one step; otherwise one while the robot stands "
-          "and one in the middle of the motion).")
+      ->add_option("--times", options->times,
+                   "Times of the pushes [s] (default: for a walk, one while the robot stands and "
+                   "four in one "
+                   "step; for steps of VIIP, three in one step; without steps, one while the robot "
+                   "stands and "
+                   "one in the middle of the motion).")
       ->type_name("T")
       ->delimiter(',');
   command

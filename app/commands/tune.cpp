@@ -155,11 +155,12 @@ void add_tune(Command& app, Context& context) {
       ->capture_default_str()
       ->type_name("N");
   command
-      ->add_option(
-          "--times", options->times,
-          "Times of the pushes [s] (default: for a walk with keys, one while the robot stands "
-          "and four in one step; for VIIP, three in one step; otherwise one while the robot stands "
-          "and one in the middle of the motion).")
+      ->add_option("--times", options->times,
+                   "Times of the pushes [s] (default: for a walk, one while the robot stands and "
+                   "four in one "
+                   "step; for steps of VIIP, three in one step; without steps, one while the robot "
+                   "stands and "
+                   "one in the middle of the motion).")
       ->delimiter(',')
       ->type_name("T");
   command->add_option("--rounds", t.rounds, "Number of passes of the search through all gains.")

@@ -563,9 +563,10 @@ TEST(PlantedMistakes, ACogThatSinksBelowItsStoopIsNamed) {
   ASSERT_FALSE(found.empty());
   EXPECT_TRUE(std::regex_search(
       found.front().text(),
-      std::regex(
-          "^/keyframes/1: t is 1.2 s, so the segment from here to the lift-off lasts 0.3 s, "
-          "and the COG, .* 0.74 m/s .*, sinks .* mm below the height of this key; with t = ")))
+      std::regex("^/keyframes/1: t is 1.2 s, so the segment from here to the lift-off lasts 0.3 s; "
+                 "for a flight .* speed of 0.74 m/s there, so it sinks .* mm below the height of "
+                 "this key; "
+                 "with t = ")))
       << found.front().text();
 }
 

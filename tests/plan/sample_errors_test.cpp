@@ -220,7 +220,7 @@ TEST(SampleErrors, NumbersThatAreNotFinite) {
                  for (Phase& phase : p.phases)
                    if (phase.swing) phase.swing->lift = nan;
                }),
-               {"walk.json: phases/", "/swing", "not finite or the lift is below 0"});
+               {"walk.json: /phases/", "/swing", "not finite or the lift is below 0"});
   expect_words(message_of([&](Pattern& p) {
                  for (Phase& phase : p.phases)
                    if (phase.swing) phase.swing->lift = -0.01;

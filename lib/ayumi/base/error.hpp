@@ -24,9 +24,10 @@ struct SourcePlace {
   std::string inside = {};  ///< JSON pointer, or words for what has none; "" for the whole file
   long line = 0;            ///< counted from 1; 0: not known
   long column = 0;          ///< counted from 1; 0: not known
-  /// The error is about a name that nothing has, so that no other number mends it.
+  /// The error names something that does not exist, so changing a number cannot help.
   bool unknown_name = false;
-  /// The error names the value that is wrong. A cause that leaves other errors says less.
+  /// The message already names the wrong value, so a likely cause is shown only if it explains all
+  /// errors.
   bool names_value = false;
 
   bool empty() const { return file.empty() && inside.empty() && line == 0; }
@@ -62,7 +63,7 @@ class Interrupted : public std::runtime_error {
 /// Throws Error(code, "place: what", place).
 [[noreturn]] void fail(ErrorCode code, const SourcePlace& place, const std::string& what);
 
-/// Throws Error(bad_pattern) of a pattern that names what is not there.
+/// Throws Error(bad_pattern) of a pattern that names something that does not exist.
 [[noreturn]] void fail_unknown_name(SourcePlace place, const std::string& what);
 
 /// Throws `error` again with another message; code and place stay.

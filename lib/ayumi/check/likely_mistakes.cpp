@@ -102,8 +102,8 @@ class Suspicions {
   enum class Finds { one_in_a_place, several_in_a_place };
 
   /// The first few mistakes of one rule, and the number of the others. The rounds of a block that
-  /// repeats have one text in the file: of a rule that finds at most one mistake in a phase or key,
-  /// the first round is named, however far the others are off.
+  /// repeats share one text. If a rule finds at most one mistake in each phase or key, only the
+  /// first round is named, even if the rounds are wrong by different amounts.
   void say(std::vector<Mistake> each, Finds finds = Finds::one_in_a_place) {
     std::vector<Mistake> found;
     for (Mistake& mistake : each)

@@ -405,16 +405,17 @@ class Hypotheses::Maker {
         const bool before = low.t < end->t;
         const double push = longest_push(rise, speed, lasts);
         const double t = std::round(1000 * (before ? end->t - push : end->t + push)) / 1000;
-        made.push_back({Rank::geometry,
-                        {key_place(k),
-                         "t is " + seconds(low.t) + ", so the segment " +
-                             (before ? "from here to the lift-off" : "from the landing to here") +
-                             " lasts " + seconds(lasts) + ", and the COG, whose speed there is " +
-                             text::brief(speed, 2) + " m/s after the length of the flight, sinks " +
-                             text::fixed(1000 * sink, 0) + " mm below the height of this key",
-                         "with t = " + seconds(t)},
-                        [k = k, t](Pattern& p) { p.keyframes[k].t = t; },
-                        -sink});
+        made.push_back(
+            {Rank::geometry,
+             {key_place(k),
+              "t is " + seconds(low.t) + ", so the segment " +
+                  (before ? "from here to the lift-off" : "from the landing to here") + " lasts " +
+                  seconds(lasts) + "; for a flight of this length, the COG has a speed of " +
+                  text::brief(speed, 2) + " m/s there, so it sinks " + text::fixed(1000 * sink, 0) +
+                  " mm below the height of this key",
+              "with t = " + seconds(t)},
+             [k = k, t](Pattern& p) { p.keyframes[k].t = t; },
+             -sink});
       }
     }
   }

@@ -112,8 +112,8 @@ class Reader {
   }
 
   // Runs of equal numbers, and all that are equal, where these are more. A first run that holds
-  // what was there before is no value of the author's: it only says when the next one begins. Nor
-  // are all that return to it.
+  // what was there before is no value of the author's: it only says when the next one begins. The
+  // set of all values equal to it is no value of the author's either.
   void add(const NumberTrack& track) {
     const auto is_start = [&](double held) { return std::abs(held - track.start) < kSame; };
     std::map<double, std::vector<size_t>> equal;

@@ -143,7 +143,8 @@ WeakestLoop weakest_loop(const std::vector<LoopModel>& loops, const DtadParams& 
   return weakest;
 }
 
-// The search assumes that the loop becomes unstable only once as ka grows.
+// Largest stable ka below the first unstable one. Assumed: as ka grows, the loop becomes unstable
+// only once.
 double largest_stable_ka(const std::vector<LoopModel>& loops, DtadParams params, double most) {
   const auto stable = [&](double ka) {
     params.zmp_gain = ka;
@@ -173,8 +174,8 @@ struct LoopGain {
   std::vector<double> factors;  ///< factors on the gain, the one nearest to 1 first
 };
 
-// Chosen: factors of a third for the pull, which helps most on soft servos, and factors of 2 for
-// the other gains.
+// Chosen: each step multiplies the pull, which helps most on soft servos, by 4/3; the other gains
+// change by factors of 2, the filter by about 3.
 const std::vector<LoopGain>& loop_gains() {
   static const std::vector<LoopGain> gains = {
       {{{"ks", &DtadParams::pull_rate}, {"kd", &DtadParams::pull_damping}},

@@ -356,13 +356,13 @@ std::vector<LinkPlan::Aim> LinkPlan::aims_at(const Group& group, double t, const
   std::vector<Vector3d> by_keys(group.targets.size()), ahead(group.targets.size());
   RobotState led_by_keys = state;
   for (const int dof : group.dofs) led_by_keys.theta[dof] = keyed[dof];
-  move_limb(*model_, led_by_keys, group.path, data);
+  update_positions(*model_, led_by_keys, data);
   for (size_t i = 0; i < group.targets.size(); ++i) {
     const Target& target = group.targets[i];
     by_keys[i] = data.pose(target.body) * target.point;
     ahead[i] = data.rotation[target.body] * target.axis;
   }
-  move_limb(*model_, state, group.path, data);
+  update_positions(*model_, state, data);
   const Eigen::Isometry3d frame = data.pose(trunk);
   for (size_t i = 0; i < group.targets.size(); ++i) {
     const Target& target = group.targets[i];

@@ -108,6 +108,7 @@ class LinkPlan {
   // already.
   std::vector<Aim> aims_at(const Group& group, double t, const Eigen::VectorXd& keyed,
                            const RobotState& state, RobotData& data, bool directions) const;
+  // Moves the bodies of the group's path alone: the rest of `data` belongs to the state already.
   double minimize(const Group& group, const std::vector<Aim>& aims, const Eigen::VectorXd& keyed,
                   RobotState& state, RobotData& data) const;
   bool reached(const std::vector<Aim>& aims, const RobotData& data) const;

@@ -16,7 +16,7 @@ using Eigen::Vector2d;
 using Eigen::Vector4f;
 
 constexpr double kPanel = 300,
-                 kRadius = 108;           // width of one panel, and of its largest ring [pixel]
+                 kRadius = 108;           // width of one panel, radius of its largest ring [pixel]
 constexpr double kHead = 74, kSide = 14;  // space above and beside the panels [pixel]
 constexpr double kPhaseName = 26, kRemark = 20;  // heights of lines of text [pixel]
 constexpr double kLegendLine = 18;               // the same for a legend of several lines

@@ -26,8 +26,9 @@ Eigen::MatrixXd straight_line_guess(const RobotModel& model, const CommandSeries
 /// The variables of the program at random control points.
 Eigen::VectorXd random_start(const CorrectionProblem& problem, const RandomStart& how);
 
-/// The point from which the program starts: no correction, or, if this violates the most nonlinear
-/// rows (soles and clearances) by far, the straight-line guess that violates these rows least.
+/// The point from which the program starts: no correction, or, if this violates the strongly
+/// nonlinear rows (soles and clearances) by far, the straight-line guess that violates these rows
+/// least.
 Eigen::VectorXd initial_guess(const CorrectionProblem& problem, const Nlp& nlp,
                               const RobotModel& model, const CommandSeries& series,
                               const std::vector<Finding>& findings);

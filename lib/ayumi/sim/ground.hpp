@@ -21,7 +21,7 @@ struct GroundTouch {
 /// A place where the ground touches a sole between the sole's corners: a corner or an edge of a
 /// block, or a node of the height field.
 struct InnerPoint {
-  long id = 0;              ///< name of the place, the same in the next step
+  long id = 0;              ///< number of the place, the same in the next step
   Eigen::Vector3d on_sole;  ///< point in the plane of the sole [m]
   double gap = 0;           ///< gap along the normal, negative inside [m]
   double rise = 0;          ///< [m/s]
@@ -36,7 +36,7 @@ struct SolidBlock {
 
 /// A node of the height field that is higher than its neighbours.
 struct FieldTip {
-  long id = 0;  ///< name of the node, the same in the next step
+  long id = 0;  ///< number of the node, the same in the next step
   SolidBlock solid;
 };
 

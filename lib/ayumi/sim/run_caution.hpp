@@ -11,7 +11,7 @@ namespace ayumi {
 std::string words_of(const std::vector<Disturbance>& scenario);
 
 /// The reason why the table of this run is not for a robot: "the run fell at 2.31 s (trunk tilt)",
-/// "the run did not settle"; Empty for a run that stands.
+/// "the run did not settle"; empty for a run that stands.
 std::string unfit_words(const SimulationLog& log);
 
 /// Both cautions of a run.

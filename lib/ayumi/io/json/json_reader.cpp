@@ -110,7 +110,7 @@ class DocumentBuilder : public nlohmann::json_sax<Json> {
 
   Json& root_;
   std::vector<Json*> open_;  // arrays and objects that are not yet complete
-  Json* member_ = nullptr;   // key of the innermost object that was read last
+  Json* member_ = nullptr;   // value of the innermost object whose key was read last
   bool too_deep_ = false;
   std::string duplicate_;
 };

@@ -41,7 +41,7 @@ constexpr size_t kAnswerPiece = size_t{4} << 20;
 const std::vector<std::string> kReaderEnvironment = {"LD_LIBRARY_PATH", "ASAN_OPTIONS",
                                                      "UBSAN_OPTIONS", "LSAN_OPTIONS"};
 #ifdef __SANITIZE_ADDRESS__
-constexpr bool kReaderErrors = true;  // the sanitizer reports there
+constexpr bool kReaderErrors = true;  // the sanitizer writes its reports there
 #else
 constexpr bool kReaderErrors = false;
 #endif

@@ -98,8 +98,8 @@ void require_robot_of(const RobotModel& model, const SimulationLog& log,
       moment += load.mass * (data.pose(load.body) * load.point);
     }
     if (known && !((moment / mass - sample.cog).norm() < kSameRobot))
-      fail(ErrorCode::bad_file,
-           source + ": at t = " + text::fixed(t, 3) + " s the COG of robot '" + model.name() +
+      fail(ErrorCode::bad_file, {source},
+           "at t = " + text::fixed(t, 3) + " s the COG of robot '" + model.name() +
                "' differs from the COG in the log at the same posture; this is another robot, or "
                "the robot or the log has changed since the run; run the pattern again");
   }

@@ -13,9 +13,9 @@ namespace ayumi {
 
 /// A point that touches, or may touch before the step ends.
 struct ActiveContact {
-  long key = 0;  ///< name of the point, the same in each step: the index of the ContactPoint, or a
-                 ///< larger number
-  int body = 0;  ///< body that is pushed along the normal
+  long key = 0;  ///< number of the point, the same in each step: the index of the ContactPoint, or
+                 ///< a larger number where edges, nodes of the height field or links touch
+  int body = 0;                     ///< body that is pushed along the normal
   int other = -1;                   ///< body that is touched; -1: the ground
   int side = -1;                    ///< Side of the sole, -1 for a body that is no sole
   int vertex = -1;                  ///< corner of the sole; -1: between its corners, or no sole
@@ -87,7 +87,7 @@ class ContactSet {
   double widest_ = 0;  // largest distance of a point's far side from its body's origin [m]
   LinkContacts links_;
   double link_friction_ = 0,
-         link_stiffness_ = 0;  // where links touch each other, or where an edge touches
+         link_stiffness_ = 0;  // of contacts of links with each other and with edges
   std::vector<char> is_foot_;  // by body
   std::vector<ActiveContact> active_, previous_;
   // Workspace of collect().
