@@ -21,7 +21,7 @@ RobotModel robot_of_run(const Context& context, const std::string& chosen,
 
 void require_log_of(const RobotModel& model, const std::string& chosen, const SimulationLog& log,
                     const std::string& source) {
-  require_joints_of(model, log, source);
+  require_postures_of(model, log, source);
   if (!chosen.empty()) return;
   const std::string& made_with = log.provenance.robot_sha256;
   if (!made_with.empty() && made_with != model.description().sha256)

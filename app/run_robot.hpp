@@ -13,9 +13,9 @@ RobotModel robot_of_run(const Context& context, const std::string& chosen,
                         const std::string& recorded, const LoadOptions& options = {});
 
 /// A log must fit its robot: Error(bad_file), beginning with `source`, says that the joints are
-/// others, that the recorded robot is not the one any more that made the log, or that the postures
-/// of the log are not that robot's. A robot that `chosen` names may differ in everything but its
-/// joints.
+/// others, that an attitude is no rotation, that the recorded robot is not the one any more that
+/// made the log, or that the COG of the log is not that robot's. A robot that `chosen` names may
+/// differ in everything but its joints.
 void require_log_of(const RobotModel& model, const std::string& chosen, const SimulationLog& log,
                     const std::string& source);
 

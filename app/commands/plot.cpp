@@ -75,13 +75,22 @@ std::vector<LabelledLog> logs_of(const PlotOptions& options) {
 std::optional<RobotModel> robot_at_hand(const LabelledLog& entry, const PlotOptions& options,
                                         const Context& context) {
   try {
-    static_cast<void>(robot_of_run(context, options.robot, entry.log.provenance.robot));
+    return robot_of_run(context, options.robot, entry.log.provenance.robot);
   } catch (const Error& error) {
     if (!options.robot.empty()) throw;
     context.print(std::string("the ZMP margin is not drawn: ") + error.what() + "\n");
     return std::nullopt;
   }
-  return robot_of_log(context, options.robot, entry.log, entry.label);
+}
+
+// Each log must be one of its robot; `model` is that of the last one.
+void require_logs(const RobotModel& model, const std::vector<LabelledLog>& logs,
+                  const PlotOptions& options, const Context& context) {
+  for (const LabelledLog& entry : logs)
+    if (entry.log.provenance.robot == logs.back().log.provenance.robot)
+      require_log_of(model, options.robot, entry.log, entry.label);
+    else
+      static_cast<void>(robot_of_log(context, options.robot, entry.log, entry.label));
 }
 
 void plot(const PlotOptions& asked, Context& context) {
@@ -97,13 +106,17 @@ void plot(const PlotOptions& asked, Context& context) {
          "again");
   std::vector<std::string> series;
   if (options.top) {
-    write_support_plot(robot_of_log(context, options.robot, logs.back().log, logs.back().label),
-                       runs, options.output, options.loci);
+    const RobotModel model = robot_of_run(context, options.robot, logs.back().log.provenance.robot);
+    require_logs(model, logs, options, context);
+    write_support_plot(model, runs, options.output, options.loci);
     series = {"COG x, y [mm]", "ZMP x, y [mm]", "footholds [mm]"};
   } else {
     const std::optional<RobotModel> model = robot_at_hand(logs.back(), options, context);
     LociOptions loci = options.loci;
-    if (model) loci.model = &*model;
+    if (model) {
+      require_logs(*model, logs, options, context);
+      loci.model = &*model;
+    }
     if (!model && loci.frame == Frame::foot)
       fail(ErrorCode::usage,
            "--frame foot: the robot of the run is not known; name it with --robot");

@@ -11,6 +11,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/io/run/log_robot.hpp"
 #include "ayumi/render/frames.hpp"
 #include "ayumi/render/gltf.hpp"
 #include "ayumi/render/log_reading.hpp"
@@ -156,6 +157,8 @@ ClipSummary draw_run(const PreviewOptions& options, const std::string& input, co
                       : log_of(context, input, options.ghost);
     if (!elsewhere)  // another log of this run
       require_log_of(model, options.robot, *ghost, input + ", " + options.ghost);
+    else if (ghost->joints == log.joints)
+      require_postures_of(model, *ghost, options.ghost);
     own.clip.ghost.name =
         elsewhere ? fs::path(options.ghost).lexically_normal().stem().string() : options.ghost;
   }

@@ -60,10 +60,11 @@ TEST(LikelyMistakes, ASearchWithoutACauseComesLast) {
                                       .words = "no likely cause was found",
                                       .explains_all = false,
                                       .is_cause = false}};
-  EXPECT_EQ(with_mistakes("a.json: phases/1: out of reach", pattern, none),
-            "a.json: phases/1: out of reach; no likely cause was found");
-  EXPECT_EQ(with_mistakes("a.json: phases/1: out of reach", pattern, {{"/units", "in degrees"}}),
-            "a.json: likely cause: /units: in degrees; the first error is: phases/1: out of reach");
+  EXPECT_EQ(with_mistakes("a.json: /phases/1: out of reach", pattern, none),
+            "a.json: /phases/1: out of reach; no likely cause was found");
+  EXPECT_EQ(
+      with_mistakes("a.json: /phases/1: out of reach", pattern, {{"/units", "in degrees"}}),
+      "a.json: likely cause: /units: in degrees; the first error is: /phases/1: out of reach");
 }
 
 TEST(ImpossibleValues, SoundPatternsHaveNone) {

@@ -73,7 +73,8 @@ TEST(LogRobot, OtherJointsAreRefused) {
   SimulationLog log = standing();
   std::swap(log.joints[0], log.joints[1]);
   EXPECT_EQ(refused(log).find("run: the joints of the run ("), 0u);
-  EXPECT_EQ(test::error_message([&] { require_joints_of(hoap1(), log, "run"); }).find("run: "), 0u);
+  EXPECT_EQ(test::error_message([&] { require_postures_of(hoap1(), log, "run"); }).find("run: "),
+            0u);
 }
 
 TEST(LogRobot, AttitudesAreRotations) {

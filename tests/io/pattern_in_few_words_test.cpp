@@ -43,7 +43,9 @@ std::string said(const std::string& rest) {
   return "no error";
 }
 
-double value_of(const std::string& text) { return evaluate_expression(text, {{"x", 0.3}}, {"here"}); }
+double value_of(const std::string& text) {
+  return evaluate_expression(text, {{"x", 0.3}}, {"here"});
+}
 
 TEST(PatternInFewWords, ExpressionsKnowFunctions) {
   EXPECT_DOUBLE_EQ(value_of("pi"), std::numbers::pi);

@@ -12,6 +12,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
+#include "ayumi/base/text.hpp"
 #include "ayumi/io/run/log_fields.hpp"
 #include "ayumi/io/run/sha256.hpp"
 #include "ayumi/io/run/simulation_log_file.hpp"
@@ -225,7 +226,8 @@ TEST(SimulationLogFile, TicksAreServoPeriods) {
     SimulationLog log = random_log(3);
     log.dt = dt;
     EXPECT_EQ(parse_message(log_bytes(log)),
-              "x.bin (header): /dt: the tick must be from 1e-7 to 10 s, as a servo period");
+              "x.bin (header): /dt: the tick is " + text::brief(dt) +
+                  " s; it must be from 1e-7 to 10 s, as a servo period");
   }
 }
 

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/text.hpp"
 
 namespace ayumi {
 namespace {
@@ -322,8 +323,9 @@ TEST(RobotModel, NamesNumbersThatTheSidecarCannotHave) {
   EXPECT_EQ(error_of([](auto& r) { r.servos["l_knee"].kp = -1; }),
             "robot.json: /servos/l_knee: servo constants cannot be negative");
   for (const double period : {0.0, 1e-8, 11.0})
-    EXPECT_EQ(error_of([&](auto& r) { r.servo_period = period; }),
-              "robot.json: /servo_period: the value must be from 1e-7 to 10 s");
+    EXPECT_EQ(
+        error_of([&](auto& r) { r.servo_period = period; }),
+        "robot.json: /servo_period: " + text::brief(period) + " s is given; give 1e-7 to 10 s");
   EXPECT_EQ(error_of([](auto& r) { r.soft_limit_margin = -0.01; }),
             "robot.json: /soft_limit_margin: the value cannot be negative");
   const auto in_profile = [](const std::function<void(ActuatorProfile&)>& change) {

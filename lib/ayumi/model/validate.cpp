@@ -338,7 +338,8 @@ void validate_sidecar(const RobotDescription& robot, const std::vector<std::stri
     known_link(robot, "/collision_ignore/" + std::to_string(i) + "/1", b);
   }
   if (!(robot.servo_period >= kShortestServoPeriod && robot.servo_period <= kLongestServoPeriod))
-    complain_sidecar(robot, "/servo_period", "the value must be from 1e-7 to 10 s");
+    complain_sidecar(robot, "/servo_period",
+                     text::brief(robot.servo_period) + " s is given; give 1e-7 to 10 s");
   if (!(robot.soft_limit_margin >= 0))
     complain_sidecar(robot, "/soft_limit_margin", "the value cannot be negative");
 }

@@ -66,20 +66,20 @@ std::vector<Carried> carried_of(const RobotModel& model, const SimulationLog& lo
 
 }  // namespace
 
-void require_joints_of(const RobotModel& model, const SimulationLog& log,
-                       const std::string& source) {
+void require_postures_of(const RobotModel& model, const SimulationLog& log,
+                         const std::string& source) {
   if (log.joints != model.dof_names())
     fail(ErrorCode::bad_file, {source},
          "the joints of the run (" + text::join(log.joints, ", ") +
              ") are not those of the robot '" + model.name() + "' (" +
              text::join(model.dof_names(), ", ") + "); name the robot of the run with --robot");
+  for (size_t k = 0; k < log.samples.size(); ++k)
+    require_attitudes(log.samples[k], static_cast<double>(k) * log.dt, source);
 }
 
 void require_robot_of(const RobotModel& model, const SimulationLog& log,
                       const std::string& source) {
-  require_joints_of(model, log, source);
-  for (size_t k = 0; k < log.samples.size(); ++k)
-    require_attitudes(log.samples[k], static_cast<double>(k) * log.dt, source);
+  require_postures_of(model, log, source);
   if (is_of_drawn_robot(log)) return;
   const std::vector<Carried> carried = carried_of(model, log, source);
   RobotData data(model);
@@ -97,11 +97,14 @@ void require_robot_of(const RobotModel& model, const SimulationLog& log,
       mass += load.mass;
       moment += load.mass * (data.pose(load.body) * load.point);
     }
-    if (known && !((moment / mass - sample.cog).norm() < kSameRobot))
+    const double off = (moment / mass - sample.cog).norm();
+    if (known && !(off < kSameRobot))
       fail(ErrorCode::bad_file, {source},
            "at t = " + text::fixed(t, 3) + " s the COG of robot '" + model.name() +
-               "' differs from the COG in the log at the same posture; this is another robot, or "
-               "the robot or the log has changed since the run; run the pattern again");
+               "' differs from the COG in the log at the same posture by " +
+               text::brief(1e3 * off) + " mm (allowed " + text::brief(1e3 * kSameRobot) +
+               " mm); this is another robot, or the robot or the log has changed since the run; "
+               "run the pattern again");
   }
 }
 

@@ -9,13 +9,13 @@
 namespace ayumi {
 
 /// Throws Error(bad_file), beginning with `source`, where the joints of the log are others than
-/// those of the robot, or in another order.
-void require_joints_of(const RobotModel& model, const SimulationLog& log,
-                       const std::string& source);
+/// those of the robot, or in another order, or where an attitude is no rotation.
+void require_postures_of(const RobotModel& model, const SimulationLog& log,
+                         const std::string& source);
 
-/// The same, and where an attitude is no rotation, or the COG of a sample is not that of the robot
-/// in this posture with the payloads that it carries: the log is of another robot, or was changed.
-/// The robot that a case of a study drew is not known, so there the COG is not compared.
+/// The same, and where the COG of a sample is not that of the robot in this posture with the
+/// payloads that it carries: the log is of another robot, or was changed. The robot that a case of
+/// a study drew is not known, so there the COG is not compared.
 void require_robot_of(const RobotModel& model, const SimulationLog& log, const std::string& source);
 
 }  // namespace ayumi

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "ayumi/base/file.hpp"
+#include "ayumi/base/text.hpp"
 #include "ayumi/io/compression.hpp"
 #include "ayumi/io/json/json_reader.hpp"
 #include "ayumi/io/pattern/scenario_text.hpp"
@@ -179,7 +180,8 @@ std::string header_of(const SimulationLog& log, size_t rows, const std::string& 
 void read_header(const JsonNode& header, SimulationLog& log) {
   log.dt = header.at("dt").number();
   if (!(log.dt >= kShortestServoPeriod && log.dt <= kLongestServoPeriod))
-    header.at("dt").complain("the tick must be from 1e-7 to 10 s, as a servo period");
+    header.at("dt").complain("the tick is " + text::brief(log.dt) +
+                             " s; it must be from 1e-7 to 10 s, as a servo period");
   const JsonNode controller = header.at("controller");
   if (!controller.string().empty())
     log.controller = controller_type(controller.one_of(controller_names()));

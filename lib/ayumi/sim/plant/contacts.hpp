@@ -15,7 +15,7 @@ namespace ayumi {
 struct ActiveContact {
   long key = 0;  ///< number of the point, the same in each step: the index of the ContactPoint, or
                  ///< a larger number where edges, nodes of the height field or links touch
-  int body = 0;                     ///< body that is pushed along the normal
+  int body = 0;  ///< body that is pushed along the normal
   int other = -1;                   ///< body that is touched; -1: the ground
   int side = -1;                    ///< Side of the sole, -1 for a body that is no sole
   int vertex = -1;                  ///< corner of the sole; -1: between its corners, or no sole
