@@ -24,6 +24,17 @@ void add_pattern_options(Command& command, PatternOptions& options) {
       ->type_name("NAME");
 }
 
+void add_push_times(Command& command, std::vector<double>& times) {
+  command
+      .add_option(
+          "--times", times,
+          "Times of the pushes [s] (default: for a walk, one while the robot stands and four "
+          "in one step; for steps of VIIP, three in one step; without steps, one while the "
+          "robot stands and one in the middle of the motion).")
+      ->type_name("T")
+      ->delimiter(',');
+}
+
 std::map<std::string, double> read_pairs(const std::vector<std::string>& words,
                                          const std::string& option) {
   std::map<std::string, double> pairs;

@@ -19,6 +19,9 @@ struct PatternOptions {
 };
 void add_pattern_options(Command& command, PatternOptions& options);
 
+/// `--times` of the pushes of a study; none: those that fit the motion.
+void add_push_times(Command& command, std::vector<double>& times);
+
 /// The bytes of a file; `-` is standard input. Throws Error(bad_file) for more than `most` bytes.
 std::string read_input(const std::filesystem::path& file, size_t most = size_t{1} << 30);
 

@@ -264,15 +264,7 @@ void add_push(Command& app, Context& context) {
       ->check(whole_number_within(1, 360).description(""))
       ->type_name("N")
       ->capture_default_str();
-  command
-      ->add_option("--times", options->times,
-                   "Times of the pushes [s] (default: for a walk, one while the robot stands and "
-                   "four in one "
-                   "step; for steps of VIIP, three in one step; without steps, one while the robot "
-                   "stands and "
-                   "one in the middle of the motion).")
-      ->type_name("T")
-      ->delimiter(',');
+  add_push_times(*command, options->times);
   command
       ->add_option("--step", push.step,
                    "Resolution of the search as a multiple of the capture bound.")

@@ -154,15 +154,7 @@ void add_tune(Command& app, Context& context) {
       ->check(whole_number_within(1, 360).description(""))
       ->capture_default_str()
       ->type_name("N");
-  command
-      ->add_option("--times", options->times,
-                   "Times of the pushes [s] (default: for a walk, one while the robot stands and "
-                   "four in one "
-                   "step; for steps of VIIP, three in one step; without steps, one while the robot "
-                   "stands and "
-                   "one in the middle of the motion).")
-      ->delimiter(',')
-      ->type_name("T");
+  add_push_times(*command, options->times);
   command->add_option("--rounds", t.rounds, "Number of passes of the search through all gains.")
       ->check(whole_number_within(1, 50).description(""))
       ->capture_default_str()

@@ -515,8 +515,8 @@ TEST(PlantedMistakes, SlightErrorsHaveNoGrossCause) {
   }
 }
 
-// A value that is wrong by much is named although most errors remain.
-TEST(PlantedMistakes, AStoopFarTooDeepIsNamed) {
+/// A hop with a flight from 1.5 to 1.65 s and these keys of the COG height (time, height).
+Pattern hop_with(const std::vector<std::pair<double, double>>& heights) {
   Pattern hop;
   hop.robot = "hoap1";
   hop.profile = "hoap1-strong";
@@ -527,17 +527,14 @@ TEST(PlantedMistakes, AStoopFarTooDeepIsNamed) {
     phase.support = support;
     hop.phases.push_back(phase);
   }
-  for (const auto& [t, height] : {std::pair(0.5, 0.245),
-                                  {1.2, 0.19},
-                                  {1.5, 0.235},
-                                  {1.65, 0.235},
-                                  {1.9, 0.19},
-                                  {2.7, 0.245}}) {
-    Keyframe key;
-    key.t = t;
-    key.cog_height = height;
-    hop.keyframes.push_back(key);
-  }
+  for (const auto& [t, height] : heights) key_at(hop, t).cog_height = height;
+  return hop;
+}
+
+// A value that is wrong by much is named although most errors remain.
+TEST(PlantedMistakes, AStoopFarTooDeepIsNamed) {
+  const Pattern hop =
+      hop_with({{0.5, 0.245}, {1.2, 0.19}, {1.5, 0.235}, {1.65, 0.235}, {1.9, 0.19}, {2.7, 0.245}});
   const std::vector<Mistake> found = likely_mistakes(small(), hop, options_of(hop));
   ASSERT_FALSE(found.empty());
   EXPECT_EQ(found.front().words.rfind("the COG height is 0.19 m", 0), 0u) << found.front().text();
@@ -546,27 +543,15 @@ TEST(PlantedMistakes, AStoopFarTooDeepIsNamed) {
 // A hop whose flight is longer than its author thought: the COG sinks below the key of the stoop,
 // and is not at its lowest where the author wrote it.
 TEST(PlantedMistakes, ACogThatSinksBelowItsStoopIsNamed) {
-  Pattern hop;
-  hop.robot = "hoap1";
-  hop.profile = "hoap1-strong";
-  for (const auto& [until, support] :
-       {std::pair(1.5, Support::both), {1.65, Support::none}, {3.5, Support::both}}) {
-    Phase phase;
-    phase.until = until;
-    phase.support = support;
-    hop.phases.push_back(phase);
-  }
-  for (const auto& [t, height] :
-       {std::pair(0.5, 0.245), {1.2, 0.2}, {1.5, 0.22}, {1.65, 0.22}, {1.75, 0.2}, {2.8, 0.245}})
-    key_at(hop, t).cog_height = height;
+  const Pattern hop =
+      hop_with({{0.5, 0.245}, {1.2, 0.2}, {1.5, 0.22}, {1.65, 0.22}, {1.75, 0.2}, {2.8, 0.245}});
   const std::vector<Mistake> found = likely_mistakes(small(), hop, options_of(hop));
   ASSERT_FALSE(found.empty());
   EXPECT_TRUE(std::regex_search(
       found.front().text(),
       std::regex("^/keyframes/1: t is 1.2 s, so the segment from here to the lift-off lasts 0.3 s; "
                  "for a flight .* speed of 0.74 m/s there, so it sinks .* mm below the height of "
-                 "this key; "
-                 "with t = ")))
+                 "this key; with t = ")))
       << found.front().text();
 }
 
