@@ -63,8 +63,8 @@ constexpr double kNudge = 0.02;
 // than about 170 degrees apart.
 constexpr double kNoDirection = 0.08;
 
-// Brings the poses of these bodies in `data` up to date, root first; their parents are in the list
-// or have moved with nothing. The centres of mass stay as they were.
+// Updates the poses of these bodies in `data`. The root comes first, and the parent of each body is
+// in the list too, or has not moved. The centres of mass are not updated.
 void move_limb(const RobotModel& model, const RobotState& state, const std::vector<int>& path,
                RobotData& data) {
   for (const int b : path) {
