@@ -33,8 +33,8 @@ constexpr double kStep = 0.002;
 /// the curvature of the planned motion are both small. Figures change by less than 5 % from half to
 /// twice.
 constexpr double kDifference = 2.5e-4;
-/// Duration of a trunk swing that no height key bounds [s]. Chosen: about that of the push and of
-/// the landing of a jump. No measured case changes from half to twice (constants.md).
+/// Duration of a trunk swing that no height key bounds [s]. Chosen: about the duration of the push
+/// and of the landing of a jump. No measured case changes from half to twice (constants.md).
 constexpr double kBlend = 0.25;
 
 Vector3d rotation_rate(const Matrix3d& before, const Matrix3d& after, double time) {
@@ -170,8 +170,8 @@ double segment_at(const Pattern& pattern, double t, bool before) {
   return length;
 }
 
-// The turn of one flight: it begins level, with the necessary rate; the swings before and after it
-// begin and end at rest or at another flight.
+// The turn of one flight. It begins level, with the necessary rate. The swings before and after the
+// flight begin and end at rest or at another flight.
 struct Flight {
   double begin = 0, end = 0, swing_up = 0, swing_down = 0;
   std::vector<FlightTurn::Node> nodes;

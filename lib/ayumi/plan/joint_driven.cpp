@@ -51,7 +51,7 @@ void anchor_samples(const SampleJob& job, CommandSeries& series) {
     const double t = k * job.dt;
     if (!supports(job.feet.support(t), anchor)) {
       anchor = other(anchor);
-      // The new anchor stays at its place in the previous sample.
+      // The new anchor stays where it was in the previous sample.
       if (k > 0) {
         update_positions(job.model, series.samples[k - 1].state, data);
         held = sole_pose(job.model, data, anchor);

@@ -112,9 +112,9 @@ void KeyReader::read(const Keyframe& key) {
 
 bool same(double a, double b) { return std::abs(a - b) < kSameTime; }
 
-// A flight with keys of a coordinate at lift-off and touchdown is a parabola in it, and the motion
-// before and after has the parabola's rate and acceleration. Keys inside the flight are kept as
-// they are.
+// If a flight has keys of a coordinate at lift-off and touchdown, this coordinate follows a
+// parabola in flight, and the motion before and after has the parabola's rate and acceleration.
+// Keys inside the flight are kept as they are.
 Keys with_flights(const FootPlan& feet, const Keys& keys, double acceleration) {
   std::vector<QuinticEnd> ends;
   std::vector<bool> moving(keys.size(), false);
@@ -239,7 +239,7 @@ void read_table(const RobotModel& model, const Pattern& pattern, KeyReader& read
     for (int i = 0; i < 3; ++i)
       (*tracks.base)[i] =
           table_track(table.dt, rows, [&](size_t k) { return table.base[k].position[i]; });
-    std::vector<Eigen::Vector4d> q;  // w, x, y, z with continuous sign
+    std::vector<Eigen::Vector4d> q;  // quaternions w, x, y, z with continuous sign
     for (const BasePose& pose : table.base) {
       const Eigen::Quaterniond& a = pose.attitude;
       Eigen::Vector4d v(a.w(), a.x(), a.y(), a.z());

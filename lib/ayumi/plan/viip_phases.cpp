@@ -128,7 +128,7 @@ CommandSeries with_viip_phases(const RobotModel& model, const Pattern& pattern,
     for (; done < at; ++done) series.samples.push_back(cut.samples[static_cast<size_t>(done)]);
     const CommandSample& from = cut.samples[static_cast<size_t>(at)];
     const SourcePlace place = place_of_phase(pattern, each.phase);
-    // At the last sample of a step the support is still that of the step.
+    // At the last sample of a step, the support is still the support of the step.
     const CommandSample& rests = cut.samples[static_cast<size_t>(std::max(0l, at - 1))];
     if (from.support != Support::both && rests.support != Support::both)
       fail(ErrorCode::bad_pattern, place,

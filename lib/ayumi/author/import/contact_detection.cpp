@@ -52,7 +52,8 @@ double speed_between(const Isometry3d& from, const Isometry3d& to, double time) 
   return ((to.translation() - from.translation()).norm() + kLever * turn.norm()) / time;
 }
 
-// +1: only the left foot supports, -1: only the right, 0: both, 2: undecided, a foot moves too low.
+// Label of each row. +1: only the left foot supports, -1: only the right foot supports, 0: both
+// support, 2: undecided, because a foot moves at too low a height.
 std::vector<int> relative_labels(const RobotModel& model, const Soles& soles, double dt) {
   const int n = static_cast<int>(soles[0].size());
   const int look = std::max(1, static_cast<int>(std::lround(kLook / dt)));
@@ -125,7 +126,7 @@ void add_handovers(const Soles& soles, double dt, std::vector<int>& labels) {
   }
 }
 
-// Vertical force that the motion of the COG needs in each row, in weights.
+// Vertical force that the motion of the COG needs in each row, as a multiple of the weight.
 std::vector<double> loads_of(const RobotModel& model, const RawMotion& motion) {
   const int n = static_cast<int>(motion.theta.rows());
   // Half of the time over which the acceleration is a mean [s]. Chosen: long against the rows of a
@@ -240,13 +241,14 @@ double cog_outside(const RobotModel& model, const RawMotion& motion, const Soles
   return -ConvexPolygon(model.sole(static_cast<Side>(foot)).polygon).margin(cog.head<2>());
 }
 
-// One foot alone carries the robot for a moment only where the COG is near it: else the ZMP would
-// be far outside of the sole. Such a moment joins the double support beside it, or its longer
-// neighbour.
+// One foot alone carries the robot for a moment only if the COG is near this foot; otherwise the
+// ZMP would be far outside of the sole. A moment for which this is not so joins the double support
+// beside it, or its longer neighbour.
 std::vector<Support> without_doubtful_moments(const RobotModel& model, const RawMotion& motion,
                                               const Soles& soles, std::vector<Support> supports) {
-  // Time with one foot that is doubtful [s]. Chosen: a quarter of the single support of the
-  // generated walk (0.45 s), and longer than what a landing with one foot first takes.
+  // Duration up to which a support by one foot is doubtful [s]. Chosen: a quarter of the single
+  // support of the generated walk (0.45 s), and longer than a landing in which one foot touches
+  // first.
   constexpr double kMoment = 0.1;
   const std::vector<Stretch> all = stretches(supports);
   for (size_t i = 0; i < all.size() && all.size() > 1; ++i) {
@@ -255,8 +257,8 @@ std::vector<Support> without_doubtful_moments(const RobotModel& model, const Raw
     if (run.support == Support::both || run.support == Support::none || rows * motion.dt > kMoment)
       continue;
     const int foot = run.support == Support::left ? 0 : 1;
-    // Distance of the COG from the sole at which one foot cannot carry it [m]. Chosen: half the
-    // width of the sole.
+    // Distance of the COG from the sole from which on one foot cannot carry it [m]. Chosen: half
+    // the width of the sole.
     Eigen::AlignedBox2d sole;
     for (const Eigen::Vector2d& corner : model.sole(static_cast<Side>(foot)).polygon)
       sole.extend(corner);
@@ -299,7 +301,7 @@ void end_swings(const RobotModel& model, const RawMotion& motion, const Soles& s
       const int middle = (run.first + run.last) / 2;
       int least = edge;
       while (least != middle && height(least + step) < height(least)) least += step;
-      if (least == middle) continue;  // the sole sinks all the time, which is a load and no swing
+      if (least == middle) continue;  // the sole sinks all the time: a load, no swing
       const double place = height(least);
       for (int k = edge; k != least && height(k) > place + kAtRest; k += step)
         supports[k] = supports[outside];
