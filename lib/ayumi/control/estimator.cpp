@@ -33,8 +33,8 @@ constexpr double kStanceShare = 0.6;
 // Figures change by less than 5 % from half to twice.
 constexpr double kContactShare = 0.05;
 
-// Tilt about x and y of a sole that lies flat, per f_z (cop - centre) [rad/(N m)]. Its corners are
-// springs of equal stiffness, as in the plant (sim/plant/contact_points).
+// Tilt about x and y of a sole that lies flat, for each unit of f_z (cop - centre) [rad/(N m)]. The
+// corners of the sole are springs of equal stiffness, as in the plant (sim/plant/contact_points).
 Eigen::Matrix2d tilt_per_moment(const Sole& sole) {
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();
   const double count = static_cast<double>(sole.polygon.size());
@@ -91,8 +91,8 @@ const Estimate& Estimator::update(const Measurement& m, const std::array<Isometr
   const double weight = model_->mass() * kGravity;
   Estimate& e = last_;
 
-  // Everything is first computed in base axes (base at the origin, at rest), in one pass over the
-  // tree.
+  // All quantities are first computed in base axes (with the base at the origin and at rest), in
+  // one pass over the tree.
   RobotState& s = e.state;
   s.base = BasePose{};
   s.base_velocity.setZero();
@@ -101,7 +101,7 @@ const Estimate& Estimator::update(const Measurement& m, const std::array<Isometr
   s.dtheta = m.dtheta;
   update_velocities(*model_, s, data_);
 
-  // Attitude of the base from the IMU, which may be on any link.
+  // The attitude of the base from the IMU, which may be on any link.
   const Link& imu = model_->links()[imu_];
   const Matrix3d imu_in_base = data_.rotation[imu.body] * imu.pose.linear();
   const Matrix3d R = m.attitude.toRotationMatrix() * imu_in_base.transpose();
@@ -117,7 +117,7 @@ const Estimate& Estimator::update(const Measurement& m, const std::array<Isometr
   s.base_angular_velocity = turn * w;
   const Matrix3d attitude = s.base.attitude.toRotationMatrix();
 
-  // The loaded point of the sole is at its planned place, and at rest.
+  // The loaded point of the sole is at its planned place and at rest.
   const Eigen::Vector2d cop = m.feet[stance].fz > kContactShare * weight
                                   ? m.feet[stance].cop
                                   : model_->sole(e.stance).center;
@@ -134,7 +134,7 @@ const Estimate& Estimator::update(const Measurement& m, const std::array<Isometr
   e.dcog = s.base_velocity + rate.cross(offset) + attitude * data_.dcog;
   const Matrix3d tilt = attitude * sole_in_base.linear() * feet[stance].linear().transpose();
   e.foot_tilt = log_rotation(Quaterniond(tilt));
-  Vector3d yielding = Vector3d::Zero();  // tilt of the sole that comes from its load
+  Vector3d yielding = Vector3d::Zero();  // tilt of the sole that its load causes
   yielding.head<2>() = yield_[stance] * (m.feet[stance].fz * (cop - model_->sole(e.stance).center));
   e.foot_tilt -= feet[stance].linear() * yielding;
   e.foot_tilt.z() = 0;

@@ -23,10 +23,11 @@ namespace {
 // changes from half to twice (constants.md).
 constexpr double kAdmissibleForceShare = 0.1;
 
-// Largest shift of the ZMP by which the rocking of the robot on its soles is damped, times z: 22 mm
-// on HOAP-1. Chosen: enough to end the rocking that a push of 0.3 N s leaves with sensors that are
-// 14 ms late (with 0.06 it goes on), and small compared with the soles. After a hard push, this
-// damping works against the long term: without a bound the walk survives 0.78 B instead of 1.08.
+// Largest shift of the ZMP by which the rocking of the robot on its soles is damped, as a multiple
+// of z: 22 mm on HOAP-1. Chosen: enough to end the rocking that a push of 0.3 N s leaves with
+// sensors that are 14 ms late (with 0.06 the rocking continues), and small compared with the soles.
+// After a hard push, this damping works against the long term: without a bound the walk survives
+// 0.78 B instead of 1.08.
 constexpr double kRockingLimit = 0.09;
 
 }  // namespace

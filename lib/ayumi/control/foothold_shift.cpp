@@ -26,16 +26,16 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Derivation: docs/theory.md, "Moving footholds". What the footholds are worth in 32 walking pushes
-// of HOAP-1: docs/measurements/pushes.md. Lengths are times the COG height z, times are times
-// 1 / omega.
+// Derivation: docs/theory.md, "Moving footholds". The effect of the footholds in 32 walking pushes
+// of HOAP-1: docs/measurements/pushes.md. Lengths are multiples of the COG height z, and times are
+// multiples of 1 / omega.
 
 // Share of each support that is kept in reserve. Chosen: the robot differs from the point mass.
 // Half: hurried walk, slip 5.22 to 8.86 mm; twice: pushed walk, slip 1.45 to 0.875 mm.
 constexpr double kReserve = 0.2;
 
-// Share of the landing foot's support that is counted on. Chosen: the ZMP gets there only in the
-// course of the double support. Half: hurried walk, touchdowns 5 to 7; twice: pushed walk,
+// Share of the landing foot's support that is taken into account. Chosen: the ZMP only gets there
+// in the course of the double support. Half: hurried walk, touchdowns 5 to 7; twice: pushed walk,
 // touchdowns 4 to 5.
 constexpr double kNextSupportShare = 0.5;
 
@@ -48,7 +48,7 @@ constexpr double kFootholdReach = 0.36;
 // speed of HOAP-1. Half: thrown walk, touchdowns 6 to 5; twice: hurried walk, touchdowns 5 to 6.
 constexpr double kFootSpeed = 0.65;
 
-// Smallest error at the landing that a foothold answers [z]: 4 mm on HOAP-1. Chosen: the sole
+// Smallest error at the landing to which a foothold reacts [z]: 4 mm on HOAP-1. Chosen: the sole
 // absorbs smaller errors. Half: crossing walk, joint speed 0.738 to 0.958; twice: hurried walk,
 // touchdowns 5 to 8.
 constexpr double kLeastError = 0.02;
@@ -72,7 +72,7 @@ constexpr double kTimeScaleCost = 0.016;
 // than 5 %; twice: hurried walk, touchdowns 5 to 6.
 constexpr double kTimeScaleStep = 0.1;
 
-// Share of the swing before which a force on the swing foot is not a landing. Chosen: a foot that
+// A force on the swing foot before this share of the swing is not a landing. Chosen: a foot that
 // has just left the ground still drags; a tipped robot's foot may land soon after. Half: thrown
 // walk, touchdowns 6 to 4; twice: no change.
 constexpr double kSwingLandingAfter = 0.3;
@@ -92,8 +92,8 @@ ConvexPolygon about_zmp(const ConvexPolygon& polygon, const Vector2d& center) {
   return ConvexPolygon(points);
 }
 
-/// The part of an error that remains. The error grows for `time`, while the ZMP may be anywhere in
-/// `share` of `polygon` about `zmp`.
+/// The part of an error that remains. The error grows during `time`, while the ZMP may be anywhere
+/// in a part `share` of `polygon` about `zmp`.
 Vector2d error_after(const Vector2d& error, const ConvexPolygon& polygon, const Vector2d& zmp,
                      double omega, double time, double share) {
   if (time <= 0) return error;
@@ -201,8 +201,8 @@ FootholdShift::Step FootholdShift::step_of(const PlannedSwing& swing) const {
   return step;
 }
 
-/// The ZMP makes a shift evenly within `time`. This is the share of the shift that the DCM has made
-/// at the start of this time.
+/// The share of a shift of the ZMP that the DCM has already made. The ZMP makes the shift evenly
+/// within `time`, and the share is that at the start of this time.
 double FootholdShift::ramp_share(double time) const {
   return time > 0 ? (1 - elementary::exp(-omega_ * time)) / (omega_ * time) : 1.0;
 }
