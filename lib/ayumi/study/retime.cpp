@@ -27,16 +27,16 @@ constexpr double kLargeScale = 3;
 /// that the first scale that passes is not skipped. No measured case changes from half to twice
 /// (constants.md).
 constexpr double kSpeedStep = 0.8;
-/// Factor between scales beyond an edge, and their number: 0.5 % each, 18 % in all. Chosen: a
+/// Factor between scales beyond an edge, and their number below: 0.5 % each, 18 % in all. Chosen: a
 /// compromise, since each scale costs one sampling and one check. No measured case changes from
 /// half to twice (constants.md).
 constexpr double kBeyondStep = 1.005;
-// No measured case changes from half to twice (constants.md).
+// The number of these scales. No measured case changes from half to twice (constants.md).
 constexpr int kBeyondSteps = 40;
 
 struct Trial {
   bool passes = false;
-  std::string reason;    // why not
+  std::string reason;    // reason why the scale does not pass
   double too_quick = 1;  // largest ratio of a joint's speed to its limit
   bool of_posture = false;
 };
@@ -102,9 +102,9 @@ class PaceSearch {
     return passing;
   }
 
-  // The fastest of the next scales that passes, 0 when none does. A pattern with flights may pass
-  // again at a faster scale, because other samples lie on the edges of the flights. The reason of
-  // the edge is kept.
+  // The fastest of the next scales that passes, or 0 if none does. A pattern with flights may pass
+  // again at a faster scale, because other samples then lie on the edges of the flights. The reason
+  // of the edge is kept.
   double beyond(double passing) {
     const std::string reason = reason_;
     double found = 0, scale = passing;

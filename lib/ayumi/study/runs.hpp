@@ -13,10 +13,11 @@ inline constexpr double kStandingPush = 0.5;
 /// come to rest. No measured case changes from half to twice (constants.md).
 inline constexpr double kStandingAfter = 2.5;
 
-/// The robot holds the first posture of the pattern; under VIIP if the pattern has goals.
+/// A series in which the robot holds the first posture of the pattern, under VIIP if the pattern
+/// has goals.
 CommandSeries standing_series(const CommandSeries& series);
 
-/// Distance of the estimated DCM x + dx/omega of the last tick from the planned one [m].
+/// The distance of the estimated DCM x + dx/omega of the last tick from the planned one [m].
 double divergence(const Simulator& run);
 
 }  // namespace ayumi

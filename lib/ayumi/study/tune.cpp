@@ -86,7 +86,7 @@ Simulator Tuner::begin(const PushPhase& phase, const Gains& gains) const {
   return run;
 }
 
-/// omega times the integral of |DCM - planned DCM| / z; kFall if the robot fell.
+/// omega times the integral of |DCM - planned DCM| / z, or kFall if the robot fell.
 double Tuner::push(const Simulator& baseline, const PushPhase& phase, int direction) const {
   const double angle = 2 * M_PI * direction / options.directions;
   const CommandSeries& plan = series_of(phase);
