@@ -1,14 +1,14 @@
 #pragma once
-// One joint with its servo, driven by its recorded command and loaded by a given torque: which
-// identification compares with the recording. All quantities are divided by the stiffness kp, so
-// that they are seen in the angle:
+// One joint with its servo, driven by its recorded command and loaded by a given torque.
+// Identification compares its angle with the recording. All quantities are divided by the stiffness
+// kp, so that they are seen in the angle:
 //   kp = 1/s:  s J ddphi = u(t - delay) - phi - D dphi - C sgn(dphi) - s tau,
 //   theta = phi + offset - backlash/2 sgn(tau)
 // where J is the inertia of rotor and link, and tau is the other torque on the joint. Dry friction
 // holds the joint at rest. The equations are solved by the implicit midpoint rule in steps of at
 // most kResponseStep, or as the law says.
-//   In a recording that shows no damping, the joint is without J and D: phi then goes where the
-// error exceeds the dry friction, |u(t - delay) - phi - s tau| <= C.
+//   In a recording that shows no damping, the joint has no J and D: phi then only moves where the
+// error would exceed the dry friction, so that |u(t - delay) - phi - s tau| <= C.
 
 #include <Eigen/Core>
 #include <vector>
