@@ -252,7 +252,7 @@ const Where kBetweenRests = {
 // Source: docs/attribution.md.
 constexpr double kArmFactor = 2;
 // A sole whose displacement is below this share of the largest one counts as back in its place.
-// Chosen: a tenth. No measured case changes from half to twice (constants.md).
+// Chosen: a tenth. No measured case changes between half and twice the value (constants.md).
 constexpr double kBackShare = 0.1;
 
 bool is_leg_joint(const RobotModel& model, int dof) {

@@ -8,21 +8,21 @@ namespace ayumi {
 namespace {
 
 // COG deviation that still belongs to a fault [m]. Chosen: a twentieth of the tolerance of the COG.
-// No measured case changes from half to twice (constants.md).
+// No measured case changes between half and twice the value (constants.md).
 constexpr double kTrace = 1e-4;
 // Distance of a sole from its place that is more than rounding [m]. Chosen: between planned
 // contacts, which are met to 1e-12 m, and the smallest tolerance of a sole (3e-4 m). No measured
-// case changes from half to twice (constants.md).
+// case changes between half and twice the value (constants.md).
 constexpr double kOff = 1e-5;
 // Time for which the ZMP reacts before the COG deviates by kTrace [s]. Source: docs/attribution.md.
 constexpr double kPad = 0.050;
 // A motion rests while all joints are slower than kStill [rad/s] for at least kRest [s]. Chosen: a
 // squat reverses its direction at the lowest point, and this is not a rest. No measured case
-// changes from half to twice (constants.md).
+// changes between half and twice the value (constants.md).
 constexpr double kStill = 0.01, kRest = 0.020;
 // A joint has turned back if it has moved back by this distance [rad], [m]. Chosen: above the
-// rounding of tables in 0.1 degrees (1.7e-3 rad). No measured case changes from half to twice
-// (constants.md).
+// rounding of tables in 0.1 degrees (1.7e-3 rad). No measured case changes between half and twice
+// the value (constants.md).
 constexpr double kTurning = 2e-3;
 
 // Follows the joint from sample `from` in the direction `step`. Returns the sample at which its

@@ -19,18 +19,20 @@ using Eigen::Vector3d;
 namespace {
 
 // Time constant of the load share of each foot [s]. Chosen with the prototype: three ticks, enough
-// against the noise of the cells and short against a double support of 80 ms. Half: hurried walk,
-// touchdowns 5 to 6; twice: slip 5.22 to 6.34 mm.
+// against the noise of the cells and short against a double support of 80 ms. With half of the
+// value, the number of touchdowns of the case "hurried walk" changes from 5 to 6; with twice, the
+// slip of the case "hurried walk" changes from 5.22 to 6.34 mm.
 constexpr double kLoadFilterTime = 0.003;
 
 // Share of f_z that makes a foot the stance foot. Chosen: 40 % of hysteresis, so that the stance
-// does not chatter in a double support; at 0.5 there is none. Half: rough walk, touchdowns 6 to 7;
-// twice: crossing walk falls.
+// does not chatter in a double support; at 0.5 there is none. With half of the value, the number of
+// touchdowns of the case "rough walk" changes from 6 to 7; with twice, the case "crossing walk"
+// falls.
 constexpr double kStanceShare = 0.6;
 
 // Share of the weight below which there is no ZMP: (17) loses its meaning towards flight
 // (docs/notation.md). Chosen: half of the force from which a foot stands (control/swing_foot).
-// Figures change by less than 5 % from half to twice.
+// Between half and twice the value, figures change by less than 5 %.
 constexpr double kContactShare = 0.05;
 
 // Tilt about x and y of a sole that lies flat, for each unit of f_z (cop - centre) [rad/(N m)]. The

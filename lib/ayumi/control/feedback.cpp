@@ -20,7 +20,7 @@ namespace {
 
 // f_min of the projection of ref f_z, as a share of the weight. Chosen: twice the 5 % below which
 // there is no ZMP (control/estimator), so that omega^2 of (17) keeps a meaning. No measured case
-// changes from half to twice (constants.md).
+// changes between half and twice the value (constants.md).
 constexpr double kAdmissibleForceShare = 0.1;
 
 // Largest shift of the ZMP by which the rocking of the robot on its soles is damped, as a multiple

@@ -22,7 +22,7 @@ constexpr int kPreview = 6;
 
 // Largest error of position that the steps correct, as a multiple of the distance of the feet.
 // Chosen: with a larger error, the path is moved to the feet, so that a push does not make the
-// robot hurry back. No measured case changes from half to twice (constants.md).
+// robot hurry back. No measured case changes between half and twice the value (constants.md).
 constexpr double kLargestError = 0.35;
 
 Vector2d turned_by(const Vector2d& v, double yaw) { return Eigen::Rotation2Dd(yaw) * v; }

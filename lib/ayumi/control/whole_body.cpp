@@ -31,34 +31,34 @@ using Eigen::VectorXd;
 namespace {
 
 // Factor on the rows of a task that is reduced. Chosen: its square, 1e-5, is the damping's share of
-// the trace, so such rows have no more weight than the damping. Half: hurried walk, touchdowns 5 to
-// 8; twice: 6.
+// the trace, so such rows have no more weight than the damping. With half of the value, the number
+// of touchdowns of the case "hurried walk" changes from 5 to 8; with twice, to 6.
 constexpr double kSoftness = 0.003;
 
 // Largest residual of a task that counts as fulfilled [m/s]: 2 um in each tick of 1 ms. Chosen:
-// with bent knees, the residual that the damping leaves is smaller. No measured case changes from
-// half to twice (constants.md).
+// with bent knees, the residual that the damping leaves is smaller. No measured case changes
+// between half and twice the value (constants.md).
 constexpr double kDone = 0.002;
 
 // How often joints that reach a position limit are fixed and the rest is solved again. Chosen: both
-// knees and both ankles may reach their limits one after the other. No measured case changes from
-// half to twice (constants.md).
+// knees and both ankles may reach their limits one after the other. No measured case changes
+// between half and twice the value (constants.md).
 constexpr int kLimitPasses = 4;
 
 // Speed limit of the reference COG, as a multiple of omega z: 1.2 m/s on HOAP-1. Chosen: at this
 // speed the DCM is outside every support; without a limit an integrator could run away. No measured
-// case changes from half to twice (constants.md).
+// case changes between half and twice the value (constants.md).
 constexpr double kCogSpeedLimit = 0.8;
 
 // Acceleration limit of the reference COG, as a multiple of g. Chosen: the force of a leg in its
-// strongest motion, a landing; only an unstable law asks for more. No measured case changes from
-// half to twice (constants.md).
+// strongest motion, a landing; only an unstable law asks for more. No measured case changes between
+// half and twice the value (constants.md).
 constexpr double kCogAccelerationLimit = 4;
 
 // Distance of the centre of pressure from the nearest edge of the sole, as a share of the most
 // there is, from which a tilted foot lies on the ground instead of tipping over an edge. Chosen: 5
-// mm on HOAP-1, twice the noise of its load cells; docs/theory.md, "A foot on a bump". Figures
-// change by less than 5 % from half to twice.
+// mm on HOAP-1, twice the noise of its load cells; docs/theory.md, "A foot on a bump". Between half
+// and twice the value, figures change by less than 5 %.
 constexpr double kInsideSole = 0.15;
 
 // Time constant of the low pass of the tilt that the ankles compensate [s]. Chosen: stiff servos

@@ -13,7 +13,8 @@ namespace {
 
 // Period at which the distance of every pair of bodies is computed [s]. Chosen: in this time,
 // bodies that approach each other at 0.5 m/s come 10 mm nearer, and limits/clearance.cpp adds this
-// distance to its tolerance. Half: less than 5 %; twice: grip, clearance 12.2 to 13.5 mm.
+// distance to its tolerance. With half of the value, figures change by less than 5 %; with twice,
+// the clearance of the case "grip" changes from 12.2 to 13.5 mm.
 constexpr double kCoarsePeriod = 0.020;
 
 std::vector<int> coarse_samples(const CommandSeries& series) {

@@ -55,8 +55,8 @@ RunOn swing_run_on(const RobotModel& model, const CommandSeries& series, Side si
 
 /// Height at which a swing may continue, as a share of the height by which a supporting sole may
 /// float. Chosen: a fifth finds 60 ms of a slow swing (0.06 mm), and generated walks have 1e-12 m
-/// (docs/attribution.md, "Contacts that begin in the air"). No measured case changes from half to
-/// twice (constants.md).
+/// (docs/attribution.md, "Contacts that begin in the air"). No measured case changes between half
+/// and twice the value (constants.md).
 inline constexpr double kRunOnShare = 0.2;
 
 /// How long a foot stays in the place of `contact` after the planned end of the contact [samples],

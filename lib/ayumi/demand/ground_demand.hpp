@@ -41,7 +41,8 @@ Eigen::Matrix<double, Eigen::Dynamic, 6> support_rows(const SupportPlane& plane)
 /// moment that determines the ZMP is rounding. Motions in contact rest on far more
 /// (normal_force.cpp warns at 5 %), so that only samples beside flights come near it. The estimator
 /// of a controller and the commands of an imported motion take 5 % instead: load cells and
-/// differences are noisier. No measured case changes from half to twice (constants.md).
+/// differences are noisier. No measured case changes between half and twice the value
+/// (constants.md).
 inline constexpr double kContactThreshold = 0.02;
 
 /// The normal force of a robot above which the ZMP of the ground force has a meaning [N].
@@ -76,7 +77,7 @@ std::array<Vector6d, 2> foot_wrenches(const RobotModel& model, Support support,
 
 /// The sign of dry friction changes gradually over twice this joint rate [rad/s]. Chosen: far below
 /// the rates of a motion (0.1 rad/s and more) and above the rounding of differences, so that its
-/// torque has no jump. No measured case changes from half to twice (constants.md).
+/// torque has no jump. No measured case changes between half and twice the value (constants.md).
 inline constexpr double kCoulombRate = 0.01;
 
 /// The motor torques [dof]: `force` of inverse_dynamics without the contribution of the ground at

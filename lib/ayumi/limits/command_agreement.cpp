@@ -19,14 +19,14 @@ using Eigen::Vector3d;
 namespace {
 
 // Tolerance of the COG [m]. Chosen: a hundredth of the COG's height of small humanoids (0.2 to 0.3
-// m). No measured case changes from half to twice (constants.md).
+// m). No measured case changes between half and twice the value (constants.md).
 constexpr double kCogTolerance = 0.002;
 // Tolerance of the ZMP [m]. Chosen: a tenth of the width of small soles (5 cm), so that a ZMP
-// planned with a safe margin stays inside the support. No measured case changes from half to twice
-// (constants.md).
+// planned with a safe margin stays inside the support. No measured case changes between half and
+// twice the value (constants.md).
 constexpr double kZmpTolerance = 0.005;
 // Tolerance of f_z as a share of the weight. Chosen: the vertical acceleration of the COG is met to
-// 5 % of g. No measured case changes from half to twice (constants.md).
+// 5 % of g. No measured case changes between half and twice the value (constants.md).
 constexpr double kForceTolerance = 0.05;
 // Gap above which there is a note [m]. Chosen: it is only for information, and no verdict depends
 // on it. With half of the value, the check of the case "knee" finds 3 notes of point_mass_gap

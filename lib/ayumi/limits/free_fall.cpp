@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 namespace {
 
 // Largest deviation of the COG's acceleration from free fall [m/s^2]. Chosen: 5 % of g, the same as
-// the tolerance of f_z. No measured case changes from half to twice (constants.md).
+// the tolerance of f_z. No measured case changes between half and twice the value (constants.md).
 constexpr double kFallTolerance = 0.5;
 
 // Smallest leap of the COG at the beginning or end of a flight [m]. Source: docs/attribution.md

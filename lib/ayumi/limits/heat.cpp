@@ -17,7 +17,7 @@ constexpr double kWholeContinuousTorque = 1;
 
 // Number of samples of the window at which torques are evaluated at another pace. Chosen:
 // attribution only needs to know whether the mean keeps its limit, and each sample costs one
-// inverse dynamics. No measured case changes from half to twice (constants.md).
+// inverse dynamics. No measured case changes between half and twice the value (constants.md).
 constexpr int kThermalLooks = 100;
 
 int thermal_samples(const JudgedMotion& motion) {

@@ -1,6 +1,6 @@
 #pragma once
 // Rows of the program that a repair solves. A row is a function g of one quantity q of the
-// corrected motion at one sample, and the program keeps  lower <= g(q) <= upper.  For each row, a
+// corrected motion at one sample, and the program keeps lower <= g(q) <= upper. For each row, a
 // limit gives the quantity, the value, the derivative by the quantity and, if the program uses it,
 // the curvature. The repair knows the quantities and their derivatives by the correction; it knows
 // nothing about limits.

@@ -17,7 +17,7 @@ constexpr double kWholeStep = 1;
 
 // Factor on the limit, because the mean speed of a period differs a little from the speeds at its
 // ends. Chosen: half a percent, so that a motion planned at its speed limit has no step above it.
-// No measured case changes from half to twice (constants.md).
+// No measured case changes between half and twice the value (constants.md).
 constexpr double kMeanSpeedSpare = 1.005;
 
 int servo_ticks(const JudgedMotion& motion) {

@@ -12,7 +12,7 @@ Vector6d sole_deviation(const Eigen::Isometry3d& actual, const Eigen::Isometry3d
 Eigen::MatrixXd deviation_rates(const Eigen::Isometry3d& sole, const Eigen::Isometry3d& planned,
                                 const Eigen::MatrixXd& motion);
 
-/// The curvature K of a rotation error  d . vee(E - E')/2,  E = R R_planned'.
+/// The curvature K of a rotation error d . vee(E - E')/2, E = R R_planned'.
 Eigen::Matrix3d turn_curvature(const Eigen::Vector3d& d, const Eigen::Isometry3d& sole,
                                const Eigen::Isometry3d& planned);
 

@@ -20,7 +20,7 @@ namespace {
 constexpr double kDegreesPerRadian = 180 / EIGEN_PI;  // Definition
 // Number of counts by which a limit may be exceeded. Chosen: the rounding of degrees and radians in
 // double precision is far smaller, and a servo only gets whole counts. No measured case changes
-// from half to twice (constants.md).
+// between half and twice the value (constants.md).
 constexpr double kCountSlack = 1e-6;
 // Definition: rounding of a step over its limit.
 constexpr double kStepSlack = 1e-9;

@@ -18,7 +18,7 @@ inline Support on(Side side) { return side == Side::left ? Support::left : Suppo
 
 /// Fraction at both ends of a swing in which the foot moves only up or down. Chosen: the lift at 8
 /// % is 2.5 % of its maximum, 0.5 mm of 20 mm, so that the foot is off the ground when it moves.
-/// Figures change by less than 5 % from half to twice.
+/// Between half and twice the value, figures change by less than 5 %.
 inline constexpr double kSwingMargin = 0.08;
 
 /// Pose of the sole frame at a foothold.

@@ -112,7 +112,7 @@ Isometry3d median_sole(const std::vector<Isometry3d>& soles, int first, int last
 // Otherwise the median counts.
 Isometry3d place_of(const std::vector<Isometry3d>& soles, int first, int last) {
   // Largest difference of two places [m], and of entries of their rotations. Chosen: the rounding
-  // of tables. No measured case changes from half to twice (constants.md).
+  // of tables. No measured case changes between half and twice the value (constants.md).
   constexpr double kSame = 1e-5;
   const Eigen::Matrix4d change = soles[last].matrix() - soles[first].matrix();
   if (change.cwiseAbs().maxCoeff() < kSame) return soles[first];

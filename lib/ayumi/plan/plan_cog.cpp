@@ -27,14 +27,15 @@ using Eigen::VectorXd;
 namespace {
 
 /// Step of the grid on which the COG is corrected [s]. Chosen: five ticks; 1/omega is 150 ms for a
-/// COG at 0.22 m. Figures change by less than 5 % from half to twice.
+/// COG at 0.22 m. Between half and twice the value, figures change by less than 5 %.
 constexpr double kGridStep = 0.005;
 /// ZMP error of the full model at which the correction ends [m]. Chosen: far below the margins of a
-/// sole, and 1/10 of what the check reports in its figures. Figures change by less than 5 % from
-/// half to twice.
+/// sole, and 1/10 of what the check reports in its figures. Between half and twice the value,
+/// figures change by less than 5 %.
 constexpr double kZmpGoal = 1e-4;
 /// Largest number of passes. Chosen: each pass reduces the error to a fraction, and passes end
-/// earlier when two in a row do not. No measured case changes from half to twice (constants.md).
+/// earlier when two in a row do not. No measured case changes between half and twice the value
+/// (constants.md).
 constexpr int kMostIterations = 12;
 
 constexpr const char* kStage = "solve the COG";

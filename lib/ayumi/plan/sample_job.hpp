@@ -99,8 +99,8 @@ PostureSolution solve_posture(const SampleJob& job, double t, const Eigen::Matri
 bool flies(const SampleJob& job);
 
 /// Fraction of the weight below which the ground force is too small for a ZMP to correct, (17).
-/// Chosen: 5 %, as in motion/differentiate. No measured case changes from half to twice
-/// (constants.md).
+/// Chosen: 5 %, as in motion/differentiate. No measured case changes between half and twice the
+/// value (constants.md).
 inline constexpr double kZmpShare = 0.05;
 
 /// COG and ZMP of a motion driven by the body's tracks.

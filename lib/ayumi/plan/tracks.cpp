@@ -17,8 +17,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Times closer than this are equal [s]. Chosen: above rounding. No measured case changes from half
-// to twice (constants.md).
+// Times closer than this are equal [s]. Chosen: above rounding. No measured case changes between
+// half and twice the value (constants.md).
 constexpr double kSameTime = 1e-9;
 
 using Keys = std::vector<TrackKey>;
@@ -318,7 +318,7 @@ std::array<Track, 3> default_zmp(const FootPlan& feet) {
     for (int i = 0; i < 3; ++i) keys[i].push_back({t, point[i], Interpolation::minimum_jerk});
   };
   // Time of the weight shift at both ends of the motion [s]. Chosen: 3/omega for a COG at 0.22 m.
-  // No measured case changes from half to twice (constants.md).
+  // No measured case changes between half and twice the value (constants.md).
   constexpr double kShift = 0.45;
   add(0, feet.support_center(0));
   const auto& phases = feet.phases();

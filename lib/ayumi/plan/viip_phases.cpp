@@ -14,11 +14,12 @@ namespace ayumi {
 namespace {
 
 /// COG speed below which the robot is at rest, in units of omega z. Chosen: the DCM is then within
-/// 1.5 % of z of the COG, 3 mm for z = 0.22 m. No measured case changes from half to twice
-/// (constants.md).
+/// 1.5 % of z of the COG, 3 mm for z = 0.22 m. No measured case changes between half and twice the
+/// value (constants.md).
 constexpr double kAtRest = 0.015;
 /// Time that is sampled for a pattern with VIIP phases only [s]. Chosen: 100 ticks of 1 ms; the
-/// posture is the same at all of them. No measured case changes from half to twice (constants.md).
+/// posture is the same at all of them. No measured case changes between half and twice the value
+/// (constants.md).
 constexpr double kShortestSample = 0.1;
 
 /// A VIIP phase: its number, begin and end, and the total duration of the VIIP phases before it.

@@ -6,8 +6,8 @@
 // where [.] acts on the three rotation columns.
 //
 // With P the change of reference from the base to the support plane (axes R', arm from the plane's
-// origin to the base), the plane wrench is w = P W. A row g(w) has the derivatives  dg/dw P dW, and
-// by the base position, whose arm moves,  - (dg/dw).moment skew(f).
+// origin to the base), the plane wrench is w = P W. A row g(w) has the derivatives dg/dw P dW, and
+// by the base position, whose arm moves, - (dg/dw).moment skew(f).
 //
 // The DCM is COG + COG rate / omega. Its derivatives follow from those of the COG and of its rate:
 // for a function c(x, t), d(c')/dx is half of d(c'')/dx', and m c'' is the ground force, whose

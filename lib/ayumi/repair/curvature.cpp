@@ -38,7 +38,7 @@ void add_pose(const RobotModel& model, Side side, const PoseCurvature& w, const 
     }
 }
 
-// Adds the curvature of  c . COG.
+// Adds the curvature of c . COG.
 void add_cog(const RobotModel& model, const Vector3d& c, const PointState& state, MatrixXd& sum) {
   const MatrixXd& J = state.cog_by;
   const Matrix3d& T = state.motion.tangent;

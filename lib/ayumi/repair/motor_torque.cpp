@@ -1,11 +1,10 @@
-// The wrench (f, n) of a foot about the base origin adds  -ratio (a . n - a . (p x f))  to the
-// torque of a joint between base and sole, with a the joint's axis and p its position from that
-// origin. A small rotation w of everything below the joint, about a point at distance r from p,
-// changes a . m,  m = n - p x f,  by
+// The wrench (f, n) of a foot about the base origin adds -ratio (a . n - a . (p x f)) to the torque
+// of a joint between base and sole, with a the joint's axis and p its position from that origin. A
+// small rotation w of everything below the joint, about a point at distance r from p, changes a .
+// m, m = n - p x f, by
 //   w . (a x m - (a . r) f + (r . f) a),
-// and  a . f  of a sliding joint by  w . (a x f). The sharing of the wrench between two feet
-// depends on the ZMP alone and is piecewise smooth; its slope is taken by differences within a
-// piece.
+// and a . f of a sliding joint by w . (a x f). The sharing of the wrench between two feet depends
+// on the ZMP alone and is piecewise smooth; its slope is taken by differences within a piece.
 #include "ayumi/repair/motor_torque.hpp"
 
 #include "ayumi/repair/policy.hpp"

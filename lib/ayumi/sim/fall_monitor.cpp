@@ -21,25 +21,26 @@ namespace {
 
 /// Tilt of the trunk against the ground's normal beyond which the robot has fallen [rad]. Chosen:
 /// 46 deg is beyond the postures of the bundled patterns and long before the trunk touches the
-/// ground. Half: thrown stand, fall at 0.744 to 0.617 s; twice: 0.938 s.
+/// ground. With half of the value, the time of the fall of the case "thrown stand" changes from
+/// 0.744 to 0.617 s; with twice, to 0.938 s.
 constexpr double kFallTilt = 0.8;
 /// Cosine of a tilt above which the robot certainly has not fallen, so that the angle need not be
 /// computed. Definition: above the cosine of kFallTilt, 0.697.
 constexpr double kSurelyUpright = 0.75;
 /// Fraction of the commanded COG height below which the robot has fallen. Chosen: lower than a
-/// robot with bent knees under its load, higher than one that sits or lies. Half: no change; twice:
-/// pushed walk falls.
+/// robot with bent knees under its load, higher than one that sits or lies. With half of the value,
+/// nothing changes; with twice, the case "pushed walk" falls.
 constexpr double kFallHeight = 0.6;
 /// Tilt of the trunk below which a robot stands at the end [rad]. Chosen: a quarter of kFallTilt.
-/// No measured case changes from half to twice (constants.md).
+/// No measured case changes between half and twice the value (constants.md).
 constexpr double kRestTilt = 0.2;
 /// Horizontal COG error at the end below which a robot stands, in units of the COG height z.
 /// Chosen: 22 mm for HOAP-1 (z 0.245 m), whose soles reach 42 mm behind and 56 mm in front of the
-/// ankle. No measured case changes from half to twice (constants.md).
+/// ankle. No measured case changes between half and twice the value (constants.md).
 constexpr double kRestError = 0.09;
 /// COG speed at the end below which a robot stands, in units of omega z. Chosen: the speed that
 /// moves the DCM by 0.054 z, which is 13 mm for HOAP-1 and keeps it inside the soles. No measured
-/// case changes from half to twice (constants.md).
+/// case changes between half and twice the value (constants.md).
 constexpr double kRestSpeed = 0.054;
 /// Amplitude of an oscillating ZMP below which a robot stands at the end, in units of z. Chosen: 5
 /// mm on HOAP-1. The noise of its sensors moves the ZMP of a robot that stands by 1.4 mm under DTAD
@@ -53,10 +54,12 @@ constexpr double kRestTime = 0.5;
 /// than the rocking of a robot on soft soles. Slower motions are judged by the COG.
 constexpr double kSlowestRocking = 3;
 /// Time off the ground after which the robot is in flight [s]. Chosen: a shorter one is a rebound.
-/// Half: viip jump, flight 0.154 to 0.177 s; twice: no change.
+/// With half of the value, the duration of the flight of the case "viip jump" changes from 0.154 to
+/// 0.177 s; with twice, nothing changes.
 constexpr double kMinFlight = 0.04;
 /// Time off the ground after which the next contact of a foot is a touchdown [s]. Chosen: a shorter
-/// one is a rebound. Half: pushed walk, touchdowns 6 to 7; twice: 5.
+/// one is a rebound. With half of the value, the number of touchdowns of the case "pushed walk"
+/// changes from 6 to 7; with twice, to 5.
 constexpr double kMinFootFlight = 0.03;
 /// Number of events for which memory is reserved, so that a tick allocates nothing in a usual run.
 constexpr size_t kReservedEvents = 64;

@@ -17,14 +17,14 @@ namespace {
 /// Largest depth below a block's top at which a point stands on the top [m]. A point that is deeper
 /// below the top than this, and deeper than it is behind the side, has hit the side. Chosen: far
 /// above the penetration of a loaded sole (tens of micrometres) and far below the height of a step.
-/// No measured case changes from half to twice (constants.md).
+/// No measured case changes between half and twice the value (constants.md).
 constexpr double kLip = 0.001;
 /// Largest depth inside a sole at which an edge touches the sole's face [m]; a deeper edge has hit
 /// the sole's side. Chosen: five times kLip, below the thickness of a sole. No measured case
-/// changes from half to twice (constants.md).
+/// changes between half and twice the value (constants.md).
 constexpr double kFaceDepth = 0.005;
 /// Depth of a solid block below the plane [m]. Chosen: deeper than any body penetrates. No measured
-/// case changes from half to twice (constants.md).
+/// case changes between half and twice the value (constants.md).
 constexpr double kBlockDepth = 0.5;
 // Definition of the ids of inner points: 1024 for each block, then the nodes of the height field.
 constexpr long kBlockIds = 1 << 10, kFieldIds = 1 << 24;
@@ -259,8 +259,8 @@ bool Ground::stands_out(Eigen::Index i, Eigen::Index j) const {
 
 void Ground::tips(const Vector3d& center, double radius, std::vector<FieldTip>& tips) const {
   // Radius of a tip [m]. Chosen: a sphere has a normal in every direction, and a tenth of a
-  // millimetre is small against the spacing of a field. No measured case changes from half to twice
-  // (constants.md).
+  // millimetre is small against the spacing of a field. No measured case changes between half and
+  // twice the value (constants.md).
   constexpr double kBlunt = 1e-4;
   tips.clear();
   visit_nodes(center.head<2>(), radius, [&](Eigen::Index i, Eigen::Index j, const Vector2d& p) {

@@ -21,8 +21,8 @@ using Eigen::Vector3d;
 namespace {
 
 /// Time in which a bump rises [s]. Chosen: 20 steps of 1 ms, so that the rate of its height is
-/// smooth and short against a step of a walk. No measured case changes from half to twice
-/// (constants.md).
+/// smooth and short against a step of a walk. No measured case changes between half and twice the
+/// value (constants.md).
 constexpr double kBumpRise = 0.02;
 
 int find_pushed_link(const RobotModel& model, const std::string& name) {

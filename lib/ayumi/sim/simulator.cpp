@@ -19,9 +19,9 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Time for which the servos hold the first posture before t = 0 [s]. Chosen: four
-/// periods of an oscillation of 10 Hz, so that soles and servos come to rest. Figures change by
-/// less than 5 % from half to twice.
+/// Time for which the servos hold the first posture before t = 0 [s]. Chosen: four periods of an
+/// oscillation of 10 Hz, so that soles and servos come to rest. Between half and twice the value,
+/// figures change by less than 5 %.
 constexpr double kBeforeStart = 0.4;
 /// Longest time for which ankles turn before t = 0 until their soles lie flat [s]. Chosen: as long
 /// as an offset of 3 degrees takes (sim/standing_calibration).
@@ -33,14 +33,14 @@ constexpr double kLongestCalibration = 3;
 /// with twice, 8 (docs/theory_plant.md).
 constexpr double kCalibrationStep = 0.004;
 /// Simulated time after a fall [s]. Chosen: the robot has reached the ground, which a replay shows.
-/// Figures change by less than 5 % from half to twice.
+/// Between half and twice the value, figures change by less than 5 %.
 constexpr double kAfterFall = 0.8;
 /// Samples for which the log reserves memory at the start; longer runs allocate more.
 constexpr long kReservedSamples = 1 << 15;
 /// Fraction of the weight that the vertical ground force needs for the true ZMP to be updated;
 /// below it, the ZMP keeps its last value. Chosen: the ZMP is a quotient of moment and force, and
-/// rounding and chatter of contacts disturb it at small forces. Figures change by less than 5 %
-/// from half to twice.
+/// rounding and chatter of contacts disturb it at small forces. Between half and twice the value,
+/// figures change by less than 5 %.
 constexpr double kZmpMinLoad = 0.02;
 
 const CommandSeries& checked(const CommandSeries& series, const SimulateOptions& options) {

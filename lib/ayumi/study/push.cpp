@@ -40,11 +40,11 @@ constexpr double kNearPlan = 0.045;
 /// this part never drifts out of the whole set (docs/measurements/pushes.md, "Early verdicts").
 constexpr double kWellInside = 1.0 / 3;
 /// Tilt beyond which a stance foot is tilted [rad]. Chosen: above the tilt that the compliance of a
-/// loaded sole allows. No measured case changes from half to twice (constants.md).
+/// loaded sole allows. No measured case changes between half and twice the value (constants.md).
 constexpr double kTiltedFoot = 2 * M_PI / 180;
 /// Directions in which the nearest edge of the support is searched. Chosen: one every 5 degrees;
-/// the distance is then at most 0.1 % too large. No measured case changes from half to twice
-/// (constants.md).
+/// the distance is then at most 0.1 % too large. No measured case changes between half and twice
+/// the value (constants.md).
 constexpr int kEdgeDirections = 72;
 /// Level at which the search begins, in capture bounds. Chosen: near the limits of HOAP-1 and
 /// humanoid30 (docs/measurements/pushes.md). It changes the number of runs, and it changes a limit
@@ -56,7 +56,7 @@ constexpr double kStandingOpenLoopGuess = 1.0;
 /// with control lie farther apart.
 constexpr int kStride = 3;
 /// Ticks between two tests of a run. Chosen: 10 ms, short against 1/omega. No measured case changes
-/// from half to twice (constants.md).
+/// between half and twice the value (constants.md).
 constexpr long kTicksPerTest = 10;
 
 double near_distance(const Simulator& run) {

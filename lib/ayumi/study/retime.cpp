@@ -15,23 +15,24 @@ namespace ayumi {
 namespace {
 
 /// Factor between scales that get faster. Chosen: a bracket of 25 % takes 7 bisections to 0.2 %. No
-/// measured case changes from half to twice (constants.md).
+/// measured case changes between half and twice the value (constants.md).
 constexpr double kFasterStep = 1.25;
 /// Factor between scales that get slower, up to kLargeScale. Chosen: small, because the range of
 /// scales that pass can be short: held poses heat the motors when they last longer. No measured
-/// case changes from half to twice (constants.md).
+/// case changes between half and twice the value (constants.md).
 constexpr double kSlowerStep = 1.05;
 /// Scale beyond which the search goes slower by kFasterStep.
 constexpr double kLargeScale = 3;
 /// Fraction of the excess of a joint's speed by which the scale grows at once. Chosen: below 1, so
-/// that the first scale that passes is not skipped. No measured case changes from half to twice
-/// (constants.md).
+/// that the first scale that passes is not skipped. No measured case changes between half and twice
+/// the value (constants.md).
 constexpr double kSpeedStep = 0.8;
 /// Factor between scales beyond an edge, and their number below: 0.5 % each, 18 % in all. Chosen: a
-/// compromise, since each scale costs one sampling and one check. No measured case changes from
-/// half to twice (constants.md).
+/// compromise, since each scale costs one sampling and one check. No measured case changes between
+/// half and twice the value (constants.md).
 constexpr double kBeyondStep = 1.005;
-// The number of these scales. No measured case changes from half to twice (constants.md).
+// The number of these scales. No measured case changes between half and twice the value
+// (constants.md).
 constexpr int kBeyondSteps = 40;
 
 struct Trial {

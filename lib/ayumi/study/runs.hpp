@@ -7,10 +7,10 @@
 namespace ayumi {
 
 /// Time of the push on the standing robot [s]. Chosen: the robot rests by then. No measured case
-/// changes from half to twice (constants.md).
+/// changes between half and twice the value (constants.md).
 inline constexpr double kStandingPush = 0.5;
 /// Time for which the series stands after this push [s]. Chosen: longer than the robot takes to
-/// come to rest. No measured case changes from half to twice (constants.md).
+/// come to rest. No measured case changes between half and twice the value (constants.md).
 inline constexpr double kStandingAfter = 2.5;
 
 /// A series in which the robot holds the first posture of the pattern, under VIIP if the pattern

@@ -20,31 +20,32 @@ namespace {
 // Thresholds of the detection, between the speeds and heights of standing feet and those of swings.
 
 /// Largest relative speed of standing feet [m/s]. Chosen: a seventh of the mean speed of a swing of
-/// the generated walk (60 mm in 0.45 s). Half: contact 3 of the imported walk begins at 1.553
-/// s, not 1.543 s; twice: at 1.527 s.
+/// the generated walk (60 mm in 0.45 s). With half of the value, contact 3 of the imported walk
+/// begins at 1.553 s instead of 1.543 s; with twice, at 1.527 s.
 constexpr double kRestSpeed = 0.020;
 /// A rotation counts as the speed of a point at this distance [m]. Derived: half the length of
 /// HOAP-1's sole (98 mm).
 constexpr double kLever = 0.05;
 /// Largest difference in height of standing feet [m]. Chosen: a fifth of the lift of the generated
-/// walk (15 mm). No measured case changes from half to twice (constants.md).
+/// walk (15 mm). No measured case changes between half and twice the value (constants.md).
 constexpr double kLevel = 0.003;
 /// At an immediate change of the supporting foot: largest speed of the feet along the ground [m/s].
 /// Chosen: twice kRestSpeed, because recorded commands compensate the compliance of loaded legs. No
-/// measured case changes from half to twice (constants.md).
+/// measured case changes between half and twice the value (constants.md).
 constexpr double kHandoverSpeed = 0.04;
 /// At such a change: time before and after it in which both feet may support [s]. Chosen: about
-/// half a step of the generated walk (0.55 s). No measured case changes from half to twice
-/// (constants.md).
+/// half a step of the generated walk (0.55 s). No measured case changes between half and twice the
+/// value (constants.md).
 constexpr double kHandoverTime = 0.3;
 /// At such a change: largest difference in height [m]. Chosen: two thirds of the lift of the
-/// generated walk (15 mm). No measured case changes from half to twice (constants.md).
+/// generated walk (15 mm). No measured case changes between half and twice the value
+/// (constants.md).
 constexpr double kHandoverHeight = 0.01;
 /// Speeds are differences over twice this time [s]. Derived: one count of a HOAP servo (8e-5 rad)
 /// at 0.3 m is then 1 mm/s, small against kRestSpeed.
 constexpr double kLook = 0.010;
 /// Shortest time with one support [s]. Chosen: a fifth of the double support of the generated walk
-/// (0.1 s). No measured case changes from half to twice (constants.md).
+/// (0.1 s). No measured case changes between half and twice the value (constants.md).
 constexpr double kShortestSupport = 0.02;
 
 double speed_between(const Isometry3d& from, const Isometry3d& to, double time) {
@@ -288,7 +289,8 @@ double height_of(const RobotModel& model, const RawMotion& motion, const Soles& 
 void end_swings(const RobotModel& model, const RawMotion& motion, const Soles& soles,
                 std::vector<Support>& supports) {
   // A foot this much above its place at rest has left it [m]. Chosen: above the rounding of tables.
-  // Half: contact 1 of the imported walk ends at 1.678 s, not 1.681 s; twice: at 1.683 s.
+  // With half of the value, contact 1 of the imported walk ends at 1.678 s instead of 1.681 s; with
+  // twice, at 1.683 s.
   constexpr double kAtRest = 1e-5;
   for (const Stretch& run : stretches(supports)) {
     if (run.support != Support::both) continue;

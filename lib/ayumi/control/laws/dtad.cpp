@@ -37,7 +37,8 @@ namespace {
 
 // Bound of the accepted offset of the ZMP, as a multiple of z: 20 mm on HOAP-1, the offset of a
 // slope of 5 deg. Chosen: it is sufficient for every slope on which the walk does not fall
-// (docs/theory.md, "The offset"). Figures change by less than 5 % from half to twice.
+// (docs/theory.md, "The offset"). Between half and twice the value, figures change by less than 5
+// %.
 constexpr double kOffsetLimit = 0.09;
 
 // If the planned ZMP is farther than this from the planned COG in a plan at rest, the plan
@@ -48,8 +49,9 @@ constexpr double kOffsetLimit = 0.09;
 constexpr double kContradiction = 0.004;
 
 // Time after which the tilt of a foot that lies on the ground counts as a slope of the ground, in
-// 1/omega: 50 ms on HOAP-1. Chosen: docs/theory.md, "A foot on a bump". Half: pushed walk,
-// touchdowns 6 to 5; twice: rough walk, touchdowns 6 to 7.
+// 1/omega: 50 ms on HOAP-1. Chosen: docs/theory.md, "A foot on a bump". With half of the value, the
+// number of touchdowns of the case "pushed walk" changes from 6 to 5; with twice, the number of
+// touchdowns of the case "rough walk" changes from 6 to 7.
 constexpr double kContactTiltTime = 0.33;
 
 using GainFields = std::map<std::string, double*>;

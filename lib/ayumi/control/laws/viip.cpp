@@ -36,48 +36,50 @@ using Eigen::Vector3d;
 namespace {
 
 // If less than this time is left to a landing, the regulator no longer aims at it [s]. Chosen: the
-// ZMP that it requires grows with 1 / (1 - E); later, only the foothold can still answer. Half:
-// pushed steps, torque 0.499 to 0.452; twice: pushed viip walk, touchdowns 5 to 4.
+// ZMP that it requires grows with 1 / (1 - E); later, only the foothold can still answer. With half
+// of the value, the torque of the case "pushed steps" changes from 0.499 to 0.452; with twice, the
+// number of touchdowns of the case "pushed viip walk" changes from 5 to 4.
 constexpr double kLeastTimeToLanding = 0.06;
 
 // The weight shift ends when the DCM is within this distance of the place where the first step
 // starts, as a multiple of z: 6 mm on HOAP-1. Chosen with the prototype: a smaller distance costs
-// time, and a larger one disturbs the DCM. No measured case changes from half to twice
-// (constants.md).
+// time, and a larger one disturbs the DCM. No measured case changes between half and twice the
+// value (constants.md).
 constexpr double kShiftDone = 0.027;
 
 // Smallest duration of the weight shift, as a multiple of 1/omega: 0.36 s on HOAP-1. Chosen with
-// the prototype: the regulator settles within this time. Half: pushed steps, slip 0.0809 to 1.96
-// mm; twice: the steps are refused.
+// the prototype: the regulator settles within this time. With half of the value, the slip of the
+// case "pushed steps" changes from 0.0809 to 1.96 mm; with twice, the steps are refused.
 constexpr double kShiftTime = 2.4;
 
 // Time that is reserved for standing after timed steps, as a multiple of 1/omega. Chosen: exp(-5)
-// of an error is left. Half: no change; twice: the steps are refused.
+// of an error is left. With half of the value, nothing changes; with twice, the steps are refused.
 constexpr double kSettleTime = 5;
 
 // A force on the swing foot before this share of the swing is not a landing. Chosen with the
 // prototype: a foot still drags after its lift-off, and a landing is early by at most a third of a
-// swing. Half: no change; twice: steps, touchdowns 2 to 4.
+// swing. With half of the value, nothing changes; with twice, the number of touchdowns of the case
+// "steps" changes from 2 to 4.
 constexpr double kStepLandingAfter = 0.6;
 
 // Fastest clock of a step that is made earlier, as a multiple of its own pace. Chosen: joint speeds
-// limit the swing before this clock is reached. No measured case changes from half to twice
-// (constants.md).
+// limit the swing before this clock is reached. No measured case changes between half and twice the
+// value (constants.md).
 constexpr double kStepTimeScaleLimit = 4;
 
 // Share of the difference between a landing error and the known bias that is taken over at each
 // landing. Chosen: the bias is known after three steps, and a single push changes it by half of its
-// error. Figures change by less than 5 % from half to twice.
+// error. Between half and twice the value, figures change by less than 5 %.
 constexpr double kBiasShare = 0.5;
 
 // Largest landing bias, as a multiple of z: 3.3 mm on HOAP-1. Chosen: twice the error that lagging
-// servos make (1.5 mm). A larger error comes from a push. No measured case changes from half to
-// twice (constants.md).
+// servos make (1.5 mm). A larger error comes from a push. No measured case changes between half and
+// twice the value (constants.md).
 constexpr double kLandingBiasLimit = 0.015;
 
 // Time after which a lasting tilt of the stance foot counts as a slope of the ground, as a multiple
-// of 1/omega: 1 s on HOAP-1. Chosen: equal to the offset time of DTAD. Figures change by less than
-// 5 % from half to twice.
+// of 1/omega: 1 s on HOAP-1. Chosen: equal to the offset time of DTAD. Between half and twice the
+// value, figures change by less than 5 %.
 constexpr double kSlopeTime = 6.6;
 
 // Time constant of the low pass of the vertical push that the load cells measure, without the lag

@@ -46,7 +46,7 @@ constexpr double kStoopTime = 5;
 
 // Distance from its depth at which the stoop counts as reached, as a multiple of ref z_G: 2 mm on
 // HOAP-1. Chosen: an error of the depth that changes the apex by less than the acceptance of 5 %.
-// No measured case changes from half to twice (constants.md).
+// No measured case changes between half and twice the value (constants.md).
 constexpr double kStoopReached = 0.01;
 
 // Lean of the trunk when stooped, times z_d / ref z_G [rad]. Derivation: docs/theory_flight.md,
@@ -54,7 +54,8 @@ constexpr double kStoopReached = 0.01;
 constexpr double kStoopLean = 1.2;
 
 // sqrt(K_Pz / m) after the landing, as a multiple of omega. Chosen: the COG is back at ref z_G
-// within 0.6 s. Half: viip jump, ZMP error 3.39 to 4 mm; twice: less than 5 %.
+// within 0.6 s. With half of the value, the ZMP error of the case "viip jump" changes from 3.39 to
+// 4 mm; with twice, figures change by less than 5 %.
 constexpr double kSettleRate = 2.2;
 
 // Ground force that counts as zero [N], and the time for which it must last [s]. Measured with the
@@ -64,12 +65,14 @@ constexpr double kNoForce = 0.5;
 constexpr double kNoForceTime = 0.015;
 
 // Largest rate of a servo target, as a multiple of the joint's speed limit: targets lead the joint
-// by (delay + kd/kp) dtheta + tau/kp. Chosen: this lead must build up within the push. Half: viip
-// jump, slip 1.3 to 2.69 mm; twice: ZMP error 3.39 to 1.31 mm.
+// by (delay + kd/kp) dtheta + tau/kp. Chosen: this lead must build up within the push. With half of
+// the value, the slip of the case "viip jump" changes from 1.3 to 2.69 mm; with twice, the ZMP
+// error of the case "viip jump" changes from 3.39 to 1.31 mm.
 constexpr double kTargetRate = 3;
 
 // Time over which the torque feedforward is faded in and out [s]. Chosen: within the stoop, and
-// long against the lag of servos, up to 20 ms. Figures change by less than 5 % from half to twice.
+// long against the lag of servos, up to 20 ms. Between half and twice the value, figures change by
+// less than 5 %.
 constexpr double kTorqueFadeTime = 0.3;
 
 // Time constant with which the motion of the legs decays after release [s]. Source:
@@ -88,38 +91,41 @@ constexpr double kRetractionHold = 0.010;
 constexpr double kRetractionShare = 0.9;
 
 // Longest retraction as a share of the flight. Chosen: the legs then have the middle of the flight
-// to swing to their landing places. Half: viip hops, slip 1.44 to 1.7 mm; twice: no change.
+// to swing to their landing places. With half of the value, the slip of the case "viip hops"
+// changes from 1.44 to 1.7 mm; with twice, nothing changes.
 constexpr double kRetractionFlightShare = 0.4;
 
 // Time after release in which forces do not yet mean a touchdown [s]. Chosen with the prototype:
-// the feet may still touch the ground that they leave. No measured case changes from half to twice
-// (constants.md).
+// the feet may still touch the ground that they leave. No measured case changes between half and
+// twice the value (constants.md).
 constexpr double kTouchdownBlindTime = 0.040;
 
 // A touchdown is a force of the first share of the weight that lasts for the time [s], or a force
 // of the second, larger share at once. Chosen: above the noise of the load cells, within three
-// ticks of the impact. No measured case changes from half to twice (constants.md).
+// ticks of the impact. No measured case changes between half and twice the value (constants.md).
 constexpr double kTouchdownShare = 0.1;
-// No measured case changes from half to twice (constants.md).
+// No measured case changes between half and twice the value (constants.md).
 constexpr double kTouchdownTime = 0.003;
-// No measured case changes from half to twice (constants.md).
+// No measured case changes between half and twice the value (constants.md).
 constexpr double kHardTouchdownShare = 0.4;
 
 // A flight that is longer than planned by this ends as if it had touched down [s]. Chosen: half of
 // a flight of 0.1 m; the landing then meets a ground that is lower than planned. No measured case
-// changes from half to twice (constants.md).
+// changes between half and twice the value (constants.md).
 constexpr double kLateTouchdown = 0.15;
 
 // Correction of the feet in flight [1/s], pull towards the held posture [1/s], damping of the
 // flight's solve (times trace / rows) and the length that makes its angular rows comparable with
 // linear ones [m]. Chosen as in control/whole_body; the feet only have the 0.1 s of the flight.
-// Half: viip hops, ZMP error 6.45 to 7.47 mm; twice: 6.12 mm.
+// With half of the value, the ZMP error of the case "viip hops" changes from 6.45 to 7.47 mm; with
+// twice, to 6.12 mm.
 constexpr double kFlightFootRate = 40;
-// Figures change by less than 5 % from half to twice.
+// Between half and twice the value, figures change by less than 5 %.
 constexpr double kFlightPostureRate = 2;
-// Figures change by less than 5 % from half to twice.
+// Between half and twice the value, figures change by less than 5 %.
 constexpr double kFlightDamping = 1e-5;
-// Half: less than 5 %; twice: viip jump, slip 1.3 to 1.51 mm.
+// With half of the value, figures change by less than 5 %; with twice, the slip of the case "viip
+// jump" changes from 1.3 to 1.51 mm.
 constexpr double kFlightLength = 0.2;
 
 double smooth_rise(double x) {

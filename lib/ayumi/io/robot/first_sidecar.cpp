@@ -42,7 +42,7 @@ std::string rounded_text(double value, int digits) {
   return text::exact(std::round(value * unit) / unit + 0.0);
 }
 
-// Lines of at most `width` characters, each after "  // ".
+// Lines of at most `width` characters, each after " // ".
 std::string remark(const std::string& sentence, const std::string& indent = "  ") {
   constexpr size_t width = 96;
   std::string lines, line;

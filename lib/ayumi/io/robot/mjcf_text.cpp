@@ -409,8 +409,8 @@ class Cleaner {
 
 }  // namespace
 
-// Reads lines "   element (*)   attribute attribute", which may be continued by lines with
-// attributes only.
+// Reads lines " element (*) attribute attribute", which may be continued by lines with attributes
+// only.
 MjcfSchema mjcf_schema(const std::string& printed) {
   MjcfSchema schema;
   std::istringstream lines(printed);

@@ -309,7 +309,7 @@ bool find_runs(const Group& g, std::vector<Run>& runs) {
   return once;
 }
 
-// Adds  -v v' / pivot  of every row.
+// Adds -v v' / pivot of every row.
 void eliminate_rows(const Factors& f) {
   const kernels::Kernels& kernels = *kernels_in_use;
   Lines lines, scaled;

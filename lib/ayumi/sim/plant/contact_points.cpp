@@ -19,7 +19,8 @@ using Eigen::Vector3d;
 namespace {
 
 /// Penetration of a body that rests on four of its points [m]. Chosen: almost rigid, and far above
-/// the rounding of positions at 10 m (2e-15 m). Figures change by less than 5 % from half to twice.
+/// the rounding of positions at 10 m (2e-15 m). Between half and twice the value, figures change by
+/// less than 5 %.
 constexpr double kStaticSink = 1e-7;
 
 /// Points of a collision shape that may touch the ground, in the frame of the link.

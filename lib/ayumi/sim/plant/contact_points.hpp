@@ -40,7 +40,7 @@ std::vector<ContactPoint> contact_points(const RobotModel& model);
 /// The stiffness of a contact point of a body that is not a sole: almost rigid [N/m].
 double body_stiffness(const RobotModel& model);
 /// Ratio of damping to stiffness of such a point [s]. Chosen: four steps of 1 ms, so that an impact
-/// of a body is inelastic. Figures change by less than 5 % from half to twice.
+/// of a body is inelastic. Between half and twice the value, figures change by less than 5 %.
 constexpr double kBodyDamping = 0.004;
 
 std::vector<PointGroup> group_points(const std::vector<ContactPoint>& points);

@@ -29,18 +29,18 @@ namespace {
 // which formula is used next to the cone; the solver's tolerance decides the result.
 
 /// Relative distance from the cone at which the equation of a slide is solved. Chosen: 100 times
-/// the rounding. Figures change by less than 5 % from half to twice.
+/// the rounding. Between half and twice the value, figures change by less than 5 %.
 constexpr double kConeRounding = 1e-14;
 /// Impulse that is added to mu l_n in this equation, so that the limit is not 0 for an open contact
 /// [N s]. Chosen: 1e-9 of the impulse of a weight of 1 N in a step of 1 ms. No measured case
-/// changes from half to twice (constants.md).
+/// changes between half and twice the value (constants.md).
 constexpr double kNoImpulse = 1e-12;
 /// Tangential speed below which a contact on the cone sticks, where the direction of the slip is
-/// lost to rounding [m/s]. Chosen: 1/100 of kContactTolerance. No measured case changes from half
-/// to twice (constants.md).
+/// lost to rounding [m/s]. Chosen: 1/100 of kContactTolerance. No measured case changes between
+/// half and twice the value (constants.md).
 constexpr double kNoSlip = 1e-12;
 /// Largest number of steps for the equation of a slide. Chosen: bisection of a bracket alone takes
-/// 60. No measured case changes from half to twice (constants.md).
+/// 60. No measured case changes between half and twice the value (constants.md).
 constexpr int kMaxSlideSteps = 100;
 
 // u_n = 0 gives l_n as a function of l_t. The tangential rows then have the reduced matrix

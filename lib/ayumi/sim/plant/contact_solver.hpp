@@ -28,17 +28,17 @@ struct ContactSolution {
 };
 
 /// The solver stops when a sweep or a test changes no shifted velocity by more than this [m/s].
-/// Chosen: over a walk of 10 s, errors of this size add up to 1 nm. Figures change by less than 5 %
-/// from half to twice.
+/// Chosen: over a walk of 10 s, errors of this size add up to 1 nm. Between half and twice the
+/// value, figures change by less than 5 %.
 constexpr double kContactTolerance = 1e-10;
 /// Number of sweeps after which the solver stops and reports its residual. Chosen: 300 random
-/// problems of up to eight contacts (contact_solver_test) converge with fewer. Figures change by
-/// less than 5 % from half to twice.
+/// problems of up to eight contacts (contact_solver_test) converge with fewer. Between half and
+/// twice the value, figures change by less than 5 %.
 constexpr int kMaxContactSweeps = 500;
 
 /// Relative distance from the cone from which on an impulse counts as inside it. Chosen: far above
 /// the rounding at which the equation of a slide is solved, so that an impulse on the cone is not
-/// inside it. No measured case changes from half to twice (constants.md).
+/// inside it. No measured case changes between half and twice the value (constants.md).
 constexpr double kConeMargin = 1e-9;
 
 /// Whether the impulse of a closed contact is inside the cone by more than rounding.

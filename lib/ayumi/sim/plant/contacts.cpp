@@ -20,22 +20,23 @@ namespace {
 
 /// A gap that may close within a step [m]. It bounds the work of the solver, but no force: a
 /// contact that stays open gets the impulse 0. Chosen: 50 times the free fall within three steps of
-/// 1 ms. Half: less than 5 %; twice: viip jump, slip 1.3 to 0.743 mm.
+/// 1 ms. With half of the value, figures change by less than 5 %; with twice, the slip of the case
+/// "viip jump" changes from 1.3 to 0.743 mm.
 constexpr double kContactMargin = 1e-3;
 
 /// Tilt below which a circle has no lowest point [rad]. Chosen: on a rim of 0.1 m, a tilt of 1 mrad
 /// lifts the far side by 0.2 mm; eight fixed points on the rim carry a cylinder that is more
-/// upright. No measured case changes from half to twice (constants.md).
+/// upright. No measured case changes between half and twice the value (constants.md).
 constexpr double kLevelTilt = 1e-3;
 
 /// Number of steps with the present speed of approach in which a gap must stay open, so that it is
-/// not a contact. Chosen: gravity and servos can raise the approach within a step. Figures change
-/// by less than 5 % from half to twice.
+/// not a contact. Chosen: gravity and servos can raise the approach within a step. Between half and
+/// twice the value, figures change by less than 5 %.
 constexpr double kStepsAhead = 3;
 
 /// Gap within which edges and nodes of the ground are tested against shapes and soles [m]. Chosen:
 /// it is sufficient for the margin plus a closing speed of 0.7 m/s over kStepsAhead steps of 1 ms.
-/// No measured case changes from half to twice (constants.md).
+/// No measured case changes between half and twice the value (constants.md).
 constexpr double kEdgeReach = 3 * kContactMargin;
 
 // Keys of contacts that do not belong to a ContactPoint. Definition: the ranges do not overlap for

@@ -25,17 +25,17 @@ namespace {
 
 /// Contacts that are closer to each other than this count as one point of the pivot [m]. Chosen:
 /// far below the distance of two corners of a sole and far above the rounding of positions. No
-/// measured case changes from half to twice (constants.md).
+/// measured case changes between half and twice the value (constants.md).
 constexpr double kOnePoint = 1e-6;
 
 /// Contacts lie on a line if their distance from it is less than this fraction of its length.
 /// Chosen: 0.01 mm for an edge of 0.1 m; contacts that lie farther off leave the robot no turn.
-/// Figures change by less than 5 % from half to twice.
+/// Between half and twice the value, figures change by less than 5 %.
 constexpr double kStraight = 1e-4;
 
 /// A part of a step that is shorter than this fraction of the step is not integrated separately.
 /// Chosen: in 0.02 ms of 1 ms, a point that falls at 1 m/s moves by 0.02 mm, which does not justify
-/// a separate solve. Figures change by less than 5 % from half to twice.
+/// a separate solve. Between half and twice the value, figures change by less than 5 %.
 constexpr double kShortestPart = 0.02;
 
 }  // namespace

@@ -21,21 +21,22 @@ constexpr int kBoundChanges = 3;
 
 /// Joint rate up to which dry friction acts as a steep viscous friction [rad/s, m/s]. In this way,
 /// it sticks. Chosen: a joint under a load below its dry friction creeps by less than 0.06 deg/s.
-/// No measured case changes from half to twice (constants.md).
+/// No measured case changes between half and twice the value (constants.md).
 constexpr double kStickRate = 1e-3;
 
 /// Stiffness and damping of an end stop, as multiples of those of the joint's servo. Chosen: a
 /// servo that pushes against its stop with its full torque passes it by 1/20 of the servo's error.
-/// Figures change by less than 5 % from half to twice.
+/// Between half and twice the value, figures change by less than 5 %.
 constexpr double kStopStiffness = 20.0;
 
 /// Penetration of a passive sliding joint's end stop under the robot's weight, times kStopStiffness
-/// [m]. Chosen: the stop then yields by 0.05 mm. No measured case changes from half to twice
-/// (constants.md).
+/// [m]. Chosen: the stop then yields by 0.05 mm. No measured case changes between half and twice
+/// the value (constants.md).
 constexpr double kStopSink = 0.001;
 
 /// Ratio of damping to stiffness of a passive joint's end stop [s]. Chosen: 20 steps of 1 ms, so
-/// that the joint does not bounce. No measured case changes from half to twice (constants.md).
+/// that the joint does not bounce. No measured case changes between half and twice the value
+/// (constants.md).
 constexpr double kStopDampingTime = 0.02;
 
 }  // namespace
