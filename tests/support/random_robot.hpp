@@ -28,7 +28,7 @@ inline Inertia random_inertia(Random& random) {
   Inertia inertia;
   inertia.mass = random.uniform(0.05, 1.0);
   inertia.com = random.vector(0.05);
-  // A solid box of random edges in a random attitude: always a possible body.
+  // A solid box of random edges in a random attitude, which is always a possible body.
   const Eigen::Vector3d e = random.vector(0.05).cwiseAbs() + Eigen::Vector3d::Constant(0.02);
   const Eigen::Vector3d d =
       inertia.mass / 12.0 *
@@ -76,9 +76,9 @@ inline RobotDescription random_tree(unsigned seed, int links, bool mimic = true)
   return d;
 }
 
-/// A random tree of every kind the reader knows: continuous joints, chains of mimic joints anywhere
-/// (not only at a leaf), axes of any length, some along the axes of their frame, joints told out of
-/// order.
+/// A random tree with everything that the reader knows: continuous joints, chains of mimic joints
+/// anywhere (not only at a leaf), axes of any length, some of them along the axes of their frame,
+/// and joints out of order.
 inline RobotDescription odd_tree(unsigned seed, int links) {
   RobotDescription d = random_tree(seed, links, false);
   Random random(seed + 500);
@@ -95,7 +95,7 @@ inline RobotDescription odd_tree(unsigned seed, int links) {
       joint.mimic_multiplier = random.uniform(-1.5, 1.5);
       joint.mimic_offset = random.uniform(-0.3, 0.3);
     }
-    if (kind >= 4) driver = joint.name;  // mimics of mimics among them
+    if (kind >= 4) driver = joint.name;  // some of these are mimics of mimics
     joint.axis *= random.uniform(0.5, 3);
   }
   for (size_t i = d.joints.size(); i > 1; --i)
@@ -104,8 +104,8 @@ inline RobotDescription odd_tree(unsigned seed, int links) {
   return d;
 }
 
-/// The same tree with its mimic joints set free, and what frees them:
-/// theta of the free tree = G theta + offset.
+/// The same tree with its mimic joints set free, and the map between the two: theta of the free
+/// tree = G theta + offset.
 struct FreedTree {
   explicit FreedTree(const RobotModel& tied) : model(freed(tied.description())) {
     G = Eigen::MatrixXd::Zero(model.dof_count(), tied.dof_count());
@@ -129,7 +129,7 @@ struct FreedTree {
     result.dtheta = G * s.dtheta;
     return result;
   }
-  /// Generalised velocity of the free tree per that of the tied one.
+  /// The generalised velocity of the free tree for that of the tied tree.
   Eigen::MatrixXd map() const {
     Eigen::MatrixXd T = Eigen::MatrixXd::Zero(6 + G.rows(), 6 + G.cols());
     T.topLeftCorner<6, 6>().setIdentity();

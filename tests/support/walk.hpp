@@ -1,7 +1,8 @@
 #pragma once
-// Command series for tests, made without the library's own sampler: standing, and a walk whose COG
-// solves (14)(15) for its ZMP at every sample (one tridiagonal system) with three corrections by
-// the full model, legs by Newton's method, velocities and accelerations by central differences.
+// Command series for tests, made without the library's own sampler: standing, and a walk. The COG
+// of the walk solves (14)(15) for its ZMP at every sample (one tridiagonal system) with three
+// corrections by the full model; legs follow by Newton's method, and velocities and accelerations
+// by central differences.
 
 #include <cmath>
 #include <vector>
@@ -26,7 +27,8 @@ inline double minimum_jerk(double s) {
   return s * s * s * (10 - 15 * s + 6 * s * s);
 }
 
-/// Legs of a level torso at `base` that put both soles at `feet`; arms stay.
+/// Places the legs of a robot with a level torso at `base` so that both soles are at `feet`; the
+/// arms stay.
 inline void place_legs(const RobotModel& model, const std::array<Eigen::Isometry3d, 2>& feet,
                        RobotState& state, RobotData& data) {
   for (Side side : {Side::left, Side::right}) {
@@ -49,7 +51,7 @@ inline void place_legs(const RobotModel& model, const std::array<Eigen::Isometry
   }
 }
 
-/// x with x - h/g x'' = z, at rest at both ends.
+/// The x with x - h/g x'' = z that is at rest at both ends.
 inline Eigen::VectorXd solve_pendulum(const Eigen::VectorXd& z, double height, double dt) {
   const int n = static_cast<int>(z.size());
   const double a = height / kGravity / (dt * dt);
@@ -107,7 +109,7 @@ inline void complete_series(const RobotModel& model, CommandSeries& series, doub
   series.joint_weight = {{0, model.joint_weight()}};
 }
 
-/// Standing at the home posture, soles level at z = 0.
+/// The robot stands in the home posture, with its soles level at z = 0.
 inline CommandSeries standing(const RobotModel& model, double duration, double dt = 0.001) {
   CommandSeries series;
   series.dt = dt;
@@ -127,7 +129,7 @@ inline CommandSeries standing(const RobotModel& model, double duration, double d
 struct FootPlan {
   std::vector<Support> support;
   std::vector<std::array<Eigen::Isometry3d, 2>> feet;
-  Eigen::MatrixXd zmp;  // samples x 2
+  Eigen::MatrixXd zmp;  // ZMP, samples x 2
 };
 
 inline FootPlan plan_feet(const RobotModel& model, const WalkShape& w,
