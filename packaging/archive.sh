@@ -22,14 +22,15 @@ if command -v ffmpeg >/dev/null; then programs+=("$(command -v ffmpeg)"); fi
 cp "${programs[@]}" "$root/lib/ayumi/"
 strip "$root/lib/ayumi/ayumi" "$root/lib/ayumi/ayumi-mesh-reader"
 
-# Every library below the programs but those of libc, which belong to the kernel and the loader. The
-# first picture loads OSMesa.
+# All libraries below the programs except those of libc, which belong to the kernel and the loader.
+# OSMesa is only loaded for the first picture.
 osmesa=$(/sbin/ldconfig -p | awk '$1 ~ /^libOSMesa\.so\./ && !found++ { print $NF }')
 libc='/(ld-linux[^/]*|lib(c|m|dl|rt|pthread|resolv|util|nsl|anl|mvec|BrokenLocale)\.so\.[0-9]+)$'
 listed=$(ldd "${programs[@]}" $osmesa | awk '$2 == "=>" && $3 ~ /^\// { print $3 }')
 mapfile -t libraries < <(printf '%s\n' "$listed" $osmesa | sort -u | grep -Ev "$libc")
 cp -L "${libraries[@]}" "$root/lib/"
-# Debian's licences of what is copied. dpkg knows a file below /usr/lib also by its place in /lib.
+# The Debian licences of the copied files. dpkg also knows a file below /usr/lib by its place in
+# /lib.
 mkdir -p "$root/share/doc/ayumi/libraries"
 declare -A package_of  # "zlib1g:amd64: /lib/x86_64-linux-gnu/libz.so.1.2.13"
 while IFS= read -r line; do package_of[${line#*: }]=${line%%:*}; done < <(
@@ -45,7 +46,7 @@ for library in "${libraries[@]}"; do
   cp -L "$notice" "$root/share/doc/ayumi/libraries/$package"
 done
 
-# The font of pictures and plots, and where fontconfig finds it.
+# The font of pictures and plots, and a configuration by which fontconfig finds it.
 mkdir -p "$root/share/fonts"
 cp /usr/share/fonts/truetype/dejavu/DejaVuSans{,-Bold}.ttf "$root/share/fonts/"
 cp -L /usr/share/doc/fonts-dejavu-core/copyright "$root/share/doc/ayumi/libraries/fonts-dejavu-core"
@@ -64,7 +65,7 @@ cat > "$root/bin/ayumi" <<'RUN'
 # Starts Ayumi with the libraries, the fonts and the ffmpeg of this folder.
 here=$(dirname "$(readlink -f "$0")")/..
 LD_LIBRARY_PATH=$here/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
-# This ffmpeg first: another one would be started with libraries that are not its own.
+# This ffmpeg comes first in PATH: another one would be started with libraries that are not its own.
 PATH=$here/lib/ayumi:$PATH
 FONTCONFIG_FILE=${FONTCONFIG_FILE:-$here/share/fonts/fonts.conf}
 export LD_LIBRARY_PATH PATH FONTCONFIG_FILE
@@ -72,7 +73,7 @@ exec "$here/lib/ayumi/ayumi" "$@"
 RUN
 chmod 755 "$root/bin/ayumi"
 
-# With ONLY, only this folder is packed.
+# If ONLY is set, only this folder is packed.
 compress=${COMPRESS:-xz ${XZ_OPT:--T0 -1}}
 case $compress in cat) archive=$name.tar ;; *) archive=$name.tar.xz ;; esac
 tar --create --use-compress-program="$compress" --sort=name --owner=0 --group=0 --numeric-owner \

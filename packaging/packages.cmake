@@ -1,6 +1,6 @@
-# Packages of what `cmake --install` writes: `cpack -G DEB` makes ayumi, libayumi-dev, python3-ayumi
-# and ayumi-doc. The components of the installation have the names of the packages. The archive that
-# runs without them is made by packaging/archive.sh.
+# Packages of the files that `cmake --install` writes: `cpack -G DEB` makes ayumi, libayumi-dev,
+# python3-ayumi and ayumi-doc. The components of the installation have the names of the packages.
+# packaging/archive.sh makes the archive that runs without them.
 
 set(AYUMI_MAINTAINER "Ayumi maintainers <maintainers@users.noreply.github.com>" CACHE STRING
     "Maintainer in the control files of the packages")
@@ -23,7 +23,7 @@ if(TARGET ayumi_python)
   list(APPEND CPACK_COMPONENTS_ALL python3-ayumi)
 endif()
 
-# ayumi_package(component section summary lines...): what the control file of a package says.
+# ayumi_package(component section summary lines...) sets the content of a package's control file.
 function(ayumi_package component section summary)
   string(TOUPPER ${component} key)
   string(JOIN "\n" text ${summary} ${ARGN})
@@ -49,7 +49,7 @@ ayumi_package(ayumi-doc doc "pages of Ayumi, motion patterns of humanoid robots"
 foreach(component AYUMI PYTHON3-AYUMI)
   set(CPACK_DEBIAN_${component}_PACKAGE_SHLIBDEPS ON)
 endforeach()
-# OSMesa is loaded by the first picture, so the packages' tool does not find it.
+# OSMesa is only loaded for the first picture, so that the packages' tool does not find it.
 set(CPACK_DEBIAN_AYUMI_PACKAGE_DEPENDS fonts-dejavu-core)
 if(OSMESA_FOUND)
   string(APPEND CPACK_DEBIAN_AYUMI_PACKAGE_DEPENDS ", libosmesa6")
@@ -69,8 +69,8 @@ python3 (<< 3.${next}~), python3-numpy")
 endif()
 set(CPACK_DEBIAN_AYUMI-DOC_PACKAGE_ARCHITECTURE all)
 
-# What Debian's policy wants in the documentation folder of each package. SOURCE_DATE_EPOCH sets the
-# date, where two builds have to give the same bytes.
+# Files that Debian's policy requires in the documentation folder of each package. SOURCE_DATE_EPOCH
+# sets the date if two builds have to give the same bytes.
 string(TIMESTAMP date "%a, %d %b %Y %H:%M:%S +0000" UTC)
 set(documents ${PROJECT_BINARY_DIR}/packaging)
 foreach(package ${CPACK_COMPONENTS_ALL})

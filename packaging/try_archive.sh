@@ -15,7 +15,8 @@ cp --archive "$BARE_DEBIAN/." "$scratch/bare"
 mkdir "$scratch/bare/try"
 tar --extract --directory "$scratch/bare/try" --file "$archive"
 
-# Every part with libraries of its own: repair, pictures, plots, clips, the second plant.
+# Every part that has libraries of its own is tried: repair, pictures, plots, clips, the second
+# plant.
 unshare --net --pid --fork --mount --mount-proc="$scratch/bare/proc" \
   chroot "$scratch/bare" /bin/sh -eu <<'END'
 cd /try

@@ -19,8 +19,8 @@ mkdir -p "${1:-build/arm64}"
 place=$(cd "${1:-build/arm64}" && pwd)
 root=$place/root triplet=aarch64-linux-gnu
 
-# A second apt, which has the sources of this machine's but knows ARM64 alone and believes that nothing
-# is installed.
+# A second apt, which has the sources of this machine's apt but only knows ARM64 and believes that
+# nothing is installed.
 if [[ ! -e $root/complete ]]; then
   rm -rf "$root"
   mkdir -p "$place"/apt/{state,lists/partial,cache/archives/partial}
@@ -36,7 +36,8 @@ if [[ ! -e $root/complete ]]; then
   mkdir -p "$root/usr/lib"
   ln -s usr/lib "$root/lib"
   for package in "$place"/apt/cache/archives/*.deb; do dpkg --extract "$package" "$root"; done
-  # What the packages' own scripts would do: one BLAS out of several, and links that stay in this root.
+  # These are the tasks of the packages' own scripts: choosing one of several BLAS libraries, and
+  # making links that stay inside this root.
   for name in libblas liblapack; do
     for end in so so.3; do
       ln -sf "openblas-serial/$name.$end" "$root/usr/lib/$triplet/$name.$end"

@@ -21,9 +21,9 @@ jobs=$((jobs < 2 ? jobs : 2))
 place=$PWD/build/coverage
 source=$place/ayumi build=$place/build
 mkdir -p "$source"
-# With the times of the files, so that the next run compiles only what has changed.
+# The copies keep the times of the files, so that the next run only compiles what has changed.
 git ls-files -z --cached --others --exclude-standard | tar --null -T - -c | tar -x -C "$source"
-# Without optimization and with the counters of threads kept apart, so that counts are exact.
+# The build has no optimization, and threads count separately, so that counts are exact.
 cmake -S "$source" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Debug -DAYUMI_WITH_PYTHON=OFF \
   "-DCMAKE_CXX_FLAGS_DEBUG=-Og -g0 --coverage -fprofile-update=atomic" >/dev/null
 find "$build" -name '*.gcda' -delete
@@ -31,7 +31,7 @@ find "$build" -name '*.gcda' -delete
 filters=()
 if [[ $# -eq 0 ]]; then
   cmake --build "$build" --parallel "$jobs"
-  # A failed test does not hide what the others reach, but it is reported.
+  # A failed test is reported, but the lines that the other tests reach are counted nevertheless.
   ctest --test-dir "$build" --parallel "$jobs" --output-on-failure || echo "some tests failed" >&2
   filters=(--filter "$source/lib/")
 else
@@ -46,7 +46,7 @@ else
   done
 fi
 cd "$source"
-# Every call that may throw is a branch for the compiler.
+# For the compiler, every call that may throw is a branch.
 no_decision='^(?!.*(\bif\b|\bfor\b|\bwhile\b|\bcase\b|&&|\|\||\?)).*$'
 report() { gcovr --root "$source" --object-directory "$build" "${filters[@]}" -j "$jobs" \
   --exclude-throw-branches --exclude-branches-by-pattern "$no_decision" "$@" "$build"; }

@@ -5,7 +5,7 @@ execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE output
 string(REGEX MATCHALL "(^|\n)[A-Za-z0-9_/]+\\." found "${output}")
 foreach(suite ${found})
   string(REGEX REPLACE "[\n.]" "" suite "${suite}")
-  # Prefix/Suite of value-parametrized suites, Suite/0 of typed ones.
+  # Suites with values have names such as Prefix/Suite, and typed suites have names such as Suite/0.
   string(REGEX REPLACE "/[0-9]+$" "" suite "${suite}")
   string(REGEX REPLACE "^.*/" "" suite "${suite}")
   if(NOT suite IN_LIST SUITES)

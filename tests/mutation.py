@@ -27,14 +27,14 @@ import sys
 import time
 
 SOURCE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-# The test programs that cover a room, the most likely to notice a fault first.
+# The test programs that cover a room. Those that are most likely to notice a fault come first.
 TESTS = {
     "check": ["check_tests", "limits_tests"],
     "control": ["control_tests", "sim_tests"],
     "plan": ["plan_tests", "check_tests"],
 }
 PLUS, MINUS = r"(?<= )\+(?= )", r"(?<= )-(?= )"
-# What stands in the source, and what is planted in its place.
+# Text in the source, and the text that is planted instead of it.
 CHANGES = [
     (r"(?<= )<(?= )", "<="), (r"(?<= )<=(?= )", "<"),
     (r"(?<= )>(?= )", ">="), (r"(?<= )>=(?= )", ">"),
@@ -66,7 +66,7 @@ def places_in(path):
         if not is_code(line):
             continue
         code = line.split("//")[0]
-        # Between quotes are messages.
+        # Text between quotes is a message.
         code = re.sub(r'"(?:[^"\\]|\\.)*"', lambda found: '"' * len(found.group()), code)
         turned = re.search(r"\bif \(((?:[^()]|\((?:[^()]|\([^()]*\))*\))*)\)", code)
         if turned and ";" not in turned.group(1):

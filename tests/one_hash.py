@@ -54,7 +54,7 @@ def compiled_again(build, room, compiler, avx2, folder):
         kept = []
         for word, after in zip(words[1:words.index("-MD")], words[2:]):
             if word == "-include":
-                # A copy, beside which no precompiled form lies.
+                # It is a copy without a precompiled form beside it.
                 copy = os.path.join(folder, after.split("/")[-2] + ".hxx")
                 with open(after) as header, open(copy, "w") as file:
                     file.write(header.read())

@@ -16,7 +16,7 @@ jobs=$((jobs < 2 ? jobs : 2))
 run_asan() {
   cmake --preset asan -DAYUMI_WARNINGS_AS_ERRORS=ON >/dev/null
   cmake --build build/asan --parallel "$jobs"
-  # Mesa's drawing and fontconfig keep memory until the end.
+  # Mesa's drawing and fontconfig keep some memory until the end.
   ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1 \
     ctest --test-dir build/asan --output-on-failure --parallel "$jobs"
 }
@@ -38,7 +38,7 @@ run_valgrind() {
   cmake --preset release >/dev/null
   cmake --build build/release --parallel "$jobs" --target "${targets[@]}"
   for target in "${targets[@]}"; do
-    # What takes minutes there, and what measures time, is left out.
+    # Tests that would take minutes there, and tests that measure time, are left out.
     valgrind --quiet --error-exitcode=9 --leak-check=full --errors-for-leak-kinds=definite \
       "build/release/tests/$target" --gtest_brief=1 \
       --gtest_filter='-*Elementary*:*Quick*:*Time*:*Mujoco*:*Many*'

@@ -39,7 +39,7 @@ PROGRAM = TREE / "build/release/app/ayumi"
 SOURCES = ["repair/policy.hpp", "limits", "check", "demand", "control", "sim", "study", "plan",
            "author/import/contact_detection.cpp"]
 
-# Constants that have to be known to the compiler, or whose half and double have no meaning.
+# Constants that the compiler has to know, or whose half and double have no meaning.
 LEFT_OUT = {
     "kWhole": "the number 1, which stands for the whole of a limit",
     "kFindingKindCount": "a count",
@@ -61,7 +61,7 @@ LEFT_OUT = {
     "differentiate": "the reach of a formula",
 }
 
-# Factors near 1: half and twice are taken of the distance from 1.
+# Factors near 1, for which half and twice are taken of the distance from 1.
 FROM_ONE = ["kFirstBackoff.limit_share", "kFirstBackoff.friction_cone", "kPaceStep",
             "kCoarsePaceStep", "kFasterStep", "kSlowerStep", "kBeyondStep", "kMeanSpeedSpare",
             "kSmallestFactor"]
@@ -182,7 +182,7 @@ def rewrite(path, text, found):
         pieces += [text[last : match.start()], one(match, front, declarators)]
         last = match.end()
     text = "".join(pieces + [text[last:]])
-    # What is made of these constants is no constant expression either.
+    # A value that is made of these constants is no constant expression either.
     text = text.replace("inline constexpr std::array<GroupPrice", "inline const std::array<GroupPrice")
     text = text.replace("constexpr const GroupPrice& of", "inline const GroupPrice& of")
     if "::ayumi::scaled" in text:
@@ -540,7 +540,8 @@ PUSHES = ["largest push, standing", "largest push, walking"]
 VIIP = ["steps", "pushed steps", "viip walk", "pushed viip walk"]
 FOOTHOLDS = [w + " walk, moved footholds" for w in ("pushed", "crossing", "hurried", "thrown")]
 
-# The first pattern that is found in a constant's name says which cases can depend on it.
+# The first of these patterns that occurs in a constant's name says which cases can depend on the
+# constant.
 CASES_OF = [
     ("repair.*flight|repair.*Flight", REPAIRS + ["repair flight"]),
     ("repair.*(riction|solver|tighten|rounds|Backoff|Active|Beside)", REPAIRS + ["repair grip"]),

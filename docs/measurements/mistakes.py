@@ -35,7 +35,7 @@ KNEES = {"hoap1": "l_knee", "humanoid30": "l_knee", "hoap3": "L_LFE_L_KN_joint",
          "darwin": "j_tibia_l", "mighty": "left_knee_flexion"}
 HANDS = {"hoap1": "r_forearm", "humanoid30": "r_hand", "hoap3": "R_EB", "darwin": "MP_ARM_LOW_R",
          "mighty": "right_elbow_flexion"}
-# Processor time after which a check counts as without an answer [s]. Chosen: several times what a
+# Processor time after which a check counts as having no answer [s]. Chosen: several times what a
 # person waits for.
 LONGEST = 40
 
@@ -229,7 +229,8 @@ def foothold_in_air(pattern, robot):
     swing(pattern, 3)["to"] = swing(pattern, 3)["to"][:2] + [round(0.2 * robot["height"], 3)]
 
 
-# Those that issues and trials have named, and what else was known when the search was written.
+# Mistakes that issues and trials have named, and others that were known when the search was
+# written.
 KNOWN = [
     Mistake("degrees declared as radians (arm)", "wave", degrees_as_radians,
             r"^/units.*\"angle\": \"deg\""),

@@ -1,6 +1,6 @@
-# cmake -DOUT=file.cpp -DPAGE=folder -DBUNDLES=replay.js;author.js -P embed_page.cmake: the texts of
-# the report's page and the page for authoring as C++ strings; without BUNDLES the report has no script
-# and there is no page for authoring.
+# cmake -DOUT=file.cpp -DPAGE=folder -DBUNDLES=replay.js;author.js -P embed_page.cmake writes the
+# texts of the report's page and of the page for authoring as C++ strings. Without BUNDLES, the
+# report has no script and there is no page for authoring.
 file(READ ${PAGE}/page.css style)
 set(replay "")
 set(author "")

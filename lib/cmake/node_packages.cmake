@@ -1,7 +1,7 @@
-# The packages of lib/ayumi/report/page, those of the tests included, fetched once into the build
-# folder by its lock file. Sets
-# AYUMI_NODE (the program) and AYUMI_NODE_MODULES (the folder), both empty where there is no npm or
-# it fails; the report is then built without its replay, and says so.
+# Fetches the packages of lib/ayumi/report/page, including those of the tests, once into the build
+# folder by its lock file. Sets AYUMI_NODE (the program) and AYUMI_NODE_MODULES (the folder). Both
+# are empty if there is no npm or if it fails; the report is then built without its replay, and says
+# so.
 option(AYUMI_WITH_REPLAY "Fetch three.js with npm for the report's replay" ON)
 set(AYUMI_NODE "")
 set(AYUMI_NODE_MODULES "")

@@ -1,7 +1,7 @@
-# A header is public, and installed, when public_headers.txt lists it or a public header includes
-# it. Everything else is private. tests/architecture/layers.hpp reads the same list.
+# A header is public, and is installed, if public_headers.txt lists it or a public header includes
+# it. All others are private. tests/architecture/layers.hpp reads the same list.
 
-# ayumi_public_headers(out): paths below lib.
+# ayumi_public_headers(out) lists paths below lib.
 function(ayumi_public_headers out)
   file(STRINGS ${PROJECT_SOURCE_DIR}/lib/cmake/public_headers.txt waiting)
   if(NOT TARGET ayumi_plant_mujoco)

@@ -1,4 +1,4 @@
-# Finds what the Python module needs. The interpreter is Debian's where it is there, because
+# Finds what the Python module needs. If Debian's interpreter is installed, it is used, because
 # Debian's packages (pybind11, numpy) belong to it.
 if(NOT Python_EXECUTABLE AND EXISTS /usr/bin/python3)
   set(Python_EXECUTABLE /usr/bin/python3)

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Instructions per state of every kernel: two runs under callgrind that differ in their number of
-# calls alone, so that start and reading cancel. Usage: instructions.sh BENCH VALGRIND
+# Counts the instructions per state of every kernel: two runs under callgrind only differ in their
+# number of calls, so that starting and reading cancel. Usage: instructions.sh BENCH VALGRIND
 set -eu
 bench=$1 valgrind=$2
 folder=$(mktemp -d)

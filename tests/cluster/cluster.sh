@@ -16,7 +16,7 @@ host=$(hostname -s)
 
 complain() { echo "cluster.sh: $*" >&2; exit 1; }
 
-# A process that has ended may stay as a zombie where nothing waits for it.
+# A process that has ended may remain as a zombie if no process waits for it.
 lives() { grep -q '^State:[[:space:]]*[^ZX]' "/proc/$1/status" 2> /dev/null; }
 
 # Ends the process whose number is in a file, and waits for it.
@@ -30,8 +30,8 @@ end() {
   rm -f "$file"
 }
 
-# The processes of the steps on nodes ("n2", or "n." for all): each carries the name of its node and
-# of this folder.
+# The processes of the steps on nodes ("n2", or "n." for all). Each has the name of its node and the
+# path of this folder in its environment.
 steps_of() {
   local file
   for file in /proc/[0-9]*/environ; do

@@ -317,11 +317,12 @@ def try_signals(program, walk, count, rng, report, only):
         took = time.monotonic() - begin
         if kind != signal.SIGKILL:
             report.slowest = max(report.slowest, took)
-        # Before the program has set its handlers, a signal ends it as it ends every program.
+        # Before the program has set its handlers, a signal ends it like every other program.
         wrong = trial.complaints(process, out, err, signals=(kind,))
         if kind != signal.SIGKILL and took > STOPS_WITHIN * ALLOWANCE:
             wrong.append(f"it took {took:.2f} s to stop")
-        # Every fifth time, as it takes as long as all the rest: of each round another command.
+        # This is only done every fifth time, because it takes as long as all the rest. Each round
+        # tests another command.
         again = (trial_number + trial_number // len(makers)) % 5 == 0
         if not wrong and name != "author" and again:
             wrong = trial.works_now()
@@ -331,7 +332,8 @@ def try_signals(program, walk, count, rng, report, only):
         trial.end()
 
 
-# How much longer than on a quiet machine Ctrl-C may take, where other work shares the processors.
+# Factor by which Ctrl-C may take longer than on a quiet machine if other work shares the
+# processors.
 ALLOWANCE = float(os.environ.get("AYUMI_FAULTS_ALLOWANCE", "1"))
 
 

@@ -7,13 +7,13 @@ include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 set(folder ${SCRATCH}/archive)
 file(REMOVE_RECURSE ${folder})
 file(MAKE_DIRECTORY ${folder}/unpacked ${folder}/small)
-# Not compressed: xz takes a minute for its libraries.
+# The archive is not compressed, because xz takes a minute for its libraries.
 run(${CMAKE_COMMAND} -E env COMPRESS=cat ${SOURCE}/packaging/archive.sh ${SCRATCH}/stage ${folder})
 file(GLOB archive ${folder}/ayumi-*-linux-*.tar)
 run(tar --extract --directory ${folder}/unpacked --file ${archive})
 file(GLOB root ${folder}/unpacked/ayumi-*)
 
-# The compressed archive that users get, of one small folder.
+# This is the compressed archive that users get, with one small folder only.
 run(${CMAKE_COMMAND} -E env ONLY=bin ${SOURCE}/packaging/archive.sh ${SCRATCH}/stage ${folder}/small)
 file(GLOB small ${folder}/small/ayumi-*-linux-*.tar.xz)
 run(tar --list --xz --file ${small})

@@ -27,7 +27,7 @@ file(WRITE ${SCRATCH}/headers/parsed_once.hpp "#include \"${parsed_once}\"\n")
 execute_process(COMMAND ${COMPILER} ${options} -x c++-header ${SCRATCH}/headers/parsed_once.hpp
                         -o ${SCRATCH}/headers/parsed_once.hpp.gch COMMAND_ERROR_IS_FATAL ANY)
 
-# What a header includes, in place of "<Eigen/Core>" the word Core: `includes_<header>`.
+# `includes_<header>` lists what a header includes, with the word Core instead of "<Eigen/Core>".
 foreach(header ${headers})
   file(STRINGS ${include}/${header} lines REGEX "^ *(#|[^/ ])")
   set(includes_${header})
@@ -48,7 +48,8 @@ foreach(header ${headers})
   endforeach()
 endforeach()
 
-# What a header includes, itself or through others: `seen_<header>`; `order`: those with less first.
+# `seen_<header>` lists what a header includes, itself or through others. `order` lists headers,
+# those that include less first.
 set(order)
 foreach(header ${headers})
   set(seen)
@@ -67,8 +68,8 @@ foreach(header ${headers})
 endforeach()
 list(SORT order)
 
-# Headers of which each includes the one before it are compiled in one file, in this order: what
-# stands before a header is then what it includes anyway. `chains`: the last header of each file.
+# Headers of which each includes the one before it are compiled in one file, in this order: the code
+# before a header is then what it includes anyway. `chains` has the last header of each file.
 set(chains)
 foreach(entry ${order})
   string(REGEX REPLACE "^[0-9]* " "" header ${entry})

@@ -16,7 +16,8 @@ function(expect text what)
   endif()
 endfunction()
 
-# A copy in another place: nothing depends on where the build meant to install it.
+# The installation is copied to another place: nothing may depend on where the build meant to
+# install it.
 set(copy ${elsewhere}/moved)
 file(COPY ${stage}/bin ${stage}/share ${stage}/libexec DESTINATION ${copy})
 run(${CMAKE_COMMAND} -E chdir ${elsewhere} ${copy}/bin/ayumi check patterns/hoap1_walk.json)
@@ -25,8 +26,8 @@ run(${CMAKE_COMMAND} -E chdir ${elsewhere} ${copy}/bin/ayumi robots)
 expect("hoap1" "the bundled robots")
 run(${CMAKE_COMMAND} -E chdir ${elsewhere} ${copy}/bin/ayumi inspect hoap1)
 expect("20 DOF" "a robot with meshes")
-# The bill of materials names what the program names, and the licence of what the pages contain is
-# there.
+# The bill of materials names what the program names, and the licence of the code that the pages
+# contain is there.
 run(${CMAKE_COMMAND} -E chdir ${elsewhere} ${copy}/bin/ayumi --version)
 set(versions "${output}")
 file(READ ${copy}/share/doc/ayumi/ayumi.cdx.json bill)
@@ -48,7 +49,7 @@ endif()
 if(versions MATCHES "three.js" AND NOT EXISTS ${copy}/share/doc/ayumi/three.js-LICENSE)
   message(FATAL_ERROR "the licence of three.js is not installed")
 endif()
-# The copy reads meshes by the program beside it: with another one there, it says so.
+# The copy reads meshes by the program beside it: if another program is there, it says so.
 find_program(another_program false REQUIRED)
 file(COPY_FILE ${another_program} ${copy}/libexec/ayumi/ayumi-mesh-reader)
 execute_process(COMMAND ${copy}/bin/ayumi inspect hoap1 ERROR_VARIABLE output RESULT_VARIABLE code

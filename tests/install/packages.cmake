@@ -11,7 +11,7 @@ if(NOT lintian OR NOT shlibdeps)
 endif()
 set(packages ${SCRATCH}/packages)
 file(REMOVE_RECURSE ${packages})
-# gzip in place of xz, which takes five times as long.
+# gzip is used instead of xz, which takes five times as long.
 run(${CMAKE_CPACK_COMMAND} --config ${BUILD}/CPackConfig.cmake -G DEB -B ${packages}
     -D CPACK_DEBIAN_COMPRESSION_TYPE=gzip)
 file(GLOB debs ${packages}/*.deb)

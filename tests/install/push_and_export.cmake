@@ -17,7 +17,7 @@ foreach(expected "hoap1_walk on hoap1: consistent" "pushed forwards with 0.8 N s
     message(FATAL_ERROR "the program does not print \"${expected}\":\n${output}")
   endif()
 endforeach()
-# The head of the table names what it was made from.
+# The head of the table names what the table was made from.
 file(STRINGS ${table} head REGEX "^# ")
 foreach(line "# robot: hoap1" "# pattern: hoap1_walk" "# controller: dtad")
   if(NOT line IN_LIST head)

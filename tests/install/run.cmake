@@ -1,4 +1,4 @@
-# Runs a command, whose output is then in `output`; the script stops where the command fails.
+# Runs a command, whose output is then in `output`. The script stops if the command fails.
 function(run)
   execute_process(COMMAND ${ARGV} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT status EQUAL 0)

@@ -28,7 +28,7 @@ import tempfile
 SOURCE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 ROBOTS = ("hoap1", "humanoid30")
 MOST_FAULTS = 4  # of one pattern
-# One number for each robot: lengths and times of its motions grow with it.
+# One number for each robot, with which lengths and times of its motions grow.
 SCALE = {"hoap1": 1.0, "humanoid30": 2.5}
 
 
@@ -280,7 +280,7 @@ class Trial:
             self.must(not refuses, "check says consistent, and that export would refuse", str(refuses))
         else:
             self.must(refuses, "check says inconsistent, and nothing of export")
-            # What breaks a limit has a hint for its author.
+            # A broken limit comes with a hint for the author.
             self.must(any(f.get("hint") for f in verdict.get("findings", [])),
                       "check says inconsistent without a hint", out)
         return code == 0, out

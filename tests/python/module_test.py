@@ -21,7 +21,7 @@ import ayumi
 WALK = ayumi.data_folder("patterns") / "hoap1_walk.json"
 PROGRAM = os.environ["AYUMI_PROGRAM"]
 
-# A shell starts its background jobs deaf to Ctrl-C, and Python then leaves it so.
+# A shell starts its background jobs so that they ignore Ctrl-C, and Python does not change this.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
@@ -65,7 +65,7 @@ class Values(unittest.TestCase):
 
     def test_repair_makes_a_pattern_consistent(self):
         robot = ayumi.load_robot("hoap1", meshes=False)
-        # So fast that the knees cannot follow.
+        # The motion is so fast that the knees cannot follow.
         task = ayumi.sample(ayumi.squat_pattern(robot, period=0.64, depth=0.04, cycles=1), robot)
         self.assertIn("joint_speed", ayumi.check(task).reason)
         found = ayumi.repair(task, lock_joints=["l_elbow"])
@@ -75,7 +75,7 @@ class Values(unittest.TestCase):
         elbow = robot.joints.index("l_elbow")
         np.testing.assert_array_equal(found.task.series["theta"][:, elbow],
                                       task.series["theta"][:, elbow])
-        # What is written reads back as the same repaired motion.
+        # The written pattern reads back as the same repaired motion.
         again = ayumi.sample(ayumi.parse_pattern(found.task.pattern.text()), robot)
         np.testing.assert_allclose(again.series["theta"], found.task.series["theta"], atol=1e-12)
 
@@ -155,7 +155,7 @@ class Arrays(unittest.TestCase):
     def test_arrays_are_views(self):
         log = self.log
         self.assertIs(log["cog"].base, log)
-        # Number and vector are read where the sample has them: one stride for both.
+        # A number and a vector are read directly from the samples: both have the same stride.
         self.assertEqual(log["cog"].strides[0], log["fz"].strides[0])
         self.assertEqual(log["theta"].ctypes.data, log["theta"].ctypes.data)
         for name in log.names:
@@ -208,7 +208,7 @@ class Arrays(unittest.TestCase):
         for k in (0, len(series) // 3, len(series) - 1):
             state = ayumi.RobotState(series["theta"][k], position=series["base.position"][k],
                                      attitude=series["base.attitude"][k])
-            # 1e-6 m: the inverse kinematics of the plan.
+            # The tolerance of 1e-6 m is that of the plan's inverse kinematics.
             np.testing.assert_allclose(robot.sole_pose(state, "left"), series["left.sole"][k],
                                        atol=1e-6)
             np.testing.assert_allclose(robot.cog(state), series["cog"][k], atol=1e-6)
@@ -241,7 +241,7 @@ class Tables(unittest.TestCase):
         safe = ayumi.make_safe(task, ayumi.table(task))
         self.assertTrue(safe.safe, safe.violations)
         self.assertGreater(len(safe.table), len(task.series))
-        # Encoder counts, one line per row.
+        # The file has encoder counts, one line per row.
         self.assertGreaterEqual(len(safe.table.hoap(task.robot).splitlines()), len(safe.table))
 
 
@@ -273,20 +273,20 @@ class Errors(unittest.TestCase):
 
     def test_places_do_not_depend_on_the_words_of_a_message(self):
         with tempfile.TemporaryDirectory() as folder:
-            # ": " in a name.
+            # The name contains ": ".
             path = pathlib.Path(folder) / "new: walk.json"
             path.write_text('{"format": 1}')
             with self.assertRaises(ayumi.Error) as caught:
                 ayumi.read_pattern(path)
             self.assertEqual(caught.exception.place, str(path) + ": /format")
-            # A phase that legs cannot do.
+            # The phase is one that the legs cannot do.
             text = json.loads(ayumi.read_pattern(WALK).text())
             text["defaults"]["cog_height"] = 0.4
             path.write_text(json.dumps(text))
             with self.assertRaises(ayumi.Error) as caught:
                 ayumi.load_task(path)
             self.assertEqual(caught.exception.place, str(path) + ": /phases/0")
-            # A line of a table.
+            # The error is in a line of a table.
             table = pathlib.Path(folder) / "motion"
             table.write_text("t,r_knee\n0,0\n0.1,nan\n0.2,0\n")
             with self.assertRaises(ayumi.Error) as caught:
@@ -388,7 +388,7 @@ class LongWork(unittest.TestCase):
         during = counted[0] - before
         done.set()
         other.join()
-        # The work takes more than 0.1 s; with the lock held the other thread stands still.
+        # The work takes more than 0.1 s. If the lock were held, the other thread would stand still.
         self.assertGreater(during, 20)
 
 
@@ -485,7 +485,8 @@ class InTheLoop(unittest.TestCase):
 
         own = ayumi.simulate(self.task)
         log = ayumi.simulate(self.task, targets=wave)
-        # 1e-4 rad: the arm moves the COG, to which the controller answers a little.
+        # The tolerance is 1e-4 rad, because the arm moves the COG, to which the controller responds
+        # slightly.
         np.testing.assert_allclose(log["target"][:, arm], own["target"][:, arm] - 0.2, atol=1e-4)
         self.assertLess(log["theta"][-1, arm], own["theta"][-1, arm] - 0.1)
 
