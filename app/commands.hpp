@@ -20,7 +20,7 @@ struct Context {
   bool json = false;
   bool quiet = false;
   bool force = false;
-  int threads = 0;  ///< number of threads; 0: all cores
+  int threads = 0;  ///< number of threads; 0 for all cores
   std::uint64_t seed = 1;
   /// Folders that are searched for robots before the bundled ones.
   std::vector<std::string> robot_path;

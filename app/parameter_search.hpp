@@ -29,9 +29,10 @@ std::vector<PassingValues> passing_parameters(const Context& context, const std:
 
 struct PassingPace {
   std::vector<std::pair<double, double>> windows;  ///< windows of the given pattern [s]
-  double factor = 0;  ///< factor on the time of the windows with which it passes; 0: not found
-  double whole = 0;   ///< factor on the time of the whole pattern; 0: not found
-  double tried = 0;   ///< largest factor that was tried; 0: more time does not help
+  /// Factor on the time of the windows with which it passes; 0 if none was found.
+  double factor = 0;
+  double whole = 0;  ///< factor on the time of the whole pattern; 0 if none was found
+  double tried = 0;  ///< largest factor that was tried; 0 if more time does not help
 };
 /// How much slower the pattern must be to pass without a repair, if its findings depend on time:
 /// only the segments around the findings, and the whole pattern.

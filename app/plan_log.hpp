@@ -11,8 +11,8 @@ namespace ayumi::app {
 /// Whether a name is that of a pattern rather than of a RUN: a file that ends in .json or .jsonc.
 bool names_pattern(const std::string& file);
 
-/// The log of a RUN, or the plan of a pattern. `log` says which log of the run. Throws as
-/// read_run_log() and load_pattern().
+/// The log of a RUN, or the plan of a pattern. `log` says which log of the run. Throws the same
+/// errors as read_run_log() and load_pattern().
 SimulationLog log_of(const Context& context, const std::string& run_or_pattern,
                      const std::string& log);
 

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 struct Drawn {
-  std::string error;  ///< message of the error; empty: done
+  std::string error;  ///< message of the error; empty if it is done
   bool skipped = false;
   Json entry;
   std::optional<Image> tile;

@@ -18,13 +18,13 @@ struct PreviewBatch {
   std::filesystem::path folder;  ///< the folder, which is made if necessary
   std::string extension;         ///< ending of the files, such as ".mp4"
   int threads = 1;               ///< number of threads for all runs together
-  bool again = false;            ///< also draws clips that exist and are newer than their run
+  bool again = false;  ///< whether clips that exist and are newer than their run are drawn again
   /// Writes one run with the given number of threads; throws Error. The result is its entry in the
   /// JSON.
   std::function<nlohmann::ordered_json(const std::string& input, const std::filesystem::path& path,
                                        int threads)>
       draw;
-  std::string sheet;  ///< file of the contact sheet; empty: none
+  std::string sheet;  ///< file of the contact sheet; empty if there is none
   std::function<Image(const std::string& input)> tile;
   int columns = 4;
 };

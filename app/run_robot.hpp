@@ -7,9 +7,9 @@
 
 namespace ayumi::app {
 
-/// The robot that `chosen` (--robot) names, or else the one that the run recorded. Throws as
-/// load_robot. If a recorded path does not lead to a robot from here, Error(bad_file) says this and
-/// names --robot.
+/// The robot that `chosen` (--robot) names, or else the one that the run recorded. Throws the same
+/// errors as load_robot. If a recorded path does not lead to a robot from here, Error(bad_file)
+/// says this and names --robot.
 RobotModel robot_of_run(const Context& context, const std::string& chosen,
                         const std::string& recorded, const LoadOptions& options = {});
 

@@ -12,8 +12,9 @@ namespace ayumi::app {
 namespace {
 
 // Size of the drawn motion. Chosen: a test of 5 degrees is hardly visible in a picture.
-constexpr double kDrawnAngle = 30 * EIGEN_PI / 180;  // [rad]
-constexpr double kDrawnSlide = 0.05;                 // [m]
+// Angle by which a joint is drawn away from home [rad].
+constexpr double kDrawnAngle = 30 * EIGEN_PI / 180;
+constexpr double kDrawnSlide = 0.05;  // distance by which a slider is drawn away from home [m]
 
 std::string in_units(const Dof& dof, double value) {
   return dof.prismatic ? text::fixed(1000 * value, 1) + " mm"

@@ -12,7 +12,7 @@ namespace {
 // Time in which work has to stop. Chosen: work asks several times per second whether it may
 // continue. Work that does not ask, such as a computing library, is ended well within a second of
 // Ctrl-C.
-constexpr long kPatience = 700'000'000;  // [ns]
+constexpr long kPatience = 700'000'000;  // longest wait for the work to stop [ns]
 
 volatile std::sig_atomic_t stop_signal = 0;
 timer_t impatience;

@@ -39,7 +39,8 @@ void note_missing_noise(const RobotModel& robot, bool noise);
 /// The controller of the pattern with the changes of the choice.
 ControllerSpec chosen_controller(const Task& input, const SimulationChoice& choice);
 
-/// The options of the task with the changes of the choice. Throws as refuse_unstable_gains().
+/// The options of the task with the changes of the choice. Throws the same errors as
+/// refuse_unstable_gains().
 SimulateOptions simulation_options(const Context& context, const Task& input,
                                    const SimulationChoice& choice);
 

@@ -9,8 +9,8 @@
 
 namespace ayumi::app {
 
-/// `file` is the argument of --study, or "" if it was not given. Throws as read_study(), and
-/// Error(bad_pattern) if the file has no uncertainty.
+/// `file` is the argument of --study, or "" if it was not given. Throws the same errors as
+/// read_study(), and Error(bad_pattern) if the file has no uncertainty.
 Study load_study(const Task& input, const std::string& file);
 
 /// If the user `stated` quantities that the plant of this name does not use, throws

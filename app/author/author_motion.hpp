@@ -35,7 +35,7 @@ struct AuthorSetting {
   std::string profile;  ///< actuator profile; "": that of the pattern
 };
 
-/// Throws as pattern_of_text() and make_task().
+/// Throws the same errors as pattern_of_text() and make_task().
 std::shared_ptr<const AuthorMotion> author_motion(const std::string& text, const NamedRobot& robot,
                                                   const AuthorSetting& setting,
                                                   const Progress& progress = {});
@@ -60,7 +60,7 @@ struct AuthorHandle {
   enum class Kind { foot, limb, gaze, trunk, cog };
   Kind kind = Kind::cog;
   std::string name, label;
-  int body = -1;                                    ///< index of the body; -1: the COG
+  int body = -1;                                    ///< index of the body; -1 for the COG
   Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< point in the frame of the body [m]
   Side side = Side::left;                           ///< the side of a foot
   std::string link = {};                            ///< the name of a limb in "hands"
@@ -71,7 +71,7 @@ std::vector<AuthorHandle> handles_of(const RobotModel& robot);
 struct AuthorTarget {
   std::string pointer;         ///< pointer of the key's value
   std::string label;           ///< name for people, such as "left hand"
-  std::string handle;          ///< handle that follows the target; empty: none
+  std::string handle;          ///< handle that follows the target; empty if there is none
   double time = 0, until = 0;  ///< time of the key, and the time until which it leads at most [s]
   Eigen::Vector3d place;       ///< place at its time, in the world [m]
   Eigen::Matrix3d axes;        ///< axes in which the place is written, in the world

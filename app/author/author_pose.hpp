@@ -15,9 +15,9 @@
 namespace ayumi::app {
 
 struct PoseWish {
-  double time = 0;                       ///< [s]
-  std::map<std::string, double> joints;  ///< [rad, m]
-  std::string drag;                      ///< name of the dragged handle; empty: none
+  double time = 0;                       ///< time of the change [s]
+  std::map<std::string, double> joints;  ///< joint positions by name [rad, m]
+  std::string drag;                      ///< name of the dragged handle; empty if there is none
   std::string target;                    ///< pointer of the AuthorTarget at `time` that is dragged
   /// Place to which the point is dragged, in the world [m].
   Eigen::Vector3d to = Eigen::Vector3d::Zero();
@@ -26,7 +26,7 @@ struct PoseWish {
 };
 
 struct PoseAnswer {
-  std::string row;                 ///< row of the page's table at that time; empty: there is none
+  std::string row;                 ///< row of the page's table at that time; empty if there is none
   std::vector<PatternEdit> edits;  ///< edits that make the motion so; empty if it is not possible
   std::string message;             ///< what the author has to know; may be empty
 };

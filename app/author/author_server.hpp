@@ -10,7 +10,7 @@
 namespace ayumi::app {
 
 struct ServerOptions {
-  int port = 0;  ///< number of the port; 0: any free one
+  int port = 0;  ///< number of the port; 0 for any free one
 };
 
 /// Serves until `stopped` returns true. If a client keeps a connection without sending anything,

@@ -41,8 +41,8 @@ struct FileStamp {
 
 class AuthorSession {
  public:
-  /// Throws as read_file(). A pattern that cannot be read is shown with its error, but its robot
-  /// must have been loaded once. `context` must outlive the session.
+  /// Throws the same errors as read_file(). A pattern that cannot be read is shown with its error,
+  /// but its robot must have been loaded once. `context` must outlive the session.
   AuthorSession(const Context& context, AuthorSetting setting);
   /// Stops, and waits for the job and the thread that follows the file.
   ~AuthorSession();

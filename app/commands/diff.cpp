@@ -24,7 +24,8 @@ struct DiffCommand {
   PatternOptions input;
 };
 
-// The first time at which the two motions have different feet on the ground; negative: never.
+// The first time at which the two motions have different feet on the ground; negative if there is
+// none.
 double contacts_differ_at(const CommandSeries& a, const CommandSeries& b) {
   const size_t count = std::min(a.samples.size(), b.samples.size());
   for (size_t k = 0; k < count; ++k)

@@ -29,23 +29,23 @@ using Json = nlohmann::ordered_json;
 
 struct EditCommand {
   std::string pattern, out;
-  std::vector<std::string> patterns;  // for concat and blend
-  double over = 0;                    // [s]
+  std::vector<std::string> patterns;  // patterns for concat and blend
+  double over = 0;                    // duration of the transition [s]
   Ramps ramps;
   std::vector<std::string> tolerances;
   PatternOptions input;
   double scale = 0;
   bool to_limits = false;
-  bool local = false;  // for retime: there is no single factor
+  bool local = false;  // for retime, whether there is no single factor
   bool keep_pauses = false;
-  double margin = -1;     // for retime [m]; below 0: none was given
-  bool as_table = false;  // for concat, blend and loop
-  int times = 1;          // for loop and alternate
-  bool cycle = false;     // for loop: two steps that are cut from a walk
-  bool alone = false;     // for loop: without the beginning and end of the walk
-  bool open_end = false;  // for alternate
+  double margin = -1;     // margin for retime [m]; below 0 if none was given
+  bool as_table = false;  // for concat, blend and loop, whether the result is a table
+  int times = 1;          // number of repetitions for loop and alternate
+  bool cycle = false;     // for loop, whether two steps are cut from a walk
+  bool alone = false;     // for loop, whether the beginning and end of the walk are left out
+  bool open_end = false;  // for alternate, whether the end stays open
   KeyEdit key;
-  double key_to = -1, key_by = 0;  // [s]
+  double key_to = -1, key_by = 0;  // new time of a key, or its change [s]
 };
 
 // Time for which the beginning is held at the end of a loop with a transition [s]. Chosen: the
@@ -53,7 +53,7 @@ struct EditCommand {
 constexpr double kRest = 0.02;
 
 struct ForceRange {
-  double least = 0, most = 0;  // [N]
+  double least = 0, most = 0;  // smallest and largest force [N]
 };
 
 ForceRange force_range(const CommandSeries& series) {

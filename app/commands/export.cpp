@@ -55,14 +55,16 @@ struct ExportOptions {
 struct Source {
   RobotModel model;
   ReferenceTrajectory reference;
-  std::string disturbances;  ///< disturbances of the run from which the table comes; empty: none
-  Eigen::MatrixXd torque;    ///< torque of a run's motors, rows x dof; empty if unknown
-  std::optional<Task> plan;  ///< task of a pattern; the check can then say what it needs
+  /// Disturbances of the run from which the table comes; empty if there is none.
+  std::string disturbances;
+  Eigen::MatrixXd torque;          ///< torque of a run's motors, rows x dof; empty if unknown
+  std::optional<Task> plan;        ///< task of a pattern; the check can then say what it needs
   std::vector<std::string> unfit;  ///< reasons why no robot should receive the table
   std::optional<KeptRows> kept = {};
   /// Bytes of the imported file, if the format is the same.
   std::optional<std::string> original = {};
-  double interval = 0;  ///< time between two rows of the imported file [s]; 0: no file was imported
+  /// Time between two rows of the imported file [s]; 0 if no file was imported.
+  double interval = 0;
 };
 
 /// The unit of angles in texts: that of the pattern, if there is one.

@@ -38,7 +38,7 @@ constexpr long kMostRuns = 4;
 
 struct GaitsCommand {
   std::string robot, out;
-  std::string forward, sideways, turn, period;  // as the user writes them
+  std::string forward, sideways, turn, period;  // ranges as the user writes them
   GaitOptions options;
   bool uncertified = false, without_transitions = false;
 };

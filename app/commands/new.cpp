@@ -37,9 +37,9 @@ struct NewOptions {
   double turn_deg = 0;
   std::string first = "right";
   double duration = 3.0;
-  double stand_height = 0;  // COG height [m]; 0: that of the home posture
+  double stand_height = 0;  // COG height [m]; 0 for that of the home posture
   double scale = 1;         // factor on the amplitudes of an excitation
-  double low = 0;           // COG height of an excitation [m]; 0: not given
+  double low = 0;           // COG height of an excitation [m]; 0 if it is not given
   // Values that are not given are those of HOAP-1, scaled to the robot.
   std::vector<double> cog, velocity, cog_velocity;  // goals of VIIP
   double moving = 1;                                // duration of a COG velocity [s]

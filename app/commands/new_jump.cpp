@@ -17,7 +17,7 @@ namespace {
 
 struct JumpOptions {
   std::string robot = "hoap1", out, profile;
-  // Without a value: those of HOAP-1, scaled to the robot.
+  // Values that are not given are those of HOAP-1, scaled to the robot.
   std::optional<double> height, stoop, cog_height;
   double forward = 0;
   int times = 1;

@@ -28,7 +28,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-using Angles = std::map<std::string, double>;  // by joint [rad], for sliders [m]
+using Angles = std::map<std::string, double>;  // positions by joint [rad], for sliders [m]
 
 constexpr size_t kMostNamed = 20;  // Chosen: a person still reads a message of this length
 

@@ -48,7 +48,7 @@ struct RunCommand {
   SimulationChoice choice;
   bool repair = false;
   bool pictures = true;
-  bool light = false;  ///< only the logs and the verdicts
+  bool light = false;  ///< whether only the logs and the verdicts are written
   bool all = false;    ///< every finding
 };
 
@@ -112,10 +112,12 @@ class MainJob {
   fs::path target_;
   std::optional<RunOutput>
       output_;  // opened after the input has been read, so that bad input leaves no files
-  std::string inconsistent_;  // why the (repaired) pattern is inconsistent; empty: it is consistent
+  // Why the (repaired) pattern is inconsistent; empty if it is consistent.
+  std::string inconsistent_;
   RunFolder folder_;
   StreamedRun closed_loop_;
-  std::optional<StreamedRun> undisturbed_;  // only if the pattern has disturbances
+  // The run without disturbances, if the pattern has disturbances.
+  std::optional<StreamedRun> undisturbed_;
   Json summary_ = Json::object();
 };
 
@@ -138,7 +140,7 @@ AnswerPart check_part(const ConsistencyReport& report, const RobotModel& model) 
 
 // Differences that are worth a line. Chosen: nobody sees a tilt of less than a degree in a clip; a
 // tenth of the torque limit is more than rounding and less than a motor notices.
-constexpr double kMoreTilt = std::numbers::pi / 180;  // [rad]
+constexpr double kMoreTilt = std::numbers::pi / 180;  // difference of the tilt [rad]
 constexpr double kMoreTorque = 0.1;                   // share of the limit
 
 // The figures that are worse with control than without, under the same disturbances.

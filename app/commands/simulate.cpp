@@ -28,7 +28,7 @@ struct SimulateCommand {
   PatternOptions input;
   SimulationChoice choice;
   std::string study;
-  long number = -1;  // number of a case of `certify`; negative: none
+  long number = -1;  // number of a case of `certify`; negative if there is none
 };
 
 // The file of the log while it is being made; empty if no run is written.

@@ -36,7 +36,7 @@ struct SweepOutputs {
 struct SweepCommand {
   std::string study, out, shard, cases, engine = "local";
   bool retry = false;
-  double case_limit = 0;  ///< largest processor time of a case [s]; 0: no limit
+  double case_limit = 0;  ///< largest processor time of a case [s]; 0 for no limit
   SlurmOptions slurm;
   SweepOutputs outputs;
 };

@@ -18,9 +18,9 @@ struct GaitCell {
 };
 
 struct GaitGrid {
-  std::vector<double> forward, sideways;  ///< [m/s]
-  std::vector<double> turn;               ///< [deg/s]
-  std::vector<double> period;             ///< [s]
+  std::vector<double> forward, sideways;  ///< speeds [m/s]
+  std::vector<double> turn;               ///< turning rates [deg/s]
+  std::vector<double> period;             ///< periods [s]
 
   size_t size() const { return forward.size() * sideways.size() * turn.size() * period.size(); }
   /// The cells are sorted by period, then by turning rate, then by forward speed, then by sideways

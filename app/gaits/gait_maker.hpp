@@ -18,7 +18,7 @@ struct GaitOptions {
   std::string robot;       ///< robot as patterns in the folder of patterns name it
   std::string profile;     ///< actuator profile; "": the robot's default
   std::string controller;  ///< controller; "": that of new patterns
-  double cog_height = 0;   ///< height of the COG; 0: starting_height() [m]
+  double cog_height = 0;   ///< height of the COG; 0 for starting_height() [m]
   double rate = 50;        ///< rate of the rows of tables and archives [1/s]
   bool certify = true;     ///< false: instead, one run of the robot as it is modelled
   CertifyOptions study;    ///< study of each cell; its number of threads is not used
@@ -47,7 +47,7 @@ class GaitMaker {
   /// several, the one nearest to the height of new walks. 0 means the height of new walks [m].
   double best_height(const std::vector<GaitCell>& cells, int threads,
                      const Progress& progress) const;
-  /// Sets the COG height of all walks from now on; 0: that of new walks [m].
+  /// Sets the COG height of all walks from now on; 0 for that of new walks [m].
   void use_height(double height) { options_.cog_height = height; }
   double height() const;
 

@@ -122,7 +122,7 @@ std::vector<ResultColumn> result_columns(const SweepMeasures& m) {
 /// Stops a case if the user stops the work, or if the case has used its processor time.
 struct CaseRunner::Watch {
   const Progress& progress;
-  double limit;  ///< limit of the processor time [s]; 0: none
+  double limit;  ///< limit of the processor time [s]; 0 if there is none
   double begin = thread_seconds();
   std::string exceeded = {};  ///< the work at the moment when the time was used up
 

@@ -60,14 +60,15 @@ class CaseRunner {
   /// processor time also gives a row with an error.
   CaseRow run(long number, const Progress& progress = {}) const;
 
-  /// Largest processor time of one case [s]; 0: no limit.
+  /// Largest processor time of one case [s]; 0 for no limit.
   double case_seconds() const { return case_seconds_; }
   void limit_case(double seconds) { case_seconds_ = seconds; }
 
   /// The same simulation with its log, for a replay. `task` receives the task of the case.
   SimulationLog simulate(long number, std::shared_ptr<const Task>& task) const;
 
-  /// The robot of a case with everything that only pictures need. Throws as load_robot().
+  /// The robot of a case with everything that only pictures need. Throws the same errors as
+  /// load_robot().
   RobotModel robot_to_draw(long number) const;
 
   /// Processor time [s] that all threads used in run(), and the part of it in which they simulated,

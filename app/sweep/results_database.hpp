@@ -43,8 +43,9 @@ struct SweepCounts {
 
 /// Processor time [s] that was used for rows.
 struct SweepWork {
-  double seconds = 0;  ///< of all threads, including reading of inputs and writing of rows
-  double useful = 0;   ///< the part of it for simulating, checking and repairing
+  /// Processor time of all threads, including reading of inputs and writing of rows.
+  double seconds = 0;
+  double useful = 0;  ///< the part of it for simulating, checking and repairing
 };
 
 class ResultsDatabase {
@@ -67,7 +68,7 @@ class ResultsDatabase {
       const SweepHead& head,
       const std::string& remedy = "choose another name, or give --force to begin again") const;
 
-  /// The shards whose results are in this file, such as "1/4"; empty: the whole study was run.
+  /// The shards whose results are in this file, such as "1/4"; empty if the whole study was run.
   std::vector<std::string> shards() const;
   void add_shards(const std::vector<std::string>& shards);
   /// Processor time that was used for the rows, over all runs that recorded it.

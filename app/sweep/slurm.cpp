@@ -74,7 +74,7 @@ constexpr double kUnseenFile = 90;
 constexpr double kShareOfLimit = 0.5;
 
 struct CommandResult {
-  int exit_code = -1;  ///< -1: it could not be started
+  int exit_code = -1;  ///< -1 if the command could not be started
   std::string out, err;
 };
 
@@ -224,7 +224,7 @@ struct QueuedTask {
   }
   bool completed() const { return state == "COMPLETED"; }
 };
-using Queue = std::map<std::pair<std::string, long>, QueuedTask>;  // by job and task
+using Queue = std::map<std::pair<std::string, long>, QueuedTask>;  // tasks by job and number
 
 /// The tasks that Slurm knows, including those that ended a short time ago. Returns nothing if
 /// Slurm did not answer.
@@ -681,13 +681,13 @@ class Engine {
   const Progress& progress_;
   fs::path folder_;
   State state_;
-  std::vector<bool> wanted_, done_;       // for each case
-  std::vector<unsigned char> tries_;      // for each case, in this run of the engine
+  std::vector<bool> wanted_, done_;       // by case: whether it is wanted, and whether it is done
+  std::vector<unsigned char> tries_;      // by case: number of tries in this run of the engine
   std::map<TaskNumber, CaseRanges> out_;  // tasks that have not arrived, with their cases
   // Number of queries without the task, and the time of the first.
   std::map<TaskNumber, std::pair<int, Clock::time_point>> unseen_;
   std::deque<CaseRanges> pending_;  // tasks to be submitted
-  std::vector<bool> again_;         // for each case, whether it belongs to a lost task
+  std::vector<bool> again_;         // by case: whether it belongs to a lost task
   long lost_ = 0;                   // number of these cases
   std::string why_lost_, refusal_;
   // Times of the last and of the first refusal.

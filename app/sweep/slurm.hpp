@@ -13,7 +13,7 @@ struct SlurmOptions {
   std::vector<std::string> further;     ///< more options for sbatch, as words
   int attempts = 3;           ///< how often a case is submitted before the engine gives up
   int pilot = 8;              ///< number of cases of the pilot run
-  long chunk = 0;             ///< number of cases of a task; 0: from the pilot run
+  long chunk = 0;             ///< number of cases of a task; 0 if the pilot run decides
   double task_seconds = 300;  ///< time that a task should take [s]
 };
 

@@ -26,7 +26,7 @@ struct Mujoco {
     }
     result = VectorXd::Zero(n);
     jacobian = VectorXd::Zero(3 * n);
-    to_ours = robot.to_theirs().transpose();  // of joint parts; it is the same in every state
+    to_ours = robot.to_theirs().transpose();  // map of joint parts; it is the same in every state
   }
   const mjModel* m() const { return robot.model(); }
   mjData* d() const { return robot.data(); }

@@ -22,7 +22,7 @@ using Eigen::Vector3d;
 struct Motion {
   std::string name;
   Pattern pattern;  // the pattern as a table
-  double at = 0;    // in its first single support or, without one, in its middle [s]
+  double at = 0;    // time in its first single support, or in its middle if it has none [s]
   double from = 0, to = 0;
   Support support = Support::both;
 };

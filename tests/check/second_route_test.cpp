@@ -273,7 +273,8 @@ TEST_P(SecondRoute, TorquesByVirtualWork) {
                                   poses[b].topLeftCorner<3, 3>().transpose();
         return Vector3d(W(2, 1), W(0, 2), W(1, 0));
       };
-      const auto rate_of = [&](int body, const Vector3d& point) {  // of a point now there
+      // Velocity of a point that is there now.
+      const auto rate_of = [&](int body, const Vector3d& point) {
         const auto b = static_cast<size_t>(body);
         const Eigen::Vector4d local = poses[b].inverse() * point.homogeneous();
         return Vector3d(((moved[1][b] - moved[0][b]) * local).head<3>() / (2 * e));

@@ -243,7 +243,7 @@ TEST_F(AuthorServer, FollowsTheFileAndNamesTheLineOfAnError) {
   ASSERT_FALSE(state["findings"].empty());
   EXPECT_NE(server.get("series?which=ghost"), "") << "the last consistent motion";
   EXPECT_EQ(server.get("series?which=ghost").size(), server.get("series?which=plan").size());
-  const int line = 10;  // of "phases" in the file
+  const int line = 10;  // line of "phases" in the file
   struct Case {
     std::string what, by, message;
     int line;
@@ -279,7 +279,7 @@ TEST_F(AuthorServer, ShowsTheLastOfManyQuickSaves) {
     if (i % 2)
       save(last);
     else
-      write(file, last);  // in place, as some editors save
+      write(file, last);  // the file is written in place, as some editors do
     std::this_thread::sleep_for(3ms);
   }
   EXPECT_EQ(server.state_when([&](const OrderedJson& now) { return now["text"] == last; })["text"],

@@ -93,7 +93,7 @@ inline Output run_program(const std::vector<std::string>& arguments, const fs::p
 class Folder {
  public:
   Folder() : Folder(name_of_test()) {}
-  /// For all tests of a suite together, after none of which it could be named.
+  /// This folder is for all tests of a suite together, so that it cannot have the name of one test.
   explicit Folder(const std::string& name)
       : path_(fs::path(testing::TempDir()) / ("ayumi_" + std::to_string(::getpid()) + "_" + name)) {
     fs::remove_all(path_);

@@ -51,7 +51,8 @@ class Runs {
 
 struct Comparison {
   int pushes = 0, same = 0, falls = 0;
-  double farthest = 0;  ///< of a differing push from the threshold, as a share of it
+  /// Largest distance of a differing push from the threshold, as a share of it.
+  double farthest = 0;
 };
 
 /// Pushes of these shares of Ayumi's threshold, in every direction and at every time.

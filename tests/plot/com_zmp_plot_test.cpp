@@ -70,7 +70,7 @@ TEST(Loci, ThePanelOfTheForceHasItsReference) {
   };
   const LociOptions with{.cog = false, .zmp = false};
   const LociOptions without{.cog = false, .zmp = false, .reference = false};
-  EXPECT_EQ(lines(with), lines(without) + 2);  // in the panel and in the legend
+  EXPECT_EQ(lines(with), lines(without) + 2);  // one in the panel and one in the legend
   EXPECT_TRUE(has(draw_loci(runs.both(), with), "reference f_z of DTAD"));
 }
 
@@ -354,8 +354,8 @@ TEST(Loci, ThereIsNoZmpInFlight) {
   }
   LociOptions options{.cog = false, .fz = false};
   const Drawing drawing = draw_loci({{"DTAD", &log}}, options);
-  const double left = 78, right = options.width - 18;                       // of the panels
-  const auto time = [&](double x) { return (x - left) / (right - left); };  // for one second
+  const double left = 78, right = options.width - 18;                       // edges of the panels
+  const auto time = [&](double x) { return (x - left) / (right - left); };  // place of one second
   for (const double width : {1.6, 1.3, 1.1})
     for (const Eigen::Vector2d& p : points_of(drawing, width))
       EXPECT_FALSE(p.y() > 60 && time(p.x()) > 0.401 && time(p.x()) < 0.597)

@@ -44,7 +44,7 @@ TEST(PushMap, ForwardIsUpAndLengthsAreImpulses) {
   ASSERT_EQ(curves.size(), 4u) << "open loop and one law in two panels";
   const std::vector<Eigen::Vector2d>& open = curves[0].points;
   const Eigen::Vector2d center = (open[0] + open[2]) / 2;
-  const double unit = (open[0] - center).norm();  // of 1 N s
+  const double unit = (open[0] - center).norm();  // length of 1 N s
   const std::vector<Eigen::Vector2d>& law = curves[1].points;
   EXPECT_NEAR((law[0] - (center + Eigen::Vector2d(0, -2 * unit))).norm(), 0, 1e-9);  // forward
   EXPECT_NEAR((law[1] - (center + Eigen::Vector2d(-4 * unit, 0))).norm(), 0, 1e-9);  // left
@@ -91,7 +91,7 @@ TEST(PushMap, NamesOfDirectionsAndRingsStandBesideTheDots) {
       for (const Eigen::Vector2d& p : dot.points) {
         const double across = std::max({left - p.x(), p.x() - left - wide, 0.0});
         const double along = std::max({top - p.y(), p.y() - bottom, 0.0});
-        EXPECT_GT(std::hypot(across, along), 2) << text->text;  // [pixel]
+        EXPECT_GT(std::hypot(across, along), 2) << text->text;  // distance [pixel]
       }
   }
 }

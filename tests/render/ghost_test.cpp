@@ -45,7 +45,8 @@ TEST(Ghost, StandsWhereTheCommandIs) {
     s.state.base.position.y() = 0;
     s.state.theta.setZero();
     s.cog.y() = 0;
-    s.command_base.position.y() = 0.15;  // to the right of the picture, seen from the front
+    // It is to the right in the picture, as seen from the front.
+    s.command_base.position.y() = 0.15;
   }
   const Image alone = ClipRenderer(model, log, bare()).frame(0.5);
   ClipOptions with = bare();
@@ -129,7 +130,8 @@ TEST(Ghost, HasNoSpeckleWhereItCoincides) {
   const RobotModel model = box_robot();
   SimulationLog log = box_run(model);
   SimulationLog other = log;
-  for (SimulationSample& s : other.samples) s.state.base.position.x() += 1e-4;  // a servo's sag
+  // As much as a servo sags.
+  for (SimulationSample& s : other.samples) s.state.base.position.x() += 1e-4;
   ClipOptions with = bare();
   for (const std::string& view : view_names()) {
     with.camera.view = view;

@@ -205,7 +205,7 @@ TEST(ClearanceRows, EdgesAreARowWhereNoCornerIsNearer) {
     RobotState state = model.rest_state();
     for (double& angle : state.theta) angle = random.uniform(-0.8, 0.8);
     update_positions(model, state, data);
-    ShapePair boxes;  // the first shape of either
+    ShapePair boxes;  // each is the first shape of its body
     EXPECT_EQ(clearance_point_count(collisions, boxes), 16);
     const bool meet = edges_meet(collisions, boxes, data, 1e-6);
     double least = 1;

@@ -196,7 +196,7 @@ TEST_P(ConstraintRows, NumbersAreThoseOfTheCheck) {
         near.insert(i);
   }
   std::vector<Trust> trusts = {Trust::cog, Trust::zmp};
-  if (!jumps) trusts.push_back(Trust::posture);  // for its DCM rows
+  if (!jumps) trusts.push_back(Trust::posture);  // because of its DCM rows
   for (const Trust trust : trusts) {
     CorrectionSpec all = spec(trust);
     all.near_pairs.assign(near.begin(), near.end());

@@ -148,7 +148,8 @@ TEST(CorrectionProblem, JacobianAgainstDifferences) {
         << kind;
   ASSERT_GT(problem.variable_count(), 100);
   Random random(3);
-  // As planned, where the ZMP rests in a sole's centre and the other foot begins to bear.
+  // The motion is as planned, where the ZMP rests in a sole's centre and the other foot begins to
+  // bear.
   expect_jacobian(problem, VectorXd::Zero(problem.variable_count()), 1e-6);
   expect_jacobian(problem, random.vector(problem.variable_count(), 0.05), 1e-6);
 }

@@ -133,7 +133,7 @@ TEST(Report, HasOneUnitPerQuantity) {
   for (const char* words : {">-12.3 mm<", ">2 mm<", ">70.7 deg<", ">57.3 deg<", ">1.23<", ">11.5<",
                             "COG x [mm]", "x [mm]"})
     EXPECT_NE(html.find(words), std::string::npos) << words;
-  std::string read = html;  // without scripts, whose code may have the same letters
+  std::string read = html;  // the text without scripts, in which the same letters may occur
   for (size_t at = 0; (at = read.find("<script", at)) != std::string::npos;)
     read.erase(at, read.find("</script>", at) - at);
   for (const char* words : {"[m]", " rad<"})

@@ -220,7 +220,7 @@ TEST(ServoFriction, IsThatOfTheModelsM1ToM6) {
 // When a target turns back, the joint does not move over 2 friction / kp. Under a load, the
 // friction also has a part proportional to the load.
 TEST(ServoFriction, OfAHeldLoadWidensTheBandInWhichAJointStays) {
-  constexpr double kLoad = -5, kRate = 0.01;  // [N m, rad/s]
+  constexpr double kLoad = -5, kRate = 0.01;  // load and rate [N m, rad/s]
   ServoDescription servo{.kp = 100, .kd = 5, .rotor_inertia = 0.01, .coulomb = 0.2};
   servo.load.external = 0.1;
   for (const double load : {0.0, kLoad}) {
@@ -260,7 +260,7 @@ TEST(ServoBacklash, IsTheHysteresisOfASlowTriangle) {
   servo.backlash = 0.03;
   OneJoint joint = joint_with(servo);
   Rig rig(joint);
-  constexpr double kRate = 0.05;  // [rad/s]
+  constexpr double kRate = 0.05;  // rate of the target [rad/s]
   double target = 0, drag = 0;
   for (int k = 0; k < 6000; ++k) {
     target = kRate * kHold * (k < 3000 ? k : 6000 - k);

@@ -4,6 +4,6 @@
 
 namespace ayumi::test {
 
-inline constexpr double kDegree = M_PI / 180;  ///< [rad]
+inline constexpr double kDegree = M_PI / 180;  ///< a degree [rad]
 
 }  // namespace ayumi::test

@@ -21,7 +21,7 @@ struct JumpMeasured {
   double spin = 0;      ///< angular momentum about the COG in flight [N m s]
 };
 
-/// Lowest corner of both soles above the ground [m].
+/// Height of the lowest corner of both soles above the ground [m].
 inline double sole_clearance(const RobotModel& model, const RobotData& data) {
   double lowest = 1e9;
   for (const Side side : {Side::left, Side::right})

@@ -81,7 +81,7 @@ inline void complete_series(const RobotModel& model, CommandSeries& series, doub
     const RobotState &p = at(k - 1), &q = at(k + 1), &c = at(k);
     CommandSample& s = series.samples[k];
     s.acceleration = Eigen::VectorXd::Zero(6 + dof);
-    if (k == 0 || k == n - 1) {  // at rest
+    if (k == 0 || k == n - 1) {  // the robot is at rest
       s.state.base_velocity.setZero();
       s.state.base_angular_velocity.setZero();
       s.state.dtheta = Eigen::VectorXd::Zero(dof);

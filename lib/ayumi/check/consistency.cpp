@@ -50,8 +50,8 @@ void judge(JudgedMotion& motion, int threads) {
 // Where the acceleration has a kink, as beside a flight, single samples of the ZMP are outliers. A
 // moment of up to kSpikeSize times the limit that lasts less than kSpikeTime turns nothing, so it
 // becomes a warning. Source of both constants: docs/attribution.md.
-constexpr double kSpikeTime = 0.005;  // [s]
-constexpr double kSpikeSize = 3;      // as a multiple of the limit
+constexpr double kSpikeTime = 0.005;  // longest time of a spike [s]
+constexpr double kSpikeSize = 3;      // largest size of a spike, as a multiple of the limit
 
 void excuse_spikes(const JudgedMotion& motion, std::vector<FindingWindow>& windows) {
   for (FindingWindow& w : windows) {

@@ -30,7 +30,7 @@ inline const char* verdict_of(const ConsistencyReport& report) {
 ConsistencyReport check_consistency(const RobotModel& model, const CommandSeries& series,
                                     const CheckOptions& options = {});
 
-/// False where the robot's profile states no limit of this kind for any motor.
+/// False if the robot's profile states no limit of this kind for any motor; otherwise true.
 bool has_limit(const RobotModel& model, FindingKind kind);
 
 }  // namespace ayumi

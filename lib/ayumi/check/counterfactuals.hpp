@@ -20,7 +20,7 @@ bool hangs_on(const JudgedMotion& motion, const Violation& collision, int dof);
 /// The torque of a flight is within its limit when nothing pushes or turns the robot.
 bool holds_in_free_flight(JudgedMotion& motion, const Violation& torque);
 
-/// True if the COG error is explained by the foot error: the COG is no farther off than the sole,
+/// Whether the COG error is explained by the foot error: the COG is no farther off than the sole,
 /// or its error vanishes when the robot is moved back rigidly with the sole into its place.
 /// Swinging soles always explain it.
 bool moves_cog(const JudgedMotion& motion, const Violation& foot, const Violation& cog);

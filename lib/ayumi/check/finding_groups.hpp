@@ -22,7 +22,8 @@ struct FindingGroup {
   std::vector<int> members = {};         ///< indices into ConsistencyReport::findings, by time
   int worst = 0;                         ///< index of the member that is furthest beyond its limit
   std::vector<std::string> places = {};  ///< the places of all members in words, each place once
-  std::vector<GroupConsequence> consequences = {};  ///< in the order of their first finding
+  /// Consequences in the order of their first finding.
+  std::vector<GroupConsequence> consequences = {};
 };
 
 /// Whether a value is further beyond its limit than another one of its kind.

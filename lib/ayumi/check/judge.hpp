@@ -23,7 +23,8 @@ struct Judgement {
   std::string reason() const;
 };
 
-/// `goals` are the goals of the series in their keyed forms. Throws as check_consistency().
+/// `goals` are the goals of the series in their keyed forms. Throws the same errors as
+/// check_consistency().
 Judgement judge(const RobotModel& model, const CommandSeries& series,
                 const std::vector<KeyedGoal>& goals, const CheckOptions& options);
 

@@ -1135,7 +1135,7 @@ class Hypotheses::Maker {
              [i, s, o](Pattern& p) { std::swap(p.keyframes[i].feet[s], p.keyframes[i].feet[o]); }});
       }
       if (!map || key.joints.empty()) continue;
-      // True if no other key moves the joints of this key.
+      // Whether no other key moves the joints of this key.
       const bool is_alone = std::none_of(
           pattern_.keyframes.begin(), pattern_.keyframes.end(), [&](const Keyframe& k) {
             return &k != &key &&

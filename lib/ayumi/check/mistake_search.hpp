@@ -20,7 +20,7 @@ struct Explanation {
   std::string place;    ///< JSON pointer in the pattern's file
   std::string written;  ///< the written value: "the right foot's x is 0.9 m"
   std::string instead;  ///< the remedy: "with 0.09 m, ..., the pattern is consistent"
-  bool enough = false;  ///< with it, the pattern is consistent
+  bool enough = false;  ///< whether the pattern is consistent with this change
 };
 
 /// Largest number of versions of the pattern that are sampled and checked in all rounds together.

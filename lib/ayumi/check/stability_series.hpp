@@ -23,7 +23,7 @@ struct StabilitySeries {
   std::vector<double> friction;      ///< largest share of the friction cone [1]
   /// Value of the joint with the largest share of its limit [1].
   std::vector<double> speed, torque;
-  std::vector<int> speed_dof, torque_dof;  ///< index of this joint; -1: no joint has a limit
+  std::vector<int> speed_dof, torque_dof;  ///< index of this joint; -1 if no joint has a limit
 };
 
 /// A series with `size` stretches of `dt` [s], still without values.
@@ -35,7 +35,7 @@ void keep_largest(double& kept, double value);
 /// Keeps the joint with the largest share of its limit; joints without a limit do not count.
 void keep_worst(double& kept, int& dof, const Eigen::VectorXd& value, const Eigen::VectorXd& limit);
 
-/// Throws as check_consistency().
+/// Throws the same errors as check_consistency().
 StabilitySeries stability_series(const RobotModel& model, const CommandSeries& series,
                                  const CheckOptions& options, double dt = 0.01);
 

@@ -17,7 +17,7 @@ enum class Quantity { length, angle, force, ratio };
 /// One number in the pattern.
 struct WrittenNumber {
   std::function<double&(Pattern&)> in;
-  double value = 0;    ///< [m, rad, N, 1]
+  double value = 0;    ///< value [m, rad, N, 1]
   double neutral = 0;  ///< the value of the track without this number, in the same unit
 };
 
@@ -30,7 +30,7 @@ struct WrittenValue {
   Quantity quantity = Quantity::length;
   bool across = false;        ///< a coordinate whose sign tells left from right
   double begin = 0, end = 0;  ///< the motion depends on it at least between these times [s]
-  std::vector<WrittenNumber> numbers = {};  ///< at least one
+  std::vector<WrittenNumber> numbers = {};  ///< its numbers, at least one
 
   /// A large value of this quantity: the length of a leg, a radian, the weight, or 1.
   double unit(const RobotModel& model) const;

@@ -34,7 +34,7 @@ class CommandPlan {
   /// Whether now() is after the last sample, where the plan is at rest.
   bool at_rest() const { return sample() >= static_cast<long>(series_->samples.size()); }
 
-  /// W of now() [dof]; null: the robot's own weights.
+  /// W of now() [dof]; null for the robot's own weights.
   const Eigen::VectorXd* joint_weight() const { return series_->joint_weight_at(sample()); }
 
   /// Continues at tick k after another law. The command is moved and turned to the feet of `from`.

@@ -17,14 +17,14 @@ namespace ayumi {
 /// Throws Error(usage) for an unknown gain or a gain out of range.
 void check_controller(const RobotModel& model, const ControllerSpec& spec);
 
-/// The gains by name as the controller uses them; there are none in open loop. Throws as
-/// check_controller().
+/// The gains by name as the controller uses them; there are none in open loop. Throws the same
+/// errors as check_controller().
 std::vector<std::pair<std::string, double>> gains_in_use(const RobotModel& model,
                                                          const ControllerSpec& spec);
 
 class Controller {
  public:
-  /// The series and the model must outlive the controller and its copies. Throws as
+  /// The series and the model must outlive the controller and its copies. Throws the same errors as
   /// check_controller(), and Error(bad_pattern) for a VIIP phase that the law cannot execute.
   Controller(const RobotModel& model, const ActuatorLimits& limits, const CommandSeries& series,
              const ControllerSpec& spec);
@@ -71,7 +71,7 @@ class Controller {
   /// all samples.
   std::shared_ptr<const Eigen::MatrixXd> torque_lead_;
   Law law_;
-  const ViipSpan* span_ = nullptr;  // the span that law_ executes; null: law_ follows the command
+  const ViipSpan* span_ = nullptr;  // the span that law_ executes; null if law_ follows the command
   ControlOutput out_;
 };
 

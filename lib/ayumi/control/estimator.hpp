@@ -24,7 +24,7 @@ struct Measurement {
   Eigen::Quaterniond attitude = Eigen::Quaterniond::Identity();
   /// Angular velocity in the axes of the IMU link [rad/s].
   Eigen::Vector3d gyro = Eigen::Vector3d::Zero();
-  std::array<FootLoad, 2> feet;  ///< by Side
+  std::array<FootLoad, 2> feet;  ///< loads of the feet, by Side
 };
 
 struct Estimate {

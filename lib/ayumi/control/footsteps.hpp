@@ -14,8 +14,8 @@ namespace ayumi {
 
 /// A place and a heading on the ground.
 struct GroundPose {
-  Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< [m]
-  double yaw = 0;                                      ///< [rad]
+  Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< place of the foothold [m]
+  double yaw = 0;                                      ///< heading of the foothold [rad]
 };
 
 /// Centre and heading of a sole.

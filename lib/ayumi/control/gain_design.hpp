@@ -19,7 +19,7 @@ struct LoopAnalysis {
   std::vector<std::complex<double>> poles;
   bool stable = false;
   double decay = 0;      ///< decay of the slowest mode; negative if it grows [1/s]
-  double frequency = 0;  ///< of that mode [Hz]
+  double frequency = 0;  ///< frequency of that mode [Hz]
 };
 
 /// The poles of the loop under the law of dtad.cpp.
@@ -45,7 +45,7 @@ struct GainWishes {
   /// Time in which the reference COG returns to the command [s].
   std::optional<double> return_time;
   std::optional<double> zmp_filter;  ///< time constant of the measured ZMP [s]
-  /// Time after which a lasting offset of the ZMP is accepted [s]; 0: never.
+  /// Time after which a lasting offset of the ZMP is accepted [s]; 0 if this never happens.
   std::optional<double> forget;
 };
 

@@ -11,7 +11,7 @@
 
 namespace ayumi {
 
-/// What a law requires of the body: the reference of (14)-(21) and (24).
+/// The quantities that a law requires of the body: the reference of (14)-(21) and (24).
 struct CogReference {
   Eigen::Vector3d zmp = Eigen::Vector3d::Zero();    ///< ref p_Z in the plan frame [m]
   double fz = 0;                                    ///< ref f_z [N]
@@ -30,7 +30,7 @@ struct ControlOutput {
   std::vector<std::string> notes;  ///< what was reduced in this tick: saturated joints, held limits
 };
 
-/// What one law passes on to the next.
+/// The state that one law passes on to the next.
 struct Handover {
   RobotState reference;                            ///< reference posture in the plan frame
   Eigen::Vector3d dcog = Eigen::Vector3d::Zero();  ///< COG velocity of the reference [m/s]

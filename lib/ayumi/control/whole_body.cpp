@@ -181,7 +181,7 @@ void solve_stacked_task(const StackedTask& task, const VectorXd& w, const Vector
   StackedTask::Vector y = -task.u;  // this is -v of (23)
   kernels.multiply_add(task.J.data(), kRows, n, kRows, bias.data(), y.data());
   if (!kernels.solve_positive(A.data(), kRows, kRows, y.data())) {
-    // For rows that contradict each other.
+    // This solution is for rows that contradict each other.
     x = weighted_least_norm(task.J, task.u, w, bias, damping);
     return;
   }

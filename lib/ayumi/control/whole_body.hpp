@@ -102,9 +102,9 @@ struct AnkleLaw {
   /// Share of the difference between one foot's ground slope and the general slope to which its
   /// ankle yields.
   double compliance = 0;
-  /// Time after which a lasting tilt counts as that of the ground [s]; 0: never.
+  /// Time after which a lasting tilt counts as that of the ground [s]; 0 if this never happens.
   double slope_time = 0;
-  /// The same time for a foot whose centre of pressure is inside its sole [s]; 0: slope_time.
+  /// The same time for a foot whose centre of pressure is inside its sole [s]; 0 for slope_time.
   double contact_tilt_time = 0;
 };
 
@@ -164,7 +164,7 @@ class ReferenceBody {
   double dt_;
   RobotData data_;
   Eigen::VectorXd weight_, lead_, previous_target_, offsets_;
-  std::vector<char> noted_;  // by dof: limits by which its servo target was bounded
+  std::vector<char> noted_;  // by dof: the limits by which its servo target was bounded
   ResolverWork work_;
   Resolution resolution_;
   RobotState reference_;

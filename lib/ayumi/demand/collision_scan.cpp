@@ -192,7 +192,7 @@ class ClearanceScan {
   std::vector<BodySphere> spheres_;
   RobotData data_;
   std::vector<std::vector<Eigen::Isometry3d>> poses_;  // poses by coarse sample and body
-  Eigen::MatrixXd way_, clearance_;                    // by coarse sample and pair [m]
+  Eigen::MatrixXd way_, clearance_;  // path lengths and clearances by coarse sample and pair [m]
   double least_ = std::numeric_limits<double>::infinity();
   // For each pair, samples with their clearances.
   std::vector<std::vector<std::pair<int, double>>> fine_;

@@ -29,8 +29,8 @@ std::vector<int> interval_index(const std::vector<ContactInterval>& intervals);
 
 /// The contact intervals of both feet of a series, and the interval of each sample.
 struct ContactPlan {
-  std::array<std::vector<ContactInterval>, 2> intervals;  ///< by Side
-  std::array<std::vector<int>, 2> index;                  ///< by Side, then sample
+  std::array<std::vector<ContactInterval>, 2> intervals;  ///< contact intervals, by Side
+  std::array<std::vector<int>, 2> index;  ///< index of the interval, by Side and then by sample
 
   const ContactInterval& at(Side side, int sample) const {
     const int s = static_cast<int>(side);

@@ -19,7 +19,7 @@ using Vector6d = Eigen::Matrix<double, 6, 1>;
 /// soles in this plane.
 struct SupportPlane {
   Eigen::Isometry3d frame = Eigen::Isometry3d::Identity();  ///< z is the normal
-  ConvexPolygon polygon;                                    ///< in its x y plane [m]
+  ConvexPolygon polygon;                                    ///< polygon in its x y plane [m]
 
   bool empty() const { return polygon.empty(); }
 };
@@ -50,8 +50,8 @@ double contact_threshold(const RobotModel& model);
 
 /// The ground force in the axes of the plane, and the ZMP if it has a meaning (f_n > min_force).
 struct GroundDemand {
-  double normal_force = 0;      ///< [N]
-  double tangential_force = 0;  ///< [N]
+  double normal_force = 0;      ///< force along the normal [N]
+  double tangential_force = 0;  ///< force along the plane [N]
   bool has_zmp = false;
   Eigen::Vector2d zmp = Eigen::Vector2d::Zero();        ///< ZMP in the plane [m]
   Eigen::Vector3d zmp_world = Eigen::Vector3d::Zero();  ///< ZMP in the world [m]

@@ -1,7 +1,7 @@
 #pragma once
-// What gears and motors add to the rigid tree of dynamics/inverse_dynamics.hpp: rotor inertia and
-// friction, one entry per dof. Inverse dynamics with drives is the tree's force plus
-// drive_torque(); forward dynamics takes them as an argument.
+// The torques that gears and motors add to the rigid tree of dynamics/inverse_dynamics.hpp: rotor
+// inertia and friction, one entry per dof. Inverse dynamics with drives is the tree's force plus
+// drive_torque(); forward dynamics takes the drives as an argument.
 
 #include "ayumi/model/robot_model.hpp"
 

@@ -12,8 +12,9 @@ struct GroundReaction {
   double yaw_moment = 0;  ///< moment about the vertical through the ZMP [N m]
 };
 
-/// From the base wrench of inverse_dynamics (force, moment about `base_position`). If the vertical
-/// force is below `min_force`, the ZMP has no meaning and stays under the base.
+/// The ground reaction that follows from the base wrench of inverse_dynamics() (force, moment about
+/// `base_position`). If the vertical force is below `min_force`, the ZMP has no meaning and stays
+/// under the base.
 GroundReaction ground_reaction(const Eigen::Vector3d& base_position,
                                const Eigen::Matrix<double, 6, 1>& wrench, double height,
                                double min_force = 1e-9);

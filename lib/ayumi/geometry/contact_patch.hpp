@@ -10,14 +10,14 @@ namespace ayumi {
 
 struct PatchPoint {
   int id = 0;                ///< number that stays the same while the same corners and edges touch
-  Eigen::Vector3d position;  ///< world [m]
+  Eigen::Vector3d position;  ///< place in the world [m]
   double gap = 0;            ///< distance along the normal, negative inside [m]
   bool corner_of_b = false;  ///< whether it is a corner or end of b on a face of a
 };
 
 struct ContactPatch {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit vector from a to b, in the world
-  int count = 0;                                      ///< number of points; 0: none is within reach
+  int count = 0;  ///< number of points; 0 if none is within reach
   std::array<PatchPoint, 16> points;
 };
 

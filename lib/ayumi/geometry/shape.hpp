@@ -15,14 +15,14 @@ struct Box {
   Eigen::Vector3d size = Eigen::Vector3d::Zero();  ///< full edge lengths [m]
 };
 struct Sphere {
-  double radius = 0;  ///< [m]
+  double radius = 0;  ///< radius of the sphere [m]
 };
 struct Cylinder {
-  double radius = 0;  ///< [m]
+  double radius = 0;  ///< radius of the cylinder [m]
   double length = 0;  ///< length along z from end to end [m]
 };
 struct Capsule {
-  double radius = 0;  ///< [m]
+  double radius = 0;  ///< radius of the cylinder and of the caps [m]
   double length = 0;  ///< length along z between the centres of the two caps [m]
 };
 

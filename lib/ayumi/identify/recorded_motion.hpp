@@ -19,8 +19,8 @@ struct AngleTable {
   double duration() const { return dt * static_cast<double>(theta.rows() - 1); }
 };
 
-/// What a robot measured in addition to its joint angles. Vectors that the file does not have are
-/// empty.
+/// Everything that a robot measured in addition to its joint angles. Vectors that the file does not
+/// have are empty.
 struct SensorTable {
   double dt = 0.001;          ///< time between rows [s]
   Eigen::MatrixXd foot_load;  ///< loads, rows x (left, right) [N], by the file's own calibration

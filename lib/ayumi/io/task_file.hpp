@@ -16,10 +16,10 @@ struct TaskOptions {
   std::string robot = {};                  ///< replaces the robot that the pattern names
   RobotSearch robots = {};                 ///< folders in which robots are searched by name
   bool meshes = false;                     ///< whether to load what only pictures need
-  int threads = 0;  ///< number of threads for sampling and the check; 0: all cores
+  int threads = 0;  ///< number of threads for sampling and the check; 0 for all cores
 };
 
-/// Throws as read_pattern(), load_robot() and make_task().
+/// Throws the same errors as read_pattern(), load_robot() and make_task().
 Task load_task(const std::filesystem::path& pattern, const TaskOptions& options = {},
                const Progress& progress = {});
 

@@ -74,12 +74,13 @@ struct Finding {
   FindingKind kind = FindingKind::cog_residual;
   Severity severity = Severity::error;
   double begin = 0, end = 0, at = 0;  ///< window of the finding, and time of its worst sample [s]
-  double worst = 0, limit = 0;        ///< in `unit`
+  double worst = 0, limit = 0;        ///< worst value and limit, in `unit`
   std::string unit;                   ///< "m", "N", "rad", "rad/s", "N m", "s", "1", ...
   std::string where;                  ///< `place` in words: a joint, foot, axis, support or bodies
   std::string hint;                   ///< advice about what to do
   std::string follows_from = {};      ///< the error that causes this one; "" if it has no cause
-  /// Index of this error in the report; -1: none, or the finding was read from a file.
+  /// Index of this error in the report; -1 if there is none, or if the finding was read from a
+  /// file.
   int cause = -1;
   std::string remedy = {};  ///< the hint without the advice to use `repair`
   Place place = {};

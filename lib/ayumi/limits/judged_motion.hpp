@@ -29,11 +29,11 @@ inline constexpr double kWindowGap = 0.020;
 struct Heat {
   struct Largest {
     double share = 0;  ///< largest share of the limit
-    int sample = -1;   ///< sample of this value; -1: none yet
+    int sample = -1;   ///< sample of this value; -1 if there is none yet
   };
   /// Sums of the squared torques before a sample, by dof, in a ring as long as the thermal window.
   Eigen::MatrixXd square_sum = {};
-  std::vector<Largest> largest = {};  ///< by dof
+  std::vector<Largest> largest = {};  ///< largest values, by dof
 };
 
 struct JudgedMotion {
@@ -77,7 +77,7 @@ struct JudgedMotion {
   const ContactPlan plan;
   const CollisionModel collisions;
   MotionDynamics dynamics;
-  const double weight;  ///< [N]
+  const double weight;  ///< weight of the robot [N]
 
   FindingWindows windows;
   FindingWindows table;  ///< violations of the table that a robot would receive

@@ -38,7 +38,7 @@ enum class LimitClass {
 
 /// A figure of the summary: the largest (or smallest) value of a limit over the motion.
 struct SummaryFigure {
-  const char* key = nullptr;    ///< key in JSON; null: the kind has no figure
+  const char* key = nullptr;    ///< key in JSON; null if the kind has no figure
   const char* label = nullptr;  ///< label on the report's page
   const char* unit = "";        ///< unit that is shown after the value times `scale`
   double scale = 1;
@@ -50,7 +50,7 @@ struct SummaryFigure {
 /// What a motion needs of the actuators if it violates a limit that another actuator profile may
 /// keep, such as "needs 8.1 N m at r_knee at 1.39 s (has 4.5)".
 struct ActuatorNeedWords {
-  int line = 0;            ///< position in the list of needs; 0: no actuator helps
+  int line = 0;            ///< position in the list of needs; 0 if no actuator helps
   const char* after = "";  ///< text after the unit
 };
 
@@ -91,13 +91,13 @@ struct FindingSpec {
   const char* unit = "";     ///< of the tolerance: "1" a share of the limit, "m g" of the weight
   double tolerance = 0;      ///< default tolerance; patterns and `--tolerance` may set another one
   const char* meaning = "";  ///< meaning in the text of `check --tolerances`
-  /// The smallest default for a motion of one robot; null: the default holds for all motions.
+  /// The smallest default for a motion of one robot; null if the default holds for all motions.
   double (*least_tolerance)(const RobotModel&, const CommandSeries&) = nullptr;
   SummaryFigure figure = {};
   ActuatorNeedWords actuator = {};
   RepairTraits repair = {};
 
-  /// The unit of the values of a violation; null: `unit`.
+  /// The unit of the values of a violation; null for `unit`.
   const char* (*finding_unit)(const JudgedMotion&, const Violation&) = nullptr;
   Place (*place)(const JudgedMotion&, const Violation&) = nullptr;
   Advice (*advice)(const JudgedMotion&, const FindingWindow&) = nullptr;
@@ -165,7 +165,7 @@ struct CheckOptions {
   std::string profile;  ///< actuator profile; "": the default of the robot
   double friction = 0.8;
   std::map<std::string, double> tolerances;  ///< tolerances by the name of the kind
-  int threads = 0;      ///< number of threads; 0: all cores; results do not depend on it
+  int threads = 0;      ///< number of threads; 0 for all cores; results do not depend on it
   bool degrees = true;  ///< whether texts for people have angles in degrees and not in rad
 };
 

@@ -61,7 +61,7 @@ struct JointRow {
   JointQuantity of = JointQuantity::angle;
   int dof = 0;
   double scale = 1;
-  double lead = 0;  ///< [s]
+  double lead = 0;  ///< time by which servo targets lead [s]
 };
 
 /// Rows of the clearance_points() of two shapes [m].
@@ -114,8 +114,8 @@ struct RowOrder {
 struct RowKind {
   const char* name = "";
   double RowPrices::*unit = &RowPrices::share;  ///< unit of a violation
-  double RowPrices::*soft_goal = nullptr;       ///< its price; null: the rows may not be violated
-  /// Price if limits are relaxed; null: the rows may not be violated.
+  double RowPrices::*soft_goal = nullptr;       ///< its price; null if the rows may not be violated
+  /// Price if limits are relaxed; null if the rows may not be violated.
   double RowPrices::*relaxed = &RowPrices::limit;
   /// Whether it requires more than the check; then it counts as cost of robustness.
   bool beyond_check = false;
@@ -130,7 +130,7 @@ struct RowBlock {
   RowRule rule;
   Eigen::VectorXd lower, upper;  ///< bounds of the rows
   /// If a single row is nearer to its bounds than this, it counts as active, and the repair places
-  /// rows of its kind next to it; 0: never.
+  /// rows of its kind next to it; 0 if this never happens.
   double active = 0;
   /// Largest violation of a soft goal, in the unit of the rows.
   double most_violation = kUnbounded;

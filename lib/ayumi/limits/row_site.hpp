@@ -30,7 +30,7 @@ struct CollocationPoint {
   std::array<Eigen::Isometry3d, 2> path;  ///< pose of the sole in the given motion, by Side
   /// Nearer one of the places where a swing begins and ends, by Side.
   std::array<Eigen::Isometry3d, 2> place;
-  /// The kinds and items that have rows here; empty: all of them.
+  /// The kinds and items that have rows here; empty for all of them.
   std::vector<std::pair<const RowKind*, int>> only;
   bool torques = false;  ///< whether a row depends on motor torques; set when all rows are placed
 
@@ -48,7 +48,7 @@ struct RowSettings {
   Trust trust = Trust::posture;
   const CollisionModel* collisions = nullptr;  ///< null: there are no rows of clearances
   std::vector<int> near_pairs;                 ///< pairs of bodies that are watched
-  std::vector<bool> locked;                    ///< locked joints by dof; empty: none
+  std::vector<bool> locked;                    ///< locked joints by dof; empty if there is none
   std::array<bool, 2> locked_feet = {};        ///< feet that keep their paths, by Side
   bool swing_goals =
       /// Whether low soles should be level and over their places, and the others high enough.

@@ -14,7 +14,7 @@ namespace ayumi {
 
 struct SafetyOptions {
   std::string profile;        ///< actuator profile for the speed limits; "": the default
-  double ramp = 2.0;          ///< smallest duration of the approach [s]; 0: no ramp
+  double ramp = 2.0;          ///< smallest duration of the approach [s]; 0 for no ramp
   std::string from = "home";  ///< named posture the robot stands in; "first" = the first row
   double hold = 0.5;          ///< time for which the last row is repeated [s]
   double counts_per_ms = 57;  ///< speed limit of the motor board [counts/ms]
@@ -24,7 +24,7 @@ struct SafetyOptions {
   /// 4e-9 rad.
   double beyond_range = 1e-6;
   double rest_speed = 0.1;  ///< speed below which the start and the end count as rest [rad/s]
-  double rest_window = 0;   ///< time over which the speed is a mean [s]; 0: over one row
+  double rest_window = 0;   ///< time over which the speed is a mean [s]; 0 for that over one row
 };
 
 /// The options for an imported sequence whose rows are kept and which is already complete: it gets
@@ -36,7 +36,7 @@ struct SafetyViolation {
   std::string kind;  ///< "position", "step", "range", "torque", "start_speed", "end_speed"
   std::string joint;
   double t = 0;                 ///< time of the worst row [s]
-  double value = 0, limit = 0;  ///< in `unit`
+  double value = 0, limit = 0;  ///< value and limit, in `unit`
   std::string unit;             ///< "rad", "counts", "rad/s", "N m"
   int rows = 0;                 ///< number of rows that violate this limit
   double begin = 0, end = 0;    ///< window of the violation in the time of the table [s]

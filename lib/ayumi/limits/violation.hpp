@@ -35,7 +35,7 @@ enum Fall { kMotionFalls = 0, kCommandFalls = 1, kMotionLeaps = 2 };
 struct FindingWindow {
   Violation worst;
   int first = 0, last = 0;  ///< first and last sample
-  int cause = -1;           ///< index of the window that causes this one; -1: it has no cause
+  int cause = -1;           ///< index of the window that causes this one; -1 if it has no cause
 };
 
 /// Violations of one kind and item at most `gap` samples apart are one window. Its severity is that

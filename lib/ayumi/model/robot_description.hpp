@@ -40,9 +40,9 @@ struct JointDescription {
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< axis of the joint in the joint frame
   bool has_limits = false;
   double lower = 0, upper = 0;  ///< position limits [rad] or [m]
-  double velocity = 0;          ///< speed limit [rad/s] or [m/s]; 0: not given
-  double effort = 0;            ///< torque or force limit [N m] or [N]; 0: not given
-  double damping = 0;           ///< [N m s/rad]
+  double velocity = 0;          ///< speed limit [rad/s] or [m/s]; 0 if it is not given
+  double effort = 0;            ///< torque or force limit [N m] or [N]; 0 if it is not given
+  double damping = 0;           ///< viscous friction [N m s/rad]
   double friction = 0;          ///< Coulomb friction [N m]
   std::string mimic;            ///< the joint that drives this one
   double mimic_multiplier = 1, mimic_offset = 0;
@@ -71,26 +71,27 @@ struct LoadFriction {
 /// bounded by the profile's peak torque and by the motor's voltage. A velocity feed-forward is a
 /// lead of delay + kd/kp seconds of the target. For a sliding joint, read m in place of rad.
 struct ServoDescription {
-  double kp = 0;             ///< [N m/rad]
-  double kd = 0;             ///< [N m s/rad]
+  double kp = 0;             ///< stiffness of the position loop [N m/rad]
+  double kd = 0;             ///< damping of the position loop [N m s/rad]
   double rotor_inertia = 0;  ///< inertia of the rotor, reflected through the gear [kg m^2]
   double viscous = 0;        ///< viscous friction of gear and bearing [N m s/rad]
   double coulomb = 0;        ///< dry friction [N m]
   double delay = 0;          ///< transport delay of the target [s], any number of ticks
-  /// Largest speed that the position loop asks the inner speed loop for [rad/s]; 0: no bound.
+  /// Largest speed that the position loop asks the inner speed loop for [rad/s]; 0 for no bound.
   double speed_command_limit = 0;
   /// Dry friction at rest beyond `coulomb` [N m]; at the rate v it is s times as large, with
   /// s = exp(-(|v| / stribeck_rate)^stribeck_exponent).
   double stribeck_torque = 0;
-  /// Rate at which the Stribeck part has decayed [rad/s]; 0: no Stribeck effect.
+  /// Rate at which the Stribeck part has decayed [rad/s]; 0 for no Stribeck effect.
   double stribeck_rate = 0;
   double stribeck_exponent = 2;  ///< exponent of the decay [1]
   LoadFriction load = {};
   double backlash = 0;  ///< whole play between motor and joint [rad]
-  /// Stiffness of the gear [N m/rad]; 0: stiff, or kGearStiffness kp if there is backlash.
+  /// Stiffness of the gear [N m/rad]; 0 for a stiff gear, or for kGearStiffness kp if there is
+  /// backlash.
   double gear_stiffness = 0;
-  double gear_damping = 0;  ///< [N m s/rad]
-  /// Largest torque at rest: torque constant times voltage / resistance [N m]; 0: no bound.
+  double gear_damping = 0;  ///< damping of the gear [N m s/rad]
+  /// Largest torque at rest: torque constant times voltage / resistance [N m]; 0 for no bound.
   double stall_torque = 0;
   double back_emf = 0;   ///< loss of torque with speed: torque constant^2 / resistance [N m s/rad]
   double dead_band = 0;  ///< half width of the dead band [rad]
@@ -106,11 +107,11 @@ struct ServoDescription {
 /// Limits and servos of the joints by name, under a profile name ("hoap1", "hoap1-strong").
 struct ActuatorProfile {
   std::string name;
-  std::map<std::string, double> speed;        ///< [rad/s]
-  std::map<std::string, double> peak_torque;  ///< [N m]
+  std::map<std::string, double> speed;        ///< speed limits by joint [rad/s]
+  std::map<std::string, double> peak_torque;  ///< peak torques by joint [N m]
   /// Largest RMS torque over thermal_window [N m].
   std::map<std::string, double> continuous_torque;
-  double thermal_window = 10.0;                    ///< [s]
+  double thermal_window = 10.0;                    ///< time over which torques are averaged [s]
   std::map<std::string, ServoDescription> servos;  ///< servos that replace those of the robot
 };
 
@@ -130,7 +131,8 @@ struct SequenceLayout {
   int motors = 0;  ///< number of motor columns, in the order of the devices from 1 on
   /// Whether angles are radians with the signs of the encoders, and not counts.
   bool radians = false;
-  std::vector<int> intervals_ms;  ///< intervals that the robot accepts [ms]; empty: any
+  /// Intervals that the robot accepts [ms]; empty if it accepts any.
+  std::vector<int> intervals_ms;
 
   bool has_interval() const { return !before.empty() && before.front() == "interval"; }
   size_t columns() const { return before.size() + static_cast<size_t>(motors) + after.size(); }
@@ -143,9 +145,9 @@ struct SoleDescription {
   /// z up. Footholds of a pattern are poses of this frame.
   Eigen::Isometry3d frame = Eigen::Isometry3d::Identity();
   std::vector<Eigen::Vector2d> polygon;  ///< convex, counter-clockwise, in the sole frame [m]
-  /// Stiffness of the whole sole on the ground [N/m]; 0: derived from the mass.
+  /// Stiffness of the whole sole on the ground [N/m]; 0 if it is derived from the mass.
   double stiffness = 0;
-  double damping_time = 0;  ///< ratio of contact damping to stiffness [s]; 0: default
+  double damping_time = 0;  ///< ratio of contact damping to stiffness [s]; 0 for the default
 };
 
 /// How recorded readings of a robot's load cells become forces. Polynomials begin with the highest
@@ -159,7 +161,7 @@ struct LoadCells {
 
 /// How recorded readings of a sensor with three axes become values: value = scale (reading - zero).
 struct AxisReadings {
-  /// Columns of x, y and z, counted from 1; empty: the recording has none.
+  /// Columns of x, y and z, counted from 1; empty if the recording has none.
   std::vector<int> columns;
   Eigen::Vector3d zero = Eigen::Vector3d::Zero();
   Eigen::Vector3d scale = Eigen::Vector3d::Ones();  ///< factor [m/s^2 or rad/s per reading]
@@ -170,12 +172,12 @@ struct CellResponse {
   double dead_zone = 0;   ///< force below which the reading is 0; subtracted from larger forces [N]
   double hysteresis = 0;  ///< difference of the reading between unloading and loading [N]
   double gain = 1;        ///< reading divided by the force that is left [1]
-  double saturation = 0;  ///< largest reading [N]; 0: no bound
+  double saturation = 0;  ///< largest reading [N]; 0 for no bound
   bool operator==(const CellResponse&) const = default;
 };
 
 struct SensorDescription {
-  std::string imu_link;  ///< link that carries the sensor; empty: the root link
+  std::string imu_link;  ///< link that carries the sensor; empty for the root link
   /// Position of the sensor in this link [m].
   Eigen::Vector3d imu_position = Eigen::Vector3d::Zero();
   double latency = 0;  ///< latency of all sensors [s]
@@ -190,11 +192,11 @@ struct SensorDescription {
   double force_resolution = 0;     ///< resolution of a load cell [N]
   /// Number of readings of a load cell, one in every tick, whose mean is reported.
   int force_readings = 1;
-  /// For "left" and "right", a response for each corner of the sole, or one for all corners; empty:
-  /// exact cells.
+  /// For "left" and "right", a response for each corner of the sole, or one for all corners; empty
+  /// if the cells are exact.
   std::map<std::string, std::vector<CellResponse>> force_cells;
   bool encoder_quantisation = false;            ///< whether joint angles are rounded to counts
-  std::map<std::string, LoadCells> load_cells;  ///< for "left" and "right"
+  std::map<std::string, LoadCells> load_cells;  ///< load cells for "left" and "right"
   AxisReadings accelerometer, gyro;
 
   /// Age of the oldest quantity that a controller with ticks of this length receives [s]. A mean of
@@ -237,8 +239,8 @@ struct RobotDescription {
   SensorDescription sensors;
   ControlDefaults control;
   double soft_limit_margin = 0;  ///< distance that is kept inside the position limits [rad]
-  double servo_period = 0.001;   ///< [s]
-  std::string trunk_link;        ///< link of the trunk; empty: the root link
+  double servo_period = 0.001;   ///< period of the servo targets [s]
+  std::string trunk_link;        ///< link of the trunk; empty for the root link
   /// Pairs of links that are never checked.
   std::vector<std::pair<std::string, std::string>> collision_ignore;
   /// Meshes that were left out, each with its link, in words.

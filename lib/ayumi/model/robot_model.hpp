@@ -48,7 +48,7 @@ struct ActuatorLimits {
   Eigen::VectorXd speed;              ///< largest speed by dof [rad/s]
   Eigen::VectorXd peak_torque;        ///< largest torque by dof [N m]
   Eigen::VectorXd continuous_torque;  ///< largest RMS torque by dof over thermal_window [N m]
-  double thermal_window = 10.0;       ///< [s]
+  double thermal_window = 10.0;       ///< time over which torques are averaged [s]
   std::vector<ServoDescription> servo;
   /// Whether the files give the joint a servo; a servo with kp = 0 is passive.
   std::vector<bool> has_servo;
@@ -68,8 +68,8 @@ struct Sole {
   std::vector<Eigen::Vector2d> polygon;  ///< corners, counter-clockwise, in the sole frame [m]
   /// Centroid of the polygon, in the sole frame [m].
   Eigen::Vector2d center = Eigen::Vector2d::Zero();
-  double stiffness = 0;     ///< [N/m]
-  double damping_time = 0;  ///< [s]
+  double stiffness = 0;     ///< stiffness of the sole on the ground [N/m]
+  double damping_time = 0;  ///< ratio of contact damping to stiffness [s]
 };
 
 class RobotModel {
@@ -83,7 +83,7 @@ class RobotModel {
 
   const RobotDescription& description() const { return description_; }
   const std::string& name() const { return description_.name; }
-  double mass() const { return mass_; }  ///< [kg]
+  double mass() const { return mass_; }  ///< mass of the robot [kg]
 
   const std::vector<Body>& bodies() const { return bodies_; }
   const std::vector<Dof>& dofs() const { return dofs_; }

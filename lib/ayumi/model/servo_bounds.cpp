@@ -57,7 +57,7 @@ void require_servos_that_fit(const RobotModel& model) {
   for (const std::string& profile : model.profile_names()) {
     const ActuatorLimits& limits = model.limits(profile);
     for (int j = 0; j < model.dof_count(); ++j) {
-      // For a sliding joint, read metre in place of radian.
+      // For a sliding joint, read metre instead of radian.
       const bool slides = model.dofs()[static_cast<size_t>(j)].prismatic;
       const double lever = slides ? 1 : length;
       const double friction = kFrictionShare * weight * lever,

@@ -169,7 +169,7 @@ void Extrapolation::next(VectorXd& guess) const {
 
 namespace {
 
-// True when a track has keys inside the interval, as the parabola of a flight has.
+// Whether a track has keys inside the interval, as the parabola of a flight has.
 bool is_ballistic(const Track& track, double begin, double end) {
   return std::any_of(track.keys().begin(), track.keys().end(), [&](const TrackKey& key) {
     return key.t > begin + 1e-9 && key.t < end - 1e-9;

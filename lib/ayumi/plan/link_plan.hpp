@@ -94,7 +94,7 @@ class LinkPlan {
         windows;  ///< intervals in which targets move the joints [s]
     bool at(double t) const;
   };
-  /// What the targets ask for at a time.
+  /// The place and direction that the targets ask for at a time.
   struct Aim {
     const Target* target = nullptr;
     Eigen::Vector3d place = Eigen::Vector3d::Zero();

@@ -13,8 +13,8 @@
 namespace ayumi {
 
 struct SampleOptions {
-  double dt = 0.001;  ///< [s]
-  int threads = 0;    ///< number of threads; 0: all cores; results do not depend on it
+  double dt = 0.001;  ///< time between samples [s]
+  int threads = 0;    ///< number of threads; 0 for all cores; results do not depend on it
 };
 
 /// Throws Error(bad_pattern) with file, place and remedy, for example for an unknown joint, for

@@ -21,9 +21,9 @@ struct SampleJob {
   const InverseKinematics& ik;
   const PatternTracks& tracks;
   const LinkPlan& links;
-  double dt = 0.001;  ///< [s]
+  double dt = 0.001;  ///< time between samples [s]
   int count = 0;      ///< number of samples
-  int threads = 0;    ///< number of threads; 0: all cores
+  int threads = 0;    ///< number of threads; 0 for all cores
   const Progress& progress;
 };
 
@@ -95,7 +95,7 @@ void continue_posture(const Extrapolation& postures, CommandSample& sample);
 PostureSolution solve_posture(const SampleJob& job, double t, const Eigen::Matrix3d& trunk,
                               CommandSample& sample, RobotData& data);
 
-/// True when a phase has no support.
+/// Whether a phase has no support.
 bool flies(const SampleJob& job);
 
 /// Fraction of the weight below which the ground force is too small for a ZMP to correct, (17).
@@ -113,7 +113,7 @@ struct CogPlan {
   std::array<Eigen::Vector2d, 2> omega = {
       Eigen::Vector2d::Ones(), Eigen::Vector2d::Ones()};  ///< omega at begin and end by axis [1/s]
   TrunkTurn turn;
-  double duration = 0;  ///< [s]
+  double duration = 0;  ///< duration of the pattern [s]
   /// Postures on a grid from beginning to end that are close to those of the motion and serve as
   /// initial guesses; may be empty.
   std::vector<RobotState> postures;

@@ -23,7 +23,7 @@ struct PatternTracks {
   std::string driver;                            ///< the reason for this in words
   std::array<std::optional<Track>, 3> cog;       ///< COG in the world: x, y, z [m]
   std::optional<std::array<Track, 3>> zmp;       ///< ZMP in the world [m]
-  std::optional<Track> fz;                       ///< [N]
+  std::optional<Track> fz;                       ///< vertical force [N]
   std::optional<std::array<Track, 3>> torso;     ///< roll, pitch, yaw [rad]
   std::optional<std::array<Track, 3>> base;      ///< position from a table [m]
   std::optional<std::array<Track, 4>> attitude;  ///< w, x, y, z from a table, unnormalised

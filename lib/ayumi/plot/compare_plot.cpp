@@ -14,8 +14,10 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector4f;
 
-constexpr double kComparedWidth = 1000, kCurveHeight = 104, kErrorHeight = 62;  // [pixel]
-constexpr double kComparedLeft = 96, kComparedRight = 24, kComparedTop = 60;    // [pixel]
+// Width of the plot, and heights of its panels [pixel].
+constexpr double kComparedWidth = 1000, kCurveHeight = 104, kErrorHeight = 62;
+// Margins of the plot [pixel].
+constexpr double kComparedLeft = 96, kComparedRight = 24, kComparedTop = 60;
 // Space between a curve and its difference, so that the names at their sides do not touch, and
 // space between curves.
 constexpr double kErrorGap = 20, kCurveGap = 26;  // [pixel]

@@ -105,9 +105,9 @@ Framing framing(const Camera& camera, double aspect, const std::vector<Vector3d>
   };
   for (const int axis : {0, 1}) {
     const Eigen::Vector2d at_zero = edges(axis, 0);
-    const double gained = parallel
-                              ? share * (axis == 0 ? aspect : 1.0)
-                              : 2 * k[static_cast<size_t>(axis)];  // for each metre of distance
+    const double gained = parallel ? share * (axis == 0 ? aspect : 1.0)
+                                   // Gain for each metre of distance.
+                                   : 2 * k[static_cast<size_t>(axis)];
     result.distance = std::max(result.distance, (at_zero[0] - at_zero[1]) / gained);
   }
   result.right = edges(0, result.distance).mean();

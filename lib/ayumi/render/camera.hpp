@@ -51,7 +51,7 @@ const std::vector<std::string>& view_names();
 /// share of the picture. `offsets` are counted from the camera's target in axes of the view (right,
 /// up, back) [m], so that the pictures of several instants have the same scale.
 struct Framing {
-  double right = 0, up = 0;  ///< by which the target moves across the view [m]
+  double right = 0, up = 0;  ///< distances by which the target moves across the view [m]
   /// Distance of a pinhole camera from the target, or the height of a parallel view [m].
   double distance = 0;
 };

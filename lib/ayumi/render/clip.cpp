@@ -623,7 +623,7 @@ void ClipRenderer::write_scale(Image& image, const Camera& camera, double t) con
   // The ground below the middle of the picture, in the direction of gravity.
   Vector3d below = camera.target;
   below.z() -= n.dot(camera.target - ground.translation()) / n.z();
-  const double pixel = camera.parallel_height / image.height;  // [m]
+  const double pixel = camera.parallel_height / image.height;  // height of a pixel [m]
   const double foot = project(camera, image.width, image.height, below).y();
   // Distance between marks, the smallest of 1, 2, 5 times a power of ten with at least three lines
   // of text between marks [m].

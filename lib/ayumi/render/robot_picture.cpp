@@ -40,7 +40,8 @@ RobotPicture draw_robot(const RobotModel& model, const std::string& view, bool m
                         const Eigen::VectorXd* theta) {
   ClipOptions options;
   options.camera.view = view;
-  OverlayOptions& overlay = options.overlay;  // of the marks, a robot without motion has only a COG
+  // A robot without motion has only a COG among the marks.
+  OverlayOptions& overlay = options.overlay;
   overlay.zmp = overlay.reference_zmp = overlay.support = overlay.forces = overlay.push = false;
   overlay.trails = overlay.caption = false;
   overlay.model = marks;

@@ -135,7 +135,7 @@ uniform vec4 hole;
 bool outside(vec2 p) { return any(lessThan(p, hole.xy)) || any(greaterThan(p, hole.zw)); }
 )";
 
-// Only for the depth of the ground.
+// This shader only writes the depth of the ground.
 inline constexpr const char* kGroundFragment = R"(
 in vec2 plane;
 out vec4 pixel;

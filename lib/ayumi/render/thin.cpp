@@ -82,7 +82,7 @@ class Thinning {
       go_through(tolerance_ * share * tolerance_ * share);
       std::erase_if(facets_, [](const Facet& facet) { return facet.gone; });
     }
-    // What the last bound still allows.
+    // Further rounds do what the last bound still allows.
     for (int more = 0; more < kRounds && facets_.size() < before - before / 50; ++more) {
       report(progress, {"surface", -1, ""});
       before = facets_.size();

@@ -14,7 +14,7 @@ struct Slacks {
   std::vector<int> group;  ///< index of the slack of each row; -1 for rows that are not relaxed
   Eigen::VectorXd unit;    ///< violation of the rows of each slack, for a slack of 1
   Eigen::VectorXd price;   ///< penalty of each slack in the objective, for a slack of 1
-  Eigen::VectorXd most;    ///< upper bound of each slack; empty: no bound
+  Eigen::VectorXd most;    ///< upper bound of each slack; empty for no bound
   /// Distance of each slack from the value that the start needs.
   double start = repair_policy::solver::kSlackStart;
 };

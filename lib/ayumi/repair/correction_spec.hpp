@@ -29,22 +29,23 @@ struct CorrectionSpec {
   double spacing = repair_policy::knots::kSpacing;  ///< time between the knots [s]
   std::vector<TimeWindow> windows;         ///< windows in which control points are free [s]
   std::array<bool, 2> free_ends = {};      ///< whether the first and the last posture may move
-  std::vector<bool> locked;                ///< locked joints by dof; empty: none
+  std::vector<bool> locked;                ///< locked joints by dof; empty if there is none
   std::vector<TimeWindow> locked_windows;  ///< windows in which nothing may move [s]
   std::vector<double> kept_times;          ///< times at which the posture may not change [s]
   std::array<bool, 2> locked_feet = {};    ///< feet that keep their paths, by Side
-  Eigen::VectorXd weights;  ///< factors on the weights of the joints by dof; empty: 1
-  Eigen::MatrixXd initial;  ///< initial control points; empty: no correction
+  Eigen::VectorXd weights;  ///< factors on the weights of the joints by dof; empty if all are 1
+  Eigen::MatrixXd initial;  ///< initial control points; empty for no correction
 
   bool planned_feet = false;  ///< swinging feet follow the plan and not the given motion
 
   // These members say what is judged, as in the check.
   Trust trust = Trust::posture;
-  const CollisionModel* collisions = nullptr;  ///< shapes whose clearances are watched; null: none
-  std::vector<int> near_pairs;                 ///< pairs of bodies that are watched
-  std::string profile;                         ///< limits of the actuators
-  Tolerances tolerance = tolerances({});       ///< tolerances of the check
-  double friction = 0.8;                       ///< friction coefficient of the ground
+  /// Shapes whose clearances are watched; null if there is none.
+  const CollisionModel* collisions = nullptr;
+  std::vector<int> near_pairs;            ///< pairs of bodies that are watched
+  std::string profile;                    ///< limits of the actuators
+  Tolerances tolerance = tolerances({});  ///< tolerances of the check
+  double friction = 0.8;                  ///< friction coefficient of the ground
 
   // These are the distances that are kept from the check's limits.
   bool at_check_limits = false;  ///< true: every limit is exactly that of the check
@@ -83,7 +84,7 @@ struct CorrectionSpec {
   std::vector<const CommandSeries*> seen;  ///< earlier results, the latest one last
 
   int threads =
-      /// Number of threads for functions and derivatives; 0: all cores; results do not depend on
+      /// Number of threads for functions and derivatives; 0 for all cores; results do not depend on
       /// it.
       0;
 };

@@ -14,9 +14,9 @@
 namespace ayumi {
 
 struct ProgramHessian {
-  SparsePattern pattern;           ///< the nonzeros of the objective, then those of the curvature
-  Eigen::VectorXd objective;       ///< values of the first nonzeros
-  std::vector<int> columns;        ///< columns of the correction that are curved; empty: none
+  SparsePattern pattern;      ///< the nonzeros of the objective, then those of the curvature
+  Eigen::VectorXd objective;  ///< values of the first nonzeros
+  std::vector<int> columns;   ///< columns of the correction that are curved; empty if there is none
   std::vector<int> first_nonzero;  ///< first nonzero of the four pairs of each control point
 };
 

@@ -30,7 +30,7 @@ namespace ayumi {
 /// Random control points: joints and base rotation are within +-size [rad], the base within a tenth
 /// of it [m].
 struct RandomStart {
-  double size = 0;  ///< 0: the search starts as usual
+  double size = 0;  ///< size of the track with which the search starts; with 0, it starts as usual
   std::uint64_t seed = 0;
 };
 
@@ -49,7 +49,7 @@ struct RepairOptions {
   std::vector<std::pair<double, double>> locked_windows;
   std::map<std::string, double> joint_weights;  ///< factors on the cost of moving a joint
   Trust trust = Trust::posture;
-  /// Factor on the robustness cost; 0: the smallest change that passes the check.
+  /// Factor on the robustness cost; 0 for the smallest change that passes the check.
   double safety = 1;
   bool keep_partial = false;  ///< whether a stopped repair concludes with the best point so far
   double knot_spacing = repair_policy::knots::kSpacing;  ///< distance of the B-splines' knots [s]
@@ -82,7 +82,7 @@ struct InfeasibilityCause {
   Finding finding;        ///< the finding in the nearest motion that was found
   double violation = 0;   ///< worst / limit, or worst - limit for lengths and angles
   bool is_ratio = false;  ///< whether `violation` is a ratio; otherwise it has the finding's unit
-  /// The window would pass if it took longer by this factor; 0: it would not.
+  /// The window would pass if it took longer by this factor; 0 if it would not.
   double time_factor = 0;
   std::string text;  ///< the complete reason in words
 };

@@ -11,7 +11,7 @@ namespace ayumi {
 RepairOptions preferred_options(const Pattern& pattern);
 
 /// repair() of `series`, the samples of `pattern`. If the pattern has a correction that is not
-/// enough, the motion without it is repaired. Throws as repair() and sample().
+/// enough, the motion without it is repaired. Throws the same errors as repair() and sample().
 RepairResult repair(const RobotModel& model, const Pattern& pattern, const CommandSeries& series,
                     const RepairOptions& options, const Progress& progress = {});
 

@@ -67,7 +67,8 @@ double robustness_cost(const RobotModel& model, const CommandSeries& before,
   spec.joint_margin = 0;
   const CorrectionProblem problem(model, before, spec);
   const VectorXd g = problem.constraints_of(after);
-  std::map<std::tuple<const RowKind*, int, long>, double> violations;  // for each limit and window
+  // Violations by limit and window.
+  std::map<std::tuple<const RowKind*, int, long>, double> violations;
   double sum = 0;
   for (const RowBlock& block : problem.blocks()) {
     const int k = problem.points()[static_cast<size_t>(block.point)].sample;

@@ -29,13 +29,13 @@ struct ReportInput {
   std::string title;            ///< title of the pattern
   std::vector<ReportRun> runs;  ///< at least one run; the last one is judged and replayed
   RunResults results;
-  std::vector<PushThreshold> thresholds;   ///< push thresholds; empty: there is no study
+  std::vector<PushThreshold> thresholds;   ///< push thresholds; empty if there is no study
   const Comparison* comparison = nullptr;  ///< comparison with a recording; must outlive the call
   std::string libraries = {};  ///< libraries of the program with their versions; may be empty
 };
 
 struct ReportOptions {
-  std::shared_ptr<const RobotLook> look = {};  ///< look of the robot; null: robot_look() of it
+  std::shared_ptr<const RobotLook> look = {};  ///< look of the robot; null for robot_look() of it
   size_t max_bytes = 8'000'000;   ///< size of the page; replay and pictures are reduced to keep it
   double rate = 50;               ///< rate of the replay [Hz]
   size_t max_triangles = 60'000;  ///< triangles of the robot in the replay
@@ -53,7 +53,7 @@ struct Report {
 bool has_replay();
 
 /// The same input gives the same bytes. Throws Error(usage) if there is no run or an empty one, and
-/// throws as ClipRenderer does.
+/// the same errors as ClipRenderer.
 Report make_report(const RobotModel& model, const ReportInput& input,
                    const ReportOptions& options = {}, const Progress& progress = {});
 

@@ -54,7 +54,7 @@ class Ground {
   const Eigen::Isometry3d& pose() const { return floor_.pose; }
   /// The normal in the world.
   Eigen::Vector3d normal() const { return floor_.pose.linear().col(2); }
-  /// In the world [rad/s].
+  /// Angular velocity of the floor in the world [rad/s].
   const Eigen::Vector3d& angular_velocity() const { return floor_.angular_velocity; }
   bool at_rest() const { return floor_.velocity.isZero(0) && floor_.angular_velocity.isZero(0); }
   /// The velocity of the floor at the point p, in the world [m, m/s].
@@ -97,7 +97,7 @@ class Ground {
   HeightField field_;
   FloorPose still_, floor_;
   std::vector<Block> blocks_;       // blocks of the world, then the bumps
-  std::vector<SolidBlock> solids_;  // in the same order
+  std::vector<SolidBlock> solids_;  // solids in the same order
   size_t fixed_ = 0;                // number of blocks of the world
   std::optional<double> friction_;
   double top_ = 0, fixed_top_ = 0;

@@ -47,8 +47,9 @@ class Schedule {
   struct Entry {
     Disturbance source;
     long first = 0, count = 1;
-    int link = -1, joint = -1;  ///< -1: link: the COG; joint: all joints
-    double per_step = 0;        ///< force or torque if the push is a rectangle [N] or [N m]
+    /// Link and joint on which it acts; -1 stands for the COG and for all joints.
+    int link = -1, joint = -1;
+    double per_step = 0;  ///< force or torque if the push is a rectangle [N] or [N m]
     std::optional<Eigen::Vector2d>
         place{};  ///< place of a bump that has risen, in the ground's frame [m]
   };

@@ -44,7 +44,7 @@ class Sensors {
 
   const RobotModel* model_;
   Eigen::VectorXd offset_;  // offsets of the encoders [rad, m]
-  Eigen::VectorXd counts_;  // counts per rad; 0: unknown
+  Eigen::VectorXd counts_;  // counts per rad; 0 if they are unknown
   int imu_;                 // link of the IMU
   double dt_;
   bool noise_;
@@ -58,7 +58,8 @@ class Sensors {
   // The latencies of the robot's own joint angles, of its IMU and of its load cells, and the
   // longest of these [ticks].
   size_t encoder_latency_ = 0, imu_latency_ = 0, force_latency_ = 0, latency_ = 0;
-  std::array<std::vector<LoadCell>, 2> cells_;  // cells by Side and corner; empty: exact cells
+  // Cells by Side and corner; empty if the cells are exact.
+  std::array<std::vector<LoadCell>, 2> cells_;
   // Readings for the longest latency + 1 ticks; the newest is at newest_.
   std::vector<Measurement> ring_;
   size_t newest_ = 0, filled_ = 0;

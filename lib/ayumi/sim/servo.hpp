@@ -59,7 +59,7 @@ double dry_friction(const ServoDescription& servo, double rate, double motor, do
 
 /// The input of the position loop in one step.
 struct ServoError {
-  double target = 0;    ///< with it, kp (target - phi) is the torque of the position error
+  double target = 0;    ///< target with which kp (target - phi) is the torque of the position error
   bool inside = false;  ///< whether the error is within the dead band, so that it exerts no torque
 };
 /// The input of the servo of `dof`, whose motor is at `phi` at the start of the step. `target` is

@@ -18,7 +18,8 @@ struct Estimate;
 /// The plant that moves the robot.
 struct PlantKind {
   std::string name = "ayumi";
-  /// The function that makes the plant; empty: Ayumi's own plant. The model must outlive the plant.
+  /// The function that makes the plant; empty for Ayumi's own plant. The model must outlive the
+  /// plant.
   std::function<PlantInterface(const RobotModel&, const ActuatorLimits&, const World&)> make = {};
 };
 

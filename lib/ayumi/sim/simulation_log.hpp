@@ -73,8 +73,9 @@ const char* name_of(Outcome outcome);
 /// The largest share of a limit that a joint uses, with its place.
 struct JointShare {
   double ratio = 0;  ///< share of the limit
-  int joint = -1;  ///< index of the joint in SimulationLog::joints; -1: unknown, as in older files
-  double at = 0;   ///< time [s]
+  /// Index of the joint in SimulationLog::joints; -1 if it is unknown, as in older files.
+  int joint = -1;
+  double at = 0;  ///< time [s]
 };
 
 /// The verdict and the figures of a run, as docs/cli.md defines them.
@@ -86,15 +87,16 @@ struct SimulationResult {
   double final_cog_error = 0;
   double final_speed = 0;       ///< speed of the COG at the end [m/s]
   double zmp_tracking_rms = 0;  ///< measured ZMP relative to the reference ZMP [m]
-  double zmp_amplitude = 0;     ///< amplitude of the true ZMP's oscillation at the end [m]; 0: none
-  double zmp_frequency = 0;     ///< frequency of this oscillation [Hz]
-  double flight = 0;            ///< time without ground contact [s]
-  double apex = 0;              ///< height of the COG above its command [m]
-  int steps = 0;                ///< number of touchdowns
-  JointShare speed = {};        ///< the largest joint speed as a share of its limit
-  JointShare torque = {};       ///< the largest applied torque as a share of its limit
-  double max_penetration = 0;   ///< penetration of a sole vertex [m]
-  double max_slip = 0;          ///< slip of a supporting foot while it is planned in contact [m]
+  /// Amplitude of the true ZMP's oscillation at the end [m]; 0 if there is none.
+  double zmp_amplitude = 0;
+  double zmp_frequency = 0;    ///< frequency of this oscillation [Hz]
+  double flight = 0;           ///< time without ground contact [s]
+  double apex = 0;             ///< height of the COG above its command [m]
+  int steps = 0;               ///< number of touchdowns
+  JointShare speed = {};       ///< the largest joint speed as a share of its limit
+  JointShare torque = {};      ///< the largest applied torque as a share of its limit
+  double max_penetration = 0;  ///< penetration of a sole vertex [m]
+  double max_slip = 0;         ///< slip of a supporting foot while it is planned in contact [m]
   double max_contact_residual = 0;  ///< residual of the contact solve [m/s]
   int max_contact_iterations = 0;
   double mean_contact_iterations = 0;

@@ -21,8 +21,8 @@ namespace ayumi {
 class Simulator {
  public:
   /// After construction, the servos have held the first posture until the robot rests; the next
-  /// tick is 0. Model and series must outlive the simulator and its copies. Throws as simulate()
-  /// does.
+  /// tick is 0. Model and series must outlive the simulator and its copies. Throws the same errors
+  /// as simulate().
   Simulator(const RobotModel& model, const CommandSeries& series, const SimulateOptions& options);
 
   /// Replaces the disturbances from now on; the effect of past ones remains. Throws
@@ -108,10 +108,10 @@ class Simulator {
   Controller controller_;
   ControlOutput changed_;  // output of the law with the targets of the caller, or with whole counts
   bool counts_targets_;    // servos receive whole counts of their encoders
-  Eigen::VectorXd counts_;  // counts per rad, for counts_targets_; 0: unknown
+  Eigen::VectorXd counts_;  // counts per rad, for counts_targets_; 0 if they are unknown
   Measurement corrected_;   // readings minus encoder_offset_
   Eigen::VectorXd
-      // Offsets that were estimated while the robot stands [rad, m]; empty: none was found.
+      // Offsets that were estimated while the robot stands [rad, m]; empty if none was found.
       encoder_offset_;
   CommandSample plan_;  // plan of the last tick that is done
   StepReport report_;

@@ -13,7 +13,8 @@ namespace ayumi {
 
 /// A force or a couple from outside that acts during one step.
 struct ExternalWrench {
-  int body = -1;  ///< body on which it acts; -1: through the whole-body COG, on the trunk
+  /// Body on which it acts; -1 if it acts through the COG of the whole robot, on the trunk.
+  int body = -1;
   /// Point in the world [m]; not used for body -1.
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< force in the world [N]
@@ -24,7 +25,7 @@ struct ExternalWrench {
 struct CarriedMass {
   int link = 0;
   Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< point in the link frame [m]
-  double mass = 0;                                  ///< [kg]
+  double mass = 0;                                  ///< mass of the point [kg]
   bool operator==(const CarriedMass&) const = default;
 };
 
@@ -46,14 +47,15 @@ struct FloorPose {
   /// Pose of the ground's frame in the world.
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< velocity of the frame's origin [m/s]
-  Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  ///< [rad/s]
+  /// Angular velocity of the floor [rad/s].
+  Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();
 };
 
 /// Everything from outside that acts on the robot during one step.
 struct StepInput {
   std::vector<ExternalWrench> wrenches;
   std::vector<CarriedMass> payloads;
-  std::vector<JointFault> joints;  ///< faults by dof; empty: no faults
+  std::vector<JointFault> joints;  ///< faults by dof; empty for no faults
   std::optional<FloorPose> floor;  ///< empty: the world's slope at rest
   /// Friction of the whole ground, which replaces that of the world.
   std::optional<double> friction;
@@ -80,13 +82,13 @@ struct StepReport {
   Eigen::VectorXd motor, motor_rate;
   std::array<std::vector<SoleForce>, 2> soles;  ///< by Side, in the order of the sole's polygon
   bool body_contact = false;   ///< whether a body that is not a sole touches the ground
-  int touching_body = -1;      ///< the first such body; -1: none, or unknown
+  int touching_body = -1;      ///< the first such body; -1 if there is none, or if it is unknown
   std::vector<int> saturated;  ///< dofs whose torque is at its limit
   int contact_iterations = 0;
   double contact_residual = 0;  ///< residual of the contact solve [m/s]
   double max_penetration = 0;   ///< largest penetration of a sole vertex [m]
   EnergyBalance work;           ///< work in this step
-  /// The first pair of bodies of the robot that touch each other; -1: none.
+  /// The first pair of bodies of the robot that touch each other; -1 if there is none.
   std::array<int, 2> self_contact = {-1, -1};
 };
 

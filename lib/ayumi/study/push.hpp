@@ -20,7 +20,7 @@ struct PushPhase {
 
 struct PushOptions {
   std::vector<PushPhase> phases;            ///< phases; if empty, default_push_phases()
-  std::vector<ControllerSpec> controllers;  ///< in addition to open loop
+  std::vector<ControllerSpec> controllers;  ///< laws in addition to open loop
   int directions = 8;          ///< number of evenly spread directions, the first along +x
   double duration = 0.02;      ///< duration of a push [s]
   double step = 0.06;          ///< step of the search, in capture bounds

@@ -26,7 +26,7 @@ constexpr size_t kMostFootholds = 3;
 // Grain of a change to the side, and its largest size. Chosen: the grain is what an author writes,
 // and the largest size limits the search.
 constexpr double kSideGrain = 1e-3, kMostSide = 0.2;  // [m]
-constexpr double kDegree = EIGEN_PI / 180;            // [rad]
+constexpr double kDegree = EIGEN_PI / 180;            // a degree [rad]
 constexpr double kRadianGrain = 0.01;  // grain of a turn if the pattern is in rad [rad]
 // Largest overlap of the feet that is examined, as a share of the width of a sole. Chosen: the
 // overlap of a step that is turned or narrowed a little too much. Feet that are exchanged, or on

@@ -28,8 +28,8 @@ struct MirrorMap {
 MirrorMap mirror_map(const RobotModel& model);
 
 /// Exchanges left and right in feet, joints, y coordinates, pushes, table and correction. Mirrored
-/// twice, a pattern is unchanged. Throws as mirror_map, and Error(bad_pattern) for an unknown
-/// joint.
+/// twice, a pattern is unchanged. Throws the same errors as mirror_map, and Error(bad_pattern) for
+/// an unknown joint.
 Pattern mirrored(const RobotModel& model, const Pattern& pattern);
 
 /// The pattern with all times multiplied by `scale`. f_z keys get the vertical acceleration of the
@@ -58,14 +58,14 @@ struct TimeCourse {
 /// the full model). `series` holds the samples of the pattern, between which the postures follow
 /// their rates and accelerations. Phases, pushes, weights and windows move along. The feet are
 /// planned where the joints have them, because the path of a planned swing has a fixed timing.
-/// Throws as baked().
+/// Throws the same errors as baked().
 Pattern with_course(const RobotModel& model, const Pattern& pattern, const CommandSeries& series,
                     const TimeCourse& course, const std::string& table);
 
 /// A single keyframe that is copied, moved or mirrored.
 struct KeyEdit {
   double at = 0;             ///< time of the keyframe, within 0.5 ms [s]
-  std::optional<double> to;  ///< its new time [s]; none: it stays
+  std::optional<double> to;  ///< its new time [s]; without it, the time stays
   bool copy = false;         ///< the keyframe also stays at its old time
   bool mirror = false;       ///< left and right are exchanged at the new time
 };
@@ -100,9 +100,9 @@ Pattern joined(const RobotModel& model, const MotionPart& first, const MotionPar
 
 /// Two patterns in sequence as keys, as joined() does it with samples: keys, phases and scenario of
 /// the second pattern are moved in place and time; keys at the join keep the value of every track
-/// of both patterns. Throws as joined(), and Error(bad_pattern) with the reason if keys cannot
-/// express the joined motion: a table, a correction, VIIP phases, legs led by joints, foot keys,
-/// and tracks of COG or ZMP that only one of the patterns has.
+/// of both patterns. Throws the same errors as joined(), and Error(bad_pattern) with the reason if
+/// keys cannot express the joined motion: a table, a correction, VIIP phases, legs led by joints,
+/// foot keys, and tracks of COG or ZMP that only one of the patterns has.
 Pattern chained(const RobotModel& model, const MotionPart& first, const MotionPart& second,
                 double over);
 
@@ -120,13 +120,13 @@ struct LoopGap {
 LoopGap loop_gap(const RobotModel& model, const MotionPart& motion);
 
 struct Ramps {
-  /// Duration of the transition at the beginning and at the end [s]; 0: no transition.
+  /// Duration of the transition at the beginning and at the end [s]; 0 for no transition.
   double in = 1, out = 1;
   std::string posture = "home";
 };
 /// The motion with transitions from a named posture to its first posture and back at the end, as a
 /// table. The feet stay in their places, and the named posture has its COG above their middle.
-/// Throws as joined().
+/// Throws the same errors as joined().
 Pattern ramped(const RobotModel& model, const MotionPart& motion, const Ramps& ramps,
                const std::string& table);
 

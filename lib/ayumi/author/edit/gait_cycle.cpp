@@ -102,7 +102,7 @@ Pattern cut(const RobotModel& model, const MotionPart& motion, long first, long 
                " s a foot is in the air; let the part begin and end where "
                "both feet are on the ground");
   Pattern result = baked(model, motion.pattern, series, table);
-  result.repair = {};  // times and joints are those of the whole walk
+  result.repair = {};  // its times and joints are those of the whole walk
   DenseTable& dense = *result.table;
   const long rows = last - first + 1;
   dense.theta = dense.theta.middleRows(first, rows).eval();

@@ -12,7 +12,7 @@ struct WalkParameters {
   double period = 0.55;          ///< duration of one step, single and double support together [s]
   double double_support = 0.18;  ///< double support as a fraction of the period
   double lift = 0.015;           ///< height to which the swing sole is lifted [m]
-  /// Height of the COG [m]; 0: that of the home posture, or less if its legs are straight.
+  /// Height of the COG [m]; 0 for that of the home posture, or less if its legs are straight.
   double cog_height = 0;
   double turn = 0;  ///< yaw change per step, left positive [rad]
   double side = 0;  ///< sideways distance per pair of steps, left positive [m]
@@ -47,12 +47,12 @@ struct SwayParameters {
   double forward = 0;   ///< distance to the front and back of the middle [m]
   double period = 2.0;  ///< duration of one movement to and fro [s]
   int cycles = 2;
-  double cog_height = 0;  ///< height of the COG; 0: starting_height() [m]
+  double cog_height = 0;  ///< height of the COG; 0 for starting_height() [m]
 };
 SwayParameters sway_defaults(const RobotModel& model);
 
-/// The pattern has COG keys: the middle, left (front), right (back), the middle. Throws as
-/// walk_pattern.
+/// The pattern has COG keys: the middle, left (front), right (back), the middle. Throws the same
+/// errors as walk_pattern.
 Pattern sway_pattern(const RobotModel& model, const SwayParameters& parameters);
 
 /// Half of the width of the narrower sole [m].
@@ -68,11 +68,12 @@ struct SquatParameters {
   double period = 2.0;  ///< duration of one cycle without the hold [s]
   double hold = 0.3;    ///< time at the lowest point [s]
   int cycles = 2;
-  double cog_height = 0;  ///< height of the COG at the top; 0: starting_height() [m]
+  double cog_height = 0;  ///< height of the COG at the top; 0 for starting_height() [m]
 };
 SquatParameters squat_defaults(const RobotModel& model);
 
-/// The pattern has keys of the COG height; the horizontal COG is solved. Throws as walk_pattern.
+/// The pattern has keys of the COG height; the horizontal COG is solved. Throws the same errors as
+/// walk_pattern.
 Pattern squat_pattern(const RobotModel& model, const SquatParameters& parameters);
 
 /// The COG goes down as if to sit on a seat and stays there, or comes up from there. The trunk
@@ -81,7 +82,7 @@ struct SeatParameters {
   double depth = 0.05;    ///< depth below the standing COG [m]
   double lean = 0.35;     ///< lean of the trunk half-way [rad]
   double period = 1.5;    ///< duration of the motion [s]
-  double cog_height = 0;  ///< height of the standing COG; 0: starting_height() [m]
+  double cog_height = 0;  ///< height of the standing COG; 0 for starting_height() [m]
 };
 SeatParameters seat_defaults(const RobotModel& model);
 Pattern sit_pattern(const RobotModel& model, const SeatParameters& parameters);
@@ -93,7 +94,7 @@ struct BowParameters {
   double angle = 0.5;     ///< angle by which the trunk leans [rad]
   double period = 2.4;    ///< duration of both movements without the hold [s]
   double hold = 0.5;      ///< time at the lowest point [s]
-  double cog_height = 0;  ///< height of the standing COG; 0: starting_height() [m]
+  double cog_height = 0;  ///< height of the standing COG; 0 for starting_height() [m]
 };
 BowParameters bow_defaults(const RobotModel& model);
 Pattern bow_pattern(const RobotModel& model, const BowParameters& parameters);
@@ -103,10 +104,11 @@ struct WaveParameters {
   Side side = Side::right;
   int cycles = 3;
   double period = 0.6;    ///< duration of one movement to and fro [s]
-  double cog_height = 0;  ///< height of the COG; 0: starting_height() [m]
+  double cog_height = 0;  ///< height of the COG; 0 for starting_height() [m]
 };
 WaveParameters wave_defaults(const RobotModel& model);
-/// Throws as walk_pattern, and when no arm of three joints reaches beside the head.
+/// Throws the same errors as walk_pattern, and also if no arm of three joints reaches beside the
+/// head.
 Pattern wave_pattern(const RobotModel& model, const WaveParameters& parameters);
 
 /// While the robot stands on one foot, the other foot goes back, kicks forward and comes back to
@@ -116,14 +118,14 @@ struct KickParameters {
   double length = 0.04;   ///< distance of the kick ahead of the foot's place [m]
   double height = 0.03;   ///< height of the foot above the ground when it kicks [m]
   double period = 1.6;    ///< duration of the swing [s]
-  double cog_height = 0;  ///< height of the COG; 0: starting_height() [m]
+  double cog_height = 0;  ///< height of the COG; 0 for starting_height() [m]
 };
 KickParameters kick_defaults(const RobotModel& model);
 Pattern kick_pattern(const RobotModel& model, const KickParameters& parameters);
 
 /// Slow sweeps, chirps and steps of every joint within its limits, by which `identify` can
 /// distinguish the constants of the servos; the robot stands on both feet. `scale` is a factor on
-/// all amplitudes, `stature` a factor on the COG height. Throws as walk_pattern.
+/// all amplitudes, `stature` a factor on the COG height. Throws the same errors as walk_pattern.
 Pattern excite_pattern(const RobotModel& model, double scale = 1, double stature = 1);
 
 /// A jump has a stoop, lift-off, flight, touchdown and settling; with `times` jumps there is no
@@ -138,8 +140,8 @@ struct JumpParameters {
 JumpParameters jump_defaults(const RobotModel& model);
 
 /// The pattern has keys of the COG height at the lowest points, at lift-off and at touchdown, and
-/// foot keys for a jump forward; the flight is the parabola. Throws as walk_pattern, and if no push
-/// within the stoop reaches the height.
+/// foot keys for a jump forward; the flight is the parabola. Throws the same errors as
+/// walk_pattern, and also if no push within the stoop reaches the height.
 Pattern jump_pattern(const RobotModel& model, const JumpParameters& parameters);
 
 }  // namespace ayumi

@@ -230,7 +230,7 @@ std::vector<Support> without_blinks(std::vector<Support> supports, double dt) {
   }
 }
 
-// Distance of the COG from a sole in row k, seen from above the sole; below 0: the COG is inside.
+// Distance of the COG from a sole in row k, seen from above the sole; below 0 if the COG is inside.
 double cog_outside(const RobotModel& model, const RawMotion& motion, const Soles& soles, int foot,
                    int k) {
   RobotState state = model.rest_state();

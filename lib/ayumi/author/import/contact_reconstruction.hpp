@@ -26,13 +26,13 @@ struct ContactThresholds {
 
 /// The content of a file of recorded or commanded angles.
 struct RawMotion {
-  double dt = 0.001;                      ///< [s]
+  double dt = 0.001;                      ///< time between rows [s]
   Eigen::MatrixXd theta;                  ///< rows x dof, the robot's order [rad]
   std::vector<BasePose> base;             ///< empty or one for each row
-  std::vector<Eigen::Vector3d> cog, zmp;  ///< world coordinates, empty or one for each row [m]
+  std::vector<Eigen::Vector3d> cog, zmp;  ///< places in the world [m], one for each row or none
   std::vector<double> fz;                 ///< vertical force, empty or one for each row [N]
-  std::vector<Support> support;           ///< support, one for each row; empty: to be detected
-  ContactThresholds contact = {};         ///< thresholds of the detection
+  std::vector<Support> support;    ///< support, one for each row; empty if it is to be detected
+  ContactThresholds contact = {};  ///< thresholds of the detection
 };
 
 /// Support in each row. Feet on the ground do not move relative to each other: both support while

@@ -21,7 +21,7 @@ struct DtadParams {
   double pole_ratio = 0.25;    ///< [q] second pole of (18)(19): K = 1 + q, D = (1 + q)/omega
   std::optional<double> k;     ///< [k] K given directly, with d; must exceed 1
   std::optional<double> d;     ///< [d] D omega given directly, with k; must be positive
-  double long_term = 1;        ///< [long] share of (18)(19); 0: ref ZMP is the commanded ZMP
+  double long_term = 1;        ///< [long] share of (18)(19); with 0, ref ZMP is the commanded ZMP
   double as_printed = 0;       ///< [as_printed] 1: D has the printed sign, as a demonstration
   double zmp_gain = 1;         ///< [ka] short-term loop on the measured ZMP; grows towards (14)
   double rocking_damping = 8;  ///< [damp] damping of the robot's rocking on its soles and servos
@@ -29,7 +29,7 @@ struct DtadParams {
   double pull_damping = 1.8;   ///< [kd] damping of that pull
   double zmp_filter = 0.01;    ///< [tau_z] time constant of the low pass of the measured ZMP
   double margin = 0.01;  ///< [margin] distance that is kept from the edge of the support region
-  /// [washout] time after which a constant ZMP offset is accepted; 0: never.
+  /// [washout] time after which a constant ZMP offset is accepted; 0 if this never happens.
   double offset_time = 6.6;
   double height_stiffness = 1.0;  ///< [kz] K_z of (20), times omega^2
   double height_damping = 2.0;    ///< [dz] D_z of (20), times omega
@@ -39,9 +39,10 @@ struct DtadParams {
   /// which its ankle yields.
   double compliance = 0.5;
   /// [momentum] moment that trunk and arms provide, as a multiple of the moment that corresponds to
-  /// a wanted ZMP outside the support; 0: off.
+  /// a wanted ZMP outside the support; 0 switches this off.
   double momentum_gain = 6;
-  /// [step] share of the error that the supports cannot remove and footholds answer; 0: off.
+  /// [step] share of the error that the supports cannot remove and footholds answer; 0 switches
+  /// this off.
   double step_share = 0;
   double time_scale_limit = 2.5;  ///< [hurry] fastest clock of a pattern with moving footholds
   bool literal = false;  ///< (14) integrated as printed, with D's sign corrected: a demonstration
@@ -84,8 +85,8 @@ double long_term_d(const DtadParams& params);
 
 /// K and D of (18)(19), or those by which a baseline chooses the ZMP.
 struct HorizontalGains {
-  double K = 0;  ///< [1]
-  double D = 0;  ///< [s]
+  double K = 0;  ///< K of (18)(19) or of the baseline [1]
+  double D = 0;  ///< D of (18)(19) or of the baseline [s]
 };
 
 /// DTAD, and the baselines, which choose the ZMP in another way for the same body.
@@ -124,7 +125,7 @@ class Dtad {
   std::shared_ptr<const Eigen::MatrixXd> torque_lead_;
   ReferenceBody body_;
   AngularMomentumTask momentum_;
-  std::optional<PreviewControl> preview_;  // for the baselines that preview the ZMP
+  std::optional<PreviewControl> preview_;  // preview control of the baselines that preview the ZMP
   CogMotion previewed_;                    // its motion in this tick
   std::optional<FootGuided> guide_;
   SupportRegion region_;

@@ -33,7 +33,7 @@ struct HoapRow {
   std::vector<double> values;
 };
 
-/// What a sequence file contains.
+/// The content of a sequence file.
 struct HoapFile {
   SequenceLayout layout;
   std::vector<HoapRow> rows;

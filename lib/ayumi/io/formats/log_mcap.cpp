@@ -280,7 +280,7 @@ std::string joint_states(const SimulationLog& log, const SimulationSample& s, st
 
 struct Node {
   std::string key;
-  int column = -1;  ///< column of a number; -1: an object
+  int column = -1;  ///< column of a number; -1 for an object
   std::string unit = {};
   std::vector<Node> inside = {};
 

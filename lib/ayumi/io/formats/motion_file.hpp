@@ -20,13 +20,14 @@ namespace ayumi {
 inline constexpr double kUnitQuaternion = 0.01;
 
 struct MotionFile {
-  std::vector<double> times;  ///< time of each row [s]; empty: `rate` counts, or the user states it
-  double rate = 0;            ///< rate of rows without times [1/s]; 0: the file does not state it
-  double time_step = 0;       ///< step to which the format rounds its times [s]
-  std::vector<std::string> joints;  ///< joint of each column; empty: the format names none
+  /// Time of each row [s]; empty if `rate` is used, or if the user states the rate.
+  std::vector<double> times;
+  double rate = 0;       ///< rate of rows without times [1/s]; 0 if the file does not state it
+  double time_step = 0;  ///< step to which the format rounds its times [s]
+  std::vector<std::string> joints;  ///< joint of each column; empty if the format names none
   Eigen::MatrixXd values;           ///< rows x columns [rad or m]; NaN: not set in this row
   std::vector<BasePose> base;  ///< poses of the root link in the world; empty or one for each row
-  std::vector<Eigen::Vector3d> cog, zmp;  ///< in the world, empty or one for each row [m]
+  std::vector<Eigen::Vector3d> cog, zmp;  ///< places in the world [m], one for each row or none
   std::vector<double> fz;                 ///< empty or one for each row [N]
   Eigen::MatrixXd torque;                 ///< empty, or rows x columns [N m]
   std::vector<Support> support;           ///< empty or one for each row
@@ -35,7 +36,7 @@ struct MotionFile {
   /// Origin of the unit of the angles: the format defines it, or the reader has converted each
   /// column by its own unit, or the user says it.
   enum class Unit { of_format, of_columns, assumed } unit = Unit::of_format;
-  int file_rows = 0;          ///< data rows of the file; 0: as many as rows()
+  int file_rows = 0;          ///< data rows of the file; 0 if there are as many as rows()
   TableCaution caution = {};  ///< caution of the run from which the table comes
   std::string sequence = {};  ///< bytes of a HOAP sequence, which are kept for an unchanged export
   std::string name = {};      ///< name of the motion, if the format has one
@@ -45,7 +46,7 @@ struct MotionFile {
   Eigen::Index rows() const { return values.rows(); }
 };
 
-/// What a reader receives.
+/// The data that a reader receives.
 struct MotionInput {
   /// Text is UTF-8 without mark, its lines end with \n; other bytes are as in the file.
   std::string bytes;
@@ -59,15 +60,16 @@ struct MotionInput {
   [[noreturn]] void refuse(size_t line, const std::string& reason) const;
   /// Index of the motion that the options ask for among the motions of the file; the first one if
   /// they ask for none. `numbers` are the numbers of the motions; if it is empty, they are counted
-  /// from 1. Says in `motion` which one was taken and which ones there are. Throws as refuse() if
-  /// there is none with this name or number.
+  /// from 1. Says in `motion` which one was taken and which ones there are. Throws the same errors
+  /// as refuse() if there is none with this name or number.
   size_t chosen_motion(const std::vector<std::string>& names, const std::vector<size_t>& numbers,
                        MotionFile& motion) const;
-  /// A finite number; `where` names the place in the line. Throws as refuse().
+  /// A finite number; `where` names the place in the line. Throws the same errors as refuse().
   double number(std::string_view cell, size_t line, const std::string& where = "") const;
 };
 
-/// Index of the robot's joint with this name or alias (RobotDescription::aliases); -1: none.
+/// Index of the robot's joint with this name or alias (RobotDescription::aliases); -1 if there is
+/// none.
 int find_joint(const RobotModel& model, const std::string& name);
 
 /// One file that a writer makes. Formats with several files name their extensions (".zmp").
@@ -81,8 +83,8 @@ struct NumberRows {
   std::vector<std::vector<double>> rows;
   std::vector<size_t> lines;  ///< line of each row in the file, counted from 1
 };
-/// Throws as MotionInput::refuse for a cell that is not a finite number, and for a row of another
-/// length.
+/// Throws the same errors as MotionInput::refuse() for a cell that is not a finite number, and for
+/// a row of another length.
 NumberRows number_rows(const MotionInput& source, std::string_view text,
                        const std::string& separators);
 

@@ -32,7 +32,7 @@ struct MotionFormat {
   /// written.
   std::string (*recognize)(const MotionInput&) = nullptr;
   MotionFile (*read)(const MotionInput&) = nullptr;
-  /// Writes the files; null: the format is only read.
+  /// Writes the files; null if the format is only read.
   std::vector<WrittenFile> (*write)(const RobotModel&, const MotionFile&) = nullptr;
   /// In place of `read`: makes the keys of a pattern, and adds to the notes what was assumed.
   Pattern (*read_keys)(const MotionInput&, std::vector<std::string>& notes) = nullptr;

@@ -18,8 +18,8 @@ constexpr size_t kStepCount = 20, kSpeed = 22, kNext = 25, kExit = 26, kChecksum
 constexpr size_t kNameBytes = 13, kAccel = 24, kSchedule = 16, kRepeat = 15, kGain = 32;
 constexpr int kNotUsed = 0x4000, kTorqueOff = 0x2000, kZero = 2048;
 constexpr unsigned char kUsualSpeed = 32;
-constexpr double kTick = 0.008;              // [s]
-constexpr double kCount = EIGEN_PI / kZero;  // [rad]
+constexpr double kTick = 0.008;              // time of a tick [s]
+constexpr double kCount = EIGEN_PI / kZero;  // angle of a count [rad]
 // Duration of a page with one posture [s]. Chosen: long enough to be judged, in units of 8 ms.
 constexpr double kHeld = 0.8;
 // Largest number of damaged pages that a note names. Chosen: they fit on a line.

@@ -12,8 +12,8 @@ namespace {
 
 // Size of the motion. Chosen: a person sees it clearly, and no joint touches anything with it. Half
 // of it is hard to see at a wrist; with twice, the feet of a robot touch each other.
-constexpr double kAngle = 5 * EIGEN_PI / 180;  // [rad]
-constexpr double kSlide = 0.01;                // [m]
+constexpr double kAngle = 5 * EIGEN_PI / 180;  // angle by which a joint is moved [rad]
+constexpr double kSlide = 0.01;                // distance by which a slider is moved [m]
 // Times of one test [s]. Chosen: 2.5 degrees per second on average, slow enough to be stopped.
 constexpr double kRest = 0.5, kMove = 2, kHold = 1;
 

@@ -247,7 +247,7 @@ std::string shifted_expression(const std::string& expression, double change) {
       if (expression[sign] == '-') number = -number;
       head = expression.substr(0, before + 1);
       spaces = expression.substr(before + 1,
-                                 // In the form in which the author writes the expression.
+                                 // The text has the form in which the author writes the expression.
                                  sign - before - 1);
       spaces_after = expression.substr(sign + 1, begin - sign - 1);
     } else {

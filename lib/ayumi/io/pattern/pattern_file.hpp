@@ -34,7 +34,7 @@ struct PostureLibrary {
   /// Angles by posture name and joint [rad], [m].
   std::map<std::string, std::map<std::string, double>> postures;
 };
-/// Throws as read_pattern().
+/// Throws the same errors as read_pattern().
 PostureLibrary read_posture_library(const std::filesystem::path& path);
 
 /// The robot to load: a bundled name as it is written, or a path that is valid from the working

@@ -20,7 +20,7 @@ inline constexpr double kLongestPattern = 3600;
 struct PatternScope {
   std::map<std::string, double> parameters;
   std::set<std::string> used;              ///< names of parameters in expressions
-  std::optional<double> radians_per_unit;  ///< angle unit; empty: the file names none
+  std::optional<double> radians_per_unit;  ///< angle unit; empty if the file names none
 };
 
 /// Whether a pattern's "robot" is a path and not a bundled name.

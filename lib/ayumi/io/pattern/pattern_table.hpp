@@ -18,7 +18,7 @@ std::filesystem::path table_beside(const std::filesystem::path& path);
 std::filesystem::path sequence_beside(const std::filesystem::path& path);
 
 /// The pattern file, its posture libraries and its table, as far as the pattern names them. Throws
-/// as read_pattern if the file is missing or is not JSON.
+/// the same errors as read_pattern if the file is missing or is not JSON.
 std::vector<std::filesystem::path> pattern_files(const std::filesystem::path& path);
 
 /// Writes as write_pattern() does. The data of a table are written to table_beside(path), and the

@@ -30,7 +30,7 @@ struct SweepMeasures {
 
 /// The push study of the measure "thresholds".
 struct SweepThresholds {
-  std::vector<double> times;  ///< times of the pushes [s]; empty: the phases of a push study
+  std::vector<double> times;  ///< times of the pushes [s]; empty for the phases of a push study
   int directions = 8, replicas = 0;
   double step = 0.06, cap = 2.4, duration = 0.02;
 };

@@ -24,7 +24,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kRadian = 180 / std::numbers::pi;  // [deg]
+constexpr double kRadian = 180 / std::numbers::pi;  // a radian in degrees [deg]
 
 // Noise of sensors for which nobody has measured it yet. Source: data sheets of usual MEMS inertial
 // units and of hobby load cells; the values only affect simulations with noise.

@@ -21,14 +21,15 @@ struct FirstSidecar {
 
 /// Gains of DTAD for a robot, which io cannot compute.
 struct SidecarGains {
-  std::vector<std::pair<std::string, double>> dtad;  ///< gains by name; empty: the default gains
+  std::vector<std::pair<std::string, double>> dtad;  ///< gains by name; empty for the default gains
   std::string why, check;                            ///< reason of the guess
   std::string to_do;                                 ///< point for the to-do list; "": nothing
 };
 
 /// `robot` is a file or folder as load_robot() takes it; the sidecar names its URDF relative to
-/// `folder`, where the sidecar will be. Throws as load_robot(), and Error(usage) for a robot that
-/// has a sidecar already. `gains` is called for the robot with the guesses, if it has soles.
+/// `folder`, where the sidecar will be. Throws the same errors as load_robot(), and Error(usage)
+/// for a robot that has a sidecar already. `gains` is called for the robot with the guesses, if it
+/// has soles.
 FirstSidecar first_sidecar(const std::string& robot, const std::filesystem::path& folder,
                            const RobotSearch& search = {},
                            const std::function<SidecarGains(const RobotModel&)>& gains = {});

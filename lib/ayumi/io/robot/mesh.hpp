@@ -53,8 +53,9 @@ struct MeshRequest {
 
 /// The reason why a mesh of several could not be read: the first failure in their order.
 struct MeshFailure {
-  size_t request = 0;        ///< index of the mesh
-  std::exception_ptr error;  ///< error that load_mesh() throws for it; empty: all meshes were read
+  size_t request = 0;  ///< index of the mesh
+  /// Error that load_mesh() throws for it; empty if all meshes were read.
+  std::exception_ptr error;
 };
 
 /// Several meshes as load_mesh() reads them, in the order of `requests`, by at most four readers

@@ -15,12 +15,12 @@ namespace {
 /// friction may be a hundred times those of a humanoid of 50 kg; a zero offset of more than 0.5 rad
 /// would mean that a horn is on another tooth of its shaft. The limits of delay and play are in
 /// model/device_limits.hpp.
-constexpr double kMostStiffness = 1e7;  // [N m/rad]
-constexpr double kMostDamping = 1e6;    // [N m s/rad]
-constexpr double kMostInertia = 1e3;    // [kg m^2]
-constexpr double kMostTorque = 1e5;     // [N m]
-constexpr double kMostOffset = 0.5;     // [rad]
-constexpr double kMostRate = 1e4;       // [rad/s]
+constexpr double kMostStiffness = 1e7;  // largest stiffness that is accepted [N m/rad]
+constexpr double kMostDamping = 1e6;    // largest damping that is accepted [N m s/rad]
+constexpr double kMostInertia = 1e3;    // largest inertia that is accepted [kg m^2]
+constexpr double kMostTorque = 1e5;     // largest torque that is accepted [N m]
+constexpr double kMostOffset = 0.5;     // largest offset that is accepted [rad]
+constexpr double kMostRate = 1e4;       // largest rate that is accepted [rad/s]
 /// Share of a gear's torque that its friction takes. Definition: at 1 the gear cannot turn.
 constexpr double kMostLoadFriction = 1;
 
@@ -121,8 +121,8 @@ constexpr std::array<LoadField, 6> kLoadFields = {{
 
 /// A motor behind its gear.
 struct Motor {
-  double torque_constant = 0;  ///< [N m/A]
-  double resistance = 0;       ///< [ohm]
+  double torque_constant = 0;  ///< torque constant [N m/A]
+  double resistance = 0;       ///< resistance of the winding [ohm]
 };
 
 /// The parts of the file that each of BAM's models has.

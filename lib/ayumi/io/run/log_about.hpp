@@ -1,5 +1,5 @@
 #pragma once
-// What an exported log says of itself: the program, the conventions and the origin of the run.
+// The description of an exported log: the program, the conventions and the origin of the run.
 
 #include <nlohmann/json.hpp>
 

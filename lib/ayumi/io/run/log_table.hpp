@@ -11,7 +11,7 @@
 namespace ayumi {
 
 struct LogTable {
-  std::vector<LogQuantity> quantities;  ///< in the order of the columns
+  std::vector<LogQuantity> quantities;  ///< quantities in the order of the columns
   size_t columns = 0, rows = 0;
   std::vector<double> values;  ///< values, row after row; nan where a quantity has no value
 

@@ -18,15 +18,16 @@ namespace ayumi {
 /// complete.
 class LogWriter {
  public:
-  /// The scratch file is made in `folder`, the folder of the log. Throws as ScratchFile.
+  /// The scratch file is made in `folder`, the folder of the log. Throws the same errors as
+  /// ScratchFile.
   LogWriter(const std::filesystem::path& folder, const std::vector<std::string>& joints);
 
   /// Throws Error(bad_file) if the disk is full.
   void add(const SimulationSample& sample) { blocks_.add(sample); }
 
   /// Writes the file `path`; nothing may be added afterwards. The samples of `about` are ignored.
-  /// The bytes are those of write_log() with all samples. Throws as write_file_with(), and
-  /// Interrupted.
+  /// The bytes are those of write_log() with all samples. Throws the same errors as
+  /// write_file_with(), and Interrupted.
   WrittenLog finish(SimulationLog about, const std::filesystem::path& path,
                     const Progress& progress = {});
 

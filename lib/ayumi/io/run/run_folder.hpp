@@ -47,8 +47,8 @@ void write_run(const std::filesystem::path& folder, const RunFolder& run);
 /// if its run.json cannot be read as that of a run.
 std::vector<std::string> run_file_names(const std::filesystem::path& folder);
 
-/// Whether the run in `folder` lists a file with the name of `file` and the same bytes. Throws as
-/// run_file_names(), and if `file` cannot be read.
+/// Whether the run in `folder` lists a file with the name of `file` and the same bytes. Throws the
+/// same errors as run_file_names(), and if `file` cannot be read.
 bool is_file_of_run(const std::filesystem::path& folder, const std::filesystem::path& file);
 
 /// Throws Error(bad_file) that names the file if the run is not as it was written. run.json is
@@ -60,7 +60,7 @@ void verify_run(const std::filesystem::path& folder);
 RunFolder read_run(const std::filesystem::path& folder);
 
 /// The JSON text of one member of run.json ("check"); empty if there is none, and for a log file.
-/// Throws as read_run().
+/// Throws the same errors as read_run().
 std::string read_run_section(const std::filesystem::path& path, const std::string& key);
 
 /// One log of a run: the one with this name, or else closed_loop, or else the only one. `path` may

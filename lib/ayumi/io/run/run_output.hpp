@@ -30,9 +30,9 @@ class RunOutput {
   std::filesystem::path file(const std::string& name) const { return staging_ / name; }
 
   /// Moves the files of the previous run away and the files of this run to their place, run.json
-  /// last. Throws as require_run_target(), or if a file cannot be moved; then the previous run is
-  /// brought back. A process that is killed in between leaves a folder without run.json, and the
-  /// next RunOutput first brings back the previous run.
+  /// last. Throws the same errors as require_run_target(), or if a file cannot be moved; then the
+  /// previous run is brought back. A process that is killed in between leaves a folder without
+  /// run.json, and the next RunOutput first brings back the previous run.
   void deliver() const;
 
  private:

@@ -11,7 +11,7 @@ struct WrittenLog {
   SimulationLog about = {};    ///< the log without its samples
   size_t rows = 0;             ///< number of its samples
   std::string log_hash = {};   ///< hash of the whole log, as log_hash() computes it
-  std::string file_hash = {};  ///< SHA-256 of the file; empty: there is no file
+  std::string file_hash = {};  ///< SHA-256 of the file; empty if there is no file
 };
 
 }  // namespace ayumi

@@ -44,8 +44,8 @@ struct ImportedKeys {
   std::vector<std::string> filled = {};  ///< what was assumed or left out
 };
 
-/// The keys of a file of key poses; nothing for a file of any other format. Throws as
-/// read_motion_rows().
+/// The keys of a file of key poses; nothing for a file of any other format. Throws the same errors
+/// as read_motion_rows().
 std::optional<ImportedKeys> read_key_poses(const std::string& bytes, const std::string& file,
                                            const RobotModel& model,
                                            const ImportOptions& options = {});

@@ -79,7 +79,7 @@ void require_one_line_end(const std::string& bytes, const std::string& file) {
 struct BareRows {
   std::vector<std::vector<double>> rows;
   std::vector<size_t> lines;
-  double dt = 0;  // time from row to row [s]; 0: the file does not state it
+  double dt = 0;  // time from row to row [s]; 0 if the file does not state it
 };
 
 std::vector<double> numbers_of(const std::vector<std::string_view>& cells, size_t begin, size_t end,

@@ -11,7 +11,7 @@ namespace ayumi {
 
 struct RecordingOptions {
   bool degrees = false;  ///< the unit of joint columns whose names have none
-  double rate = 0;       ///< rows per second if the file has no times [1/s]; 0: 1000
+  double rate = 0;       ///< rows per second if the file has no times [1/s]; 0 for 1000
 };
 
 /// Reads joint angles: a HOAP sequence (interval, 2, counts, ...), rows of counts (one column for
@@ -35,7 +35,7 @@ bool holds_sensors(const std::string& bytes, const std::string& file, const Robo
 /// Reads load cells and IMU. They are rows of readings, which the sidecar's `load_cells`,
 /// `accelerometer` and `gyro` convert into forces and rates, or a table with a head row and the
 /// columns fz.left[N] and fz.right[N] (or left and right), acc.x[m/s^2], gyro.x[rad/s], .... Throws
-/// as read_angles().
+/// the same errors as read_angles().
 SensorTable read_sensors_table(const std::string& bytes, const std::string& file,
                                const RobotModel& model, const RecordingOptions& options = {});
 

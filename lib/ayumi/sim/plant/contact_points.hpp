@@ -18,9 +18,9 @@ struct ContactPoint {
   /// cylinder [m]. A level circle has no lowest point; other points then carry the cylinder.
   double rim = 0;
   Eigen::Vector3d axis = Eigen::Vector3d::Zero();  ///< axis of the circle in the body frame
-  double stiffness = 0;                            ///< [N/m]
+  double stiffness = 0;                            ///< stiffness of the contact [N/m]
   double damping_time = 0;                         ///< ratio of damping to stiffness [s]
-  int side = -1, vertex = -1;  ///< Side of the sole, and its vertex; -1: not a sole
+  int side = -1, vertex = -1;  ///< Side of the sole, and its vertex; -1 if it is not part of a sole
 };
 
 /// Consecutive points of one body, and a sphere that contains them, in the body frame.

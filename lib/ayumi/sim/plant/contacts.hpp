@@ -17,11 +17,12 @@ struct ActiveContact {
   /// for edges, nodes of the height field and links.
   long key = 0;
   ///< a larger number where edges, nodes of the height field or links touch
-  int body = 0;                     ///< body that is pushed along the normal
-  int other = -1;                   ///< body that is touched; -1: the ground
-  int side = -1;                    ///< Side of the sole; -1 for a body that is not a sole
-  int vertex = -1;                  ///< corner of the sole; -1: between its corners, or not a sole
-  double stiffness = 0;             ///< [N/m]
+  int body = 0;    ///< body that is pushed along the normal
+  int other = -1;  ///< body that is touched; -1 for the ground
+  int side = -1;   ///< Side of the sole; -1 for a body that is not a sole
+  /// Corner of the sole; -1 if the contact is between its corners, or not on a sole.
+  int vertex = -1;
+  double stiffness = 0;             ///< stiffness of the contact [N/m]
   double damping_time = 0;          ///< ratio of damping to stiffness [s]
   double gap = 0;                   ///< gap along the normal, negative inside [m]
   Eigen::Vector3d position;         ///< position in the world [m]

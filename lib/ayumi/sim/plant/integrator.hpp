@@ -10,7 +10,8 @@ namespace ayumi {
 
 /// The motion that the pressing contacts allow the whole robot with its joints locked.
 struct Pivot {
-  int freedom = 0;  ///< 3: it turns about a point; 1: about a line; 0: no motion
+  /// 3 if it turns about a point, 1 if it turns about a line, 0 if it does not move.
+  int freedom = 0;
   Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< point in the world [m]
   /// Axis in the world; a unit vector if freedom is 1.
   Eigen::Vector3d axis = Eigen::Vector3d::Zero();
@@ -32,7 +33,7 @@ class Integrator {
 
   bool pivots() const { return pivot_.freedom > 0; }
 
-  /// For a pivoting robot: writes the equation of a step of `dt` [s] in the axes of its posture
+  /// For a pivoting robot, writes the equation of a step of `dt` [s] in the axes of its posture
   /// half a step ahead.
   void turn_half(const RobotModel& robot, double dt, StepSystem& system,
                  std::vector<ActiveContact>& contacts) const;

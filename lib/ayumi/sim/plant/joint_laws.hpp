@@ -68,7 +68,7 @@ class JointLaws {
   enum class Flank { low, none, high };
   struct Joint {
     double kp = 0, kd = 0;            // gains with the faults of the step [N m/rad, N m s/rad]
-    double viscous = 0, coulomb = 0;  // [N m s/rad, N m]
+    double viscous = 0, coulomb = 0;  // viscous and dry friction [N m s/rad, N m]
     bool has_gear = false, needs_friction = false;
     // true: there are no counts and no dead band, so servo_error() only adds the offset.
     bool plain_error = false;
@@ -76,12 +76,12 @@ class JointLaws {
     double most = 0, fastest = 0;    // peak torque, and the speed up to which it holds [N m, rad/s]
     double stall = 0, back_emf = 0;  // values for voltage_torque(); stall torque 0: no bound
     double speed_command = 0;        // limit of the speed loop's command [rad/s]
-    double gear = 0, gear_damping = 0;  // [N m/rad, N m s/rad]
+    double gear = 0, gear_damping = 0;  // stiffness and damping of the gear [N m/rad, N m s/rad]
     double rotor = 0, half_play = 0;  // inertia and backlash of a motor behind a gear [kg m^2, rad]
     double stop = 0, stop_damping = 0;  // end stop, with the meaning of kp and kd
     double lower = 0, upper = 0;        // range of the joint [rad, m]
     bool limited = false;
-    double target = 0;         // with it, kp (target - phi) is the error's torque [rad, m]
+    double target = 0;  // target with which kp (target - phi) is the torque of the error [rad, m]
     bool inside_band = false;  // true: the position error exerts no torque
     double phi = 0, dphi = 0;  // angle and rate of a motor behind a gear [rad, rad/s]
     double external = 0;       // torque on the joint from outside in the last step [N m]
@@ -93,7 +93,7 @@ class JointLaws {
     double direction = 0;     // direction of the torque while it is saturated
     TorqueBound bound;        // piece of the bound that the torque then follows
     int bound_changes = 0;    // number of changes in this solve
-    double speed_torque = 0;  // if speed_bound: the torque is speed_torque - kd dphi [N m, N]
+    double speed_torque = 0;  // with speed_bound, the torque is speed_torque - kd dphi [N m, N]
     double slip_torque = 0;   // torque of the dry friction while it slides [N m, N]
     double momentum = 0, inertia = 0;  // for a motor: inertia dphi+ = momentum + slope dtheta+
     double mesh = 0, slope = 0;        // impulse of a gear: mesh + slope (dphi+ - dtheta+)

@@ -58,10 +58,10 @@ class LinkContacts {
   CollisionModel shapes_;
   std::vector<Pair> pairs_;
   /// For each pair of shapes of two bodies, the direction of the smallest distance in the frame of
-  /// a; zero: unknown.
+  /// a; zero if it is unknown.
   std::vector<Eigen::Vector3d> lines_;
   std::vector<Eigen::Vector3d> center_;  ///< centre of the shapes of a body, in the body frame
-  std::vector<double> radius_;           ///< radius around it; 0: no shape
+  std::vector<double> radius_;           ///< radius around it; 0 for no shape
   std::vector<int> bodies_;              ///< bodies that belong to a pair
   double moved_ = 0;    ///< upper bound of the approach of two bodies since reset() [m]
   double least_ = 0;    ///< least_ - moved_ is a lower bound of all distances [m]

@@ -98,14 +98,15 @@ struct MujocoPlant::Impl {
   MujocoData d{nullptr, mj_deleteData};
   bool bumps = false;               // whether the model has geoms for bumps
   std::vector<int> velocity, body;  // MuJoCo's index of each dof and body
-  std::vector<int> gear;            // index of the joint of each dof's gear; -1: none
-  std::vector<int> point_of;  // by geom: number of the point; -1: the ground; -2 - side: a plate
+  std::vector<int> gear;            // index of the joint of each dof's gear; -1 if there is none
+  // Number of the point of each geom; -1 for the ground, and -2 - side for a plate.
+  std::vector<int> point_of;
   std::array<int, 2> plate = {-1, -1};
   int floor_id = 0;
   std::optional<RobotModel> loaded;
   std::vector<CarriedMass> carried;
   FloorPose floor;            // pose of the floor in the last step
-  std::vector<double> rates;  // by geom: rate at which a bump rises [m/s]
+  std::vector<double> rates;  // rate at which a bump rises [m/s], by geom
   TargetDelay delay;
   Eigen::VectorXd motor_torque, external;  // torque on each dof in MuJoCo's last step [N m]
   RobotState state;
