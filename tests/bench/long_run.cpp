@@ -2,10 +2,11 @@
 // and no NaN.
 //   ayumi_long_run [simulated hours, half walking, half standing; 0.5] [controller; dtad]
 // HOAP-1 walks the pattern and its mirror image in turn, each round from where the last one ended,
-// then stands in one run. Every tenth of the time a line; the last line says what was found, and
-// the program fails when the robot fell, turned away or something grew. No sensor knows the
-// heading, and a pattern that begins with the same foot turns the robot a little each time: in
-// turn with its image that cancels, and what is left would be the integrator's.
+// then stands in one run. A line is printed after every tenth of the time; the last line is the
+// verdict, and the program fails if the robot fell, turned away, or if a quantity grew. No sensor
+// knows the heading, and a pattern that begins with the same foot turns the robot a little each
+// time: in turn with its mirror image this cancels, and a turn that is left would be caused by the
+// integrator.
 
 #include <unistd.h>
 

@@ -1,6 +1,6 @@
-// Faults with a known cause, planted at random into the tables of sound motions of several robots:
-// how often the check calls the planted fault its first error, how often its only error, and
-// whether of two faults far apart both remain errors.
+// Plants faults with a known cause at random into the tables of sound motions of several robots. It
+// counts how often the check calls the planted fault its first error and its only error, and tests
+// whether two faults that are far apart both remain errors.
 //   ayumi_planted_causes [FAULTS=500] [SEED=1] [FOLDER OF ANOTHER ROBOT ...]
 // The exit code is 1 if fewer than 97 % are the first error, fewer than 90 % the only one, or one
 // of two faults is hidden.

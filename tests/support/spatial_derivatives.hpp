@@ -1,8 +1,8 @@
 #pragma once
-// Derivatives of inverse dynamics by matrices of six.
-// Spatial vectors (linear part first) about the base origin, world axes. Galilean invariance lets
-// the base velocity be taken as zero. With S_j the joint screw, V, A the twist and spatial
-// acceleration (gravity included) of its parent, and composite sums over subtrees of I, f and
+// Derivatives of inverse dynamics by matrices of six. Spatial vectors have their linear part first,
+// and are about the base origin in world axes. Galilean invariance lets the base velocity be taken
+// as zero. With S_j the joint screw, V, A the twist and spatial acceleration (gravity included) of
+// its parent, and composite sums over subtrees of I, f and
 //   2B = (V x*) I - I (V x) + (I V) xbar*,
 // the derivatives of the joint forces are (Singh, Russo, Wensing, RA-L 2022):
 //   psi1_j = V x S_j,   psi2_j = A x S_j + V x psi1_j

@@ -1,4 +1,4 @@
-// Supports are constant over a tick, so the integral is a sum with the weights
+// Supports are constant over a tick, so that the integral is a sum with the weights
 //   exp(-omega i dt) (1 - exp(-omega dt)),  the rest exp(-omega n dt) on the last support.
 #include "ayumi/control/capture_bound.hpp"
 

@@ -1,4 +1,5 @@
-// The offset p of the COG after another law is taken back along a minimum-jerk blend b(t/T):
+// The offset p that the COG has after another law is reduced to zero along a minimum-jerk blend
+// b(t/T):
 //   cog (1 - b) p,  dcog -b'/T p,  ddcog -b''/T^2 p,  zmp (1 - b + b''/(T^2 omega^2)) p,
 // which obeys (14)(15).
 #include "ayumi/control/command_plan.hpp"

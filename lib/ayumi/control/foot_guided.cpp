@@ -1,5 +1,6 @@
-// Deviations from the plan: e of the DCM, w of the ZMP, e' = omega (e - w), e(T) = 0, least
-// integral of w^2 / 2. The costate decays as exp(-omega t), so w = c exp(-omega t), and
+// Let e be the deviation of the DCM from the plan and w that of the ZMP. Then e' = omega (e - w)
+// and e(T) = 0, and the integral of w^2 / 2 has to be as small as possible. The costate decays as
+// exp(-omega t), so w = c exp(-omega t), and
 //   e(T) = exp(omega T) (e(0) - c (1 - exp(-2 omega T)) / 2) = 0.
 // With w(0) = c computed anew in every tick, e exp(-omega t) / (1 - exp(-2 omega (T - t))) stays
 // constant, and e is 0 at T.

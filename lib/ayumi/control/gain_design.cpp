@@ -1,4 +1,4 @@
-// Deviations from the plan; body and reference as control/stance_loop:
+// All quantities are deviations from the plan; body and reference are those of control/stance_loop:
 //   per tick, from measurements n ticks old:
 //   zf += f (zZ - zf),  gap = zf - K x - D dx - zd,  zd += dt w / Tw gap
 //   dxr += dt (ka w2 gap + damp w (dx - dxr) - ks^2 w2 xr - 2 kd w dxr),  xr += dt dxr

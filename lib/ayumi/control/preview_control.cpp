@@ -1,11 +1,12 @@
-// In units of time of 1/omega the cart-table is x''' = u, ZMP = x - x''. With X = (e, change of x),
+// In units of time of 1/omega, the cart-table is x''' = u, ZMP = x - x''. With X = (e, change of
+// x),
 //   X+ = [1 CA; 0 A] X + [CB; B] du - [1; 0] change of the planned ZMP,
-// least cost is du = -K X - sum_j F(j) change of the planned ZMP(k + j) with P of the Riccati
-// equation,
+// the smallest cost is reached by du = -K X - sum_j F(j) change of the planned ZMP(k + j) with P of
+// the Riccati equation,
 //   K = (R + B'PB)^-1 B'PA,   F(j) = -(R + B'PB)^-1 B' (Ac')^(j-1) P (1, 0),   Ac = A - B K,
 // and the jerk is its sum over time (Katayama and others 1985). Shifting all places by a length
 // changes nothing: F(1) + F(2) + ... = -(gain of x). The gains beyond the horizon are added to the
-// last one, so this holds exactly.
+// last one, so that this holds exactly.
 #include "ayumi/control/preview_control.hpp"
 
 #include <algorithm>

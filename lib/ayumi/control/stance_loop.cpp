@@ -1,8 +1,8 @@
 // Deviations q of base and joints, K = -dQ/dq of gravity, soles and servos by differences:
 //   M q'' + D q' + K q = S' (kp P xr + kp diag(lead) P dxr)
-// P: joints per ref COG with the feet and the trunk held, as (22)(23) solve them. The soles are
-// springs at their corners. The forces that carry the weight stay at their corners while the body
-// turns, which is what makes a pendulum fall.
+// P gives the joints for a reference COG while the feet and the trunk are held, as (22)(23) solve
+// them. The soles are springs at their corners. The forces that carry the weight stay at their
+// corners while the body turns, which is what makes a pendulum fall.
 #include "ayumi/control/stance_loop.hpp"
 
 #include <algorithm>

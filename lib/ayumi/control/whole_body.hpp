@@ -28,9 +28,9 @@ struct StackedTask {
 /// (23), and (29) with bias 0: the rates nearest to `bias` in the norm W = diag(w) that do the
 /// task,
 ///   x = bias + W^-1 J_U' (J_U W^-1 J_U' + lambda I)^-1 (u - J_U bias),
-/// lambda = damping * trace / 12. In (23) the bias are the commanded rates; v = u - J_U bias has
-/// the corrected sign (docs/notation.md). `weighted` is room to work in; allocates nothing when it
-/// and x have their size.
+/// lambda = damping * trace / 12. In (23), the bias consists of the commanded rates; v = u - J_U
+/// bias has the corrected sign (docs/notation.md). `weighted` is a workspace; the function
+/// allocates nothing if it and x have their size.
 void solve_stacked_task(const StackedTask& task, const Eigen::VectorXd& w,
                         const Eigen::VectorXd& bias, double damping, StackedTask::Rows& weighted,
                         Eigen::VectorXd& x);

@@ -1,6 +1,7 @@
-// Plane frame P with normal z. With f, n the ground wrench about P's origin in P's axes,
+// P is the frame of the plane, whose normal is z. With f, n the ground wrench about P's origin in
+// P's axes,
 //   ZMP = (-n_y, n_x) / f_z,   f_z d_e = f_z (a_e . ZMP - b_e) = -a_x n_y + a_y n_x - b f_z
-// for an edge e with inward unit normal a and a.x >= b inside: linear in the wrench.
+// for an edge e with inward unit normal a and a.x >= b inside. This is linear in the wrench.
 #include "ayumi/demand/ground_demand.hpp"
 
 #include <algorithm>

@@ -1,5 +1,6 @@
-// Unknowns: base position p and leg joints q_s. With e_s the error twist of sole s, A_s its
-// Jacobian over its leg, E = [1; 0] that over p, C_s the COG Jacobian over q_s (over p it is 1):
+// The unknowns are the base position p and the leg joints q_s. With e_s the error twist of sole s,
+// A_s its Jacobian for its leg, E = [1; 0] its Jacobian for p, and C_s the COG Jacobian for q_s
+// (for p it is 1):
 //   E dp + A_s dq_s = e_s,   dp + sum C_s dq_s = e_c
 // gives (1 - sum C_s A_s^-1 E) dp = e_c - sum C_s A_s^-1 e_s, then dq_s = A_s^-1 (e_s - E dp).
 #include "ayumi/dynamics/inverse_kinematics.hpp"

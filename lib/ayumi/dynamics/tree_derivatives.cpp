@@ -1,13 +1,14 @@
-// Spatial vectors (linear part first) about the base origin, world axes. Galilean invariance lets
-// the base velocity be taken as zero. With S_j the joint screw, V, A the twist and spatial
-// acceleration (gravity included) of its parent, and I, f of whole subtrees, the derivatives of
-// the joint forces are (Singh, Russo, Wensing, RA-L 2022):
+// Spatial vectors have their linear part first, and are about the base origin in world axes.
+// Galilean invariance lets the base velocity be taken as zero. With S_j the joint screw, V, A the
+// twist and spatial acceleration (gravity included) of its parent, and I, f of whole subtrees, the
+// derivatives of the joint forces are (Singh, Russo, Wensing, RA-L 2022):
 //   psi1_j = V x S_j,   psi2_j = A x S_j + V x psi1_j
 //   d tau_i / d q_j  = S_i . (2B_i psi1_j + I_i psi2_j)                   j above i or j = i
 //   d tau_j / d q_i  = S_j . (2B_i psi1_i + I_i psi2_i + S_i x* f_i)      j above i, base rows too
 //   d tau    / d dq  = same with (2B S + 2 I psi1)
-// 2B X is what a change X of the twist does to the velocity forces. Every particle of mass m at c
-// with velocity u feels 2 m X_w x u there, so with p = sum m u and G = sum m u c' of the subtree
+// 2B X is the change of the velocity forces for a change X of the twist. Every particle of mass m
+// at c with velocity u feels 2 m X_w x u there, so with p = sum m u and G = sum m u c' of the
+// subtree
 //   2B X = (2 X_w x p, D X_w),   D = 2 (tr G - G),   of one body G = v h' + [w x] sum m c c'.
 // Base columns: translation 0; w: 2B_i S_k + I_i (0, w x e_k); rotation by turning the whole
 // system back: -[F x] + dw [w x] + dalpha [alpha x] + da [(a + g) x].

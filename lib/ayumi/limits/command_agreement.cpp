@@ -1,9 +1,9 @@
 // A pattern commands COG, ZMP and f_z beside the posture; they have to be those of the motion:
-//   |COG of the posture - commanded COG|, |ZMP of the full model - commanded ZMP|, |f_z -
-//   commanded|.
-// The point mass gap is that between the ZMP of the mass-concentrated model, equations (14) and
-// (15) of the paper, and the commanded ZMP: how good that model is here, never an error. In flight
-// nothing pushes whatever the motion does: the commanded force must be zero.
+//   |COG of the posture - commanded COG|,  |ZMP of the full model - commanded ZMP|,
+//   |f_z - commanded|.
+// The point mass gap is the distance between the ZMP of the mass-concentrated model, equations (14)
+// and (15) of the paper, and the commanded ZMP. It shows how good that model is here, and is never
+// an error. In flight nothing pushes, whatever the motion is: the commanded force must be zero.
 #include <algorithm>
 
 #include "ayumi/base/text.hpp"

@@ -1,8 +1,8 @@
 // A motor is heated by the square of its torque. Within its thermal window T, the root mean square
 // of the torque must not exceed the continuous torque of the actuator profile:
 //   sqrt(1/T sum tau^2 dt) <= continuous torque,
-// where a motor gives no more than its peak torque, so that no more than that heats it. A motion
-// that is shorter than T may be followed by rest: then it is a warning.
+// where a torque above the peak torque counts as the peak torque, because a motor cannot give more.
+// A motion that is shorter than T may be followed by rest; in this case the finding is a warning.
 #include <algorithm>
 
 #include "ayumi/base/text.hpp"

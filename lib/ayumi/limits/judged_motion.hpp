@@ -139,10 +139,12 @@ void judge_difference(JudgedMotion& motion, FindingKind kind, int sample,
 bool flight_is_free(JudgedMotion& motion, int sample, double pace, double limit);
 
 // The names of places that several limits use.
-Place axis_place(const JudgedMotion&, const Violation&);     ///< an axis, by the detail
-Place support_place(const JudgedMotion&, const Violation&);  ///< the support, by the detail
-Place foot_place(const JudgedMotion&, const Violation&);     ///< a foot, by the item
-Place joint_place(const JudgedMotion&, const Violation&);    ///< a joint, by the item
+/// The axis or the support that the detail of the violation names.
+Place axis_place(const JudgedMotion&, const Violation&);
+Place support_place(const JudgedMotion&, const Violation&);
+/// The foot or the joint that the item of the violation names.
+Place foot_place(const JudgedMotion&, const Violation&);
+Place joint_place(const JudgedMotion&, const Violation&);
 std::string where_text(const RobotModel& model, const Place& place);
 const char* axis_name(int axis);
 /// The unit `rotary`, or the other unit if the joint (the item) is prismatic.

@@ -1,8 +1,8 @@
 // A supporting sole rests in its place: the pose P of its contact interval
 // (demand/contact_plan.hpp). With the corners x_i of the sole in the frame of P and v_i where they
 // belong,
-//   slip = max |x_i - v_i| along the ground,  penetration = max(0, -min z_i),  float = max(0, max
-//   z_i).
+//   slip = max |x_i - v_i| along the ground,
+//   penetration = max(0, -min z_i),  float = max(0, max z_i).
 // A swinging sole must not sink below the lower of the places that it leaves and comes to. A foot
 // in the air floats and does not slip. But a foot that leaves its place and comes back to it within
 // one contact counts as displaced, whatever its height is in between.

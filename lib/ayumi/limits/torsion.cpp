@@ -1,5 +1,5 @@
-// Torsional friction: about the normal through the ZMP, soles with an even pressure resist a moment
-// of
+// This limit is torsional friction. About the normal through the ZMP, soles with an even pressure
+// resist a moment of
 //   |n_z| <= mu f_n r,
 // where r is torsional_friction_arm(): the mean distance from the ZMP over the largest part of the
 // support that is symmetric about it, a lower bound of what is possible (demand/ground_demand.hpp).

@@ -1,9 +1,9 @@
-// Primal active set: the step p with A_w p = 0 to the least value on the working set w is the
-// solution of
+// The method is that of the primal active set. The step p with A_w p = 0 to the least value on the
+// working set w is the solution of
 //   [H A_w'; A_w 0] [p; l] = [-(H x + f); 0].
-// A step that meets an inequality takes it into w; where p = 0, one with l < 0 leaves it, and if
-// there is none, x is optimal. An inequality that a step meets is independent of those of w, since
-// A_w p = 0.
+// If a step meets an inequality, this is added to w. If p = 0, an inequality with l < 0 is removed
+// from w; if there is none, x is optimal. An inequality that a step meets is independent of those
+// of w, since A_w p = 0.
 #include "ayumi/math/quadratic_program.hpp"
 
 #include <Eigen/LU>

@@ -8,8 +8,8 @@ namespace ayumi {
 /// The P that belongs to the stabilizing feedback u = -(R + B'PB)^-1 B'PA x of x+ = A x + B u with
 /// the least sum of x'Q x + u'R u:
 ///   P = A'PA - A'PB (R + B'PB)^-1 B'PA + Q.
-/// A: n x n, B: n x m, Q: n x n, symmetric and semidefinite, R: m x m, symmetric and definite.
-/// Throws Error(bad_input) if there is none.
+/// A is n x n, B is n x m, Q is n x n, symmetric and semidefinite, and R is m x m, symmetric and
+/// definite. Throws Error(bad_input) if there is none.
 Eigen::MatrixXd solve_riccati(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B,
                               const Eigen::MatrixXd& Q, const Eigen::MatrixXd& R);
 

@@ -1,7 +1,8 @@
-// min 1/2 u'u + 1/2 l |D(x + u)|^2 with |u| <= 1, in units of the band, by a primal-dual interior
-// point method: with slacks s = 1 -+ u and multipliers z, s z = mu,
+// The minimum of 1/2 u'u + 1/2 l |D(x + u)|^2 with |u| <= 1, in units of the band, is found by a
+// primal-dual interior point method. With slacks s = 1 -+ u, multipliers z and s z = mu, a step is
 //   (I + l D'D + z1/s1 + z2/s2) du = -(u + l D'D(x + u)) + mu (1/s2 - 1/s1),
-// whose matrix has three bands on either side: the time of a step is linear in the samples.
+// whose matrix has three bands on either side. Therefore the time of a step is linear in the number
+// of samples.
 #include "ayumi/math/smoothing.hpp"
 
 #include <algorithm>

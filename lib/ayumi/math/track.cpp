@@ -1,4 +1,4 @@
-// Hermite form on u in [0, 1], rates m scaled by the segment's length T:
+// The Hermite form on u in [0, 1], where the rates m are scaled by the segment's length T, is
 //   p = v0 + m0 u + (3 d - 2 m0 - m1) u^2 + (m0 + m1 - 2 d) u^3,  d = v1 - v0.
 // A spline run has equal accelerations on both sides of each inner key:
 //   m_{i-1}/T_i + 2 m_i (1/T_i + 1/T_{i+1}) + m_{i+1}/T_{i+1} = 3 (d_i/T_i^2 + d_{i+1}/T_{i+1}^2).

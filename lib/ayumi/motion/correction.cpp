@@ -1,4 +1,4 @@
-// Attitude exp(r) R: with the left Jacobian J(r) = 1 + a [r] + b [r]^2,
+// For the attitude exp(r) R, with the left Jacobian J(r) = 1 + a [r] + b [r]^2,
 //   a = (1 - cos f)/f^2, b = (f - sin f)/f^3, f = |r|,
 // w' = J r' + exp(r) w and dw' = d(J r')/dt + (J r') x exp(r) w + exp(r) dw.
 #include "ayumi/motion/correction.hpp"

@@ -1,4 +1,4 @@
-// theta + L dtheta = u with u linear between rows k and k + 1, solved over one row:
+// The solution of theta + L dtheta = u over one row, with u linear between rows k and k + 1, is
 //   theta(k+1) = a theta(k) + (1 - a) u(k) + (1 - (1 - a) L / dt) (u(k+1) - u(k)),  a = exp(-dt/L)
 #include "ayumi/motion/servo_feedforward.hpp"
 

@@ -2,7 +2,7 @@
 //   F = w_p/L^2 sum |p(q) - p*|^2 / 2 + w_d sum |d(q) - d*|^2 / 2 + |q - q_keys|^2 / 2
 // between their limits by Newton's method. With a_i the axis of a joint and r_i the way from it to
 // the end p: dp/dq_i = a_i x r_i, and for a joint i above a joint j, d2p/dq_i dq_j = a_i x dp/dq_j;
-// a direction d alike, with dd/dq_i = a_i x d.
+// the same holds for a direction d, with dd/dq_i = a_i x d.
 #include "ayumi/plan/link_plan.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// With t' = s t the same path has accelerations 1/s^2 as large:
+// With t' = s t, the accelerations of the same path are multiplied by 1/s^2:
 //   f_z' = m (z'' / s^2 + g) = m g + (f_z - m g) / s^2.
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-// Per axis x (y alike), hats measured, Delta = cmd - measured (21):
+// For the axis x (and y likewise), with hats for measured values and Delta = cmd - measured (21):
 //   Z*    = cmdZ - K Dx - D Ddx                                    (18)(19), sign of D corrected
 //   refZ  = nearest point of the shrunk support polygon to Z*
 //   reffz = max(fmin, cmdfz + m (Kz Dz + Dz Ddz))                  (20)
@@ -7,10 +7,10 @@
 //           + sat(damp w (dxhat - dxref))
 //   zd'   = (zhat - refZ - zd) / Tw                                accepted offset
 //   dxref += dt ddx; theta from (22)(23); xref is read back from the posture.
-// The term with ka is what the reference lacks of (14): w2 (x - refZ) is asked, w2 (x - zhat) is
-// what the ground gives. It is zero when the ZMP is where it should be: short-term absorption.
-// The term with damp damps the rocking of the robot on soles and servos that yield, which the late
-// answer of the term with ka drives (docs/theory.md, "Late sensors").
+// The term with ka is the part of (14) that the reference lacks: w2 (x - refZ) is wanted, and w2 (x
+// - zhat) is what the ground gives. It is zero if the ZMP is where it should be. This is the
+// short-term absorption. The term with damp damps the rocking of the robot on soles and servos that
+// yield, which the late answer of the term with ka drives (docs/theory.md, "Late sensors").
 #include "ayumi/control/laws/dtad.hpp"
 
 #include <algorithm>

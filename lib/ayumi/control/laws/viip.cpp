@@ -1,4 +1,5 @@
-// Per axis x (y alike), hats measured, r reference, dcm = x + dx/w, Pi the support region:
+// For the axis x (and y likewise), with hats for measured values, r for the reference, dcm = x +
+// dx/w, and Pi for the nearest point of the support region:
 //   standing  Z(dcm) = Pi[xd + (1 + q)(dcm - xd - vd/w)]              (18)(19)
 //   stepping  Z(dcm) = Pi[(dcm_e - dcm E) / (1 - E)],  E = exp(w T) to the landing, dcm_e = p + b
 //   reffz = m (kz w)^2 (zd - zr) + 2 dz m kz w (vd - dzr) + m g       (24), (25) with the mass
@@ -9,8 +10,8 @@
 // The first term is (14) of the reference pendulum, the second the short-term absorption of
 // laws/dtad.cpp, the next two keep the reference at the robot, and the last one leaves the ZMP
 // where it is while the angular momentum L of the reference changes. kz depends on the feet that
-// bear. A foot lands where dcm^ will need it: Z + (dcm^ - Z) E - b. The joints follow by (28)(29),
-// control/whole_body.
+// carry load. A foot lands where dcm^ will need it: Z + (dcm^ - Z) E - b. The joints follow by
+// (28)(29), control/whole_body.
 #include "ayumi/control/laws/viip.hpp"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// Heights above the ground, r = ref z_G, per unit mass; the reference body obeys z'' = f_z/m - g.
+// Heights are above the ground, r = ref z_G, and forces are per unit mass; the reference body obeys
+// z'' = f_z/m - g.
 //   stoop    f_z/m = (kz w)^2 (r - zd - z) - 2 dz kz w z' + g            (24)(25)
 //   push     f_z/m = k (r - z) + g,  k = 2 g zH / zd^2, until z = r      (26)
 //            in its last tick z' = sqrt(2 g (r + zH - z)): the planned apex whatever the tick
@@ -7,8 +8,9 @@
 //            with L its own at release; the IMU gives the attitude, the parabola the position
 //   landing  f_z/m = k (z1 - z) + g, k = z1'^2 / zd^2, until z' = 0      (27)
 //   settle   as the stoop, towards r
-// Zero angular momentum at release: that of a resolution (28) is affine in the trunk's rate, so
-// four resolutions give the rate that leaves none; it is blended in along the push, out along (27).
+// The angular momentum is zero at release: that of a resolution (28) is affine in the trunk's rate,
+// so that four resolutions give the rate that leaves none. This rate is blended in during the push,
+// and out during (27).
 #include "ayumi/control/laws/viip_jump.hpp"
 
 #include <Eigen/LU>

@@ -1,7 +1,8 @@
 // Inverse and forward dynamics in link axes about the link's origin, for a scalar T that holds one
-// or several states; included by one source per instruction set, which names Wide. No guard, no
-// external names. With E the joint frame's turn, P the joint's and r its origin in the parent,
-// classical accelerations a (of the origin, gravity added) and W = [alpha x] + w w' - |w|^2:
+// or several states. Each instruction set has one source that includes this file and defines Wide.
+// The file has no include guard and no external names. With E the turn of the joint frame, P that
+// of the joint, r the joint's origin in the parent, the classical accelerations a (of the origin,
+// with gravity added) and W = [alpha x] + w w' - |w|^2:
 //   outwards:  w = (E P)' w_p + s dq,   alpha = (E P)' alpha_p + s ddq + w x s dq,
 //              a = (E P)' (a_p + W_p r)                    (sliding: r + s q, + s ddq + 2 w x s dq)
 //   of a body: f = m a + W h,   n = h x a + I alpha + w x I w

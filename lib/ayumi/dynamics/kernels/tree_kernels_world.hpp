@@ -1,11 +1,11 @@
 // Part of tree_kernels_body.hpp: one state in world axes about the base origin, where parent and
 // child share one frame and the recursions are plain sums:
 //   w_i = w_p + s dq,  v_i = v_p + w_p x r,       alpha_i = alpha_p + s ddq + w_p x s dq,
-//   a_i = a_p + alpha_p x r + w_p x (w_p x r),    f = m (a_c + g z),  n = I alpha + w x I w + c x
-//   f, tau = s . (n_subtree - p x f_subtree).
+//   a_i = a_p + alpha_p x r + w_p x (w_p x r),    f = m (a_c + g z),
+//   n = I alpha + w x I w + c x f,                tau = s . (n_subtree - p x f_subtree).
 // A prismatic joint adds s ddq + 2 w_p x s dq to a_i instead of the angular terms. Most bodies
-// stand next to their parent. What goes from one to the other then stays in registers: a number
-// that has just been stored is late when it is loaded again.
+// stand next to their parent. The values that go from one to the other then stay in registers: a
+// number that has just been stored takes time to be loaded again.
 
 namespace {
 

@@ -1,9 +1,10 @@
 #pragma once
-// HOAP sequence files: what the motion program of Fujitsu's HOAP robots plays, one row per frame,
+// HOAP sequence files, which the motion program of Fujitsu's HOAP robots plays. They have one row
+// per frame,
 //   <interval ms>,2,<motor 1>,...,<motor n>[,<words>],R,...
-// without a head row. Motors in device order, values in encoder counts, interval = time to the next
-// row. "R" requests sensor data. The columns are those of a layout of the robot's sidecar; files
-// without an interval are recordings of a robot.
+// without a head row. Motors are in device order, values are encoder counts, and the interval is
+// the time to the next row. "R" requests sensor data. The columns are those of a layout of the
+// robot's sidecar; files without an interval are recordings of a robot.
 
 #include <filesystem>
 #include <string>

@@ -134,7 +134,8 @@ class SlipFinder {
     return token_ == Token::word && last_ == Token::string && text_[at_ - 1] == '"';
   }
 
-  // The mark is missing after the word, before the characters that belong to the text again.
+  // The missing mark belongs after the word and before the characters that are part of the text
+  // again.
   void say_unclosed(size_t begin) {
     size_t end = begin + 1;
     while (end < text_.size() &&

@@ -41,7 +41,7 @@ struct RobotGuess {
 /// - Home: bent knees, with the COG over the middle of the soles and all joints inside their
 /// limits.
 /// - Servos: full effort of each joint at an error of 0.2 rad, and for legs at least 20 m g z per
-/// rad. What was inferred is added to `assumptions`.
+/// rad. The inferred values are added to `assumptions`.
 RobotGuess guess_robot(RobotDescription robot);
 
 /// Makes joints whose links weigh nothing fixed at 0, because the torque of a motor cannot move

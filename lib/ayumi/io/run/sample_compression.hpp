@@ -4,7 +4,7 @@
 // through the last n of them:
 //   n = 0: 0;  1: a;  2: 2a - b;  3: 3(a - b) + c;  4: 4(a + c) - 6b - d   (a the last one)
 // Some columns nearly follow from others in the same row: an angle from its rate, a torque from the
-// angle and its target. Where the caller names these sources s, the prediction may also be
+// angle and its target. If the caller names these sources s, the prediction may also be
 //   a + sum of u s + v (s - s') + w (s - 2 s' + s'')
 // with weights u, v, w by least squares, which are written too. Value and prediction, as integers
 // in the order of the floats, differ by a small integer. Its bytes are written plane by plane, the

@@ -1,4 +1,4 @@
-// One contact alone, with D its diagonal block and r = b + the off-diagonal part of A l:
+// For one contact alone, with D its diagonal block and r = b + the off-diagonal part of A l:
 //   open:   r_n >= 0                       -> l = 0
 //   stick:  l = -D^-1 r, inside the cone   -> l
 //   slide:  u_n = 0, (D_tt + s 1) l_t + D_tn l_n + r_t = 0 with the s >= 0 that puts l on the cone.

@@ -1,7 +1,8 @@
-// One step of length h from (q, v), all rates at its end (implicit in servo and contact springs):
-//   (M + rotor + h(kd + b) + h^2 kp) v+ = (M + rotor) v + h (kp (target - theta) - bias + ext) + J'
-//   l
-// solved for the change of velocity: with D, the diagonal of the joints' laws,
+// One step of length h from (q, v), with all rates taken at its end (implicit in servo and contact
+// springs), is
+//   (M + rotor + h(kd + b) + h^2 kp) v+ =
+//       (M + rotor) v + h (kp (target - theta) - bias + ext) + J' l
+// It is solved for the change of velocity. With D, the diagonal of the joints' laws,
 //   (M + rotor + D) (v+ - v) = impulses - D v.
 #include "ayumi/sim/plant/step_system.hpp"
 
