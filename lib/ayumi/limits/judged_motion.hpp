@@ -138,7 +138,8 @@ void judge_difference(JudgedMotion& motion, FindingKind kind, int sample,
 /// always be scaled to gravity.
 bool flight_is_free(JudgedMotion& motion, int sample, double pace, double limit);
 
-// The names of places that several limits use.
+// The following functions name places that several limits use.
+
 /// The axis or the support that the detail of the violation names.
 Place axis_place(const JudgedMotion&, const Violation&);
 Place support_place(const JudgedMotion&, const Violation&);

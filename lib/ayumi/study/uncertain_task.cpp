@@ -28,8 +28,8 @@ constexpr double kHollowSpacing = 0.02;
 /// Width of the uneven ground around the planned soles [m]. Chosen: wider than a sole and a slip of
 /// some centimetres; beyond it the ground is a plane.
 constexpr double kHollowMargin = 0.2;
-/// Severity of a fall at the start of a run. Definition: far above that of a run that has not
-/// settled; even an hour of time [s] less leaves it above that.
+/// Severity of a fall at the start of a run. Definition: the severity decreases by 1 per second
+/// until the fall, and even after an hour it is far above that of a run that has not settled.
 constexpr double kFallSeverity = 1e6;
 
 /// Random numbers that depend on a seed, a number and a name (FNV-1a over the name).

@@ -18,7 +18,7 @@ struct ImportOptions {
   bool commands = false;  ///< angles are servo targets, as in Ayumi's reference tables
   /// Rows of radians have the signs of the encoders and not of the joints.
   bool encoder_signs = true;
-  /// Largest change of an angle [deg]; without a value: 0.1 for counts, 0 for angles.
+  /// Largest change of an angle [deg]. If there is no value, it is 0.1 for counts and 0 for angles.
   std::optional<double> smooth{};
   bool by_order = false;              ///< columns are the robot's joints in the robot's order
   std::vector<std::string> joints{};  ///< joint names of the columns, in the order of the file
