@@ -28,7 +28,8 @@ struct Named {
   std::optional<RobotModel> robot;
   std::optional<Pattern> pattern;
   std::optional<PostureLibrary> library;
-  bool by_word = false;  ///< true: a word names the robot; false: it is the robot that `new` uses
+  /// Whether a word names the robot; if not, it is the robot that `new` uses.
+  bool by_word = false;
 };
 
 template <class Read>

@@ -20,7 +20,8 @@ struct GaitOptions {
   std::string controller;  ///< controller; "": that of new patterns
   double cog_height = 0;   ///< height of the COG; 0 for starting_height() [m]
   double rate = 50;        ///< rate of the rows of tables and archives [1/s]
-  bool certify = true;     ///< false: instead, one run of the robot as it is modelled
+  /// Whether cells are certified; if not, there is one run of the robot as it is modelled.
+  bool certify = true;
   CertifyOptions study;    ///< study of each cell; its number of threads is not used
   std::string study_file;  ///< file of the uncertainty; "": that of the robot
   bool transitions = true;

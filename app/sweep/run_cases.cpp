@@ -31,7 +31,7 @@ RunCost run_cases(const CaseRunner& runner, ResultsDatabase& results,
   double writing = 0;
   const auto count = static_cast<size_t>(std::count(cases.begin(), cases.end(), true));
   size_t finished = 0, next = 0;
-  bool broken = false;  // true: the file accepts no more rows
+  bool broken = false;  // whether the file accepts no more rows
   const double before = runner.seconds(), useful = runner.useful_seconds();
   const auto commit = [&] {
     if (broken) return;

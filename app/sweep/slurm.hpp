@@ -47,7 +47,7 @@ RunCost run_on_slurm(const Context& context, const CaseRunner& runner, ResultsDa
 
 /// State of the tasks that were submitted for these results.
 struct SlurmStatus {
-  bool exists = false;  ///< true: tasks were submitted and not all were collected
+  bool exists = false;  ///< whether tasks were submitted and not all of them were collected
   long waiting = 0, running = 0, arrived = 0;
   std::string name;     ///< name of the jobs
   std::string reason;   ///< reason why tasks wait, in Slurm's word

@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::VectorXd;
 
-// z = cos(v t): the bounded motion is x = cos(v t) / (1 + v^2 / w^2), far from the ends.
+// If z = cos(v t), the bounded motion is x = cos(v t) / (1 + v^2 / w^2), far from the ends.
 TEST(BoundedCog, CosineZmp) {
   const double w = 6.3, h = 0.005;
   for (const double v : {1.0, 5.0, 15.0}) {
@@ -22,7 +22,7 @@ TEST(BoundedCog, CosineZmp) {
   }
 }
 
-// z steps from 0 to 1 at t = 0: x = e^{wt}/2 before, 1 - e^{-wt}/2 after.
+// If z steps from 0 to 1 at t = 0, x is e^{wt}/2 before and 1 - e^{-wt}/2 after that.
 TEST(BoundedCog, StepZmp) {
   const double w = 5, h = 0.001;
   const int n = 6000;

@@ -1,5 +1,5 @@
-// The default walk on the project's HOAP-1: inside the limits of the real actuators with margin,
-// and the ZMP of the full model well inside the soles.
+// The default walk on the project's HOAP-1 is inside the limits of the real actuators with margin,
+// and the ZMP of the full model is well inside the soles.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -132,7 +132,7 @@ TEST_F(Textured, GltfKeepsThePictureAndReadsBack) {
   ASSERT_EQ(back.parts.size(), 1u);
   ASSERT_EQ(back.parts[0].uvs.size(), back.parts[0].vertices.size());
   for (size_t i = 0; i < back.parts[0].vertices.size(); ++i) {
-    // glTF's axes: what was y is -z, what was z is y; u grows with y, v with z.
+    // In glTF's axes, the former y is -z and the former z is y; u grows with y, and v with z.
     EXPECT_NEAR(back.parts[0].uvs[i].x(), 0.5f - back.parts[0].vertices[i].z(), 1e-5);
     EXPECT_NEAR(back.parts[0].uvs[i].y(), 0.5f + back.parts[0].vertices[i].y(), 1e-5);
   }

@@ -96,7 +96,7 @@ TEST(Hoap1Walk, ArmsTakeUpMomentumAsTheirWeightsInTheKeyframesSay) {
   const double free = arm_turn({}, 0.1);
   EXPECT_GT(free, 0.1);
   EXPECT_LT(arm_turn(heavy, 0.1), 0.02 * free);
-  EXPECT_GT(arm_turn(heavy, 1.5), 0.9 * free);  // after the push they change nothing
+  EXPECT_GT(arm_turn(heavy, 1.5), 0.9 * free);  // after the push, the weights change nothing
 }
 
 // The angular momentum provides what the support cannot: 3.6 N s, 1.24 times the capture bound.

@@ -18,7 +18,7 @@ struct ChildStart {
   std::string program;                        ///< a path, or a name that is looked up in PATH
   std::vector<std::string> arguments = {};    ///< arguments after the name of the program
   std::vector<std::string> environment = {};  ///< variables as "NAME=value"
-  int input = -1;  ///< becomes the child's standard input; must be above 2
+  int input = -1;  ///< becomes the child's standard input and must be above 2
   /// Becomes the child's standard error and must be above 2; with -1, errors lead nowhere.
   int errors = -1;
 };

@@ -12,7 +12,8 @@ struct ActuatorNeed {
   std::vector<std::string> sufficient;  ///< other profiles that are enough
 };
 
-/// For `report`, the check of `series` with `options`; looks at joint speed, torque and steps only.
+/// The need that follows from `report`, the check of `series` with `options`. Only joint speed,
+/// torque and steps are considered.
 ActuatorNeed actuator_need(const RobotModel& model, const CommandSeries& series,
                            const CheckOptions& options, const ConsistencyReport& report);
 

@@ -10,7 +10,7 @@ namespace ayumi {
 struct Judgement {
   /// Report on the motion; its `consistent` is the verdict on motion and goals.
   ConsistencyReport report;
-  /// false: the motion itself has errors, which a repair can remove.
+  /// Whether the motion itself has no errors. If it has some, a repair can remove them.
   bool motion_consistent = true;
   ActuatorNeed motion_need;  ///< what the profile lacks for the motion
   ActuatorNeed goal_need;    ///< what the profile lacks for the goals

@@ -41,7 +41,7 @@ constexpr double kLiftedKey = 0.005;
 // A foot lower than this over the ground counts as standing on it [m].
 constexpr double kOnGround = 1e-3;
 // Angles below this count as zero, and angles this near to a whole number count as whole [deg].
-// Definition: what rounding to three digits leaves.
+// Definition: rounding to three digits leaves this.
 constexpr double kLeastAngle = 1e-3;
 // From this number of angles on, a regularity is not taken for chance. Chosen: two keys of two
 // joints.

@@ -19,7 +19,7 @@ struct Mistake {
   std::string place;  ///< JSON pointer in the file; "" for the whole pattern
   std::string words;
   bool explains_all = false;  ///< after the correction, the pattern is consistent
-  bool is_cause = true;       ///< false: no cause was found, and the words say what was tried
+  bool is_cause = true;       ///< if false, no cause was found, and the words say what was tried
 
   std::string text() const { return place.empty() ? words : place + ": " + words; }
 };

@@ -44,14 +44,14 @@ constexpr long kManyKeys = 4;
 // Two times that differ by less than this share are meant to be equal. Chosen: times are written in
 // milliseconds, and a factor that is derived from such times has an error of this size.
 constexpr double kSameTime = 0.005;
-// A length below this counts as zero [m]. Definition: what rounding leaves.
+// A length below this counts as zero [m]. Definition: rounding leaves less.
 constexpr double kNoLength = 1e-4;
 // Numbers of a target below this are taken for metres, whatever the other numbers are. Chosen: half
 // a millimetre, or half a centimetre.
 constexpr double kLeastWritten = 0.5;
-// Units in which lengths are written by mistake, in place of metres.
+// Units in which lengths are written by mistake, instead of metres.
 constexpr std::array kSmallerUnits = {std::pair("mm", 1e-3), std::pair("cm", 1e-2)};
-// An angle below this counts as zero [rad]. Definition: what rounding leaves.
+// An angle below this counts as zero [rad]. Definition: rounding leaves less.
 constexpr double kNoAngle = 1e-6;
 // A level foot below a leg that leans by less than this is not named as a reason [rad]. Chosen:
 // five degrees, which every ankle can bend.

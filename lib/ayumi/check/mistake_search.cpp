@@ -25,15 +25,15 @@ constexpr size_t kSuspects = 3;
 // Number of bisection steps for the range of a value, counted from the first value that is
 // possible. Chosen: an accuracy of 3 % of the distance.
 constexpr int kBisections = 5;
-// Largest number of bisection steps in all. Chosen: the range of a length that was written in mm in
-// place of m begins at the tenth step.
+// Largest number of bisection steps in all. Chosen: the range of a length that was written in mm
+// instead of m begins at the tenth step.
 constexpr int kMostBisections = 14;
 // If more than this share of a value is possible, the value is not wrong by a factor of ten.
 // Chosen: a value with a misplaced decimal point is possible up to a share of 0.1, and motions
 // seldom tolerate five times what their author meant.
 constexpr double kGrossShare = 0.5;
-// If less than this share of a value is possible, its sign is wrong and not its size. Chosen: what
-// the tolerances of the check allow.
+// If less than this share of a value is possible, its sign is wrong and not its size. Chosen: the
+// tolerances of the check allow this share.
 constexpr double kNoShare = 0.05;
 // A value that is farther than this from its neighbours is tried at a tenth of its size. Chosen:
 // half the length of a leg, or half a radian; a step or a swing of a joint within one segment is

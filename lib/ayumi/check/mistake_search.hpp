@@ -32,7 +32,7 @@ struct Explanations {
   std::vector<Explanation> found;
   int trials = 0;        ///< number of versions that were sampled and checked; a version with more
                          ///< samples, or with legs of fewer than six joints, counts as several
-  bool complete = true;  ///< false: the bound on trials was reached, errors remain, and more could
+  bool complete = true;  ///< if false, the bound on trials was reached, errors remain, and more could
                          ///< have been tried
 };
 

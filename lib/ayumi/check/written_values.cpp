@@ -19,8 +19,8 @@ namespace ayumi {
 
 namespace {
 
-// Two numbers that differ by less than this are the same, in any unit. Definition: what the
-// conversion of degrees and of rounded limits leaves.
+// Two numbers that differ by less than this are the same, in any unit. Definition: the conversion
+// of degrees and of rounded limits leaves this.
 constexpr double kSame = 1e-6;
 
 using In = std::function<double&(Pattern&)>;

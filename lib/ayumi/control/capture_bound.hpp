@@ -23,8 +23,8 @@ CaptureRegion capture_region(const RobotModel& model, const CommandSeries& serie
                              int directions = 72);
 
 /// Largest impulse through the COG along the unit vector u after which the pendulum can still
-/// return to the plan [N s]: m omega min over n.u > 0 of (h(n) - n.dcm) / (n.u); negative when the
-/// plan itself leaves the region.
+/// return to the plan [N s]: m omega min over n.u > 0 of (h(n) - n.dcm) / (n.u). It is negative if
+/// the plan itself leaves the region.
 double capture_bound(const CaptureRegion& region, const Eigen::Vector2d& u);
 
 /// m omega times the distance along u from the commanded ZMP to the edge of the present support [N

@@ -31,7 +31,7 @@ struct Estimate {
   RobotState state;                                ///< state in the plan frame
   Eigen::Vector3d cog = Eigen::Vector3d::Zero();   ///< COG in the plan frame [m]
   Eigen::Vector3d dcog = Eigen::Vector3d::Zero();  ///< rate of the COG [m/s]
-  /// ZMP in the plan frame; keeps its value in flight [m].
+  /// The ZMP in the plan frame [m]. In flight it keeps its value.
   Eigen::Vector3d zmp = Eigen::Vector3d::Zero();
   double fz = 0;                           ///< vertical force [N]
   std::array<double, 2> foot_fz = {0, 0};  ///< vertical force of each foot [N]

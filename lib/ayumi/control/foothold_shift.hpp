@@ -55,7 +55,7 @@ class FootholdShift {
   /// of the plan jumps there.
   bool advance(const Estimate& estimate);
 
-  /// Rate of the pattern's clock; 1: its own pace.
+  /// The rate of the pattern's clock; 1 is its own pace.
   double time_scale() const { return time_scale_; }
   double phase() const { return phase_; }  ///< phase of plan() in the pattern [samples]
   /// Offset of a foot from the pattern [m].

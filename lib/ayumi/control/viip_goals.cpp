@@ -56,8 +56,8 @@ constexpr double kLowestShare = 0.3;
 // from -66.4 to -66.6 mm.
 constexpr int kHalvings = 10;
 
-// Number of steps of the keyed walk that is judged in place of a goal. Chosen: a longer walk
-// repeats itself. No measured case changes between half and twice the value (constants.md).
+// Number of steps of the keyed walk that is judged instead of a goal. Chosen: a longer walk repeats
+// itself. No measured case changes between half and twice the value (constants.md).
 constexpr int kMostKeyedSteps = 6;
 
 // Largest turn in one step [rad]: 20 deg. Chosen: soles beside each other must not meet. With half

@@ -44,7 +44,7 @@ struct ResolverOptions {
   double angular_length = 0.2;  ///< length that makes angular rows comparable with linear ones [m]
   double speed_share = 0.98;    ///< share of a joint's speed limit that may be used
   UpperBodyTurn turn = {};      ///< turn of the trunk and the arms relative to their command
-  /// true: tasks are reduced one after the other; false: all of them together.
+  /// Whether tasks are reduced one after the other. Otherwise all of them are reduced together.
   bool in_order = true;
 };
 

@@ -43,7 +43,7 @@ std::vector<Vector3d> ends(const ConvexCore& core) {
   std::vector<Vector3d> result;
   if (!core.points.empty()) return result;
   for (int i = 0; i < 8; ++i) {
-    bool twin = false;  // true: equal to an earlier corner, because an axis has no length
+    bool twin = false;  // whether it is equal to an earlier corner, because an axis has no length
     for (int axis = 0; axis < 3; ++axis)
       twin = twin || (core.half[axis] == 0 && (i >> axis & 1) != 0);
     if (!twin) result.push_back(box_corner(core.half, i));

@@ -28,18 +28,18 @@ std::vector<ShapePair> shape_pairs(const CollisionModel& collisions, int pair);
 /// The number of clearance_points(): 1 for two spheres; 16 for two boxes, or 17 with their edges.
 int clearance_point_count(const CollisionModel& collisions, const ShapePair& shapes);
 
-/// Whether two edges are nearer than any end, by more than `same_distance` [m]; needs
+/// Whether two edges are nearer than any end, by more than `same_distance` [m]. Needs
 /// update_positions().
 bool edges_meet(const CollisionModel& collisions, const ShapePair& shapes, const RobotData& data,
                 double same_distance);
 
-/// The clearance of the two shapes; needs update_positions(). If the bounding spheres are farther
-/// apart than `skip`, their distance is returned instead [m].
+/// The clearance of the two shapes. If the bounding spheres are farther apart than `skip`, their
+/// distance is returned instead [m]. Needs update_positions().
 double shape_clearance(const CollisionModel& collisions, const ShapePair& shapes,
                        const RobotData& data, double skip);
 
 /// First the clearance itself if it is a row, then the distances of the ends of b from a, then
-/// those of the ends of a from b [m]; needs update_positions().
+/// those of the ends of a from b [m]. Needs update_positions().
 std::vector<Closest> clearance_points(const CollisionModel& collisions, const ShapePair& shapes,
                                       const RobotData& data);
 

@@ -36,7 +36,7 @@ struct Momentum {
   Eigen::Vector3d linear = Eigen::Vector3d::Zero();
   Eigen::Vector3d angular = Eigen::Vector3d::Zero();
 };
-/// Needs update_velocities().
+/// The momentum of the whole robot about its COG. Needs update_velocities().
 Momentum centroidal_momentum(const RobotModel& model, const RobotData& data);
 
 /// Inertia of the whole robot about its COG with the joints locked, world axes [kg m^2]. Needs

@@ -58,7 +58,7 @@ struct FootPlace {
   Side side = Side::left;
 };
 struct AxisPlace {
-  int axis = 0;  ///< 0, 1, 2: x, y, z of the world
+  int axis = 0;  ///< 0, 1, 2 for x, y, z of the world
 };
 struct SupportPlace {
   Support support = Support::both;

@@ -102,10 +102,11 @@ struct FindingSpec {
   Place (*place)(const JudgedMotion&, const Violation&) = nullptr;
   Advice (*advice)(const JudgedMotion&, const FindingWindow&) = nullptr;
   /// The reason in words why no repair was found. `violation` is the ratio of value and limit if
-  /// is_ratio(), and their difference otherwise. Null: a general text.
+  /// is_ratio(), and their difference otherwise. If the pointer is null, there is a general text.
   std::string (*infeasibility)(const Finding&, double violation) = nullptr;
   /// Whether the violated sample keeps the limit if the path is played at this pace: rates are
-  /// multiplied by the pace, accelerations by its square. Null: another pace changes nothing.
+  /// multiplied by the pace, accelerations by its square. If the pointer is null, another pace
+  /// changes nothing.
   bool (*holds_at)(JudgedMotion&, const Violation&, double pace) = nullptr;
 
   /// Whether the tolerance is a share of the limit.
@@ -123,7 +124,8 @@ struct Limit {
   /// Records violations that only the whole motion shows. Called after all samples.
   void (*judge_motion)(JudgedMotion&) = nullptr;
   /// Places the rows of a repair at those points of a site (row_site.hpp) at which the motion is
-  /// near the limit. Null: no repair keeps this limit by itself; the check of its result tests it.
+  /// near the limit. If the pointer is null, no repair keeps this limit by itself; the check of its
+  /// result tests it.
   void (*place_rows)(RowSite&) = nullptr;
 };
 

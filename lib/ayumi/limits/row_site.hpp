@@ -46,10 +46,11 @@ std::array<Vector6d, 2> shared_load(const RobotModel& model, const CollocationPo
 /// repair/policy.hpp.
 struct RowSettings {
   Trust trust = Trust::posture;
-  const CollisionModel* collisions = nullptr;  ///< null: there are no rows of clearances
-  std::vector<int> near_pairs;                 ///< pairs of bodies that are watched
-  std::vector<bool> locked;                    ///< locked joints by dof; empty if there is none
-  std::array<bool, 2> locked_feet = {};        ///< feet that keep their paths, by Side
+  /// Shapes of the robot; if null, there are no rows of clearances.
+  const CollisionModel* collisions = nullptr;
+  std::vector<int> near_pairs;           ///< pairs of bodies that are watched
+  std::vector<bool> locked;              ///< locked joints by dof; empty if there is none
+  std::array<bool, 2> locked_feet = {};  ///< feet that keep their paths, by Side
   bool swing_goals =
       /// Whether low soles should be level and over their places, and the others high enough.
       true;

@@ -69,7 +69,7 @@ struct LoadFriction {
 /// within the dead band and reduced by it beyond,
 ///   torque = kp e - kd dphi,   or with an inner speed loop   kd (clamp(kp / kd e) - dphi),
 /// bounded by the profile's peak torque and by the motor's voltage. A velocity feed-forward is a
-/// lead of delay + kd/kp seconds of the target. For a sliding joint, read m in place of rad.
+/// lead of delay + kd/kp seconds of the target. For a sliding joint, read m instead of rad.
 struct ServoDescription {
   double kp = 0;             ///< stiffness of the position loop [N m/rad]
   double kd = 0;             ///< damping of the position loop [N m s/rad]
@@ -181,7 +181,7 @@ struct SensorDescription {
   /// Position of the sensor in this link [m].
   Eigen::Vector3d imu_position = Eigen::Vector3d::Zero();
   double latency = 0;  ///< latency of all sensors [s]
-  /// Latencies of the joint angles, of attitude and gyro, and of the load cells, in place of
+  /// Latencies of the joint angles, of attitude and gyro, and of the load cells, which replace
   /// `latency` [s].
   std::optional<double> encoder_latency, imu_latency, force_latency;
   /// Standard deviation and bias of the attitude [rad].

@@ -62,7 +62,7 @@ class FootPlan {
   int phase(double t) const;
   Support support(double t) const;
   double begin(int phase) const { return phase > 0 ? phases_[phase - 1].until : 0.0; }
-  /// The phases of the pattern, with footholds in place of steps.
+  /// The phases of the pattern, with footholds instead of steps.
   const std::vector<Phase>& phases() const { return phases_; }
   double duration() const { return phases_.back().until; }
 

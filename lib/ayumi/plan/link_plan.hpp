@@ -65,7 +65,8 @@ class LinkPlan {
   };
   struct Anchor {
     double t = 0;
-    const LinkTarget* target = nullptr;  ///< null: the joints' keys move the link
+    /// Target of the link; if null, the joints' keys move the link.
+    const LinkTarget* target = nullptr;
     Interpolation interpolation = Interpolation::minimum_jerk;
     size_t keyframe = 0;
   };

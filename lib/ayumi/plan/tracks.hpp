@@ -27,7 +27,7 @@ struct PatternTracks {
   std::optional<std::array<Track, 3>> torso;     ///< roll, pitch, yaw [rad]
   std::optional<std::array<Track, 3>> base;      ///< position from a table [m]
   std::optional<std::array<Track, 4>> attitude;  ///< w, x, y, z from a table, unnormalised
-  bool rest_ends = true;                         ///< false: a table may start or end in motion
+  bool rest_ends = true;                         ///< if false, a table may start or end in motion
   std::vector<std::pair<double, Eigen::VectorXd>>
       weight;                                 ///< times [s], and the weights W from each time on
   std::map<std::string, std::string> origin;  ///< origins of the given tracks in words

@@ -163,7 +163,8 @@ std::vector<Candidate> landings(const SimulationLog& log, const std::vector<Flig
     const SimulationSample& highest = log.samples[tick_at(log, apex_of(log, flown[i]))];
     const double drop = highest.cog.z() - log.samples[low].cog.z();
     const double height = std::max(1e-3, highest.cog.z() - log.world.height);
-    if (2 * drop / height >= kSeenMove)  // in the same unit as the COG in turning_postures()
+    // The fall is measured in the unit of the COG in turning_postures().
+    if (2 * drop / height >= kSeenMove)
       out.push_back({static_cast<double>(low) * log.dt, 2 * drop / height, true});
   }
   return out;

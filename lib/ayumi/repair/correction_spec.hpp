@@ -48,7 +48,7 @@ struct CorrectionSpec {
   double friction = 0.8;                  ///< friction coefficient of the ground
 
   // These are the distances that are kept from the check's limits.
-  bool at_check_limits = false;  ///< true: every limit is exactly that of the check
+  bool at_check_limits = false;  ///< if true, every limit is exactly that of the check
   double joint_margin =
       repair_policy::kFirstBackoff.joint_position;  ///< distance inside soft limits [rad]
   double limit_share = repair_policy::kFirstBackoff

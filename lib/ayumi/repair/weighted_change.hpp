@@ -28,7 +28,7 @@ struct WeightedChange {
 };
 
 /// The weights w by column: base position and base rotation (policy.hpp), then W of the motion
-/// times `factors` by joint (empty: 1). If the motion has no W, that of the robot is used.
+/// times `factors` by joint (1 if it is empty). If the motion has no W, that of the robot is used.
 Eigen::VectorXd change_weights(const RobotModel& model, const CommandSeries& series,
                                const Eigen::VectorXd& factors = {});
 

@@ -48,13 +48,14 @@ struct SimulateOptions {
   bool sensor_noise = false;  ///< whether to use the sidecar's noise, bias and latency
   std::uint64_t seed = 1;
   PlantKind plant;
-  TargetFunction targets = {};  ///< empty: the servos receive the targets of the control law
-  /// The robot that is simulated, including its sensors; it must outlive the run. Null: the robot
-  /// is equal to its model.
+  /// Targets of the servos; if empty, they receive those of the control law.
+  TargetFunction targets = {};
+  /// The robot that is simulated, including its sensors; it must outlive the run. If it is null,
+  /// the robot is equal to its model.
   const RobotUnit* unit = nullptr;
   /// A controller before its first tick, made with the same model, series and law. The run copies
-  /// its own controller from it, because this takes less time than making one. Null: the run makes
-  /// its own.
+  /// its own controller from it, because this takes less time than making one. If it is null, the
+  /// run makes its own.
   const Controller* prepared = nullptr;
 };
 

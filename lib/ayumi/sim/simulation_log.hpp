@@ -25,7 +25,7 @@ struct SimulationSample {
   Eigen::VectorXd reference_theta;  ///< reference posture, without the servo lead [rad, m]
   Eigen::Vector3d cog = Eigen::Vector3d::Zero();   ///< true COG in the world [m]
   Eigen::Vector3d dcog = Eigen::Vector3d::Zero();  ///< its rate [m/s]
-  /// True ZMP in the world; keeps its value in flight [m].
+  /// The true ZMP in the world [m]. In flight it keeps its value.
   Eigen::Vector3d zmp = Eigen::Vector3d::Zero();
   double fz = 0;                                           ///< true vertical ground force [N]
   Eigen::Vector3d measured_cog = Eigen::Vector3d::Zero();  ///< estimated COG in the plan frame [m]

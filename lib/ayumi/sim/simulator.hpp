@@ -122,7 +122,7 @@ class Simulator {
   SimulationSample last_;
   Estimate true_estimate_;  // replaces the estimator's value if the law knows the true state
   std::vector<SimulationSample> samples_;
-  SampleSink sink_;  // empty: samples are kept
+  SampleSink sink_;  // receives the samples; if empty, samples are kept
   bool keep_samples_ = true, verdict_only_ = false, fell_ = false;
   bool touched_ = false;  // whether an event says that the robot touched itself
   EnergyBalance work_;

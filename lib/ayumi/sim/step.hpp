@@ -56,7 +56,7 @@ struct StepInput {
   std::vector<ExternalWrench> wrenches;
   std::vector<CarriedMass> payloads;
   std::vector<JointFault> joints;  ///< faults by dof; empty for no faults
-  std::optional<FloorPose> floor;  ///< empty: the world's slope at rest
+  std::optional<FloorPose> floor;  ///< pose of the floor; if empty, the world's slope at rest
   /// Friction of the whole ground, which replaces that of the world.
   std::optional<double> friction;
   std::vector<RisingDisc> bumps;  ///< bumps in addition to the world's blocks

@@ -37,8 +37,8 @@ WalkParameters stair_defaults(const RobotModel& model, double rise);
 /// Throws Error(usage) that names the parameter out of range.
 Pattern walk_pattern(const RobotModel& model, const WalkParameters& parameters);
 
-/// Both feet on the ground, home posture, for `duration` [s]; `cog_height` 0: starting_height()
-/// [m].
+/// Both feet are on the ground in the home posture for `duration` [s]. If `cog_height` is 0,
+/// starting_height() is used [m].
 Pattern stand_pattern(const RobotModel& model, double duration, double cog_height = 0);
 
 /// The COG moves to and fro over both feet; every part starts and ends at rest.

@@ -53,8 +53,8 @@ double speed_between(const Isometry3d& from, const Isometry3d& to, double time) 
   return ((to.translation() - from.translation()).norm() + kLever * turn.norm()) / time;
 }
 
-// Label of each row. +1: only the left foot supports, -1: only the right foot supports, 0: both
-// support, 2: undecided, because a foot moves at too low a height.
+// The label of each row: +1 if only the left foot supports, -1 if only the right foot supports, 0
+// if both support, and 2 if it is undecided because a foot moves at too low a height.
 std::vector<int> relative_labels(const RobotModel& model, const Soles& soles, double dt) {
   const int n = static_cast<int>(soles[0].size());
   const int look = std::max(1, static_cast<int>(std::lround(kLook / dt)));

@@ -22,7 +22,7 @@ struct DtadParams {
   std::optional<double> k;     ///< [k] K given directly, with d; must exceed 1
   std::optional<double> d;     ///< [d] D omega given directly, with k; must be positive
   double long_term = 1;        ///< [long] share of (18)(19); with 0, ref ZMP is the commanded ZMP
-  double as_printed = 0;       ///< [as_printed] 1: D has the printed sign, as a demonstration
+  double as_printed = 0;       ///< [as_printed] with 1, D has the printed sign, as a demonstration
   double zmp_gain = 1;         ///< [ka] short-term loop on the measured ZMP; grows towards (14)
   double rocking_damping = 8;  ///< [damp] damping of the robot's rocking on its soles and servos
   double pull_rate = 1.8;      ///< [ks] pull of the reference COG to the command

@@ -41,8 +41,8 @@ struct ViipParams {
   /// [inside] distance of the nominal ZMP from the sole's centre towards the other foot.
   double zmp_inset = 0.05;
   double recovery = 0.5;  ///< [hold] share of a foot's error that the next step takes back
-  bool feedback = true;   ///< false: only the reference pendulum, as a demonstration
-  bool landings = true;   ///< false: a foot lands when its time is over, as a demonstration
+  bool feedback = true;   ///< if false, only the reference pendulum moves, as a demonstration
+  bool landings = true;   ///< if false, a foot lands when its time is over, as a demonstration
 };
 
 /// The defaults, which the robot's sidecar overrides, and then the pattern's gains. Throws

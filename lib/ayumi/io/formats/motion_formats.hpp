@@ -28,8 +28,8 @@ struct MotionFormat {
   unsigned holds = 0;
   bool played = false;  ///< whether a robot's own program plays such files
   bool binary = false;  ///< whether the content is not text
-  /// Says why the content has this format; "" if it does not have it. Null: the format is only
-  /// written.
+  /// Says why the content has this format; "" if it does not have it. The pointer is null if the
+  /// format is only written.
   std::string (*recognize)(const MotionInput&) = nullptr;
   MotionFile (*read)(const MotionInput&) = nullptr;
   /// Writes the files; null if the format is only read.

@@ -30,7 +30,8 @@ constexpr size_t kMostKeys = 20'000;
 
 /// One key of the file.
 struct PoseKey {
-  /// Time of the key and of its transition [s]; transition 0: since the previous key.
+  /// Time of the key and of its transition [s]; 0 for a transition that lasts since the previous
+  /// key.
   double time = 0, transition = 0;
   std::vector<int> joints;  ///< ids of the joints
   std::vector<double> angles;

@@ -35,7 +35,7 @@ JsonSpan nearest_value(const std::string& text, const std::string& pointer);
 /// The line of a place in a text, counted from 1.
 int line_at(const std::string& text, size_t place);
 
-/// The text with another text in place of an existing value.
+/// The text with another text instead of an existing value.
 std::string with_value(const std::string& text, const std::string& pointer,
                        const std::string& value);
 

@@ -29,7 +29,7 @@ constexpr size_t kMeshReaders = 4;
 constexpr int kMostCompanions = 64;
 constexpr size_t kMostCompanionBytes = size_t{1} << 30;
 constexpr size_t kLongestCompanionName = 4096;
-// Longest wait of the caller before it asks whether the work shall go on. Chosen: Ctrl-C is
+// Longest wait of the caller before it asks whether the work should continue. Chosen: Ctrl-C is
 // answered at once, and the wait costs nothing.
 constexpr std::chrono::milliseconds kPause(50);
 // Largest number of bytes of a refusal. Chosen: a line or two of a message for people.

@@ -16,7 +16,7 @@ namespace ayumi {
 
 /// The resources that reading one mesh may use, and the program that reads it.
 struct MeshReading {
-  std::filesystem::path program;  ///< empty: find_mesh_reader()
+  std::filesystem::path program;  ///< path of the program; if it is empty, find_mesh_reader()
   /// Memory for reading in addition to that of the reader itself: a base [bytes], and a number of
   /// bytes for each byte of the mesh file and of its companions. Chosen: binary STL needs the most
   /// memory, 12 bytes for each byte.

@@ -237,8 +237,8 @@ std::string lower_case(std::string text) {
   return text;
 }
 
-// +1: the first of the two names is the left one, -1: it is the right one, 0: the names do not say
-// it.
+// Returns +1 if the first of the two names is the left one, -1 if it is the right one, and 0 if the
+// names do not say it.
 int first_is_left(const std::string& first, const std::string& second) {
   const std::string a = lower_case(first), b = lower_case(second);
   const auto has = [](const std::string& name, const char* word) {
@@ -806,7 +806,7 @@ void find_servos(RobotGuess& guess) {
       effort = (leg ? kLegEffort : kOtherEffort) * weight * (dof.prismatic ? 1 : z);
       ++estimated;
     }
-    // Unit of the constants: metres in place of radians for a sliding joint.
+    // Unit of the constants, which is metres instead of radians for a sliding joint.
     const double unit = dof.prismatic ? z : 1;
     ServoDescription servo;
     servo.kp = effort / (kFullEffortError * unit);
@@ -919,7 +919,7 @@ std::vector<std::string> hold_play_of_gears(RobotDescription& robot) {
   // Largest range of a passive joint that is the play of a gear [rad]. Chosen: worn hobby servos
   // have 2 deg; toes and springs move by 10 deg and more.
   constexpr double kMostPlay = 4 * kOneDegree;
-  // Cosine of the angle between parallel axes. Definition: what six digits leave.
+  // Cosine of the angle between parallel axes. Definition: six digits leave this.
   constexpr double kParallel = 1 - 1e-9;
   std::vector<std::string> held, driven;
   for (JointDescription& play : robot.joints) {

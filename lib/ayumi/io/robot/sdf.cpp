@@ -86,7 +86,7 @@ class SdfReader {
  private:
   struct Frame {
     Isometry3d pose;
-    std::string relative_to;  // empty: the frame of the robot
+    std::string relative_to;  // name of the frame; if it is empty, the frame of the robot
     const TiXmlElement* at = nullptr;
     bool open = false;
   };

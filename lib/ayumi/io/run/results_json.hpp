@@ -1,6 +1,6 @@
 #pragma once
-// Verdicts as JSON text, with the keys of docs/cli.md: what --json prints and run.json keeps. Each
-// is one JSON object; nothing in it depends on the run (no wall time, no paths).
+// Verdicts as JSON text, with the keys of docs/cli.md, as --json prints it and run.json keeps it.
+// Each is one JSON object; nothing in it depends on the run (no wall time, no paths).
 
 #include <string>
 

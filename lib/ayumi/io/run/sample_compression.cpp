@@ -196,8 +196,8 @@ Predictor best_predictor(const std::vector<Column>& columns, size_t c,
   return best;
 }
 
-// The columns in an order in which each one comes after its sources; shorter where some columns
-// wait for each other.
+// The columns in an order in which each one comes after its sources. The list is shorter if some
+// columns wait for each other.
 std::vector<size_t> decoding_order(const std::vector<Predictor>& predictors) {
   std::vector<size_t> order;
   std::vector<char> known(predictors.size(), 0);

@@ -70,25 +70,26 @@ class JointLaws {
     double kp = 0, kd = 0;            // gains with the faults of the step [N m/rad, N m s/rad]
     double viscous = 0, coulomb = 0;  // viscous and dry friction [N m s/rad, N m]
     bool has_gear = false, needs_friction = false;
-    // true: there are no counts and no dead band, so servo_error() only adds the offset.
+    // Whether there are no counts and no dead band, so that servo_error() only adds the offset.
     bool plain_error = false;
-    double offset = 0;               // offset of the encoder [rad]
-    double most = 0, fastest = 0;    // peak torque, and the speed up to which it holds [N m, rad/s]
-    double stall = 0, back_emf = 0;  // values for voltage_torque(); stall torque 0: no bound
-    double speed_command = 0;        // limit of the speed loop's command [rad/s]
+    double offset = 0;             // offset of the encoder [rad]
+    double most = 0, fastest = 0;  // peak torque, and the speed up to which it holds [N m, rad/s]
+    // Values for voltage_torque(); a stall torque of 0 means no bound.
+    double stall = 0, back_emf = 0;
+    double speed_command = 0;           // limit of the speed loop's command [rad/s]
     double gear = 0, gear_damping = 0;  // stiffness and damping of the gear [N m/rad, N m s/rad]
     double rotor = 0, half_play = 0;  // inertia and backlash of a motor behind a gear [kg m^2, rad]
     double stop = 0, stop_damping = 0;  // end stop, with the meaning of kp and kd
     double lower = 0, upper = 0;        // range of the joint [rad, m]
     bool limited = false;
     double target = 0;  // target with which kp (target - phi) is the torque of the error [rad, m]
-    bool inside_band = false;  // true: the position error exerts no torque
+    bool inside_band = false;  // whether the position error exerts no torque
     double phi = 0, dphi = 0;  // angle and rate of a motor behind a gear [rad, rad/s]
     double external = 0;       // torque on the joint from outside in the last step [N m]
     double last_torque = 0, last_rate = 0;  // torque and rate of the motor in the last step
     // State of one solve.
     bool saturated = false, sliding = false, speed_bound = false, gear_changed = false;
-    bool stuck = false;  // true: the friction sticks, but was sliding at first
+    bool stuck = false;  // whether the friction sticks, after it was sliding at first
     Flank flank = Flank::none;
     double direction = 0;     // direction of the torque while it is saturated
     TorqueBound bound;        // piece of the bound that the torque then follows

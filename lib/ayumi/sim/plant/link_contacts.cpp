@@ -13,8 +13,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Definition of keys: 4096 points for each pair of shapes, 4096 pairs of shapes for each pair of
-// bodies.
+// Factors of the keys. Definition: there are 4096 points for each pair of shapes, and 4096 pairs of
+// shapes for each pair of bodies.
 constexpr long kPairKeys = 1l << 24, kShapeKeys = 1l << 12;
 
 }  // namespace
