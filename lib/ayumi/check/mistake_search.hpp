@@ -30,10 +30,10 @@ inline constexpr int kMostTrials = 300;
 
 struct Explanations {
   std::vector<Explanation> found;
-  int trials = 0;        ///< number of versions that were sampled and checked; a version with more
-                         ///< samples, or with legs of fewer than six joints, counts as several
-  bool complete = true;  ///< if false, the bound on trials was reached, errors remain, and more could
-                         ///< have been tried
+  int trials = 0;  ///< number of versions that were sampled and checked; a version with more
+                   ///< samples, or with legs of fewer than six joints, counts as several
+  /// If false, the bound on trials was reached, errors remain, and more could have been tried.
+  bool complete = true;
 };
 
 /// The changes that explain the errors. If one change is not enough, there are several in sequence,

@@ -23,9 +23,9 @@ struct PostureTarget {
 
 struct PostureSolution {
   bool reached = false;
-  double error = 0;  ///< largest residual component of the soles and the COG [m, rad]; 0
-                     ///< where rounding is all that is left
-  double lean = 0;   ///< angle of the trunk from its target; 0 unless legs lack joints [rad]
+  /// Largest residual component of the soles and the COG [m, rad]; 0 if only rounding is left.
+  double error = 0;
+  double lean = 0;  ///< angle of the trunk from its target; 0 unless legs lack joints [rad]
   /// The foot that is out of reach if the target is not reached; otherwise the foot that is
   /// farthest from its place.
   Side foot = Side::left;

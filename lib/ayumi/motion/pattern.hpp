@@ -178,9 +178,8 @@ struct Pattern {
       start_feet;  ///< start footholds by Side; without them, the feet of the default posture
   std::vector<Phase> phases;
   std::vector<Keyframe> keyframes;
-  std::map<std::string, std::map<std::string, double>>
-      postures;  ///< of the pattern and its includes;
-                 ///< they take precedence over the robot's [rad]
+  /// Postures of the pattern and its includes, which take precedence over the robot's [rad].
+  std::map<std::string, std::map<std::string, double>> postures;
   std::optional<DenseTable> table;
   std::optional<CorrectionTrack> correction;
   std::map<std::string, double> parameters;  ///< declared ${names} with their values

@@ -40,8 +40,8 @@ struct Renderer::Parts {
   std::vector<Eigen::AlignedBox3d> boxes;  // box of each body, body frame
   std::vector<size_t> order;               // order in which bodies are drawn
   std::vector<std::string> notes;
-  GlTarget drawn, finished;  // as large as the part of the picture in front of the ground;
-                             // finished: without samples
+  // Targets as large as the part of the picture in front of the ground; `finished` has no samples.
+  GlTarget drawn, finished;
   GlTarget flattened;
   GLuint coverage = 0;
   std::vector<std::uint8_t> pixels;  // pixels of a part of the picture, in the order of OpenGL
