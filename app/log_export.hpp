@@ -10,8 +10,8 @@ struct LogExport {
   std::string input;   ///< run folder or log file
   std::string format;  ///< one of log_formats()
   std::string output;
-  std::string log;    ///< name of the log; "": closed_loop, or the only one
-  std::string robot;  ///< the robot; "": the one that the run names
+  std::string log;    ///< name of the log; "" for closed_loop, or for the only one
+  std::string robot;  ///< the robot; "" for the one that the run names
 };
 
 /// The formats: "csv-log", "npz", "mcap".

@@ -14,8 +14,9 @@ namespace ayumi::app {
 /// Options of a PATTERN argument.
 struct PatternOptions {
   std::vector<std::string> set;  ///< "name=value" for each declared parameter that is set
-  std::string profile;  ///< actuator profile; "": that of the pattern, or else the robot's default
-  std::string robot = {};  ///< the robot; "": that of the pattern
+  /// Actuator profile; "" for that of the pattern, or else the robot's default.
+  std::string profile;
+  std::string robot = {};  ///< the robot; "" for that of the pattern
 };
 void add_pattern_options(Command& command, PatternOptions& options);
 

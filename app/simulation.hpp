@@ -9,8 +9,8 @@ namespace ayumi::app {
 
 /// The choices of the command line for a simulation.
 struct SimulationChoice {
-  std::string controller;  ///< name of the controller; "": that of the pattern
-  /// "": that of the pattern; "none"; or a pattern file that has the scenario.
+  std::string controller;  ///< name of the controller; "" for that of the pattern
+  /// Either "" for that of the pattern, or "none", or a pattern file that has the scenario.
   std::string scenario;
   std::vector<std::string> gains;  ///< "name=value" for each gain that is set
   bool noise = false;       ///< whether to use the sensor noise, bias and latency of the sidecar

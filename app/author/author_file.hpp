@@ -8,8 +8,7 @@
 namespace ayumi::app {
 
 /// Replaces the file by `text` if its bytes are still `expected`; otherwise returns false and does
-/// not change the file. The file keeps its permissions. Throws Error(bad_file) as write_file()
-/// does.
+/// not change the file. The file keeps its permissions. Throws the same errors as write_file().
 bool replace_text(const std::filesystem::path& file, const std::string& expected,
                   const std::string& text);
 

@@ -32,7 +32,7 @@ struct AuthorMotion {
 struct AuthorSetting {
   std::filesystem::path file;  ///< file of the pattern
   std::map<std::string, double> set;
-  std::string profile;  ///< actuator profile; "": that of the pattern
+  std::string profile;  ///< actuator profile; "" for that of the pattern
 };
 
 /// Throws the same errors as pattern_of_text() and make_task().

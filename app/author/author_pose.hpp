@@ -42,7 +42,7 @@ std::vector<PatternEdit> captured(const AuthorMotion& motion, double time, const
                                   bool mirror, const std::map<std::string, double>& angles = {});
 
 /// The edits that exchange left and right in the keyframe at this pointer; only values that change
-/// are written. Throws Error(usage) for a pointer without a keyframe, and Error(bad_model) as
+/// are written. Throws Error(usage) for a pointer without a keyframe, and the same errors as
 /// captured().
 std::vector<PatternEdit> mirrored_keyframe(const AuthorMotion& motion, const std::string& pointer);
 

@@ -16,14 +16,14 @@ namespace ayumi::app {
 /// Requirements for every walk.
 struct GaitOptions {
   std::string robot;       ///< robot as patterns in the folder of patterns name it
-  std::string profile;     ///< actuator profile; "": the robot's default
-  std::string controller;  ///< controller; "": that of new patterns
+  std::string profile;     ///< actuator profile; "" for the robot's default
+  std::string controller;  ///< controller; "" for that of new patterns
   double cog_height = 0;   ///< height of the COG; 0 for starting_height() [m]
   double rate = 50;        ///< rate of the rows of tables and archives [1/s]
   /// Whether cells are certified; if not, there is one run of the robot as it is modelled.
   bool certify = true;
   CertifyOptions study;    ///< study of each cell; its number of threads is not used
-  std::string study_file;  ///< file of the uncertainty; "": that of the robot
+  std::string study_file;  ///< file of the uncertainty; "" for that of the robot
   bool transitions = true;
 };
 

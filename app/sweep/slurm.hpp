@@ -9,7 +9,7 @@
 namespace ayumi::app {
 
 struct SlurmOptions {
-  std::string partition, time, memory;  ///< values for sbatch; "": its defaults
+  std::string partition, time, memory;  ///< values for sbatch; "" for its defaults
   std::vector<std::string> further;     ///< more options for sbatch, as words
   int attempts = 3;           ///< how often a case is submitted before the engine gives up
   int pilot = 8;              ///< number of cases of the pilot run

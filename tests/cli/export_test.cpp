@@ -278,10 +278,10 @@ std::string action_file() {
     set(begin + 14, 7);  // a field that is not used
     set(begin + 15, 2);  // number of repetitions
     set(begin + 20, steps);
-    set(begin + 22, 40);  // speed
+    set(begin + 22, 40);  // the speed of the page
     set(begin + 24, 17);
     set(begin + 25, next);
-    set(begin + 26, 200);  // exit
+    set(begin + 26, 200);  // the exit page
     for (size_t i = 0; i < 31; ++i) set(begin + 32 + i, static_cast<int>(0x40 + i));
     for (int s = 0; s < 7; ++s) {
       const size_t step = begin + 64 * static_cast<size_t>(s + 1);

@@ -61,7 +61,7 @@ TEST(Init, FiveJointLegsShuffle) {
         "a leg has 5 joints, not six, so there are places at which it cannot put the sole level";
     const size_t said = made.out.find(cannot);
     EXPECT_EQ(said != std::string::npos, kind == "walk") << made.out;
-    EXPECT_EQ(made.out.rfind(cannot), said);  // once
+    EXPECT_EQ(made.out.rfind(cannot), said);  // it is said only once
   }
 }
 

@@ -18,7 +18,7 @@ CogError error_of(const Eigen::Vector3d& position, const Eigen::Vector3d& veloci
   return {position, velocity};
 }
 
-// (21)
+// This tests (21).
 TEST(Feedback, ErrorIsCommandLessMeasured) {
   CommandSample command;
   command.cog = {0.30, -0.20, 0.25};
@@ -116,7 +116,7 @@ TEST(Feedback, PushReachesThePlannedApex) {
   EXPECT_NEAR(s.v * s.v / (2 * kGravity), z_H, 1e-6);
 }
 
-// (27)
+// This tests (27).
 TEST(Feedback, LandingStoopsByThePlannedDepth) {
   const double speed = 0.8, z_d = 0.03;
   Motion s = {0, -speed};

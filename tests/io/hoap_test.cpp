@@ -242,7 +242,7 @@ TEST(Hoap, ReadsRealSequences) {
   EXPECT_EQ(sequence.tick_ms, 1);
   EXPECT_EQ(sequence.layout.name, "HOAP-3");
   EXPECT_NEAR(sequence.rows[0].values[2] / 209.0, 17.7, 0.05);  // hip pitch
-  EXPECT_NEAR(sequence.rows[0].values[3] / 209.0, 45.6, 0.05);  // knee
+  EXPECT_NEAR(sequence.rows[0].values[3] / 209.0, 45.6, 0.05);  // the knee
   const std::string again = hoap_csv(robot, hoap_targets(robot, sequence));
   EXPECT_EQ(again.substr(0, again.find('\n')),
             "1,2,0,39,3696,9537,-5841,-334,18810,-2000,0,8800,0,39,-3730,-9537,5806,425,-18810,"

@@ -473,7 +473,7 @@ TEST(Sdf, FramesPosesAndNestedModels) {
     return link_pose(robot, data, robot.find_link(link)).translation().eval();
   };
   EXPECT_TRUE(at("leg::thigh").isApprox(Eigen::Vector3d(0, 1.1, 1), 1e-12)) << at("leg::thigh");
-  // The place of its joint.
+  // The place is that of its joint.
   EXPECT_TRUE(at("leg::foot").isApprox(Eigen::Vector3d(0, 1.1, 0.5), 1e-12));
   const Body& foot = robot.bodies()[static_cast<size_t>(
       robot.links()[static_cast<size_t>(robot.find_link("leg::foot"))].body)];

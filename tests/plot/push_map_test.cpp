@@ -46,9 +46,12 @@ TEST(PushMap, ForwardIsUpAndLengthsAreImpulses) {
   const Eigen::Vector2d center = (open[0] + open[2]) / 2;
   const double unit = (open[0] - center).norm();  // length of 1 N s
   const std::vector<Eigen::Vector2d>& law = curves[1].points;
-  EXPECT_NEAR((law[0] - (center + Eigen::Vector2d(0, -2 * unit))).norm(), 0, 1e-9);  // forward
-  EXPECT_NEAR((law[1] - (center + Eigen::Vector2d(-4 * unit, 0))).norm(), 0, 1e-9);  // left
-  EXPECT_NEAR((law[3] - (center + Eigen::Vector2d(2 * unit, 0))).norm(), 0, 1e-9);   // right
+  // The push forward.
+  EXPECT_NEAR((law[0] - (center + Eigen::Vector2d(0, -2 * unit))).norm(), 0, 1e-9);
+  // The push to the left.
+  EXPECT_NEAR((law[1] - (center + Eigen::Vector2d(-4 * unit, 0))).norm(), 0, 1e-9);
+  // The push to the right.
+  EXPECT_NEAR((law[3] - (center + Eigen::Vector2d(2 * unit, 0))).norm(), 0, 1e-9);
 }
 
 TEST(PushMap, SaysWhatItShows) {

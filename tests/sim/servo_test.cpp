@@ -199,16 +199,16 @@ TEST(ServoFriction, IsThatOfTheModelsM1ToM6) {
   };
   const double e = std::exp(-1);
   ServoDescription m{.coulomb = 0.1};
-  EXPECT_NEAR(friction(m, 0), 0.1, kPart);  // M1
+  EXPECT_NEAR(friction(m, 0), 0.1, kPart);  // model M1
   m.stribeck_torque = 0.05, m.stribeck_rate = 0.2, m.stribeck_exponent = 1.35;
-  EXPECT_NEAR(friction(m, 0), 0.15, kPart);  // M2
+  EXPECT_NEAR(friction(m, 0), 0.15, kPart);  // model M2
   EXPECT_NEAR(friction(m, -0.2), 0.1 + 0.05 * e, kPart);
   m.load = {.motor = 0.02, .external = 0.02};  // M4 at speed is M3
   EXPECT_NEAR(friction(m, 1e3), 0.1 + 0.02 * 5, kPart);
-  m.load.motor_stribeck = m.load.external_stribeck = 0.03;  // M4
+  m.load.motor_stribeck = m.load.external_stribeck = 0.03;  // model M4
   EXPECT_NEAR(friction(m, 0), 0.15 + 0.05 * 5, kPart);
   m.load = {.motor = 0.02, .external = 0.07, .motor_stribeck = 0.01, .external_stribeck = 0.04};
-  EXPECT_NEAR(friction(m, 0), 0.15 + (0.06 + 0.14) + (0.03 + 0.08), kPart);  // M5
+  EXPECT_NEAR(friction(m, 0), 0.15 + (0.06 + 0.14) + (0.03 + 0.08), kPart);  // model M5
   EXPECT_NEAR(friction(m, 0.2), 0.1 + 0.2 + e * (0.05 + 0.11), kPart);
   m.load.motor_quadratic = 0.005, m.load.external_quadratic = 0.003;
   EXPECT_NEAR(friction(m, 0), 0.15 + 0.2 + 0.11 + 0.003 * 4, kPart);  // M6: the motor drives

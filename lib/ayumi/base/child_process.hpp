@@ -30,7 +30,7 @@ struct ChildStart {
 /// their usual effect in it.
 pid_t start_child(const ChildStart& start);
 
-/// How a child process ended.
+/// The way in which a child process ended.
 struct ChildEnding {
   int exit_code = -1;         ///< -1 if a signal or this process ended it
   int signal = 0;             ///< number of the signal; 0 if there was none

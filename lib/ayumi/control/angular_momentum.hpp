@@ -59,7 +59,7 @@ class AngularMomentumTask {
   Eigen::VectorXd speed_, torque_;       // limits of each coordinate [rad/s], [N m]
   Eigen::VectorXd rotor_;                // rotor inertia of each coordinate [kg m^2]
   std::vector<SpatialInertia> subtree_;  // workspace, by body
-  Eigen::Matrix3Xd matrix_;              // A_G
+  Eigen::Matrix3Xd matrix_;              // matrix A_G
   Eigen::VectorXd inertia_;              // inertia about the axis of each coordinate [kg m^2]
   Eigen::VectorXd turn_, rate_, acceleration_;  // s, ds, dds
   Eigen::VectorXd low_, high_;                  // bounds of dds

@@ -21,8 +21,8 @@ struct StackedTask {
   static constexpr int kRows = 12;  ///< Definition: number of rows
   using Vector = Eigen::Matrix<double, kRows, 1>;
   using Rows = Eigen::Matrix<double, kRows, Eigen::Dynamic>;
-  Rows J;    ///< J_U
-  Vector u;  ///< u
+  Rows J;    ///< matrix J_U
+  Vector u;  ///< right side u
 };
 
 /// (23), and (29) with bias 0: the rates nearest to `bias` in the norm W = diag(w) that do the

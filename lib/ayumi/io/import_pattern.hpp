@@ -32,7 +32,7 @@ struct ImportedPattern {
   std::vector<FootContact> contacts;  ///< contacts of a table
   std::vector<std::string> filled;    ///< what was assumed, left out or changed, in words
   TableCaution caution = {};          ///< caution of the run from which a table comes
-  std::string sequence = {};          ///< bytes that are kept beside the pattern; "": none
+  std::string sequence = {};  ///< bytes that are kept beside the pattern; "" if there are none
 };
 
 /// `bytes` are the content of `file`. Throws Error(bad_file) that names file, place and remedy.

@@ -12,7 +12,7 @@ namespace ayumi {
 
 struct TaskOptions {
   std::map<std::string, double> set = {};  ///< values of parameters that the pattern declares
-  std::string profile = {};                ///< actuator profile; "": that of the pattern
+  std::string profile = {};                ///< actuator profile; "" for that of the pattern
   std::string robot = {};                  ///< replaces the robot that the pattern names
   RobotSearch robots = {};                 ///< folders in which robots are searched by name
   bool meshes = false;                     ///< whether to load what only pictures need

@@ -117,7 +117,7 @@ struct RowSettings {
     double watched_shapes = 0;  ///< largest distance of shapes of such a pair that have rows [m]
     /// Distance by which a row of edges may be below the rows of corners [m].
     double edge_allowance = 0;
-    double same_distance = 0;  ///< see edges_meet() [m]
+    double same_distance = 0;  ///< distance that edges_meet() receives [m]
   } clearance;
 };
 
@@ -131,8 +131,9 @@ struct RowSite {
   const ActuatorLimits& actuators;
   double friction;  ///< friction coefficient of the ground
   RowSettings settings;
-  std::vector<RowBlock> rows = {};                          ///< rows that are placed so far
-  std::map<int, std::vector<GroundDemand>> demand_of = {};  ///< see watched_demand()
+  std::vector<RowBlock> rows = {};  ///< rows that are placed so far
+  /// Ground demands that watched_demand() keeps.
+  std::map<int, std::vector<GroundDemand>> demand_of = {};
 
   int count() const { return static_cast<int>(points.size()); }
   double tolerance(FindingKind kind) const { return tolerances[kind]; }

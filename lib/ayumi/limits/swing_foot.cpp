@@ -74,7 +74,7 @@ Eigen::Matrix<double, 5, 6> offset_rows(const RobotModel& model, Side side,
 // Ten rows: factor * height^2 -+ offset.
 struct Landing {
   Isometry3d place;
-  Eigen::Matrix<double, 5, 6> offset;  // see offset_rows()
+  Eigen::Matrix<double, 5, 6> offset;  // rows of offset_rows()
   double factor = 0;                   // k [1/m]
 
   Vector3d normal() const { return place.linear().col(2); }

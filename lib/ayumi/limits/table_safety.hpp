@@ -13,7 +13,7 @@
 namespace ayumi {
 
 struct SafetyOptions {
-  std::string profile;        ///< actuator profile for the speed limits; "": the default
+  std::string profile;        ///< actuator profile for the speed limits; "" for the default
   double ramp = 2.0;          ///< smallest duration of the approach [s]; 0 for no ramp
   std::string from = "home";  ///< named posture the robot stands in; "first" = the first row
   double hold = 0.5;          ///< time for which the last row is repeated [s]

@@ -14,9 +14,9 @@
 namespace ayumi {
 
 struct OverlayOptions {
-  bool cog = true;            ///< sphere, plumb line and cross on the ground
-  bool zmp = true;            ///< disc
-  bool reference_zmp = true;  ///< ring
+  bool cog = true;            ///< the COG as a sphere, a plumb line and a cross on the ground
+  bool zmp = true;            ///< the ZMP as a disc
+  bool reference_zmp = true;  ///< the reference ZMP as a ring
   bool support = true;        ///< hull of the soles of the planned contact feet
   bool forces = true;         ///< arrow per foot
   bool push = true;           ///< arrow with its value

@@ -35,7 +35,7 @@ void main() {
 }
 )";
 
-// The same with a picture in place of the colour. This is a separate program, because for software
+// The same with a picture instead of the colour. This is a separate program, because for software
 // renderers a sampler costs time even if it is not used.
 inline constexpr const char* kTextureInput = R"(
 in vec2 place;

@@ -19,7 +19,7 @@
 namespace ayumi {
 
 struct RepairState {
-  // The request.
+  // The members of the request.
   const RobotModel& model;
   const CommandSeries& series;
   const RepairOptions& options;

@@ -38,7 +38,7 @@ struct RobotUnit {
 
 struct SimulateOptions {
   ControllerSpec controller;
-  std::string profile;  ///< actuator profile; "": the default
+  std::string profile;  ///< actuator profile; "" for the default
   World world;
   std::vector<Disturbance> scenario;
   double settle = 1.0;  ///< time for which the last command is held after the pattern [s]

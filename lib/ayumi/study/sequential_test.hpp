@@ -9,7 +9,7 @@
 
 namespace ayumi {
 
-/// Where a test stopped.
+/// The point at which a test stopped.
 struct SequentialOutcome {
   bool stopped = false;    ///< if false, more runs are needed
   bool certified = false;  ///< if false after the stop, the test is hopeless

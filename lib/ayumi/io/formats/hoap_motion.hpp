@@ -9,7 +9,8 @@
 namespace ayumi {
 
 std::string recognize_hoap_motion(const MotionInput& source);
-/// Throws Error(bad_file) as parse_hoap() does, and if a device moves that the robot does not have.
+/// Throws the same errors as parse_hoap(), and Error(bad_file) if a device moves that the robot
+/// does not have.
 MotionFile read_hoap_motion(const MotionInput& source);
 
 }  // namespace ayumi

@@ -74,7 +74,7 @@ int find_joint(const RobotModel& model, const std::string& name);
 
 /// One file that a writer makes. Formats with several files name their extensions (".zmp").
 struct WrittenFile {
-  std::string extension;  ///< "": the name that the user has given
+  std::string extension;  ///< extension of the name; "" for the name that the user has given
   std::string bytes;
 };
 

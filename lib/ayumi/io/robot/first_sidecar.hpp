@@ -23,7 +23,7 @@ struct FirstSidecar {
 struct SidecarGains {
   std::vector<std::pair<std::string, double>> dtad;  ///< gains by name; empty for the default gains
   std::string why, check;                            ///< reason of the guess
-  std::string to_do;                                 ///< point for the to-do list; "": nothing
+  std::string to_do;  ///< point for the to-do list; "" if there is none
 };
 
 /// `robot` is a file or folder as load_robot() takes it; the sidecar names its URDF relative to

@@ -18,8 +18,8 @@ enum class RobotFormat { sidecar, urdf, mjcf, sdf, body, ztk };
 RobotFormat robot_format(const std::string& bytes, const std::filesystem::path& path);
 
 /// The links and joints of a file that is not a sidecar. `packages` are further folders with the
-/// packages of meshes. Throws Error(bad_file) and Error(bad_model) as the readers of the formats
-/// do.
+/// packages of meshes. Throws the same errors as the readers of the formats, Error(bad_file) and
+/// Error(bad_model).
 RobotDescription parse_robot(const std::string& bytes, const std::filesystem::path& path,
                              const std::vector<std::filesystem::path>& packages);
 

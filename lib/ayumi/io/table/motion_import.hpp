@@ -12,7 +12,7 @@
 namespace ayumi {
 
 struct ImportOptions {
-  std::string format{};   ///< name of motion_formats(); "": recognized by the content
+  std::string format{};   ///< name of motion_formats(); "" if the content decides
   bool degrees = false;   ///< unit of angles if the format does not define it
   double rate = 0;        ///< rate of rows without times [1/s]
   bool commands = false;  ///< angles are servo targets, as in Ayumi's reference tables
@@ -22,7 +22,7 @@ struct ImportOptions {
   std::optional<double> smooth{};
   bool by_order = false;              ///< columns are the robot's joints in the robot's order
   std::vector<std::string> joints{};  ///< joint names of the columns, in the order of the file
-  std::string motion{};  ///< name or number of the motion in a file with several; "": the first
+  std::string motion{};  ///< name or number of the motion in a file with several; "" for the first
 };
 
 struct ImportedMotion {

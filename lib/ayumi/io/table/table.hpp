@@ -36,8 +36,8 @@ void require_joints(const ReferenceTrajectory& reference, const std::vector<std:
                     const std::string& file);
 
 /// Reads the table of a pattern: t[s] and any whole group of the columns above. Contacts follow
-/// from the phases of the pattern, so contact columns are skipped. Time starts at 0 at a fixed
-/// rate. Throws Error(bad_file) as read_reference.
+/// from the phases of the pattern, so that contact columns are skipped. Time starts at 0 at a fixed
+/// rate. Throws the same errors as read_reference().
 DenseTable read_dense_table(const std::filesystem::path& path);
 /// Fingerprint of the angles of a table. It shows whether they have changed since the import.
 std::string theta_sha256(const DenseTable& table);

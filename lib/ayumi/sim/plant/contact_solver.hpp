@@ -17,9 +17,9 @@ namespace ayumi {
 /// A is the Delassus matrix with the compliance of each contact added on its diagonal (symmetric
 /// positive definite), so the solution does not depend on how many points share a load.
 struct ContactProblem {
-  Eigen::MatrixXd A;             ///< 3n x 3n [1/kg]
-  Eigen::VectorXd b;             ///< 3n [m/s]
-  std::vector<double> friction;  ///< n
+  Eigen::MatrixXd A;             ///< matrix of 3n x 3n [1/kg]
+  Eigen::VectorXd b;             ///< vector of 3n entries [m/s]
+  std::vector<double> friction;  ///< friction coefficient of each contact
 };
 
 struct ContactSolution {
