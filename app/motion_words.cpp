@@ -14,7 +14,7 @@ namespace ayumi::app {
 namespace {
 
 constexpr size_t kJointsListed = 8, kJointsDrawn = 4, kSpeedsDrawn = 2;  // numbers that fit a page
-// [rad] a smaller move would be written as 0.00 deg.
+// Smallest move that is named [rad]. A smaller move would be written as 0.00 deg.
 constexpr double kLeastMove = 0.005 * EIGEN_PI / 180;
 
 std::string millimetres(double metres) { return text::fixed(1000 * metres, 1) + " mm"; }

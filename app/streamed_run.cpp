@@ -28,7 +28,8 @@ std::filesystem::path scratch_folder() {
 // end.
 void require_readable_log(const Task& input, const std::vector<std::string>& joints) {
   const size_t most = most_log_rows(joints);
-  const double margin = 10;  // [s] Chosen: longer than a run continues after its motion
+  // Additional time [s]. Chosen: longer than a run continues after its motion.
+  const double margin = 10;
   const size_t rows = input.series.samples.size() + static_cast<size_t>(margin / input.tick);
   if (rows <= most) return;
   const double longest = static_cast<double>(most) * input.tick - margin;

@@ -63,8 +63,8 @@ std::string choose_profile(const RobotModel& model, JumpParameters& p, bool stoo
 // not given; heights change first. If there is none, returns "" and leaves the values unchanged.
 std::string lower_jump(const RobotModel& model, JumpParameters& p, const JumpOptions& options,
                        const Progress& progress) {
-  // Chosen: half the height needs 0.7 of the speed, and a jump of less than a tenth is hardly a
-  // jump.
+  // Shares of the height that are tried. Chosen: half the height needs 0.7 of the speed, and a jump
+  // of less than a tenth is hardly a jump.
   const std::vector<double> lower = {0.75, 0.5, 0.3, 0.2, 0.1}, same = {1.0};
   const JumpParameters asked = p;
   int done = 0;

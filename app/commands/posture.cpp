@@ -30,7 +30,8 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 using Angles = std::map<std::string, double>;  // positions by joint [rad], for sliders [m]
 
-constexpr size_t kMostNamed = 20;  // Chosen: a person still reads a message of this length
+// Names in a message. Chosen: a person still reads a message of this length.
+constexpr size_t kMostNamed = 20;
 
 struct PostureCommand {
   std::string source, name, robot, as, out, log, view = "iso";

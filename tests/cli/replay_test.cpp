@@ -159,7 +159,8 @@ TEST(RecordedReplay, ARecordedWalkOfARealRobot) {
   EXPECT_LT(json.at("joint_max_rad"), 0.2 * M_PI / 180);
   EXPECT_GT(json.at("end_s"), 17.8);
   EXPECT_TRUE(json.at("notes").empty()) << json.at("notes");
-  // Measured: 0.959, and 18 landings. Without the offsets of the ankles: 0.949, and 3 landings.
+  // The measured values are 0.959 and 18 landings. Without the offsets of the ankles, they are
+  // 0.949 and 3 landings.
   EXPECT_GT(json.at("loads").at(2).at("correlation"), 0.95);
   EXPECT_GE(json.at("landings").size(), 17u);
 }

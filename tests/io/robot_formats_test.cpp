@@ -372,7 +372,8 @@ TEST(Mjcf, PrimitivesFittedToAMeshHaveItsSize) {
   // The mesh that is no primitive is where the model has it.
   EXPECT_TRUE(
       a.collisions[1].pose.isApprox(Eigen::Isometry3d(Eigen::Translation3d(0, 0, 2)), 1e-12));
-  // Definition: MuJoCo's rules for the half sizes 0.1, 0.2, 0.3 of the box of equal inertia.
+  // Definition: these are MuJoCo's rules for the half sizes 0.1, 0.2, 0.3 of the box of equal
+  // inertia.
   const Link& b = model.links()[1];
   ASSERT_EQ(b.collisions.size(), 4u);
   EXPECT_NEAR(std::get<Sphere>(b.collisions[0].shape).radius, 0.2, 1e-6);

@@ -9,9 +9,10 @@ namespace ayumi {
 
 namespace {
 
-constexpr double kBoardDegrees = 180 / EIGEN_PI;               // Definition
-constexpr double kFewestCounts = -32768, kMostCounts = 32767;  // Definition: 16 bits, signed
-constexpr double kWhole = 1e-6;  // Chosen: rounding of degrees and radians, in counts
+constexpr double kBoardDegrees = 180 / EIGEN_PI;  // Definition
+// Definition: range of signed numbers of 16 bits.
+constexpr double kFewestCounts = -32768, kMostCounts = 32767;
+constexpr double kWhole = 1e-6;  // tolerance in counts. Chosen: rounding of degrees and radians
 
 // Keeps the worst of each kind for one joint.
 class Watch {

@@ -278,7 +278,7 @@ class Polytope {
   // contains the foot of the perpendicular, because otherwise they would not be opposite to each
   // other.
   ConvexPair pair_of(const Face& nearest) const {
-    constexpr double kSamePlane = 1e-9;  // [m]. Chosen: above rounding
+    constexpr double kSamePlane = 1e-9;  // tolerance [m]. Chosen: above rounding
     ConvexPair pair;
     pair.distance = -nearest.distance;
     pair.normal = nearest.normal;

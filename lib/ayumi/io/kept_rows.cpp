@@ -12,7 +12,7 @@ namespace {
 
 // Whether the pattern still moves as its table does.
 bool moves_as_table(const Task& task) {
-  constexpr double kSame = 1e-6;  // Chosen: a hundredth of a count [rad]
+  constexpr double kSame = 1e-6;  // tolerance [rad]. Chosen: a hundredth of a count
   const DenseTable& table = *task.pattern.table;
   const CommandSeries& series = task.series;
   const double rows = series.duration() / table.dt + 1;

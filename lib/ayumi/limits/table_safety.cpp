@@ -22,7 +22,7 @@ constexpr double kDegreesPerRadian = 180 / EIGEN_PI;  // Definition
 // double precision is far smaller, and a servo only gets whole counts. No measured case changes
 // between half and twice the value (constants.md).
 constexpr double kCountSlack = 1e-6;
-// Definition: rounding of a step over its limit.
+// Definition: tolerance for the rounding of a step over its limit.
 constexpr double kStepSlack = 1e-9;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Time over which the speed at both ends of a table of whole counts is judged [s]. Chosen: one
@@ -360,7 +360,8 @@ SafetyOptions as_it_is(SafetyOptions options) {
 }
 
 std::string on_both_clocks(double t, double begin, double end) {
-  constexpr double kSlack = 1e-9;  // Definition: rounding of whole multiples of a tick [s]
+  // Definition: tolerance for the rounding of whole multiples of a tick [s].
+  constexpr double kSlack = 1e-9;
   const std::string pattern = t < begin - kSlack ? "in the ramp"
                               : t > end + kSlack ? "in the hold"
                                                  : text::fixed(t - begin, 3) + " s of the pattern";

@@ -31,7 +31,7 @@ template <typename T>
 }
 template <typename T>
 [[gnu::always_inline]] inline Pair<T> split(const T& a) {
-  const T c = 134217729.0 * a;  // 2^27 + 1
+  const T c = 134217729.0 * a;  // the factor is 2^27 + 1
   const T high = c - (c - a);
   return {high, a - high};
 }

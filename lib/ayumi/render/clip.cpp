@@ -380,7 +380,7 @@ ClipRenderer::ClipRenderer(const RobotModel& model, const SimulationLog& log,
 }
 
 void ClipRenderer::add_ghost(double t, Scene& scene) const {
-  // Chosen: a seventh of the robot's own colours stays, which shows its parts.
+  // Tint of a ghost. Chosen: a seventh of the robot's own colours stays, which shows its parts.
   const Eigen::Vector4f tint = {ghost_[0], ghost_[1], ghost_[2], 0.85f};
   if (options_.ghost.log)
     scene.exposures.push_back({body_poses(model_, sample_at(*options_.ghost.log, t).state), tint});
@@ -466,7 +466,8 @@ namespace {
 /// A text such as "t = 0.00, 1.20, 2.40 s". If there are many instants, the first and the last are
 /// named; for a single one, the text is empty.
 std::string instants_text(const std::vector<double>& times) {
-  constexpr size_t kNamed = 6;  // Chosen: as many as fit beside a title.
+  // Number of instants that are named. Chosen: as many as fit beside a title.
+  constexpr size_t kNamed = 6;
   if (times.size() < 2) return "";
   std::vector<std::string> each;
   for (const double t : times) each.push_back(text::fixed(t, 2));

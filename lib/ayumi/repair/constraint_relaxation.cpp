@@ -152,7 +152,7 @@ VectorXd unrelaxed_multipliers(const Nlp& nlp, const Slacks& slacks, const Vecto
 }
 
 ViolationPrice price_of(const RowKind& kind) {
-  // Derived: the weighted change that costs 1 in the objective.
+  // Unit of the change. Derived: the weighted change that costs 1 in the objective.
   constexpr double kChange = 2 / policy::change_weight::kObjectiveScale;
   const RowPrices prices = row_prices();
   if (kind.soft_goal)

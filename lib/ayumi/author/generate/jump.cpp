@@ -33,7 +33,8 @@ struct Extremes {
 
 Extremes extremes(const QuinticEnd& from, const QuinticEnd& to) {
   Extremes e;
-  constexpr int kSteps = 400;  // Chosen: extremes between samples differ by less than 1e-4
+  // Number of samples. Chosen: extremes between samples differ by less than 1e-4.
+  constexpr int kSteps = 400;
   for (int i = 1; i < kSteps; ++i) {
     const TrackPoint p = quintic_at(from, to, from.t + (to.t - from.t) * i / kSteps);
     e.low = std::min(e.low, p.value);

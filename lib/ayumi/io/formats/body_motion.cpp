@@ -35,7 +35,7 @@ class BodyMotionReader {
       source_.refuse(line_of(root_),
                      "there is no sequence of joint angles (JointDisplacement); add one");
     if (!(motion_.rate > 0)) {
-      motion_.rate = 100;  // Definition: what Choreonoid assumes if the file states no rate
+      motion_.rate = 100;  // Definition: Choreonoid assumes this rate if the file states none
       motion_.notes.push_back("frame rate: 100 per second, because the file states none");
     }
     place_zmp();

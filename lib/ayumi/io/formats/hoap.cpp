@@ -16,7 +16,7 @@ namespace ayumi {
 
 namespace {
 
-constexpr int kLongestInterval = 60000;  // Definition: a minute [ms]
+constexpr int kLongestInterval = 60000;  // Definition: the longest interval is a minute [ms]
 
 std::optional<double> any_number(std::string_view cell) {
   double value = 0;

@@ -72,7 +72,8 @@ void say_largest_step(const HoapFile& sequence, std::vector<std::string>& filled
 
 /// The joints whose angles leave their position limits in some row.
 std::vector<std::string> beyond_limits(const RobotModel& model, const Eigen::MatrixXd& theta) {
-  constexpr double kSlack = 1e-6;  // Chosen: rounding of decimals [rad]; no knee shows it
+  // Tolerance [rad]. Chosen: rounding of decimals; no knee shows it.
+  constexpr double kSlack = 1e-6;
   std::vector<std::string> names;
   for (int j = 0; j < model.dof_count(); ++j) {
     const Dof& dof = model.dofs()[static_cast<size_t>(j)];

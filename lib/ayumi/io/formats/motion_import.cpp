@@ -689,7 +689,8 @@ void read_rows(const std::string& bytes, const std::string& file, const RobotMod
   result.commands = read.commands;
   result.caution = read.caution;
   result.sequence = read.sequence;
-  constexpr int kLeastRows = 6;  // Derived: accelerations take five (motion/differentiate.hpp)
+  // Smallest number of rows. Derived: accelerations take five (motion/differentiate.hpp).
+  constexpr int kLeastRows = 6;
   if (!result.sequence.empty()) hold_last_row(kLeastRows, result);
   if (result.motion.theta.rows() < kLeastRows)
     fail(ErrorCode::bad_file, {file},

@@ -212,8 +212,9 @@ void read_columns(const JsonNode& node, SequenceLayout& layout) {
 }
 
 void read_layouts(const JsonNode& node, RobotDescription& robot) {
-  constexpr int kMostMotors = 127;         // Definition: more than any bus of a humanoid has
-  constexpr int kLongestInterval = 60000;  // Definition: a minute [ms]
+  // Definition: this number is larger than that of any bus of a humanoid.
+  constexpr int kMostMotors = 127;
+  constexpr int kLongestInterval = 60000;  // Definition: the longest interval is a minute [ms]
   for (const JsonNode& item : node.items()) {
     item.only_keys({"name", "columns", "motors", "unit", "intervals_ms"});
     SequenceLayout layout;

@@ -19,7 +19,7 @@ namespace ayumi {
 
 namespace {
 
-constexpr int kOrders = 5;   // Definition: n is 0 to 4
+constexpr int kOrders = 5;   // Definition: number of orders, of which n is 0 to 4
 constexpr int kRelated = 5;  // Definition: number for a column that is predicted from others
 
 // The last four values of a column, the last one first; before the first value there are zeros.
@@ -125,10 +125,11 @@ std::uint64_t bits_of(const std::vector<std::uint64_t>& numbers) {
 // out, and the rest is fitted again. Chosen: with twice as many rows in the fit, a log of the
 // bundled walk has the same size.
 constexpr size_t kFitRows = 7;
-// Chosen: 0.8 of the rows stay in each round, and half of them at last.
+// Number of rounds of a fit. Chosen: 0.8 of the rows stay in each round, and half of them at last.
 constexpr int kFitRounds = 4;
-constexpr double kFitShare = 0.8;  // Chosen: as above
-// Chosen: weights of fewer rows would only reproduce them.
+// Share of rows that stay in a round. Chosen: together with kFitRounds.
+constexpr double kFitShare = 0.8;
+// Smallest number of rows for each weight. Chosen: weights of fewer rows would only reproduce them.
 constexpr size_t kRowsPerWeight = 4;
 
 Relation fitted_relation(const std::vector<Column>& columns, size_t c,
