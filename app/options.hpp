@@ -108,7 +108,7 @@ class Command {
   std::list<Command> subcommands_;
 };
 
-/// Called from a callback of an option that is triggered while the command line is read. The
+/// Is called from a callback of an option that is triggered while the command line is read. The
 /// program ends with exit code 0.
 [[noreturn]] void end_with_success();
 

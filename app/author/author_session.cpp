@@ -232,8 +232,8 @@ bool AuthorSession::robot_changed() const {
   });
 }
 
-// Called with `reading_` locked, except for the first time. The times are read before the bytes, so
-// that a save in between is noticed at the next check.
+// `reading_` must be locked by the caller, except for the first time. The times are read before the
+// bytes, so that a save in between is noticed at the next check.
 void AuthorSession::refresh() {
   const bool new_robot = robot_ && robot_changed();
   seen_ = stamps();
@@ -346,7 +346,7 @@ AuthorAnswer AuthorSession::conflict(const View& shown, const std::string& mine)
   return {409, {{"theirs", shown.text}, {"theirs_hash", shown.hash}, {"mine", mine}}};
 }
 
-// Called with `reading_` locked. `seen` is the text that the page has seen.
+// `reading_` must be locked by the caller. `seen` is the text that the page has seen.
 AuthorAnswer AuthorSession::write(const std::string& seen, const std::string& text) {
   if (!replace_text(setting_.file, seen, text)) {
     refresh();

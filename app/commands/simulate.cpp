@@ -94,7 +94,7 @@ void simulate_pattern(Context& context, const SimulateCommand& options) {
         {"run.json", "log_closed_loop.bin", "reference.csv", "reference_pushed.csv"});
   const Task input = load_pattern(context, options.pattern, options.input);
   refuse_unstable_gains(input, chosen_controller(input, options.choice), options.choice.unstable);
-  // Opened after the input has been read, so that bad input leaves no files.
+  // The output is opened after the input has been read, so that bad input leaves no files.
   std::optional<RunOutput> output;
   if (!options.out.empty()) output.emplace(options.out, context.force);
   StreamedRun simulated = options.number < 0

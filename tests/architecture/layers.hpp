@@ -68,7 +68,7 @@ inline std::string room_of(const std::string& path) {
   return rooms().contains(two) ? two : path.substr(0, first);
 }
 
-/// Headers of the rooms that compute which contain results and options.
+/// Headers with results and options, in the rooms that compute.
 inline const std::set<std::string>& data_headers() {
   static const std::set<std::string> headers = {"check/consistency.hpp", "limits/table_safety.hpp",
                                                 "repair/repair.hpp", "sim/simulate.hpp",

@@ -50,9 +50,9 @@ class FootholdShift {
   /// The plan of the coming tick.
   const CommandSample& plan() const { return plan_; }
 
-  /// Called after the tick of plan() has been measured: chooses the next foothold and advances the
-  /// clock. Returns true if a foot has landed early. Then the foot stays in its place, and the foot
-  /// of the plan jumps there.
+  /// Must be called after the tick of plan() has been measured. It chooses the next foothold and
+  /// advances the clock. Returns true if a foot has landed early. Then the foot stays in its place,
+  /// and the foot of the plan jumps there.
   bool advance(const Estimate& estimate);
 
   /// The rate of the pattern's clock; 1 is its own pace.

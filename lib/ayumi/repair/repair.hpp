@@ -64,8 +64,8 @@ struct RepairOptions {
   /// Random start of the first program, to test how little depends on it.
   RandomStart random_start;
   std::optional<Generation> generate = {};
-  /// Called with the check of the given motion, and of every motion that is found after that. Its
-  /// errors are the ones that the repair has to remove. See remaining_errors().
+  /// This function is called with the check of the given motion, and of every motion that is found
+  /// after that. Its errors are the ones that the repair has to remove. See remaining_errors().
   std::function<void(const ConsistencyReport& check)> on_check = {};
 };
 

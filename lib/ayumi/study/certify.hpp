@@ -31,7 +31,7 @@ struct CertifyOptions {
 
 /// Results by the number of the case. An entry is empty if the result is not known.
 using KnownResults = std::vector<std::optional<CaseResult>>;
-/// Called between runs with all known results, and never from two threads at once.
+/// This function is called between runs with all known results, and never from two threads at once.
 using ResultsKnown = std::function<void(const KnownResults&)>;
 
 /// The number of cases that the options may need.

@@ -91,7 +91,8 @@ std::vector<PushPhase> default_push_phases(const RobotModel& model, const Comman
 
 /// Finished cases of an earlier study, by index. They are not computed again.
 using KnownCases = std::vector<std::optional<PushCase>>;
-/// Called after each finished case with its index, never from two threads at once.
+/// This function is called after each finished case with its index, and never from two threads at
+/// once.
 using PushCaseDone = std::function<void(size_t, const PushCase&)>;
 
 /// The cases, phase by phase and in each phase direction by direction. Throws the same errors as

@@ -106,7 +106,8 @@ Band place(int n, const Nonzeros& entries, std::vector<int>& place) {
   std::iota(low.begin(), low.end(), 0);
   for (int i = 0; i < n; ++i)
     if (place[i] == kRow) low[i] = n;
-  auto take_lower = [&](int i, int j) {  // a row takes it from its unknowns, an unknown from others
+  // A row takes the minimum of its unknowns, and an unknown that of other unknowns.
+  auto take_lower = [&](int i, int j) {
     if (place[i] != kSlack && place[j] >= 0) low[i] = std::min(low[i], j);
   };
   for_sides(entries, take_lower);
