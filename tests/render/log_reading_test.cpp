@@ -108,7 +108,8 @@ TEST(LogReading, AWalkIsShownOnBothFeet) {
     const bool left = k % 100 < 50;  // 0.1 s on each foot in turn
     log.samples[k].planned_contact = {left, !left};
   }
-  const std::vector<double> times = telling_instants(log, 6);  // evenly: all on the left foot
+  // They are evenly spaced, and all on the left foot.
+  const std::vector<double> times = telling_instants(log, 6);
   ASSERT_EQ(times.size(), 6u);
   const auto left = std::count_if(times.begin(), times.end(),
                                   [&](double t) { return sample_at(log, t).planned_contact[0]; });

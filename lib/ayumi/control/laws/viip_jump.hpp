@@ -10,7 +10,8 @@ namespace ayumi {
 struct JumpFigures {
   /// z_H if released at ref z_G; z_H + z_d^2/(4 z_H) if the push lasts until f_z = 0.
   double apex = 0;
-  double lift_off = 0;          ///< 0, or z_d^2/(2 z_H)
+  /// Height at lift-off: 0 with a release at ref z_G, otherwise z_d^2/(2 z_H).
+  double lift_off = 0;
   double lift_off_speed = 0;    ///< speed at lift-off, upwards
   double touchdown_speed = 0;   ///< speed at touchdown, downwards, at ref z_G
   double push = 0, flight = 0;  ///< durations of push and flight

@@ -95,7 +95,8 @@ class ContactRows {
   std::vector<double> J_, Y_;
   std::vector<double> compliance_;      // compliance of each contact [1/kg]
   std::vector<Eigen::Vector3d> shift_;  // for each contact: J v + gap terms - ground velocity [m/s]
-  std::vector<double> rates_before_, rates_;  // three for each contact [m/s]
+  // Rates at the contacts, three for each; rates_before_ are those at the step's start [m/s].
+  std::vector<double> rates_before_, rates_;
   ContactSolver solver_;
   // Workspace.
   std::vector<double> gram_, product_, springs_, pull_, rates_change_;
