@@ -371,8 +371,8 @@ async function dragsInTime(tab) {
 
 async function showsFindings(tab) {
   const good = text();
-  const wrong = data(), i = wrong.keyframes.findIndex((frame) => frame.t > 3.7);
-  wrong.keyframes[i].zmp = [0.12, 0.085];
+  const wrong = data(), i = wrong.keyframes.findIndex((frame) => frame.t > 2);
+  wrong.keyframes[i].zmp = [0.06, 0.07];
   await tab.after(() => save(JSON.stringify(wrong, null, 1)));
   const seen = await tab.run(`
     const findings = window.ayumiAuthor.page.state.findings;
@@ -530,7 +530,7 @@ async function works(tab) {
 
 /// A repair is shown as a ghost and can be taken; a run is shown in the pattern's place.
 async function showsResults(tab) {
-  const good = text(), wrong = data(), i = wrong.keyframes.findIndex((frame) => frame.t > 3.7);
+  const good = text(), wrong = data(), i = wrong.keyframes.findIndex((frame) => frame.t > 2);
   wrong.keyframes[i].joints = { l_elbow: -170 };
   await tab.after(() => save(JSON.stringify(wrong, null, 1)));
   await tab.click("#job-repair");
@@ -621,6 +621,11 @@ async function followsTheFile(driver_, tab) {
   const other = await openPage(driver_, 820, 1100);
   await other.shoot("narrow.png");
   expect(await other.run("return document.documentElement.scrollWidth") <= 820, "nothing sticks out at 820 px");
+  await other.tool("Emulation.setEmulatedMedia", { features: [{ name: "prefers-color-scheme", value: "dark" }] });
+  await other.shoot("dark.png");
+  const ground = await other.run("return getComputedStyle(document.body).backgroundColor");
+  expect(Math.max(...ground.match(/\d+/g).map(Number)) < 60, "the dark page is dark: " + ground);
+  await other.coarsen();
   await tab.after(() => tab.run("window.ayumiAuthor.page.edit([{ kind: 'set', pointer: '/keyframes/0/zmp', value: 'left' }]);"));
   expect(await until(() => other.run("return window.ayumiAuthor.page.state.tracks[0].keys[0].value === 'left'")), "the other page follows");
   await tab.after(() => tab.click("#undo"));
@@ -632,10 +637,6 @@ async function followsTheFile(driver_, tab) {
   for (const one of [tab, other])
     expect(await until(() => one.run("return window.ayumiAuthor.page.state.text.includes('save 99')"), 60), "the last of a hundred saves is shown");
   save(JSON.stringify(good, null, 1));
-  await other.tool("Emulation.setEmulatedMedia", { features: [{ name: "prefers-color-scheme", value: "dark" }] });
-  await other.shoot("dark.png");
-  const ground = await other.run("return getComputedStyle(document.body).backgroundColor");
-  expect(Math.max(...ground.match(/\d+/g).map(Number)) < 60, "the dark page is dark: " + ground);
   await quiet(other);
   await other.end();
 }
