@@ -12,7 +12,7 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 constexpr const char* kCertifyFormat = "ayumi.certify/1";
-/// Largest number of cases in a file. Definition: that of `certify --runs`.
+/// Largest number of cases in a file. Definition: the limit of `certify --runs`.
 constexpr size_t kMostCases = 100000000;
 
 Outcome outcome_of(const std::string& name) {
@@ -45,7 +45,7 @@ std::string case_results_text(const Json& study, const std::string& shard,
   head["columns"] = {"case",        "outcome",      "fell_at_s",
                      "cog_error_m", "torque_ratio", "foot_tilt_rad"};
   std::string text = head.dump(1);
-  text.resize(text.size() - 2);  // the end of the object
+  text.resize(text.size() - 2);  // removes the end of the object
   text += ",\n \"cases\": [";
   const char* separator = "\n";
   for (size_t i = 0; i < results.size(); ++i) {
@@ -65,7 +65,7 @@ std::string add_case_results(const std::filesystem::path& file, const Json& stud
   const auto refuse = [&](const std::string& why) {
     fail(ErrorCode::bad_file, {file.string()}, why);
   };
-  // A file that is merged must exist; any other one is the file of -o.
+  // A file to be merged must exist; any other one is the file of -o.
   const std::string remedy =
       must_exist ? "leave this file out of --merge, or run the shard of this file again"
                  : "choose another name, or replace the file with --force";
@@ -74,7 +74,7 @@ std::string add_case_results(const std::filesystem::path& file, const Json& stud
     const auto json = shallow_json<nlohmann::json>(bytes);
     if (json.at("format") != kCertifyFormat)
       refuse("this file does not hold results of ayumi certify");
-    // The order of keys has no meaning.
+    // The order of the keys does not matter.
     const auto& theirs = json.at("study");
     const auto ours = nlohmann::json::parse(study.dump());
     if (theirs != ours) {

@@ -1,6 +1,6 @@
 #pragma once
-// Results of certify as JSON and CSV: the file with which a stopped study is continued, and from
-// which shards are merged.
+// Results of certify as JSON and CSV. A stopped study is continued from this file, and shards are
+// merged from such files.
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -14,9 +14,9 @@ namespace ayumi::app {
 std::string case_results_text(const nlohmann::ordered_json& study, const std::string& shard,
                               const KnownResults& results);
 
-/// Adds the cases of a file. Nothing where the file does not exist and `must_exist` is false.
-/// Throws Error(bad_file) when it is no file of results or another study's, and when a case has
-/// another result than the one that is known. Returns the shard of the file.
+/// Adds the cases of a file. Adds nothing if the file does not exist and `must_exist` is false.
+/// Throws Error(bad_file) if it is not a file of results or belongs to another study, and if a case
+/// has another result than the one that is known. Returns the shard of the file.
 std::string add_case_results(const std::filesystem::path& file, const nlohmann::ordered_json& study,
                              bool must_exist, KnownResults& results);
 

@@ -23,7 +23,7 @@ std::string seconds(const Finding& f) {
          text::fixed(f.at, 3) + " s";
 }
 
-// Where the hint below a finding begins.
+// Column at which the hint below a finding begins.
 constexpr size_t kHang = 10;
 
 std::string whole_percent(double ratio) { return text::fixed(100 * ratio, 0) + " %"; }
@@ -42,7 +42,7 @@ std::string entry(const Finding& f, const std::string& where_and_when) {
 
 std::string hint(const Finding& f) { return std::string(kHang, ' ') + f.hint + "\n"; }
 
-// Several findings, of which one is the worst.
+// The entry for several findings, of which `worst` is the worst.
 std::string entry_of_many(const ConsistencyReport& report, const std::vector<int>& members,
                           const Finding& worst, const std::string& places, bool name_worst) {
   double begin = worst.begin, end = worst.end;
@@ -56,7 +56,7 @@ std::string entry_of_many(const ConsistencyReport& report, const std::vector<int
                           text::fixed(worst.at, 3) + " s");
 }
 
-// Chosen: more places than this are counted.
+// Largest number of places that are named. Chosen: if there are more, they are counted.
 constexpr size_t kPlacesNamed = 3;
 
 std::string names_of_places(const std::vector<std::string>& places) {
@@ -101,7 +101,7 @@ AnswerPart error_part(const ConsistencyReport& report, const FindingGroup& group
           kHang};
 }
 
-// Warnings of one kind.
+// The entry for all warnings of one kind.
 AnswerPart warning_part(const ConsistencyReport& report,
                         const std::vector<const FindingGroup*>& groups) {
   std::string full, brief;

@@ -40,7 +40,7 @@ constexpr AddCommand kCommands[] = {
 #undef AYUMI_COMMAND
 };
 
-// Options that must not show in written files, and whether a value follows them.
+// Options that must not appear in written files, and whether each has a value.
 constexpr std::pair<const char*, bool> kUnrecorded[] = {{"-o", true},
                                                         {"--out", true},
                                                         {"--threads", true},
@@ -132,7 +132,7 @@ std::vector<std::string> option_names(const CLI::App& app) {
   return names;
 }
 
-// What can stand after `new` or `edit`, where nothing of that kind was given; else nothing.
+// The words that can stand after `new` or `edit`, if none of them was given; otherwise nothing.
 std::vector<std::string> kinds_of(const CLI::App& command) {
   std::vector<std::string> kinds;
   if (command.get_parent() && command.get_subcommands().empty())
@@ -140,7 +140,8 @@ std::vector<std::string> kinds_of(const CLI::App& command) {
   return kinds;
 }
 
-// CLI11's message about one option in a whole sentence: what is wrong, and what the option expects.
+// Makes a whole sentence of CLI11's message about one option: what is wrong, and what the option
+// expects.
 std::string option_message(const CLI::App& app, const CLI::ParseError& error) {
   const std::string words = error.what();
   std::vector<const CLI::App*> levels = {&app};
@@ -200,10 +201,10 @@ std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
   return option_message(app, error);
 }
 
-// A message with long words of a file in it, such as a name of a megabyte, without its middle.
+// A message without its middle, if it contains long words of a file, such as a name of a megabyte.
 std::string shortened(const std::string& message, size_t most) {
   if (message.size() <= most) return message;
-  const auto whole = [&](size_t at) {  // not inside a character of UTF-8
+  const auto whole = [&](size_t at) {  // the cut is not inside a character of UTF-8
     while ((static_cast<unsigned char>(message[at]) & 0xc0) == 0x80 && at + 1 < message.size())
       ++at;
     return at;
@@ -213,11 +214,13 @@ std::string shortened(const std::string& message, size_t most) {
          message.substr(end);
 }
 
-// The error on standard error for people and, with --json, as an object on standard output.
+// Reports the error on standard error for people and, with --json, as an object on standard output.
 int failed(const Context& context, const std::string& text, int exit_code,
            const SourcePlace& place = {}) {
-  constexpr size_t kMost = 2000;      // [bytes] Chosen: a screen of 25 lines
-  constexpr size_t kMostPlace = 200;  // [bytes] Chosen: more than every place of a sound file
+  // Largest length of a message [bytes]. Chosen: a screen of 25 lines.
+  constexpr size_t kMost = 2000;
+  // Largest length of a place [bytes]. Chosen: longer than every place of a valid file.
+  constexpr size_t kMostPlace = 200;
   const std::string message = shortened(text, kMost);
   complain(message);
   nlohmann::ordered_json object = {{"error", message}, {"exit_code", exit_code}};
@@ -241,7 +244,7 @@ int parse_and_run(CLI::App& app, Context& context, int argc, char** argv) {
     for (auto chosen = app.get_subcommands(); !chosen.empty();
          chosen = chosen.front()->get_subcommands())
       command += chosen.front()->get_name() + " ";
-    // What follows the option that cannot be read is not parsed, --json included.
+    // What follows an option that cannot be read is not parsed, not even --json.
     context.json = is_among(argc, argv, "--json");
     return failed(context, usage_message(app, error) + "\nSee ayumi " + command + "--help", 2);
   } catch (const Interrupted&) {
@@ -314,8 +317,8 @@ bool is_utf8(const std::string& word) {
   }
 }
 
-// Names and texts go into files of UTF-8 text. An empty name of a file is mostly a variable of a
-// script that has no value.
+// Refuses words that are not UTF-8, because names and texts are written into files of UTF-8 text.
+// Also refuses an empty name of a file, which usually is a variable of a script without a value.
 void refuse_words(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
@@ -334,15 +337,16 @@ void refuse_words(int argc, char** argv) {
   }
 }
 
-// A file opened later would otherwise take the number of a closed standard stream, and what the
-// program prints would go into that file. Writing to a closed standard output still fails.
+// If a standard stream is closed, a file that is opened later would get its number, and what the
+// program prints would go into that file. So the stream is opened first. Writing to a closed
+// standard output still fails.
 void fill_closed_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (::fcntl(stream, F_GETFD) < 0 && errno == EBADF)
       static_cast<void>(::open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY));
 }
 
-// If nobody receives the result, the command has failed.
+// A command has failed if nobody receives its result.
 int exit_code_after_printing(int exit_code) {
   errno = 0;
   const bool failed = std::fflush(stdout) != 0 || std::ferror(stdout) != 0;
@@ -352,7 +356,7 @@ int exit_code_after_printing(int exit_code) {
   return exit_code_of(ErrorCode::bad_file);
 }
 
-// For the case that there is not even memory for the message of an error.
+// Ends the program if there is not even memory for the message of an error.
 [[noreturn]] void end_without_memory() {
   constexpr char kMessage[] = "ayumi: there is not enough memory\n";
   static_cast<void>(!::write(STDERR_FILENO, kMessage, sizeof kMessage - 1));
@@ -372,7 +376,8 @@ int parse_and_run(int argc, char** argv) {
     std::fputs(app.help().c_str(), stdout);
     return 2;
   }
-  // Asked by the completion of shells; what follows is no command line that could be parsed.
+  // Completion of shells calls the program in this way; the words after --names are not a command
+  // line that can be parsed.
   if (argc > 2 && std::string(argv[1]) == "--names") {
     print_names(context, argv[2], {argv + 3, argv + argc});
     return 0;
@@ -392,7 +397,8 @@ int parse_and_run(int argc, char** argv) {
 int run(int argc, char** argv) {
   fill_closed_streams();
   watch_for_signals();
-  // Libraries take memory also while they clean up after an error, where no exception may leave.
+  // Libraries also allocate memory while they clean up after an error, where no exception may be
+  // thrown.
   std::set_terminate([] {
     try {
       if (const std::exception_ptr error = std::current_exception()) std::rethrow_exception(error);

@@ -11,7 +11,7 @@ namespace ayumi::app {
 
 namespace {
 
-/// A command with the words before it: "new walk".
+/// A command with the words before it, such as "new walk".
 struct Level {
   std::string words;
   const CLI::App* app;
@@ -37,7 +37,7 @@ std::vector<const CLI::Option*> options_of(const CLI::App& app) {
   return options;
 }
 
-/// "-o", "--out"
+/// The flags of an option, such as "-o" and "--out".
 std::vector<std::string> flags_of(const CLI::Option& option) {
   std::vector<std::string> flags;
   for (const std::string& name : option.get_snames()) flags.push_back("-" + name);
@@ -47,14 +47,14 @@ std::vector<std::string> flags_of(const CLI::Option& option) {
 
 bool takes_value(const CLI::Option& option) { return option.get_items_expected_max() > 0; }
 
-/// "NAME", "F", as the help shows it.
+/// The name of the value, such as "NAME" or "F", as the help shows it.
 std::string value_of(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   return type.substr(0, type.find(':'));
 }
 
-// What `ayumi --names` lists for the value of an option or for a word of a command; "" for files
-// and numbers.
+// The kind of names that `ayumi --names` lists for the value of an option or for a word of a
+// command; "" for files and numbers.
 std::string names_kind(const CLI::Option& option) {
   static const std::map<std::string, std::string> kinds = {{"robot", "robots"},
                                                            {"ROBOT", "robots"},
@@ -96,7 +96,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
   return text;
 }
 
-// --- The manual page -----------------------------------------------------------------------------
+// --- the manual page -----------------------------------------------------------------------------
 
 std::string roff(std::string text) {
   text = replaced(std::move(text), "\\", "\\e");
@@ -146,7 +146,7 @@ std::string manual(const CLI::App& app, const std::string& version) {
          "Ctrl-C.\n";
 }
 
-// --- Completion ----------------------------------------------------------------------------------
+// --- completion ----------------------------------------------------------------------------------
 
 std::string all_flags(const CLI::App& app) {
   std::vector<std::string> all;
@@ -162,7 +162,8 @@ std::string names_below(const CLI::App& app) {
   return text::join(names, " ");
 }
 
-/// The words that may follow a command and are known here; none: those of word_kinds().
+/// The words that may follow a command and are known here. If there are none, those of word_kinds()
+/// may follow.
 std::string words_after(const Level& level, const CLI::App& app) {
   return level.words == "help" ? names_below(app) : names_below(*level.app);
 }
@@ -216,7 +217,8 @@ std::string bash_completion(const CLI::App& app) {
          "complete -o filenames -F _ayumi ayumi\n";
 }
 
-/// A text between apostrophes of zsh; `marks` are those before which it takes a backslash there.
+/// A text between apostrophes for zsh; zsh requires a backslash before the characters `marks` in
+/// it.
 std::string zsh_text(std::string text, const std::vector<std::string>& marks) {
   text = replaced(std::move(text), "\\", "\\\\");
   for (const std::string& mark : marks) text = replaced(std::move(text), mark, "\\" + mark);
@@ -224,7 +226,7 @@ std::string zsh_text(std::string text, const std::vector<std::string>& marks) {
   return replaced(std::move(text), "\n", " ");
 }
 
-/// A text between apostrophes of fish.
+/// A text between apostrophes for fish.
 std::string fish_text(std::string text) {
   text = replaced(std::move(text), "\\", "\\\\");
   text = replaced(std::move(text), "'", "\\'");
@@ -233,7 +235,7 @@ std::string fish_text(std::string text) {
 
 std::string zsh_action(const std::string& kind, const std::string& words) {
   if (!words.empty()) return "(" + words + ")";
-  // With a space before it, _arguments adds no arguments of its own.
+  // The space before it keeps _arguments from adding arguments of its own.
   return kind.empty() ? "_files" : " _ayumi_names " + kind;
 }
 
@@ -291,14 +293,15 @@ std::string zsh_completion(const CLI::App& app) {
   return text + "  esac\n}\n_ayumi \"$@\"\n";
 }
 
-// Each name with an empty description of its own: the help of the option stays with the option.
+// Each name has an empty description of its own, so that the help of the option is not repeated for
+// it.
 std::string fish_names(const std::string& kind) {
   return " -a '(ayumi --names " + kind +
          " (commandline -opc)[2..] 2>/dev/null | string replace -r \\$ \\t)'";
 }
 
-// Robots, patterns and runs are also files; what belongs to a robot that is named before it is
-// none.
+// Whether a word may also be a file. Robots, patterns and runs may be files; the parts of a robot
+// that is named before may not.
 bool may_be_file(const std::string& kind) {
   return kind.empty() || kind.starts_with("robots") || kind == "equations";
 }
@@ -335,7 +338,7 @@ std::string fish_completion(const CLI::App& app) {
       seen += c == ' ' ? std::string("; and __fish_seen_subcommand_from ") : std::string(1, c);
     const std::string within =
         seen.empty() ? "__fish_use_subcommand" : "__fish_seen_subcommand_from " + seen;
-    // A command is offered until one is chosen.
+    // A command is only offered until one is chosen.
     const std::string open =
         level.words.empty() || names_below(*level.app).empty()
             ? within

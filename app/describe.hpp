@@ -1,6 +1,6 @@
 #pragma once
-// The command line as a manual page and as completion for shells. Both are read from the options
-// that CLI11 parses by, so they are the same in all of them.
+// The command line as a manual page and as completion for shells. Both are made from the options by
+// which CLI11 parses the command line, so they cannot differ from it.
 
 #include <CLI/CLI.hpp>
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace ayumi::app {
 
-/// "man", "bash", "zsh", "fish"
+/// The kinds: "man", "bash", "zsh", "fish".
 const std::vector<std::string>& description_kinds();
 
 /// The text of one kind. `version` is that of the program. Throws Error(usage) for an unknown kind.

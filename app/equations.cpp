@@ -22,7 +22,7 @@ std::string fixed(double value, int digits) { return text::fixed(value, digits);
 std::string rate_text(double radians) { return text::brief(radians * 180 / M_PI, 3) + " deg/s"; }
 std::string acceleration(double value) { return fixed(value, 3) + " m/s2"; }
 
-/// Collects lines and values; a number that is put into words is a value too.
+/// Collects lines and values; a number that is put into a line is also kept as a value.
 class Writer {
  public:
   explicit Writer(const RunInstant& instant) : s_(instant.now()) {}
@@ -47,8 +47,8 @@ class Writer {
   EquationNumbers out_;
 };
 
-/// Whether DTAD made this tick, or a baseline on its body; a run under one controller may have
-/// phases of the other.
+/// Whether DTAD computed this tick, or a baseline that uses DTAD's control of the body. A run under
+/// one controller may have phases of the other one.
 bool dtad(const RunInstant& i) {
   const LawStage stage = i.now().law.stage;
   return stage == LawStage::follow || stage == LawStage::follow_flight;
@@ -56,14 +56,14 @@ bool dtad(const RunInstant& i) {
 bool literal(const RunInstant& i) {
   return dtad(i) && i.log.controller->demonstration == Demonstration::literal;
 }
-/// Whether a baseline chose the ZMP of this tick, where dtad() holds.
+/// Whether a baseline chose the ZMP of this tick, if dtad() is true for it.
 bool baseline(const RunInstant& i) {
   return dtad(i) && i.log.controller && is_baseline(i.log.controller->kind);
 }
 bool previewed(const RunInstant& i) {
   return baseline(i) && i.log.controller->kind == ControllerKind::preview;
 }
-/// Whether the gains of the log are those of the law that made this tick.
+/// Whether the gains of the log are those of the law that computed this tick.
 bool own_gains(const RunInstant& i) {
   if (!i.log.controller) return false;
   const ControllerKind kind = i.log.controller->kind;
@@ -173,7 +173,7 @@ EquationNumbers pendulum_numbers(const RunInstant& i) {
     if (law.short_term.head<2>().isZero(0)) {
       w.line("   short term: none, because no foot carries the robot or the gain ka is 0");
     } else if (ka > 0) {
-      // DTAD moves its offset after it has used it: the gap is that of the term itself.
+      // DTAD changes its offset after it has used it, so the gap is computed from the term itself.
       const double gap = law.short_term[a] / (ka * w2);
       w.line("   short term: ka = " + text::brief(ka) + " times w2 x (ZMP - ref ZMP" +
              (offset != 0 ? " - offset " + mm(offset) : std::string()) +
@@ -339,7 +339,8 @@ EquationNumbers spring_numbers(const RunInstant& i) {
   return w.take();
 }
 
-/// Joints that have met a limit by now, and the tasks that gave way to them.
+/// Lists the joints that have reached a limit by now, and the tasks that were changed because of
+/// them.
 void limit_lines(Writer& w, const RunInstant& i) {
   const double t = i.log.dt * (static_cast<double>(i.k) + 0.5);
   bool any = false;

@@ -1,5 +1,5 @@
 #pragma once
-// The paper's equations in words, and with the numbers of one instant of a run.
+// The equations of the paper, in words and with the numbers of one instant of a run.
 
 #include <optional>
 #include <string>
@@ -12,32 +12,34 @@ namespace ayumi::app {
 /// One instant of a run, as the equations need it.
 struct RunInstant {
   const SimulationLog& log;
-  double mass = 0;  ///< of the robot [kg]
-  size_t k = 0;     ///< sample
+  double mass = 0;  ///< mass of the robot [kg]
+  size_t k = 0;     ///< index of the sample
 
   const SimulationSample& now() const { return log.samples[k]; }
   /// A gain that the run used, by its name in files; 0 where the controller has none.
   double gain(const std::string& name) const;
 };
 
-/// A number of the log and, if the equation computes it from other numbers of the log, this result.
+/// A number of the log and, if the equation computes it from other numbers of the log, the result
+/// of this computation.
 struct LoggedValue {
-  std::string name;  ///< of the log's column, as "ref.zmp.x[m]"
+  std::string name;  ///< name of the log's column, such as "ref.zmp.x[m]"
   double value = 0;
   std::optional<double> computed = {};
 };
 
 /// An equation at one instant of a run.
 struct EquationNumbers {
-  std::vector<std::string> lines;   ///< in words
-  std::vector<LoggedValue> values;  ///< behind the words, unrounded
+  std::vector<std::string> lines;   ///< text lines
+  std::vector<LoggedValue> values;  ///< the values in the lines, unrounded
 };
 
 struct Equation {
   int number;
-  std::string formula;  ///< in one line, corrected where the printed form cannot be followed
-  std::string words;    ///< its meaning and its purpose
-  /// The numbers of a run; null where a log does not contain them.
+  /// The formula in one line, corrected if the printed form cannot be followed.
+  std::string formula;
+  std::string words;  ///< its meaning and its purpose
+  /// Computes the numbers for an instant of a run; null if a log does not contain them.
   EquationNumbers (*numbers)(const RunInstant&);
 };
 

@@ -21,7 +21,7 @@ std::string overview(const CLI::App& app) {
   }
   text += "\nOptions of every command:\n";
   for (const CLI::Option* option : app.get_options()) {
-    // CLI11 has no name for an option that the pages of commands do not list.
+    // CLI11 has no public name for an option that is not listed in the help of commands.
     const std::string name = option->get_name(false, true);
     std::string line = "  " + (name.empty() ? "--" + option->get_lnames().front() : name);
     if (option->get_type_size() > 0) line += " " + option->get_type_name();

@@ -1,13 +1,15 @@
 #pragma once
-// What --help prints: the path as one screen, and for each command its examples first.
+// The text of --help: the usual course of work as one screen, and for each command its examples
+// first.
 
 #include <CLI/CLI.hpp>
 #include <string>
 
 namespace ayumi::app {
 
-/// The footer of a command, which holds its examples. A subcommand without a footer of its own has
-/// the examples of its command that call the subcommand, or the whole footer where none does.
+/// The footer of a command, which contains its examples. A subcommand without a footer of its own
+/// gets the examples of its command that call the subcommand, or the whole footer if there are
+/// none.
 std::string examples_of(const CLI::App& app);
 
 class HelpFormatter : public CLI::Formatter {

@@ -2,7 +2,7 @@
 
 namespace ayumi::app {
 
-/// The libraries that the program was built with, and their versions: "Eigen 3.4.0, Ipopt 3.11.9,
+/// The libraries with which the program was built, and their versions: "Eigen 3.4.0, Ipopt 3.11.9,
 /// ...".
 const char* library_versions();
 

@@ -20,14 +20,14 @@ namespace ayumi::app {
 
 namespace {
 
-// Most motions that are sampled, and most that are checked in full. Chosen: a sample of a walk of
-// 12 s at kCoarse takes 0.05 s and a full check 0.5 s, so a search ends within ten seconds; on
-// 14 robots and 69 variants of them, the longest took 8 s.
+// Largest number of motions that are sampled, and of those that are checked in full. Chosen:
+// sampling a walk of 12 s at kCoarse takes 0.05 s and a full check takes 0.5 s, so a search ends
+// within ten seconds; on 14 robots and 69 variants of them, the longest search took 8 s.
 constexpr int kMostSampled = 90, kMostChecked = 8;
-// Most motions that are simulated. Chosen: a walk of 12 s takes 0.3 to 1 s.
+// Largest number of motions that are simulated. Chosen: a walk of 12 s takes 0.3 to 1 s.
 constexpr int kMostSimulated = 5;
-// Sample period of the first look [s]. Chosen: postures are judged, 45 of them in a swing of 0.45
-// s.
+// Sample period of the first check [s]. Chosen: only postures are judged, 45 of them in a swing of
+// 0.45 s.
 constexpr double kCoarse = 0.01;
 
 bool cannot_be_done(const Error& error) {
@@ -38,7 +38,7 @@ std::string text_of(const Finding& finding) {
   return kind_place_and_time(finding) + ": " + finding.hint;
 }
 
-// What is wrong with the postures of a motion; "" where nothing is.
+// The error in the postures of a motion; "" if there is none.
 std::string wrong_posture(const RobotModel& model, const Pattern& pattern) {
   const ConsistencyReport report =
       check_consistency(model, sample(model, pattern, {.dt = kCoarse}));
@@ -49,13 +49,13 @@ std::string wrong_posture(const RobotModel& model, const Pattern& pattern) {
   return "";
 }
 
-// What is wrong with a motion: its first error, and that which goes farthest beyond its limit.
+// The errors of a motion: the first one, and the one that exceeds its limit most.
 struct Wrong {
   std::string first, worst;
   double severity = 0;
 };
 
-// The same for all limits, by the profile of the robot that bears most.
+// The errors of all limits, judged by the strongest profile of the robot.
 Wrong wrong_motion(const RobotModel& model, const Pattern& pattern) {
   const Judgement judged = judge(make_task(pattern, model, "", {}));
   if (judged.good() || !judged.motion_need.sufficient.empty()) return {};
@@ -74,7 +74,7 @@ Wrong wrong_motion(const RobotModel& model, const Pattern& pattern) {
   return wrong;
 }
 
-// Places in the lists of values, by their sum.
+// All combinations of indices into the lists of values, sorted by the sum of the indices.
 std::vector<std::vector<size_t>> nearest_first(const std::vector<Dial>& dials) {
   std::vector<std::vector<size_t>> all = {{}};
   for (const Dial& dial : dials) {
@@ -99,7 +99,7 @@ std::vector<std::vector<size_t>> nearest_first(const std::vector<Dial>& dials) {
 std::string end_in_simulation(const RobotModel& model, const Pattern& pattern) {
   Task task = make_task(pattern, model, "", {});
   const Judgement judged = judge(task);
-  // The profile that write_new_pattern() chooses.
+  // This is the profile that write_new_pattern() chooses.
   if (pattern.profile.empty() && !judged.motion_need.sufficient.empty())
     task.profile = judged.motion_need.sufficient.front();
   const SimulateOptions options = simulate_options(task);
@@ -116,9 +116,10 @@ SearchResult search_motion(const RobotModel& model, const std::vector<Dial>& dia
                            const Progress& progress, bool simulated) {
   SearchResult result;
   int checked = 0, runs = 0;
-  double nearest = HUGE_VAL;  // severity of its worst error
-  // Places of the other dials where postures passed, but not speeds, torques or ZMP: another
-  // posture does not mend that.
+  // Severity of the worst error of the motion that is nearest to passing.
+  double nearest = HUGE_VAL;
+  // Indices of the other dials for which the postures passed, but not speeds, torques or ZMP.
+  // Another posture does not correct these.
   std::set<std::vector<size_t>> hopeless;
   std::vector<double> accepted;
   for (const std::vector<size_t>& places : nearest_first(dials)) {

@@ -13,44 +13,44 @@ namespace ayumi::app {
 
 /// One value of a motion that the user did not set, and the values that may replace it.
 struct Dial {
-  std::string name;  ///< as the option, e.g. "--stride"; with its unit in `unit`
+  std::string name;  ///< name of the option, e.g. "--stride"; its unit is in `unit`
   std::string unit;
-  std::vector<double> values;  ///< the default first, then values farther and farther from it
-  bool posture = false;        ///< changes postures, hardly speeds and torques
+  std::vector<double> values;  ///< the default first, then values with increasing distance from it
+  bool posture = false;        ///< whether it changes postures, but hardly speeds and torques
 };
 
 struct SearchResult {
   bool found = false;
-  std::vector<double> values;  ///< of the dials
+  std::vector<double> values;  ///< values of the dials
   int tried = 0;
-  std::string limit;     ///< what is wrong with the default values; "" where nothing is
-  bool refused = false;  ///< the robot cannot do the default values at all
-  std::string falls;     ///< how the motion found ends in a simulation; "" where the robot stands
-  /// Where nothing was found: what is wrong with the motion that comes nearest to passing, of those
-  /// whose postures pass; "" where there is none.
+  std::string limit;     ///< the error with the default values; "" if there is none
+  bool refused = false;  ///< whether the robot cannot do the default values at all
+  std::string falls;     ///< the end of the found motion in a simulation; "" if the robot stands
+  /// If nothing was found: the error of the motion that is nearest to passing, among those whose
+  /// postures pass; "" if there is no such motion.
   std::string nearest;
-  std::vector<double> nearest_values;  ///< of the dials
+  std::vector<double> nearest_values;  ///< values of the dials of this motion
 };
 
-/// How a motion ends in a simulation with the default controller, "with dtad, the robot fell at 3.2
-/// s ..."; "" where the robot stands at its end.
+/// The end of a motion in a simulation with the default controller, such as "with dtad, the robot
+/// fell at 3.2 s ..."; "" if the robot stands at its end.
 std::string end_in_simulation(const RobotModel& model, const Pattern& pattern);
 
 /// Tries the values of the dials, those nearest to the defaults first, until the check accepts the
 /// motion for a profile of the robot. `make` returns the pattern for values of the dials; it may
-/// throw Error(bad_pattern) or Error(usage) for those that the robot cannot do. The number of
-/// trials is bounded, not their time, so that the same input gives the same result. `simulated`: of
-/// the motions that the check accepts, the first one in which the robot stands in a simulation is
-/// taken; where it falls in all that are simulated, the first one that the check accepts.
+/// throw Error(bad_pattern) or Error(usage) for values that the robot cannot do. The number of
+/// trials is bounded, not their time, so that the same input gives the same result. With
+/// `simulated`, the result is the first accepted motion after which the robot stands in a
+/// simulation. If it falls in all simulated motions, the result is the first accepted motion.
 SearchResult search_motion(const RobotModel& model, const std::vector<Dial>& dials,
                            const std::function<Pattern(const std::vector<double>&)>& make,
                            const Progress& progress = {}, bool simulated = false);
 
-/// "--stride 0.02 m, --period 0.7 s": the values that are not the defaults.
+/// The values that are not the defaults, such as "--stride 0.02 m, --period 0.7 s".
 std::string changed_values(const std::vector<Dial>& dials, const std::vector<double>& values);
 
-/// Whether the motion can be sampled, with every posture inside its limits. False where it cannot
-/// be made.
+/// Whether the motion can be sampled with every posture inside its limits. Returns false if the
+/// motion cannot be made.
 bool postures_pass(const RobotModel& model, const std::function<Pattern()>& make);
 
 }  // namespace ayumi::app

@@ -13,8 +13,9 @@ namespace ayumi::app {
 
 namespace {
 
-constexpr size_t kJointsListed = 8, kJointsDrawn = 4, kSpeedsDrawn = 2;  // as many as fit a page
-constexpr double kLeastMove = 0.005 * EIGEN_PI / 180;  // [rad] less would be written as 0.00 deg
+constexpr size_t kJointsListed = 8, kJointsDrawn = 4, kSpeedsDrawn = 2;  // numbers that fit a page
+// [rad] a smaller move would be written as 0.00 deg.
+constexpr double kLeastMove = 0.005 * EIGEN_PI / 180;
 
 std::string millimetres(double metres) { return text::fixed(1000 * metres, 1) + " mm"; }
 std::string seconds(double t) { return text::fixed(t, 3) + " s"; }
@@ -67,7 +68,8 @@ std::string motion_words(const RobotModel& model, const MotionChange& change,
 }
 
 std::string cost_words(const WeightedChange& cost) {
-  constexpr double kLeastShare = 1e-3;  // of the change; less does not show in three digits
+  // Share of the change; a smaller one does not show in three digits.
+  constexpr double kLeastShare = 1e-3;
   const std::string missing = cost.safety > kLeastShare * cost.change
                                   ? ", cost of missing safety " + text::brief(cost.safety)
                                   : "";
@@ -90,7 +92,7 @@ std::string origin_words(const std::map<std::string, std::string>& origin) {
 
 namespace {
 
-// Whether what is commanded is another thing than what the motion does.
+// Whether the command differs from the motion itself.
 bool disagrees(const SimulationLog& log) {
   return std::any_of(log.samples.begin(), log.samples.end(), [](const SimulationSample& s) {
     return (s.cog - s.command_cog).norm() > 5e-4 || (s.zmp - s.command_zmp).norm() > 3e-3 ||
@@ -102,8 +104,9 @@ bool disagrees(const SimulationLog& log) {
 
 void plot_motions(const RobotModel& model, const CommandSeries& before, const CommandSeries& after,
                   const MotionPlot& plot, const std::filesystem::path& path) {
-  constexpr double kAround = 0.4;  // [s] of the motion drawn before and after the change
-  constexpr double kSeen = 0.03;   // share of the largest move; below it two curves look like one
+  constexpr double kAround = 0.4;  // [s] time that is drawn before and after the change
+  // Share of the largest move; with a smaller one, two curves look like one.
+  constexpr double kSeen = 0.03;
   const ActuatorLimits& actuators = model.limits(plot.profile);
   const SimulationLog a = plan_log(model, actuators, before, before);
   const SimulationLog b = plan_log(model, actuators, after, before);

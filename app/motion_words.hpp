@@ -1,5 +1,5 @@
 #pragma once
-// What moved from one motion to another, in words, as JSON and as a plot: repair and diff.
+// The differences between two motions in words, as JSON and as a plot, for repair and diff.
 
 #include <filesystem>
 #include <string>
@@ -11,15 +11,15 @@
 
 namespace ayumi::app {
 
-/// "7.1 mm inside the support", "10.0 mm outside the support"
+/// A margin in words, such as "7.1 mm inside the support" or "10.0 mm outside the support".
 std::string margin_words(double margin);
 
-/// A few indented lines: joints, how much and when; COG, feet, ZMP, f_z; the ZMP margin before and
-/// after.
+/// A few indented lines: which joints changed, by how much and when; COG, feet, ZMP and f_z; the
+/// ZMP margin before and after.
 std::string motion_words(const RobotModel& model, const MotionChange& change,
                          const ConsistencyReport& before, const ConsistencyReport& after);
 
-/// "  weighted change of base and joints 0.17, cost of missing safety 0.003".
+/// A line such as " weighted change of base and joints 0.17, cost of missing safety 0.003".
 std::string cost_words(const WeightedChange& cost);
 
 struct MotionPlot {
@@ -27,9 +27,9 @@ struct MotionPlot {
   std::string before = "before", after = "after";
 };
 
-/// Both motions against time, where they differ: the joints that moved most with their limits, the
-/// speed of those that were too fast, COG, ZMP, its margin and f_z; the command before the change,
-/// if it differs from the motion. As .svg or .png.
+/// Plots both motions over the time in which they differ: the joints that changed most with their
+/// limits, the speed of those that were too fast, COG, ZMP, its margin and f_z, and the command
+/// before the change if it differs from the motion. The file is .svg or .png.
 void plot_motions(const RobotModel& model, const CommandSeries& before, const CommandSeries& after,
                   const MotionPlot& plot, const std::filesystem::path& path);
 

@@ -23,12 +23,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What is known of the robot and of the pattern, or the library of postures, on the command line.
+/// The robot, and the pattern or the library of postures, that are known from the command line.
 struct Named {
   std::optional<RobotModel> robot;
   std::optional<Pattern> pattern;
   std::optional<PostureLibrary> library;
-  bool by_word = false;  ///< a word names the robot; else it is the one that `new` takes
+  bool by_word = false;  ///< true: a word names the robot; false: it is the robot that `new` uses
 };
 
 template <class Read>
@@ -125,7 +125,7 @@ void print_names(const Context& context, const std::string& kinds,
   std::vector<std::string> each;
   std::istringstream list(kinds);
   for (std::string kind; std::getline(list, kind, ',');) each.push_back(kind);
-  // Of a robot and what belongs to it, the robot is named first.
+  // The robot has to be named before anything that belongs to it.
   if (each.size() > 1 && each.front() == "robots") {
     if (named_by(context, words).by_word)
       each.erase(each.begin());

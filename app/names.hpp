@@ -1,5 +1,5 @@
 #pragma once
-// The names that may stand at a place of the command line, for the completion of shells.
+// The names that may stand at a place of the command line. The completion of shells uses them.
 
 #include <string>
 #include <vector>
@@ -8,12 +8,13 @@
 
 namespace ayumi::app {
 
-/// Prints the names of the kinds, which commas separate, a line each: "robots", "joints",
-/// "postures", "profiles", "gains", "controllers", "plants" or "equations". Of "robots" and other
-/// kinds, only the robots until a robot is named, and then only the others. `words` are those of
-/// the command line that is being typed: the robot is that of `--robot`, else the first robot,
-/// pattern or run among them, else the one that `new` takes. A shell that completes wants no
-/// message: where a file cannot be read, nothing is printed.
+/// Prints the names of the kinds, one in each line. `kinds` are separated by commas: "robots",
+/// "joints", "postures", "profiles", "gains", "controllers", "plants" or "equations". For "robots"
+/// together with other kinds, prints only robots until a robot is named, and afterwards only the
+/// other kinds. `words` are those of the command line that is being typed. The robot is that of
+/// `--robot`, or else of the first robot, pattern or run among them, or else the one that `new`
+/// uses. A shell that completes a word needs no message, so nothing is printed if a file cannot be
+/// read.
 void print_names(const Context& context, const std::string& kinds,
                  const std::vector<std::string>& words);
 

@@ -13,9 +13,9 @@ namespace ayumi::app {
 
 namespace {
 
-/// Where the pattern names no profile and the robot's first one is too weak, the first one that is
+/// If the pattern names no profile and the robot's first one is too weak, the first profile that is
 /// strong enough becomes that of the pattern. Returns whether the check finds the pattern
-/// consistent, and prints what it finds.
+/// consistent, and prints its findings.
 bool choose_profile(const Context& context, Task& task) {
   Judgement judged = judge(task);
   const ActuatorNeed need = judged.motion_need;
@@ -42,7 +42,7 @@ bool write_new_pattern(const Context& context, const RobotModel& model, Pattern 
   refuse_overwriting(context, out);
   pattern.robot = robot_as_written(robot);
   pattern.name = std::filesystem::path(out).stem().string();
-  pattern.file.clear();  // the places in messages are not yet those of a file
+  pattern.file.clear();  // places in messages are not yet those of a file
   Task task = [&] {
     try {
       return make_task(std::move(pattern), model, "", context.progress());
@@ -61,7 +61,7 @@ bool write_new_pattern(const Context& context, const RobotModel& model, Pattern 
                 text::counted(written.phases.size(), "phase") + ", " +
                 text::counted(written.keyframes.size(), "keyframe") + "\n  COG " +
                 series.origin.at("cog") + "\n");
-  // Legs that lack joints do what they can; what they cannot is said here.
+  // Legs that lack joints can only partly follow the motion; this line says what they cannot do.
   if (series.origin.contains("legs")) context.print("  " + series.origin.at("legs") + "\n");
   context.print_json(nlohmann::ordered_json{{"pattern", out},
                                             {"duration_s", series.duration()},

@@ -11,7 +11,7 @@ namespace ayumi::app {
 
 namespace {
 
-// Begins the name of the check; the words follow.
+// The beginning of the name of the check; its words follow.
 const std::string kOneOf = "one of|";
 
 }  // namespace
@@ -50,7 +50,8 @@ ValueCheck one_of(const std::vector<std::string>& words) {
 }
 
 std::vector<std::string> choices_of(const CLI::Option& option) {
-  // CLI11 2.1 gives the checks of an option only where it may be changed, and does not count them.
+  // CLI11 2.1 only gives access to the checks of an option that may be changed, and does not state
+  // their number.
   auto& changeable = const_cast<CLI::Option&>(option);
   for (int i = 0;; ++i) try {
       const std::string& name = changeable.get_validator(i)->get_name();

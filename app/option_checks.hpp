@@ -8,15 +8,15 @@
 
 namespace ayumi::app {
 
-/// A number from `least` to `most`. CLI::Range lets nan pass.
+/// Accepts a number from `least` to `most`. CLI::Range would accept nan.
 ValueCheck number_within(double least, double most);
 
-/// A whole number from `least` to `most`.
+/// Accepts a whole number from `least` to `most`.
 ValueCheck whole_number_within(int least, int most);
 
-/// One of these words. CLI::IsMember answers in braces.
+/// Accepts one of these words. The message of CLI::IsMember would have braces.
 ValueCheck one_of(const std::vector<std::string>& words);
-/// The words of the one_of() by which the option is checked; none: it has no such check.
+/// The words of the one_of() that checks the option; empty if it has no such check.
 std::vector<std::string> choices_of(const CLI::Option& option);
 
 }  // namespace ayumi::app

@@ -18,13 +18,13 @@ class Option;
 
 namespace ayumi::app {
 
-/// What the value of an option must be.
+/// A condition for the value of an option.
 class ValueCheck {
  public:
-  /// What is wrong with a word; empty where nothing is.
+  /// Says what is wrong with a word; empty if nothing is wrong.
   using Complaint = std::function<std::string(const std::string& word)>;
 
-  /// `description` shows behind the option in its help, and `name` identifies the check.
+  /// The help shows `description` after the option, and `name` identifies the check.
   ValueCheck(Complaint complaint, std::string description, std::string name = "");
   /// The same check with another description.
   ValueCheck description(std::string description) const;
@@ -35,8 +35,8 @@ class ValueCheck {
   std::string description_, name_;
 };
 
-/// An option or argument of a command. The members that change it return it, and mean what CLI11's
-/// members of these names mean.
+/// An option or argument of a command. The members that change it return it, and have the meaning
+/// of CLI11's members of the same names.
 class Option {
  public:
   explicit Option(CLI::Option* option) : option_(option) {}
@@ -55,16 +55,17 @@ class Option {
   Option* group(const std::string& heading);
   Option* trigger_on_parse();
 
-  size_t count() const;            ///< how often the command line has it
-  std::string get_name() const;    ///< as it is typed, for example "--rate"
-  bool get_positional() const;     ///< an argument, which has no dashes
-  std::string shown_name() const;  ///< "--rate" also where it is "-r,--rate"; an argument's name
+  size_t count() const;          ///< number of times that the command line has it
+  std::string get_name() const;  ///< name as it is typed, for example "--rate"
+  bool get_positional() const;   ///< whether it is an argument, which has no dashes
+  /// "--rate" for the option "-r,--rate"; for an argument, its name.
+  std::string shown_name() const;
 
  private:
   CLI::Option* option_;
 };
 
-/// The program's command line, or one of its subcommands.
+/// The program's command line or one of its subcommands.
 class Command {
  public:
   explicit Command(CLI::App& app) : app_(app) {}
@@ -73,7 +74,7 @@ class Command {
 
   Command* add_subcommand(std::string name, std::string description);
 
-  /// `value` receives what the command line has, and is left as it is where there is nothing.
+  /// `value` receives the value in the command line, and does not change if there is none.
   Option* add_option(std::string name, std::string& value, std::string description);
   Option* add_option(std::string name, double& value, std::string description);
   Option* add_option(std::string name, int& value, std::string description);
@@ -85,18 +86,18 @@ class Command {
   Option* add_flag(std::string name, bool& value, std::string description);
   Option* add_flag_callback(std::string name, std::function<void()> given, std::string description);
 
-  /// What runs after the whole command line was read.
+  /// The function that runs after the whole command line was read.
   void callback(std::function<void()> run);
   void footer(std::string text);  ///< the examples in the help
   void require_subcommand(int count);
 
   std::string get_name() const;
   std::string get_description() const;
-  /// Those that the command line has.
+  /// The subcommands that the command line has.
   std::vector<std::string> given_subcommands() const;
   /// Names and descriptions of all subcommands, in their order.
   std::vector<std::pair<std::string, std::string>> all_subcommands() const;
-  /// Options that this command has itself.
+  /// The options of this command itself.
   const std::list<Option>& own_options() const { return options_; }
   const CLI::App& cli11() const { return app_; }
 
@@ -107,8 +108,8 @@ class Command {
   std::list<Command> subcommands_;
 };
 
-/// From a callback of an option that is triggered while the command line is read: the program ends
-/// with exit code 0.
+/// Called from a callback of an option that is triggered while the command line is read. The
+/// program ends with exit code 0.
 [[noreturn]] void end_with_success();
 
 }  // namespace ayumi::app

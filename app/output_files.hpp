@@ -1,5 +1,5 @@
 #pragma once
-// Names of files that one command writes.
+// Names of the files that one command writes.
 
 #include <string>
 #include <utility>
@@ -7,8 +7,9 @@
 
 namespace ayumi::app {
 
-/// Options that name files to be written, each with its file; "" where it was not given. Throws
-/// Error(usage) where two of them name the same file, of which one would replace the other.
+/// `files` are options that name files to be written, each with its file, or "" if it was not
+/// given. Throws Error(usage) if two of them name the same file, because one would replace the
+/// other.
 void refuse_same_files(const std::vector<std::pair<std::string, std::string>>& files);
 
 }  // namespace ayumi::app

@@ -22,24 +22,24 @@ namespace {
 
 using Values = std::map<std::string, double>;
 
-// Trials with several parameters together. Chosen: each costs one sampling and one check, for a
-// walk of some steps 0.1 s.
+// Largest number of trials with several parameters together. Chosen: each trial costs one sampling
+// and one check, 0.1 s for a walk of some steps.
 constexpr int kMostTrials = 60;
 // Violation of a motion that cannot be sampled. Chosen: worse than any motion.
 constexpr double kUnsampled = 1e6;
-// Factor on the time from which on slowing down is not called a solution. Chosen: as kSlowest of
-// repair/policy.hpp.
+// Factor on the time from which on slowing down is not called a solution. Chosen: the same as
+// kSlowest of repair/policy.hpp.
 constexpr double kSlowest = 8;
-// Factor from one pace to the next, and resolution of the search between two. Chosen: 15 paces to
-// kSlowest; the pace is shown with two decimals.
+// Ratio of each pace to the one before, and resolution of the search between two paces. Chosen:
+// there are 15 paces up to kSlowest, and the pace is shown with two decimals.
 constexpr double kPaceStep = 1.15, kPaceResolution = 0.02;
-// Share of a pattern's time from which on the whole pattern is slowed down instead of windows.
-// Chosen: what is left then is little more than standing at both ends.
+// If the windows are at least this share of a pattern's time, the whole pattern is slowed down
+// instead. Chosen: the rest is then little more than the time of standing at both ends.
 constexpr double kPart = 0.8;
 
 bool whole(double value) { return value == std::round(value) && std::abs(value) >= 1; }
 
-// Three digits for people, on the far side of `given`.
+// Rounds to three digits for people, away from `given`.
 double rounded_away(double value, double given) {
   if (value == 0) return 0;
   const double digits = std::pow(10, 2 - std::floor(std::log10(std::abs(value))));
@@ -48,7 +48,7 @@ double rounded_away(double value, double given) {
   return digits >= 1 ? count / std::round(digits) : count * std::round(1 / digits);
 }
 
-// Of the motion with the payloads of the scenario.
+// The report on the motion with the payloads of the scenario.
 ConsistencyReport with_payloads_judged(const Task& task, const CheckOptions& options) {
   ConsistencyReport report = check_consistency(task.robot, task.series, options);
   judge_payloads(task, options, report);
@@ -61,7 +61,7 @@ class Search {
          const std::vector<std::string>& tolerances)
       : context_(context), pattern_(pattern), options_(options), tolerances_(tolerances) {}
 
-  // How much is wrong with the pattern; 0 when it passes.
+  // The amount by which the pattern violates limits; 0 if it passes.
   double excess(const Values& values) {
     std::string words;
     PatternOptions options = options_;
@@ -86,7 +86,8 @@ class Search {
     return excess({{parameter, value}}) == 0;
   }
 
-  // Steps to both sides, wider and wider, then the gap before the first that passes in halves.
+  // Tries steps to both sides with increasing width, and then bisects the gap before the first step
+  // that passes.
   bool nearest(const std::string& parameter, double given, double& passing) {
     if (whole(given) && nearest_whole(parameter, given, passing)) return true;
     double tried = 0;
@@ -109,8 +110,8 @@ class Search {
     return false;
   }
 
-  // Several parameters, step by step the one that helps most; then each as near to what is given as
-  // the others let it.
+  // Changes several parameters, at each step the one that helps most. Then moves each as near to
+  // its given value as the others allow.
   PassingValues together(const Values& given) {
     Values now = given;
     double wrong = excess(now);
@@ -176,7 +177,7 @@ class Search {
   int trials_ = 0;
 };
 
-// From the last key or phase before what is wrong to the first one after it.
+// The time from the last key or phase before an error to the first one after it.
 std::vector<std::pair<double, double>> segments_around(const Pattern& pattern,
                                                        const ConsistencyReport& check) {
   std::set<double> marks = {0, pattern.duration()};
@@ -185,7 +186,7 @@ std::vector<std::pair<double, double>> segments_around(const Pattern& pattern,
   std::vector<std::pair<double, double>> all;
   for (const Finding& f : check.findings) {
     if (f.severity != Severity::error) continue;
-    // [s] Chosen: a finding may touch the next segment by a sample.
+    // Slack [s]. Chosen: a finding may extend into the next segment by a sample.
     constexpr double kSlack = 0.002;
     const auto end = marks.lower_bound(std::max(f.end - kSlack, f.at));
     auto begin = marks.upper_bound(std::min(f.begin + kSlack, f.at));
@@ -196,7 +197,7 @@ std::vector<std::pair<double, double>> segments_around(const Pattern& pattern,
   return merged(std::move(all));
 }
 
-// Whether the task with this pattern in place of its own passes.
+// Whether the task passes with this pattern instead of its own.
 bool passes_with(const Task& input, const Pattern& pattern, const CheckOptions& check) {
   Task other = input;
   other.pattern = pattern;
@@ -276,7 +277,8 @@ PassingPace passing_pace(const Context& context, const Task& input, const Consis
   retime.slowest = kSlowest;
   retime.resolution = kPaceResolution;
   const FastestPace found = fastest_pace(input.robot, input.pattern, retime, context.progress());
-  // The pace was found for the robot without payloads.
+  // The pace was found for the robot without payloads, so it has to be checked again if the
+  // scenario has some.
   const bool carries =
       std::any_of(input.pattern.scenario.begin(), input.pattern.scenario.end(),
                   [](const Disturbance& d) { return std::holds_alternative<Payload>(d.what); });

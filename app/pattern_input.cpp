@@ -66,8 +66,7 @@ std::string read_input(const std::filesystem::path& file, size_t most) {
 
 namespace {
 
-/// A file that is not here, as "patterns/hoap1_walk.json", may be one of those that belong to
-/// Ayumi.
+/// A file that does not exist here, such as "patterns/hoap1_walk.json", may be bundled with Ayumi.
 std::filesystem::path file_or_bundled(const std::filesystem::path& file) {
   std::error_code ignored;
   if (file.is_absolute() || !file.has_parent_path() || std::filesystem::exists(file, ignored))

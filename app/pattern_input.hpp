@@ -1,5 +1,5 @@
 #pragma once
-// What every command that takes a PATTERN shares: reading it, its robot, and sampling it.
+// Functions for all commands that take a PATTERN: they read it and its robot, and sample it.
 
 #include <filesystem>
 #include <map>
@@ -13,21 +13,22 @@ namespace ayumi::app {
 
 /// Options of a PATTERN argument.
 struct PatternOptions {
-  std::vector<std::string> set;  ///< "name=value" for declared parameters
-  std::string profile;           ///< actuator profile; "" = the pattern's, then the robot's default
-  std::string robot = {};        ///< in place of the pattern's; "" = the pattern's
+  std::vector<std::string> set;  ///< "name=value" for each declared parameter that is set
+  std::string profile;  ///< actuator profile; "": that of the pattern, or else the robot's default
+  std::string robot = {};  ///< the robot; "": that of the pattern
 };
 void add_pattern_options(Command& command, PatternOptions& options);
 
-/// `--times` of the pushes of a study; none: those that fit the motion.
+/// The option `--times` for the pushes of a study. Without it, the times are those that suit the
+/// motion.
 void add_push_times(Command& command, std::vector<double>& times);
 
 /// The bytes of a file; `-` is standard input. Throws Error(bad_file) for more than `most` bytes.
 std::string read_input(const std::filesystem::path& file, size_t most = size_t{1} << 30);
 
-/// The pattern of a file; `-` is standard input, what it names is then looked for in the working
-/// folder. A file that is not there, with a folder before its name ("patterns/hoap1_walk.json"), is
-/// looked for in the bundled data.
+/// The pattern of a file; `-` is standard input, and then the files that the pattern names are
+/// searched in the working folder. A file that does not exist but is named with a folder
+/// ("patterns/hoap1_walk.json") is searched in the bundled data.
 Pattern read_given_pattern(const std::filesystem::path& file,
                            const std::map<std::string, double>& set = {});
 
@@ -36,22 +37,22 @@ Pattern read_given_pattern(const std::filesystem::path& file,
 Task load_pattern(const Context& context, const std::filesystem::path& file,
                   const PatternOptions& options, bool meshes = false);
 
-/// The robot as a pattern names it. A path in the working folder gets a slash, which a bundled name
-/// does not have.
+/// The robot in the form in which a pattern names it. A path in the working folder gets a slash,
+/// which a bundled name does not have.
 std::string robot_as_written(const std::string& robot);
 
-/// Those of the task, with `overrides` ("kind=value") over the tolerances of its pattern.
+/// The check options of the task. `overrides` ("kind=value") replace tolerances of its pattern.
 CheckOptions check_options(const Task& input, const std::vector<std::string>& overrides);
 
-/// Throws Error(usage) for an override that no kind of finding has.
+/// Throws Error(usage) for an override whose kind does not exist.
 void refuse_unknown_tolerances(const std::vector<std::string>& overrides);
 
-/// "name=value" pairs. Throws Error(usage) naming the option and the word.
+/// Reads "name=value" pairs. Throws Error(usage) that names the option and the word.
 std::map<std::string, double> read_pairs(const std::vector<std::string>& words,
                                          const std::string& option);
 
-/// Throws Error(bad_file) when `path` exists and --force was not given, and where no regular file
-/// can be written (require_file_target).
+/// Throws Error(bad_file) if `path` exists and --force was not given, and if no regular file can be
+/// written there (require_file_target).
 void refuse_overwriting(const Context& context, const std::filesystem::path& path);
 
 }  // namespace ayumi::app

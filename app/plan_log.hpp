@@ -1,5 +1,5 @@
 #pragma once
-// The log of a run, or of a pattern as it is planned: preview and plots show both.
+// The log of a run, or the plan of a pattern as a log. Previews and plots show both.
 
 #include <string>
 
@@ -11,8 +11,8 @@ namespace ayumi::app {
 /// Whether a name is that of a pattern rather than of a RUN: a file that ends in .json or .jsonc.
 bool names_pattern(const std::string& file);
 
-/// The log of a RUN (`log`: which of them), or the plan of a pattern. Throws as read_run_log() and
-/// load_pattern().
+/// The log of a RUN, or the plan of a pattern. `log` says which log of the run. Throws as
+/// read_run_log() and load_pattern().
 SimulationLog log_of(const Context& context, const std::string& run_or_pattern,
                      const std::string& log);
 

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 struct Drawn {
-  std::string error;  ///< empty: done
+  std::string error;  ///< message of the error; empty: done
   bool skipped = false;
   Json entry;
   std::optional<Image> tile;
@@ -42,7 +42,8 @@ std::vector<fs::path> targets_of(const PreviewBatch& batch) {
   return targets;
 }
 
-/// Files are written whole or not at all: one that is there and newer than its run is finished.
+/// Files are written as a whole or not at all, so a file that exists and is newer than its run is
+/// finished.
 bool is_done(const fs::path& target, const fs::path& input) {
   std::error_code error;
   const fs::path source = is_run_folder(input) ? input / "run.json" : input;
@@ -94,7 +95,7 @@ std::vector<Drawn> draw_all(const PreviewBatch& batch, const std::vector<fs::pat
   std::vector<std::thread> threads;
   try {
     for (int w = 1; w < workers; ++w) threads.emplace_back(work);
-  } catch (const std::exception&) {  // those that are there do the work
+  } catch (const std::exception&) {  // the threads that could be started do the work
   }
   work();
   for (std::thread& thread : threads) thread.join();

@@ -1,4 +1,4 @@
-// Progress on stderr: a bar with the time left on a terminal, plain lines elsewhere.
+// Progress on stderr: on a terminal a bar with the remaining time, otherwise plain lines.
 
 #include <unistd.h>
 
@@ -25,7 +25,7 @@ struct ProgressLine {
   std::mutex mutex;
   bool terminal = isatty(STDERR_FILENO) != 0;
   std::string stage;
-  int shown = -1;  // per cent, or tens of per cent in plain lines
+  int shown = -1;  // the shown percentage, or tens of per cent in plain lines
   Clock::time_point begin, last;
 
   void show(const ProgressEvent& event) {

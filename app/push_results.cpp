@@ -130,7 +130,7 @@ KnownCases read_results(const std::filesystem::path& file, const Json& study, si
   try {
     const auto json = shallow_json<nlohmann::json>(bytes);
     if (json.at("format") != kPushFormat) refuse("this file does not hold results of ayumi push");
-    // The order of keys has no meaning.
+    // The order of the keys does not matter.
     if (json.at("study") != nlohmann::json::parse(study.dump()))
       refuse("this file holds the results of a study with other settings");
     for (const auto& entry : json.at("cases")) {

@@ -9,7 +9,7 @@
 
 namespace ayumi::app {
 
-/// The thresholds, one per case and controller, in the order of the cases.
+/// The thresholds, one for each case and controller, in the order of the cases.
 nlohmann::ordered_json thresholds_json(const std::vector<PushCase>& cases,
                                        const std::vector<ControllerSpec>& controllers);
 
@@ -21,8 +21,8 @@ nlohmann::ordered_json summaries_json(const std::vector<PushCase>& cases,
 /// the same task.
 std::string results_text(const nlohmann::ordered_json& study, const KnownCases& cases);
 
-/// Cases of an earlier file; empty when there is none. Throws Error(bad_file) when the file is no
-/// results file or another study's.
+/// The cases of an earlier file; empty if there is none. Throws Error(bad_file) if the file is not
+/// a results file or belongs to another study.
 KnownCases read_results(const std::filesystem::path& file, const nlohmann::ordered_json& study,
                         size_t count);
 

@@ -46,7 +46,7 @@ void lock_window(const std::string& word, double duration, RepairOptions& option
   options.locked_windows.emplace_back(begin, end);
 }
 
-// Relative names in the file hold only from the folder they were written for.
+// Relative names in the file are only valid from the folder for which they were written.
 bool same_folder(const fs::path& a, const fs::path& b) {
   return fs::absolute(a).lexically_normal().parent_path() ==
          fs::absolute(b).lexically_normal().parent_path();

@@ -12,7 +12,7 @@ ReportInput report_input(const RunFolder& run, const std::string& file) {
   ReportInput input;
   input.title = std::filesystem::path(run.provenance.pattern).stem().string();
   for (const auto& [name, log] : run.logs) {
-    if (name == "undisturbed") continue;  // the page is about the runs under the scenario
+    if (name == "undisturbed") continue;  // the page only shows the runs under the scenario
     std::string label = name;
     std::replace(label.begin(), label.end(), '_', ' ');
     input.runs.push_back({label, &log});

@@ -6,8 +6,8 @@
 
 namespace ayumi::app {
 
-/// Logs, open loop first, and the verdicts of `run`; it must outlive the result. Throws
-/// Error(bad_file) naming `file` when the run has no log.
+/// The logs of the run, open loop first, and the verdicts of `run`. `run` must outlive the result.
+/// Throws Error(bad_file) that names `file` if the run has no log.
 ReportInput report_input(const RunFolder& run, const std::string& file);
 
 }  // namespace ayumi::app

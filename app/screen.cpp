@@ -10,7 +10,7 @@ namespace ayumi::app {
 
 namespace {
 
-// A line that is too long goes on at `hang`, or at its own indentation where that is more.
+// A line that is too long continues at column `hang`, or at its own indentation if this is larger.
 std::string broken(const std::string& text, size_t hang, size_t columns) {
   std::string out;
   for (size_t begin = 0; begin < text.size();) {
@@ -28,14 +28,14 @@ size_t rows_of(const std::string& text) {
   return static_cast<size_t>(std::count(text.begin(), text.end(), '\n'));
 }
 
-// The line's first words, within this many columns.
+// The first words of the line that fit into this many columns.
 std::string beginning(const std::string& line, size_t most) {
   if (columns_of(line) <= most) return line + "\n";
   const size_t blank = line.rfind(' ', bytes_within(line, most - 4));
   return line.substr(0, blank) + " ...\n";
 }
 
-// The forms of the parts that are shown.
+// The form in which each part is shown.
 class Choice {
  public:
   Choice(const std::vector<AnswerPart>& parts, const Room& room)
@@ -52,14 +52,14 @@ class Choice {
     return rows_of(text(room_.columns)) + rows_of(broken(more, 4, room_.columns)) <= room_.rows;
   }
 
-  /// Shortens one part more. False: nothing can be shortened.
+  /// Shortens one more part. Returns false if nothing can be shortened.
   bool shorten() {
     size_t found = parts_.size();
     const auto before = [&](size_t a, size_t b) {
       if (form_[a] != form_[b]) return form_[a] < form_[b];
       return parts_[a].worth < parts_[b].worth;
     };
-    // Of parts that are equally dear, the last one.
+    // Of parts that are equally important, the last one is shortened.
     for (size_t i = 0; i < parts_.size(); ++i)
       if (form_[i] + 1 < parts_[i].forms.size() && (found == parts_.size() || !before(found, i)))
         found = i;
@@ -104,7 +104,8 @@ std::string in_full(const std::vector<AnswerPart>& parts) {
 }
 
 std::vector<std::string> shortened_line(const std::string& line) {
-  // Rows of 80 columns, less what is lost where a line is broken and what follows is indented.
+  // Number of columns in two rows and in one row of 80 columns. Two rows lose some columns where a
+  // line is broken and its rest is indented.
   constexpr size_t kTwoRows = 144, kOneRow = 78;
   return {line + "\n", beginning(line, kTwoRows), beginning(line, kOneRow)};
 }

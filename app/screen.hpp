@@ -1,5 +1,5 @@
 #pragma once
-// Answers that fit on a screen: the least important parts are shortened first.
+// Answers that fit on a screen. Their least important parts are shortened first.
 
 #include <string>
 #include <vector>
@@ -12,12 +12,12 @@ enum class Worth { origin, info, warning, remark, error, figure, verdict };
 
 struct AnswerPart {
   Worth worth = Worth::verdict;
-  std::vector<std::string> forms = {};  ///< whole lines; each form is shorter than the one before
+  std::vector<std::string> forms = {};  ///< whole lines; each form is shorter than the previous one
   size_t hang = 4;                      ///< column at which the rest of a broken line begins
 };
 
-/// Chosen: the smallest terminal in use has 24 rows of 80 columns. A motion that is wrong may take
-/// as many rows as fit on the half of a large screen.
+/// Number of rows of an answer. Chosen: the smallest terminal in use has 24 rows of 80 columns. An
+/// answer about a motion with errors may take as many rows as fit on half of a large screen.
 inline constexpr size_t kRowsWhenGood = 22, kRowsWhenBad = 40;
 
 /// Room for an answer beside the command above it and the prompt below it.
@@ -26,20 +26,20 @@ struct Room {
   size_t columns = 80;
 };
 
-/// This many rows, as wide as standard output, or 80 columns where it is no terminal.
+/// A room of this many rows, as wide as standard output, or 80 columns if it is not a terminal.
 Room room_of(size_t rows);
 
-/// The parts in this order, each in the longest form for which there is room. Where something was
+/// The parts in this order, each in the longest form for which there is room. If something was
 /// shortened, the text ends with the line `more`.
 std::string fitted(const std::vector<AnswerPart>& parts, const Room& room, const std::string& more);
 
 /// Appends parts to other parts.
 void append(std::vector<AnswerPart>& parts, std::vector<AnswerPart> more);
 
-/// The parts in full.
+/// All parts in their longest form.
 std::string in_full(const std::vector<AnswerPart>& parts);
 
-/// A line as it is, in two rows, and in one, for a terminal of 80 columns.
+/// The forms of a line for a terminal of 80 columns: as it is, in two rows, and in one row.
 std::vector<std::string> shortened_line(const std::string& line);
 
 }  // namespace ayumi::app

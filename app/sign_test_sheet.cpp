@@ -11,7 +11,7 @@ namespace ayumi::app {
 
 namespace {
 
-// Size of the drawn motion. Chosen: a test of 5 degrees is hardly seen in a picture.
+// Size of the drawn motion. Chosen: a test of 5 degrees is hardly visible in a picture.
 constexpr double kDrawnAngle = 30 * EIGEN_PI / 180;  // [rad]
 constexpr double kDrawnSlide = 0.05;                 // [m]
 
@@ -35,7 +35,8 @@ SimulationSample hanging(const RobotModel& model, const RobotState& state) {
   return sample;
 }
 
-/// A rotation is seen best along its axis; from above, the trunk hides the legs.
+/// The best view. A rotation is seen best along its axis; from above, the trunk would hide the
+/// legs.
 std::string view_of(const RobotModel& model, const SignTest& test, const RobotState& state) {
   RobotData data(model);
   update_positions(model, state, data);

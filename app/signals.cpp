@@ -9,8 +9,9 @@ namespace ayumi::app {
 
 namespace {
 
-// How long work may take to stop. Chosen: work asks several times per second whether it may go on;
-// what does not ask, as a library that computes, is ended well within a second of Ctrl-C.
+// Time in which work has to stop. Chosen: work asks several times per second whether it may
+// continue. Work that does not ask, such as a computing library, is ended well within a second of
+// Ctrl-C.
 constexpr long kPatience = 700'000'000;  // [ns]
 
 volatile std::sig_atomic_t stop_signal = 0;
@@ -25,8 +26,8 @@ void on_signal(int signal) {
   if (has_timer) timer_settime(impatience, 0, &once, nullptr);
 }
 
-// Nothing is lost: files get their names when they are complete, and child processes end with this
-// process.
+// Nothing is lost: files only get their names when they are complete, and child processes end with
+// this process.
 void on_impatience(int) {
   if (is_stop_expected) _exit(0);
   constexpr char kMessage[] = "ayumi: stopped\n";

@@ -165,8 +165,8 @@ Eigen::MatrixXd torques_of(const SimulationLog& log) {
 
 namespace {
 
-// "joint speed 72 % (l_knee at 2.90 s)". A robot that is simulated moves and bears its weight, so a
-// share of exactly 0 has no limit.
+// Shares in words, such as "joint speed 72 % (l_knee at 2.90 s)". A simulated robot moves and
+// carries its weight, so a share of exactly 0 means that there is no limit.
 std::string shares_text(const SimulationLog& log) {
   const SimulationResult& r = log.result;
   const std::string speed = "joint speed " + share_text(log, r.speed);

@@ -17,17 +17,18 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Where files without a name may be.
+// A folder for files that have no name yet.
 std::filesystem::path scratch_folder() {
   std::error_code none;
   const std::filesystem::path folder = std::filesystem::temp_directory_path(none);
   return none ? std::filesystem::path(".") : folder;
 }
 
-// No reader takes a longer log, and a run is too long to be lost at its end.
+// Refuses a log that is too long, because no reader accepts it and a long run would be lost at its
+// end.
 void require_readable_log(const Task& input, const std::vector<std::string>& joints) {
   const size_t most = most_log_rows(joints);
-  const double margin = 10;  // [s] Chosen: more than a run goes on after its motion.
+  const double margin = 10;  // [s] Chosen: longer than a run continues after its motion
   const size_t rows = input.series.samples.size() + static_cast<size_t>(margin / input.tick);
   if (rows <= most) return;
   const double longest = static_cast<double>(most) * input.tick - margin;

@@ -1,5 +1,5 @@
 #pragma once
-// A simulation whose samples are written to the disk while it runs, and the part of them that stays
+// Runs a simulation whose samples are written to the disk while it runs, and keeps a part of them
 // in memory.
 
 #include <filesystem>
@@ -12,21 +12,22 @@
 
 namespace ayumi::app {
 
-/// What is wanted of a run beside its log.
+/// The parts of a run that are kept in addition to its log.
 struct StreamedParts {
-  bool postures = false;  ///< for table_of_postures()
+  bool postures = false;  ///< whether to keep the postures, for table_of_postures()
   bool torque = false;
-  std::vector<SimulationEvent> first_events = {};  ///< come before those of the run
+  std::vector<SimulationEvent> first_events = {};  ///< events before those of the run
 };
 
 struct StreamedRun {
   WrittenLog log;
-  ReferenceTrajectory postures;  ///< where asked for
-  Eigen::MatrixXd torque;        ///< where asked for: that the motors gave, samples x dof [N m]
-  double wall = 0;               ///< that the simulation took, without writing [s]
+  ReferenceTrajectory postures;  ///< the postures, if they were requested
+  Eigen::MatrixXd torque;  ///< torques of the motors, if they were requested, samples x dof [N m]
+  double wall = 0;         ///< time that the simulation took, without writing [s]
 };
 
-/// Runs the pattern and writes the log to `file`; empty: no file, only its hash.
+/// Runs the pattern and writes the log to `file`; if `file` is empty, only computes the hash of the
+/// log.
 StreamedRun simulate_streamed(const Context& context, const Task& input,
                               const SimulateOptions& options, const std::filesystem::path& file,
                               const StreamedParts& parts = {});
@@ -34,7 +35,7 @@ StreamedRun simulate_streamed(const Context& context, const Task& input,
 /// The log with its samples, read from its file.
 SimulationLog with_samples(const WrittenLog& log, const std::filesystem::path& file);
 
-/// "with dtad, the robot stands, ...", as for a log with samples.
+/// The outcome in words ("with dtad, the robot stands, ..."), as for a log with samples.
 std::string outcome_text(const WrittenLog& log);
 
 }  // namespace ayumi::app

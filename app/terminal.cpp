@@ -28,7 +28,7 @@ std::string_view colour(Paint paint) {
   return paint == Paint::good ? "\x1b[32m" : paint == Paint::bad ? "\x1b[1;31m" : "\x1b[33m";
 }
 
-// The sequence of painted() that the text begins with, or nothing.
+// The sequence of painted() with which the text begins, or nothing.
 std::string_view own_sequence(std::string_view text) {
   for (const std::string_view own :
        {kPlain, colour(Paint::good), colour(Paint::bad), colour(Paint::caution)})
@@ -36,7 +36,7 @@ std::string_view own_sequence(std::string_view text) {
   return "";
 }
 
-// Bytes of what begins there: a colour, or a character in UTF-8.
+// The number of bytes of the colour or of the UTF-8 character that begins here.
 struct Step {
   size_t bytes;
   size_t columns;
@@ -53,8 +53,8 @@ Step step_at(const std::string& text, size_t at) {
   return {end - at, 1};
 }
 
-// Where the description in a line begins: behind the names, and two blanks or more. In a line
-// without names: where the line begins.
+// The column at which the description in a line begins, after the names and two or more blanks. In
+// a line without names, it is the column at which the line begins.
 size_t indent_of(const std::string& line) {
   const size_t word = std::min(line.find_first_not_of(' '), line.size());
   const size_t gap = line.rfind("  ");
@@ -62,7 +62,7 @@ size_t indent_of(const std::string& line) {
   return word < line.size() && line[word] == '-' ? 6 : word;
 }
 
-// Where a line that is too long is broken: the end of its first part.
+// The place at which a line that is too long is broken: the end of its first part.
 size_t break_of(const std::string& line, size_t indent, size_t columns) {
   const size_t last = bytes_within(line, columns);
   const size_t blank = line.rfind(' ', last), comma = line.rfind(',', last - 1);
@@ -132,7 +132,8 @@ size_t bytes_within(const std::string& text, size_t columns) {
 }
 
 std::string broken_line(std::string line, size_t indent, size_t columns) {
-  // Chosen: a description needs this much room beside the names [characters].
+  // Smallest width of a description beside the names [characters]. Chosen: a description needs this
+  // much room.
   constexpr size_t kLeastRoom = 20;
   if (columns == 0) return line;
   indent = std::min(indent, columns > kLeastRoom ? columns - kLeastRoom : 0);

@@ -26,7 +26,7 @@ Study load_study(const Task& input, const std::string& file) {
 
 std::string fit_to_plant(Study& study, const std::string& plant, bool stated) {
   if (plant != "mujoco") return "";
-  // The contacts of MuJoCo have a stiffness and a damping of their own (mujoco_model.cpp).
+  // The contacts of MuJoCo have their own stiffness and damping (mujoco_model.cpp).
   const auto unused = [](const UncertainQuantity& q) {
     return q.kind == UncertainKind::sole_stiffness || q.kind == UncertainKind::sole_damping;
   };

@@ -1,6 +1,6 @@
 #pragma once
-// The uncertainty of a pattern on the command line: that of --study, else that of the pattern, else
-// the default one of its robot, else the one that is assumed of any robot.
+// The uncertainty of a pattern on the command line: that of --study, or else that of the pattern,
+// or else the default one of its robot, or else the one that is assumed for any robot.
 
 #include <string>
 
@@ -9,13 +9,13 @@
 
 namespace ayumi::app {
 
-/// `file` is the argument of --study, "" where it was not given. Throws as read_study(), and
-/// Error(bad_pattern) where the file has no uncertainty.
+/// `file` is the argument of --study, or "" if it was not given. Throws as read_study(), and
+/// Error(bad_pattern) if the file has no uncertainty.
 Study load_study(const Task& input, const std::string& file);
 
-/// Quantities that the plant of that name does not use are an error where the user `stated` them:
-/// Error(bad_pattern). Of a default uncertainty they are left out, and the answer says so in one
-/// line; it is empty where nothing is left out.
+/// If the user `stated` quantities that the plant of this name does not use, throws
+/// Error(bad_pattern). Such quantities of a default uncertainty are left out, and the answer says
+/// so in one line; it is empty if nothing is left out.
 std::string fit_to_plant(Study& study, const std::string& plant, bool stated);
 
 }  // namespace ayumi::app

@@ -14,8 +14,8 @@ namespace ayumi::app {
 
 namespace {
 
-// No joint and no servo target beyond its limits, no bodies that meet, feet in their places and
-// within reach.
+// Whether no joint and no servo target exceeds its limits, no bodies collide, and the feet are in
+// their places and within reach.
 bool posture_fits(const RobotModel& model, const WalkParameters& walk) {
   // Sample period [s]. Chosen: only postures are judged, 45 of them in a swing of 0.45 s.
   constexpr double kTick = 0.01;

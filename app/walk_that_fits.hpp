@@ -1,5 +1,5 @@
 #pragma once
-// What of a walk that was asked for the legs can do.
+// Finds which part of a requested walk the legs can do.
 
 #include <string>
 
@@ -8,8 +8,8 @@
 
 namespace ayumi::app {
 
-/// The side step or the turn that the legs can do, where they cannot do what was asked for; ""
-/// where that is not what is wrong.
+/// The side step or the turn that the legs can do, if they cannot do the requested one; "" if the
+/// cause is something else.
 std::string what_fits(const RobotModel& model, const WalkParameters& asked);
 
 }  // namespace ayumi::app

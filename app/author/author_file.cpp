@@ -18,10 +18,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Of linux/fs.h, which glibc's stdio.h names only for GNU sources.
+// RENAME_EXCHANGE of linux/fs.h; glibc's stdio.h only names it for GNU sources.
 constexpr unsigned kExchange = 2;
 
-// Both names exchange their files at one instant; false where the file system cannot do it.
+// Exchanges the files of both names at one instant. Returns false if the file system cannot do
+// this.
 bool exchange(const fs::path& a, const fs::path& b) {
   return ::syscall(SYS_renameat2, AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), kExchange) == 0;
 }
@@ -59,8 +60,8 @@ bool replace_text(const fs::path& file, const std::string& expected, const std::
   struct stat about {};
   if (::stat(file.c_str(), &about) == 0)
     static_cast<void>(::chmod(written.path().c_str(), about.st_mode & 07777));
-  // Another program may save between the comparison and the exchange. What is exchanged out is
-  // looked at again, and goes back where it is not what was expected.
+  // Another program may save between the comparison and the exchange. So the text that the exchange
+  // has removed is compared again, and it is put back if it is not the expected one.
   if (exchange(written.path(), file)) {
     if (read_file(written.path()) == expected) return true;
     exchange(written.path(), file);

@@ -1,5 +1,5 @@
 #pragma once
-// The file of a pattern that both an editor and the pages write. No change is lost.
+// The file of a pattern, to which both an editor and the pages write. No change is lost.
 
 #include <filesystem>
 #include <string>
@@ -13,14 +13,14 @@ namespace ayumi::app {
 bool replace_text(const std::filesystem::path& file, const std::string& expected,
                   const std::string& text);
 
-/// All texts that the file has had since the start, whoever wrote them; one of them is the present
-/// one.
+/// All texts that the file has had since the start, whoever wrote them. One of them is the present
+/// text.
 class TextHistory {
  public:
-  /// A text that was read: the present one or a new one after it. A new text ends the list of steps
-  /// that can be redone.
+  /// Adds a text that was read: it is the present one, or a new one after it. A new text ends the
+  /// list of steps that can be redone.
   void add(const std::string& text);
-  /// The present text is that of a step back, or forward.
+  /// Makes the text one step back (-1) or forward (1) the present one.
   void step(int by) { at_ += by; }
 
   const std::string& present() const { return texts_[static_cast<size_t>(at_)]; }

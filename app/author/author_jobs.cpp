@@ -30,7 +30,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Lines of a text, without the spaces that begin them.
+// The lines of a text as JSON, without the spaces at their beginnings.
 OrderedJson json_lines_of(const std::string& text) {
   OrderedJson lines = OrderedJson::array();
   for (size_t begin = 0; begin < text.size();) {
@@ -112,7 +112,7 @@ AuthorResult repair_job(const AuthorMotion& motion, const std::string& text,
   return out;
 }
 
-// The pattern's law; a pattern without one is tried with DTAD.
+// The law of the pattern; a pattern without a law is tried with DTAD.
 ControllerSpec law_of(const Task& task) {
   if (task.pattern.controller.type != ControllerKind::none) return task.pattern.controller;
   return {ControllerKind::dtad, {}};
@@ -150,7 +150,7 @@ AuthorResult simulate_job(const OrderedJson& asked, const Context& context,
               : log.result.outcome == Outcome::fell
                   ? "The robot falls " + who + " at " + text::fixed(log.result.fell_at, 2) + " s."
                   : "The robot does not settle " + who + ".";
-    // The pushes are the same in each run, the falls are not.
+    // The pushes are the same in each run, but the falls are not.
     for (const SimulationEvent& event : log.events)
       if (event.kind == "fell")
         marks.push_back({{"time", event.t}, {"text", who + ": fell, " + event.text}});
@@ -211,7 +211,7 @@ AuthorResult push_job(const Context& context, const AuthorMotion& motion,
   return out;
 }
 
-// ---- export: the command itself, as a child process, so that its rules are the only ones
+// ---- export: the command itself runs as a child process, so that only its rules apply
 
 struct Said {
   int exit_code = 0;
@@ -248,7 +248,8 @@ Said run_command(const std::vector<std::string>& arguments, const fs::path& fold
   std::array<std::string*, 2> into = {&said.out, &said.err};
   bool stopped = false;
   for (int open = 2; open > 0;) {
-    constexpr int kLook = 50;  // [ms] between looks at the progress, which may stop the work
+    // [ms] time between two queries of the progress, which may stop the work.
+    constexpr int kLook = 50;
     ::poll(pipes.data(), pipes.size(), kLook);
     if (!stopped && progress && !progress({"export", -1, ""})) {
       stopped = true;
@@ -276,7 +277,7 @@ Said run_command(const std::vector<std::string>& arguments, const fs::path& fold
   return said;
 }
 
-// A name that is free: walk_hoap.csv, walk_hoap_2.csv, ...
+// The first of the names walk_hoap.csv, walk_hoap_2.csv, ... that is free.
 fs::path free_name(const fs::path& pattern, const std::string& ending) {
   for (int i = 1;; ++i) {
     const std::string number = i == 1 ? "" : "_" + std::to_string(i);

@@ -1,6 +1,6 @@
 #pragma once
-// Long work on the pattern that is being authored: repair, simulation, pushes, export, and what
-// came out of it as the page shows it.
+// Long work on the pattern that is being authored: repair, simulation, pushes and export. The
+// results have the form in which the page shows them.
 
 #include <map>
 #include <optional>
@@ -12,16 +12,16 @@
 namespace ayumi::app {
 
 struct AuthorResult {
-  OrderedJson shown;                           ///< member "result" of the page's state
-  std::map<std::string, std::string> series;   ///< tables of "repair", "open_loop", "closed_loop"
-  OrderedJson strips = OrderedJson::object();  ///< of the same motions: { lanes, dt }
+  OrderedJson shown;                          ///< member "result" of the page's state
+  std::map<std::string, std::string> series;  ///< tables of "repair", "open_loop" and "closed_loop"
+  OrderedJson strips = OrderedJson::object();  ///< strips of the same motions: { lanes, dt }
 };
 
 /// Kinds of jobs, in the order of the page's buttons.
 const std::vector<std::string>& author_job_kinds();
 
-/// Does the job. `text` is that of the motion. Throws Error with what cannot be done, Interrupted
-/// when `progress` stops it.
+/// Does the job. `text` is that of the motion. Throws an Error that says what cannot be done, and
+/// Interrupted if `progress` stops the job.
 AuthorResult author_job(const std::string& kind, const OrderedJson& options, const Context& context,
                         const AuthorMotion& motion, const std::string& text,
                         const AuthorSetting& setting, const Progress& progress);

@@ -26,11 +26,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Share of its limit from which a quantity leaves the colour of good. Chosen: a motion below it has
-// room for what a controller adds.
+// A quantity that uses more than this share of its limit no longer has the colour of good values.
+// Chosen: below it, a motion has room for what a controller adds.
 constexpr double kNearLimit = 0.7;
-// The same of a margin, of its largest possible value (the ZMP in the middle of one sole), and of
-// the force on the ground, of the weight. Chosen as above.
+// The same bound for a margin, as a share of its largest possible value (the ZMP in the middle of
+// one sole), and for the force on the ground, as a share of the weight. Chosen as above.
 constexpr double kNearEdge = 0.3, kNearLiftOff = 0.15;
 
 OrderedJson list(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
@@ -49,7 +49,7 @@ OrderedJson finding_json(const RobotModel& model, const Finding& f) {
       {"end", f.end},
       {"at", f.at},
       {"message", words_of(name_of(f.kind)) + ", " + place_words(f.where) + ": " + amount_text(f)},
-      // The page has a button in place of the command.
+      // The page has a button instead of the command.
       {"hint", f.hint == f.remedy || f.remedy.empty() ? f.hint : f.remedy + ", or choose Repair"},
       {"bodies", OrderedJson::array()},
       {"side", nullptr},
@@ -65,7 +65,8 @@ OrderedJson finding_json(const RobotModel& model, const Finding& f) {
   return json;
 }
 
-// The findings as `check` prints them: one entry for each cause, with what follows from it.
+// The findings as `check` prints them: one entry for each cause, with the findings that follow from
+// it.
 OrderedJson groups_json(const RobotModel& model, const ConsistencyReport& report) {
   OrderedJson groups = OrderedJson::array();
   for (const FindingGroup& group : finding_groups(report, model)) {
@@ -90,7 +91,7 @@ std::string pointer_to(const std::string& list, size_t i) {
 // Whether this value is read several times, in the rounds of a block.
 bool is_repeated(const std::string& pointer) { return outermost(pointer) != pointer; }
 
-// A pattern and its document, as written.
+// A pattern and its document as written.
 struct Written {
   const Pattern& pattern;
   const OrderedJson& document;
@@ -140,8 +141,8 @@ OrderedJson phases_json(const Written& text) {
   return phases;
 }
 
-// Keys by track, in the order in which the tracks first appear among those of the body, then of the
-// joints.
+// The keys by track. The tracks have the order in which they first appear, first those of the body,
+// then those of the joints.
 class Tracks {
  public:
   void add(const std::string& name, const std::string& kind, const OrderedJson& key) {
@@ -248,7 +249,7 @@ OrderedJson disturbances_json(const Written& text) {
 OrderedJson joints_json(const RobotModel& model) {
   OrderedJson joints = OrderedJson::array();
   for (const Dof& dof : model.dofs()) {
-    // A slider needs ends: a joint without limits turns once, or slides by a metre.
+    // A slider needs two ends: a joint without limits gets one turn, or a metre if it slides.
     const double free = dof.prismatic ? 1.0 : M_PI;
     joints.push_back({{"name", dof.name},
                       {"low", std::isfinite(dof.lower) ? dof.lower : -free},
@@ -295,7 +296,7 @@ struct Lane {
 OrderedJson lane_json(const Lane& lane, const std::vector<double>& values, double scale,
                       const RobotModel& model, const std::vector<int>& dofs = {}) {
   OrderedJson scaled = OrderedJson::array(), worst = nullptr;
-  for (const double value : values)  // four digits: it is for a picture
+  for (const double value : values)  // four digits are enough for a picture
     scaled.push_back(std::isnan(value) ? OrderedJson(nullptr)
                                        : OrderedJson(std::round(1e4 * scale * value) / 1e4));
   if (!dofs.empty()) worst = OrderedJson::array();
@@ -409,7 +410,7 @@ std::shared_ptr<const AuthorMotion> author_motion(const std::string& text, const
       {}});
   const Task& task = motion->task;
   motion->document = OrderedJson::parse(text, nullptr, true, true);
-  // The verdict on one core, what the page shows on the other.
+  // One core judges the motion, while the other prepares what the page shows.
   auto judged = std::async(std::launch::async, [&] { return judge(task); });
   const StabilitySeries stability = stability_series(task.robot, task.series, check_options(task));
   const int stride = std::max(1, static_cast<int>(std::lround(1 / kPageRate / task.series.dt)));
@@ -436,11 +437,12 @@ Eigen::AlignedBox3d box_of(const RobotModel& model, int body) {
   return box;
 }
 
-// A limb whose end is this near the middle plane at rest is no arm [m]. Chosen: necks are in it.
+// A limb whose end is this near to the middle plane at rest is not an arm [m]. Chosen: necks are
+// within it.
 constexpr double kMiddle = 0.02;
 
-// Distance of the gaze's handle from the head, in heights of the robot at rest. Chosen: in the
-// picture, and far enough for a hand that steers.
+// Distance of the gaze's handle from the head, in heights of the robot at rest. Chosen: the handle
+// is in the picture, and far enough for a hand to steer it.
 constexpr double kGazeAhead = 0.4;
 
 }  // namespace
@@ -460,9 +462,9 @@ std::vector<AuthorHandle> handles_of(const RobotModel& robot) {
   RobotData data(robot);
   update_positions(robot, robot.rest_state(), data);
   std::vector<AuthorHandle> limbs;
-  std::array<int, 2> on_side = {0, 0};  // arms, by Side
+  std::array<int, 2> on_side = {0, 0};  // numbers of arms, by Side
   for (const int b : limb_ends(robot)) {
-    // Three joints bring a point to a place; a neck has fewer.
+    // A limb with three joints can bring a point to a place; a neck has fewer.
     if (std::count(feet.begin(), feet.end(), b) || limb_dofs(robot, b).size() < 3) continue;
     const std::string& name = robot.bodies()[static_cast<size_t>(b)].name;
     limbs.push_back({Kind::limb, name, words_of(name), b, limb_point(robot, b), Side::left});

@@ -22,7 +22,7 @@ inline constexpr double kPageRate = 50;
 struct AuthorMotion {
   Task task;
   Judgement judgement;
-  OrderedJson document;  ///< of the text, as written
+  OrderedJson document;  ///< document of the text, as written
   SimulationLog plan;    ///< each tick of the page's tables
   std::string series;    ///< the page's table of the plan
   OrderedJson parts;     ///< members of the page's state that follow from the motion
@@ -30,9 +30,9 @@ struct AuthorMotion {
 
 /// Inputs besides the text of the pattern.
 struct AuthorSetting {
-  std::filesystem::path file;  ///< of the pattern
+  std::filesystem::path file;  ///< file of the pattern
   std::map<std::string, double> set;
-  std::string profile;  ///< "": the pattern's
+  std::string profile;  ///< actuator profile; "": that of the pattern
 };
 
 /// Throws as pattern_of_text() and make_task().
@@ -41,16 +41,17 @@ std::shared_ptr<const AuthorMotion> author_motion(const std::string& text, const
                                                   const Progress& progress = {});
 
 /// The members of the page's state that follow from the text alone: its phases, keyframes, tracks
-/// and disturbances, with their places.
+/// and disturbances, each with its place.
 OrderedJson author_structure(const Pattern& pattern, const OrderedJson& document);
 
-/// What the strip of the page shows of a motion or a run of the task: { lanes, dt }.
+/// The strip of the page for a motion or a run of the task: { lanes, dt }.
 OrderedJson author_strip(const Task& task, const StabilitySeries& stability);
 
-/// A slash and a key as they stand in a JSON pointer.
+/// The key with a slash before it, in the form that a JSON pointer has.
 std::string pointer_token(const std::string& key);
 
-/// The item of the pattern's list that holds a phase or keyframe: itself, or a block that repeats.
+/// The item of the pattern's list that contains a phase or keyframe: itself, or the block that
+/// repeats it.
 std::string outermost(const std::string& pointer);
 
 /// The handles of the picture: the soles, the ends of the arms, the point that the head looks at,
@@ -59,21 +60,21 @@ struct AuthorHandle {
   enum class Kind { foot, limb, gaze, trunk, cog };
   Kind kind = Kind::cog;
   std::string name, label;
-  int body = -1;                                    ///< -1: the COG
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< frame of the body [m]
-  Side side = Side::left;                           ///< of a foot
-  std::string link = {};                            ///< of a limb: its name in "hands"
+  int body = -1;                                    ///< index of the body; -1: the COG
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< point in the frame of the body [m]
+  Side side = Side::left;                           ///< the side of a foot
+  std::string link = {};                            ///< the name of a limb in "hands"
 };
 std::vector<AuthorHandle> handles_of(const RobotModel& robot);
 
 /// The target of a key for a hand, for another link, or for the gaze.
 struct AuthorTarget {
-  std::string pointer;         ///< of the key's value
-  std::string label;           ///< "left hand"
-  std::string handle;          ///< that follows it; empty: none
-  double time = 0, until = 0;  ///< of the key, and until when it leads at most [s]
-  Eigen::Vector3d place;       ///< at its time, world [m]
-  Eigen::Matrix3d axes;        ///< of the written place, world
+  std::string pointer;         ///< pointer of the key's value
+  std::string label;           ///< name for people, such as "left hand"
+  std::string handle;          ///< handle that follows the target; empty: none
+  double time = 0, until = 0;  ///< time of the key, and the time until which it leads at most [s]
+  Eigen::Vector3d place;       ///< place at its time, in the world [m]
+  Eigen::Matrix3d axes;        ///< axes in which the place is written, in the world
 };
 std::vector<AuthorTarget> targets_of(const AuthorMotion& motion);
 

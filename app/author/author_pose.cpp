@@ -27,13 +27,14 @@ using Eigen::Isometry3d;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-// Times that are written to the millisecond are the same below half of it [s].
+// Two times that are written to the millisecond are the same if they differ by less than half of it
+// [s].
 constexpr double kSameTime = 5e-4;
-// A drag by less moves nothing [m]. Chosen: the lengths that are written have tenths of a
+// A drag by less than this moves nothing [m]. Chosen: lengths are written in tenths of a
 // millimetre.
 constexpr double kStill = 5e-5;
-// If a point ends farther than this from the place to which it was dragged, a message is shown [m].
-// Chosen: a distance that is visible.
+// If a dragged point ends farther than this from the place to which it was dragged, a message is
+// shown [m]. Chosen: a distance that is visible.
 constexpr double kWorthSaying = 2e-3;
 // Period of the samples while something is dragged [s]. Chosen: differences of the posture are not
 // visible, and sampling takes a fifth of the time.
@@ -41,18 +42,19 @@ constexpr double kDragTick = 0.005;
 // Distance of a dragged ZMP from the edge of the support [m]. Chosen: twice the margin below which
 // the check warns, because the motion's own ZMP differs a little from its keys.
 constexpr double kInsideSole = 4e-3;
-// Rounds in which a dragged trunk comes to its place. Chosen: each takes half of the way or more.
+// Number of rounds in which a dragged trunk comes to its place. Chosen: each round covers half of
+// the remaining distance or more.
 constexpr int kTrunkRounds = 5;
-// Room that a dragged limb leaves beside the soft limits of its joints [rad]. Chosen: where a limb
-// turns back, the targets of its servos lead by up to 20 ms at 1 rad/s; in drags of both hands far
-// up and down on five robots no target passed a limit.
+// Distance that a dragged limb keeps from the soft limits of its joints [rad]. Chosen: where a limb
+// turns back, the targets of its servos lead by up to 20 ms at 1 rad/s; when both hands of five
+// robots were dragged far up and down, no target exceeded a limit.
 constexpr double kLimbRoom = 0.02;
 
-// As text of that many decimals is read; zero has no sign.
+// The value that is read from its text with this many decimals; zero has no sign.
 double rounded(double value, int decimals) { return std::stod(text::fixed(value, decimals)) + 0.0; }
 double metres(double value) { return rounded(value, 4); }
 
-// Edits of keyframes by time. What comes to one time goes into one keyframe.
+// Edits of keyframes by time. All values for one time go into one keyframe.
 class KeyEdits {
  public:
   explicit KeyEdits(const AuthorMotion& motion) : motion_(motion) {}
@@ -85,7 +87,7 @@ class KeyEdits {
       for (const auto& [name, value] : members.items()) frame[name] = value;
       const auto i = static_cast<size_t>(next - frames.begin());
       edits.push_back({PatternEdit::Kind::insert, room_before(i, t), frame.dump()});
-      // The next one counts its time from the new one.
+      // The next keyframe counts its time from the new one.
       if (i == frames.size()) continue;
       const std::string after = pointer_of_keyframe(motion_.task.pattern, i) + "/after";
       if (motion_.document.contains(OrderedJson::json_pointer(after)))
@@ -114,7 +116,7 @@ class KeyEdits {
     return outermost(next);
   }
 
-  // Into a value that is there, member by member; what is missing is added as a whole.
+  // Writes members into an existing value one by one; a missing value is added as a whole.
   void set_members(const OrderedJson& members, const std::string& place,
                    std::vector<PatternEdit>& edits) const {
     for (const auto& [name, value] : members.items()) {
@@ -146,8 +148,8 @@ double angle_in_unit(const AuthorMotion& motion, double angle) {
   return motion.task.pattern.degrees ? rounded(angle * 180 / M_PI, 2) : rounded(angle, 4);
 }
 
-// A track that has no keys of its own yet keeps its present value at the keyframes around, so that
-// the change stays between them.
+// A track that has no keys yet keeps its present value at the neighbouring keyframes, so that the
+// change stays between them.
 template <typename HasKey, typename Present>
 void hold_around(const AuthorMotion& motion, double time, const HasKey& has_key,
                  const Present& set_present) {
@@ -167,8 +169,8 @@ void hold_around(const AuthorMotion& motion, double time, const HasKey& has_key,
   if (!keyed_after && after) set_present(after->t);
 }
 
-// A joint's key stands in "joints", or where the keyframe has its posture as angles, there. Around
-// a joint's first key, its motion stays as it is.
+// A joint's key is in "joints", or in the posture if the keyframe has its posture as angles. Around
+// a joint's first key, its motion does not change.
 void set_joint(const AuthorMotion& motion, double time, int dof, double value, KeyEdits& keys) {
   const auto& frames = motion.task.pattern.keyframes;
   const Dof& joint = motion.task.robot.dofs()[static_cast<size_t>(dof)];
@@ -190,7 +192,8 @@ void set_joint(const AuthorMotion& motion, double time, int dof, double value, K
   set(time, value);
 }
 
-// A place that is typed or drawn has tenths of a millimetre.
+// Places that are typed or drawn have tenths of a millimetre, so a smaller height change counts as
+// level.
 bool is_level(const Vector3d& change) { return std::abs(change.z()) < 2 * kStill; }
 bool is_upright(const Vector3d& change) { return change.head<2>().norm() < 2 * kStill; }
 
@@ -229,8 +232,8 @@ Matrix3d with_yaw_of(const Matrix3d& now, const Matrix3d& wanted) {
       {-std::asin(std::clamp(up.y(), -1.0, 1.0)), std::atan2(up.x(), up.z()), yaw});
 }
 
-// Across the line from the body's origin to the point the trunk leans; along it the COG rises. A
-// level change is a lean alone, and an upright one a rise alone.
+// The trunk leans across the line from the body's origin to the dragged point; along this line the
+// COG rises. A level change only makes it lean, and an upright change only makes it rise.
 void drag_trunk(const AuthorMotion& motion, double time, const AuthorHandle& handle,
                 const Vector3d& change, KeyEdits& keys) {
   const auto attitude = [&](double t) {
@@ -252,12 +255,12 @@ void drag_trunk(const AuthorMotion& motion, double time, const AuthorHandle& han
   if (std::abs(along) > kStill) drag_height(motion, time, along, keys);
 }
 
-// The value of a number or expression of the text.
+// The value of a number or expression in the text.
 double written_value(const AuthorMotion& motion, const std::string& pointer) {
   return value_in_text(motion.document.dump(), pointer, motion.task.pattern.parameters);
 }
 
-// A number or expression of the text that becomes higher by `change`; 0 where it is missing.
+// Increases a number or expression of the text by `change`; a missing one counts as 0.
 void shift_value(const AuthorMotion& motion, const std::string& pointer, double change,
                  std::vector<PatternEdit>& edits) {
   if (std::abs(change) < kStill) return;
@@ -266,18 +269,19 @@ void shift_value(const AuthorMotion& motion, const std::string& pointer, double 
   edits.push_back({PatternEdit::Kind::set, pointer, OrderedJson(metres(now + change)).dump()});
 }
 
-// The values of a foothold as it is written: [x, y], [x, y, z], [x, y, z, yaw] or an object.
+// Changes the values of a foothold in the form in which it is written: [x, y], [x, y, z], [x, y, z,
+// yaw] or an object.
 void move_foothold(const AuthorMotion& motion, const std::string& pointer, const Vector3d& change,
                    std::vector<PatternEdit>& edits) {
   const OrderedJson& written = motion.document.at(OrderedJson::json_pointer(pointer));
   const std::string place = written.is_object() ? pointer + "/position" : pointer;
   const OrderedJson& position = motion.document.at(OrderedJson::json_pointer(place));
   for (int i = 0; i < 3; ++i)
-    if (static_cast<size_t>(i) < position.size())  // else a foothold without a height
+    if (static_cast<size_t>(i) < position.size())  // a foothold without a height gets none
       shift_value(motion, place + "/" + std::to_string(i), change[i], edits);
 }
 
-// Where a swing lands: a foothold, or a step as the other foot sees it.
+// Moves the place where a swing lands: a foothold, or a step relative to the other foot.
 void move_landing(const AuthorMotion& motion, size_t phase, const Vector3d& change,
                   std::vector<PatternEdit>& edits) {
   const std::string swing = pointer_of_phase(motion.task.pattern, phase) + "/swing";
@@ -322,14 +326,15 @@ void set_place(const AuthorMotion& motion, const std::string& pointer, const Vec
   }
 }
 
-// A target's place, in the frame in which it is written.
+// The place of a target, in the frame in which it is written.
 void set_target(const AuthorMotion& motion, const std::string& pointer, const Vector3d& place,
                 std::vector<PatternEdit>& edits) {
   const bool alone = motion.document.at(OrderedJson::json_pointer(pointer)).is_array();
   set_place(motion, alone ? pointer : pointer + "/position", place, edits);
 }
 
-// Where the foot stood before its first swing: in "start", both feet, so that only one moves.
+// Moves the place where the foot stood before its first swing. Both feet are written into "start",
+// so that only this foot moves.
 void drag_start(const AuthorMotion& motion, Side side, const Vector3d& change,
                 std::vector<PatternEdit>& edits) {
   const std::string pointer = std::string("/start/") + name_of(side);
@@ -347,7 +352,8 @@ void drag_start(const AuthorMotion& motion, Side side, const Vector3d& change,
                      foothold_value(motion, feet[static_cast<size_t>(other(side))]).dump()});
 }
 
-// The swing that brings a foot to where it is at a time: the last one that has begun; -1: none.
+// The swing that brings a foot to its place at a time: the last swing that has begun; -1 if there
+// is none.
 int swing_before(const Pattern& pattern, Side side, double time) {
   int found = -1;
   for (size_t i = 0; i < pattern.phases.size(); ++i)
@@ -357,13 +363,14 @@ int swing_before(const Pattern& pattern, Side side, double time) {
   return found;
 }
 
-// In the air a drag goes to where the foot lands, and up and down to the lift of its swing.
+// A drag of a foot in the air changes the place where it lands; its part up or down changes the
+// lift of the swing.
 void drag_swing(const AuthorMotion& motion, size_t phase, double time, const Vector3d& change,
                 std::vector<PatternEdit>& edits) {
   const Pattern& pattern = motion.task.pattern;
   const double begin = begin_of(pattern, phase), end = pattern.phases[phase].until;
   const std::string swing = pointer_of_phase(pattern, phase) + "/swing";
-  if (time > end - kSameTime) {  // it has landed
+  if (time > end - kSameTime) {  // the foot has landed
     move_landing(motion, phase, {change.x(), change.y(), 0}, edits);
     return;
   }
@@ -371,7 +378,8 @@ void drag_swing(const AuthorMotion& motion, size_t phase, double time, const Vec
   const Vector3d from = sample_near(motion.task.series, begin).feet[s].translation();
   const Vector3d to = sample_near(motion.task.series, end).feet[s].translation();
   const Vector3d now = sample_near(motion.task.series, time).feet[s].translation();
-  // How far the foot is on its way; one that has hardly left is taken to its landing place.
+  // The share of the way that the foot has covered. The landing place moves by the drag divided by
+  // this share, which counts as at least a quarter.
   const double way = (to - from).head<2>().norm();
   const double u = (time - begin) / (end - begin);
   const double done = way > kStill ? (now - from).head<2>().norm() / way : u;
@@ -385,8 +393,8 @@ void drag_swing(const AuthorMotion& motion, size_t phase, double time, const Vec
                    OrderedJson(metres(std::max(0.0, lift + more))).dump()});
 }
 
-// A foot without swings that is free: a key at this time, and where its freedom begins and ends the
-// place that it has there.
+// A free foot without swings gets a key at this time. At the beginning and the end of its freedom
+// it gets keys with the place that it has there.
 void drag_free_foot(const AuthorMotion& motion, Side side, double time, const Vector3d& change,
                     KeyEdits& keys, std::vector<PatternEdit>& edits) {
   const Pattern& pattern = motion.task.pattern;
@@ -405,7 +413,7 @@ void drag_free_foot(const AuthorMotion& motion, Side side, double time, const Ve
   for (const double edge : {begin_of(pattern, first), pattern.phases[last].until})
     if (std::abs(edge - time) > kSameTime && !has_key(edge))
       keys.set(edge, {"feet", foot}, foothold_value(motion, pose(edge)));
-  // A key that is there keeps its form and its expressions, if it has room for the height.
+  // An existing key keeps its form and its expressions, if it has room for the height.
   for (size_t i = 0; i < pattern.keyframes.size(); ++i) {
     if (std::abs(pattern.keyframes[i].t - time) > kSameTime || !pattern.keyframes[i].feet[s])
       continue;
@@ -434,7 +442,7 @@ void drag_foot(const AuthorMotion& motion, double time, Side side, const Vector3
     drag_free_foot(motion, side, time, change, keys, edits);
 }
 
-// ---- sampling again
+// ---- a new sampling of the motion
 
 struct Tried {
   CommandSeries series;
@@ -458,7 +466,7 @@ Vector3d place_of(const AuthorMotion& motion, const AuthorHandle& handle,
   return handle.body < 0 ? data.cog : Vector3d(data.pose(handle.body) * handle.point);
 }
 
-// The page's row at that time, of the few samples around it.
+// The page's row at that time, from the few samples around it.
 std::string row_of(const AuthorMotion& motion, const Tried& tried) {
   const CommandSeries& all = tried.series;
   const long at = std::lround(tried.time / all.dt),
@@ -478,7 +486,7 @@ std::string row_of(const AuthorMotion& motion, const Tried& tried) {
   return row;
 }
 
-// ---- what is dragged
+// ---- the dragged part
 
 const AuthorHandle handle_named(const AuthorMotion& motion, const std::string& name) {
   for (const AuthorHandle& handle : handles_of(motion.task.robot))
@@ -490,7 +498,7 @@ bool has_cog_key(const Keyframe& key, int axis) {
   return axis == 0 ? key.cog_x.has_value() : key.cog_y.has_value();
 }
 
-// The ZMP leads the COG along an axis unless the COG has keys there.
+// The ZMP leads the COG along an axis if the COG has no keys there.
 bool zmp_leads(const Pattern& pattern, int axis) {
   return std::none_of(pattern.keyframes.begin(), pattern.keyframes.end(),
                       [&](const Keyframe& key) { return has_cog_key(key, axis); });
@@ -564,7 +572,7 @@ class Drag {
   Vector3d missed(const Tried& tried) const {
     const CommandSample& sample = sample_near(tried.series, wish_.time);
     Vector3d off = wish_.to - place_of(motion_, handle_, sample);
-    if (handle_.kind == AuthorHandle::Kind::gaze) {  // anything on the line of sight is looked at
+    if (handle_.kind == AuthorHandle::Kind::gaze) {  // any point on the line of sight is looked at
       const Isometry3d head = body_pose(motion_, sample, handle_.body);
       const Vector3d& from =
           motion_.task.robot.bodies()[static_cast<size_t>(handle_.body)].inertia.com;
@@ -572,9 +580,9 @@ class Drag {
       const Vector3d seen = wish_.to - head * from;
       return seen - std::max(0.0, seen.dot(axis)) * axis;
     }
-    // A sole on the ground stays at its height, which is no miss.
+    // A sole on the ground stays at its height, so its height does not count as a deviation.
     if (handle_.kind == AuthorHandle::Kind::foot) off.z() = 0;
-    // A trunk that leans comes down, and one that rises stays over the feet.
+    // A leaning trunk comes down and a rising one stays over the feet, so this also does not count.
     if (handle_.kind == AuthorHandle::Kind::trunk && is_level(change_)) off.z() = 0;
     if (handle_.kind == AuthorHandle::Kind::trunk && is_upright(change_)) off.head<2>().setZero();
     return off;
@@ -590,7 +598,7 @@ class Drag {
            "move this point too.";
   }
 
-  // The arm alone moves; the balance then moves the base a little, so the arm follows it.
+  // Only the arm moves. The balance then moves the base a little, and the arm has to follow it.
   std::vector<PatternEdit> limb() {
     const RobotModel& robot = motion_.task.robot;
     const std::vector<int> dofs = limb_dofs(robot, handle_.body);
@@ -611,8 +619,8 @@ class Drag {
     return edits;
   }
 
-  // The target that leads this limb or the gaze: of the last keyframe with one, unless it sets
-  // free, or a later one has keys of the joints.
+  // The target that leads this limb or the gaze. It is that of the last keyframe with a target,
+  // unless this keyframe sets the limb free or a later one has keys of the joints.
   const LinkTarget* leading_target() const {
     const RobotModel& robot = motion_.task.robot;
     const Pattern& pattern = motion_.task.pattern;
@@ -639,8 +647,8 @@ class Drag {
     return found == key.hands.end() ? nullptr : &found->second;
   }
 
-  // A key of the target at this time, in the frame of the one that leads. The trunk moves a little
-  // with the arm, so that a place in its frame takes some rounds.
+  // A key of the target at this time, in the frame of the leading target. The trunk moves a little
+  // with the arm, so some rounds are needed for a place in the frame of the trunk.
   std::vector<PatternEdit> target(const LinkTarget& leads) {
     const bool in_trunk = leads.frame == LinkTarget::Frame::trunk;
     Vector3d to = wish_.to;
@@ -686,7 +694,8 @@ class Drag {
     return keys.edits();
   }
 
-  // The base moves back under a trunk that leans, so that the COG stays: the trunk leans farther.
+  // The base moves back under a leaning trunk, so that the COG keeps its place. So the trunk has to
+  // lean farther.
   std::vector<PatternEdit> trunk() {
     std::vector<PatternEdit> best;
     double least = std::numeric_limits<double>::infinity();
@@ -701,7 +710,7 @@ class Drag {
         change += off;
       } catch (const Error&) {
         if (best.empty()) throw;
-        break;  // farther is out of reach
+        break;  // a larger change is out of reach
       }
       best = keys.edits();
       if (least < kWorthSaying) break;
@@ -741,22 +750,23 @@ class Drag {
     return led_cog(keys, level);
   }
 
-  // The ZMP moves as far as it takes for the COG to come to its place.
+  // Moves the ZMP so far that the COG comes to its place.
   std::vector<PatternEdit> led_cog(const KeyEdits& height, const Vector3d& level) {
-    // Chosen: farther the ZMP would leave every support.
+    // Largest factor of the change of the ZMP. Chosen: with a larger one, the ZMP would leave every
+    // support.
     constexpr double kMost = 6;
     double factor = 1;
     for (int round = 0; round < 2; ++round) {
       const Tried tried = sampled(with_zmp(height, factor * level).edits());
       const Vector3d moved = sample_near(tried.series, wish_.time).cog - now_.cog;
       const double share = moved.head<2>().dot(level.head<2>()) / level.squaredNorm();
-      if (share < 0.02 * factor) break;  // a key here hardly moves it
+      if (share < 0.02 * factor) break;  // a key here hardly moves the COG
       factor = std::min(kMost, factor / share);
     }
     return with_zmp(height, factor * level).edits();
   }
 
-  // Inside the soles, where alone the ZMP can be.
+  // The keys with the changed ZMP, which is kept inside the soles, because it cannot be elsewhere.
   KeyEdits with_zmp(const KeyEdits& keys, const Vector3d& change) const {
     const SupportPlane plane = support_plane(motion_.task.robot, now_.support, now_.feet);
     Vector3d place = now_.zmp + change;
@@ -780,7 +790,7 @@ class Drag {
   std::string message_;
 };
 
-// The place of a key's target is moved, wherever the target is in the picture.
+// Moves the place of a key's target, wherever the target is shown in the picture.
 std::vector<PatternEdit> moved_target(const AuthorMotion& motion, const PoseWish& wish) {
   for (const AuthorTarget& target : targets_of(motion)) {
     if (target.pointer != wish.target || std::abs(target.time - wish.time) > kSameTime) continue;
@@ -814,8 +824,8 @@ PoseAnswer posed(const AuthorMotion& motion, const std::string& text, const Auth
                  const PoseWish& wish) {
   try {
     if (!wish.drag.empty()) {
-      // The picture has fewer samples than the motion. So the distance of the drag counts, not the
-      // place.
+      // The picture has fewer samples than the motion. So the distance of the drag is used, and not
+      // the place.
       PoseWish exact = wish;
       if (wish.from)
         exact.to += place_of(motion, handle_named(motion, wish.drag),
@@ -829,7 +839,7 @@ PoseAnswer posed(const AuthorMotion& motion, const std::string& text, const Auth
     return out;
   } catch (const Error& error) {
     if (error.code() != ErrorCode::bad_pattern) throw;
-    return {{}, {}, error.what()};  // out of reach, by how much
+    return {{}, {}, error.what()};  // out of reach; the message says by how much
   }
 }
 
@@ -860,8 +870,7 @@ OrderedJson written_keyframes(const Pattern& pattern) {
   return OrderedJson::parse(pattern_text(pattern), nullptr, true, true).at("keyframes");
 }
 
-// What has to be written for `to` in place of `from`, where the author's text says `from` in any
-// words.
+// The edits that turn `from` into `to`, in whatever form the author's text states `from`.
 void difference(const OrderedJson& from, const OrderedJson& to, const std::string& pointer,
                 const OrderedJson& written, std::vector<PatternEdit>& edits) {
   for (const auto& [name, value] : from.items())
@@ -895,7 +904,8 @@ std::vector<PatternEdit> mirrored_keyframe(const AuthorMotion& motion, const std
     OrderedJson from = written_keyframes(before).at(i), to = written_keyframes(after).at(i);
     for (OrderedJson* const frame : {&from, &to}) {
       frame->erase("t");
-      // Angles of joints are a posture without a name; the author may have called them joints.
+      // Angles of joints are a posture without a name; the author may have written them as
+      // "joints".
       if (!written.contains("joints") || !frame->contains("posture") ||
           !frame->at("posture").is_object())
         continue;

@@ -16,13 +16,13 @@ namespace {
 using httplib::Request;
 using httplib::Response;
 
-// Pages that listen at one time, and threads for them and for requests. Chosen: more than one
-// person opens; each listening page holds a thread.
+// Largest number of pages that listen at one time, and number of threads for them and for requests.
+// Chosen: more pages than one person opens; each listening page occupies a thread.
 constexpr int kListeners = 24, kThreads = 32;
-// How long a client may take to send the next bytes of its request [s].
+// Time in which a client has to send the next bytes of its request [s].
 constexpr time_t kRequestPatience = 2;
 
-// Takes as long whatever the words are.
+// Compares secrets in a time that does not depend on their content.
 bool equal_secrets(const std::string& a, const std::string& b) {
   if (a.size() != b.size()) return false;
   unsigned char difference = 0;
@@ -31,9 +31,8 @@ bool equal_secrets(const std::string& a, const std::string& b) {
   return difference == 0;
 }
 
-// Sends the bytes as they are. What set_content() takes would be compressed by Brotli at its
-// highest level where the browser accepts that, which takes longer than sending it within one
-// machine.
+// Sends the bytes as they are. set_content() would compress them by Brotli at its highest level if
+// the browser accepts that, and this takes longer than sending them within one machine.
 void send(Response& response, std::string bytes, const char* type) {
   if (bytes.empty()) return response.set_content(bytes, type);
   const auto held = std::make_shared<const std::string>(std::move(bytes));
@@ -69,8 +68,8 @@ class AuthorRequests::Router {
   Router(AuthorSession& session, std::string token, int port)
       : session_(session), token_(std::move(token)), port_(std::to_string(port)) {}
 
-  /// Whether the request is from a page of this server: it knows the secret, and the browser says
-  /// that it was not made by a page of another origin.
+  /// Whether the request comes from a page of this server: it knows the secret, and the browser
+  /// does not say that a page of another origin made it.
   bool allows(const Request& request) const {
     const std::string host = request.get_header_value("Host");
     if (host != kLoopbackAddress + (":" + port_) && host != "localhost:" + port_) return false;
@@ -162,7 +161,7 @@ class AuthorRequests::Router {
               *quiet = 0;
               words = "event: " + event->name + "\ndata: " + event->data + "\n\n";
             } else if (++*quiet % 10 == 0) {
-              words = ": nothing new\n\n";  // so that a page that has gone is noticed
+              words = ": nothing new\n\n";  // so that the server notices when a page has gone
             }
           }
           if (stopping_) return false;

@@ -1,6 +1,6 @@
 #pragma once
 // The requests of the live page: who may ask, how large a request may be, and what answers it. They
-// are apart from the socket, so that tests/fuzz can feed them without one.
+// do not depend on the socket, so that tests/fuzz can test them without one.
 
 #include <memory>
 #include <string>
@@ -17,15 +17,16 @@ inline constexpr const char* kLoopbackAddress = "127.0.0.1";
 
 class AuthorRequests {
  public:
-  /// Requests for the address http://127.0.0.1:port/token/. `session` must outlive the object.
+  /// Answers requests for the address http://127.0.0.1:port/token/. `session` must outlive the
+  /// object.
   AuthorRequests(AuthorSession& session, const std::string& token, int port);
   ~AuthorRequests();
   AuthorRequests(const AuthorRequests&) = delete;
   AuthorRequests& operator=(const AuthorRequests&) = delete;
 
-  /// Limits, handlers and headers of the server, which must not outlive the object.
+  /// Sets the limits, handlers and headers of the server. The server must not outlive the object.
   void set_up(httplib::Server& server);
-  /// Ends the pages that listen.
+  /// Ends the requests of the pages that listen.
   void stop();
 
  private:

@@ -17,7 +17,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// 128 random bits that nobody guesses.
+// A secret of 128 random bits, which nobody can guess.
 std::string secret() {
   std::random_device random;
   const char* const digits = "0123456789abcdef";
@@ -32,7 +32,7 @@ void serve_author(AuthorSession& session, const ServerOptions& options,
                   const std::function<void(const std::string&)>& ready,
                   const std::function<bool()>& stopped) {
   auto server = std::make_unique<httplib::Server>();
-  // The port is this server's alone; the library would share it with whoever asks.
+  // Only this server may use the port; by default, the library would share it with other processes.
   server->set_socket_options([](socket_t socket) {
     const int yes = 1;
     ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
@@ -53,7 +53,7 @@ void serve_author(AuthorSession& session, const ServerOptions& options,
     server->listen_after_bind();
     ended = true;
   });
-  // stop() is heard by a server that runs.
+  // A server only reacts to stop() when it is running.
   while (!server->is_running() && !ended) std::this_thread::sleep_for(1ms);
   ready(std::string("http://") + kLoopbackAddress + ":" + std::to_string(port) + "/" + token + "/");
   while (!stopped() && !ended) std::this_thread::sleep_for(50ms);

@@ -1,5 +1,6 @@
 #pragma once
-// The server of the live page: on the loopback address alone, for requests that know its secret.
+// The server of the live page. It only listens on the loopback address, and only answers requests
+// that contain its secret.
 
 #include <functional>
 #include <string>
@@ -9,12 +10,12 @@
 namespace ayumi::app {
 
 struct ServerOptions {
-  int port = 0;  ///< 0: any that is free
+  int port = 0;  ///< number of the port; 0: any free one
 };
 
-/// Serves until `stopped` says so; a client that holds a connection without a word keeps the
-/// function for two seconds more. `ready` receives the address with the secret. Throws
-/// Error(bad_file) where the port is taken.
+/// Serves until `stopped` returns true. If a client keeps a connection without sending anything,
+/// the function takes two seconds more. `ready` receives the address with the secret. Throws
+/// Error(bad_file) if the port is taken.
 void serve_author(AuthorSession& session, const ServerOptions& options,
                   const std::function<void(const std::string& address)>& ready,
                   const std::function<bool()>& stopped);

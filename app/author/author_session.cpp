@@ -25,31 +25,35 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
-// Between looks at the files. Chosen: below what a person notices, and a thousandth of a core.
+// Time between two checks of the files. Chosen: less than a person notices, with a load of a
+// thousandth of a core.
 constexpr auto kLook = 20ms;
-// Clocks of file systems go on in steps of up to 10 ms (jiffies of 100 Hz).
+// Clocks of file systems advance in steps of up to 10 ms (jiffies of 100 Hz).
 constexpr auto kClockStep = 30ms;
-// A file that is away for longer is gone. Chosen: editors that replace a file do so within 0.1 s.
+// A file that is missing for longer counts as removed. Chosen: editors that replace a file do so
+// within 0.1 s.
 constexpr auto kGone = 500ms;
-// Between two news of one job. Chosen: a bar that moves ten times a second looks smooth.
+// Time between two messages about the progress of a job. Chosen: a bar that moves ten times a
+// second looks smooth.
 constexpr auto kNews = 100ms;
-// Events that are kept for pages that are slow. A page that misses some asks for the state anew.
+// Number of events that are kept for slow pages. A page that misses some asks for the whole state.
 constexpr size_t kKeptEvents = 256;
 // Largest number of triangles of the robot in the page, as in reports.
 constexpr size_t kTriangles = 60'000;
 
 AuthorAnswer refused(const std::string& message) { return {422, {{"message", message}}}; }
 
-// A message without the name of the pattern's file in front: the page shows one file only.
+// A message without the name of the pattern's file at its beginning, because the page only shows
+// one file.
 std::string without_file(const std::string& message, const fs::path& file) {
   const std::string name = file.string() + ":";
   if (!message.starts_with(name)) return message;
-  // "FILE: words" or "FILE:12:2: words"; the page shows the line itself.
+  // The message is "FILE: words" or "FILE:12:2: words"; the page itself shows the line.
   const size_t words = message.find_first_not_of("0123456789:", name.size());
   return words == std::string::npos || message[words] != ' ' ? message : message.substr(words + 1);
 }
 
-// Calls `work`; what it throws is an answer in words.
+// Calls `work`. If it throws, the answer contains the message.
 template <typename Work>
 AuthorAnswer answered(const fs::path& file, const Work& work) {
   try {
@@ -73,11 +77,12 @@ FileStamp stamp_of(const fs::path& file) {
 struct AuthorSession::View {
   std::uint64_t version = 0;
   std::string text, hash;
-  std::optional<OrderedJson> error;            // why the text has no motion
-  std::optional<OrderedJson> structure;        // of a pattern that reads and has no motion
-  std::shared_ptr<const AuthorMotion> motion;  // of the text, or the last one before
-  std::shared_ptr<const AuthorMotion> ghost;   // the last consistent one, if it is another
-  std::optional<AuthorResult> result;          // of the last job on this text
+  std::optional<OrderedJson> error;  // reason why the text has no motion
+  // Structure of a pattern that can be read but has no motion.
+  std::optional<OrderedJson> structure;
+  std::shared_ptr<const AuthorMotion> motion;  // motion of the text, or the last motion before
+  std::shared_ptr<const AuthorMotion> ghost;   // the last consistent motion, if it is another one
+  std::optional<AuthorResult> result;          // result of the last job on this text
   int undo_steps = 0, redo_steps = 0;
 };
 
@@ -95,7 +100,7 @@ AuthorSession::~AuthorSession() {
 
 void AuthorSession::stop() {
   {
-    const std::lock_guard lock(state_);  // whoever waits has seen it, or hears of it
+    const std::lock_guard lock(state_);  // a waiting thread has seen the change or will be notified
     stopping_ = true;
   }
   changed_.notify_all();
@@ -141,13 +146,13 @@ std::optional<AuthorEvent> AuthorSession::wait_for_event(std::uint64_t number) {
   return events_[number < first_event_ ? 0 : static_cast<size_t>(number - first_event_)];
 }
 
-// ---- following the files
+// ---- following of the files
 
 AuthorSession::Stamps AuthorSession::stamps() const {
   std::vector<fs::path> files = {setting_.file};
   try {
     files = pattern_files(setting_.file);
-  } catch (const Error&) {  // what was named before stays watched
+  } catch (const Error&) {  // the files that were named before are still watched
     for (const auto& [file, stamp] : seen_) files.push_back(file);
   }
   for (const fs::path& file : robot_files()) files.push_back(file);
@@ -168,23 +173,25 @@ void AuthorSession::follow() {
       return stamp_of(seen.first) == seen.second;
     });
     try {
-      // Two saves of one size in one step of the clock of the file system have the same stamp.
+      // Two saves with the same size within one step of the file system's clock have the same
+      // stamp.
       const bool look_again = read_at_ && std::chrono::steady_clock::now() - *read_at_ > kClockStep;
       if (look_again) read_at_.reset();
       if (!same || (look_again && read_file(setting_.file) != view()->text)) refresh();
-    } catch (const Error&) {  // the file is away for a moment; the next look finds it
+    } catch (const Error&) {  // the file is missing for a moment; the next check finds it
     }
   }
 }
 
-// Whether the file is away. A file that stays away is an error of the page, until it comes back.
+// Whether the file is missing. A file that stays missing is an error of the page until it comes
+// back.
 bool AuthorSession::is_gone() {
   const auto now = std::chrono::steady_clock::now();
   if (stamp_of(setting_.file).size >= 0) {
     gone_since_.reset();
     return false;
   }
-  seen_[setting_.file] = {};  // whatever comes back is read
+  seen_[setting_.file] = {};  // any file that comes back is read
   if (!gone_since_) gone_since_ = now;
   const Shown before = view();
   const std::string words = "the file is gone. The page goes on when it is there again";
@@ -225,8 +232,8 @@ bool AuthorSession::robot_changed() const {
   });
 }
 
-// Called with `reading_` held, but for the first time. The times come before the bytes, so that a
-// save in between is seen at the next look.
+// Called with `reading_` locked, except for the first time. The times are read before the bytes, so
+// that a save in between is noticed at the next check.
 void AuthorSession::refresh() {
   const bool new_robot = robot_ && robot_changed();
   seen_ = stamps();
@@ -268,7 +275,7 @@ void AuthorSession::refresh() {
   publish(std::move(next));
 }
 
-// ---- what the page receives
+// ---- data for the page
 
 std::string AuthorSession::state() {
   const Shown shown = view();
@@ -281,12 +288,12 @@ std::string AuthorSession::state() {
                       {"undo", shown->undo_steps},
                       {"redo", shown->redo_steps}};
   OrderedJson features = {"undo"};
-  // Of a text that cannot be read, the page knows the places of the old motion only. A change would
-  // reach another keyframe than the one that is shown.
+  // If a text cannot be read, the page only knows the places of the old motion, and a change would
+  // affect another keyframe than the one that is shown.
   if (!shown->error || shown->structure) features.push_back("edit");
   if (shown->motion) {
     json.update(shown->motion->parts);
-    // Of a motion that is older than the text, nothing can be changed but the text.
+    // If the motion is older than the text, only the text can be changed.
     if (!shown->error) {
       for (const char* const each : {"pose.joints", "pose.drag", "posture", "mirror"})
         features.push_back(each);
@@ -339,7 +346,7 @@ AuthorAnswer AuthorSession::conflict(const View& shown, const std::string& mine)
   return {409, {{"theirs", shown.text}, {"theirs_hash", shown.hash}, {"mine", mine}}};
 }
 
-// With `reading_` held: `seen` is the text that the page has seen.
+// Called with `reading_` locked. `seen` is the text that the page has seen.
 AuthorAnswer AuthorSession::write(const std::string& seen, const std::string& text) {
   if (!replace_text(setting_.file, seen, text)) {
     refresh();
@@ -351,14 +358,15 @@ AuthorAnswer AuthorSession::write(const std::string& seen, const std::string& te
 
 namespace {
 
-// Throws what is wrong with a text that cannot be read as a pattern. What only the robot cannot do
-// is no such error: it is shown at its line.
+// Throws the error of a text that cannot be read as a pattern. A motion that only the robot cannot
+// do is not such an error: it is shown at its line.
 void require_readable(const std::string& text, const AuthorSetting& setting) {
   const Pattern pattern = pattern_of_text(text, setting.file, setting.set);
   if (has_viip_phases(pattern)) without_viip_phases(pattern);
 }
 
-// Refuses the change that makes a pattern unreadable; one that was unreadable before may stay so.
+// Refuses a change that makes a pattern unreadable. A pattern that was unreadable before may stay
+// so.
 void refuse_unreadable(const std::string& before, const std::string& after,
                        const AuthorSetting& setting) {
   try {
@@ -434,7 +442,7 @@ AuthorAnswer AuthorSession::step(const OrderedJson& request, int by) {
 
 namespace {
 
-// As the page sends them back.
+// The edits in the form in which the page sends them back.
 OrderedJson edits_json(const std::vector<PatternEdit>& edits) {
   OrderedJson list = OrderedJson::array();
   for (const PatternEdit& edit : edits) {
@@ -561,11 +569,11 @@ void AuthorSession::work(std::uint64_t id, std::string kind, OrderedJson options
   } catch (const std::exception& error) {
     news["error"] = without_file(error.what(), setting_.file);
   }
-  // From here on another job may start: whoever sees the result below may ask for one at once.
-  // start_job() joins this thread first.
+  // From here on, another job may start, because a page that sees the result below may start one at
+  // once. start_job() joins this thread first.
   job_runs_ = false;
   if (result) {
-    // A result of a text that is no longer there would be shown beside another motion.
+    // If the text has changed, the result would be shown beside another motion, so it is dropped.
     const std::lock_guard lock(reading_);
     const Shown now = view();
     if (now->hash == shown->hash && !now->error) {

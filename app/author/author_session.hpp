@@ -1,7 +1,8 @@
 #pragma once
-// The pattern while it is authored: it follows the file, keeps the last motion that could be read
-// and the last consistent one, writes edits into the author's text, and runs jobs. All functions
-// may be called by several threads at once. Answers are JSON as docs/author.md describes them.
+// The pattern while it is being authored. The session follows the file, keeps the last motion that
+// could be read and the last consistent one, writes edits into the author's text, and runs jobs.
+// All functions may be called by several threads at once. Answers are JSON as docs/author.md
+// describes them.
 
 #include <atomic>
 #include <chrono>
@@ -27,11 +28,11 @@ struct AuthorAnswer {
 };
 
 struct AuthorEvent {
-  std::string name;  ///< "state", "job"
-  std::string data;  ///< JSON
+  std::string name;  ///< name, such as "state" or "job"
+  std::string data;  ///< data as JSON
 };
 
-/// Properties of a file that change when it is written: times [s, ns], size and number.
+/// Properties of a file that change when it is written: times [s, ns], size and number of the file.
 struct FileStamp {
   long seconds = 0, nanoseconds = 0, size = -1;
   unsigned long number = 0;
@@ -40,20 +41,20 @@ struct FileStamp {
 
 class AuthorSession {
  public:
-  /// Throws as read_file(); a pattern that cannot be read is shown with its error, but its robot
-  /// must be loaded once. `context` must outlive the session.
+  /// Throws as read_file(). A pattern that cannot be read is shown with its error, but its robot
+  /// must have been loaded once. `context` must outlive the session.
   AuthorSession(const Context& context, AuthorSetting setting);
   /// Stops, and waits for the job and the thread that follows the file.
   ~AuthorSession();
   AuthorSession(const AuthorSession&) = delete;
   AuthorSession& operator=(const AuthorSession&) = delete;
 
-  /// The job ends and the file is no longer followed, soon after.
+  /// Ends the job and the following of the file soon after the call.
   void stop();
 
-  /// What the page shows, as JSON.
+  /// The state that the page shows, as JSON.
   std::string state();
-  /// A table of "plan", "ghost", "repair", "open_loop" or "closed_loop".
+  /// The table "plan", "ghost", "repair", "open_loop" or "closed_loop".
   std::optional<std::string> series(const std::string& which);
   std::string model();
   std::string scenery();
@@ -67,9 +68,9 @@ class AuthorSession {
   AuthorAnswer start_job(const OrderedJson& request);
   AuthorAnswer cancel_job(const std::string& id);
 
-  /// Number of the next event.
+  /// The number of the next event.
   std::uint64_t next_event();
-  /// The event of this number, when it comes within a fifth of a second.
+  /// The event with this number, if it comes within a fifth of a second.
   std::optional<AuthorEvent> wait_for_event(std::uint64_t number);
 
  private:
@@ -95,14 +96,15 @@ class AuthorSession {
   const Context& context_;
   AuthorSetting setting_;
 
-  std::mutex reading_;  ///< held while the file is read or written
+  std::mutex reading_;  ///< locked while the file is read or written
   std::optional<NamedRobot> robot_;
   Stamps seen_;
-  std::optional<std::chrono::steady_clock::time_point> read_at_;  ///< until a second look
+  /// Set until the file is checked a second time.
+  std::optional<std::chrono::steady_clock::time_point> read_at_;
   std::optional<std::chrono::steady_clock::time_point> gone_since_;
   TextHistory history_;
 
-  std::mutex state_;  ///< of all below
+  std::mutex state_;  ///< protects all members down to `first_event_`
   std::condition_variable changed_;
   Shown shown_;
   std::string model_;
@@ -111,7 +113,7 @@ class AuthorSession {
 
   std::atomic<bool> stopping_ = false;
 
-  std::mutex jobs_;  ///< of the job
+  std::mutex jobs_;  ///< protects the members of the job
   std::thread worker_;
   std::uint64_t job_ = 0;
   std::atomic<bool> job_runs_ = false, job_stops_ = false;

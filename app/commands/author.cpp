@@ -21,7 +21,7 @@ struct AuthorCommand {
   bool open = false;
 };
 
-// Nothing that the browser prints or returns matters here.
+// The output and the exit code of the browser do not matter here.
 void open_in_browser(const std::string& address) {
   const pid_t child = ::fork();
   if (child == 0) {
@@ -39,7 +39,7 @@ void author(Context& context, const AuthorCommand& options) {
          "&& cmake --build build/release)");
   if (options.pattern == "-")
     fail(ErrorCode::usage, "author: standard input cannot be edited; name a file");
-  // What a link leads to is edited, and the link stays.
+  // If the file is a link, its target is edited, and the link stays.
   std::error_code missing;
   std::filesystem::path file = std::filesystem::canonical(options.pattern, missing);
   if (missing && !std::filesystem::exists(options.pattern))

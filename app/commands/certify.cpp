@@ -1,5 +1,5 @@
-// Robustness under declared uncertainty: a sequential test with exact bounds, what matters, the
-// worst cases, a paired comparison, and rare failures.
+// Robustness under a declared uncertainty: a sequential test with exact bounds, the influence of
+// each quantity, the worst cases, a paired comparison, and rare failures.
 
 #include "ayumi/study/certify.hpp"
 
@@ -31,9 +31,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Cases that are listed as the worst. Definition.
+/// Number of cases that are listed as the worst. Definition.
 constexpr size_t kWorst = 10;
-/// Values whose influence is printed; the JSON and the picture have all. Chosen: one screen.
+/// Number of values whose influence is printed; the JSON and the picture have all of them. Chosen:
+/// one screen.
 constexpr size_t kShownInfluences = 8;
 
 struct CertifyCommand {
@@ -46,7 +47,7 @@ struct CertifyCommand {
   SubsetOptions subset;
 };
 
-/// What decides the result of a case.
+/// Everything that determines the result of a case.
 Json study_json(const Context& context, const Task& input, const Study& study,
                 const SimulateOptions& simulate) {
   Json gains = Json::object();
@@ -76,10 +77,10 @@ std::string counts_text(const Certificate& c) {
   return text;
 }
 
-/// "2.3 deg", in the unit of the pattern's angles.
+/// An angle in words, such as "2.3 deg", in the unit of the pattern's angles.
 std::string angle_words(double angle, bool degrees, int digits) {
   const ShownUnit unit = shown_unit("rad", degrees);
-  // In rad, two digits more say as much.
+  // In rad, the same accuracy needs two more digits.
   return text::fixed(angle * unit.scale, unit.scale == 1 ? digits + 2 : digits) + " " + unit.name;
 }
 
@@ -156,12 +157,12 @@ void print_worst(const Context& context, bool degrees, const KnownResults& resul
   }
 }
 
-/// Says where the numbers of the uncertainty come from; the same as JSON.
+/// Prints the sources of the numbers of the uncertainty, and returns them as JSON.
 Json print_sources(const Context& context, const Study& study) {
   Json all = Json::array();
   std::vector<std::string> assumed;
   const auto add = [&](const UncertainQuantity& q) {
-    if (q.source.empty()) return;  // a number that is not drawn
+    if (q.source.empty()) return;  // the number is not drawn
     all.push_back({{"name", q.name}, {"source", q.source}, {"assumed", is_assumed(q.source)}});
     if (is_assumed(q.source)) assumed.push_back(q.name);
   };
@@ -179,7 +180,7 @@ Json print_sources(const Context& context, const Study& study) {
   return {{"file", study.file}, {"distributions", all}};
 }
 
-/// The cases of the merged files. Every case that the verdict needs must be there.
+/// The cases of the merged files. Every case that the verdict needs must be present.
 KnownResults merged(const CertifyCommand& options, const Json& study) {
   KnownResults results;
   std::vector<std::string> shards;
@@ -201,7 +202,7 @@ KnownResults merged(const CertifyCommand& options, const Json& study) {
   return results;
 }
 
-/// `input`, `law`: the motion that is certified, and the name of its controller.
+/// `input` and `law` are the certified motion and the name of its controller.
 Json compare_with(Context& context, const CertifyCommand& options, const Study& study,
                   const Task& input, const UncertainTask& first, const std::string& law,
                   const KnownResults& known) {
@@ -323,7 +324,7 @@ void certify_pattern(Context& context, CertifyCommand& options) {
   std::optional<FileLock> lock;
   if (!options.out.empty()) lock.emplace(options.out);
   KnownResults results, known;
-  // Cases that an earlier command has run stay in the file, also where this one needs fewer.
+  // Cases that an earlier command has run stay in the file, even if this command needs fewer.
   const auto save = [&](KnownResults all) {
     if (options.out.empty()) return;
     all.resize(std::max(all.size(), known.size()));
@@ -367,7 +368,8 @@ void certify_pattern(Context& context, CertifyCommand& options) {
     json["comparison"] = compare_with(context, options, study, input, task, law, results);
   if (options.rare) json["rare_failures"] = rare_failures(context, options, task);
   if (!options.map.empty()) {
-    // Of all runs, as the picture: with --all there are more than the test needs.
+    // The table has all known runs, as the picture has: with --all there are more than the test
+    // needs.
     const auto is_known = [](const auto& r) { return r.has_value(); };
     const auto has_failed = [](const auto& r) { return r && r->failed(); };
     const std::string runs =

@@ -64,8 +64,8 @@ bool is_of_table(const Finding& f) {
 }
 
 // A table for the robot is judged by the robot's own actuators. If the pattern assumes other ones,
-// this is what the motion needs beyond the robot's own actuators; if they are strong enough, it is
-// the reason for which `export` refuses the table nevertheless.
+// this says what the motion needs beyond the robot's own actuators. If they are strong enough, it
+// says why `export` refuses the table nevertheless.
 std::string own_need(const Task& input, CheckOptions judged) {
   const std::string own = input.robot.limits().name;
   if (judged.profile.empty() || judged.profile == own) return "";
@@ -77,7 +77,7 @@ std::string own_need(const Task& input, CheckOptions judged) {
   return found == report.findings.end() ? "" : found->hint;
 }
 
-// Why `export` refuses the pattern, the findings apart.
+// The reasons for which `export` refuses the pattern, without the findings.
 std::vector<AnswerPart> refusal_parts(const Task& input, const Judgement& judgement) {
   std::vector<std::string> reasons = export_refusals(input, judgement);
   std::erase(reasons, judgement.reason());
@@ -86,12 +86,12 @@ std::vector<AnswerPart> refusal_parts(const Task& input, const Judgement& judgem
 
 // ---- the joints of a motion against their limits
 
-// Panels of each quantity. Chosen: nine panels fill a page.
+// Number of panels for each quantity. Chosen: nine panels fill a page.
 constexpr size_t kPanels = 3;
 
 using Share = std::function<double(const SimulationSample&, int dof)>;
 
-// Joints with an error of this kind, then those that use most of their limit.
+// The joints with an error of this kind, then the joints that use most of their limit.
 std::vector<int> worst_joints(const Task& task, const ConsistencyReport& report, FindingKind kind,
                               const SimulationLog& log, const Share& share) {
   std::vector<int> chosen;
@@ -114,7 +114,8 @@ std::vector<int> worst_joints(const Task& task, const ConsistencyReport& report,
   return chosen;
 }
 
-// How far from the middle of its range a joint is; a joint without limits uses none.
+// The distance of a joint from the middle of its range, as a share of half the range; 0 for a joint
+// without limits.
 double position_share(const RobotModel& model, const SimulationSample& s, int dof) {
   const Dof& d = model.dofs()[static_cast<size_t>(dof)];
   if (!d.limited) return 0;
@@ -151,7 +152,7 @@ std::vector<std::string> plot_joints_against_limits(const Task& task,
   return loci_series(options);
 }
 
-// ---- what is printed
+// ---- the printed answer
 
 // A pattern that cannot be sampled: the changes that would help, and the first error.
 [[noreturn]] void explain(const Context& context, const Error& error, const std::string& file,
@@ -173,7 +174,7 @@ std::vector<std::string> plot_joints_against_limits(const Task& task,
       std::erase_if(mistakes, [](const Mistake& mistake) { return !mistake.explains_all; });
     throw_with_message(first, with_mistakes(first.what(), pattern, mistakes));
   }
-  throw error;  // of what no sample shows
+  throw error;  // an error that no sample shows
 }
 
 Task load_or_explain(const Context& context, const std::string& file, const CheckCommand& options) {
@@ -193,7 +194,7 @@ struct Checked {
   int errors = 0;
 };
 
-// `rows_above`: rows of the screen that other lines take above the answer.
+// `rows_above` is the number of rows of the screen above the answer that other lines take.
 Checked checked_one(const Context& context, const CheckCommand& options, const std::string& file,
                     size_t rows_above = 0) {
   const auto begin = std::chrono::steady_clock::now();
@@ -262,14 +263,14 @@ std::string time_of_day() {
   return words;
 }
 
-// "  3 errors, now 1".
+// The change of the number of errors, such as " 3 errors, now 1".
 std::string change_words(std::optional<int> before, int now) {
   if (!before) return "  " + text::counted(now, "error");
   if (*before == now) return "  " + text::counted(now, "error") + ", as before";
   return "  " + text::counted(*before, "error") + ", now " + std::to_string(now);
 }
 
-// When each of the files behind a pattern was last written; a missing one counts too.
+// The time at which each of the files of a pattern was last written; a missing file also counts.
 using Stamps = std::map<fs::path, fs::file_time_type>;
 
 Stamps stamps_of(const std::vector<fs::path>& files) {
@@ -281,7 +282,7 @@ Stamps stamps_of(const std::vector<fs::path>& files) {
   return stamps;
 }
 
-// What the pattern names now, and what it named before it became unreadable.
+// The files that the pattern names now, and the files that it named before it became unreadable.
 std::vector<fs::path> watched_files(const std::string& file, const Stamps& before) {
   try {
     return pattern_files(file);
@@ -293,8 +294,7 @@ std::vector<fs::path> watched_files(const std::string& file, const Stamps& befor
 }
 
 // A file that is being written may be incomplete: its error is printed, and the next change is
-// awaited.
-// `errors` is the number of the last check, or nothing.
+// awaited. `errors` is the number of errors of the last check, or nothing.
 void check_once(Context& context, const CheckCommand& options, const std::string& file,
                 std::optional<int>& errors) {
   const std::string head = time_of_day();
@@ -319,12 +319,12 @@ void wait_or_stop() {
   std::this_thread::sleep_for(std::chrono::milliseconds(100));
 }
 
-// Editors that replace a file take it away for a moment.
+// An editor that replaces a file removes it for a moment.
 void await_return(const std::string& file) {
   for (int i = 0; i < 5 && !fs::exists(file); ++i) wait_or_stop();
 }
 
-// Until Ctrl-C.
+// Checks again at every change, until Ctrl-C.
 void watch(Context& context, const CheckCommand& options) {
   if (options.patterns.size() != 1)
     fail(ErrorCode::usage, "check --watch: name exactly one PATTERN");

@@ -1,4 +1,4 @@
-// A simulated run beside recordings of the robot.
+// Compares a simulated run with recordings of the robot.
 
 #include "ayumi/identify/compare.hpp"
 
@@ -39,7 +39,7 @@ struct Recordings {
   std::string names;
 };
 
-// Sensors of several files.
+// Adds the sensors of another file.
 void add_sensors(const SensorTable& more, SensorTable& all) {
   all.dt = more.dt;
   if (more.foot_load.size() > 0) all.foot_load = more.foot_load;
@@ -73,7 +73,7 @@ std::string curve_words(const ComparedCurve& curve, double unit, const std::stri
   std::string words = "  " + curve.name + ": " + text::brief(curve.mean / unit, 3) + name +
                       " on average, at most " + text::brief(curve.largest / unit, 3) + name +
                       " at " + text::fixed(curve.largest_at, 3) + " s";
-  if (std::abs(curve.lag) >= 0.00005)  // what is printed as 0.0 ms is no lag
+  if (std::abs(curve.lag) >= 0.00005)  // a lag that would be printed as 0.0 ms is left out
     words += ", the recording is " + text::fixed(1000 * std::abs(curve.lag), 1) +
              (curve.lag > 0 ? " ms behind" : " ms ahead");
   if (curve.unit != "rad" && curve.correlation != 0)
@@ -174,7 +174,7 @@ void write_comparison_report(const Context& context, const CompareCommand& optio
   const RunFolder run = read_run(options.run);
   ReportInput input = report_input(run, options.run);
   input.comparison = &found;
-  // The recording is a ghost beside the run that it was compared with.
+  // The page shows the recording as a ghost beside the run with which it was compared.
   SimulationLog measured;
   if (recordings.angles) {
     measured = measured_log(log, model, *recordings.angles, found.shift);

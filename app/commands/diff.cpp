@@ -1,4 +1,4 @@
-// What differs between two patterns: joints, COG, ZMP, f_z, contacts, verdicts.
+// The differences between two patterns: joints, COG, ZMP, f_z, contacts, verdicts.
 
 #include <nlohmann/json.hpp>
 
@@ -24,7 +24,7 @@ struct DiffCommand {
   PatternOptions input;
 };
 
-// First time at which the two have other feet on the ground; negative: never.
+// The first time at which the two motions have different feet on the ground; negative: never.
 double contacts_differ_at(const CommandSeries& a, const CommandSeries& b) {
   const size_t count = std::min(a.samples.size(), b.samples.size());
   for (size_t k = 0; k < count; ++k)
@@ -44,7 +44,7 @@ std::string side_words(const std::string& file, const Task& input,
   return file + ": " + verdict_of(report) + ", " + text::fixed(input.series.duration(), 2) + " s\n";
 }
 
-// Weighted as in a repair of A.
+// The change, weighted as in a repair of A.
 WeightedChange weighted(const DiffCommand& options, const Task& a, const Task& b,
                         const ConsistencyReport& check_a) {
   RepairOptions repair = preferred_options(a.pattern);

@@ -1,5 +1,5 @@
-// Pattern surgery: bake, mirror, retime, concat, blend, ramp, loop, alternate, key. The result is
-// sampled and checked before it is written.
+// Edits of whole patterns: bake, mirror, retime, concat, blend, ramp, loop, alternate, key. The
+// result is sampled and checked before it is written.
 
 #include "ayumi/author/edit/edit.hpp"
 
@@ -29,21 +29,21 @@ using Json = nlohmann::ordered_json;
 
 struct EditCommand {
   std::string pattern, out;
-  std::vector<std::string> patterns;  // of concat and blend
+  std::vector<std::string> patterns;  // for concat and blend
   double over = 0;                    // [s]
   Ramps ramps;
   std::vector<std::string> tolerances;
   PatternOptions input;
   double scale = 0;
   bool to_limits = false;
-  bool local = false;  // of retime: no single factor
+  bool local = false;  // for retime: there is no single factor
   bool keep_pauses = false;
-  double margin = -1;     // of retime [m]; below 0: none was given
-  bool as_table = false;  // of concat, blend and loop
-  int times = 1;          // of loop and alternate
-  bool cycle = false;     // of loop: two steps cut from a walk
-  bool alone = false;     // of loop: without the walk's begin and end
-  bool open_end = false;  // of alternate
+  double margin = -1;     // for retime [m]; below 0: none was given
+  bool as_table = false;  // for concat, blend and loop
+  int times = 1;          // for loop and alternate
+  bool cycle = false;     // for loop: two steps that are cut from a walk
+  bool alone = false;     // for loop: without the beginning and end of the walk
+  bool open_end = false;  // for alternate
   KeyEdit key;
   double key_to = -1, key_by = 0;  // [s]
 };
@@ -67,8 +67,8 @@ ForceRange force_range(const CommandSeries& series) {
 struct Result {
   CommandSeries series;
   ConsistencyReport report;
-  std::vector<AnswerPart> check;  ///< the report for people
-  TableCaution caution;           ///< of the tables that went into it
+  std::vector<AnswerPart> check;  ///< the report of the check for people
+  TableCaution caution;           ///< caution of the tables from which the result was made
 };
 
 Result check_edited(const Context& context, const EditCommand& options, const Task& input,
@@ -166,7 +166,7 @@ FastestPace limits_of(const Context& context, const EditCommand& options, const 
   return pace;
 }
 
-// What limits a pace, for people: "support 61 %, speed 20 %".
+// The limits of a pace in words for people: "support 61 %, speed 20 %".
 std::string in_words(const std::vector<BindingLimit>& limits) {
   std::string out;
   for (const BindingLimit& limit : limits) {
@@ -245,8 +245,9 @@ void retime(Context& context, const EditCommand& options) {
                in_json(scale, before, force, result, found));
 }
 
-// Two motions in sequence as one, sampled: as keys if keys can express the motion and it is as
-// consistent, otherwise as a table. `reason` becomes the reason for a table.
+// Two motions in sequence as one sampled motion. The result has keys if keys can express the motion
+// and it is as consistent with them; otherwise it is a table. `reason` receives the reason for a
+// table.
 Pattern joined_pattern(const Context& context, const EditCommand& options, const Task& first,
                        const MotionPart& second, double over, CommandSeries& series,
                        std::string& reason) {
@@ -275,7 +276,7 @@ Pattern joined_pattern(const Context& context, const EditCommand& options, const
     return tabled;
   } catch (const Error& error) {
     if (error.code() != ErrorCode::bad_pattern) throw;
-    Pattern tabled = with_table();  // says what is wrong where samples cannot be joined either
+    Pattern tabled = with_table();  // throws the reason if samples cannot be joined either
     reason = error.what();
     return tabled;
   }
@@ -286,7 +287,8 @@ std::string kept_words(const Pattern& pattern, const std::string& reason) {
   return reason.empty() ? "" : "  written as a table, because " + reason + "\n";
 }
 
-// Patterns one after the other; the table of what is joined so far is only in memory.
+// Joins patterns one after the other. The table of the part that is already joined is only in
+// memory.
 void join(Context& context, const EditCommand& options) {
   if (options.patterns.size() < 2)
     fail(ErrorCode::usage,
@@ -317,9 +319,9 @@ void join(Context& context, const EditCommand& options) {
                Json{{"joins_s", joins}, {"keys_kept", !input.pattern.table}});
 }
 
-// Of all cycles of two steps of a walk, the one whose end meets its beginning best.
+// Among all cycles of two steps of a walk, the one whose end fits its beginning best.
 GaitCycle best_cycle(const RobotModel& robot, const MotionPart& walk) {
-  GaitCycle best = gait_cycle(robot, walk, 0);  // throws where there is none
+  GaitCycle best = gait_cycle(robot, walk, 0);  // throws if there is none
   const auto swings = std::count_if(walk.pattern.phases.begin(), walk.pattern.phases.end(),
                                     [](const Phase& phase) { return phase.swing.has_value(); });
   const auto open = [](const LoopGap& gap) {
@@ -332,7 +334,7 @@ GaitCycle best_cycle(const RobotModel& robot, const MotionPart& walk) {
   return best;
 }
 
-// Two steps in the middle of a walk, repeated. With `alone`, the motion begins and ends while the
+// Repeats two steps from the middle of a walk. With `alone`, the motion begins and ends while the
 // robot walks.
 void loop_cycle(Context& context, const EditCommand& options) {
   if (options.over > 0)
@@ -387,7 +389,7 @@ void loop_cycle(Context& context, const EditCommand& options) {
            {"keys_kept", false}});
 }
 
-// The end meets the beginning, by a transition where it does not, and the motion is repeated.
+// Makes the end equal to the beginning, by a transition if they differ, and repeats the motion.
 void loop(Context& context, const EditCommand& options) {
   if (options.alone && !options.cycle)
     fail(ErrorCode::usage,
@@ -403,14 +405,14 @@ void loop(Context& context, const EditCommand& options) {
       fail(ErrorCode::bad_pattern, {options.pattern},
            "the end of the motion differs from its beginning: " + gap_words(before) +
                "; --over S adds a transition of S seconds from the end to the beginning");
-    // The beginning again, held for a moment: the first samples at rest.
+    // The first samples again, at rest: the beginning is held for a moment.
     Pattern still = once;
     still.phases = {Phase{kRest, Support::both, {}, {}, {}}};
     Keyframe begin;
     begin.place.inside = "start";
     for (const Keyframe& key : once.keyframes) {
       if (key.t == 0) begin = key;
-      // Tracks with keys later on begin where they are without one.
+      // Tracks that only have later keys begin with the value that they have without a key.
       if (key.zmp && !begin.zmp) begin.zmp = ZmpKey{ZmpKey::Place::center, {}};
       if (key.cog_x && !begin.cog_x) begin.cog_x = samples.samples.front().cog.x();
       if (key.cog_y && !begin.cog_y) begin.cog_y = samples.samples.front().cog.y();

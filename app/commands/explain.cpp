@@ -1,4 +1,4 @@
-// An equation of the paper in words, with the numbers of one instant of a run put in.
+// An equation of the paper in words and with the numbers of one instant of a run.
 
 #include <charconv>
 #include <cmath>
@@ -55,7 +55,7 @@ std::string heading(const Equation& e) {
   return "(" + std::to_string(e.number) + ")  " + e.formula;
 }
 
-/// Words broken into lines of at most 100 letters.
+/// The words in lines of at most 100 letters.
 std::string wrapped(const std::string& words) {
   std::string out = "  ";
   size_t column = 2;
@@ -76,7 +76,7 @@ struct Numbers {
   EquationNumbers of;
   std::string where, controller;
   double t = 0;
-  std::map<std::string, std::string> sampled_from;  ///< of the pattern's tracks, by track
+  std::map<std::string, std::string> sampled_from;  ///< source of each of the pattern's tracks
 };
 
 Numbers numbers_of(const Context& context, const Equation& e, const ExplainCommand& options) {

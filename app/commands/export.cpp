@@ -1,5 +1,5 @@
-// Joint tables for a robot or another program: the reference of a run, or of a pattern replayed
-// open loop, with ramp and hold around it. Unsafe tables are refused.
+// Joint tables for a robot or another program: the reference of a run, or of a pattern that is
+// replayed open loop, with a ramp and a hold around it. Unsafe tables are refused.
 
 #include <algorithm>
 #include <cmath>
@@ -43,25 +43,26 @@ namespace fs = std::filesystem;
 
 struct ExportOptions {
   std::string input, format, output, robot, log, layout;
-  std::string servo;  ///< as given; "": the lead
+  std::string servo;  ///< option as given; "": the lead
   std::vector<std::string> set;
   SafetyOptions safety;
-  std::optional<double> ramp, hold;  ///< as given [s]
-  std::optional<double> interval;    ///< from row to row, as given [ms]
-  std::optional<double> rate;        ///< as given [1/s]
+  std::optional<double> ramp, hold;  ///< options as given [s]
+  std::optional<double> interval;    ///< time between two rows, as given [ms]
+  std::optional<double> rate;        ///< rate as given [1/s]
   bool pushed = false, force_unsafe = false, sign_test = false;
 };
 
 struct Source {
   RobotModel model;
   ReferenceTrajectory reference;
-  std::string disturbances;        ///< of the run that the table is from; empty: none
-  Eigen::MatrixXd torque;          ///< of a run's motors, rows x dof; empty where not known
-  std::optional<Task> plan;        ///< of a pattern: the check knows what it needs
-  std::vector<std::string> unfit;  ///< why no robot should receive the table
+  std::string disturbances;  ///< disturbances of the run from which the table comes; empty: none
+  Eigen::MatrixXd torque;    ///< torque of a run's motors, rows x dof; empty if unknown
+  std::optional<Task> plan;  ///< task of a pattern; the check can then say what it needs
+  std::vector<std::string> unfit;  ///< reasons why no robot should receive the table
   std::optional<KeptRows> kept = {};
-  std::optional<std::string> original = {};  ///< bytes of the imported file of the format
-  double interval = 0;  ///< from row to row of the file that was imported; 0: none was [s]
+  /// Bytes of the imported file, if the format is the same.
+  std::optional<std::string> original = {};
+  double interval = 0;  ///< time between two rows of the imported file [s]; 0: no file was imported
 };
 
 /// The unit of angles in texts: that of the pattern, if there is one.
@@ -69,19 +70,19 @@ bool angles_in_degrees(const Source& source) {
   return !source.plan || source.plan->pattern.degrees;
 }
 
-/// The format of a motion that is written; null for the joint tables of this program.
+/// The format in which a motion is written; null for the joint tables of this program.
 const MotionFormat* motion_format(const ExportOptions& options) {
   const MotionFormat* format = find_motion_format(options.format);
   return format && format->write ? format : nullptr;
 }
 
-/// Whether the program of a robot plays the file as it is, so that it must be safe.
+/// Whether the program of a robot plays the file as it is. Then the file must be safe.
 bool plays(const ExportOptions& options) {
   const MotionFormat* format = motion_format(options);
   return !format || format->played;
 }
 
-/// Takes the rows of an imported sequence as they were, unless the motion was changed.
+/// Takes the unchanged rows of an imported sequence, unless the motion was changed.
 void take_kept_rows(const Task& task, const ExportOptions& options, Source& source) {
   if (!task.pattern.table) return;
   source.interval = 0.001 * task.pattern.table->interval_ms;
@@ -106,12 +107,12 @@ void take_kept_rows(const Task& task, const ExportOptions& options, Source& sour
     targets.rows[k] = planned.rows[std::min(k, planned.rows.size() - 1)];
     targets.rows[k].theta = std::move(theta);
   }
-  targets.provenance = source.reference.provenance;  // nothing is known of its servo
+  targets.provenance = source.reference.provenance;  // nothing is known about the servo
   source.reference = std::move(targets);
 }
 
-/// A table for the robot is made for the robot's own actuators and judged by them, not by the
-/// actuators that a study assumes.
+/// A table for the robot is made for the robot's own actuators and judged by them. Actuators that a
+/// study assumes are not used.
 std::string profile_of(const ExportOptions& options, const RobotModel& model,
                        const std::string& recorded) {
   if (!options.safety.profile.empty()) return options.safety.profile;
@@ -125,7 +126,7 @@ ServoContent content_of(const ExportOptions& options) {
 
 bool draws(const ExportOptions& options) { return options.format == "gltf"; }
 
-/// The robot asked for, else `recorded`; with meshes where they are drawn.
+/// The robot of the option, or else `recorded`; with meshes if they are drawn.
 RobotModel robot_named(const ExportOptions& options, const std::string& recorded,
                        const Context& context) {
   return robot_of_run(context, options.robot, recorded, {.meshes = draws(options)});
@@ -162,15 +163,15 @@ double asked_period(const ExportOptions& options, const Source& source) {
   return source.interval > 0 ? source.interval : source.reference.dt;
 }
 
-/// The rows at the interval that is asked for, else at that of the file that was imported. A robot
-/// takes some intervals only.
+/// Samples the rows at the requested interval, or else at that of the imported file. Some robots
+/// only accept certain intervals.
 void set_rate(const ExportOptions& options, Source& source) {
   const double period = asked_period(options, source);
   const double before = source.reference.dt;
   source.reference = resampled(source.reference, period);
   if (source.reference.dt != before) {
     source.kept.reset();
-    source.torque.resize(0, 0);  // of rows at the old rate
+    source.torque.resize(0, 0);  // the torques were for the rows at the old rate
   }
   if (source.kept && !options.layout.empty() && options.layout != source.kept->file.layout.name)
     source.kept.reset();
@@ -213,7 +214,7 @@ struct CautiousTable {
   TableCaution caution;
 };
 
-// The table of a run that is asked for; `log` is the one that it is from.
+// The requested table of a run; `log` is the log from which it comes.
 CautiousTable table_of_run(const ExportOptions& options, const RunFolder& run,
                            const SimulationLog& log, const RobotModel& model) {
   const ServoContent content = content_of(options);
@@ -245,7 +246,7 @@ std::string log_of_table(const ExportOptions& options, const RunFolder& run) {
   return !options.pushed && run.logs.contains("undisturbed") ? "undisturbed" : "";
 }
 
-// Every file of the folder is first compared with what run.json says of it.
+// Every file of the folder is first compared with its hash in run.json.
 Source source_of_run(const ExportOptions& options, const Context& context) {
   verify_run(options.input);
   const RunFolder run = read_run(options.input);
@@ -262,13 +263,13 @@ Source source_of_run(const ExportOptions& options, const Context& context) {
   return source;
 }
 
-// A CSV, or JSON that says so at its head.
+// Whether the file is a CSV table, or a JSON table, which says so at its head.
 bool is_reference_table(const std::string& path) {
   return path.ends_with(".csv") || (path != "-" && read_file(path).substr(0, 200).find(
                                                        "\"ayumi.reference/") != std::string::npos);
 }
 
-// A table of a run folder is a part of this run: the cautions of the folder apply to the table.
+// A table in a run folder belongs to this run, so the cautions of the run apply to the table.
 void verify_run_of(const fs::path& table) {
   const fs::path folder = table.has_parent_path() ? table.parent_path() : fs::path(".");
   if (!is_run_folder(folder)) return;
@@ -290,9 +291,10 @@ Source source_of(const ExportOptions& options, const Context& context) {
                          read_table_caution(options.input));
 }
 
-constexpr double kGltfRate = 60;  // keys of an animation [Hz]; viewers draw evenly between them
+constexpr double kGltfRate = 60;  // rate of an animation's keys [Hz]; viewers interpolate linearly
 
-/// The table as an animation of the robot: to be looked at, so neither ramped nor judged.
+/// Writes the table as an animation of the robot. It is only for viewing, so it is neither ramped
+/// nor judged.
 void export_gltf(const ExportOptions& options, Context& context) {
   if (fs::path(options.output).extension() != ".glb")
     fail(ErrorCode::usage, {options.output}, "--format gltf needs a file name that ends in .glb");
@@ -347,7 +349,8 @@ std::vector<SafetyViolation> torque_violations_of(const Source& source, const Sa
   return found;
 }
 
-/// Ramp, hold and judgement, by the torque too where a robot is to receive the table.
+/// Adds ramp and hold, and judges the table. For a table that a robot is to receive, the torque is
+/// judged, too.
 SafeTable judged(const ExportOptions& options, const Source& source, const std::string& profile) {
   SafetyOptions safety = options.safety;
   safety.profile = profile;
@@ -357,8 +360,8 @@ SafeTable judged(const ExportOptions& options, const Source& source, const std::
   return safe;
 }
 
-/// Profiles of the robot whose motors would carry out an unsafe table, the motor board's own cap of
-/// counts per tick apart.
+/// The profiles of the robot whose motors could carry out an unsafe table. The motor board's own
+/// limit of counts per tick is ignored here.
 std::vector<std::string> sufficient_profiles(ExportOptions options, const Source& source) {
   const std::string profile = options.safety.profile;
   options.safety.counts_per_ms = 1e9;
@@ -368,7 +371,8 @@ std::vector<std::string> sufficient_profiles(ExportOptions options, const Source
   return names;
 }
 
-/// Why the table is not written, the reasons of its run or pattern first; empty: it is.
+/// The reasons why the table is not written, those of its run or pattern first; empty if it is
+/// written.
 std::vector<std::string> refusals(const ExportOptions& options, const Source& source,
                                   const SafeTable& safe) {
   std::vector<std::string> reasons;
@@ -455,7 +459,7 @@ std::string words_on_sequence(const Source& source, const SafeTable& safe) {
   return text;
 }
 
-/// What the head of the written table has to say.
+/// The caution for the head of the written table.
 TableCaution caution_of_written(const Source& source, const SafeTable& safe) {
   std::vector<std::string> words = source.unfit;
   for (const SafetyViolation& violation : safe.report.violations)
@@ -463,7 +467,7 @@ TableCaution caution_of_written(const Source& source, const SafeTable& safe) {
   return {source.disturbances, text::join(words, "; ")};
 }
 
-/// The name also shows that a table is not for a robot: walk.UNSAFE.csv.
+/// The file name that shows that a table is not for a robot: walk.UNSAFE.csv.
 std::string unsafe_name(const std::string& output) {
   if (output == "-" || fs::path(output).stem().extension() == ".UNSAFE") return output;
   const fs::path path = output;
@@ -471,8 +475,8 @@ std::string unsafe_name(const std::string& output) {
       .string();
 }
 
-/// A HOAP sequence has no head that the robot's program would skip: the warning is written into a
-/// file beside it.
+/// The file for the warning. A HOAP sequence has no head that the robot's program would skip, so
+/// the warning is written into a file beside it.
 std::string note_beside(const std::string& sequence) { return sequence + ".txt"; }
 
 constexpr const char* kNoteHead = "About the joint table beside this file, by ayumi export\n";
@@ -484,7 +488,7 @@ std::string note_text(const TableCaution& caution) {
   return text;
 }
 
-/// All files of the format, or none where one of them exists.
+/// Writes all files of the format, or none if one of them exists.
 void write_motion(const MotionFormat& format, const ExportOptions& options, const Context& context,
                   const Source& source, const SafeTable& safe) {
   std::vector<std::pair<fs::path, std::string>> files;
@@ -514,7 +518,7 @@ void write_table(const ExportOptions& options, const Context& context, const Sou
   }
   write_file(options.output,
              bytes_of(options.format, source, safe.table, caution, options, safe.first));
-  if (old_note && !beside) fs::remove(note);  // it was about the table that was there before
+  if (old_note && !beside) fs::remove(note);  // it was about the previous table
   if (!beside) return;
   write_file(note, note_text(caution));
   context.print(note + ": read this note before you send the table to a robot\n");
@@ -546,8 +550,8 @@ std::string as_json(const ExportOptions& options, const Source& source, const Sa
   return json.dump(2);
 }
 
-/// One file per joint, and the sheet. The folder is made where needed; nothing in it is replaced
-/// without --force.
+/// Writes one file for each joint, and the sheet. The folder is made if necessary; nothing in it is
+/// replaced without --force.
 void export_sign_test(const ExportOptions& options, Context& context) {
   if (options.format == "gltf")
     fail(ErrorCode::usage, "--sign-test: --format must be hoap, csv or json");

@@ -1,5 +1,5 @@
-// Gain design: wishes in seconds to the gains of DTAD, stability of the whole loop, and what the
-// robot can then recover from.
+// Design of gains: wishes in seconds become the gains of DTAD. Also shows the stability of the
+// whole loop, and from which disturbances the robot can then recover.
 
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -17,8 +17,8 @@ namespace {
 using Complex = std::complex<double>;
 using Json = nlohmann::ordered_json;
 
-// Decays below this share of omega are not shown as modes. Chosen: they last longer than any
-// motion.
+// Modes that decay more slowly than this share of omega are not shown. Chosen: they last longer
+// than any motion.
 constexpr double kShown = 1e-3;
 
 struct GainsCommand {

@@ -25,14 +25,15 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// Missing cells that are printed with their reasons; the index has all. Chosen: half a screen.
+/// Number of missing cells that are printed with their reasons; the index has all of them. Chosen:
+/// half a screen.
 constexpr size_t kShownMissing = 10;
-/// Width of the map of one panel for each turning rate in a row; more go into another row. Chosen:
-/// five panels of five cells are as wide as a screen.
+/// Largest number of columns of the maps that stand in a row, one map for each turning rate;
+/// further maps go into another row. Chosen: five maps of five cells are as wide as a screen.
 constexpr size_t kMostColumns = 5;
-/// Largest number of runs of a cell, in units of those without a failure. Chosen: a robot that
-/// fails with a fifth of the permitted probability of 15 % is then certified with a probability of
-/// about 90 %, and a cell that fails costs at most so much.
+/// Largest number of runs of a cell, as a multiple of the number that is needed without a failure.
+/// Chosen: a robot that fails with a fifth of the permitted probability of 15 % is then certified
+/// with a probability of about 90 %, and a failing cell costs at most this number of runs.
 constexpr long kMostRuns = 4;
 
 struct GaitsCommand {
@@ -42,7 +43,7 @@ struct GaitsCommand {
   bool uncertified = false, without_transitions = false;
 };
 
-/// Stages at which a cell can be missing, with the mark of the map and what it means.
+/// A stage at which a cell can fail, with its mark in the map and its meaning.
 struct Stage {
   const char* name;
   char mark;
@@ -82,7 +83,7 @@ void fill_axes(const GaitsCommand& command, const RobotModel& model, GaitGrid& g
   grid.turn = axis(command.turn, "--turn", {-8, 0, 8});
 }
 
-/// The robot as a pattern in the folder of patterns names it.
+/// The robot in the form in which a pattern in the folder of patterns names it.
 std::string robot_from(const std::string& robot, const fs::path& folder) {
   const std::string written = robot_as_written(robot);
   if (written.find('/') == std::string::npos || fs::path(written).is_absolute()) return written;
@@ -117,8 +118,9 @@ Json asked_json(const GaitMaker& maker, const GaitOptions& options, const GaitGr
           {"with_transitions", options.transitions}};
 }
 
-/// Runs jobs on all threads, in the order of their numbers, and keeps what is finished. A job is
-/// job(number, progress), which returns a GaitResult; `names` are those in the folder.
+/// Runs jobs on all threads in the order of their numbers, and keeps finished results. A job is
+/// job(number, progress), which returns a GaitResult; `names` are the names of the results in the
+/// folder.
 template <typename Job>
 std::vector<Json> run_jobs(const Context& context, const LibraryFolder& folder, const char* stage,
                            const std::vector<std::string>& names, const Job& job) {
@@ -179,7 +181,7 @@ GaitMap map_of(const GaitGrid& grid, const std::string& title, const std::vector
       }
       panel.cells.push_back(cell);
     }
-    // Each pair is there in both orders, one after the other.
+    // Each pair is present in both orders, one after the other.
     for (size_t k = 0; k + 1 < transitions.size(); k += 2) {
       const auto [a, b] = neighbours[k];
       if (a / each != p || b / each != p) continue;
@@ -193,8 +195,8 @@ GaitMap map_of(const GaitGrid& grid, const std::string& title, const std::vector
   return map;
 }
 
-/// "60 cells: 15 made, 45 missing (40: the walk cannot be generated; 5: ...)", and the first
-/// missing ones with their reasons.
+/// The missing cells in words, such as "60 cells: 15 made, 45 missing (40: the walk cannot be
+/// generated; 5: ...)", and the first of them with their reasons.
 std::string missing_words(const std::vector<Json>& entries, const char* noun,
                           const std::function<std::string(const Json&)>& name) {
   std::vector<std::string> kinds;

@@ -9,7 +9,7 @@ namespace ayumi::app {
 
 namespace {
 
-// The names of what can stand after a command or a kind of it.
+// The names of the words that can stand after a command or a kind of it.
 std::vector<std::string> subcommand_names(const CLI::App& level) {
   std::vector<std::string> names;
   for (const CLI::App* command : level.get_subcommands([](const CLI::App*) { return true; }))
@@ -17,7 +17,7 @@ std::vector<std::string> subcommand_names(const CLI::App& level) {
   return names;
 }
 
-// The same text as `ayumi COMMAND --help`.
+// Prints the same text as `ayumi COMMAND --help`.
 void print_help(const CLI::App& app, const std::vector<std::string>& words) {
   const CLI::App* level = &app;
   std::string before = "ayumi";
@@ -29,7 +29,7 @@ void print_help(const CLI::App& app, const std::vector<std::string>& words) {
     level = level->get_subcommand(word);
     before += " " + word;
   }
-  // App::help() of the program would be that of the command which runs, which is this one.
+  // App::help() of the program would print the help of the running command, which is this one.
   std::fputs(level->get_formatter()->make_help(level, before, CLI::AppFormatMode::Normal).c_str(),
              stdout);
 }

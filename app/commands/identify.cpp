@@ -1,4 +1,5 @@
-// Servo constants of a robot from a recording, as a sidecar over that of the robot.
+// Determines servo constants of a robot from a recording, and writes them as a sidecar over that of
+// the robot.
 
 #include "ayumi/identify/identify.hpp"
 
@@ -28,7 +29,7 @@ struct IdentifyCommand {
   double longest_lag_ms = 0;
 };
 
-// "3.61 (3.52..3.70) ms"
+// An estimate in words, such as "3.61 (3.52..3.70) ms".
 std::string estimate_words(const ServoEstimate& e, double unit, int digits,
                            const std::string& name) {
   const auto number = [&](double x) {
@@ -91,7 +92,8 @@ Json json_of(const IdentifiedJoint& j) {
   return json;
 }
 
-// The robot as a sidecar in the folder of `out` names it: bundled names stay.
+// The robot in the form in which a sidecar in the folder of `out` names it: bundled names stay as
+// they are.
 std::string base_name(const IdentifyCommand& options) {
   std::error_code ignored;
   if (!fs::exists(options.robot, ignored)) return options.robot;
@@ -115,7 +117,7 @@ void identify_servos(const Context& context, const IdentifyCommand& options) {
   RecordedMotion motion;
   motion.command =
       read_angles(read_input(options.command), options.command, model, options.reading);
-  // Rows without time answer the rows of the command.
+  // Rows without time have the times of the rows of the command.
   RecordingOptions measured = options.reading;
   if (measured.rate <= 0) measured.rate = 1 / motion.command.dt;
   motion.measured = read_angles(read_input(options.measured), options.measured, model, measured);

@@ -30,7 +30,7 @@ std::string to_do_text(const std::string& robot, const std::vector<std::string>&
   return text;
 }
 
-// The files of a new robot: all of them or none.
+// The files of a new robot. Either all of them are made or none.
 class NewFolder {
  public:
   NewFolder(const Context& context, const fs::path& folder) : folder_(folder) {
@@ -46,7 +46,7 @@ class NewFolder {
     std::error_code ignored;
     if (!complete_)
       for (const fs::path& file : written_) fs::remove(file, ignored);
-    if (!complete_ && made_) fs::remove(folder_, ignored);  // where it is empty
+    if (!complete_ && made_) fs::remove(folder_, ignored);  // removes the folder if it is empty
   }
   NewFolder(const NewFolder&) = delete;
   NewFolder& operator=(const NewFolder&) = delete;
@@ -66,15 +66,16 @@ class NewFolder {
   bool made_ = false, complete_ = false;
 };
 
-// Softness of the servos up to which a stiffer one is looked for. Chosen: servos that are sixteen
-// times too soft are a mistake in the file.
+// Largest factor by which stiffer servos are tried. Chosen: servos that are sixteen times too soft
+// are a mistake in the file.
 constexpr double kMostStiffer = 16;
 
-// How many times as stiff the servos of the legs must be for gains that keep the robot standing.
+// The factor by which the servos of the legs must be stiffer for gains that keep the robot
+// standing.
 double stiffness_needed(const RobotModel& model) {
   for (double factor = 1.25; factor <= kMostStiffer; factor *= 1.25) {
     RobotDescription stiffer = model.description();
-    std::set<int> joints;  // one may move both legs
+    std::set<int> joints;  // a joint may move both legs
     for (const Side side : {Side::left, Side::right})
       for (const int dof : model.leg(side)) joints.insert(dof);
     for (const int dof : joints) {
@@ -89,7 +90,8 @@ double stiffness_needed(const RobotModel& model) {
   return 0;
 }
 
-// The gains nearest to the defaults with which the robot can stand, where it cannot with those.
+// The gains nearest to the defaults with which the robot can stand, if it cannot stand with the
+// defaults.
 SidecarGains gains_for(const RobotModel& model) {
   const std::vector<ServoDescription>& servos = model.limits().servo;
   for (const Side side : {Side::left, Side::right})

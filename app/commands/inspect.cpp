@@ -1,4 +1,4 @@
-// The model doctor: everything a robot's files say, what was inferred, and what is suspicious.
+// Examines a robot: everything that its files say, what was inferred, and what is suspicious.
 
 #include <algorithm>
 #include <cmath>
@@ -33,11 +33,12 @@ struct InspectOptions {
 };
 
 struct Stance {
-  Eigen::Vector3d cog = Eigen::Vector3d::Zero();  // from the middle between the soles [m]
-  double height = 0;                              // top to bottom with every joint at 0 [m]
+  Eigen::Vector3d cog = Eigen::Vector3d::Zero();  // relative to the middle between the soles [m]
+  double height = 0;  // height of the whole robot with every joint at 0 [m]
 };
 
-// The home posture stood on the ground, the origin midway between the sole frames.
+// The home posture with the robot on the ground, and with the origin midway between the sole
+// frames.
 Stance stance_of(const RobotModel& model) {
   Stance stance;
   RobotData data(model);
@@ -63,12 +64,12 @@ Stance stance_of(const RobotModel& model) {
   return stance;
 }
 
-// Infinity has no JSON number; a limit that is not stated is null.
+// JSON has no number for infinity; a limit that is not stated is null.
 OrderedJson number(double value) {
   return std::isfinite(value) ? OrderedJson(value) : OrderedJson(nullptr);
 }
 
-// The five constants of every servo, and what else the files state.
+// The five constants of every servo, and what else the files state about it.
 OrderedJson servo_json(const ServoDescription& servo) {
   OrderedJson json = {{"kp", servo.kp},
                       {"kd", servo.kd},
@@ -173,7 +174,8 @@ std::vector<Coupling> couplings(const RobotModel& model) {
   return found;
 }
 
-// Joints of which each leg has one of its own, as coupled hips are; a waist above both is none.
+// Joints of both legs, such as coupled hips, of which each leg has one of its own. A waist above
+// both legs does not count.
 std::vector<std::string> joints_of_both_legs(const RobotModel& model) {
   std::vector<std::string> names;
   if (!model.has_soles()) return names;
@@ -227,7 +229,7 @@ std::string angle(const Dof& dof, double value) {
 
 std::string limit(double value) { return std::isinf(value) ? "-" : text::brief(value); }
 
-// As wide as the longest name, so that columns do not run together.
+// The width of the longest name, so that columns do not touch each other.
 size_t name_width(const RobotModel& model) {
   size_t width = 20;
   for (const Dof& dof : model.dofs()) width = std::max(width, dof.name.size());
@@ -313,7 +315,7 @@ std::string sole_lines(const RobotModel& model) {
   return text;
 }
 
-/// What load cells do with the force on them, foot by foot.
+/// The response of the load cells, for each foot.
 std::string cell_lines(const SensorDescription& sensors) {
   std::string text;
   for (const auto& [side, cells] : sensors.force_cells) {
@@ -369,7 +371,7 @@ std::string list_lines(const std::string& title, const std::vector<std::string>&
   return text;
 }
 
-// Where the first keys of the feet are, in the words of a pattern.
+// The places of the feet for their first keys, in the form that a pattern has.
 std::string feet_line(const RobotModel& model) {
   if (!model.has_soles() || !model.has_posture("home")) return "";
   const auto feet = start_feet(model, {});
@@ -401,7 +403,7 @@ std::string inspection_text(const RobotModel& model, const Stance& stance,
 
 void inspect(const Context& context, const InspectOptions& options) {
   const RobotModel model = load_robot(options.robot, robot_search(context), {.meshes = true});
-  check_controller(model, {ControllerKind::dtad, {}});  // the sidecar's gains of both laws
+  check_controller(model, {ControllerKind::dtad, {}});  // checks the sidecar's gains of both laws
   std::vector<std::string> notes;
   if (!options.picture.empty())
     notes = write_robot_picture(context, model, options.picture, options.view);

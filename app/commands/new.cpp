@@ -1,4 +1,4 @@
-// Generators: write a keyframed pattern that a person can then edit.
+// Generators write a keyframed pattern, which a person can then edit.
 
 #include <algorithm>
 #include <cmath>
@@ -37,12 +37,12 @@ struct NewOptions {
   double turn_deg = 0;
   std::string first = "right";
   double duration = 3.0;
-  double stand_height = 0;  // [m]; 0: of the home posture
-  double scale = 1;         // of the amplitudes of an excitation
-  double low = 0;           // COG height of an excitation; 0: left out [m]
-  // Left out: HOAP-1's, scaled to the robot.
+  double stand_height = 0;  // COG height [m]; 0: that of the home posture
+  double scale = 1;         // factor on the amplitudes of an excitation
+  double low = 0;           // COG height of an excitation [m]; 0: not given
+  // Values that are not given are those of HOAP-1, scaled to the robot.
   std::vector<double> cog, velocity, cog_velocity;  // goals of VIIP
-  double moving = 1;                                // time of a COG velocity [s]
+  double moving = 1;                                // duration of a COG velocity [s]
   int viip_steps = 0;
   std::optional<double> stride, period, lift, side, depth, hold, length, height;
   std::optional<double> angle_deg;
@@ -82,7 +82,7 @@ Dial dial(const char* name, const char* unit, double value, double step, bool op
   return result;
 }
 
-// COG heights around that of the generator, which is written as 0.
+// A dial for COG heights around the generator's own height, which is written as 0.
 Dial height_dial(const RobotModel& model, double given) {
   Dial result = dial("--cog-height", "m", starting_height(model), 1e-3, given == 0,
                      {0.97, 1.02, 0.94, 0.91, 0.88});
@@ -91,7 +91,8 @@ Dial height_dial(const RobotModel& model, double given) {
   return result;
 }
 
-// Joints of the legs that no motor moves, in words; "" for none. They cannot carry a robot.
+// The joints of the legs that no motor moves, in words; "" if there are none. They cannot carry a
+// robot.
 std::string legs_without_motors(const RobotModel& model) {
   const ActuatorLimits& limits = model.limits();
   std::vector<std::string> names;
@@ -109,8 +110,8 @@ std::string legs_without_motors(const RobotModel& model) {
                    text::join(names, ", ") + "; if they have one, state kp in the sidecar";
 }
 
-// The values of the dials with which the robot can do the motion; the defaults where there are
-// none. Says what was changed, and what limits the robot.
+// The values of the dials with which the robot can do the motion, or the defaults if there are
+// none. Prints what was changed and what limits the robot.
 std::vector<double> values_that_pass(const Context& context, const RobotModel& model,
                                      const std::vector<Dial>& dials,
                                      const std::function<Pattern(const std::vector<double>&)>& make,
@@ -136,7 +137,7 @@ std::vector<double> values_that_pass(const Context& context, const RobotModel& m
   else if (result.tried > 1 && (!result.nearest.empty() || !result.refused)) {
     context.print("none of " + std::to_string(result.tried) +
                   " combinations of height, length and time passes the check. ");
-    if (!result.refused)  // else the error says it
+    if (!result.refused)  // otherwise, the error says it
       context.print("First error with the default values: " + result.limit + "\n");
     if (!result.nearest.empty()) {
       const std::string nearest = changed_values(dials, result.nearest_values);
@@ -148,19 +149,20 @@ std::vector<double> values_that_pass(const Context& context, const RobotModel& m
   return result.values;
 }
 
-// A dial of a walk, and what it turns.
+// A dial of a walk, and the parameter that it sets.
 struct WalkDial {
   Dial dial;
   std::function<void(WalkParameters&, double)> set;
 };
 
-// Fills in the values that are not given for a walk in place, a walk forward or a turn: `length` is
-// what makes its steps longer. `lifts`: the feet may rise less than asked for, because nobody
-// asked.
+// Finds the values that are not given for a walk in place, a walk forward or a turn. `length` is
+// the dial that makes its steps longer. With `lifts`, the lift of the feet may be reduced, because
+// the user has not given it.
 void fit_steps(const Context& context, const RobotModel& model, const NewOptions& options,
                WalkParameters& w, const WalkDial& length, bool lifts = false) {
-  // Legs without the roll of the ankle carry the COG aside by a few millimetres only, so that they
-  // step quickly and close to the other foot. Lower, their knees need less torque for this.
+  // Legs without the roll of the ankle can carry the COG only a few millimetres aside, so they have
+  // to step quickly and close to the other foot. With a lower COG, their knees need less torque for
+  // this.
   const bool lacking = InverseKinematics(model, model.posture()).lacks_joints();
   Dial inwards{"--zmp-inwards", "m", {w.zmp_inwards}};
   if (lacking && w.zmp_inwards == 0)
@@ -180,7 +182,7 @@ void fit_steps(const Context& context, const RobotModel& model, const NewOptions
       shift{inwards, [](WalkParameters&p, double v) { p.zmp_inwards = v; }},
       rise{dial("--lift", "m", w.lift, 1e-3, !options.lift, {0.75, 0.5}),
            [](WalkParameters&p, double v) { p.lift = v; }};
-  // Of trials that change as much, those that change the last dials come first.
+  // Among trials with equally large changes, those that change the last dials come first.
   std::vector<WalkDial> turned = lacking ? std::vector{length, pace, shift, stature}
                                          : std::vector{stature, length, pace, shift};
   if (lifts && !lacking) turned.insert(turned.begin() + 1, rise);
@@ -189,7 +191,7 @@ void fit_steps(const Context& context, const RobotModel& model, const NewOptions
   const auto with = [&](const std::vector<double>& values) {
     WalkParameters walk = w;
     for (size_t i = 0; i < turned.size(); ++i) turned[i].set(walk, values[i]);
-    // Quick steps are low: the foot needs the acceleration 1/T^2 for the same lift.
+    // Quick steps are low, because the acceleration of the foot for the same lift grows with 1/T^2.
     if (lacking && !options.lift)
       walk.lift = rounded(w.lift * std::min(1.0, walk.period / w.period), 5e-4);
     return walk;
@@ -203,7 +205,8 @@ void fit_steps(const Context& context, const RobotModel& model, const NewOptions
                   text::brief(lift) + " m, because the steps are quick (--lift changes this)\n");
 }
 
-// Shares of the default length of a step. Legs without the roll of the ankle step shorter at once.
+// Shares of the default length of a step. For legs without the roll of the ankle, shorter steps are
+// tried at once.
 std::vector<double> step_shares(const RobotModel& model) {
   return InverseKinematics(model, model.posture()).lacks_joints() ? std::vector{0.5, 0.25}
                                                                   : std::vector{0.75, 0.5, 0.25};
@@ -217,7 +220,7 @@ void fit_walk(const Context& context, const RobotModel& model, const NewOptions&
   fit_steps(context, model, options, w, stride, lifts);
 }
 
-// Motions that a robot can do that cannot walk, as commands; "" where none was found.
+// Motions that a robot can do if it cannot walk, as commands; "" if none was found.
 std::string what_it_can_do(const RobotModel& model, const std::string& robot) {
   struct Other {
     std::string command;
@@ -458,8 +461,8 @@ void new_kick(const Context& context, NewOptions options) {
              "Ayumi computes the COG from the ZMP keys with the full model of the robot."});
 }
 
-// Turn per step where only the whole angle is given [deg]. Chosen: the feet of HOAP-1 then stay 5
-// mm apart.
+// Turn per step if only the whole angle is given [deg]. Chosen: the feet of HOAP-1 then stay 5 mm
+// apart.
 constexpr double kTurnPerStep = 10;
 
 void new_turn(const Context& context, NewOptions options) {
@@ -500,7 +503,7 @@ void new_march(const Context& context, NewOptions options) {
   const WalkParameters scaled = walk_defaults(model);
   WalkParameters& w = options.walk;
   w.stride = 0;
-  // High steps take longer.
+  // High steps take more time.
   w.period = options.period.value_or(rounded(1.1 * scaled.period, 0.01));
   w.lift = options.lift.value_or(rounded(1.6 * scaled.lift, 1e-3));
   w.first_swing = options.first == "left" ? Side::left : Side::right;
@@ -516,11 +519,11 @@ void new_march(const Context& context, NewOptions options) {
 
 // Time of standing before a goal of VIIP [s]. Chosen: 3/omega of HOAP-1.
 constexpr double kStandFirst = 0.5;
-// Time for a displacement, and for the return [s]. Chosen: 16/omega of HOAP-1, three times what
-// VIIP keeps for standing after its steps (control/laws/viip.cpp).
+// Time for a displacement, and time for the return [s]. Chosen: 16/omega of HOAP-1, three times the
+// time for which VIIP stands after its steps (control/laws/viip.cpp).
 constexpr double kDisplaced = 2.5;
 
-// The first profile that carries the goals out in their keyed form; "" when none does.
+// The first profile that can carry out the goals in their keyed form; "" if there is none.
 std::string profile_for(const Context& context, const RobotModel& model,
                         const std::vector<KeyedGoal>& goals) {
   std::string need;
@@ -535,8 +538,8 @@ std::string profile_for(const Context& context, const RobotModel& model,
   return {};
 }
 
-// COG height at which the legs reach the footholds: that of the home posture (0) or, for long
-// steps, a lower one.
+// COG height at which the legs reach the footholds: 0 for the height of the home posture or, for
+// long steps, a lower height.
 double height_for_steps(const RobotModel& model, Pattern pattern) {
   const double home = default_cog_height(model, pattern);
   for (const double share : {1.0, 0.97, 0.94, 0.91, 0.88, 0.85}) {
@@ -636,7 +639,7 @@ void new_stand(const Context& context, const NewOptions& options) {
 // consistent.
 void new_excite(const Context& context, const NewOptions& options) {
   const RobotModel model = load_robot(options.robot, robot_search(context));
-  const double given = rounded(100 * options.scale, 1e-3);  // as a dial [%]
+  const double given = rounded(100 * options.scale, 1e-3);  // the scale of a dial [%]
   const Dial amplitudes =
       dial("amplitudes of", "%", given, 0.1, true, {0.8, 0.64, 0.512, 0.41, 0.328, 0.262});
   const double usual = default_cog_height(model, excite_pattern(model, options.scale));
@@ -653,7 +656,7 @@ void new_excite(const Context& context, const NewOptions& options) {
              "The amplitudes are " + text::brief(values[1], 3) + " % of the usual ones."});
 }
 
-// Options that several generators share.
+// Adds an option that several generators share.
 void add_scaled(Command& command, const char* name, std::optional<double>& value,
                 const std::string& text, double hoap1, const char* type) {
   command
@@ -880,7 +883,7 @@ void add_turn(Command& command, NewOptions& options) {
   add_height(command, options.walk.cog_height);
 }
 
-// One line for each kind of motion.
+// Prints one line for each kind of motion.
 void list_kinds(const Context& context, const Command& command) {
   size_t width = 0;
   const auto kinds = command.all_subcommands();

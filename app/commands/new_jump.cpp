@@ -1,4 +1,4 @@
-// ayumi new jump: a jump as keys, and the highest one that a profile's actuators allow.
+// `ayumi new jump`: a jump as keys, and the highest jump that a profile's actuators allow.
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,8 @@ namespace {
 
 struct JumpOptions {
   std::string robot = "hoap1", out, profile;
-  std::optional<double> height, stoop, cog_height;  // left out: HOAP-1's, scaled to the robot
+  // Without a value: those of HOAP-1, scaled to the robot.
+  std::optional<double> height, stoop, cog_height;
   double forward = 0;
   int times = 1;
   bool highest = false;
@@ -30,20 +31,21 @@ bool passes(const RobotModel& model, const JumpParameters& p, const std::string&
     options.profile = profile;
     return check_consistency(model, series, options).consistent;
   } catch (const Error& error) {
-    // Out of the legs' reach, or no push of that shape.
+    // The jump is out of the legs' reach, or there is no push of this shape.
     if (error.code() == ErrorCode::bad_pattern || error.code() == ErrorCode::usage) return false;
     throw;
   }
 }
 
-// The first profile with which the check finds nothing; none when no profile is enough.
+// The first profile with which the check finds no error; empty if no profile is enough.
 std::string sufficient_profile(const RobotModel& model, const JumpParameters& p) {
   for (const std::string& name : model.profile_names())
     if (passes(model, p, name)) return name;
   return {};
 }
 
-// A stoop that is left open is the default or the one nearest to it that some profile carries out.
+// If the stoop is not given, it is the default, or the nearest stoop that some profile can carry
+// out.
 std::string choose_profile(const RobotModel& model, JumpParameters& p, bool stoop_open) {
   const double stoop = p.stoop;
   for (const double share : {1.0, 0.9, 1.1, 0.8, 1.2, 0.7, 1.35, 1.5}) {
@@ -56,12 +58,13 @@ std::string choose_profile(const RobotModel& model, JumpParameters& p, bool stoo
   return {};
 }
 
-// A lower jump that some profile carries out, where the default one is too much: the first of a
-// grid of shares of the height, the stoop and the COG height that nobody asked for; heights first.
-// "" and the values unchanged where there is none.
+// A lower jump that some profile can carry out, if the default one is too much. It is the first
+// that passes on a grid of shares of the height, the stoop and the COG height, as far as they are
+// not given; heights change first. If there is none, returns "" and leaves the values unchanged.
 std::string lower_jump(const RobotModel& model, JumpParameters& p, const JumpOptions& options,
                        const Progress& progress) {
-  // Chosen: half the height takes 0.7 of the speed; a jump of less than a tenth is hardly one.
+  // Chosen: half the height needs 0.7 of the speed, and a jump of less than a tenth is hardly a
+  // jump.
   const std::vector<double> lower = {0.75, 0.5, 0.3, 0.2, 0.1}, same = {1.0};
   const JumpParameters asked = p;
   int done = 0;
@@ -82,8 +85,9 @@ std::string lower_jump(const RobotModel& model, JumpParameters& p, const JumpOpt
 // Resolution of the search for the highest jump [m]. Chosen: 1 % of the default height (30 mm).
 constexpr double kStep = 2.5e-4;
 
-// Over a grid of lift-off heights and stoops, both in shares of the defaults: the greatest height
-// that passes, by doubling and halving from what the grid has given so far.
+// The greatest height that passes, over a grid of lift-off heights and stoops as shares of the
+// defaults. At each point of the grid, the search starts above the best height so far, doubles it
+// while it passes, and then bisects.
 JumpParameters highest_jump(const RobotModel& model, JumpParameters p, const std::string& profile,
                             const Progress& progress) {
   const JumpParameters scaled = jump_defaults(model);
@@ -115,8 +119,8 @@ JumpParameters highest_jump(const RobotModel& model, JumpParameters p, const std
   return best;
 }
 
-// The highest jump of the first profile that has one, where nobody asked for any value; "" and the
-// values unchanged where there is none.
+// The highest jump of the first profile that has one, if no value is given. If there is none,
+// returns "" and leaves the values unchanged.
 std::string any_jump(const RobotModel& model, JumpParameters& p, const JumpOptions& options,
                      const Progress& progress) {
   if (options.height || options.stoop || options.cog_height) return {};
@@ -165,7 +169,7 @@ void new_jump(Context& context, JumpOptions options) {
   }
   if (options.profile.empty()) {
     options.profile = choose_profile(model, p, !options.stoop);
-    jump_pattern(model, p);  // values out of range are refused first
+    jump_pattern(model, p);  // throws if values are out of range
     if (options.profile.empty()) {
       context.print("no actuator profile of " + model.name() + " is strong enough for a jump of " +
                     text::brief(p.height) + " m with a stoop of " + text::brief(p.stoop) +

@@ -1,4 +1,4 @@
-// Loci of one or several runs: COG, ZMP and f_z against time, or from above.
+// Plots of one or several runs: COG, ZMP and f_z against time, or from above.
 
 #include <algorithm>
 #include <filesystem>
@@ -33,7 +33,8 @@ struct LabelledLog {
   SimulationLog log;
 };
 
-// "open_loop" as people read it, with the controller where one closed the loop.
+// The name of a log for people ("open loop" for "open_loop"), with the controller if one closed the
+// loop.
 std::string label_of(const std::string& name, const SimulationLog& log) {
   std::string label = name;
   std::replace(label.begin(), label.end(), '_', ' ');
@@ -42,7 +43,7 @@ std::string label_of(const std::string& name, const SimulationLog& log) {
              : label + ", " + name_of(*log.controller);
 }
 
-// The logs of a RUN, open loop first so that the closed loop lies above it.
+// The logs of a RUN. The open loop comes first, so that the closed loop is drawn above it.
 std::vector<LabelledLog> logs_of(const PlotOptions& options) {
   std::vector<LabelledLog> logs;
   for (const std::string& input : options.inputs) {
@@ -56,7 +57,7 @@ std::vector<LabelledLog> logs_of(const PlotOptions& options) {
     std::map<std::string, SimulationLog> all;
     if (options.logs.empty()) {
       all = read_run(input).logs;
-      all.erase("undisturbed");  // the plot shows the runs under the scenario
+      all.erase("undisturbed");  // the plot only shows the runs under the scenario
     } else
       for (const std::string& name : options.logs) all[name] = read_run_log(input, name);
     const auto first = static_cast<std::ptrdiff_t>(logs.size());
@@ -71,7 +72,7 @@ std::vector<LabelledLog> logs_of(const PlotOptions& options) {
   return logs;
 }
 
-// The robot for the panel of the margin, which a plot can do without where it is not there.
+// The robot for the panel of the margin. Without the robot, the plot has no such panel.
 std::optional<RobotModel> robot_at_hand(const LabelledLog& entry, const PlotOptions& options,
                                         const Context& context) {
   try {

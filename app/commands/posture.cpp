@@ -1,5 +1,5 @@
-// Named postures: list, draw, mirror, change and capture them, and keep them in a library that
-// patterns include.
+// Named postures: the command lists, draws, mirrors, changes and captures them, and keeps them in a
+// library that patterns include.
 
 #include <cmath>
 #include <memory>
@@ -28,9 +28,9 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-using Angles = std::map<std::string, double>;  // by joint [rad], of sliders [m]
+using Angles = std::map<std::string, double>;  // by joint [rad], for sliders [m]
 
-constexpr size_t kMostNamed = 20;  // Chosen: a message that a person still reads
+constexpr size_t kMostNamed = 20;  // Chosen: a person still reads a message of this length
 
 struct PostureCommand {
   std::string source, name, robot, as, out, log, view = "iso";
@@ -39,15 +39,15 @@ struct PostureCommand {
   bool radians = false;
 };
 
-// ---- where postures come from
+// ---- sources of postures
 
-/// What a robot, a pattern or a library offers.
+/// The postures of a robot, a pattern or a library.
 struct PostureSource {
   std::map<std::string, Angles> postures;
-  std::string robot;  ///< the robot that the source names; "" where it names none
+  std::string robot;  ///< the robot that the source names; "" if it names none
 };
 
-// The value of "format" of a JSON text with comments; "" where it is no such text.
+// The value of "format" in a JSON text with comments; "" if it is not such a text.
 std::string format_of(const std::string& text) {
   const auto json = shallow_json<nlohmann::json>(text, true);
   return json.is_object() ? json.value("format", "") : "";
@@ -61,7 +61,7 @@ RobotModel robot_of_source(const Context& context, const PostureCommand& options
   return load_robot(robot, robot_search(context), {.meshes = true});
 }
 
-// Joints that a posture of a robot leaves out are at 0.
+// Joints that a posture of a robot does not name are at 0.
 std::map<std::string, Angles> whole_postures(const RobotModel& model) {
   std::map<std::string, Angles> postures = model.description().postures;
   for (auto& [name, angles] : postures)
@@ -108,7 +108,7 @@ int dof_of(const RobotModel& model, const std::string& joint, const SourcePlace&
   return dof;
 }
 
-// Joints that a posture of a pattern or a library leaves out are as in the robot's home posture.
+// Joints that a posture of a pattern or a library does not name are as in the robot's home posture.
 Eigen::VectorXd theta_of(const RobotModel& model, const Angles& angles, const SourcePlace& place) {
   Eigen::VectorXd theta = model.posture();
   for (const auto& [joint, angle] : angles) theta[dof_of(model, joint, place)] = angle;
@@ -123,7 +123,7 @@ double in_unit(const RobotModel& model, const std::string& joint, double value, 
   return turns && degrees ? value * 180 / std::numbers::pi : value;
 }
 
-// Finer than any encoder: 1e-6 of a degree, of a radian or of a metre.
+// Rounded more finely than any encoder: to 1e-6 of a degree, of a radian or of a metre.
 double rounded(double value) { return std::round(value * 1e6) / 1e6 + 0.0; }
 
 Json angles_json(const RobotModel& model, const Angles& angles, bool degrees) {
@@ -134,7 +134,8 @@ Json angles_json(const RobotModel& model, const Angles& angles, bool degrees) {
   return json;
 }
 
-// "l_knee 43.58, ..."; joints at 0 are left out. A slider has its unit behind the number.
+// Angles in words, such as "l_knee 43.58, ..."; joints at 0 are left out. For a slider, the unit
+// follows the number.
 std::string angles_text(const RobotModel* model, const Angles& angles) {
   std::vector<std::string> words;
   for (const auto& [joint, value] : angles) {
@@ -156,7 +157,8 @@ std::string pointer_of(const std::string& name) {
   return "/postures/" + token;
 }
 
-// A new library, or the author's own text with one posture more; every other byte stays.
+// The text of a new library, or the author's own text with one more posture; every other byte
+// stays.
 std::string library_text(const Context& context, const PostureCommand& options,
                          const RobotModel& model, const std::string& robot, const Angles& angles) {
   std::error_code ignored;
@@ -209,12 +211,13 @@ void save(const Context& context, const PostureCommand& options, const RobotMode
 void list(const Context& context, const PostureCommand& options) {
   const PostureSource source = source_of(context, options);
   std::optional<RobotModel> model;
-  try {  // a library may name a robot that is not here, or none
+  try {  // a library may name no robot, or one that is not here
     model = robot_of_source(context, options, source.robot);
   } catch (const Error&) {
     if (!options.robot.empty()) throw;
   }
-  // The names are known to differ: to look each up in what is there takes quadratic time.
+  // The names are known to be different. To search for each of them among the others would take
+  // quadratic time.
   Json::object_t json;
   std::string out;
   for (const auto& [name, angles] : source.postures) {
@@ -265,7 +268,7 @@ void adjust(const Context& context, const PostureCommand& options) {
   save(context, options, model, options.robot.empty() ? source.robot : options.robot, angles);
 }
 
-/// The joints of a motion at one time.
+/// The joints of a motion at one instant.
 struct Instant {
   std::string robot;
   std::vector<std::string> joints;
@@ -306,7 +309,7 @@ Instant instant_of(const Context& context, const PostureCommand& options) {
   return {task.robot_name, task.robot.dof_names(), task.series.samples[row].state.theta};
 }
 
-// A joint that a run keeps nearer to 0 than this is captured at 0 [rad, m]. Chosen: a joint that is
+// A joint that a run keeps nearer to 0 than this is captured as 0 [rad, m]. Chosen: a joint that is
 // driven to 0 ends within 3e-6, and one count of HOAP-1's encoders is 8e-5.
 constexpr double kAtRest = 1e-5;
 

@@ -1,4 +1,5 @@
-// Clips, pictures, frames and glTF of runs, off-screen and without simulating again.
+// Clips, pictures, frames and glTF of runs. They are drawn off-screen from the logs, without a new
+// simulation.
 
 #include <algorithm>
 #include <chrono>
@@ -38,7 +39,7 @@ struct PreviewOptions {
   bool draft = false;
 };
 
-// The switches of OverlayOptions by the names that --hide and --show take.
+// The switches of OverlayOptions with the names that --hide and --show accept.
 constexpr std::pair<const char*, bool OverlayOptions::*> kMarks[] = {
     {"cog", &OverlayOptions::cog},
     {"zmp", &OverlayOptions::zmp},
@@ -88,7 +89,7 @@ int thread_count(const Context& context) {
 
 void settle(PreviewOptions& options, const Context& context) {
   ClipOptions& clip = options.clip;
-  // A snapshot is as upright as a robot.
+  // A snapshot has upright format, as a robot has.
   parse_size(!options.size.empty() ? options.size
              : options.strip > 0   ? "320x480"
                                    : "1280x720",
@@ -102,7 +103,7 @@ void settle(PreviewOptions& options, const Context& context) {
     fail(ErrorCode::usage, "give either --strip or --exposures, not both");
 }
 
-/// Snapshots between --from and --to; without either, at the most informative times.
+/// Snapshots between --from and --to; if neither is given, at the most informative times.
 StripOptions strip_options(const PreviewOptions& options, const SimulationLog& log) {
   StripOptions strip;
   strip.clip = options.clip;
@@ -132,7 +133,7 @@ ClipSummary write_glb(const RobotModel& model, const SimulationLog& log, const f
   return {static_cast<int>(motions.front().times.size()), 0, 0, clip.fps, {}};
 }
 
-/// One run to one file. `clip` as settled, but for its number of threads.
+/// Draws one run into one file. `clip` has all settings except the number of threads.
 ClipSummary draw_run(const PreviewOptions& options, const std::string& input, const fs::path& path,
                      int threads, const Context& context, const Progress& progress) {
   const Frame frame = frame_of(options.frame);
@@ -155,7 +156,7 @@ ClipSummary draw_run(const PreviewOptions& options, const std::string& input, co
                                  "give another pattern, a RUN, or 'command'");
     ghost = elsewhere ? log_of(context, options.ghost, options.log)
                       : log_of(context, input, options.ghost);
-    if (!elsewhere)  // another log of this run
+    if (!elsewhere)  // an output of another log is not replaced
       require_log_of(model, options.robot, *ghost, input + ", " + options.ghost);
     else if (ghost->joints == log.joints)
       require_postures_of(model, *ghost, options.ghost);
@@ -209,7 +210,7 @@ void preview_one(const PreviewOptions& options, Context& context) {
   context.print_json(json.dump(2));
 }
 
-/// A tile of the contact sheet: the instant worth showing, named after its run.
+/// The tile of a run in the contact sheet: the most informative instant, with the name of the run.
 Image sheet_tile(const PreviewOptions& options, const std::string& input, const Context& context) {
   SimulationLog log = log_of(context, input, options.log);
   const RobotModel model = robot_of_log(context, options.robot, log, input, {.meshes = true});

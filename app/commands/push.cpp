@@ -1,4 +1,5 @@
-// Largest survivable impulse by gait phase and direction, beside open loop and the capture bound.
+// Largest survivable impulse by gait phase and direction, compared with the open loop and the
+// capture bound.
 
 #include "ayumi/study/push.hpp"
 
@@ -38,7 +39,7 @@ std::vector<ControllerSpec> chosen_controllers(const Task& input, const PushComm
   std::vector<ControllerSpec> specs;
   for (const std::string& name : options.controllers) {
     const ControllerType type = controller_type(name);
-    if (type == ControllerKind::none) continue;  // open loop is always there
+    if (type == ControllerKind::none) continue;  // the open loop is always included
     specs.push_back({type, {}});
     if (type == input.pattern.controller.type) specs.back() = input.pattern.controller;
   }
@@ -49,7 +50,7 @@ std::vector<ControllerSpec> chosen_controllers(const Task& input, const PushComm
   for (ControllerSpec& spec : specs) {
     for (const auto& [name, value] : read_pairs(options.gains, "--gain"))
       spec.gains.emplace_back(name, value);
-    check_controller(input.robot, spec);  // says what is wrong
+    check_controller(input.robot, spec);  // throws the reason if the gains are wrong
     refuse_unstable_gains(input, spec, options.unstable);
   }
   return specs;
@@ -75,7 +76,7 @@ PushOptions push_options(const Context& context, const Task& input, const PushCo
   return push;
 }
 
-/// What was asked, for the results file: the same answers only under the same of these.
+/// The request for the results file. Results are only valid for the same request.
 Json study_json(const Task& input, const PushOptions& push) {
   Json controllers = Json::array(), phases = Json::array();
   for (const ControllerSpec& c : push.controllers) {
@@ -115,8 +116,8 @@ std::string ratio_text(const PushLimit& limit, double bound) {
   return text::fixed(bound > 0 ? limit.impulse / bound : 0, 2) + (limit.capped ? "+" : "");
 }
 
-/// One block per phase: the limits of every law in N s, B, and the limits as multiples of B; one
-/// column per direction.
+/// One block for each phase: the limits of every law in N s, the bound B, and the limits as
+/// multiples of B. There is one column for each direction.
 std::string table(const std::vector<PushCase>& cases, const PushOptions& push,
                   const CommandSeries& series) {
   const std::string open = push_baseline(series);

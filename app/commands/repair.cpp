@@ -1,4 +1,5 @@
-// The nearest consistent pattern by Ipopt, written as the author's file with a correction track.
+// Finds the nearest consistent pattern by Ipopt. It is written as the author's file with a
+// correction track.
 
 #include <unistd.h>
 
@@ -40,7 +41,7 @@ struct RepairCommand {
   bool baked = false, from_scratch = false;
   PatternOptions input;
   std::optional<double> margin, safety;
-  RepairOptions repair;  // of what only the command line says
+  RepairOptions repair;  // options that only the command line has
 };
 
 constexpr const char* kPartialMark =
@@ -55,8 +56,8 @@ std::vector<std::string> marks(const RepairResult& result) {
   return {};
 }
 
-// The author's text as it is but for the correction; parameters given on the command line, or
-// relative names that would break in another folder, make it a text of our own.
+// The author's text with only the correction changed. If the command line gives parameters, or if
+// relative names would not be valid in another folder, a new text is written.
 void write_repaired(const Context& context, const RepairCommand& options, const Task& input,
                     const RepairResult& result) {
   Pattern corrected = input.pattern;
@@ -80,7 +81,7 @@ void write_repaired(const Context& context, const RepairCommand& options, const 
   write_pattern(options.out, corrected, marks(result));
 }
 
-// The pattern's own locks as --lock would name them.
+// The pattern's own locks in the form of --lock.
 std::vector<std::string> file_locks(const RepairPreferences& wishes) {
   std::vector<std::string> words = wishes.joints;
   for (const Side side : {Side::left, Side::right})
@@ -186,7 +187,7 @@ nlohmann::ordered_json in_json(const PassingPace& pace) {
   return json;
 }
 
-// Commands that show the changes.
+// The commands that show the changes.
 std::string see_words(const RepairCommand& options, const RepairResult& result) {
   if (result.status == RepairStatus::already_consistent || options.baked || options.from_scratch)
     return "";
@@ -195,7 +196,7 @@ std::string see_words(const RepairCommand& options, const RepairResult& result) 
          " -o moved.mp4\n";
 }
 
-// A pattern that cannot even be sampled may pass with other values of its parameters.
+// Loads the pattern. If it cannot even be sampled, other values of its parameters may help.
 Task load(const Context& context, const RepairCommand& options) {
   try {
     return load_pattern(context, options.pattern, options.input);
@@ -213,8 +214,8 @@ Task load(const Context& context, const RepairCommand& options) {
   }
 }
 
-// The plan of the pattern in place of a motion: whether the legs can follow it is what the repair
-// has to find out.
+// The plan of the pattern instead of a motion, because the repair has to find out whether the legs
+// can follow it.
 Task load_plan(const Context& context, const RepairCommand& options) {
   Pattern pattern = read_pattern(options.pattern, read_pairs(options.input.set, "--set"));
   const std::string name = robot_of(pattern);
@@ -238,7 +239,8 @@ Trust trust_of(const std::string& word) {
   return word == "cog" ? Trust::cog : word == "zmp" ? Trust::zmp : Trust::posture;
 }
 
-// The pattern's wishes, with the command line's locks beside them and its other words over them.
+// The pattern's preferences. The command line adds its locks to them, and its other options replace
+// them.
 RepairOptions repair_options(const RepairCommand& options, const Task& input) {
   RepairOptions repair = preferred_options(input.pattern);
   repair.check = check_options(input, options.tolerances);
@@ -254,7 +256,7 @@ RepairOptions repair_options(const RepairCommand& options, const Task& input) {
   return repair;
 }
 
-// Errors of the command line alone are refused before the pattern is sampled.
+// Errors of the command line itself are refused before the pattern is sampled.
 void refuse_wrong_wishes(const Context& context, const RepairCommand& options) {
   refuse_unknown_tolerances(options.tolerances);
   if (options.locked.empty() && options.weights.empty()) return;
@@ -278,13 +280,14 @@ int exit_code_of(const RepairResult& result) {
              : 4;
 }
 
-// What a repair works on, for a user who waits: said after some seconds, again when another program
-// begins, and when the repair is stopped. It is not progress, so it is also printed with -q.
+// Tells a waiting user what a repair works on: after some seconds, again when another step takes
+// long, and when the repair is stopped. This is not progress, so it is also printed with -q.
 class StruggleTeller {
  public:
-  // Chosen: a usual repair ends before that, and a user who waits longer wants to know why [s].
+  // Time after which the first message comes [s]. Chosen: a usual repair ends before that, and a
+  // user who waits longer wants to know the reason.
   static constexpr double kSilence = 5;
-  // Chosen: a line of a terminal or two.
+  // Number of findings in a message. Chosen: one or two lines of a terminal.
   static constexpr size_t kMostNamed = 3;
 
   void note(const ConsistencyReport& check) {
@@ -319,7 +322,8 @@ class StruggleTeller {
         " Ctrl-C stops the repair");
   }
 
-  // What the last check has found; "" before the first check. `nothing`: where no error is left.
+  // The findings of the last check in words; "" before the first check, and `nothing` if no error
+  // is left.
   std::string left_words(const std::string& nothing) const {
     if (!checked_) return "";
     return " " + (left_.empty() ? nothing : "These errors are left: " + words()) + ".";
@@ -386,14 +390,16 @@ void repair_pattern(Context& context, RepairCommand options) {
   context.exit_code = exit_code_of(result);
   const bool written = context.exit_code == 0 || options.repair.keep_partial;
   if (written) write_repaired(context, options, input, result);
-  // Of a motion that is made from scratch, only the plan stands in the pattern: it is not sampled.
+  // A motion that is made from scratch only has its plan in the pattern, so the pattern cannot be
+  // sampled.
   std::vector<Mistake> mistakes;
   if (context.exit_code == 4)
     mistakes = options.from_scratch ? impossible_values(input.robot, input.pattern)
                                     : likely_causes(input, check_options(input, options.tolerances),
                                                     result.before, context.progress());
   std::vector<PassingValues> values;
-  const bool changes = context.exit_code == 4 && !options.from_scratch;  // of a motion
+  // True for changes of an existing motion.
+  const bool changes = context.exit_code == 4 && !options.from_scratch;
   if (changes && !input.pattern.parameters.empty())
     values = passing_parameters(context, options.pattern, options.input, options.tolerances);
   PassingPace pace;

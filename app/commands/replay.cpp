@@ -1,6 +1,6 @@
-// A table as the robot would play it: read back, turned into counts, clamped as the motor boards
-// do, and played open loop on the servos in the simulated robot. The values that are sent are the
-// ones that are judged.
+// Plays a table as the robot would play it. The table is read back, turned into counts and clamped
+// as the motor boards do it, and played open loop on the servos of the simulated robot. The judged
+// values are the values that are sent.
 
 #include <algorithm>
 #include <cmath>
@@ -37,7 +37,7 @@ struct ReplayCommand {
   double rate = 0, settle = 1;
 };
 
-/// The table and what it was recognized as.
+/// The table and its recognized format.
 struct Played {
   ReferenceTrajectory table;
   std::string format, layout;
@@ -45,9 +45,9 @@ struct Played {
 
 /// How closely a simulated robot follows the targets.
 struct Tracking {
-  double mean = 0, most = 0;  ///< |what the encoder reads - target| [rad]
-  std::string joint;          ///< of the largest
-  double at = 0;              ///< of the largest [s]
+  double mean = 0, most = 0;  ///< mean and largest |what the encoder reads - target| [rad]
+  std::string joint;          ///< joint of the largest difference
+  double at = 0;              ///< time of the largest difference [s]
 };
 
 std::vector<std::string> plants_of(const std::string& choice) {
@@ -98,12 +98,13 @@ Played read_played(const ReplayCommand& options, const RobotModel& model,
   return played;
 }
 
-/// The motion of the table as a plan: where feet and COG are to be, for the verdict.
+/// The motion of the table as a plan, which states where feet and COG should be, for the verdict.
 Task planned(const ReplayCommand& options, const RobotModel& model, const std::string& bytes,
              const BoardTargets& board, const Context& context) {
   ImportedMotion read =
       read_motion(bytes, options.file, model, {.rate = options.rate, .commands = true});
-  // In the ramp, the columns of the base are not those of its posture; feet that stand place it.
+  // In the ramp, the columns of the base do not belong to its posture; there, the standing feet
+  // determine the base.
   const std::vector<Support>& support = read.motion.support;
   if (std::find(support.begin(), support.end(), Support::none) == support.end())
     read.motion.base.clear();

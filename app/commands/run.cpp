@@ -1,6 +1,6 @@
-// The main job: check -> (repair when asked) -> simulate, open loop beside closed loop -> joint
-// tables -> clip, snapshots, loci. The table for the robot is that of the law without the scripted
-// disturbances; the run under them is the one that is judged.
+// The main command: check -> (repair if requested) -> simulate, both open and closed loop -> joint
+// tables -> clip, snapshots, plots. The table for the robot is that of the law without the scripted
+// disturbances; the run with the disturbances is the one that is judged.
 
 #include <algorithm>
 #include <memory>
@@ -48,11 +48,11 @@ struct RunCommand {
   SimulationChoice choice;
   bool repair = false;
   bool pictures = true;
-  bool light = false;  ///< the logs and the verdicts only
+  bool light = false;  ///< only the logs and the verdicts
   bool all = false;    ///< every finding
 };
 
-/// What the run writes, as far as it is known before the run.
+/// The names of the files that the run writes, as far as they are known before the run.
 std::vector<std::string> names_of_files(const RunCommand& options) {
   std::vector<std::string> names = {"run.json", "log_open_loop.bin", "log_closed_loop.bin",
                                     "log_undisturbed.bin"};
@@ -66,7 +66,7 @@ std::vector<std::string> names_of_files(const RunCommand& options) {
   return names;
 }
 
-// Where the text behind the name of a stage begins.
+// Column at which the text after the name of a stage begins.
 constexpr size_t kStageHang = 12;
 
 std::string stage_line(const std::string& stage, const std::string& text) {
@@ -111,19 +111,20 @@ class MainJob {
   const RunCommand& options_;
   fs::path target_;
   std::optional<RunOutput>
-      output_;                // opened when the input has been read: bad input leaves nothing
-  std::string inconsistent_;  // why the pattern, repaired where asked, is; empty: it is not
+      output_;  // opened after the input has been read, so that bad input leaves no files
+  std::string inconsistent_;  // why the (repaired) pattern is inconsistent; empty: it is consistent
   RunFolder folder_;
   StreamedRun closed_loop_;
-  std::optional<StreamedRun> undisturbed_;  // where the pattern has disturbances
+  std::optional<StreamedRun> undisturbed_;  // only if the pattern has disturbances
   Json summary_ = Json::object();
 };
 
-// Chosen: the name of the pattern and what is said after the check take 12 rows of 80 columns where
-// everything is written, and up to 3 more where the run is worse than open loop.
+// Number of rows for other lines than the check. Chosen: the name of the pattern and the lines
+// after the check take 12 rows of 80 columns if everything is written, and up to 3 more if the run
+// is worse than open loop.
 constexpr size_t kRowsOfOtherStages = 14;
 
-// The verdict with the shares of the limits, and without.
+// The verdict, in a form with the shares of the limits and in a form without them.
 AnswerPart check_part(const ConsistencyReport& report, const RobotModel& model) {
   const std::string verdict = painted_verdict(report) + ": ZMP margin " +
                               text::fixed(1e3 * report.summary[FindingKind::support_margin], 1) +
@@ -135,8 +136,8 @@ AnswerPart check_part(const ConsistencyReport& report, const RobotModel& model) 
           kStageHang};
 }
 
-// Differences worth a line. Chosen: below a degree, nobody sees a tilt in a clip; a tenth of the
-// torque limit is more than rounding and less than a motor notices.
+// Differences that are worth a line. Chosen: nobody sees a tilt of less than a degree in a clip; a
+// tenth of the torque limit is more than rounding and less than a motor notices.
 constexpr double kMoreTilt = std::numbers::pi / 180;  // [rad]
 constexpr double kMoreTorque = 0.1;                   // share of the limit
 
@@ -174,11 +175,11 @@ void MainJob::check(Task& input) {
   room.rows -= kRowsOfOtherStages;
   context_.print(options_.all ? in_full(parts) : fitted(parts, room, where_more_is(judged.report)));
   summary_["check"] = Json::parse(check_json(judged.report));
-  summary_["repair"] = nullptr;  // stays so unless a repair was asked for and needed
+  summary_["repair"] = nullptr;  // stays null unless a repair was requested and needed
   folder_.sections.emplace_back("sampled_from", Json(input.series.origin).dump());
   folder_.sections.emplace_back("check", check_json(judged.report));
   inconsistent_ = judged.reason();
-  if (judged.motion_consistent) return;  // goals of VIIP are not keys that repair could move
+  if (judged.motion_consistent) return;  // repair cannot change goals of VIIP, which are no keys
   if (options_.repair)
     repair_pattern(input, judged.goal_need.text.empty());
   else
@@ -236,7 +237,7 @@ void MainJob::simulate(const Task& input) {
   summary_["undisturbed"] = nullptr;
   folder_.sections.emplace_back("simulate", both.dump());
   if (closed.about.scenario.empty()) return;
-  closed_loop_.torque.resize(0, 0);  // the table for the robot is of the other run
+  closed_loop_.torque.resize(0, 0);  // the table for the robot comes from the other run
   SimulationChoice calm = options_.choice;
   calm.scenario = "none";
   undisturbed_ = run_streamed(input, "undisturbed", calm, {.postures = true, .torque = true});
@@ -263,8 +264,8 @@ void MainJob::export_tables(const Task& input) {
   write_hoap(input);
 }
 
-// A table for the robot is judged by the robot's own actuators, not by the actuators that a study
-// assumes.
+// A table for the robot is judged by the robot's own actuators. Actuators that a study assumes are
+// not used.
 void MainJob::write_hoap(const Task& input) {
   SafetyOptions safety;
   safety.profile = input.robot.limits().name;
@@ -307,7 +308,7 @@ void MainJob::write_hoap(const Task& input) {
   say("export", text);
 }
 
-// Pictures and report need the samples of the logs that they are of.
+// Reads the samples of the logs back, which pictures and the report need.
 void MainJob::read_back() {
   for (const char* name : {"open_loop", "closed_loop"})
     folder_.logs[name] = with_samples(folder_.written.at(name), output_->file(log_file_name(name)));
@@ -315,7 +316,7 @@ void MainJob::read_back() {
 
 void MainJob::draw(const RobotModel& model, const std::shared_ptr<const RobotLook>& look,
                    const std::string& title) {
-  // Pictures show the plan where the robot is; curves do so by themselves.
+  // Pictures show the plan in the frame of the robot; curves choose their frame themselves.
   const SimulationLog closed = in_frame(model, folder_.logs.at("closed_loop"), Frame::world);
   const std::vector<LociRun> runs = {{"open loop", &folder_.logs.at("open_loop")},
                                      {name_of(closed.controller.value()), &closed}};
@@ -398,7 +399,7 @@ bool MainJob::run(const std::string& file) {
 }
 
 void run_patterns(Context& context, const RunCommand& options) {
-  plant_of(options.choice.plant);  // what is missing is refused before anything is computed
+  plant_of(options.choice.plant);  // a missing plant is refused before anything is computed
   if (options.pictures) require_encoder();
   const bool several = options.patterns.size() > 1;
   std::vector<fs::path> targets;

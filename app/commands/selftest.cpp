@@ -1,5 +1,5 @@
-// Compares the results of this machine with those that every machine should give, bit for bit.
-// Where a change is meant to move numbers, tests/update_selftest.sh writes the new hashes.
+// Compares the results of this machine, bit for bit, with those that every machine should give. If
+// a change is meant to change numbers, tests/update_selftest.sh writes the new hashes.
 
 #include <array>
 #include <nlohmann/json.hpp>
@@ -22,8 +22,8 @@ using Json = nlohmann::ordered_json;
 struct Job {
   const char* name;
   const char* words;
-  std::string (*text)(const Context&);  ///< what is hashed
-  const char* sha256;                   ///< of the text, on every machine
+  std::string (*text)(const Context&);  ///< makes the text that is hashed
+  const char* sha256;                   ///< SHA-256 of the text on every machine
 };
 
 Task bundled_task(const Context& context, const char* name) {
@@ -33,7 +33,7 @@ Task bundled_task(const Context& context, const char* name) {
   return task;
 }
 
-/// Everything that a run of the pattern computes, without the names of files.
+/// Everything that a run of the pattern computes, without names of files.
 std::string run_text(const Context& context, const char* name) {
   const Task task = bundled_task(context, name);
   SimulationLog log = simulate(task, simulate_options(task), context.progress());
@@ -45,7 +45,7 @@ std::string walk_text(const Context& context) { return run_text(context, "hoap1_
 std::string jump_text(const Context& context) { return run_text(context, "hoap1_jump.json"); }
 std::string viip_text(const Context& context) { return run_text(context, "hoap1_viip_walk.json"); }
 
-/// The correction of the walk with its ZMP 36 mm outwards in the fifth step.
+/// The correction of the walk after its ZMP was moved 36 mm outwards in the fifth step.
 std::string repair_text(const Context& context) {
   Task task = bundled_task(context, "hoap1_walk.json");
   Pattern pattern = task.pattern;
@@ -60,8 +60,8 @@ std::string repair_text(const Context& context) {
   return std::string(name_of(result.status)) + "\n" + correction_text(result.correction);
 }
 
-/// Largest impulses by which the walk does not fall: standing and in a single support, from two
-/// directions.
+/// The largest impulses after which the walk does not fall, standing and in a single support, from
+/// two directions.
 std::string push_text(const Context& context) {
   const Task task = bundled_task(context, "hoap1_walk.json");
   PushOptions push;

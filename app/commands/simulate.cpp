@@ -1,4 +1,4 @@
-// One closed-loop run in Ayumi's own integrator under the pattern's scenario.
+// Runs one closed-loop simulation in Ayumi's own integrator under the pattern's scenario.
 
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -28,10 +28,10 @@ struct SimulateCommand {
   PatternOptions input;
   SimulationChoice choice;
   std::string study;
-  long number = -1;  // of a case of `certify`; negative: none
+  long number = -1;  // number of a case of `certify`; negative: none
 };
 
-// The file of the log in the making; empty: no run is written.
+// The file of the log while it is being made; empty if no run is written.
 fs::path log_file(const std::optional<RunOutput>& output) {
   return output ? output->file(log_file_name("closed_loop")) : fs::path();
 }
@@ -43,7 +43,7 @@ StreamedRun simulate_pattern_once(const Context& context, const Task& input,
                            log_file(output), {.postures = output.has_value()});
 }
 
-/// One case of `certify`: the robot, ground and pushes that it draws.
+/// Simulates one case of `certify` with the robot, ground and pushes that it draws.
 StreamedRun simulate_case(const Context& context, const Task& input, const SimulateCommand& options,
                           const std::optional<RunOutput>& output) {
   Study study = load_study(input, options.study);
@@ -94,7 +94,8 @@ void simulate_pattern(Context& context, const SimulateCommand& options) {
         {"run.json", "log_closed_loop.bin", "reference.csv", "reference_pushed.csv"});
   const Task input = load_pattern(context, options.pattern, options.input);
   refuse_unstable_gains(input, chosen_controller(input, options.choice), options.choice.unstable);
-  std::optional<RunOutput> output;  // opened when the input has been read: bad input leaves nothing
+  // Opened after the input has been read, so that bad input leaves no files.
+  std::optional<RunOutput> output;
   if (!options.out.empty()) output.emplace(options.out, context.force);
   StreamedRun simulated = options.number < 0
                               ? simulate_pattern_once(context, input, options, output)

@@ -1,4 +1,5 @@
-// Many cases of one study, on this machine, in shards or on a cluster: results as one row per case.
+// Many cases of one study, on this machine, in shards or on a cluster. The results have one row for
+// each case.
 
 #include <algorithm>
 #include <functional>
@@ -25,7 +26,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-/// Files and judgements that are made of the results.
+/// Files and judgements that are made from the results.
 struct SweepOutputs {
   std::string csv, page, junit;
   std::vector<std::string> expect;
@@ -35,7 +36,7 @@ struct SweepOutputs {
 struct SweepCommand {
   std::string study, out, shard, cases, engine = "local";
   bool retry = false;
-  double case_limit = 0;  ///< [s]; 0: none
+  double case_limit = 0;  ///< largest processor time of a case [s]; 0: no limit
   SlurmOptions slurm;
   SweepOutputs outputs;
 };
@@ -96,13 +97,14 @@ void conclude(Context& context, const ResultsDatabase& results, const SweepOutpu
   context.exit_code = all ? 0 : 1;
 }
 
-/// The files that SQLite keeps beside a database that is in use.
+/// Removes the files that SQLite keeps beside a database that is in use.
 void remove_companions(const fs::path& file) {
   std::error_code ignored;
   for (const char* part : {"-wal", "-shm"}) fs::remove(file.string() + part, ignored);
 }
 
-/// Calls `work`; in the message of its error, the name of the file stands for the temporary one.
+/// Calls `work`. In the message of its error, the name of the file replaces that of the temporary
+/// file.
 void with_name_of(const fs::path& file, const fs::path& temporary,
                   const std::function<void()>& work) {
   try {
@@ -118,8 +120,8 @@ void with_name_of(const fs::path& file, const fs::path& temporary,
   }
 }
 
-/// A file that is there as a whole or not at all, also where the program is killed meanwhile. It
-/// takes the place of an older one only after the expectations are known to be understood.
+/// Makes a file that appears as a whole or not at all, even if the program is killed in between. It
+/// replaces an older file only after the expectations have been understood.
 void create_results(const fs::path& file, const SweepHead& head,
                     const std::vector<std::string>& expect) {
   write_file_with(file, [&](const fs::path& temporary) {
@@ -132,7 +134,7 @@ void create_results(const fs::path& file, const SweepHead& head,
   });
 }
 
-/// The cases of the shard and of the list.
+/// The cases that belong to both the shard and the list.
 std::vector<bool> asked_cases(const SweepCommand& options, const Shard& shard, long count) {
   std::vector<bool> asked(static_cast<size_t>(count), options.cases.empty());
   if (!options.cases.empty())
@@ -166,12 +168,13 @@ void run_sweep(Context& context, const SweepCommand& options) {
   const SweepHead head = head_of(runner, context.seed);
   const FileLock lock(options.out);
   if (context.force || !fs::exists(options.out)) {
-    if (options.engine == "slurm") require_slurm();  // before there is an empty file of results
+    if (options.engine == "slurm") require_slurm();  // before an empty file of results is made
     create_results(options.out, head, options.outputs.expect);
   }
   const auto results = std::make_unique<ResultsDatabase>(options.out, ResultsDatabase::Mode::write);
   results->require_study(head);
-  judge_expectations(*results, options.outputs.expect);  // a wrong one is refused before the work
+  // A wrong expectation is refused before the work.
+  judge_expectations(*results, options.outputs.expect);
   if (!shard.whole()) results->add_shards({shard.word()});
   if (options.retry)
     context.print("  " + text::counted(results->forget_errors(asked), "case") +
@@ -203,7 +206,7 @@ void run_sweep(Context& context, const SweepCommand& options) {
   results->close();
 }
 
-/// Every case that no file has.
+/// Throws if a case is in none of the files.
 void refuse_missing(const std::vector<std::unique_ptr<ResultsDatabase>>& files, long cases) {
   std::vector<bool> have(static_cast<size_t>(cases));
   std::vector<std::string> shards;

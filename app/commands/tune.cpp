@@ -1,4 +1,4 @@
-// Better DTAD gains for a pattern by search on a declared objective.
+// Searches better DTAD gains for a pattern by a declared objective.
 
 #include "ayumi/study/tune.hpp"
 
@@ -50,14 +50,14 @@ std::string line(const std::string& label, const TuneFigures& f) {
          text::fixed(f.unpushed, 4) + "\n";
 }
 
-// The text of the pattern with other gains; every other byte stays.
+// The text of the pattern with other gains; every other byte stays the same.
 std::string text_with_gains(const TuneCommand& options, const TuneResult& result) {
   std::vector<PatternEdit> edits = {
       {PatternEdit::Kind::set, "/controller/type", Json(name_of(ControllerKind::dtad)).dump()}};
   for (const auto& [name, value] : result.gains)
     edits.push_back({PatternEdit::Kind::set, "/controller/gains/" + name, Json(value).dump()});
   std::string text = edited_text(read_file(options.pattern), edits);
-  pattern_of_text(text, options.out);  // what it names has to be there from the new place
+  pattern_of_text(text, options.out);  // the named files have to exist from the new place
   return text;
 }
 

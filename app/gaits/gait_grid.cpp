@@ -13,11 +13,11 @@ namespace ayumi::app {
 
 namespace {
 
-/// Values of an axis at most. Chosen: above what can be read in a map; half or twice of it changes
-/// only which mistyped list is refused.
+/// Largest number of values of an axis. Chosen: more than a person can read in a map. Half or twice
+/// of it only changes which mistyped lists are refused.
 constexpr long kMostValues = 1000;
-/// Distance of two values of an axis [m/s, deg/s, s]. Chosen: names of cells differ, and below what
-/// a walk can show; half or twice of it changes nothing.
+/// Smallest distance of two values of an axis [m/s, deg/s, s]. Chosen: the names of cells differ,
+/// and no walk shows a smaller difference. Half or twice of it changes nothing.
 constexpr double kLeastDistance = 1e-6;
 
 std::vector<std::string> split_at(const std::string& words, char separator) {
@@ -58,7 +58,7 @@ std::vector<double> axis_values(const std::string& words, const std::string& opt
                                  " to " + range[1] + "; give a count of 2 or more");
     for (double i = 0; i < count; ++i) {
       const double value = count == 1 ? from : from + (to - from) * i / (count - 1);
-      // As a person would write it: 0.1 in place of 0.1 + 1e-17.
+      // The value as a person would write it: 0.1 instead of 0.1 + 1e-17.
       values.push_back(axis_value(text::brief(1e-9 * std::round(1e9 * value), 9), option));
     }
   } else if (range.size() == 1) {
@@ -83,7 +83,7 @@ GaitCell GaitGrid::cell(size_t index) const {
   const size_t s = index % sideways.size(), f = index / sideways.size() % forward.size();
   const size_t rest = index / (sideways.size() * forward.size());
   const size_t t = rest % turn.size(), p = rest / turn.size();
-  // Whole numbers in most grids, so that names have no points.
+  // The numbers are whole in most grids, so that names have no points.
   const auto thousandths = [](double value) { return text::brief(1e3 * value, 9); };
   return {.name = "f" + thousandths(forward[f]) + "_s" + thousandths(sideways[s]) + "_t" +
                   text::brief(turn[t], 9) + "_p" + thousandths(period[p]),
@@ -107,7 +107,7 @@ std::vector<GaitCell> GaitGrid::corners() const {
 }
 
 std::vector<std::pair<size_t, size_t>> GaitGrid::neighbours() const {
-  // Values of each axis, and the distance of two neighbours in the list of cells.
+  // The number of values of each axis, and the distance of two neighbours in the list of cells.
   const std::array<std::pair<size_t, size_t>, 4> axes = {
       {{sideways.size(), 1},
        {forward.size(), sideways.size()},

@@ -32,16 +32,16 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-/// Share of a disturbance of the pendulum that is left when a walk has forgotten it. Chosen: of a
-/// COG that is 15 mm elsewhere, 1.5 um are left, far below what a loop may leave open. With half or
+/// Share of a disturbance of the pendulum that is left when it counts as decayed. Chosen: if a COG
+/// is displaced by 15 mm, 1.5 um are left, far below the gap that a loop may have. With half or
 /// twice of it, walks have the same number of steps, or one more.
 constexpr double kForgotten = 1e-4;
-/// Of footholds [m, rad]. Chosen: with 4, as new patterns have them, the steps of a walk that turns
-/// differ by 0.05 mm and the posture by 0.02 degrees, more than a loop may leave open; with 7, by
-/// less than the solver leaves.
+/// Number of decimals of footholds [m, rad]. Chosen: with 4, as in new patterns, the steps of a
+/// walk that turns differ by 0.05 mm and the posture by 0.02 degrees, more than a loop may have;
+/// with 7, they differ by less than the accuracy of the solver.
 constexpr int kDecimals = 7;
-/// COG heights that are tried, in those of new walks. Chosen: as for a single walk that does not
-/// pass; the knees bend too little above them and too much below them.
+/// COG heights that are tried, as multiples of the height in new walks. Chosen: the same as for a
+/// single walk that does not pass; above them the knees bend too little, and below them too much.
 constexpr double kHeights[] = {1, 0.97, 1.02, 0.94, 0.91};
 
 bool is_of_the_walk(const Error& error) {
@@ -50,13 +50,13 @@ bool is_of_the_walk(const Error& error) {
 
 std::string share_words(double share) { return text::brief(100 * share, 3) + " %"; }
 
-/// Why a walk of the library is missing; thrown where it is found.
+/// The reason why a walk of the library is missing; it is thrown where it is found.
 struct Missing {
-  std::string stage;  ///< "generate", "repair", "loop", "simulate", "certify"
+  std::string stage;  ///< stage: "generate", "repair", "loop", "simulate", "certify"
   std::string reason;
 };
 
-/// The entry `head` and what `work` adds to it, which may throw Missing.
+/// The entry `head` with the members that `work` adds to it; `work` may throw Missing.
 template <typename Work>
 GaitResult gait_result(Json head, const Work& work) {
   GaitResult result;
@@ -71,7 +71,8 @@ GaitResult gait_result(Json head, const Work& work) {
   return result;
 }
 
-/// What `generate` makes; an error about the walk itself is the reason why it is missing.
+/// The result of `generate`. An error about the walk itself becomes the reason why the walk is
+/// missing.
 template <typename Generate>
 auto generated(const Generate& generate) {
   try {
@@ -114,7 +115,7 @@ GaitMaker::GaitMaker(RobotModel model, const GaitOptions& options)
   if (!options_.certify) return;
   Task still = make_task(stand_pattern(model_, 0.1, options_.cog_height), model_, profile_, {}, 1);
   study_ = load_study(still, options_.study_file);
-  // What the study says of things that this robot does not have is refused before the first walk.
+  // If the study names parts that this robot does not have, it is refused before the first walk.
   still.pattern.controller = controller_;
   const UncertainTask refuses(still.robot, still.series, study_.uncertainty,
                               simulate_options(still));
@@ -169,7 +170,7 @@ WalkParameters GaitMaker::walk(const GaitCell& cell, int steps) const {
   w.steps = steps;
   w.period = cell.period;
   w.stride = cell.forward * cell.period;
-  w.side = 2 * cell.sideways * cell.period;  // only every second step leads sideways
+  w.side = 2 * cell.sideways * cell.period;  // only every second step moves sideways
   w.turn = cell.turn * cell.period;
   w.cog_height = options_.cog_height;
   return w;
@@ -221,7 +222,7 @@ void GaitMaker::simulate(const Task& task, Json& json, const Progress& progress)
 
 namespace {
 
-/// Rows from `first` on, `count` of them.
+/// The rows of the table from `first` on, `count` of them.
 ReferenceTrajectory rows_of(const ReferenceTrajectory& table, size_t first, size_t count) {
   ReferenceTrajectory part = table;
   part.rows.assign(table.rows.begin() + static_cast<long>(first),
@@ -278,7 +279,8 @@ void GaitMaker::make(const GaitCell& cell, GaitResult& result, const Progress& p
   const std::string pattern = "patterns/" + cell.name + ".json";
   result.files.emplace_back(pattern, text);
 
-  // Rows of the walk, and of the cycle at the next rate of which a whole number is in it.
+  // Rows of the walk, and rows of the cycle. The rate of the cycle is the nearest one with a whole
+  // number of rows.
   const double length = static_cast<double>(cycle.end - cycle.begin) * task.series.dt;
   ReferenceTrajectory table = table_of_series(model_, profile_, task.series, ServoContent::ideal);
   table.provenance = provenance(task, "none");

@@ -1,6 +1,6 @@
 #pragma once
-// Makes the walks of a library: each is generated, checked, repaired where it must be, closed to a
-// cycle, simulated and certified; and the walks that change from one cell to a neighbour.
+// Makes the walks of a library. Each walk is generated, checked, repaired if necessary, closed to a
+// cycle, simulated and certified. Also makes the walks that change from one cell to a neighbour.
 
 #include <nlohmann/json.hpp>
 
@@ -15,18 +15,19 @@ namespace ayumi::app {
 
 /// Requirements for every walk.
 struct GaitOptions {
-  std::string robot;       ///< as patterns in the folder of patterns name it
+  std::string robot;       ///< robot as patterns in the folder of patterns name it
   std::string profile;     ///< actuator profile; "": the robot's default
-  std::string controller;  ///< "": that of new patterns
-  double cog_height = 0;   ///< 0: starting_height() [m]
-  double rate = 50;        ///< of the rows of tables and archives [1/s]
-  bool certify = true;     ///< false: one run of the robot as it is modelled
-  CertifyOptions study;    ///< of each cell; its threads are not used
-  std::string study_file;  ///< "": that of the robot
+  std::string controller;  ///< controller; "": that of new patterns
+  double cog_height = 0;   ///< height of the COG; 0: starting_height() [m]
+  double rate = 50;        ///< rate of the rows of tables and archives [1/s]
+  bool certify = true;     ///< false: instead, one run of the robot as it is modelled
+  CertifyOptions study;    ///< study of each cell; its number of threads is not used
+  std::string study_file;  ///< file of the uncertainty; "": that of the robot
   bool transitions = true;
 };
 
-/// A cell or a transition that was made, or why there is none. `json` is its entry in the index.
+/// A cell or a transition that was made, or the reason why there is none. `json` is its entry in
+/// the index.
 struct GaitResult {
   nlohmann::ordered_json json;
   LibraryFiles files;
@@ -42,29 +43,31 @@ class GaitMaker {
   const Study& study() const { return study_; }
   const ControllerSpec& controller() const { return controller_; }
 
-  /// The COG height with which most of the cells pass the check without a repair; of several, the
-  /// one nearest to that of new walks. 0: that one [m].
+  /// The COG height with which most of the cells pass the check without a repair. If there are
+  /// several, the one nearest to the height of new walks. 0 means the height of new walks [m].
   double best_height(const std::vector<GaitCell>& cells, int threads,
                      const Progress& progress) const;
-  /// Of all walks from now on; 0: that of new walks [m].
+  /// Sets the COG height of all walks from now on; 0: that of new walks [m].
   void use_height(double height) { options_.cog_height = height; }
   double height() const;
 
-  /// The same for any number of threads. Any number of them may call it.
+  /// Makes a cell. The result is the same for any number of threads, all of which may call this.
   GaitResult make(const GaitCell& cell, const Progress& progress) const;
-  /// A walk from one cell to another.
+  /// Makes a walk from one cell to another.
   GaitResult change(const GaitCell& from, const GaitCell& to, const Progress& progress) const;
 
-  /// The walk of a cell. `steps` moves, and one step more that brings the feet together.
+  /// The walk of a cell, with `steps` moving steps and one more step that brings the feet together.
   WalkParameters walk(const GaitCell& cell, int steps) const;
-  /// Steps after which a walk has forgotten its start, or before which it does not know its end.
+  /// Number of steps at the beginning of a walk that depend on its start, and of steps at its end
+  /// that depend on this end.
   int memory(double period) const;
-  /// The same for the beginning, an even number, so that each cycle begins with the same foot.
+  /// The same number at the beginning, rounded up to an even number, so that each cycle begins with
+  /// the same foot.
   int lead(double period) const;
 
  private:
   struct Made;
-  // These throw the reason why the walk is missing.
+  // These functions throw Missing, the reason why the walk is missing.
   Made made(Pattern pattern, const Progress& progress) const;
   void simulate(const Task& task, nlohmann::ordered_json& json, const Progress& progress) const;
   void make(const GaitCell& cell, GaitResult& result, const Progress& progress) const;

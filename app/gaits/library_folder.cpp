@@ -15,9 +15,10 @@ namespace {
 constexpr const char* kStaging = ".ayumi_part";
 constexpr const char* kIndex = "index.json";
 constexpr const char* kAsked = "asked.json";
-/// There while files are moved: those that are in their place then are the library's own.
+/// A file that exists while files are moved. It shows that the files that are already in their
+/// place belong to the library.
 constexpr const char* kDelivering = "delivering.json";
-/// What a library has at the top of its folder beside the index.
+/// Names at the top of a library's folder, except the index.
 constexpr const char* kTop[] = {"patterns", "walks", "cycles", "transitions", "map.svg", "map.png"};
 constexpr const char* kGaitsFormat = "ayumi.gaits/1";
 
@@ -26,8 +27,8 @@ bool is_there(const fs::path& path) {
   return fs::exists(fs::symlink_status(path, ignored));
 }
 
-/// The files that a finished library lists, the index included. Names that leave the folder are no
-/// library's.
+/// The files that a finished library lists, including the index. A library has no names that leave
+/// its folder.
 std::vector<std::string> files_of_library(const fs::path& folder) {
   const fs::path index = folder / kIndex;
   std::vector<std::string> files = {kIndex};
@@ -84,7 +85,8 @@ LibraryFolder::LibraryFolder(const fs::path& folder, const Json& asked, bool rep
          "this folder holds an unfinished library that was begun with other options; give "
          "those options to go on, give --force to begin again, or choose another folder");
   }
-  // The same question goes on also with --force, unless it was finished and delivered before.
+  // A library with the same request is continued, even with --force, unless it was finished and
+  // delivered before.
   if (is_there(staging_ / kAsked) && read_file(staging_ / kAsked) == text) return;
   fs::remove_all(staging_, error);
   fs::create_directories(staging_ / "done", error);
@@ -98,7 +100,8 @@ std::optional<Json> LibraryFolder::known(const std::string& name) const {
   const fs::path file = staging_ / "done" / (name + ".json");
   if (!is_there(file)) return {};
   auto json = shallow_json<Json>(read_file(file));
-  if (json.is_discarded()) return {};  // written whole, so something else has changed it
+  // The file was written as a whole, so something else has changed it.
+  if (json.is_discarded()) return {};
   return json;
 }
 
@@ -125,7 +128,7 @@ void LibraryFolder::deliver(const Json& index, const std::vector<std::string>& p
   write_file(staging_ / kIndex, index.dump(1) + "\n");
   write_file(staging_ / kDelivering, "true\n");
   try {
-    // From here until the index is moved there is no complete library in the folder.
+    // From here until the index is moved, there is no complete library in the folder.
     for (const std::string& path : previous) fs::remove(target_ / path);
     for (const std::string& path : paths) {
       fs::create_directories((target_ / path).parent_path());
@@ -138,7 +141,7 @@ void LibraryFolder::deliver(const Json& index, const std::vector<std::string>& p
   }
   std::error_code ignored;
   fs::remove_all(staging_, ignored);
-  // Folders of the library that was replaced.
+  // Removes empty folders of the library that was replaced.
   for (const char* name : kTop)
     if (fs::is_directory(target_ / name, ignored) && fs::is_empty(target_ / name, ignored))
       fs::remove(target_ / name, ignored);

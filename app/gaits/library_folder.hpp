@@ -1,6 +1,7 @@
 #pragma once
-// The folder of a library of walks while it is made: every finished cell and transition is kept in
-// a hidden folder, so that a stopped program goes on; the library appears when it is complete.
+// The folder of a library of walks while it is being made. Every finished cell and transition is
+// kept in a hidden folder, so that a stopped program can continue. The library appears when it is
+// complete.
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -13,29 +14,30 @@
 
 namespace ayumi::app {
 
-/// Bytes by the path of a file in the library.
+/// The bytes of each file in the library, by its path.
 using LibraryFiles = std::vector<std::pair<std::string, std::string>>;
 
 class LibraryFolder {
  public:
-  /// `asked` decides every byte of the library. With `replace`, a library that is there will be
-  /// replaced, and an unfinished one is begun anew. Throws Error(bad_file) where another process is
-  /// writing, where the folder holds something else under a name of the library, a finished library
-  /// (unless `replace`), or an unfinished one of which other things were asked.
+  /// `asked` determines every byte of the library. With `replace`, an existing library will be
+  /// replaced, and an unfinished one is begun anew. Throws Error(bad_file) if another process is
+  /// writing, or if the folder contains something else under a name of the library, a finished
+  /// library (unless `replace`), or an unfinished one with another request.
   LibraryFolder(const std::filesystem::path& folder, const nlohmann::ordered_json& asked,
                 bool replace);
 
-  /// What add() was given under this name, in this or an earlier process.
+  /// The result that add() received under this name, in this or an earlier process.
   std::optional<nlohmann::ordered_json> known(const std::string& name) const;
 
-  /// Keeps the files, and then the result. May be called from several threads, for several names.
+  /// Keeps the files, and then the result. Several threads may call it, for different names.
   void add(const std::string& name, const nlohmann::ordered_json& result,
            const LibraryFiles& files) const;
 
-  /// The files in the folder that is still hidden.
+  /// The path of a file in the folder, which is still hidden.
   std::filesystem::path file(const std::string& path) const { return staging_ / path; }
 
-  /// Writes `index` and moves all files to their place, the index last. `paths`: all others.
+  /// Writes `index` and moves all files to their place, the index last. `paths` are all other
+  /// files.
   void deliver(const nlohmann::ordered_json& index, const std::vector<std::string>& paths) const;
 
  private:

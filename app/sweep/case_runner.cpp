@@ -26,34 +26,36 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Motions that are kept for the next cases. Chosen: more than the patterns of which the cases of
-/// many threads come at one time; a motion of 10 s takes about 30 MB.
+/// Number of motions that are kept for the next cases. Chosen: more than the patterns that the
+/// cases of many threads use at one time; a motion of 10 s takes about 30 MB.
 constexpr size_t kKeptMotions = 6;
 
-/// Laws that are kept for one motion. Chosen: more than the laws of which the cases of many threads
-/// come at one time.
+/// Number of laws that are kept for one motion. Chosen: more than the laws that the cases of many
+/// threads use at one time.
 constexpr size_t kKeptLaws = 16;
 
-/// Cases that are tried before the first run to find one that can use the uncertainty of the study.
-/// Chosen: each may sample a motion, which takes some 10 ms; half of it finds fewer.
+/// Largest number of cases that are tried before the first run to find one that can use the
+/// uncertainty of the study. Chosen: each may sample a motion, which takes some 10 ms; with half,
+/// fewer such cases are found.
 constexpr long kMostTried = 20;
 
-/// Adds the processor time that this thread uses in its life to a counter [ns].
+/// Adds to a counter the processor time that this thread uses while the object exists [ns].
 struct TimeSpent {
   std::atomic<long>& counter;
   double begin = thread_seconds();
   ~TimeSpent() { counter += std::lround(1e9 * (thread_seconds() - begin)); }
 };
 
-/// Ticks between two questions whether a simulation may go on. Chosen: some milliseconds of work.
+/// Number of ticks between two questions whether a simulation may continue. Chosen: some
+/// milliseconds of work.
 constexpr long kTicksBetweenReports = 100;
 
 Cell cell(double value) {
   if (!std::isfinite(value)) return {};
-  return value == 0 ? 0.0 : value;  // negative zero has no place in the results
+  return value == 0 ? 0.0 : value;  // there is no negative zero in the results
 }
 
-/// The settings that decide the motion and the robot.
+/// The settings that determine the motion and the robot.
 std::string motion_key(const Settings& settings) {
   std::string key;
   for (const auto& [name, value] : settings)
@@ -62,7 +64,7 @@ std::string motion_key(const Settings& settings) {
   return key;
 }
 
-/// The settings that decide the law and the sensors.
+/// The settings that determine the law and the sensors.
 std::string law_key(const Settings& settings) {
   std::string key;
   for (const auto& [name, value] : settings)
@@ -72,7 +74,7 @@ std::string law_key(const Settings& settings) {
   return key;
 }
 
-/// The settings that decide law, ground and disturbances, but not the seed or the draw.
+/// The settings that determine law, ground and disturbances, but not the seed or the draw.
 std::string loop_key(const Settings& settings) {
   std::string key;
   for (const auto& [name, value] : settings)
@@ -117,12 +119,12 @@ std::vector<ResultColumn> result_columns(const SweepMeasures& m) {
   return columns;
 }
 
-/// Stops a case when the user stops the work, or when the case has used its processor time.
+/// Stops a case if the user stops the work, or if the case has used its processor time.
 struct CaseRunner::Watch {
   const Progress& progress;
-  double limit;  ///< [s]; 0: none
+  double limit;  ///< limit of the processor time [s]; 0: none
   double begin = thread_seconds();
-  std::string exceeded = {};  ///< what was being done when the time was used up
+  std::string exceeded = {};  ///< the work at the moment when the time was used up
 
   bool go_on(const ProgressEvent& event) {
     if (limit > 0 && thread_seconds() - begin > limit) {
@@ -139,8 +141,8 @@ struct CaseRunner::Watch {
 
 /// Data that the cases of one law share.
 struct CaseRunner::Law {
-  SimulateOptions options;  ///< with ground and disturbances of the pattern
-  Controller controller;    ///< before its first tick
+  SimulateOptions options;  ///< options with ground and disturbances of the pattern
+  Controller controller;    ///< the controller before its first tick
 };
 
 /// Data that the draws of one law, ground and scenario share.
@@ -169,7 +171,7 @@ struct CaseRunner::Prepared {
   std::map<std::string, std::shared_ptr<const Law>> laws;
   std::map<std::string, std::shared_ptr<const Draws>> draws;
 
-  /// The entry with this key, or a new one. Entries of values that differ in every case are not
+  /// The entry with this key, or a new one. Entries for values that differ in every case are not
   /// kept.
   template <typename Kept, typename Make>
   std::shared_ptr<const Kept> kept(std::map<std::string, std::shared_ptr<const Kept>>& all,
@@ -184,9 +186,9 @@ struct CaseRunner::Prepared {
     all[kept_key] = made;
     return made;
   }
-  std::map<double, std::shared_ptr<Judged>> judged;  ///< by the friction of the ground
+  std::map<double, std::shared_ptr<Judged>> judged;  ///< results by the friction of the ground
 
-  /// Shared by all cases of this friction, of which only one judges.
+  /// All cases with this friction share the result; only one of them judges.
   std::shared_ptr<Judged> judged_with(double friction) {
     const std::lock_guard lock(mutex);
     if (!judged.contains(friction) && judged.size() >= kKeptLaws) judged.clear();
@@ -239,7 +241,7 @@ CaseRunner::CaseRunner(const Context& context, const SweepStudy& study)
     robots_.emplace(name, std::move(robot));
   };
   for (const std::string& word : study.words("robot")) add_robot(word, robot_name(word));
-  // The pattern names the robot of the cases that do not set one.
+  // For cases that do not set a robot, the pattern names it.
   const auto set = study.named().find("robot");
   if (set == study.named().end() || !set->second.pointer.starts_with("/sweep/settings"))
     for (const auto& [word, pattern] : patterns_) add_robot(pattern.robot, robot_of(pattern));
@@ -277,10 +279,10 @@ void CaseRunner::refuse_unused() const {
   }
 }
 
-/// A gain is used when it belongs to the law of some case.
+/// A gain is used if it belongs to the law of some case.
 void CaseRunner::refuse_unused_gain(const std::string& gain, const std::string& pointer) const {
   std::string why = "open loop has no gains, so nothing uses '" + gain + "'";
-  std::set<std::pair<std::string, std::string>> tried;  // laws and robots
+  std::set<std::pair<std::string, std::string>> tried;  // pairs of a law and a robot
   for (long i = 0; i < study_->size(); ++i) {
     const Settings settings = study_->settings(i);
     if (!settings.contains(gain) || !settings.contains("pattern")) continue;
@@ -303,11 +305,11 @@ void CaseRunner::refuse_unused_gain(const std::string& gain, const std::string& 
   fail(ErrorCode::bad_pattern, study_->file().string() + ": " + pointer + ": " + why);
 }
 
-/// The uncertainty of the study is used when some case can draw from it.
+/// The uncertainty of the study is used if some case can draw from it.
 void CaseRunner::refuse_unusable_uncertainty() const {
   if (!study_->named().contains("draw") || study_->uncertainty().uncertainty.empty()) return;
   std::optional<Error> why;
-  std::set<std::pair<std::string, std::string>> tried;  // patterns and robots
+  std::set<std::pair<std::string, std::string>> tried;  // pairs of a pattern and a robot
   for (long i = 0, motions = 0; i < study_->size() && motions < kMostTried; ++i) {
     const Settings settings = study_->settings(i);
     const std::pair key(word_of(settings, "pattern"), word_of(settings, "robot"));
@@ -320,7 +322,7 @@ void CaseRunner::refuse_unusable_uncertainty() const {
       draws(*motion, settings, made->options);
       return;
     } catch (const Error& error) {
-      // A motion that cannot be made is the fault of its case.
+      // If a motion cannot be made, its case is at fault.
       if (tried.contains(key) && !why) why = error;
     }
   }
@@ -374,14 +376,14 @@ std::shared_ptr<CaseRunner::Prepared> CaseRunner::prepared(const Settings& setti
 
 namespace {
 
-/// Law and sensors of a case, with ground and disturbances of the pattern.
+/// The options for the law and the sensors of a case, with ground and disturbances of the pattern.
 SimulateOptions law_options(const Context& context, const Task& task, const Settings& settings) {
   SimulationChoice choice;
   choice.controller = word_of(settings, "controller");
   choice.noise = number_of(settings, "noise", 0) != 0;
   choice.true_state = number_of(settings, "true_state", 0) != 0;
   choice.substeps = static_cast<int>(number_of(settings, "substeps", 1));
-  // Open loop has no gains; in a product with other laws they are those of the others.
+  // Open loop has no gains; in a product with other laws, the gains are for the other laws.
   if (chosen_controller(task, choice).type != ControllerKind::none)
     for (const auto& [name, value] : settings)
       if (name.starts_with("gain."))
@@ -394,7 +396,7 @@ std::uint64_t seed_of(const Context& context, const Settings& settings) {
                                    : context.seed;
 }
 
-/// Figures of one simulation, in the order of result_columns().
+/// The figures of one simulation, in the order of result_columns().
 std::vector<Cell> run_figures(const Task& task, const SimulateOptions& options,
                               const SweepMeasures& measures, const Progress& progress) {
   Simulator run(task.robot, task.series, options);
@@ -502,7 +504,7 @@ std::shared_ptr<const CaseRunner::Law> CaseRunner::law(Prepared& motion,
   });
 }
 
-/// Law, ground, scenario, seed and drawn robot of a case.
+/// The law, ground, scenario, seed and drawn robot of a case.
 struct CaseRunner::OneCase {
   std::shared_ptr<Prepared> motion;
   std::shared_ptr<const Law> law;
@@ -581,7 +583,7 @@ std::vector<Cell> CaseRunner::figures(long number, const Settings& settings, Wat
     std::call_once(judged->repaired, [&] {
       try {
         judged->repair = repair_figures(*motion->task, check, progress);
-      } catch (const Error& error) {  // also for the other cases of this motion
+      } catch (const Error& error) {  // the error also holds for the other cases of this motion
         judged->repair_error = error;
       } catch (const Interrupted&) {
         if (watch.exceeded.empty()) throw;

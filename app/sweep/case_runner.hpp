@@ -18,16 +18,17 @@ namespace ayumi::app {
 using Cell = std::variant<std::monostate, double, std::string>;
 
 struct ResultColumn {
-  std::string name;  ///< with its unit
+  std::string name;  ///< name with its unit
   std::string type;  ///< "REAL", "INTEGER", "TEXT"
 };
 
 /// The results of one case.
 struct CaseRow {
   long number = 0;
-  std::vector<Cell> axes;     ///< in the order of SweepStudy::axes()
-  std::string error;          ///< why the case could not be run; "" where it could
-  std::vector<Cell> figures;  ///< in the order of result_columns(); empty cells after an error
+  std::vector<Cell> axes;  ///< values of the settings, in the order of SweepStudy::axes()
+  std::string error;       ///< reason why the case could not be run; "" if it was run
+  /// Figures in the order of result_columns(); empty cells after an error.
+  std::vector<Cell> figures;
 };
 
 /// The figures that the study measures.
@@ -36,15 +37,15 @@ std::vector<ResultColumn> result_columns(const SweepMeasures& measures);
 /// A file that the results depend on.
 struct SweepInput {
   std::string kind;  ///< "study", "pattern", "robot", "uncertainty"
-  std::string name;  ///< as the study names it
+  std::string name;  ///< name as the study states it
   std::string sha256;
 };
 
 class CaseRunner {
  public:
-  /// Reads every pattern and robot that the study names. The study outlives it. Throws
-  /// Error(bad_file), Error(bad_model) or Error(bad_pattern) for what no case can use: a file that
-  /// is not there, and a parameter or gain that nothing uses.
+  /// Reads every pattern and robot that the study names. The study must outlive this object. Throws
+  /// Error(bad_file), Error(bad_model) or Error(bad_pattern) for input that no case can use: a file
+  /// that does not exist, or a parameter or gain that nothing uses.
   CaseRunner(const Context& context, const SweepStudy& study);
   ~CaseRunner();
 
@@ -52,27 +53,28 @@ class CaseRunner {
   const std::vector<ResultColumn>& columns() const { return columns_; }
   const std::vector<SweepInput>& inputs() const { return inputs_; }
 
-  /// Bad input of a single case (a step that the legs cannot make) is a row with an error. Any
-  /// number of threads may call it; the row depends on the number alone. `progress` is asked again
-  /// and again in the midst of a case whether it may go on; when it stops the work, Interrupted is
-  /// thrown. A case that takes more than case_seconds() of processor time is such a row as well.
+  /// Runs a case. Bad input of a single case (such as a step that the legs cannot make) gives a row
+  /// with an error. Any number of threads may call this function; the row only depends on the
+  /// number. During a case, `progress` is asked again and again whether the work may continue; if
+  /// it stops the work, Interrupted is thrown. A case that takes more than case_seconds() of
+  /// processor time also gives a row with an error.
   CaseRow run(long number, const Progress& progress = {}) const;
 
-  /// Most processor time of one case [s]; 0: no limit.
+  /// Largest processor time of one case [s]; 0: no limit.
   double case_seconds() const { return case_seconds_; }
   void limit_case(double seconds) { case_seconds_ = seconds; }
 
-  /// The same simulation with its log, for a replay. `task` is what it was made of.
+  /// The same simulation with its log, for a replay. `task` receives the task of the case.
   SimulationLog simulate(long number, std::shared_ptr<const Task>& task) const;
 
   /// The robot of a case with everything that only pictures need. Throws as load_robot().
   RobotModel robot_to_draw(long number) const;
 
-  /// Processor time [s] that all threads used in run(), and the part of it with which Ayumi
-  /// simulated, checked or repaired.
+  /// Processor time [s] that all threads used in run(), and the part of it in which they simulated,
+  /// checked or repaired.
   double seconds() const { return 1e-9 * static_cast<double>(nanoseconds_); }
   double useful_seconds() const { return 1e-9 * static_cast<double>(useful_); }
-  /// Processor time [s] that reading the inputs took.
+  /// Processor time [s] for reading the inputs.
   double setup_seconds() const { return setup_seconds_; }
 
  private:
@@ -83,11 +85,11 @@ class CaseRunner {
   struct OneCase;
   std::shared_ptr<Prepared> prepared(const Settings& settings) const;
   std::shared_ptr<const Law> law(Prepared& motion, const Settings& settings) const;
-  /// Options and what they point to, which stays in `made`.
+  /// Fills in the options of a case, and the objects to which they point, which stay in `made`.
   void make_case(long number, const Settings& settings, OneCase& made) const;
   std::filesystem::path pattern_file(const std::string& word) const;
   std::string robot_name(const std::string& word) const;
-  /// The robot of a case that has this pattern.
+  /// The robot of a case with this pattern.
   std::string robot_of_case(const Settings& settings, const Pattern& pattern) const;
   void refuse_unused() const;
   void refuse_unused_gain(const std::string& gain, const std::string& pointer) const;
@@ -102,10 +104,11 @@ class CaseRunner {
   std::vector<ResultColumn> columns_;
   std::vector<SweepInput> inputs_;
   double setup_seconds_ = 0, case_seconds_ = 0;
-  std::map<std::string, Pattern> patterns_;  ///< by the word of the study, default parameters
+  /// Patterns with default parameters, by the word in the study.
+  std::map<std::string, Pattern> patterns_;
   std::map<std::string, RobotModel> robots_;
   mutable std::mutex mutex_;
-  mutable std::list<std::shared_ptr<Prepared>> recent_;  ///< the last used first
+  mutable std::list<std::shared_ptr<Prepared>> recent_;  ///< the most recently used one first
   mutable std::atomic<long> nanoseconds_ = 0, useful_ = 0;
 };
 

@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-/// Cases that are listed as the worst. Definition.
+/// Number of cases that are listed as the worst. Definition.
 constexpr int kListed = 10;
 std::vector<std::string> summary_names(const ResultsDatabase& results) {
   std::vector<std::string> names;
@@ -41,7 +41,7 @@ Json number_or_null(const std::string& cell) {
   return cell.empty() ? Json(nullptr) : Json(std::atof(cell.c_str()));
 }
 
-/// The rows of a query as objects.
+/// The rows of a query as JSON objects.
 Json rows_json(const ResultsDatabase& results, const std::vector<std::string>& names,
                const std::vector<bool>& numbers, const std::string& sql) {
   Json list = Json::array();

@@ -21,12 +21,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// "AYUM" in the head of the file, by which other programs know it. Definition.
+/// Mark in the head of the file, "AYUM", by which other programs recognize it. Definition.
 constexpr int kApplication = 0x4159554d;
-/// Version of the tables. Definition: another number with every change that an older program cannot
+/// Version of the tables. Definition: it increases with every change that an older program cannot
 /// read.
 constexpr int kDatabaseFormat = 1;
-/// How long a reader waits for a writer [ms]. Chosen: a commit takes some ms.
+/// Time for which a reader waits for a writer [ms]. Chosen: a commit takes some ms.
 constexpr int kLockPatience = 10000;
 
 /// A prepared statement.
@@ -41,7 +41,7 @@ class Statement {
 
   bool good() const { return code_ == SQLITE_OK && statement_ != nullptr; }
   sqlite3_stmt* get() const { return statement_; }
-  /// True while there are rows.
+  /// Moves to the next row. Returns false if there is none.
   bool step() {
     code_ = sqlite3_step(statement_);
     return code_ == SQLITE_ROW;
@@ -65,7 +65,7 @@ class Statement {
                  : std::string();
   }
   long integer(int column) const { return sqlite3_column_int64(statement_, column); }
-  /// As in the CSV: the shortest number that reads back to the same double, or the text.
+  /// The cell as in the CSV: the shortest number that gives the same double again, or the text.
   std::string cell(int column) const {
     if (sqlite3_column_type(statement_, column) == SQLITE_FLOAT)
       return text::exact(sqlite3_column_double(statement_, column));
@@ -85,7 +85,7 @@ std::string csv_cell(const std::string& text) {
   return quoted + "\"";
 }
 
-/// Every column of a row, in their order.
+/// All columns of a row, in their order.
 std::vector<std::string> all_columns(const SweepHead& head) {
   std::vector<std::string> names = {"case"};
   for (const std::string& axis : head.axes) names.push_back(axis);
@@ -140,8 +140,8 @@ SweepHead head_of(const CaseRunner& runner, std::uint64_t seed) {
 
 void ResultsDatabase::complain(const std::string& doing) const {
   const int code = database_ ? sqlite3_errcode(database_) : SQLITE_NOMEM;
-  // A quota or a limit on the size of files shows as an error of writing; a reader needs room, too,
-  // for the memory that it shares with writers.
+  // A quota, or a limit on the size of files, appears as an error of writing. A reader needs space,
+  // too, for the memory that it shares with writers.
   const int detail = database_ ? sqlite3_extended_errcode(database_) : SQLITE_OK;
   const bool unwritten = detail == SQLITE_IOERR_WRITE || detail == SQLITE_IOERR_SHMSIZE ||
                          detail == SQLITE_IOERR_FSYNC;
@@ -178,12 +178,13 @@ ResultsDatabase::ResultsDatabase(const fs::path& file, Mode mode) : file_(file) 
          "this file does not exist; name a file that ayumi sweep wrote");
   if (!fs::is_regular_file(fs::symlink_status(file)))
     fail(ErrorCode::bad_file, {file.string()}, "this is not a regular file");
-  // Also for reading: the last one who could write removes the files that SQLite keeps beside a
-  // database. Where the file is write-protected, SQLite opens it for reading.
+  // The file is also opened in this way for reading, because the last user who could write removes
+  // the files that SQLite keeps beside a database. If the file is write-protected, SQLite opens it
+  // for reading only.
   open(SQLITE_OPEN_READWRITE);
   try {
     read_head();
-  } catch (...) {  // an open database would leave the files that SQLite keeps beside it
+  } catch (...) {  // an open database would leave files of SQLite beside it
     sqlite3_close(database_);
     throw;
   }
@@ -464,7 +465,8 @@ long ResultsDatabase::merge(const fs::path& other) {
   for (const std::string& name : names)
     unequal.push_back("a." + sql_name(name) + " IS NOT b." + sql_name(name));
   Statement different(database_,
-                      // CROSS JOIN: for each row of theirs, of which there may be far fewer.
+                      // CROSS JOIN makes SQLite go through the rows of the other file, which may be
+                      // far fewer.
                       "SELECT a.\"case\" FROM theirs.cases b CROSS JOIN main.cases a ON "
                       "a.\"case\" = b.\"case\" WHERE a.error IS NULL AND b.error IS "
                       "NULL AND (" +

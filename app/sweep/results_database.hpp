@@ -1,7 +1,7 @@
 #pragma once
 // The results of a sweep in one SQLite file: a row for each case, the hash of every input, and
-// views for the usual questions. docs/formats.md, "Sweep results", is the specification. Rows that
-// were committed stay, however the program ends.
+// views for the usual questions. docs/formats.md, "Sweep results", is the specification. Committed
+// rows are kept, however the program ends.
 
 #include <filesystem>
 #include <functional>
@@ -20,11 +20,11 @@ namespace ayumi::app {
 /// Identification of the study to which the results belong. Two databases with the same fingerprint
 /// have the same rows for the same cases.
 struct SweepHead {
-  std::string name;        ///< of the study
-  std::string study_file;  ///< as it was given
+  std::string name;        ///< name of the study
+  std::string study_file;  ///< file of the study as it was given
   std::string study_text;
-  std::string version;  ///< of Ayumi
-  std::string seed;     ///< of cases that set none
+  std::string version;  ///< version of Ayumi
+  std::string seed;     ///< seed of the cases that set none
   long cases = 0;
   std::vector<std::string> axes;
   std::vector<std::string> axis_types = {};  ///< "TEXT" or "REAL"
@@ -36,24 +36,24 @@ SweepHead head_of(const CaseRunner& runner, std::uint64_t seed);
 
 /// Counts of a database.
 struct SweepCounts {
-  long cases = 0;  ///< that the study has
+  long cases = 0;  ///< number of cases of the study
   long done = 0, errors = 0, stands = 0, falls = 0, unsettled = 0, inconsistent = 0;
   long failures() const { return falls + unsettled; }
 };
 
-/// Processor time [s] behind rows.
+/// Processor time [s] that was used for rows.
 struct SweepWork {
-  double seconds = 0;  ///< of all threads, reading of inputs and writing of rows included
-  double useful = 0;   ///< of them simulating, checking and repairing
+  double seconds = 0;  ///< of all threads, including reading of inputs and writing of rows
+  double useful = 0;   ///< the part of it for simulating, checking and repairing
 };
 
 class ResultsDatabase {
  public:
   enum class Mode { read, write };
-  /// Opens an existing database. Throws Error(bad_file) "file: what, what to do": it is none of
-  /// Ayumi's, of another version of the format, or cannot be opened.
+  /// Opens an existing database. Throws Error(bad_file) "file: what, what to do" if it is not one
+  /// of Ayumi's, has another version of the format, or cannot be opened.
   ResultsDatabase(const std::filesystem::path& file, Mode mode);
-  /// Makes a new one.
+  /// Makes a new database.
   ResultsDatabase(const std::filesystem::path& file, const SweepHead& head);
   ~ResultsDatabase();
   ResultsDatabase(const ResultsDatabase&) = delete;
@@ -61,39 +61,40 @@ class ResultsDatabase {
 
   const std::filesystem::path& file() const { return file_; }
   const SweepHead& head() const { return head_; }
-  /// Throws Error(bad_file), naming what differs and what to do, unless the results belong to this
-  /// study.
+  /// Throws Error(bad_file), which names the difference and what to do, if the results do not
+  /// belong to this study.
   void require_study(
       const SweepHead& head,
       const std::string& remedy = "choose another name, or give --force to begin again") const;
 
-  /// The shards that were run into this file: "1/4"; empty: of the whole study.
+  /// The shards whose results are in this file, such as "1/4"; empty: the whole study was run.
   std::vector<std::string> shards() const;
   void add_shards(const std::vector<std::string>& shards);
-  /// Processor time of the rows, over all runs that recorded it.
+  /// Processor time that was used for the rows, over all runs that recorded it.
   SweepWork work() const;
   void add_work(const SweepWork& more);
 
-  /// For each case whether it has a row.
+  /// For each case, whether it has a row.
   std::vector<bool> done() const;
   /// Marks the cases that have a row.
   void mark_done(std::vector<bool>& cases) const;
   SweepCounts counts() const;
-  /// Removes the rows of those of these cases that could not be run; returns how many.
+  /// Removes the rows of those of the given cases that could not be run. Returns the number of
+  /// removed rows.
   long forget_errors(const std::vector<bool>& cases);
 
-  /// Adds rows; they are kept when this returns.
+  /// Adds rows; they are committed when this returns.
   void add(const std::vector<CaseRow>& rows);
-  /// Adds the rows of another file of the same study (by attach). A case that both have must be the
-  /// same to the last bit; a result replaces an error. Returns the number of rows added. Throws
-  /// Error(bad_file), and this file is then unchanged.
+  /// Adds the rows of another file of the same study. A case that both have must be the same to the
+  /// last bit; a result replaces an error. Returns the number of added rows. Throws
+  /// Error(bad_file), and then this file is unchanged.
   long merge(const std::filesystem::path& other);
 
-  /// All rows by number, as a table with one head row: `take` gets line after line.
+  /// All rows by number, as a table with one head row. `take` receives one line after the other.
   void csv(const std::function<void(const std::string& line)>& take) const;
   void write_csv(const std::filesystem::path& file) const;
-  /// Rows of a query, every cell as in the CSV. Throws Error(usage) with SQLite's words where the
-  /// query is wrong.
+  /// The rows of a query, with every cell as in the CSV. Throws Error(usage) with SQLite's words if
+  /// the query is wrong.
   std::vector<std::vector<std::string>> query(const std::string& sql) const;
 
   /// Writes everything into the file itself and closes it.

@@ -13,10 +13,10 @@ namespace ayumi::app {
 
 namespace {
 
-/// Time between two commits. Chosen: a killed program loses so much; a commit of some rows takes
-/// about 1 ms, so half of it costs 0.4 % and twice of it 0.1 %.
+/// Time between two commits. Chosen: a killed program loses the rows of this time. A commit of some
+/// rows takes about 1 ms, so half of this time costs 0.4 % and twice of it 0.1 %.
 constexpr std::chrono::milliseconds kBetweenCommits(500);
-/// Rows that are kept in memory at most. Chosen: some MB.
+/// Largest number of rows that are kept in memory. Chosen: some MB.
 constexpr size_t kMostWaiting = 5000;
 
 }  // namespace
@@ -31,7 +31,7 @@ RunCost run_cases(const CaseRunner& runner, ResultsDatabase& results,
   double writing = 0;
   const auto count = static_cast<size_t>(std::count(cases.begin(), cases.end(), true));
   size_t finished = 0, next = 0;
-  bool broken = false;  // the file takes no more
+  bool broken = false;  // true: the file accepts no more rows
   const double before = runner.seconds(), useful = runner.useful_seconds();
   const auto commit = [&] {
     if (broken) return;

@@ -5,16 +5,16 @@
 
 namespace ayumi::app {
 
-/// Cost of a run.
+/// The cost of a run.
 struct RunCost {
   long cases = 0;
-  double seconds = 0;  ///< processor time of all threads, rows written included
-  double useful = 0;   ///< of them simulating, checking and repairing
+  double seconds = 0;  ///< processor time of all threads, including the writing of rows
+  double useful = 0;   ///< the part of it for simulating, checking and repairing
 };
 
-/// Runs those `cases` (by number) on `threads` (0: all cores). Rows are committed about twice a
-/// second, so that a killed program loses no more than that. When `progress` stops the work, all
-/// rows that are known are kept and Interrupted is thrown.
+/// Runs the given `cases` (by number) on `threads` threads (0: all cores). Rows are committed about
+/// twice a second, so that a killed program loses no more than that. If `progress` stops the work,
+/// all known rows are kept and Interrupted is thrown.
 RunCost run_cases(const CaseRunner& runner, ResultsDatabase& results,
                   const std::vector<bool>& cases, int threads, const Progress& progress);
 

@@ -39,35 +39,38 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Share of a task that its start may take. Chosen: together with the writing of results it stays
-/// below the 5 % that a case may cost beside its simulation; half of it doubles the shortest task.
+/// Share of a task that its start may take. Chosen: together with the writing of results, it stays
+/// below the 5 % that a case may cost in addition to its simulation; with half, the shortest task
+/// is twice as long.
 constexpr double kSetupShare = 0.02;
-/// Tasks of a study at least, where they do not become too short. Chosen: four for each of four
+/// Smallest number of tasks of a study, unless they become too short. Chosen: four for each of four
 /// nodes, so that nodes of different speed end at about the same time.
 constexpr long kFewestTasks = 16;
-/// Cases of one task at most. Chosen: its file has some MB.
+/// Largest number of cases of one task. Chosen: its file has some MB.
 constexpr long kMostCasesOfTask = 20000;
-/// Ranges of numbers in the list of one task at most. Chosen: the list is one word of a command,
-/// which may have 128 kB.
+/// Largest number of ranges of numbers in the list of one task. Chosen: the list is one word of a
+/// command, which may have 128 kB.
 constexpr size_t kMostRanges = 5000;
-/// Tasks of an array where Slurm does not say it. Source: the default of MaxArraySize is 1001.
+/// Number of tasks of an array if Slurm does not state it. Source: the default of MaxArraySize is
+/// 1001.
 constexpr long kDefaultArray = 1000;
-/// How long Slurm may not answer before the engine gives up [s]. Chosen: a restart of a controller
-/// takes less than a minute.
+/// Time without an answer of Slurm after which the engine gives up [s]. Chosen: a restart of a
+/// controller takes less than a minute.
 constexpr double kLongestSilence = 600;
-/// Times between two looks at the queue [s]. Chosen: a look costs the controller some ms.
+/// Shortest and longest time between two queries of the queue [s]. Chosen: a query costs the
+/// controller some ms.
 constexpr double kShortestPoll = 0.5, kLongestPoll = 10;
-/// Time between two attempts to submit what Slurm refused while it has other tasks [s]. Chosen:
-/// limits on the number of jobs change when tasks end, which take minutes.
+/// Time between two attempts to submit tasks that Slurm has refused while it has other tasks [s].
+/// Chosen: the number of jobs that a limit allows changes when tasks end, which takes minutes.
 constexpr double kBetweenRefusals = 30;
-/// Looks at the queue without a task before it counts as lost. Chosen: a look may come between the
-/// submission and the queue.
+/// Number of queries of the queue without a task after which the task counts as lost. Chosen: a
+/// query may come after the submission but before the task is in the queue.
 constexpr int kLooksUntilLost = 3;
-/// How long the file of a task that has ended well may stay unseen [s]. Source: nfs(5), a folder is
-/// looked at again after acdirmax = 60 s at the latest; half as much again for slow disks.
+/// Time for which the file of a task that has ended well may be invisible [s]. Source: nfs(5); a
+/// folder is read again after acdirmax = 60 s at the latest; half of this is added for slow disks.
 constexpr double kUnseenFile = 90;
-/// Share of the time limit that a task should take. Chosen: the slowest case of the pilot run may
-/// be half as slow as that of a task.
+/// Share of the time limit that a task should take. Chosen: the slowest case of a task may take
+/// twice as long as that of the pilot run.
 constexpr double kShareOfLimit = 0.5;
 
 struct CommandResult {
@@ -129,7 +132,7 @@ CommandResult run_command(const std::vector<std::string>& words) {
   return result;
 }
 
-/// The message of a program in one line.
+/// The message of a program as one line.
 std::string one_line(const std::string& text) {
   std::string line;
   for (const char c : text) {
@@ -142,14 +145,14 @@ std::string one_line(const std::string& text) {
   return line;
 }
 
-/// In single quotes for a shell.
+/// A text in single quotes for a shell.
 std::string shell_word(const std::string& text) {
   std::string quoted = "'";
   for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return quoted + "'";
 }
 
-/// A path as sbatch reads it, for which % begins a field.
+/// A path for sbatch, for which % begins a field.
 std::string sbatch_path(const fs::path& path) {
   std::string text;
   for (const char c : path.string()) text += c == '%' ? std::string("%%") : std::string(1, c);
@@ -158,14 +161,14 @@ std::string sbatch_path(const fs::path& path) {
 
 using TaskNumber = std::pair<long, long>;  // number of the array, and of the task in it (from 1)
 
-/// What was submitted and may still arrive.
+/// A submitted array whose results may still arrive.
 struct SubmittedArray {
   long number = 0;
   std::string job;
 };
 
 struct State {
-  std::string name;  ///< of all jobs of these results
+  std::string name;  ///< name of all jobs of these results
   std::vector<SubmittedArray> arrays;
 };
 
@@ -211,7 +214,7 @@ struct QueuedTask {
   bool running() const {
     return state == "RUNNING" || state == "COMPLETING" || state == "CONFIGURING";
   }
-  /// Ended, and its file is there or never will be.
+  /// Whether the task has ended without success; its file exists already or will never exist.
   bool failed() const {
     constexpr const char* kFailed[] = {"BOOT_FAIL", "CANCELLED", "DEADLINE",
                                        "FAILED",    "NODE_FAIL", "OUT_OF_MEMORY",
@@ -223,8 +226,8 @@ struct QueuedTask {
 };
 using Queue = std::map<std::pair<std::string, long>, QueuedTask>;  // by job and task
 
-/// The tasks that Slurm knows, those included that ended a short time ago. Nothing: it did not
-/// answer.
+/// The tasks that Slurm knows, including those that ended a short time ago. Returns nothing if
+/// Slurm did not answer.
 std::optional<Queue> look(const std::string& name, std::string& trouble) {
   const CommandResult found = run_command({"squeue", "--noheader", "--array", "--states=all",
                                            "--name=" + name, "--format=%F %K %T %r"});
@@ -245,7 +248,7 @@ std::optional<Queue> look(const std::string& name, std::string& trouble) {
   return queue;
 }
 
-/// Files of tasks that have ended.
+/// The files of tasks that have ended.
 std::vector<fs::path> arrived(const fs::path& folder) {
   std::vector<fs::path> parts;
   for (const auto& entry : fs::directory_iterator(folder)) {
@@ -256,7 +259,7 @@ std::vector<fs::path> arrived(const fs::path& folder) {
   return parts;
 }
 
-/// Tasks that one array may have.
+/// The largest number of tasks in one array.
 size_t most_tasks() {
   const CommandResult found = run_command({"scontrol", "show", "config"});
   for (const std::string& line : lines_of(found.out))
@@ -268,8 +271,8 @@ size_t most_tasks() {
   return static_cast<size_t>(kDefaultArray);
 }
 
-/// The script of an array. Each task computes in the temporary folder of its node. Its file is
-/// there as a whole or not at all. A task that is told to stop leaves the rows that it has.
+/// The script of an array. Each task computes in the temporary folder of its node. Its file appears
+/// as a whole or not at all. A task that is told to stop leaves the rows that it has so far.
 std::string script_of(const Context& context, const CaseRunner& runner, const fs::path& folder,
                       const std::string& name, long array, size_t tasks) {
   const fs::path here = fs::absolute(folder);
@@ -330,7 +333,7 @@ double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-/// One run of the engine.
+/// One run of this engine.
 class Engine {
  public:
   Engine(const Context& context, const CaseRunner& runner, ResultsDatabase& results,
@@ -388,7 +391,7 @@ class Engine {
                (why_lost_.empty() ? "" : " (" + why_lost_ + ")") +
                "; all other results are kept. The output of the tasks is in " + folder_.string() +
                ". Run the same command again to go on");
-    // Copies of tasks that counted as lost have nothing more to do.
+    // Copies of tasks that counted as lost are no longer needed.
     run_command({"scancel", "--name=" + state_.name});
     fs::remove_all(folder_);
     cost_.cases = total_;
@@ -410,7 +413,7 @@ class Engine {
     return cases;
   }
 
-  /// Some cases from all over the study are run here and taken out of `cases`.
+  /// Runs some cases from all parts of the study here, and removes them from `cases`.
   void pilot(std::vector<bool>& cases) {
     const long all = std::count(cases.begin(), cases.end(), true);
     const long count = std::min<long>(all, options_.pilot);
@@ -428,7 +431,7 @@ class Engine {
         done_[i] = true;
       }
     const double each = double(std::max(1L, pilot.cases));
-    // Each task once reads the inputs and computes the data that its cases share.
+    // Each task reads the inputs once and computes the data that its cases share once.
     const double setup = runner_.setup_seconds() + pilot.seconds - pilot.useful;
     const double limit = kShareOfLimit * slurm_seconds(options_.time);
     chunk_ = chunk_size(pilot.useful / each, setup, all - count,
@@ -439,8 +442,8 @@ class Engine {
                    "\n");
   }
 
-  /// Submits what is pending. If Slurm refuses an array, smaller arrays are tried. If Slurm refuses
-  /// these too, they stay pending while other tasks are queued or running, because most limits
+  /// Submits the pending tasks. If Slurm refuses an array, smaller arrays are tried. If Slurm also
+  /// refuses these, they stay pending while other tasks are queued or running, because most limits
   /// concern the number of tasks.
   void submit() {
     if (pending_.empty()) return;
@@ -455,7 +458,7 @@ class Engine {
         refused_since_.reset();
         continue;
       }
-      // One step down is enough to tell a limit of size from a refusal of everything.
+      // One smaller array is enough to distinguish a limit of size from a general refusal.
       if (count > 1) {
         count = (count + 7) / 8;
         continue;
@@ -463,8 +466,8 @@ class Engine {
       refusal_ = why;
       refused_ = Clock::now();
       if (!refused_since_) refused_since_ = refused_;
-      // A limit or a restart of the controller may end; at the very first, the user waits for an
-      // answer.
+      // A limit, or a restart of the controller, may be temporary. But at the very first
+      // submission, the user waits for an answer.
       if (out_.empty() && (!submitted_ || seconds_since(*refused_since_) > kLongestSilence))
         fail(ErrorCode::bad_file, "--engine slurm: sbatch refused the job: " + why +
                                       "; the results so far are kept in " +
@@ -492,11 +495,11 @@ class Engine {
     words.insert(words.end(), options_.further.begin(), options_.further.end());
     words.push_back(script.string());
     const CommandResult sent = run_command(words);
-    // "12" or "12;cluster".
+    // The answer is "12" or "12;cluster".
     long job = 0;
     const auto read = std::from_chars(sent.out.data(), sent.out.data() + sent.out.size(), job);
     if (sent.exit_code != 0 || read.ec != std::errc() || job <= 0) {
-      // A job that was accepted although the answer was lost finds no list and ends.
+      // If a job was accepted although the answer was lost, it finds no list and ends.
       fs::remove(list);
       fs::remove(script);
       const std::string why = one_line(sent.err.empty() ? sent.out : sent.err);
@@ -554,7 +557,7 @@ class Engine {
     }
   }
 
-  /// A task has ended: the cases that it did not run are pending again.
+  /// After a task has ended, the cases that it did not run are pending again.
   std::map<TaskNumber, CaseRanges>::iterator give_back(
       std::map<TaskNumber, CaseRanges>::iterator task) {
     std::vector<bool>& again = again_;
@@ -575,7 +578,7 @@ class Engine {
     return "";
   }
 
-  /// The last line of the output of a task.
+  /// The last line of a task's output.
   std::string words_of(const TaskNumber& task) const {
     const fs::path log = folder_ / ("log-" + std::to_string(task.first) + "-" +
                                     std::to_string(task.second) + ".txt");
@@ -611,7 +614,7 @@ class Engine {
     }
   }
 
-  /// Cases of lost tasks become pending tasks.
+  /// Makes pending tasks of the cases of lost tasks.
   void take_lost() {
     if (lost_ == 0) return;
     context_.print("  " + text::counted(lost_, "case") + " of lost tasks " +
@@ -637,7 +640,8 @@ class Engine {
     while (!out_.empty() || !pending_.empty()) {
       std::string trouble;
       const std::optional<Queue> queue = look(state_.name, trouble);
-      // What arrived after the look at the queue is there; what ended before it has arrived.
+      // A file that arrived after the query of the queue is there now; the file of a task that
+      // ended before the query has arrived.
       collect();
       long running = 0;
       std::string reason;
@@ -677,15 +681,17 @@ class Engine {
   const Progress& progress_;
   fs::path folder_;
   State state_;
-  std::vector<bool> wanted_, done_;       // by case
-  std::vector<unsigned char> tries_;      // by case, in this run of the engine
+  std::vector<bool> wanted_, done_;       // for each case
+  std::vector<unsigned char> tries_;      // for each case, in this run of the engine
   std::map<TaskNumber, CaseRanges> out_;  // tasks that have not arrived, with their cases
-  std::map<TaskNumber, std::pair<int, Clock::time_point>> unseen_;  // looks without the task
-  std::deque<CaseRanges> pending_;                                  // tasks to submit
-  std::vector<bool> again_;                                         // cases of lost tasks, by case
-  long lost_ = 0;                                                   // how many these are
+  // Number of queries without the task, and the time of the first.
+  std::map<TaskNumber, std::pair<int, Clock::time_point>> unseen_;
+  std::deque<CaseRanges> pending_;  // tasks to be submitted
+  std::vector<bool> again_;         // for each case, whether it belongs to a lost task
+  long lost_ = 0;                   // number of these cases
   std::string why_lost_, refusal_;
-  std::optional<Clock::time_point> refused_, refused_since_;  // the last time, and the first
+  // Times of the last and of the first refusal.
+  std::optional<Clock::time_point> refused_, refused_since_;
   Clock::time_point answered_ = Clock::now();
   bool submitted_ = false;
   size_t most_ = 0;
@@ -741,7 +747,7 @@ long chunk_size(double seconds, double setup, long cases, double task_seconds) {
   };
   const long fewest = std::max(1L, of_time(setup / kSetupShare));
   long chunk = std::max(1L, of_time(task_seconds));
-  // Short studies are spread over the nodes.
+  // The tasks of short studies are spread over the nodes.
   chunk = std::min(chunk, std::max(fewest, (cases + kFewestTasks - 1) / kFewestTasks));
   return std::clamp(chunk, 1L, kMostCasesOfTask);
 }
@@ -763,7 +769,8 @@ double slurm_seconds(const std::string& time) {
     parts.push_back(value);
   }
   if (parts.empty() || parts.size() > 3) return 0;
-  // "minutes[:seconds]" or "hours:minutes:seconds"; with days "hours[:minutes[:seconds]]".
+  // The time is "minutes[:seconds]" or "hours:minutes:seconds"; with days, it is
+  // "hours[:minutes[:seconds]]".
   if (dash == std::string::npos && parts.size() < 3) parts.insert(parts.begin(), 0);
   parts.resize(3);
   return double(((days * 24 + parts[0]) * 60 + parts[1]) * 60 + parts[2]);

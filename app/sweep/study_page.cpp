@@ -17,15 +17,17 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-/// Values that a table or a map shows one by one; more numbers are put into intervals. Chosen: as
-/// many rows as a screen has.
+/// Largest number of values that a table or a map shows one by one; more values are grouped into
+/// intervals. Chosen: as many rows as a screen has.
 constexpr long kShownValues = 24;
-/// Intervals of a setting with more values. Chosen: with 100 cases each has about 12.
+/// Number of intervals of a setting with more values. Chosen: with 100 cases, each interval has
+/// about 12.
 constexpr int kIntervals = 8;
-/// Maps on one page. Chosen: all pairs of five settings. Of more pairs, those with the most cells.
+/// Largest number of maps on one page. Chosen: all pairs of five settings. If there are more pairs,
+/// those with the most cells are shown.
 constexpr size_t kMostMaps = 10;
-/// Rows of the table of the worst cases, and of the cases that could not be run. Chosen: more are
-/// in the database.
+/// Largest number of rows in the table of the worst cases and in that of the cases that could not
+/// be run. Chosen: more rows are in the database.
 constexpr int kShownCases = 50;
 /// Size of one replay [bytes]. Chosen: three of them make a page of about 8 MB.
 constexpr size_t kReplayBytes = 2'500'000;
@@ -44,8 +46,8 @@ constexpr const char* kStyle =
     "td.map{text-align:center;min-width:4em}\niframe{width:100%;height:80vh;border:1px solid "
     "#8888}\n";
 
-/// A click (or Enter) on the head of a column sorts the rows by it, a second one the other way
-/// round. Replays are put into their frames when they are opened.
+/// A click (or Enter) on the head of a column sorts the rows by it; a second one reverses the
+/// order. A replay is put into its frame when it is opened.
 constexpr const char* kScript = R"(
 for (const table of document.querySelectorAll("table")) {
   const heads = table.querySelectorAll("th[scope=col]");
@@ -86,16 +88,17 @@ std::string rate_text(long failures, long runs) {
   return percent(rate.low) + " to " + percent(rate.high);
 }
 
-/// A setting by which cases are grouped: an expression of its group and the name of each group.
+/// A setting by which cases are grouped, with an SQL expression for the group and the name of each
+/// group.
 struct Grouping {
   std::string axis, expression;
-  std::map<std::string, std::string> names;  ///< by the group as a cell
+  std::map<std::string, std::string> names;  ///< names by the cell of the group
   std::vector<std::string> order;
 };
 
 double number(const std::string& cell) { return std::atof(cell.c_str()); }
 
-/// Empty where the setting has many words, or one value.
+/// The grouping by a setting; empty if the setting has many words, or one value.
 Grouping grouping(const ResultsDatabase& results, size_t axis) {
   const SweepHead& head = results.head();
   const std::string name = sql_name(head.axes[axis]);
@@ -166,7 +169,7 @@ std::string rates_section(const ResultsDatabase& results, const std::vector<Grou
                            out);
 }
 
-/// White to red.
+/// A colour from white to red.
 std::string colour(double share) {
   const int fade = static_cast<int>(std::lround(255 - 155 * std::clamp(share, 0.0, 1.0)));
   return "background:rgb(255," + std::to_string(fade) + "," + std::to_string(fade) + ");color:#000";

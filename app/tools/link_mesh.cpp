@@ -14,8 +14,8 @@ namespace ayumi::tools {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr int kCornerSteps = 3;      // segments of a rounded corner
-constexpr int kCircleSteps = 20;     // segments of a circle
+constexpr int kCornerSteps = 3;      // number of segments of a rounded corner
+constexpr int kCircleSteps = 20;     // number of segments of a circle
 constexpr double kCreaseAngle = 40;  // sharper edges keep separate normals [deg]
 
 Vector3d placed(Axis axis, double u, double v, double w) {
@@ -124,7 +124,8 @@ Key key_of(const Vector3d& v) {
 
 Vector3d area_of(const Triangle& t) { return (t[1] - t[0]).cross(t[2] - t[0]) / 2; }
 
-// The normal at a corner: of the triangles around it that turn away by less than the crease angle.
+// The normal at a corner: the sum over the triangles around it whose normals differ by less than
+// the crease angle.
 Vector3d smooth_normal(const Vector3d& face, const std::vector<Vector3d>& around) {
   Vector3d sum = Vector3d::Zero();
   for (const Vector3d& area : around)

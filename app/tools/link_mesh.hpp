@@ -1,6 +1,6 @@
 #pragma once
-// Meshes of robots' housings: every part is a loft, rings of points stacked along an axis and
-// closed by two caps. Measures in millimetres in the link's frame (x forward, y left, z up).
+// Meshes of robots' housings. Every part is a loft: rings of points that are stacked along an axis
+// and closed by two caps. Lengths are in millimetres in the link's frame (x forward, y left, z up).
 
 #include <Eigen/Geometry>
 #include <array>
@@ -17,8 +17,9 @@ using Triangle = std::array<Vector3d, 3>;
 
 enum class Axis { x, y, z };
 
-/// A rounded rectangle across the axis: at `at` along it, centred at (u, v), half sizes a, b.
-/// Across x lie (y, z), across y (z, x), across z (x, y).
+/// A rounded rectangle across the axis. It is at `at` along the axis, its centre is (u, v), and its
+/// half sizes are a and b. The coordinates u and v are (y, z) across x, (z, x) across y, and (x, y)
+/// across z.
 struct Section {
   double at, u, v, a, b, radius;
 };
@@ -48,7 +49,7 @@ class LinkMesh {
   void motor(const std::string& material, Axis axis, const Vector3d& center, double radius,
              double low, double high, double bevel = 2.5);
 
-  /// From the left side to the right.
+  /// Mirrors the mesh from the left side to the right.
   void mirror();
 
   const std::vector<Part>& parts() const { return parts_; }
@@ -59,7 +60,7 @@ class LinkMesh {
   std::vector<Part> parts_;
 };
 
-/// A link of the left side, or one of the middle.
+/// The mesh of a link of the left side or of the middle.
 struct NamedMesh {
   std::string link;
   LinkMesh mesh;
@@ -67,17 +68,17 @@ struct NamedMesh {
 
 using Materials = std::vector<std::pair<std::string, Vector3d>>;
 
-/// The links of a robot: `sided` links are written as l_ and, mirrored, r_.
+/// The links of a robot. Each of the `sided` links is written twice: as l_ and, mirrored, as r_.
 struct RobotMeshes {
-  std::string title;   ///< of the robot, for the files' first line
-  std::string source;  ///< file that made them
-  std::string name;    ///< of the MTL
+  std::string title;   ///< title of the robot, for the first line of the files
+  std::string source;  ///< source file of the program that makes them
+  std::string name;    ///< name of the MTL file
   std::vector<NamedMesh> middle, sided;
   Materials materials;
 };
 
-/// Writes one OBJ per link and one shared MTL, and prints the number of triangles of each. Returns
-/// the exit status.
+/// Writes one OBJ file for each link and one shared MTL file, and prints the number of triangles of
+/// each link. Returns the exit status.
 int write_meshes(int argc, char** argv, const RobotMeshes& robot);
 
 }  // namespace ayumi::tools

@@ -108,7 +108,8 @@ LinkMesh foot() {
 LinkMesh shoulder_pitch() {
   LinkMesh mesh;
   mesh.motor("silver", Axis::y, {0, 0, 0}, 20, -19, -4);
-  // A fork that holds the roll motor from both ends, close to the axis wherever the arm points.
+  // A fork that holds the roll motor at both ends. It is close to the axis for all directions of
+  // the arm.
   mesh.box("blue", Axis::z, {-14, -18, -25}, {14, 14, -17}, 4);
   mesh.box("blue", Axis::z, {-14, -18, 16}, {14, 14, 24}, 4);
   return mesh;

@@ -10,7 +10,7 @@ namespace {
 
 LinkMesh torso() {
   LinkMesh mesh;
-  // Pelvis with the batteries, a narrow waist, chest, pack, collar.
+  // The pelvis with the batteries, a narrow waist, the chest, a pack and a collar.
   mesh.loft("white", Axis::z,
             {{46, 0, 0, 62, 88, 22},
              {62, 0, 0, 76, 106, 28},

@@ -1,5 +1,5 @@
 #pragma once
-// The library by one include: what most programs need of ayumi::core and ayumi::io.
+// The library in one include: everything that most programs need of ayumi::core and ayumi::io.
 //
 //   load_task      robot and pattern from files                          io/task_file.hpp
 //   judge          is the pattern physically consistent?                 task/task.hpp

@@ -22,7 +22,8 @@ void skip_spaces(std::string_view& text) {
 
 using Attributes = std::map<std::string, std::string, std::less<>>;
 
-// The attributes of a tag, from behind its name. What is no attribute ends the list.
+// The attributes of a tag, starting behind its name. The list ends at the first text that is no
+// attribute.
 Attributes attributes_of(std::string_view tag) {
   Attributes found;
   while (true) {
@@ -100,7 +101,7 @@ class ColladaCheck {
     } else if (name.ends_with("_array")) {
       const auto id = attributes.find("id");
       const size_t size = number(count->second);
-      // Of two arrays with one name, the smaller.
+      // If two arrays have the same name, the smaller one counts.
       const auto [known, fresh] =
           sizes_.emplace("#" + (id == attributes.end() ? "" : id->second), size);
       if (!fresh) known->second = std::min(known->second, size);
@@ -126,7 +127,7 @@ class ColladaCheck {
     return number(found->second);
   }
 
-  // No count and no index of a sound file exceeds the number of its bytes.
+  // In a sound file, no count and no index exceeds the number of bytes.
   size_t number(std::string_view word) const {
     size_t value = 0;
     const auto [last, error] = std::from_chars(word.data(), word.data() + word.size(), value);
@@ -136,10 +137,11 @@ class ColladaCheck {
     return value;
   }
 
-  // All factors are at most the number of bytes, so the product fits.
+  // All factors are at most the number of bytes, so that the product fits.
   void check(const Accessor& accessor) const {
     const auto size = sizes_.find(accessor.source);
-    if (size == sizes_.end() || accessor.count == 0) return;  // assimp complains of the first
+    // Assimp complains of a missing array itself.
+    if (size == sizes_.end() || accessor.count == 0) return;
     const size_t reached =
         accessor.offset + (accessor.count - 1) * accessor.stride + accessor.parameters;
     if (reached > size->second)

@@ -24,7 +24,7 @@ class MemoryFile : public Assimp::IOStream {
   size_t Write(const void*, size_t, size_t) override { return 0; }
   aiReturn Seek(size_t offset, aiOrigin origin) override {
     const size_t base = origin == aiOrigin_SET ? 0 : origin == aiOrigin_CUR ? at_ : bytes_.size();
-    // An offset is unsigned: what leads backwards wraps around.
+    // An offset is unsigned, so that an offset that leads backwards wraps around.
     const size_t place = base + offset;
     if (place > bytes_.size()) return aiReturn_FAILURE;
     at_ = place;

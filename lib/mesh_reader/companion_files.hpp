@@ -1,6 +1,6 @@
 #pragma once
-// The files that assimp sees: the mesh and what the owner of the mesh answers for other names.
-// Nothing is opened here.
+// The files that assimp sees: the mesh itself, and the answers of the owner of the mesh for other
+// names. Nothing is opened here.
 
 #include <assimp/IOStream.hpp>
 #include <assimp/IOSystem.hpp>
@@ -13,9 +13,10 @@ namespace ayumi::mesh_reader {
 
 class CompanionFiles : public Assimp::IOSystem {
  public:
-  /// `bytes` has to outlive this.
+  /// `bytes` has to outlive this object.
   CompanionFiles(const std::string& name, const std::string& bytes, AskFile ask);
-  /// The name by which assimp opens the mesh: in a folder, since assimp looks for companions there.
+  /// The name by which assimp opens the mesh. It is in a folder, since assimp looks for companions
+  /// there.
   static std::string path_of(const std::string& name);
 
   bool Exists(const char* path) const override;

@@ -26,18 +26,19 @@ namespace {
 
 // The first number of /proc/self/statm is the size of the address space in pages.
 int memory_file = -1;
-// [bytes] before the first mesh; what the heap keeps of earlier meshes is theirs and not new.
+// The address space before the first mesh [bytes]. Limits are counted from it: memory that the heap
+// keeps from earlier meshes is reused and is not part of this number.
 std::uint64_t own_space = 0;
 
 std::uint64_t address_space() {
-  // Chosen, where there is no /proc: the libraries of a reader take 0.1 GiB.
+  // The address space if there is no /proc. Chosen: the libraries of a reader take 0.1 GiB.
   constexpr std::uint64_t kUnknown = std::uint64_t{256} << 20;
   char words[64] = {};
   if (pread(memory_file, words, sizeof words - 1, 0) <= 0) return kUnknown;
   return std::strtoull(words, nullptr, 10) * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
-// The soft limit, never above the one that this process was started with.
+// Sets the soft limit, but never above the one with which this process was started.
 void set_soft_limit(int resource, std::uint64_t value) {
   rlimit now{};
   if (getrlimit(static_cast<__rlimit_resource>(resource), &now) != 0) _exit(1);
@@ -46,9 +47,9 @@ void set_soft_limit(int resource, std::uint64_t value) {
 }
 
 #if defined(AYUMI_HAS_SECCOMP) && !defined(AYUMI_SANITIZED)
-// Every other system call fails with EPERM: what assimp cannot do without is in the list, and what
-// it can do without, such as opening files beside the interface that it is given, just fails. Where
-// the kernel has no filters, the limits remain.
+// Every other system call fails with EPERM. The list has the calls that assimp needs; the calls
+// that it can do without, such as opening files beside the interface that it is given, then just
+// fail. If the kernel has no filters, the limits remain.
 void filter_system_calls() {
   scmp_filter_ctx filter = seccomp_init(SCMP_ACT_ERRNO(EPERM));
   if (!filter) return;
@@ -65,11 +66,13 @@ void filter_system_calls() {
   const auto allow_if = [&](int call, scmp_arg_cmp what) {
     good = good && seccomp_rule_add(filter, SCMP_ACT_ALLOW, call, 1, what) == 0;
   };
-  allow_if(SCMP_SYS(sendto), SCMP_A4(SCMP_CMP_EQ, 0));  // no address: the connection alone
+  // No address is allowed, which leaves only the connection.
+  allow_if(SCMP_SYS(sendto), SCMP_A4(SCMP_CMP_EQ, 0));
   allow_if(SCMP_SYS(pread64), SCMP_A0(SCMP_CMP_EQ, static_cast<scmp_datum_t>(memory_file)));
   allow_if(SCMP_SYS(mmap), SCMP_A2(SCMP_CMP_MASKED_EQ, PROT_EXEC, 0));
   allow_if(SCMP_SYS(mprotect), SCMP_A2(SCMP_CMP_MASKED_EQ, PROT_EXEC, 0));
-  // Only its own limits, and abort(), which sends a signal to the process itself.
+  // Only calls that concern the process's own limits are allowed, and abort(), which sends a signal
+  // to the process itself.
   allow_if(SCMP_SYS(prlimit64), SCMP_A0(SCMP_CMP_EQ, 0));
   allow_if(SCMP_SYS(tgkill), SCMP_A0(SCMP_CMP_EQ, static_cast<scmp_datum_t>(getpid())));
   if (good) seccomp_load(filter);
@@ -86,9 +89,10 @@ void confine() {
   if (setrlimit(RLIMIT_FSIZE, &none) != 0 || setrlimit(RLIMIT_CORE, &none) != 0) _exit(1);
   memory_file = open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
   own_space = address_space();
-  // The heap keeps the memory of a mesh for the next one, because clearing new pages takes most of
-  // the time of a small mesh: assimp takes a buffer of 16 MiB for each OBJ. Chosen: above that, and
-  // the most that mallopt() takes for the second.
+  // Sizes of memory that the heap keeps and of single blocks that it manages. The heap keeps the
+  // memory of a mesh for the next one, because clearing new pages takes most of the time of a small
+  // mesh: assimp takes a buffer of 16 MiB for each OBJ. Chosen: above that size; the second is the
+  // largest value that mallopt() takes.
   constexpr int kKept = 64 << 20, kOnItsOwn = 32 << 20;
   mallopt(M_TRIM_THRESHOLD, kKept);
   mallopt(M_MMAP_THRESHOLD, kOnItsOwn);

@@ -14,16 +14,17 @@ namespace {
 
 using Eigen::Vector3f;
 
-// Cosine. Chosen: 40 degrees. Sharper edges keep separate normals, the facets of round parts do
-// not.
+// Cosine of the angle between facets above which an edge is a crease. Chosen: 40 degrees. Sharper
+// edges keep separate normals, while the facets of round parts do not.
 constexpr float kCrease = 0.766f;
-// Facets at one place that are compared with each other. Chosen: a place of a fine mesh has about
-// six; the tip of a fan of more keeps the normals of its facets, which there are what is seen.
+// Largest number of facets at one place that are compared with each other. Chosen: a place of a
+// fine mesh has about six; the tip of a larger fan keeps the normals of its facets.
 constexpr std::uint32_t kMostAround = 64;
 
-std::uint32_t bits(float number) { return std::bit_cast<std::uint32_t>(number + 0.0f); }  // -0 is 0
+// -0 becomes 0.
+std::uint32_t bits(float number) { return std::bit_cast<std::uint32_t>(number + 0.0f); }
 
-/// Each triangle with three vertices of its own.
+/// Gives each triangle three vertices of its own.
 void separate(MeshPart& part) {
   MeshPart apart = part;
   apart.vertices.clear();
@@ -40,8 +41,8 @@ void separate(MeshPart& part) {
   part = std::move(apart);
 }
 
-/// Unit vectors, in double because a tiny or huge triangle leaves the range of float where its area
-/// is squared; zero for what is flat.
+/// Unit vectors, or zero for flat triangles. They are computed in double, because the squared area
+/// of a tiny or huge triangle leaves the range of float.
 std::vector<Vector3f> facet_normals(const MeshPart& part) {
   std::vector<Vector3f> normals;
   normals.reserve(part.triangles.size());
@@ -56,7 +57,7 @@ std::vector<Vector3f> facet_normals(const MeshPart& part) {
   return normals;
 }
 
-/// Of a part whose vertices are corners of one triangle each.
+/// Makes the missing normals of a part in which each vertex is a corner of only one triangle.
 void make_missing_normals(MeshPart& part) {
   const size_t corners = part.vertices.size();
   const std::vector<Vector3f> facets = facet_normals(part);

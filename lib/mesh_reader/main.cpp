@@ -1,6 +1,6 @@
-// Reads mesh files for Ayumi, which starts this program: the bytes of a file come in and triangles
-// go out over the connection on standard input. It runs with limits, so that a broken or hostile
-// file ends this process at worst.
+// Reads mesh files for Ayumi, which starts this program. The bytes of a file come in, and triangles
+// go out, over the connection on standard input. The program runs with limits, so that a broken or
+// hostile file can at worst end this process.
 
 #include <sys/socket.h>
 #include <unistd.h>
@@ -18,7 +18,7 @@ namespace {
 using namespace ayumi;
 using namespace ayumi::mesh_reader;
 
-// assimp turns bad_alloc into a text; this remembers it.
+// assimp turns bad_alloc into a text; this variable remembers that it happened.
 bool memory_is_over = false;
 
 void on_no_memory() {

@@ -1,5 +1,6 @@
-// Each node of the scene carries T = T_parent T_node; a vertex becomes s (T v) with the scale s per
-// axis, a normal the unit vector along (s T)^-T n. Where det(s T) < 0 the triangles are turned.
+// Each node of the scene carries T = T_parent T_node. A vertex becomes s (T v) with the scale s per
+// axis, and a normal becomes the unit vector along (s T)^-T n. If det(s T) < 0, the triangles are
+// turned.
 
 #include "mesh_import.hpp"
 
@@ -75,7 +76,8 @@ class Collector {
       if (!part.vertices.back().allFinite())
         throw Refusal("a vertex is not finite; repair the mesh");
       Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-      // STL has one normal per facet, often zero: round surfaces would look faceted.
+      // STL has one normal per facet, which is often zero. With these normals, round surfaces would
+      // look faceted.
       if (source.HasNormals() && extension_ != ".stl")
         normal = normal_turn * vector(source.mNormals[i]);
       const bool usable = std::isfinite(normal.norm()) && normal.norm() > 1e-12;
@@ -157,8 +159,8 @@ TriangleMesh import_mesh(const std::string& name, const std::string& bytes,
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
                               aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  // Not its normals and not its joining of vertices: its search for what is at one place takes half
-  // of the time to read a large mesh.
+  // assimp makes no normals and does not join vertices: its search for points at the same place
+  // takes half of the time of reading a large mesh.
   constexpr unsigned kSteps = aiProcess_Triangulate | aiProcess_SortByPType;
   const aiScene* scene = nullptr;
   std::string reason;

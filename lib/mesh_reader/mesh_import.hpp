@@ -11,18 +11,19 @@
 
 namespace ayumi::mesh_reader {
 
-/// Why a file is no mesh, for people; the file is not named.
+/// The reason why a file is no mesh, for people. It does not name the file.
 class Refusal : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// The bytes of a companion file, by its path relative to the folder of the mesh; empty: there is
-/// none.
+/// Returns the bytes of a companion file, whose path is relative to the folder of the mesh; empty
+/// if there is none.
 using AskFile = std::function<std::optional<std::string>(const std::string& path)>;
 
-/// The mesh of the file `name` (without a folder; its extension says what it is) with these bytes,
-/// as load_mesh() describes it. MeshPart::texture_file is as in an encoded mesh. Throws Refusal.
+/// The mesh of the file `name` with these bytes, as load_mesh() describes it. The name has no
+/// folder, and its extension gives the format. MeshPart::texture_file is as in an encoded mesh.
+/// Throws Refusal.
 TriangleMesh import_mesh(const std::string& name, const std::string& bytes,
                          const Eigen::Vector3d& scale, const AskFile& ask);
 

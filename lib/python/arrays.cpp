@@ -21,7 +21,7 @@ std::string unit_of_length(const std::string& revolute) {
   return revolute == "N m" ? "N" : revolute;
 }
 
-/// Collects the arrays of samples from the fields of the first one.
+/// Collects the arrays of samples from the fields of the first sample.
 template <typename Sample>
 class Collector {
  public:
@@ -89,7 +89,7 @@ class Collector {
     return [=](const py::handle& owner) { return view_of(first, shape, strides, owner); };
   }
 
-  /// Joint vectors lie apart from each other, each where its sample is.
+  /// The vectors of a joint lie apart from each other, each in its sample.
   std::function<py::array(const py::handle&)> gathered(const VectorXd& first) const {
     const auto offset =
         reinterpret_cast<const char*>(&first) - reinterpret_cast<const char*>(samples_.data());
@@ -116,7 +116,7 @@ class Collector {
   NamedArrays arrays_;
 };
 
-/// The fields of a command, by the names that they have in a log.
+/// Visits the fields of a command, with the names that they have in a log.
 template <typename Visit>
 void for_each_field(const CommandSample& s, const Visit& visit) {
   visit("base", "m", s.state.base);

@@ -1,9 +1,9 @@
 #pragma once
 // The samples of a log, of a command series or of a joint table as numpy arrays with names and
-// units. Numbers and vectors of three are read where the samples have them: the array is a view
-// with the length of a sample as its stride. A joint vector has memory of its own in every sample,
-// so the first access lays all of them out as one matrix, and every array is a view of this matrix.
-// The Python object is the base of all its arrays and keeps their memory.
+// units. Numbers and vectors of three are read in the samples themselves: the array is a view whose
+// stride is the size of a sample. A joint vector has memory of its own in every sample, so that the
+// first access copies all of them into one matrix, and every array is a view of this matrix. The
+// Python object is the base of all its arrays and keeps their memory.
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -24,17 +24,19 @@ namespace ayumi::python {
 
 namespace py = pybind11;
 
-/// One quantity of the samples.
+/// An array of one quantity of the samples.
 struct NamedArray {
-  std::vector<std::string> parts;  ///< of the columns: "x", a joint; empty for a number
-  std::vector<std::string> units;  ///< one for a number, else one by column; "1" without a unit
+  /// Names of the columns, such as "x" or a joint; empty for a number.
+  std::vector<std::string> parts;
+  /// One unit for a number, otherwise one per column; "1" for a quantity without a unit.
+  std::vector<std::string> units;
   std::function<py::array(const py::handle& owner)> view;
 };
 
-/// In the order of the samples' fields.
+/// The arrays in the order of the samples' fields.
 using NamedArrays = std::vector<std::pair<std::string, NamedArray>>;
 
-/// A view of numbers that C++ owns, which cannot be written. `owner` keeps them.
+/// A view of numbers that C++ owns, which cannot be written to. `owner` keeps them alive.
 template <typename Scalar>
 py::array view_of(const Scalar* first, std::vector<py::ssize_t> shape,
                   std::vector<py::ssize_t> strides, const py::handle& owner) {
@@ -43,8 +45,8 @@ py::array view_of(const Scalar* first, std::vector<py::ssize_t> shape,
   return array;
 }
 
-/// The arrays of samples that outlive them. `joints` are the columns of joint vectors, `prismatic`
-/// says which of them are lengths; empty: none.
+/// The arrays of samples that outlive them. `joints` are the columns of joint vectors, and
+/// `prismatic` says which of them are lengths; if it is empty, none are.
 NamedArrays arrays_of(const std::vector<SimulationSample>& samples,
                       const std::vector<std::string>& joints, const std::vector<bool>& prismatic);
 NamedArrays arrays_of(const std::vector<CommandSample>& samples,
@@ -52,7 +54,7 @@ NamedArrays arrays_of(const std::vector<CommandSample>& samples,
 NamedArrays arrays_of(const std::vector<ReferenceRow>& rows, const std::vector<std::string>& joints,
                       const std::vector<bool>& prismatic);
 
-/// A joint table, and what its head says of the run that it is from.
+/// A joint table, and what its head says about the run that it is from.
 struct CautiousTable : ReferenceTrajectory {
   TableCaution caution;
 };
@@ -103,7 +105,7 @@ using Log = Sampled<SimulationLog>;
 using Series = Sampled<CommandSeries>;
 using Table = Sampled<CautiousTable>;
 
-/// Which dofs are lengths.
+/// By dof, whether its positions are lengths.
 inline std::vector<bool> prismatic_of(const RobotModel& model) {
   std::vector<bool> prismatic;
   for (const Dof& dof : model.dofs()) prismatic.push_back(dof.prismatic);

@@ -1,5 +1,5 @@
 #pragma once
-// The parts of the Python module, one file each, and the types that they share.
+// The parts of the Python module, each in one file, and the types that they share.
 
 #include <pybind11/complex.h>
 #include <pybind11/eigen.h>
@@ -24,15 +24,15 @@ struct PyTask {
   explicit PyTask(Task made);
 };
 
-/// The folders in which robots are looked for: those of the caller, then the bundled ones.
+/// The folders in which robots are looked for: first those of the caller, then the bundled ones.
 RobotSearch robot_search(const std::vector<Path>& path);
 /// The folder of bundled data.
 Path data_folder(const std::string& name);
 
-/// The object of a JSON text.
+/// The Python object of a JSON text.
 py::object from_json(const std::string& text);
 
-/// Throws Error(usage) naming the known words.
+/// The side of that name. Throws Error(usage) that lists the known words.
 Side side_of(const std::string& name);
 
 void bind_errors(py::module_& m);

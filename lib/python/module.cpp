@@ -1,4 +1,5 @@
-// The Python module ayumi._native: errors, where data are, and the order of the parts.
+// The Python module ayumi._native: the errors, the place of the bundled data, and the order of the
+// parts.
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/version.hpp"
@@ -50,7 +51,7 @@ Side side_of(const std::string& name) {
 }
 
 void bind_errors(py::module_& m) {
-  // The types live as long as the process, longer than the interpreter's own clean-up.
+  // The types live as long as the process, which is longer than the interpreter's own clean-up.
   static const py::handle error = py::exception<Error>(m, "Error").release();
   static const py::handle interrupted = py::exception<Interrupted>(m, "Interrupted").release();
   error.attr("__doc__") =

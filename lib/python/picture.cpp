@@ -32,8 +32,8 @@ ClipOptions clip_options(int width, int height, const std::string& view, double 
   return options;
 }
 
-/// Throws Error(usage) for a time that is not in the run: a picture of its end would be taken for
-/// one of that time.
+/// Throws Error(usage) for a time that is not in the run: otherwise a picture of its end would be
+/// mistaken for one of that time.
 void require_time_of_run(const Log& log, double at) {
   const double end = log.data().dt * static_cast<double>(log.data().samples.size() - 1);
   if (!(at >= 0 && at <= end))
@@ -41,7 +41,7 @@ void require_time_of_run(const Log& log, double at) {
                                text::brief(end) + " s");
 }
 
-/// PNG bytes of what `draw` makes without the interpreter's lock.
+/// The PNG bytes of the picture that `draw` makes without holding the interpreter's lock.
 template <typename Draw>
 py::bytes png(const Draw& draw) {
   const std::string bytes = [&] {

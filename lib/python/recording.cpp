@@ -1,5 +1,5 @@
-// What other programs and the robot itself give: motions of other formats, and recordings from
-// which servos are identified.
+// Data that other programs and the robot itself provide: motions of other formats, and recordings
+// from which servos are identified.
 
 #include "ayumi/io/table/recording.hpp"
 
@@ -101,7 +101,7 @@ void bind_import(py::module_& m) {
       "weight as ground force.");
 }
 
-// Angles that the caller has, as rows for each `dt`, or those of a file.
+// Angles of the caller, as a time `dt` between rows and the rows, or those of a file.
 using Angles = std::variant<Path, std::pair<double, Eigen::MatrixXd>>;
 
 AngleTable angles_of(const Angles& given, const char* what, const RobotModel& robot,
@@ -132,7 +132,8 @@ std::string name_of_angles(const Angles& given, const char* other) {
   return path ? path->filename().string() : other;
 }
 
-/// What was identified, with the robot and the names of the recordings, for a sidecar.
+/// The constants that were identified, with the robot and the names of the recordings, for a
+/// sidecar.
 struct PyIdentification {
   Identification found;
   RobotModel robot;

@@ -20,7 +20,7 @@ RobotData data_of(const RobotModel& model, const RobotState& state) {
   return data;
 }
 
-/// One member of all dofs as a view with the length of a Dof as its stride.
+/// One member of all dofs, as a view whose stride is the size of a Dof.
 py::array dof_view(const py::object& self, double Dof::*member) {
   const auto& dofs = self.cast<const RobotModel&>().dofs();
   return view_of(&(dofs.front().*member), {static_cast<py::ssize_t>(dofs.size())},

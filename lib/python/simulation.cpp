@@ -20,10 +20,10 @@ namespace ayumi::python {
 
 namespace {
 
-/// What a function of the user has returned. Throws Error(usage) where it is something else.
+/// The value that a function of the user has returned. Throws Error(usage) if it has another type.
 template <typename T>
 T returned(const py::object& object, const char* what) {
-  // None would be cast to no object at all.
+  // A cast of None would give no object at all.
   try {
     if (!object.is_none()) return object.cast<T>();
   } catch (const py::cast_error&) {
@@ -32,7 +32,7 @@ T returned(const py::object& object, const char* what) {
        std::string(what) + ", but it is " + py::repr(py::type::of(object)).cast<std::string>());
 }
 
-/// An object that a copy of a simulator must not share: copying it is Python's deepcopy.
+/// An object that a copy of a simulator must not share. It is copied by Python's deepcopy.
 class OwnObject {
  public:
   explicit OwnObject(py::object object) : object_(new py::object(std::move(object)), release) {}
@@ -53,7 +53,7 @@ class OwnObject {
   std::shared_ptr<py::object> object_;
 };
 
-/// A plant in Python, behind the interface of all plants.
+/// A plant written in Python, behind the interface of all plants.
 class PythonPlant {
  public:
   PythonPlant(const RobotModel& model, OwnObject object)
@@ -106,7 +106,8 @@ void warn_slow(const char* what) {
   if (PyErr_WarnEx(PyExc_RuntimeWarning, text.c_str(), 1) != 0) throw py::error_already_set();
 }
 
-/// `plant`: a name, or a function (robot, profile, friction) -> object with state, set_state, step.
+/// `plant` is a name, or a function (robot, profile, friction) -> object with state, set_state and
+/// step.
 PlantKind plant_of(const py::object& plant) {
   if (!py::isinstance<py::str>(plant)) {
     warn_slow("plant");
@@ -114,7 +115,8 @@ PlantKind plant_of(const py::object& plant) {
     return {"python",
             [make](const RobotModel& model, const ActuatorLimits& limits, const World& world) {
               const py::gil_scoped_acquire acquire;
-              // A copy: the object in Python may live longer than the run and its robot.
+              // The function gets a copy: the object in Python may live longer than the run and its
+              // robot.
               py::object made = make->get()(py::cast(model, py::return_value_policy::copy),
                                             limits.name, py::cast(world));
               return PlantInterface(PythonPlant(model, OwnObject(std::move(made))));
@@ -207,7 +209,7 @@ void bind_step(py::module_& m) {
            "Advances by `dt` [s]. The servo targets [rad, m], shape (dof,), are held during this "
            "time.")
       .def("__deepcopy__", [](const py::object& self, const py::dict&) {
-        // The robot of the original is kept alive by the original, which the copy keeps.
+        // The original keeps its robot alive, and the copy keeps the original alive.
         py::object copy = py::cast(Plant(self.cast<const Plant&>()));
         py::detail::keep_alive_impl(copy, self);
         return copy;

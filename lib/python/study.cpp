@@ -34,7 +34,7 @@ SimulateOptions study_simulation(const Task& task, std::uint64_t seed) {
   return options;
 }
 
-/// A push study with what was asked.
+/// A push study with the options that were asked for.
 struct PyPushStudy {
   std::shared_ptr<PyTask> task;
   PushOptions options;

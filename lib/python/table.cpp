@@ -1,4 +1,4 @@
-// Joint tables: what a robot replays.
+// Joint tables, which a robot replays.
 
 #include "ayumi/io/table/table.hpp"
 
@@ -30,7 +30,7 @@ Eigen::MatrixXd torques_of(const SimulationLog& log) {
   return torque;
 }
 
-/// A table with ramp and hold, and whether it is safe.
+/// A table with ramp and hold, and the verdict on whether it is safe.
 struct PySafeTable {
   std::shared_ptr<Table> table;
   SafetyReport report;

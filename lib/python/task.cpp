@@ -97,7 +97,7 @@ Trust trust_of(const std::string& name) {
   fail(ErrorCode::usage, "trust '" + name + "' is not one of posture, cog and zmp");
 }
 
-/// A repair, and the task that it makes of the pattern.
+/// A repair, and the task that results from applying it to the pattern.
 struct PyRepair {
   RepairResult result;
   std::shared_ptr<PyTask> task;

@@ -1,7 +1,7 @@
 #pragma once
-// Long work seen from Python: the interpreter's lock is free while the library works, Ctrl-C stops
-// it, and a callback receives the progress. What a callback raises, and KeyboardInterrupt, is kept
-// until the library has stopped in its own way, and is raised then.
+// Long work as seen from Python: the interpreter's lock is free while the library works, Ctrl-C
+// stops the work, and a callback receives the progress. Exceptions of a callback, and
+// KeyboardInterrupt, are kept until the library has stopped in its own way, and are raised then.
 
 #include <pybind11/pybind11.h>
 
@@ -16,10 +16,11 @@ namespace py = pybind11;
 
 class Watch {
  public:
-  /// `callback` is None or callback(stage, fraction, detail); the work stops when it returns False.
+  /// `callback` is None or a function callback(stage, fraction, detail). The work stops if it
+  /// returns False.
   explicit Watch(py::object callback) : callback_(std::move(callback)) {}
 
-  /// work(progress) without the interpreter's lock.
+  /// Calls work(progress) without holding the interpreter's lock.
   template <typename Work>
   auto run(const Work& work) {
     try {
@@ -36,7 +37,7 @@ class Watch {
   }
 
  private:
-  /// May be called by any thread of the library; signals are seen by Python's main thread.
+  /// May be called by any thread of the library. Signals are seen by Python's main thread.
   bool goes_on(const ProgressEvent& event) {
     const py::gil_scoped_acquire acquire;
     if (raised_) return false;

@@ -19,7 +19,7 @@ const std::regex kDeclaration(
     "?=.*");
 const std::regex kComment("^\\s*//.*");
 
-/// "file:line: constant" for each constant without a source.
+/// Lists "file:line: constant" for each constant without a source.
 std::string constants_without_source(const fs::path& root, const std::string& shown) {
   std::ifstream stream(root / shown);
   std::vector<std::string> lines;
@@ -58,7 +58,7 @@ std::string all_constants_without_source(const fs::path& root) {
   return found;
 }
 
-/// What is found in a tree whose only file, lib/ayumi/check/a.cpp, has this content.
+/// The constants that are found in a tree whose only file, lib/ayumi/check/a.cpp, has this content.
 std::string found_in(const std::string& content) {
   const fs::path root =
       fs::path(testing::TempDir()) / ("ayumi_constants_" + std::to_string(::getpid()));

@@ -29,7 +29,7 @@ std::string trimmed(const std::string& text) {
                                     : text.substr(begin, text.find_last_not_of(' ') - begin + 1);
 }
 
-/// The sources of a file that a page names without its extension, below the folders `tops`.
+/// The source files, below the folders `tops`, of a file that a page names without its extension.
 std::vector<fs::path> sources_of(const std::string& name, const std::vector<std::string>& tops) {
   std::vector<fs::path> found;
   for (const std::string& top : tops)
@@ -39,7 +39,7 @@ std::vector<fs::path> sources_of(const std::string& name, const std::vector<std:
   return found;
 }
 
-/// Where `name(` stands in a text, not as the end of a longer name.
+/// The places where `name(` stands in a text and is not the end of a longer name.
 std::vector<size_t> calls_of(const std::string& name, const std::string& text) {
   std::vector<size_t> found;
   for (size_t at = text.find(name + "("); at != std::string::npos;
@@ -49,7 +49,7 @@ std::vector<size_t> calls_of(const std::string& name, const std::string& text) {
   return found;
 }
 
-/// One past the bracket that closes the one at `open`.
+/// The position behind the bracket that closes the one at `open`.
 size_t closing(const std::string& text, size_t open, char left, char right) {
   int depth = 0;
   for (size_t i = open; i < text.size(); ++i) {
@@ -73,7 +73,7 @@ std::string bodies_of(const std::string& name, const std::string& text) {
   return bodies;
 }
 
-/// A cell of the map: "`function`, `function` in `file`".
+/// A cell of the map, which has the form "`function`, `function` in `file`".
 struct Place {
   std::vector<std::string> names;
   std::string file;
@@ -119,7 +119,7 @@ std::string all_sources() {
   return all;
 }
 
-// The functions of the map run: their callers call them, and something else calls the callers.
+// The functions of the map are used: their callers call them, and something else calls the callers.
 TEST(Documentation, TheMapOfEquationsLeadsToTheFunctionsThatRun) {
   const auto rows = table_below(kRoot / "docs/theory.md", "Map");
   ASSERT_GT(rows.size(), 12u);
@@ -198,13 +198,14 @@ std::set<std::string> headings_of(const fs::path& page) {
   return found;
 }
 
-/// As a heading or as the bold first words of a paragraph.
+/// The heading may be a heading or the bold first words of a paragraph.
 bool has_heading(const fs::path& page, const std::string& heading) {
   return headings_of(page).contains(heading) ||
          text_of(page).find("**" + heading + ".**") != std::string::npos;
 }
 
-// "docs/theory_gains.md, "Gain design"" in a comment, which may go on in the next line.
+// A comment names a heading as in "docs/theory_gains.md, "Gain design"", which may continue in the
+// next line.
 TEST(Documentation, HeadingsNamedInSourcesExist) {
   static const std::regex citation(R"re(docs/(\w+\.md), "([^"]+)")re"),
       comment_break(R"(\n\s*///? ?)");

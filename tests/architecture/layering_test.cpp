@@ -14,7 +14,7 @@ std::string joined(const std::vector<std::string>& lines) {
   return all;
 }
 
-/// A source tree with one file of the given content, removed at the end.
+/// A source tree with one file of the given content, which is removed at the end.
 class Planted {
  public:
   Planted(const std::string& file, const std::string& content)

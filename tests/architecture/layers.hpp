@@ -1,6 +1,6 @@
 #pragma once
-// The layering rules of docs/architecture.md, read from the sources: who may include whom, and
-// which third party may appear where.
+// The layering rules of docs/architecture.md, read from the sources: which room may include which,
+// and where third-party headers may appear.
 
 #include <algorithm>
 #include <filesystem>
@@ -18,9 +18,10 @@ namespace fs = std::filesystem;
 
 struct Room {
   int floor = 0;
-  std::set<std::string> also = {};    ///< seen although on the same floor
-  std::set<std::string> hidden = {};  ///< lower rooms that are out of sight
-  bool data_only = false;             ///< of the rooms that compute only data_headers()
+  /// Rooms that it may include although they are on the same floor.
+  std::set<std::string> also = {};
+  std::set<std::string> hidden = {};  ///< lower rooms that it may not include
+  bool data_only = false;  ///< from the rooms that compute, only data_headers() may be included
 };
 
 inline const std::map<std::string, Room>& rooms() {
@@ -54,20 +55,20 @@ inline const std::map<std::string, Room>& rooms() {
   return table;
 }
 
-/// Rooms of which io, render, plot and report see data_headers() only.
+/// Rooms of which io, render, plot and report may include data_headers() only.
 inline bool computes(const std::string& room) {
   static const std::set<std::string> rooms = {"check", "limits", "control", "repair", "sim"};
   return rooms.contains(room);
 }
 
-/// The room of "check/consistency.hpp": the longest leading folder that is one.
+/// The room of a path such as "check/consistency.hpp": the longest leading folder that is a room.
 inline std::string room_of(const std::string& path) {
   const size_t first = path.find('/'), second = path.find('/', first + 1);
   const std::string two = second == std::string::npos ? "" : path.substr(0, second);
   return rooms().contains(two) ? two : path.substr(0, first);
 }
 
-/// Headers of the rooms that compute which hold results and options.
+/// Headers of the rooms that compute which contain results and options.
 inline const std::set<std::string>& data_headers() {
   static const std::set<std::string> headers = {"check/consistency.hpp", "limits/table_safety.hpp",
                                                 "repair/repair.hpp", "sim/simulate.hpp",
@@ -76,7 +77,7 @@ inline const std::set<std::string>& data_headers() {
 }
 
 /// Headers that are installed, by their path below lib/ayumi: those of public_headers.txt and those
-/// that they include. Only Eigen shows in them.
+/// that they include. Of third-party headers, they include only Eigen's.
 inline const std::set<std::string>& public_headers() {
   static const std::set<std::string> headers = [] {
     const fs::path lib = fs::path(AYUMI_SOURCE_DIR) / "lib";
@@ -101,7 +102,8 @@ inline const std::set<std::string>& public_headers() {
 struct ThirdParty {
   std::string name;
   std::regex header;
-  std::set<std::string> rooms;  ///< empty: everywhere, public headers included
+  /// Rooms that may use it; if empty, all rooms, public headers included.
+  std::set<std::string> rooms;
 };
 
 inline const std::vector<ThirdParty>& third_parties() {
@@ -112,7 +114,8 @@ inline const std::vector<ThirdParty>& third_parties() {
       {"Ceres", std::regex("ceres/.*"), {"identify"}},
       {"dynamic loader", std::regex("dlfcn\\.h"), {"render", "repair"}},
       {"urdfdom", std::regex("(urdf|console_bridge|tinyxml).*"), {"io"}},
-      // assimp's readers trust their input: only the confined program ayumi-mesh-reader has them.
+      // assimp's readers trust their input, so that only the confined program ayumi-mesh-reader
+      // contains them.
       {"assimp", std::regex("assimp/.*"), {"mesh_reader"}},
       {"libseccomp", std::regex("seccomp\\.h"), {"mesh_reader"}},
       {"OpenSSL", std::regex("openssl/.*"), {"io"}},
@@ -136,7 +139,7 @@ inline const std::vector<ThirdParty>& third_parties() {
   return table;
 }
 
-/// The broken rule, empty when a file of `room` may include "ayumi/`header`".
+/// The broken rule, or an empty text if a file of `room` may include "ayumi/`header`".
 inline std::string room_rule(const std::string& room, const std::string& header) {
   const std::string target = room_of(header);
   const auto to = rooms().find(target);
@@ -153,10 +156,11 @@ inline std::string room_rule(const std::string& room, const std::string& header)
   return "";
 }
 
-/// The broken rule, empty when a file of `room` may include <`header`>.
+/// The broken rule, or an empty text if a file of `room` may include <`header`>.
 inline std::string third_party_rule(const std::string& room, bool public_header,
                                     const std::string& header) {
-  if (header.find_first_of("/.") == std::string::npos) return "";  // the standard library
+  // A header of the standard library.
+  if (header.find_first_of("/.") == std::string::npos) return "";
   for (const ThirdParty& party : third_parties()) {
     if (!std::regex_match(header, party.header)) continue;
     if (party.rooms.empty()) return "";
@@ -166,7 +170,7 @@ inline std::string third_party_rule(const std::string& room, bool public_header,
   return "<" + header + "> is no known third party";
 }
 
-/// Breaks in one source file, "shown:line: rule" each.
+/// The violations in one source file, each as "shown:line: rule".
 inline std::vector<std::string> file_violations(const fs::path& file, const std::string& shown,
                                                 const std::string& room, bool public_header) {
   static const std::regex include(R"re(^\s*#\s*include\s*(["<])([^">]+)[">].*)re");
@@ -190,7 +194,8 @@ inline std::vector<std::string> file_violations(const fs::path& file, const std:
   return found;
 }
 
-/// Every break of the rules in lib/ayumi, lib/python, lib/mesh_reader and app below `root`, sorted.
+/// All violations of the rules in lib/ayumi, lib/python, lib/mesh_reader and app below `root`,
+/// sorted.
 inline std::vector<std::string> layering_violations(const fs::path& root) {
   static const std::set<std::string> forbidden = {"util",   "utils",   "common",  "core",
                                                   "helper", "helpers", "manager", "managers"};

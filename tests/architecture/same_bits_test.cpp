@@ -1,5 +1,5 @@
-// The rooms that compute take sines, exponential functions and what is made of them from
-// math/elementary: those of the C library have other last bits on other machines.
+// The rooms that compute take sines, exponential functions and functions that are made from them
+// from math/elementary: those of the C library have other last bits on other machines.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -12,7 +12,7 @@ namespace ayumi::test {
 namespace {
 
 const std::set<std::string> kPictures = {"render", "plot", "report"};
-// An angle is one of Eigen's rotations by a sine of the C library.
+// Eigen makes a rotation from an angle by a sine of the C library.
 const std::regex kForeign(
     "std::(sin|cos|tan|exp|exp2|expm1|log|log2|log10|log1p|atan|atan2|asin|acos|pow|cbrt|hypot|"
     "sinh|"
@@ -20,7 +20,7 @@ const std::regex kForeign(
     "AngleAxis|"
     "\\.slerp\\(|\\.angularDistance\\(|\\.eulerAngles\\(");
 
-/// "file:line: text" of each use in the rooms that compute.
+/// Lists "file:line: text" for each use in the rooms that compute.
 std::string foreign_functions(const fs::path& root) {
   std::vector<std::string> files;
   for (const auto& room : fs::directory_iterator(root / "lib/ayumi")) {
@@ -38,7 +38,7 @@ std::string foreign_functions(const fs::path& root) {
     for (std::string line; std::getline(stream, line);) {
       ++number;
       const std::string code = line.substr(0, line.find("//"));
-      // The poles of a loop are complex numbers, for people only.
+      // The poles of a loop are complex numbers that are only shown to people.
       if (file.ends_with("gain_design.cpp") && code.find("poles.push_back") != std::string::npos)
         continue;
       if (std::regex_search(code, kForeign))

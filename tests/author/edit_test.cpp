@@ -13,7 +13,7 @@
 namespace ayumi::test {
 namespace {
 
-// A walk that uses every track there is, not its own mirror image in any of them.
+// A walk that uses every track, and that is not its own mirror image in any of them.
 Pattern rich() {
   Pattern p = walk_pattern(hoap1(), {.steps = 3, .turn = 0.05, .side = 0.01});
   p.robot = "hoap1";
@@ -58,7 +58,7 @@ TEST(Mirror, TwiceIsIdentityOfATable) {
   }
 }
 
-// A table with the joints of one side only is renamed to the other.
+// In a table that has the joints of one side only, they are renamed to those of the other side.
 TEST(Mirror, OneSidedTable) {
   Pattern p = stand_pattern(hoap1(), 1.0);
   p.table.emplace();
@@ -69,7 +69,7 @@ TEST(Mirror, OneSidedTable) {
   EXPECT_EQ(once.table->theta(3, 0), -0.5);
 }
 
-// The image of the motion is the motion of the image.
+// The mirrored pattern has the mirror image of the motion.
 TEST(Mirror, MotionIsTheMirrorImage) {
   Pattern p = walk_pattern(hoap1(), {.steps = 2, .turn = 0.1});
   const CommandSeries a = sample(hoap1(), p), b = sample(hoap1(), mirrored(hoap1(), p));
@@ -85,7 +85,8 @@ TEST(Mirror, MotionIsTheMirrorImage) {
   }
 }
 
-// The mirrored pattern under its mirrored ground and disturbances runs as the mirror shows the run.
+// Under its mirrored ground and disturbances, the mirrored pattern runs like the mirror image of
+// the run.
 TEST(Mirror, TheRunIsTheMirrorImage) {
   Pattern p = stand_pattern(hoap1(), 1.5);
   p.robot = "hoap1";
@@ -153,7 +154,8 @@ TEST(Retime, ForceKeysKeepTheAccelerationOfTheNewTime) {
   EXPECT_NEAR(*retimed(hoap1(), p, 0.5).keyframes[2].fz, weight + 20, 1e-9);
 }
 
-// A part takes longer, what follows is that much later; a part that is all is the whole retimed.
+// A part takes longer, and everything after it comes later by the same time. If the part is the
+// whole pattern, the result is the pattern as a whole retimed.
 TEST(Retime, APartIsStretchedAlone) {
   Pattern p = walk_pattern(hoap1(), {.steps = 2});
   const double begin = p.phases[0].until, end = p.phases[1].until, whole = p.duration();
@@ -172,7 +174,7 @@ TEST(Retime, APartIsStretchedAlone) {
   EXPECT_THROW(stretched(hoap1(), p, begin, end, 2), Error);
 }
 
-// A table's path stays, its forces are those of the new time.
+// The path of a table stays, and its forces are those of the new timing.
 TEST(Retime, TableKeepsItsPath) {
   Pattern p = walk_pattern(hoap1(), {.steps = 2});
   p = baked(hoap1(), p, sample(hoap1(), p), "t.csv");
@@ -185,7 +187,7 @@ TEST(Retime, TableKeepsItsPath) {
   EXPECT_LT((a.samples[k].state.dtheta - 2 * b.samples[2 * k].state.dtheta).norm(), 1e-4);
 }
 
-// Goals move as their controller decides: mirrored they are, baked or retimed they are refused.
+// Goals move as their controller decides: they can be mirrored, but not baked or retimed.
 TEST(Mirror, GoalsOfPhases) {
   Pattern p = stand_pattern(hoap1(), 1.0);
   p.phases[0].viip = StepGoal{4, {0.05, 0.02}, 0.1};
@@ -201,7 +203,7 @@ TEST(Retime, RefusesSenselessScales) {
     EXPECT_THROW(retimed(hoap1(), rich(), scale), Error) << scale;
 }
 
-// Baked, a pattern is the same motion to rounding.
+// A baked pattern is the same motion up to rounding.
 TEST(Bake, SamplesToTheSameMotion) {
   const Pattern p = rich();
   Pattern plain = p;
@@ -221,10 +223,10 @@ TEST(Bake, SamplesToTheSameMotion) {
     for (int foot : {0, 1}) EXPECT_TRUE(s.feet[foot].isApprox(t.feet[foot], 1e-12));
   }
   EXPECT_EQ(b.joint_weight, a.joint_weight);
-  EXPECT_EQ(dense.keyframes.size(), 1u);  // the weights
+  EXPECT_EQ(dense.keyframes.size(), 1u);  // only the keyframe of the weights is left
 }
 
-// A foot that one motion leads by keys and the other one by swings has both motions in a table.
+// If one motion leads a foot by keys and the other by swings, both motions are joined in a table.
 TEST(Join, ATableOfKeysAndSwingsOfAFoot) {
   KickParameters low;
   low.height = 0.018;
@@ -244,7 +246,8 @@ TEST(Join, ATableOfKeysAndSwingsOfAFoot) {
                   .norm(),
               1e-4)
               << k;
-      // The second motion is elsewhere; how its feet stand to each other is not.
+      // The second motion takes place elsewhere, but its feet have the same place relative to each
+      // other.
       const auto between = [](const CommandSample& s) {
         return (s.feet[0].inverse() * s.feet[1]).translation().eval();
       };

@@ -43,7 +43,7 @@ TEST(WalkPattern, AlternatesFeetAndClosesThem) {
   for (size_t i = 1; i < swings.size(); ++i) EXPECT_EQ(swings[i].foot, other(swings[i - 1].foot));
   EXPECT_NEAR(swings[0].to.position.x(), 0.03, 1e-12);
   EXPECT_NEAR(swings[3].to.position.x(), 0.12, 1e-12);
-  EXPECT_NEAR(swings[4].to.position.x(), 0.12, 1e-12);  // beside the last one
+  EXPECT_NEAR(swings[4].to.position.x(), 0.12, 1e-12);  // beside the last foothold
   EXPECT_NEAR(swings[3].to.position.y(), 0.05, 1e-12);
   EXPECT_NEAR(swings[4].to.position.y(), -0.05, 1e-12);
 }
@@ -79,7 +79,7 @@ TEST(WalkPattern, StartsAndEndsAtRest) {
   const Eigen::Vector3d middle = 0.5 * (series.samples.back().feet[0].translation() +
                                         series.samples.back().feet[1].translation());
   EXPECT_NEAR(series.samples.back().cog.y(), middle.y(), 1e-6);
-  // What the keys lose to the start from rest is small, and told when not.
+  // The change of the keys for a start from rest is small, and it is reported if it is not.
   EXPECT_LT((series.samples[700].zmp - series.samples[0].zmp).norm(), 1e-3);
 }
 
@@ -90,7 +90,8 @@ TEST(WalkPattern, BendsTheLegsOfARobotThatStandsStraight) {
   const Pattern pattern = walk_pattern(model, {});
   EXPECT_GT(pattern.cog_height, 0.1);
   EXPECT_GT(sample(model, pattern, {.dt = 0.005}).samples.size(), 100u);
-  EXPECT_EQ(walk_pattern(test::biped(), {}).cog_height, 0);  // home's, already bent
+  // The height of home, in which the knees are already bent.
+  EXPECT_EQ(walk_pattern(test::biped(), {}).cog_height, 0);
 }
 
 TEST(StandingPatterns, BendTheLegsOfARobotThatStandsStraight) {
@@ -106,7 +107,7 @@ TEST(StandingPatterns, BendTheLegsOfARobotThatStandsStraight) {
   EXPECT_EQ(stand_pattern(test::biped(), 1).cog_height, 0);
 }
 
-// Every foothold is on a stair, its whole sole, and both feet end on the last one.
+// Every foothold is on a stair with its whole sole, and both feet end on the last stair.
 TEST(WalkPattern, StairsCarryTheWholeSole) {
   const RobotModel& model = test::biped();
   WalkParameters p = stair_defaults(model, 0.01);
@@ -230,7 +231,8 @@ TEST(StandPattern, StandsStill) {
   EXPECT_THROW(stand_pattern(model, 0), Error);
 }
 
-// The ZMP that a shuffle keys under a standing foot is nearer to the other foot by what was asked.
+// The ZMP that a shuffle keys under a standing foot is nearer to the other foot by the requested
+// distance.
 TEST(Generate, ZmpInwardsOfTheStandingSole) {
   const RobotModel model = test::biped();
   WalkParameters p = walk_defaults(model);

@@ -1,4 +1,4 @@
-// Generated gestures on both robots: they do in metres and degrees what they are asked for.
+// Generated gestures on both robots reach what is asked for in metres and degrees.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ class Gesture : public testing::TestWithParam<const char*> {
     update_positions(model, sample.state, data);
     return matrix_to_rpy(data.rotation[static_cast<size_t>(model.trunk_body())]).y();
   }
-  // Ends where it began, at rest.
+  // The motion ends where it began, at rest.
   static void expect_closed(const CommandSeries& series, double near = 1e-6) {
     const RobotState &a = series.samples.front().state, &b = series.samples.back().state;
     EXPECT_LT((a.theta - b.theta).cwiseAbs().maxCoeff(), near);
@@ -47,11 +47,11 @@ TEST_P(Gesture, BowLeansTheTrunk) {
   double most = 0;
   for (const CommandSample& sample : series.samples) most = std::max(most, pitch_of_trunk(sample));
   EXPECT_NEAR(most, 0.4, 1e-4);
-  expect_closed(series, 1e-3);  // keys of the height are written to 0.1 mm
+  expect_closed(series, 1e-3);  // keys of the height are written in units of 0.1 mm
 }
 
-// An author reads and changes the angles: they are written in tenths of a degree, and what was
-// asked for stays as it was.
+// An author reads and changes the angles: they are written in tenths of a degree, and requested
+// values stay as they are.
 TEST_P(Gesture, AnglesAreThoseThatAnAuthorWouldWrite) {
   constexpr double degree = M_PI / 180;
   BowParameters bow = bow_defaults(model);
@@ -69,7 +69,7 @@ TEST_P(Gesture, AnglesAreThoseThatAnAuthorWouldWrite) {
   }
 }
 
-// The whole hand is above its shoulder, and goes to and fro as often as asked.
+// The whole hand is above its shoulder, and moves to and fro as often as asked.
 TEST_P(Gesture, WaveRaisesTheHand) {
   for (const Side side : {Side::left, Side::right}) {
     WaveParameters p = wave_defaults(model);

@@ -22,7 +22,7 @@ Keyframe key_of(double t) {
   return key;
 }
 
-// Stands 0.8 s, puts the right foot ahead, and stands 0.8 s.
+// The robot stands for 0.8 s, puts the right foot ahead, and stands for 0.8 s.
 Pattern one_step() {
   Pattern p;
   p.robot = "hoap1";
@@ -49,7 +49,7 @@ TEST(KeyEdit, CopiesMovesAndMirrors) {
   EXPECT_EQ(copied.keyframes[3].zmp->place, ZmpKey::Place::right);
   EXPECT_EQ(copied.keyframes[3].joints.count("r_shoulder_pitch"), 1u);
   EXPECT_EQ(copied.keyframes[1].joints, p.keyframes[1].joints);
-  // One that arrives at the time of another is merged with it.
+  // A key that arrives at the time of another is merged with it.
   const Pattern moved = with_key_edited(hoap1(), p, {.at = 0.8, .to = 1.2});
   ASSERT_EQ(moved.keyframes.size(), 3u);
   EXPECT_EQ(moved.keyframes[1].joints, p.keyframes[1].joints);
@@ -63,7 +63,7 @@ TEST(KeyEdit, CopiesMovesAndMirrors) {
       std::string::npos);
 }
 
-// Goals replace keys in a VIIP phase.
+// In a VIIP phase, goals replace keys.
 TEST(KeyEdit, ComesToNoTimeInsideAViipPhase) {
   Pattern p;
   p.robot = "hoap1";

@@ -19,7 +19,7 @@ TEST(InParallel, RunsEveryJobOnce) {
   }
 }
 
-// The first job fails last.
+// The first job is the last one that fails.
 TEST(InParallel, ThrowsTheErrorOfTheFirstJobThatFails) {
   for (const int threads : {1, 4}) {
     std::atomic<bool> stop = false;

@@ -1,8 +1,8 @@
-// Repairs of ten faulty motions, each from no correction and from many random ones: how many end at
-// the same motion, and how long they take.
+// Repairs ten faulty motions, each starting from no correction and from many random ones, and tells
+// how many repairs end at the same motion, and how long they take.
 //   ayumi_bad_starts [STARTS=100] [FIRST FAULT=0] [LAST FAULT=9]
-// Exit code 1 where fewer than 99 of 100 starts end at the same motion, or the longest repair takes
-// more than five times the median.
+// The exit code is 1 if fewer than 99 of 100 starts end at the same motion, or the longest repair
+// takes more than five times the median.
 
 #include <algorithm>
 #include <cstdio>
@@ -24,8 +24,8 @@ struct Outcome {
 };
 
 bool measure(const FaultyMotion& motion, int starts) {
-  // Motions nearer to each other than this are the same [rad], [m]. Chosen: the tolerance of the
-  // solver leaves a tenth of it.
+  // Distance below which motions count as the same [rad], [m]. Chosen: the tolerance of the solver
+  // leaves a tenth of it.
   constexpr double kSame = 1e-3;
   double begin = processor_seconds();
   const RepairResult usual = repair(hoap1(), motion.series, motion.options);

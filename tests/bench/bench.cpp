@@ -1,7 +1,7 @@
 // Usage: ayumi_bench [--rounds N] [--only JOB] [--list] [--count JOB WHO CALLS] [--closed-loop]
-//   --only         this job alone
-//   --count        one kernel called so many times and nothing else: for callgrind
-//   --closed-loop  plant and controller on the walking pattern instead of kernels
+//   --only         runs only this job
+//   --count        calls one kernel this many times and does nothing else, for callgrind
+//   --closed-loop  runs plant and controller on the walking pattern instead of kernels
 #include "tests/bench/bench.hpp"
 
 #include <time.h>
@@ -41,7 +41,7 @@ double disagreement(const Kernels& kernels, const Kernel& kernel, const Problem&
 
 namespace {
 
-/// Processor time of this thread [ns]: what others do on the machine is not in it.
+/// The processor time of this thread [ns], which does not include the time of other programs.
 double now() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
@@ -54,7 +54,7 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-/// Median over passes through all states [ns per state].
+/// The median over passes through all states [ns per state].
 double one_round(const Kernel& kernel, const Problem& problem, double seconds) {
   const size_t count = problem.states.size() / static_cast<size_t>(kernel.states_per_call);
   std::vector<double> times;
@@ -90,7 +90,7 @@ Kernels all_kernels(const Problem& problem) {
   return all;
 }
 
-/// Joint torques, masses and so on must be the same before times are worth comparing.
+/// Joint torques, masses and so on must be equal before it makes sense to compare times.
 bool check_agreement(const Kernels& kernels, const Problem& problem) {
   bool good = true;
   for (const Kernel& kernel : kernels) {

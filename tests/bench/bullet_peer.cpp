@@ -21,7 +21,7 @@ namespace {
 btVector3 bt(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 btQuaternion bt(const Quaterniond& q) { return {q.x(), q.y(), q.z(), q.w()}; }
 
-/// Bullet's copy of the robot: its link frames stand in the centres of mass along the principal
+/// Bullet's copy of the robot. Its link frames are in the centres of mass, along the principal
 /// axes.
 struct Bullet {
   explicit Bullet(const Problem& problem) : problem(&problem), model(*problem.model) {
@@ -38,7 +38,7 @@ struct Bullet {
     for (size_t i = 1; i < bodies.size(); ++i) {
       const Body& body = bodies[i];
       const auto p = static_cast<size_t>(body.parent);
-      // Parent's principal axes to this one's at joint zero.
+      // The turn from the parent's principal axes to those of this link, with the joint at zero.
       const Matrix3d turn =
           principal[i].transpose() * body.placement.linear().transpose() * principal[p];
       const Vector3d to_pivot =
@@ -99,7 +99,8 @@ struct Bullet {
     }
     return result;
   }
-  static constexpr double kStep = 1.0;  // Bullet adds acceleration times this to the velocity
+  // Bullet adds the acceleration times this step to the velocity.
+  static constexpr double kStep = 1.0;
   const Problem* problem;
   const RobotModel& model;
   std::vector<Matrix3d> principal;

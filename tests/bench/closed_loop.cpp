@@ -1,5 +1,5 @@
-// Plant, sensors, estimator and controller on the walking pattern, 1 kHz, one core. The physics of
-// the run stands beside its speed: a fast step that sinks or slips is no faster.
+// Plant, sensors, estimator and controller on the walking pattern at 1 kHz on one core. The physics
+// of the run is printed beside its speed: a fast step in which the robot sinks or slips is no gain.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -23,9 +23,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kStiff = 1e7;  // of a sole [N/m]
+constexpr double kStiff = 1e7;  // stiffness of a sole [N/m]
 
-/// Any plant; takes down how long each of its steps took [us].
+/// A plant of any kind that records how long each of its steps took [us].
 struct TimedPlant {
   PlantInterface inner;
   std::shared_ptr<double> step_time;
@@ -40,13 +40,13 @@ struct TimedPlant {
   }
 };
 
-/// The run is the same in every round, so the least time of each tick is what it takes when nothing
-/// else gets in the way.
+/// The run is the same in every round, so that the shortest time of each tick is the time that it
+/// takes when nothing disturbs it.
 struct Contender {
   std::string name;
   PlantKind kind;
   const RobotModel* model;
-  std::vector<double> loop = {}, plant = {};  ///< least time of each tick [us]
+  std::vector<double> loop = {}, plant = {};  ///< shortest time of each tick [us]
   SimulationLog log = {};
 };
 
@@ -95,7 +95,7 @@ void report(const Contender& c, const Contender& ours, double dt) {
       residual, 1e3 * r.final_cog_error);
 }
 
-/// The walk in the closed loop.
+/// The walk in a closed loop.
 struct Walk {
   Walk() {
     options.controller = pattern.controller;
@@ -133,7 +133,7 @@ Kernel tick_of(const std::string& name, const PlantKind& kind) {
   struct Run : Walk {
     std::optional<Simulator> simulator;
   };
-  const auto made = std::make_shared<std::optional<Run>>();  // only when it is asked for
+  const auto made = std::make_shared<std::optional<Run>>();  // it is only made when it is asked for
   return {"walking tick",
           name,
           "closed loop, without the log",
@@ -159,7 +159,8 @@ Kernels tick_kernels() {
 
 int run_closed_loop(int rounds) {
   const Walk walk;
-  // MuJoCo's contacts are as soft as its step allows whatever the sole is; Ayumi's may be stiff.
+  // MuJoCo's contacts are as soft as its time step allows, whatever the sole is; Ayumi's may be
+  // stiff.
   RobotDescription stiff_soles = walk.model.description();
   for (auto& [side, sole] : stiff_soles.soles) sole.stiffness = kStiff;
   const RobotModel stiff(stiff_soles);

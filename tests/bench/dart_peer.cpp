@@ -68,7 +68,7 @@ struct Dart {
     const VectorXd& a = problem.accelerations[i];
     base->setLinearAcceleration(a.head<3>());
     base->setAngularAcceleration(a.segment<3>(3));
-    // DART's base force is the wrench on the body in its own axes, moment first.
+    // DART's base force is the wrench on the body in the body's axes, with the moment first.
     const Eigen::Matrix3d turn = pose.linear().transpose();
     VectorXd force(skeleton->getNumDofs());
     force.segment<3>(0) = turn * problem.forces[i].segment<3>(3);
@@ -91,7 +91,7 @@ struct Dart {
       ours[dof] = theirs[static_cast<Eigen::Index>(joint->getIndexInSkeleton(0))];
     return ours;
   }
-  /// Columns of a matrix by joint, in Ayumi's order.
+  /// The columns of a matrix by joint, in Ayumi's order.
   Eigen::MatrixXd joint_columns(const Eigen::MatrixXd& theirs) const {
     Eigen::MatrixXd ours(theirs.rows(), static_cast<Eigen::Index>(columns.size()));
     for (const auto& [joint, dof] : columns)

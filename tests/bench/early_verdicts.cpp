@@ -1,8 +1,8 @@
-// Early verdicts of random pushes against full runs: whether a run that has entered the set around
-// the unpushed run (study/recorded_run) stands at its end, how much sooner the verdict is known,
-// and how far such runs go from the unpushed one afterwards.
+// Compares early verdicts of random pushes with full runs: whether a run that has entered the set
+// around the unpushed run (study/recorded_run) stands at its end, how much sooner the verdict is
+// known, and how far such runs go from the unpushed one afterwards.
 //   ayumi_early_verdicts [CASES=1000] [SEED=1]
-// Exit code 1 where a verdict is wrong.
+// The exit code is 1 if a verdict is wrong.
 
 #include <algorithm>
 #include <cmath>
@@ -24,13 +24,13 @@ using namespace ayumi;
 
 namespace {
 
-constexpr double kPushTime = 0.02;  // [s]
+constexpr double kPushTime = 0.02;  // duration of a push [s]
 constexpr long kTicksPerTest = 10;
-/// Time at the end in which a robot has to be at rest [s].
+/// Time at the end during which a robot has to be at rest [s].
 constexpr double kRest = 0.5;
 /// Share of the set in which figures are decided (study/push).
 constexpr double kWellInside = 1.0 / 3;
-/// No push so near to the begin and the end of a motion [s].
+/// Time at the begin and the end of a motion in which there is no push [s].
 constexpr double kEdge = 0.3;
 
 struct Motion {
@@ -45,7 +45,7 @@ struct Motion {
 struct Law {
   std::string name;
   ControllerSpec spec;
-  double largest;  // push, in capture bounds
+  double largest;  // largest push, in capture bounds
 };
 
 struct Tried {
@@ -54,8 +54,8 @@ struct Tried {
 
 struct Count {
   int cases = 0, stand = 0, early = 0, wrong = 0;
-  double early_time = 0, full_time = 0;  // of the runs that stand [s]
-  // Largest drift after the run has been in the set, and in the third of it.
+  double early_time = 0, full_time = 0;  // times of the runs in which the robot stands [s]
+  // The largest drift after the run has been in the set, and after it has been in a third of it.
   double farthest = 0, inside = 0;
   double last = 0;  // largest drift in the last half second
 };
@@ -94,7 +94,7 @@ void try_push(const Motion& motion, const Tried& tried, const Simulator& before,
     if (run.fell() || run.time() <= tried.at + kPushTime) continue;
     if (verdict < 0 && unpushed.contains(run)) verdict = run.time();
     const double drift = unpushed.drift(run);
-    if (!std::isfinite(drift)) continue;  // after the last tick that was recorded
+    if (!std::isfinite(drift)) continue;  // the tick is after the last one that was recorded
     if (verdict >= 0) farthest = std::max(farthest, drift);
     if (verdict >= 0 && run.time() > end - kRest) count.last = std::max(count.last, drift);
     if (inside >= 0 || unpushed.contains(run, kWellInside)) inside = std::max(inside, drift);
@@ -133,7 +133,7 @@ Count measure(const Motion& motion, const Law& law, int cases, Random& random) {
   Simulator run(*motion.model, motion.series, options);
   run.keep_samples(false);
   RecordedRun unpushed(motion.world);
-  std::vector<Simulator> before;  // of each case
+  std::vector<Simulator> before;  // the simulator of each case before its push
   while (run.advance(1) && !run.fell()) {
     unpushed.record(run);
     while (before.size() < all.size() &&
@@ -141,7 +141,8 @@ Count measure(const Motion& motion, const Law& law, int cases, Random& random) {
       before.push_back(run);
   }
   Count count;
-  if (run.fell() || run.result().outcome != Outcome::stands) return count;  // no push is studied
+  // In this case no push is studied.
+  if (run.fell() || run.result().outcome != Outcome::stands) return count;
   for (size_t i = 0; i < before.size(); ++i) try_push(motion, all[i], before[i], unpushed, count);
   return count;
 }

@@ -1,4 +1,5 @@
-// Hours of walking and standing in one plant that is never set back: no drift, no leak, no NaN.
+// Hours of walking and standing in one plant that is never reset, which must show no drift, no leak
+// and no NaN.
 //   ayumi_long_run [simulated hours, half walking, half standing; 0.5] [controller; dtad]
 // HOAP-1 walks the pattern and its mirror image in turn, each round from where the last one ended,
 // then stands in one run. Every tenth of the time a line; the last line says what was found, and
@@ -30,7 +31,7 @@ namespace {
 using namespace ayumi;
 using Eigen::Vector3d;
 
-/// A plant that outlives the runs upon it: only the first of them places the robot.
+/// A plant that continues over several runs: only the first run places the robot.
 struct Lasting {
   Plant* plant;
   bool* placed;
@@ -45,7 +46,7 @@ struct Lasting {
   }
 };
 
-/// Memory this program holds [MiB].
+/// The memory that this program holds [MiB].
 double resident() {
   std::ifstream file("/proc/self/statm");
   double pages = 0;
@@ -53,7 +54,7 @@ double resident() {
   return pages * static_cast<double>(sysconf(_SC_PAGESIZE)) / (1 << 20);
 }
 
-/// COG seen from the middle of the feet, along their heading, and the feet's height.
+/// The COG relative to the middle of the feet, along their heading, and the height of the feet.
 Eigen::Vector4d stance(const RobotModel& model, const RobotData& data) {
   const Eigen::Isometry3d left = sole_pose(model, data, Side::left);
   const Eigen::Isometry3d right = sole_pose(model, data, Side::right);

@@ -26,14 +26,14 @@ struct Mujoco {
     }
     result = VectorXd::Zero(n);
     jacobian = VectorXd::Zero(3 * n);
-    to_ours = robot.to_theirs().transpose();  // of joint parts the same in every state
+    to_ours = robot.to_theirs().transpose();  // of joint parts; it is the same in every state
   }
   const mjModel* m() const { return robot.model(); }
   mjData* d() const { return robot.data(); }
   static void put(const VectorXd& from, mjtNum* to) {
     Eigen::Map<VectorXd>(to, from.size()) = from;
   }
-  /// The kinematics that every kernel of MuJoCo starts from.
+  /// Computes the kinematics with which every kernel of MuJoCo starts.
   void place(size_t i) {
     put(q[i], d()->qpos);
     mj_kinematics(m(), d());

@@ -25,7 +25,7 @@ namespace pin = pinocchio;
 namespace {
 
 /// Pinocchio's copy of the robot with the problem in its own coordinates: base twists and forces in
-/// the base's axes, spatial accelerations.
+/// the axes of the base, and spatial accelerations.
 struct Pinocchio {
   explicit Pinocchio(const Problem& problem) {
     const RobotModel& robot = *problem.model;
@@ -106,7 +106,7 @@ struct Pinocchio {
   static MatrixXd symmetric(const MatrixXd& upper) { return upper.selfadjointView<Eigen::Upper>(); }
   pin::Model model;
   std::unique_ptr<pin::Data> data;
-  std::vector<std::pair<int, int>> columns;  ///< of its velocity, dof
+  std::vector<std::pair<int, int>> columns;  ///< columns of its velocity, and the dof
   std::vector<VectorXd> q, v, a, f;
   MatrixXd by_q, by_v, by_a;
 };

@@ -2,8 +2,8 @@
 // how often the check calls the planted fault its first error, how often its only error, and
 // whether of two faults far apart both remain errors.
 //   ayumi_planted_causes [FAULTS=500] [SEED=1] [FOLDER OF ANOTHER ROBOT ...]
-// Exit code 1 where fewer than 97 % are the first error, fewer than 90 % the only one, or one of
-// two faults is hidden.
+// The exit code is 1 if fewer than 97 % are the first error, fewer than 90 % the only one, or one
+// of two faults is hidden.
 
 #include <cstdio>
 #include <cstdlib>
@@ -30,15 +30,15 @@ using Kinds = std::set<FindingKind>;
 struct Motion {
   std::string name;
   const RobotModel* robot;
-  Pattern pattern;  // as a table
-  double friction;  // that it needs
+  Pattern pattern;  // the pattern as a table
+  double friction;  // friction that the motion needs
   double pace;      // largest share of a speed limit
 };
 
 struct Fault {
   std::string name;
-  Kinds kinds;                // of errors that are this fault
-  double begin = 0, end = 0;  // [s]
+  Kinds kinds;                // kinds of errors that this fault may cause
+  double begin = 0, end = 0;  // begin and end of the fault [s]
 };
 
 ConsistencyReport judged(const RobotModel& robot, const Pattern& pattern) {
@@ -90,7 +90,7 @@ std::vector<Motion> motions_of(const RobotModel& robot) {
 
 double duration_of(const Pattern& pattern) { return pattern.phases.back().until; }
 
-/// A time in the middle part of a phase in which this foot stands, and how long that lasts.
+/// A time in the middle part of a phase in which this foot stands, and the length of that phase.
 std::pair<double, double> stance(const Pattern& pattern, Side side, Dice& dice) {
   std::vector<std::pair<double, double>> found;
   double begin = 0;
@@ -116,7 +116,7 @@ std::vector<int> joints_of(const RobotModel& robot, bool legs) {
   return joints;
 }
 
-/// Plants the fault; none where the motion has no place for it.
+/// Plants the fault. Returns nothing if the motion has no place for it.
 std::optional<Fault> plant(const Motion& motion, Pattern& p, size_t which, Dice& dice) {
   using enum FindingKind;
   const RobotModel& robot = *motion.robot;
@@ -268,12 +268,12 @@ int main(int count, char** arguments) {
     const std::optional<Fault> fault = plant(motion, pattern, dice.below(kFaults), dice);
     if (!fault) continue;
     const ConsistencyReport report = judged(*motion.robot, pattern);
-    // Errors come in order of time; of those that begin together, any is the first.
+    // Errors are in order of time; of those that begin together, any may be the first.
     std::vector<const Finding*> errors;
     for (const Finding& f : report.findings)
       if (f.severity == Severity::error) errors.push_back(&f);
     Count& c = by_fault[fault->name];
-    if (errors.empty()) {  // it keeps every limit, so there is nothing to name
+    if (errors.empty()) {  // the motion keeps every limit, so that there is nothing to name
       ++c.silent;
       ++sum.silent;
       continue;
@@ -290,7 +290,8 @@ int main(int count, char** arguments) {
       std::printf("%s, %s, %s at %.3f..%.3f:%s\n", motion.robot->name().c_str(),
                   motion.name.c_str(), fault->name.c_str(), fault->begin, fault->end,
                   words(report).c_str());
-    // A second fault, far from the first one: a command of f_z in the first or last tenth.
+    // A second fault far from the first one: the command of f_z is wrong in the first or last
+    // tenth.
     const double all = duration_of(pattern);
     if (fault->name == "played too fast" || fault->name == "f_z command scaled" || all < 2)
       continue;

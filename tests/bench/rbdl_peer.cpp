@@ -16,15 +16,15 @@ namespace rb = RigidBodyDynamics;
 
 namespace {
 
-/// RBDL's copy of the robot. Its floating base is three translations in the world and a spherical
-/// joint, whose rates are in the base's axes.
+/// RBDL's copy of the robot. Its floating base consists of three translations in the world and a
+/// spherical joint, whose rates are in the axes of the base.
 struct Rbdl {
   explicit Rbdl(const Problem& problem) {
     const RobotModel& robot = *problem.model;
     model.gravity = Vector3d(0, 0, -kGravity);
     std::vector<unsigned> ids;
     for (const Body& body : robot.bodies()) {
-      // Its vectors and matrices take any of Eigen's: say which is meant.
+      // Its vectors and matrices can be made from any of Eigen's, so that the type must be named.
       const rb::Body solid(body.inertia.mass, rb::Math::Vector3d(body.inertia.com),
                            rb::Math::Matrix3d(body.inertia.about_com));
       if (body.parent < 0) {

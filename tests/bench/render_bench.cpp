@@ -1,6 +1,7 @@
-// Frames of HOAP-1 walking on its ground at 1280x720 with a shadow, read back as bytes, beside
-// MuJoCo's off-screen renderer on OSMesa with the same triangles in the same poses; and clips with
-// encoding. Compare with --benchmark_repetitions=5 --benchmark_enable_random_interleaving=true.
+// Frames of HOAP-1 walking on its ground at 1280x720 with a shadow, read back as bytes, compared
+// with MuJoCo's off-screen renderer on OSMesa with the same triangles in the same poses; also clips
+// with encoding. Compare with --benchmark_repetitions=5
+// --benchmark_enable_random_interleaving=true.
 
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
@@ -21,7 +22,8 @@
 #endif
 
 #ifdef AYUMI_HAS_MUJOCO
-// MuJoCo asks the process for EGL's way to OpenGL before OSMesa's; here both are OSMesa's.
+// MuJoCo asks the process for OpenGL by EGL before it asks by OSMesa; here both are answered by
+// OSMesa.
 extern "C" OSMESAproc eglGetProcAddress(const char* name) { return OSMesaGetProcAddress(name); }
 #endif
 
@@ -30,7 +32,7 @@ namespace {
 
 constexpr int kWidth = 1280, kHeight = 720, kFrames = 64;
 
-/// HOAP-1 swinging legs and arms while it moves ahead; what is drawn does not matter to physics.
+/// HOAP-1 swinging legs and arms while it moves ahead; the motion does not need to be physical.
 struct Walk {
   Walk() : model(load_robot(AYUMI_SOURCE_DIR "/robots/hoap1", {}, {.meshes = true})) {
     surface = robot_surface(model);
@@ -85,7 +87,8 @@ BENCHMARK_CAPTURE(frame, antialiased, true)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
 
-/// With marks, caption and encoding on all cores; seconds per second of the clip.
+/// A clip with marks, caption and encoding on all cores; the result is in seconds per second of the
+/// clip.
 void clip(benchmark::State& run, bool antialias) {
   const Walk walk;
   const auto file = std::filesystem::temp_directory_path() / "ayumi_bench.mp4";
@@ -107,7 +110,7 @@ BENCHMARK_CAPTURE(clip, quality, true)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
 
-/// Peak memory of a process that draws a clip so many times as long.
+/// The peak memory of a process that draws a clip of this length.
 void memory(benchmark::State& run) {
   Walk walk;
   const std::vector<SimulationSample> once = walk.log.samples;
@@ -133,7 +136,7 @@ BENCHMARK(memory)
 
 #ifdef AYUMI_HAS_MUJOCO
 
-/// A binary STL of one body's triangles.
+/// A binary STL file of one body's triangles.
 void write_stl(const std::filesystem::path& file, const BodySurface& body) {
   Triangles all;
   for (const Triangles* part : parts_of(body)) append(all, *part);
@@ -151,7 +154,7 @@ void write_stl(const std::filesystem::path& file, const BodySurface& body) {
   }
 }
 
-/// Every body a mocap body with its triangles, above a plane with a light that casts shadows.
+/// Every body is a mocap body with its triangles, above a plane, with a light that casts shadows.
 std::string mujoco_scene(const Walk& walk, const std::filesystem::path& folder) {
   std::string assets, bodies;
   for (size_t i = 0; i < walk.surface.size(); ++i) {
@@ -249,7 +252,7 @@ BENCHMARK(mujoco_frame)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()-
 
 #endif
 
-/// Says at the end how the median frames compare.
+/// A reporter that prints at the end how the median frames compare.
 class WithRatio : public benchmark::ConsoleReporter {
  public:
   void ReportRuns(const std::vector<Run>& runs) override {

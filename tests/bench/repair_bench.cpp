@@ -1,9 +1,9 @@
-// Repairs of HOAP-1 walks with faults in every step, measured: size of the program, iterations,
-// seconds in functions and in the linear algebra of Ipopt, peak memory of the process. The same
-// repair by MUMPS follows at once (processor time), and what an iteration's linear algebra takes
-// with it over what it takes without; the lower of as many rounds as the first argument says (2).
-// A second argument is the number of steps of the longest walk (13).
-// Last, or alone where the first is "check", the check of a walk of 10 s at 1 kHz by parts.
+// Measures repairs of HOAP-1 walks with faults in every step: size of the program, iterations,
+// seconds in functions and in the linear algebra of Ipopt, and peak memory of the process. The same
+// repair by MUMPS follows at once (processor time), with the time of the linear algebra of an
+// iteration with and without it; each time is the smallest of as many rounds as the first argument
+// says (2). A second argument is the number of steps of the longest walk (13). At the end, or alone
+// if the first argument is "check", the check of a walk of 10 s at 1 kHz is measured by parts.
 
 #include <sys/resource.h>
 
@@ -28,7 +28,7 @@ using namespace ayumi;
 
 namespace {
 
-// Knees that may bend two degrees less than the walk bends them.
+// A robot whose knees may bend two degrees less than the walk bends them.
 RobotModel tight_knees(const RobotDescription& robot, const CommandSeries& series) {
   RobotDescription d = robot;
   const RobotModel model(d);
@@ -42,13 +42,13 @@ RobotModel tight_knees(const RobotDescription& robot, const CommandSeries& serie
   return RobotModel(d);
 }
 
-// Of all threads of the process [s].
+// The processor time of all threads of the process [s].
 double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 struct Measured {
   RepairResult result;
-  std::vector<int> programs;  // iterations of each
-  double all = 0, wall = 0;   // processor time, time [s]
+  std::vector<int> programs;  // number of iterations of each
+  double all = 0, wall = 0;   // processor time and elapsed time [s]
 };
 
 double wall_seconds() {
@@ -113,7 +113,7 @@ void measure(const char* name, const RobotModel& model, const CommandSeries& ser
   std::fflush(stdout);
 }
 
-// Least processor time of some runs [ms].
+// The smallest processor time of some runs [ms].
 template <class Work>
 double quickest(const Work& work) {
   double best = 1e9;

@@ -1,5 +1,6 @@
-// The clearance of the check by a second route: points all over the bodies of one, and how far each
-// is from the shapes of the other in closed form, all placed by homogeneous matrices.
+// The clearance of the check by a second route: points all over the bodies of one robot part, and
+// the distance of each from the shapes of the other part in closed form, all placed by homogeneous
+// matrices.
 
 #include <gtest/gtest.h>
 
@@ -18,8 +19,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kGrid = 0.003;  // of points on a shape [m]
-constexpr double kNear = 0.012;  // what is farther apart the check only bounds [m]
+constexpr double kGrid = 0.003;  // distance of points on a shape [m]
+constexpr double kNear = 0.012;  // larger distances are only bounded by the check [m]
 
 // Points on the surface of a shape, in its own frame.
 std::vector<Vector3d> surface(const Shape& shape) {
@@ -60,7 +61,7 @@ std::vector<Vector3d> surface(const Shape& shape) {
   return points;
 }
 
-// Distance of a point outside a shape; negative inside.
+// The distance of a point from a shape; negative inside.
 double distance(const Vector3d& p, const Shape& shape) {
   if (const auto* box = std::get_if<Box>(&shape)) {
     const Vector3d beyond = p.cwiseAbs() - box->size / 2;
@@ -78,7 +79,7 @@ struct PlacedForTest {
   int body;
   const Shape* shape;
   Eigen::Matrix4d pose;
-  std::vector<Vector3d> points;  // world
+  std::vector<Vector3d> points;  // points in the world
 };
 
 std::vector<PlacedForTest> placed_shapes(const RobotModel& model, const RobotState& state) {
@@ -107,7 +108,8 @@ double by_points(const PlacedForTest& a, const PlacedForTest& b) {
 
 }  // namespace
 
-// The clearance that the check tells of a posture, by points all over the bodies.
+// The clearance that the check reports for a posture agrees with that of points all over the
+// bodies.
 TEST(SecondRouteOfClearance, ByPointsOnTheBodies) {
   int apart = 0, meet = 0;
   for (const char* name : {"hoap1", "humanoid30"}) {

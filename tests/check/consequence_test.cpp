@@ -1,5 +1,5 @@
-// One fault shows in many findings: the one that brings the others about stays an error, and a
-// second fault beside it stays one too.
+// One fault shows in many findings: the finding that causes the others stays an error, and a second
+// fault beside it stays an error too.
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 using Eigen::Vector3d;
 using namespace planted;
 
-// The left foot carries in phase 1 of the walk.
+// The left foot carries in phase 1 of the walk, and slips there.
 Pattern slipping(const Vector3d& way, const std::function<double(double t)>& shape) {
   Pattern p = walk();
   move_body(hoap1(), *p.table,
@@ -22,8 +22,8 @@ Pattern slipping(const Vector3d& way, const std::function<double(double t)>& sha
   return p;
 }
 
-// All joints of a leg jump to where the sole is and back: not each of them by the same angle, for
-// the body has moved on meanwhile.
+// All joints of a leg jump to the place of the sole and back. They do not jump by the same angles,
+// because the body has moved on in between.
 TEST(Consequence, OfASlipThatBeginsAndEndsAtOnce) {
   const double from = begin_of(walk(), 1) + 0.02, to = walk().phases[1].until - 0.02;
   for (const Vector3d& way :
@@ -36,7 +36,7 @@ TEST(Consequence, OfASlipThatBeginsAndEndsAtOnce) {
   }
 }
 
-// An arm held in a wrong place, which the thigh comes to meet: one key is wrong.
+// An arm is held in a wrong place, into which the thigh moves: one key is wrong.
 TEST(Consequence, OfAnArmHeldInTheWayAreItsJumps) {
   Pattern p = table_of(squat_pattern(hoap1(), squat_defaults(hoap1())));
   const std::vector<std::pair<std::string, double>> arm = {
@@ -50,7 +50,7 @@ TEST(Consequence, OfAnArmHeldInTheWayAreItsJumps) {
   EXPECT_EQ(e.kinds, (Kinds{"self_collision"})) << e.printed;
   ASSERT_EQ(e.all.size(), 1u) << e.printed;
   EXPECT_GT(e.all[0].begin, 3.29) << "the arm jumps at 3.25 s";
-  // Of a jump of the other arm it is not the cause.
+  // It is not the cause of a jump of the other arm.
   for_rows(*p.table, [&](double t, size_t k) {
     if (std::abs(t - 3.95) < 0.7)
       p.table->theta(static_cast<Eigen::Index>(k), hoap1().find_dof("r_elbow")) -= 0.5;
@@ -61,7 +61,8 @@ TEST(Consequence, OfAnArmHeldInTheWayAreItsJumps) {
     EXPECT_TRUE(f.kind != FindingKind::joint_speed || f.where == "r_elbow");
 }
 
-// Elsewhere for most of its contact: what it began and ended with is its place.
+// The foot is elsewhere for most of its contact: the place at the begin and the end counts as its
+// place.
 TEST(Consequence, OfASlipThatLastsLongerThanTheFootStands) {
   const Pattern sway = table_of(sway_pattern(hoap1(), {.side = 0.015, .period = 2, .cycles = 2}));
   const double from = 1.0, to = sway.phases.back().until - 1.0;
@@ -83,7 +84,8 @@ TEST(Consequence, OfASlipThatLastsLongerThanTheFootStands) {
   }
 }
 
-// Its flanks are slower than what counts as a slip, and break off at 0.05 mm: still the same slip.
+// The flanks of the slip are slower than what counts as a slip, and end at 0.05 mm: it is still the
+// same slip.
 TEST(Consequence, OfASlipAreForcesAsLongAsTheSoleIsOff) {
   const double at = middle_of(walk(), 1),
                half = 0.5 * (walk().phases[1].until - begin_of(walk(), 1));
@@ -95,7 +97,8 @@ TEST(Consequence, OfASlipAreForcesAsLongAsTheSoleIsOff) {
   EXPECT_NEAR(e.all[0].at, at, 0.002) << e.printed;
 }
 
-// Feet that turn pass each other closely: what a slip closes of that gap is the slip's doing.
+// Feet that turn pass each other closely: the part of that gap that a slip closes is a consequence
+// of the slip.
 TEST(Consequence, OfASlipAreFeetThatTouch) {
   Pattern p = table_of(
       walk_pattern(hoap1(), {.steps = 3, .stride = 0.02, .period = 0.8, .turn = 15 * kDegree}));
@@ -106,8 +109,8 @@ TEST(Consequence, OfASlipAreFeetThatTouch) {
       << e.printed;
 }
 
-// A hip and an ankle that turn against each other put the sole 5 mm aside and lift it on the way:
-// it is told at its farthest, not where it leaves the ground.
+// A hip and an ankle that turn against each other move the sole 5 mm aside and lift it on the way:
+// it is reported where it is farthest, not where it leaves the ground.
 TEST(Consequence, OfASlipIsThatTheSoleRises) {
   Pattern p = walk();
   const double at = middle_of(walk(), 1), width = 0.5;
@@ -123,21 +126,22 @@ TEST(Consequence, OfASlipIsThatTheSoleRises) {
 TEST(Consequence, OfAnAngleThatIsWrongForAWhile) {
   const double at = middle_of(walk(), 1);
   const int column = hoap1().find_dof("r_hip_roll");
-  // Inwards beyond its limit the leg meets the other one.
+  // Beyond its limit inwards, the leg meets the other one.
   Pattern legs = walk();
   const double now = legs.table->theta(std::lround(at / legs.table->dt), column);
   move_joint(hoap1(), *legs.table, "r_hip_roll", 25 * kDegree - now, at, 0.8);
   Errors e = errors_of(legs);
   EXPECT_EQ(e.kinds, (Kinds{"joint_position"})) << e.printed;
   EXPECT_NE(e.printed.find("warning self_collision"), std::string::npos) << e.printed;
-  // Offset at once while it swings: beyond the limit only for a part of that time.
+  // The offset begins at once while the leg swings: the joint is beyond the limit only for a part
+  // of that time.
   Pattern hard = walk();
   for_rows(*hard.table, [&](double t, size_t k) {
     if (std::abs(t - at) < 0.25) hard.table->theta(static_cast<Eigen::Index>(k), column) -= 0.50;
   });
   e = errors_of(hard);
   EXPECT_EQ(e.kinds, (Kinds{"joint_position"})) << e.printed;
-  // What does not hang on that leg is a fact of its own.
+  // A fault of a joint that is not on that leg is reported for itself.
   for (const auto& [joint, degrees] : std::vector<std::pair<std::string, double>>{
            {"l_shoulder_pitch", 42}, {"l_shoulder_twist", 85}, {"l_elbow", -64}})
     move_joint(hoap1(), *legs.table, joint, degrees * kDegree, at, 1.5);
@@ -147,7 +151,7 @@ TEST(Consequence, OfAnAngleThatIsWrongForAWhile) {
   EXPECT_TRUE(e.kinds.count("self_collision")) << e.printed;
 }
 
-// The trunk sways out, and the ZMP commanded for it stays where it was.
+// The trunk sways outwards, and the ZMP that is commanded for it stays where it was.
 TEST(Consequence, OfAMotionWhoseZmpLeavesTheSupportIsItsDistance) {
   Pattern p = table_of(sway_pattern(hoap1(), {.side = 0.02, .period = 2, .cycles = 2}));
   const double at = 0.5 * p.phases.back().until;
@@ -158,7 +162,8 @@ TEST(Consequence, OfAMotionWhoseZmpLeavesTheSupportIsItsDistance) {
   EXPECT_NE(e.printed.find("warning zmp_residual"), std::string::npos) << e.printed;
 }
 
-// A COG key that is wrong while a foot slips: farther off than the sole, whichever way it slips.
+// A COG key is wrong while a foot slips: it is farther off than the sole, whichever way the sole
+// slips.
 TEST(Consequence, NeverOfAFaultThatIsLarger) {
   const double at = middle_of(walk(), 1);
   for (const bool base : {false, true}) {
@@ -174,7 +179,7 @@ TEST(Consequence, NeverOfAFaultThatIsLarger) {
              [&](double t, size_t k) { p.table->cog[k].x() += 0.015 * bump(t, at, 0.4); });
     EXPECT_EQ(errors_of(p).kinds, (Kinds{"foot_slip", "cog_residual"})) << errors_of(p).printed;
   }
-  // A trunk that turns about the ankle takes the COG farther than the sole: that is one fault.
+  // A trunk that turns about the ankle moves the COG farther than the sole: this is one fault.
   Pattern p = walk();
   for_rows(*p.table, [&](double t, size_t k) {
     BasePose& base = p.table->base[k];

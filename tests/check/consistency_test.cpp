@@ -59,7 +59,7 @@ TEST(Consistency, GoodMotionsHaveNoFindingAboveInfo) {
   }
 }
 
-// With findings of the samples, of the clearance and of the exported table.
+// The report has findings of the samples, of the clearance and of the exported table.
 TEST(Consistency, SameReportForAnyNumberOfThreads) {
   CommandSeries series = good_walk();
   bend(series, "l_hip_roll", 1.5, 0.8, 0.5);
@@ -89,7 +89,7 @@ TEST(Consistency, CogKeyMoved) {
 
 TEST(Consistency, ZmpTrackOutside) {
   CommandSeries series = good_walk();
-  const double at = middle_of_step(1);  // on the left foot; its outer edge is 30 mm away
+  const double at = middle_of_step(1);  // on the left foot, whose outer edge is 30 mm away
   for (size_t k = 0; k < series.samples.size(); ++k)
     series.samples[k].zmp.y() -= 0.050 * bump(k * series.dt, at, 0.3);
   const ConsistencyReport r = check_consistency(limited_biped(), series);
@@ -138,7 +138,7 @@ TEST(Consistency, JointTooFast) {
   const ConsistencyReport r = check_consistency(limited_biped(), series);
   EXPECT_EQ(error_kinds(r), std::set<std::string>{"joint_speed"}) << print(r);
   EXPECT_EQ(find(r, "joint_speed").where, "r_elbow");
-  // cos^4 is steepest where tan = 1/sqrt 3: a sixth of the width from the top.
+  // cos^4 is steepest where tan = 1/sqrt 3, which is a sixth of the width from the top.
   EXPECT_NEAR(std::abs(find(r, "joint_speed").at - 2.5), 0.5 / 6, 2 * series.dt);
 }
 
@@ -156,7 +156,7 @@ TEST(Consistency, MotorTooWeak) {
   EXPECT_EQ(find(r, "continuous_torque").severity, Severity::warning);
 }
 
-// The sums of squares are kept for one window only. Second route: each window summed by itself.
+// The sums of squares are kept for one window only. The second route sums each window separately.
 TEST(Consistency, MeanTorqueOfAWindowShorterThanTheMotion) {
   RobotDescription d = limited_biped_description();
   d.profiles[0].thermal_window = 0.3;
@@ -277,7 +277,7 @@ CommandSeries flight(double gravity, double spin_up) {
     s.state.base.position.z() += 0.2 + 1.4 * t - 0.5 * gravity * t * t;
     const double turn = 0.2 * t + 0.5 * spin_up * t * t;
     s.state.base.attitude = exp_rotation({0, 0, turn});
-    // Turn about the COG, not about the base.
+    // The turn is about the COG and not about the base.
     const Vector3d arm = s.cog - standing(limited_biped(), 0).samples[0].state.base.position;
     s.state.base.position -= exp_rotation({0, 0, turn}) * arm - arm;
     s.feet[0].translation().z() = s.feet[1].translation().z() = 0.2;

@@ -1,5 +1,5 @@
 // Ten faults, each planted alone in the tables of motions of several kinds: one error names kind,
-// place and instant, and nothing else is more than a warning.
+// place and instant, and all other findings are at most warnings.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ using Eigen::Vector3d;
 
 struct Motion {
   std::string name;
-  Pattern pattern;  // as a table
+  Pattern pattern;  // the pattern as a table
   double at = 0;    // in its first single support or, without one, in its middle [s]
   double from = 0, to = 0;
   Support support = Support::both;
@@ -63,7 +63,7 @@ const std::vector<Motion>& motions() {
   return all;
 }
 
-// The errors, all of one kind of those named; the first at `at` where one is given.
+// All errors are of one of the named kinds; the first is at `at` if a time is given.
 void expect_alone(const Motion& motion, const Pattern& pattern, const std::set<std::string>& kinds,
                   const std::string& where, double at = -1) {
   const ConsistencyReport r = report_of(pattern);
@@ -80,7 +80,7 @@ void expect_alone(const Motion& motion, const Pattern& pattern, const std::set<s
   EXPECT_TRUE(found) << told.str() << "expected " << where << " at " << at;
 }
 
-// Of the support at motion.at: outwards along y, to 20 mm beyond its edge.
+// The distance from the support at motion.at, outwards along y, to 20 mm beyond its edge.
 double way_outside(const Motion& motion) {
   const CommandSeries series = sample(hoap1(), motion.pattern);
   const CommandSample& s = series.samples[std::lround(motion.at / series.dt)];
@@ -190,7 +190,7 @@ TEST(FaultsOnPatterns, ContactTooEarly) {
   }
 }
 
-// As long as the swing lasts, the sole hangs lower than it may float.
+// During the whole swing, the sole hangs lower than it may float.
 TEST(FaultsOnPatterns, ContactTooEarlyOnASlowWalk) {
   const Motion slow =
       motion_of("very slow walk", walk_pattern(hoap1(), {.steps = 2, .period = 1.6}));
@@ -204,7 +204,7 @@ TEST(FaultsOnPatterns, ContactTooEarlyOnASlowWalk) {
   EXPECT_LT(f.worst, 0.3e-3);
   EXPECT_NE(f.hint.find("when its contact begins"), std::string::npos) << f.hint;
   expect_alone(slow, p, {"foot_float"}, f.where, landing);
-  // The same foot, and the contact that ends too late.
+  // The same foot, with a contact that ends too late.
   p = slow.pattern;
   const double lifting = p.phases[0].until += 0.060;
   expect_alone(slow, p, {"foot_float"}, f.where, lifting);
@@ -229,7 +229,7 @@ TEST(FaultsOnPatterns, ArmThroughTheTorso) {
 
 TEST(FaultsOnPatterns, SlipperyGround) {
   for (const Motion& m : motions()) {
-    if (m.support == Support::both) continue;  // it hardly pushes sideways
+    if (m.support == Support::both) continue;  // the foot hardly pushes sideways
     Pattern p = m.pattern;
     p.world.friction = m.name == "quick walk backwards" ? 0.10 : 0.04;
     expect_alone(m, p, {"friction"}, "");
@@ -253,13 +253,13 @@ TEST(FaultsOnPatterns, FlightThatIsNotBallistic) {
     p.table->base[k].position.z() += 0.004 * bump(t, at, width);
   });
   expect_alone(m, p, {"ballistic"}, "z", m.pattern.table->dt * std::round(at / 0.001));
-  // Level instead of a parabola: feet come to the ground, too.
+  // The COG moves on a level line instead of a parabola; then feet also come to the ground.
   p = m.pattern;
   for_rows(*p.table, [&](double t, size_t k) {
     if (t > begin && t < end) p.table->base[k].position.z() -= 0.006 * bump(t, at, width);
   });
   expect_alone(m, p, {"ballistic"}, "z");
-  // A COG key that is wrong on the ground and in the air is no matter of flight.
+  // A COG key that is wrong both on the ground and in the air is not a fault of the flight.
   p = m.pattern;
   for_rows(*p.table, [&](double t, size_t k) { p.table->cog[k].x() += 0.015 * bump(t, at, 0.8); });
   expect_alone(m, p, {"cog_residual"}, "x");

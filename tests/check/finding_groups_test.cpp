@@ -31,7 +31,7 @@ Finding too_fast(const std::string& joint, double at, double speed) {
                  speed, 4);
 }
 
-/// How often each finding is in a group, as a member or as what follows from one.
+/// How often each finding is in a group, either as a member or as a consequence of a member.
 std::vector<int> uses(const ConsistencyReport& report, const std::vector<FindingGroup>& groups) {
   std::vector<int> used(report.findings.size(), 0);
   int consequences = 0;
@@ -91,7 +91,7 @@ TEST(FindingGroups, EveryFindingOfAFastWalkIsInOneGroup) {
   const std::vector<FindingGroup> groups = finding_groups(report, limited_biped());
   EXPECT_LT(groups.size(), report.findings.size() / 2);
   for (const int n : uses(report, groups)) EXPECT_EQ(n, 1);
-  // The cause of a consequence is an error that stands for itself, and the words name it.
+  // The cause of a consequence is an error of its own, and the text names it.
   for (const Finding& f : report.findings) {
     EXPECT_EQ(f.cause >= 0, !f.follows_from.empty());
     if (f.cause < 0) continue;
@@ -101,7 +101,7 @@ TEST(FindingGroups, EveryFindingOfAFastWalkIsInOneGroup) {
   }
 }
 
-// The place of each figure, found again from the commands themselves.
+// The place of each figure is found again from the commands themselves.
 TEST(FindingGroups, TheSummaryNamesTheJointAndTheTimeOfTheFastestSample) {
   const CommandSeries series = walk_in(0.8);
   const RobotModel& model = limited_biped();

@@ -1,5 +1,5 @@
-// What follows from flights that are not free, and from phases that are not those of the motion:
-// one finding stays an error, and a second fault beside it stays one too.
+// Consequences of flights that are not free, and of phases that are not those of the motion: one
+// finding stays an error, and a second fault beside it stays one too.
 
 #include <gtest/gtest.h>
 
@@ -15,8 +15,8 @@ namespace {
 using Eigen::Vector3d;
 using namespace planted;
 
-// A force and a moment of one swinging leg, and the torques it takes to hold a trunk that is
-// turned.
+// The consequences are a force and a moment of one swinging leg, and the torques that hold a trunk
+// that is turned.
 TEST(Consequence, OfAFlightThatIsNotFreeIsOneFinding) {
   const double from = begin_of(hops(), 1), to = hops().phases[1].until, at = middle_of(hops(), 1);
   Pattern leg = hops();
@@ -38,7 +38,7 @@ TEST(Consequence, OfAFlightThatIsNotFreeIsOneFinding) {
   EXPECT_NE(e.printed.find("warning joint_torque"), std::string::npos) << e.printed;
 }
 
-// Without the force that no ground gives, the motors have nothing to do for it.
+// Without the force that no ground gives, the motors have no torque to give for it.
 TEST(Consequence, OfAFlightThatIsNotFreeAreTorques) {
   const double from = begin_of(hops(), 1), to = hops().phases[1].until, at = middle_of(hops(), 1);
   const auto kink = [&](double t) {
@@ -57,7 +57,7 @@ TEST(Consequence, OfAFlightThatIsNotFreeAreTorques) {
   }
 }
 
-// In a long flight the COG is farthest off where its acceleration is free again.
+// In a long flight, the COG is farthest off where its acceleration becomes free again.
 TEST(Consequence, OfALongFlightThatIsNotFreeIsTheCogInItsMiddle) {
   const RobotModel& robot = bundled_robot("humanoid30");
   Pattern p = baked(robot, pattern_of({"humanoid30", "jump"}));
@@ -91,13 +91,13 @@ TEST(Consequence, OfAFlightThatIsTooLowAreItsEdges) {
   }
 }
 
-// Parallel to the true flight, but nothing throws a robot there.
+// The COG moves parallel to the true flight, but nothing throws the robot there.
 TEST(Consequence, OfAFlightThatLeapsAreItsEdges) {
   const double dt = hops().table->dt, from = begin_of(hops(), 1), to = hops().phases[1].until;
   for (const Vector3d& way : {Vector3d(0.005, 0, 0), Vector3d(0, -0.003, 0), Vector3d(0, 0, 0.02),
                               Vector3d(0, 0, -0.01)}) {
     for (const bool command : {false, true}) {
-      for (const double less : {0.0, 1.0}) {  // sample before the end
+      for (const double less : {0.0, 1.0}) {  // samples before the end
         Pattern p = hops();
         for_rows(*p.table, [&](double t, size_t k) {
           if (t < from - 0.5 * dt || t > to + (0.5 - less) * dt) return;
@@ -113,7 +113,8 @@ TEST(Consequence, OfAFlightThatLeapsAreItsEdges) {
       }
     }
   }
-  // Out of its place for the first part of the next stance, and in it from then on: a foot's.
+  // The COG is out of its place for the first part of the next stance, and in it from then on: then
+  // the fault is a foot's.
   Pattern p = hops();
   const double begin = to, end = to + 0.4 * (p.phases[2].until - to);
   for_rows(*p.table, [&](double t, size_t k) {
@@ -124,7 +125,8 @@ TEST(Consequence, OfAFlightThatLeapsAreItsEdges) {
   EXPECT_EQ(errors_of(p).kinds, (Kinds{"foot_slip"})) << errors_of(p).printed;
 }
 
-// A commanded COG that is bent in the flight only is a flight that is not free; beyond it, a key.
+// A commanded COG that is only bent in the flight is a flight that is not free; if it is bent
+// beyond the flight, a key is wrong.
 TEST(Consequence, OfACommandedCogDependsOnWhereItEnds) {
   const double at = middle_of(hops(), 1), length = hops().phases[1].until - begin_of(hops(), 1);
   for (const double share : {0.9, 6.0}) {
@@ -137,7 +139,7 @@ TEST(Consequence, OfACommandedCogDependsOnWhereItEnds) {
   }
 }
 
-// A flight, or a stance between two flights, 60 ms early at both its ends.
+// A flight, or a stance between two flights, is 60 ms early at both its ends.
 TEST(Consequence, OfAPhaseThatHasMoved) {
   for (const size_t phase : {1, 2, 3}) {
     Pattern p = hops();
@@ -147,7 +149,7 @@ TEST(Consequence, OfAPhaseThatHasMoved) {
     EXPECT_EQ(e.kinds, (Kinds{"foot_float"})) << phase << "\n" << e.printed;
     EXPECT_EQ(e.all.size(), 2u) << e.printed;
   }
-  // The next flight, not free.
+  // The next flight is not free.
   Pattern p = hops();
   const double at = middle_of(p, 3);
   for_rows(*p.table,
@@ -158,8 +160,8 @@ TEST(Consequence, OfAPhaseThatHasMoved) {
   EXPECT_EQ(e.kinds, (Kinds{"foot_float", "ballistic"})) << e.printed;
 }
 
-// The foot that is let go stands still meanwhile: silent in forces where the ZMP is already over
-// the other one.
+// The foot that is lifted stands still meanwhile, and no force shows this if the ZMP is already
+// over the other foot.
 TEST(Consequence, OfAFootThatIsLetGoTooEarly) {
   for (const size_t both : {0, 2, 4}) {
     Pattern p = walk();
@@ -173,19 +175,20 @@ TEST(Consequence, OfAFootThatIsLetGoTooEarly) {
     EXPECT_EQ(e.all[0].unit, "s");
     EXPECT_NEAR(e.all[0].worst, 0.060, 0.005);
     EXPECT_NE(e.all[0].hint.find("stands still"), std::string::npos) << e.all[0].hint;
-    // Its swing moved as a whole: told where the foot lands.
+    // The swing of the foot moved as a whole: it is reported where the foot lands.
     p.phases[both + 1].until -= 0.060;
     e = errors_of(p);
     EXPECT_EQ(e.kinds, (Kinds{"foot_float"})) << both << "\n" << e.printed;
     ASSERT_EQ(e.all.size(), 1u) << e.printed;
     EXPECT_NEAR(e.all[0].at, p.phases[both + 1].until, 0.002);
-    // Another fault at that time stays one.
+    // Another fault at that time stays an error.
     const double at = lifts + 0.03;
     for_rows(*p.table,
              [&](double t, size_t k) { p.table->cog[k].x() += 0.015 * bump(t, at, 0.3); });
     EXPECT_EQ(errors_of(p).kinds, (Kinds{"foot_float", "cog_residual"})) << errors_of(p).printed;
   }
-  // Both feet, before a flight: what pushes there is no flight that is not free.
+  // Both feet are lifted before a flight: a force that pushes there does not make the flight
+  // unfree.
   Pattern p = hops();
   p.phases[0].until -= 0.060;
   const Errors e = errors_of(p);
@@ -193,11 +196,11 @@ TEST(Consequence, OfAFootThatIsLetGoTooEarly) {
   EXPECT_EQ(e.all.size(), 2u) << e.printed;
 }
 
-// A foot that stays on the ground without bearing, the whole phase long, is no matter of timing.
+// A foot that stays on the ground for the whole phase without carrying is not a fault of timing.
 TEST(Consequence, OfAFootThatOnlyBearsNothingIsNone) {
   Pattern p = table_of(sway_pattern(hoap1(), {.side = 0.039, .period = 3, .cycles = 1}));
   const CommandSeries series = sample(hoap1(), p);
-  double from = 0, to = 0;  // while the ZMP is well inside the left sole
+  double from = 0, to = 0;  // interval in which the ZMP is well inside the left sole
   for (size_t k = 0; k < series.samples.size(); ++k) {
     const Vector3d zmp = series.samples[k].feet[0].inverse() * series.samples[k].zmp;
     if (std::abs(zmp.y()) > 0.02) continue;
@@ -227,7 +230,7 @@ TEST(Consequence, OfAPhaseThatHasMovedOnStairs) {
   }
 }
 
-// Feet that the keys move while a shifted phase says they carry: the check tells it.
+// The keys move feet that a shifted phase says carry the robot: the check reports it.
 TEST(Consequence, OfAFlightWithFootKeysThatEndsEarly) {
   JumpParameters jump = jump_defaults(hoap1());
   jump.forward = 0.02;

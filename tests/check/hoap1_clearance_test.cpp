@@ -19,7 +19,7 @@ class Hoap1Clearance : public testing::Test {
   Hoap1Clearance()
       : model(load_robot("hoap1", {{AYUMI_SOURCE_DIR "/robots"}})), collision(model), data(model) {}
 
-  // Least clearance over all pairs, and which pair it is.
+  // The smallest clearance over all pairs, and the pair that has it.
   std::pair<double, std::string> nearest(const RobotState& state) {
     update_positions(model, state, data);
     std::pair<double, std::string> best = {1e9, ""};
@@ -60,7 +60,8 @@ TEST_F(Hoap1Clearance, NoPairOfHousingsIsLeftOutUnseen) {
   EXPECT_TRUE(watched("l_forearm", "l_thigh"));
 }
 
-// Both legs swayed alike, each bent on its own, soles kept level, arms swinging a little.
+// Both legs sway alike, each is bent by its own amount, soles are kept level, and arms swing a
+// little.
 TEST_F(Hoap1Clearance, OrdinaryWalkingIsFree) {
   std::mt19937 random(3);
   const auto between = [&](double low, double high) {

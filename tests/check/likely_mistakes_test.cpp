@@ -1,4 +1,5 @@
-// Each test plants one impossible value into a sound pattern and reads what it is called.
+// Each test plants one impossible value into a sound pattern and reads the name that the check
+// gives to it.
 
 #include "ayumi/check/likely_mistakes.hpp"
 
@@ -28,14 +29,14 @@ std::vector<std::string> impossible(const Pattern& pattern) {
   return texts;
 }
 
-/// The impossible values of the walk after `plant`.
+/// The impossible values that are found in the walk after `plant`.
 std::vector<std::string> mistakes_after(const std::function<void(Pattern&)>& plant) {
   Pattern pattern = sound_walk();
   plant(pattern);
   return impossible(pattern);
 }
 
-/// One sentence, or two and a count, that begins at `place` and contains `words`.
+/// Expects one sentence, or two and a count, that begins with `place` and contains `words`.
 void expect_called(const std::vector<std::string>& mistakes, const std::string& place,
                    const std::string& words) {
   ASSERT_FALSE(mistakes.empty());
@@ -52,7 +53,7 @@ size_t nth_swing(const Pattern& pattern, int n) {
 
 }  // namespace
 
-// What a search tried in vain is no cause, and does not stand before what is known.
+// Changes that a search tried in vain are no cause, and are not listed before known causes.
 TEST(LikelyMistakes, ASearchWithoutACauseComesLast) {
   Pattern pattern = sound_walk();
   pattern.file = "a.json";
@@ -79,7 +80,7 @@ TEST(ImpossibleValues, DegreesDeclaredAsRadians) {
     pattern.keyframes[1].joints["l_elbow"] = -60;
   });
   expect_called(mistakes, "/keyframes/1: l_elbow is at -60 rad", "\"angle\": \"deg\"");
-  // The same angle in a file in degrees is 1 rad.
+  // In a file in degrees, the same angle is 1 rad.
   EXPECT_TRUE(mistakes_after([](Pattern& pattern) {
                 pattern.keyframes[1].joints["l_elbow"] = -1;
               }).empty());
@@ -166,7 +167,7 @@ TEST(ImpossibleValues, AFootKeyThatLiftsTheCog) {
   }
   const auto mistakes = impossible(pattern);
   expect_called(mistakes, "/keyframes/1: the right foot is 30 mm up", "the COG rises by half");
-  // With a key of the height, the author has decided.
+  // If there is a key of the height, the author has decided.
   pattern.keyframes[0].cog_height = 0.23;
   EXPECT_TRUE(impossible(pattern).empty());
 }

@@ -10,7 +10,7 @@ namespace {
 
 using test::kDegree;
 
-// Joint a counts 209 per degree and moves from -18 to 90 degrees.
+// Joint a has 209 counts per degree and moves from -18 to 90 degrees.
 ReferenceTrajectory table_of_a(const std::vector<double>& degrees, double dt) {
   ReferenceTrajectory table;
   table.dt = dt;

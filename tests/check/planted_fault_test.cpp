@@ -1,4 +1,5 @@
-// Sound motions baked to tables pass; of one planted fault kind, place and time are found, no more.
+// Sound motions that are baked to tables pass. For one planted fault, the kind, the place and the
+// time are found, and nothing else.
 
 #include <gtest/gtest.h>
 
@@ -23,7 +24,7 @@ namespace {
 
 using Kinds = std::set<std::string>;
 
-// Through files, as a user would have it.
+// The pattern goes through files, as for a user.
 Pattern bake(const Pattern& pattern) {
   const TemporaryFolder folder;
   const Pattern dense = baked(hoap1(), pattern, sample(hoap1(), pattern), "baked.csv");
@@ -145,7 +146,9 @@ TEST(PlantedFault, JointBeyondItsLimit) {
       EXPECT_EQ(error_kinds(r), Kinds{"joint_position"}) << joint << "\n" << print(r);
       const Finding& f = first(r, "joint_position");
       EXPECT_EQ(f.where, joint);
-      Eigen::Index worst = 0;  // the walk itself moves the joint, so not just at the hill's top
+      // The walk itself moves the joint, so that the worst sample is not exactly at the top of the
+      // hill.
+      Eigen::Index worst = 0;
       (p.table->theta.col(joint_column(p, joint)) * (degrees > 0 ? 1 : -1)).maxCoeff(&worst);
       EXPECT_NEAR(f.at, static_cast<double>(worst) * p.table->dt, 0.002);
       EXPECT_LE(f.begin, at);
@@ -154,7 +157,7 @@ TEST(PlantedFault, JointBeyondItsLimit) {
   }
 }
 
-// The whole table in `scale` of its time, commands and phases along.
+// The whole table in `scale` times its duration, with its commands and phases.
 Pattern squeezed(const Pattern& pattern, double scale) {
   Pattern p = pattern;
   p.table->dt *= scale;
@@ -245,7 +248,7 @@ TEST(PlantedFault, ArmThroughTheTorso) {
   }
 }
 
-// The limit and the collision are two facts.
+// The collision and the exceeded limit are two separate errors.
 TEST(PlantedFault, ArmThroughTheTorsoBeyondItsLimit) {
   Pattern p = walk();
   bend(p, "l_shoulder_roll", 2.0, 2.0, -0.7);
@@ -274,7 +277,8 @@ TEST(PlantedFault, ASoundJumpPassesBaked) {
   EXPECT_TRUE(r.consistent) << print(r);
 }
 
-// Posture and command, each alone, and an arm that swings: none of them falls freely.
+// A posture and a command, each alone, and an arm that swings: in none of them does the robot fall
+// freely.
 TEST(PlantedFault, FlightIsNotBallistic) {
   const auto [begin, end] = phase(jump(), Support::none, 0);
   const double at = 0.5 * (begin + end), width = 0.9 * (end - begin);
@@ -322,8 +326,8 @@ TEST(PlantedFault, MomentsInFlightAreJudgedByTheRobotOrByWhatWasSet) {
   EXPECT_NEAR(first(r, "angular_momentum").limit, 0.9 * used, 1e-12);
 }
 
-// A ZMP error counts by its moment: where less than a quarter of the weight is to press, the limit
-// is 5 mm times quarter over share.
+// A ZMP error counts by its moment: if the load is below a quarter of the weight, the limit is 5 mm
+// times a quarter divided by that share.
 TEST(PlantedFault, ZmpErrorsBelowAQuarterOfTheWeight) {
   const CommandSeries sound = sample(hoap1(), walk());
   const size_t at = sound.samples.size() / 2;
@@ -341,7 +345,7 @@ TEST(PlantedFault, ZmpErrorsBelowAQuarterOfTheWeight) {
   }
 }
 
-// Single samples may be thrown by up to three limits; longer or farther is an error.
+// Single samples may be off by up to three limits; a longer or larger deviation is an error.
 TEST(PlantedFault, ZmpErrorsOfAFewSamples) {
   const CommandSeries sound = sample(hoap1(), walk());
   for (const auto& [samples, size, wrong] :

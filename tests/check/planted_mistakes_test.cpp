@@ -1,5 +1,5 @@
-// Mistakes that people make, planted into sound patterns of two robots, and what the check calls
-// them: the first likely cause names the place in the file and what was meant.
+// Mistakes that people make, planted into sound patterns of two robots: the first likely cause that
+// the check reports names the place in the file and the intended value.
 
 #include <gtest/gtest.h>
 
@@ -78,7 +78,7 @@ Pattern side_kick() {
   pattern.keyframes.back().zmp = ZmpKey{ZmpKey::Place::left};
   key_at(pattern, 4.3).zmp = ZmpKey{ZmpKey::Place::center};
   pattern.keyframes.back().cog_height = 0.6;
-  for (size_t k = 2; k < 6; ++k)  // away from the leg
+  for (size_t k = 2; k < 6; ++k)  // the directions away from the leg
     pattern.keyframes[k].joints["r_shoulder_roll"] = (k == 2 || k == 5 ? -10 : -45) * kDegree;
   return pattern;
 }
@@ -318,7 +318,7 @@ TEST(PlantedMistakes, AreNamed) {
   }
 }
 
-// A reach of the left hand in three keys. Targets were tried in no other unit.
+// A reach of the left hand in three keys. Before, other units of targets were not tried.
 TEST(PlantedMistakes, TargetsOfHandsInAnotherUnitAreNamed) {
   for (const auto& [robot, size] : {std::pair(&small(), 1.0), {&tall(), 2.4}}) {
     Pattern reach;
@@ -353,8 +353,8 @@ TEST(PlantedMistakes, TargetsOfHandsInAnotherUnitAreNamed) {
   }
 }
 
-// The y of all footholds counted to the right, or the words left and right exchanged throughout.
-// The height of the COG was named, and then one foothold after the other.
+// The y of all footholds is counted to the right, or the words left and right are exchanged
+// throughout. Before, the height of the COG was named, and then one foothold after the other.
 TEST(PlantedMistakes, SidesThatAreAllExchangedAreNamed) {
   for (const RobotModel* robot : {&small(), &tall()}) {
     Pattern sides = walk(*robot), words = sides;
@@ -383,7 +383,7 @@ TEST(PlantedMistakes, SidesThatAreAllExchangedAreNamed) {
   }
 }
 
-// Neither of two is enough; both are named, one after the other.
+// Neither of two mistakes is enough alone; both are named, one after the other.
 TEST(PlantedMistakes, TwoAreNamedInTurn) {
   Pattern pattern = walk(small());
   pattern.keyframes[2].zmp->place = pattern.keyframes[3].zmp->place = ZmpKey::Place::right;
@@ -415,7 +415,7 @@ TEST(PlantedMistakes, TwoOfOneJointAreNamedInTurn) {
   EXPECT_NE(found.find("the pattern is consistent (together"), std::string::npos) << found;
 }
 
-// Where neither trial leaves fewer errors, the weight that is not shifted is named all the same.
+// If neither trial leaves fewer errors, the missing shift of the weight is named nevertheless.
 TEST(PlantedMistakes, AWeightThatIsNotShiftedIsNamed) {
   Pattern pattern = kick_pattern(small(), kick_defaults(small()));
   for (Keyframe& key : pattern.keyframes)
@@ -427,8 +427,9 @@ TEST(PlantedMistakes, AWeightThatIsNotShiftedIsNamed) {
       << found;
 }
 
-// Steps to places in the world that land too far apart, while one foot is turned: nearer and with
-// less of a turn, the pattern is consistent, and no key of the ZMP moves into a swing.
+// Steps to places in the world that land too far apart, while one foot is turned: with nearer
+// footholds and less of a turn, the pattern is consistent, and no key of the ZMP moves into a
+// swing.
 TEST(PlantedMistakes, FootholdsTooFarApartAreNamed) {
   Pattern pattern = quarter_turn(0.25);
   const std::vector<Foothold> places = {{{0, 0.055, 0}, {0, 0, 45 * kDegree}},
@@ -454,7 +455,7 @@ TEST(PlantedMistakes, FootholdsTooFarApartAreNamed) {
     EXPECT_EQ(mistake.text().find("/keyframes/"), std::string::npos) << mistake.text();
 }
 
-// A motion that is too fast at the servo's period alone, where the table for the robot is judged.
+// A motion that is only too fast at the servo's period, at which the table for the robot is judged.
 TEST(PlantedMistakes, WhatOnlyTheTableShowsIsNamed) {
   Pattern pattern = squat_pattern(small(), squat_defaults(small()));
   pattern.keyframes.clear();
@@ -481,8 +482,8 @@ TEST(PlantedMistakes, SoundPatternsHaveNone) {
   EXPECT_EQ(seen.size(), 11u);
 }
 
-// A torque that is a little too large, at one step or at every step, comes from no exchanged side,
-// no slip of a digit and no change by a hair; the search for its cause is brief.
+// A torque that is a little too large, at one step or at every step, is not caused by exchanged
+// sides, a typing error or a tiny change of a number; the search for its cause is short.
 TEST(PlantedMistakes, SlightErrorsHaveNoGrossCause) {
   const std::regex gross("exchanged|decimal point|other sign|read in|missing");
   WalkParameters inwards = walk_defaults(small());  // keys of the ZMP are points on the soles
@@ -504,7 +505,7 @@ TEST(PlantedMistakes, SlightErrorsHaveNoGrossCause) {
       for (const Explanation& e : search.found) {
         const std::string words = e.written + "; " + e.instead;
         EXPECT_FALSE(std::regex_search(words, gross)) << e.place << ": " << words;
-        // A value differs from the one that would do.
+        // The value differs from the one that would pass.
         std::smatch is, would;
         const bool both = std::regex_search(e.written, is, std::regex(" is (-?[0-9.]+ [a-z]+)")) &&
                           std::regex_search(e.instead, would,
@@ -531,7 +532,7 @@ Pattern hop_with(const std::vector<std::pair<double, double>>& heights) {
   return hop;
 }
 
-// A value that is wrong by much is named although most errors remain.
+// A value that is very wrong is named although most errors remain.
 TEST(PlantedMistakes, AStoopFarTooDeepIsNamed) {
   const Pattern hop =
       hop_with({{0.5, 0.245}, {1.2, 0.19}, {1.5, 0.235}, {1.65, 0.235}, {1.9, 0.19}, {2.7, 0.245}});
@@ -556,7 +557,7 @@ TEST(PlantedMistakes, ACogThatSinksBelowItsStoopIsNamed) {
 }
 
 // A kick with a level foot: the pose of the foot is named for every key in which its leg leans, and
-// with all that is named the pattern is consistent.
+// with all the named changes the pattern is consistent.
 TEST(PlantedMistakes, EveryKeyOfALevelFootIsNamed) {
   Pattern kick;
   kick.robot = "hoap1";
@@ -591,7 +592,7 @@ TEST(PlantedMistakes, EveryKeyOfALevelFootIsNamed) {
       << found;
 }
 
-// The first key of an arm has the angle of home, as it should: the next key is at fault.
+// The first key of an arm has the angle of home, as it should; the fault is in the next key.
 TEST(PlantedMistakes, AKeyThatHoldsTheHomePostureIsNotNamed) {
   Pattern raise;
   raise.robot = "hoap1";
@@ -605,7 +606,7 @@ TEST(PlantedMistakes, AKeyThatHoldsTheHomePostureIsNotNamed) {
   for (const Mistake& mistake : found) EXPECT_NE(mistake.place, "/keyframes/0") << mistake.text();
 }
 
-// The rounds of a block are one line in the file, whatever the counter makes of it.
+// The rounds of a block are one line in the file, whatever the value of its counter is.
 TEST(PlantedMistakes, ALineOfABlockIsNamedOnce) {
   for (const double stride : {0.12, 0.4}) {
     Pattern pattern = quarter_turn();
@@ -636,8 +637,8 @@ TEST(PlantedMistakes, FootholdsInOrderAreNotCalledExchanged) {
     EXPECT_EQ(mistake.text().find("exchanged"), std::string::npos) << mistake.text();
 }
 
-// The number of trials is bounded over all rounds, for any bound; what was found until then is
-// told.
+// The number of trials is bounded over all rounds, for any bound; everything that was found until
+// then is reported.
 TEST(PlantedMistakes, TheSearchIsBounded) {
   Pattern pattern = walk(small());
   pattern.keyframes[2].zmp->place = pattern.keyframes[3].zmp->place = ZmpKey::Place::right;
@@ -654,7 +655,7 @@ TEST(PlantedMistakes, TheSearchIsBounded) {
   }
 }
 
-// The pattern is consistent with its foot on the ground, but nobody means this.
+// The pattern is consistent if its foot stays on the ground, but nobody means this.
 TEST(PlantedMistakes, AMissingSwingOfAConsistentPatternIsDoubted) {
   Pattern pattern = walk(tall());
   pattern.phases[3].swing.reset();
@@ -663,7 +664,7 @@ TEST(PlantedMistakes, AMissingSwingOfAConsistentPatternIsDoubted) {
   EXPECT_EQ(doubts.front().place, "/phases/3");
 }
 
-// Values that check does not use, or that are too good to be true.
+// Values that the check does not use, or that are too good to be true.
 TEST(PlantedMistakes, ValuesOfTheWorldThatNobodyMeansAreDoubted) {
   const auto doubt = [](const std::function<void(Pattern&)>& plant) {
     Pattern pattern = walk(tall());
@@ -683,7 +684,7 @@ TEST(PlantedMistakes, ValuesOfTheWorldThatNobodyMeansAreDoubted) {
   const std::string rough = doubt([](Pattern& p) { p.world.friction = 80; });
   EXPECT_TRUE(rough.starts_with("/world/friction: ")) << rough;
   EXPECT_NE(rough.find("percentage, write 0.8"), std::string::npos) << rough;
-  // 35 kg; 10 N s are 0.3 m/s.
+  // The robot has 35 kg, so that 10 N s are 0.3 m/s.
   EXPECT_EQ(doubt([&](Pattern& p) { p.scenario = {push(1, PushKind::impulse, 10, 0.02)}; }), "");
   const std::string hard =
       doubt([&](Pattern& p) { p.scenario = {push(1, PushKind::impulse, 10'000, 0.02)}; });
@@ -702,7 +703,7 @@ TEST(PlantedMistakes, ValuesOfTheWorldThatNobodyMeansAreDoubted) {
             "");
 }
 
-// Nobody means a motion that goes on for ten times as long with nothing in it.
+// Nobody means a motion that continues for ten times as long without anything in it.
 TEST(PlantedMistakes, AKeyBehindTheEndIsNoReasonForALongMotion) {
   Pattern pattern = walk(tall());
   pattern.keyframes.back().t = pattern.duration() + 0.3;

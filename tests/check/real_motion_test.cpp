@@ -1,6 +1,6 @@
-// Recorded and commanded motions of real robots, imported and judged. The data are not part of this
-// program: without them the tests that need them are skipped. What the files are like is also
-// rebuilt here in small.
+// Recorded and commanded motions of real robots are imported and judged. The data are not part of
+// this program: without them, the tests that need them are skipped. Small files of the same form
+// are also made here.
 
 #include <gtest/gtest.h>
 
@@ -51,7 +51,7 @@ std::vector<std::vector<double>> numbers(const std::string& file) {
   return rows;
 }
 
-// Of the load that four cells of a foot tell (calibration of the robot that was recorded).
+// The load of a foot from its four cells (with the calibration of the robot that was recorded).
 double foot_load(const std::vector<double>& row, bool left) {
   const double cells[2][4][3] = {{{-5.11442e-4, 14.2344585, -3303.68632},
                                   {-4.31681e-3, 20.0368094, -4647.39660},
@@ -117,13 +117,13 @@ TEST(RealMotion, FujitsuWalkShiftsItsWeightAsMeasured) {
               100.0 * inside / single);
   EXPECT_GT(single, 4000);
   EXPECT_GT(inside, 0.95 * single);
-  // Rounded counts are no accelerations: the motors could have done what they did.
+  // Rounded counts give no useful accelerations: the motors were able to do what they did.
   const ConsistencyReport r = check_consistency(model, series);
   EXPECT_LT(r.summary[FindingKind::joint_acceleration], 100);
   for (const Finding& f : r.findings)
     EXPECT_FALSE(f.severity == Severity::error && f.kind == FindingKind::joint_torque)
         << f.where << f.at;
-  // Steps alternate, and no foot stays where it was.
+  // Steps alternate, and no foot stays in its place.
   EXPECT_GE(motion.contacts.size(), 12u);
   for (size_t i = 3; i < motion.contacts.size(); ++i)
     EXPECT_NE(motion.contacts[i].foot, motion.contacts[i - 1].foot) << i;
@@ -162,7 +162,7 @@ TEST(RealMotion, EveryFileOfTheRobotIsRead) {
   }
 }
 
-// A sidecar elsewhere than its URDF, with figures of its own.
+// A sidecar in another folder than its URDF, with values of its own.
 TEST(Sidecar, CompletesAUrdfOfAnotherFolder) {
   const TemporaryFolder folder;
   const auto write = [&](const std::string& more) {
@@ -198,7 +198,7 @@ TEST(Sidecar, CompletesAUrdfOfAnotherFolder) {
   EXPECT_THROW(load_robot(file), Error);  // without the folder there is no URDF
 }
 
-// A row of counts for `motors`, all 0 but the elbows.
+// A row of counts for `motors`, in which only the elbows are not 0.
 std::string row(int interval, int motors, int elbows, const std::string& tail,
                 const std::string& separator = ",") {
   std::string text = std::to_string(interval) + separator + "2";
@@ -234,19 +234,20 @@ TEST(HoapImport, LayoutsOfAllThreeRobots) {
 
 TEST(HoapImport, QuirksOfRealFiles) {
   std::string text;
-  text += "2,3,5,G,12,350\n";                           // a command to one device: only its time
-  text += row(1, 21, 0, ", R ,R ,R, R", " , ") + "\n";  // blanks, and R for the hobby servo
-  text += row(1, 21, 209, ",R,R,R,R") + "\r\n\r\n";     // an empty line
+  text += "2,3,5,G,12,350\n";  // a command to one device, of which only the time counts
+  // There are blanks, and R stands for the hobby servo.
+  text += row(1, 21, 0, ", R ,R ,R, R", " , ") + "\n";
+  text += row(1, 21, 209, ",R,R,R,R") + "\r\n\r\n";  // an empty line
   std::string negative = row(2, 21, 418, ",60,R,R,R");
   negative.replace(negative.find(",0,"), 3, ",-0,");
   text += negative + "\n";
   for (int k = 0; k < 8; ++k) text += row(2, 21, 418, ",60,R,R,R") + "\n";
   const ImportedMotion motion = read(text);
   EXPECT_EQ(motion.rows, 11);
-  EXPECT_EQ(motion.motion.dt, 0.001);         // 1 and 2 ms
+  EXPECT_EQ(motion.motion.dt, 0.001);         // the intervals are 1 and 2 ms
   EXPECT_EQ(motion.motion.theta.rows(), 19);  // the last row is at 18 ms after the first
   const int elbow = hoap1().find_dof("r_elbow");
-  // Each angle is within a tenth of a degree of what the file says.
+  // Each angle is within a tenth of a degree of the angle in the file.
   const double count = 0.1 * M_PI / 180;
   EXPECT_NEAR(motion.motion.theta(1, elbow), -1 * M_PI / 180, count + 1e-12);
   EXPECT_NEAR(motion.motion.theta(2, elbow), -2 * M_PI / 180, count + 1e-12);
@@ -257,7 +258,7 @@ TEST(HoapImport, QuirksOfRealFiles) {
   EXPECT_NE(said.find("intervals change"), std::string::npos) << said;
 }
 
-// A walk that is sound is sound after its way through counts, its contacts where they were.
+// A sound walk is still sound after it was rounded to counts, with its contacts at the same times.
 TEST(HoapImport, AWalkRoundedToCountsPassesTheCheck) {
   const Pattern walk = walk_pattern(hoap1(), {.steps = 3, .turn = 0.05});
   const CommandSeries series = sample(hoap1(), walk);
@@ -278,7 +279,7 @@ TEST(HoapImport, AWalkRoundedToCountsPassesTheCheck) {
   for (const Finding& f : r.findings)
     EXPECT_NE(f.severity, Severity::error) << name_of(f.kind) << " " << f.where << " at " << f.at;
   EXPECT_LT(r.summary[FindingKind::foot_float], 5e-5);
-  // Swings end with (1 - s)^3: the last hundredth of a millimetre of them is rest.
+  // Swings end with (1 - s)^3, so that their last hundredth of a millimetre counts as rest.
   ASSERT_EQ(motion.pattern.phases.size(), walk.phases.size());
   for (size_t i = 0; i < walk.phases.size(); ++i) {
     EXPECT_EQ(motion.pattern.phases[i].support, walk.phases[i].support);
@@ -286,8 +287,8 @@ TEST(HoapImport, AWalkRoundedToCountsPassesTheCheck) {
   }
 }
 
-// What a robot answers, and what other programs write in radians: no intervals. Radians have the
-// signs of the encoders, which are negative here.
+// Files that a robot answers with, and files of other programs in radians, have no intervals.
+// Radians have the signs of the encoders, which are negative here.
 TEST(HoapImport, BareRowsOfCountsOrRadians) {
   const int elbow = hoap1().find_dof("r_elbow"), knee = hoap1().find_dof("l_knee");
   std::string counts, radians;

@@ -1,6 +1,7 @@
 // Every figure of the check by a second route: plain sums over the links with fourth-order
-// differences of their poses in time (plain_motion.hpp), virtual work for torques, corners of soles
-// by homogeneous matrices. Motions are disturbed by waves in all joints, so that no figure is zero.
+// differences of their poses in time (plain_motion.hpp), virtual work for torques, and corners of
+// soles by homogeneous matrices. Motions are disturbed by waves in all joints, so that no figure is
+// zero.
 
 #include <gtest/gtest.h>
 
@@ -28,7 +29,8 @@ namespace {
 
 constexpr double kFriction = 0.3;
 
-// Smooth waves in every joint and in the base, from rest to rest, and commands that are off.
+// Adds smooth waves to every joint and to the base, from rest to rest, and makes the commands
+// wrong.
 void disturb(const RobotModel& model, CommandSeries& series, double size, unsigned seed) {
   Random random(seed);
   const VectorXd share = random.vector(model.dof_count() + 6, size);
@@ -60,14 +62,14 @@ class SecondRoute : public testing::TestWithParam<RobotMotion> {
   ContactPlan plan = contact_plan(series);
   ConsistencyReport report = check_consistency(model, series, {"", kFriction, {}});
 
-  // Samples whose differences do not mix support and flight, away from the ends.
+  // Calls `use` for samples away from the ends, whose differences do not mix support and flight.
   template <class Use>
   void each_known(const Use& use) const {
     for (int k = 2; k + 2 < static_cast<int>(series.samples.size()); ++k)
       if (!at_flight_edge(series, k)) use(k, plain_ground(plain_links(model, series, k)));
   }
 
-  // Corners of the planned soles down at sample k.
+  // The corners of the soles that are planned on the ground at sample k.
   std::vector<Vector3d> support(int k) const {
     std::vector<Vector3d> corners;
     for (const Side side : {Side::left, Side::right}) {
@@ -82,7 +84,7 @@ class SecondRoute : public testing::TestWithParam<RobotMotion> {
 
 }  // namespace
 
-// Force, moment and COG acceleration from the poses of the links alone.
+// Force, moment and COG acceleration follow from the poses of the links alone.
 TEST_P(SecondRoute, GroundFiguresByPlainSums) {
   double margin = 1e9, zmp = 0, fz = 0, friction = 0, yaw = 0, gap = 0, ballistic = 0;
   std::vector<Vector3d> turning(series.samples.size(), Vector3d::Zero());
@@ -141,7 +143,8 @@ TEST_P(SecondRoute, GroundFiguresByPlainSums) {
       if (flies[i]) sum += turning[i], ++count;
     turned = std::max(turned, sum.norm() / count);
   }
-  // The commanded COG has its own acceleration; it is the larger one here or it is not.
+  // The commanded COG has an acceleration of its own, which may be the larger or the smaller one
+  // here.
   for (size_t k = 2; k + 2 < flies.size(); ++k) {
     if (!flies[k]) continue;
     const auto c = [&](size_t i) { return series.samples[i].cog; };
@@ -163,7 +166,7 @@ TEST_P(SecondRoute, CogAndSolesByHomogeneousMatrices) {
     for (const Side side : {Side::left, Side::right}) {
       const ContactInterval& stands = plan.at(side, k);
       const auto corners = plain_sole(model, poses, side);
-      if (!stands.contact) {  // over level ground
+      if (!stands.contact) {  // the ground is level
         double low = 1e9, ground = 1e9;
         for (const Vector3d& c : corners) low = std::min(low, c.z());
         for (const ContactInterval& other : plan.intervals[static_cast<size_t>(side)])
@@ -238,8 +241,9 @@ TEST_P(SecondRoute, JointFiguresByDifferences) {
   EXPECT_NEAR(is[FindingKind::servo_step], step, 1e-12);
 }
 
-// The work that all links, the ground and the motors do when one joint alone gives way a little is
-// zero: with one foot down for every joint, else for those that no foot on the ground hangs on.
+// If one joint alone moves a little, the total work of all links, the ground and the motors is
+// zero. This is tested for every joint with one foot on the ground, and otherwise for those that
+// carry no foot on the ground.
 TEST_P(SecondRoute, TorquesByVirtualWork) {
   MotionDynamics motion(model, model.limits(), series, plan);
   int told = 0;
@@ -255,7 +259,7 @@ TEST_P(SecondRoute, TorquesByVirtualWork) {
         return supports(s.support, side) && std::find(leg.begin(), leg.end(), i) != leg.end();
       };
       if (s.support == Support::both && (in_leg(Side::left) || in_leg(Side::right))) continue;
-      // Velocities of all bodies by this joint alone, from poses a little to either side.
+      // The velocities of all bodies by this joint alone, from poses slightly to either side.
       const double e = 1e-6;
       std::array<std::vector<Eigen::Matrix4d>, 2> moved;
       for (int way : {0, 1}) {
@@ -300,7 +304,7 @@ TEST_P(SecondRoute, TorquesByVirtualWork) {
   EXPECT_GT(told, 300);
 }
 
-// RMS of the torques told above, sample by sample, and the largest of them.
+// The RMS of the torques above, sample by sample, and the largest of them.
 TEST_P(SecondRoute, TorqueFiguresByLoops) {
   MotionDynamics motion(model, model.limits(), series, plan);
   const ActuatorLimits& limits = model.limits();
@@ -334,7 +338,7 @@ TEST_P(SecondRoute, SeriesByPlainSums) {
   EXPECT_DOUBLE_EQ(shown.dt, kStretch * series.dt);
   struct Stretch {
     double margin = 1e9, dcm = 1e9, fz = 1e9, friction = 0;
-    size_t samples = 0;  // with a ZMP inside the support
+    size_t samples = 0;  // number of samples with a ZMP inside the support
   };
   std::vector<Stretch> wanted(shown.speed.size());
   const auto cog = [&](int k) {

@@ -1,4 +1,5 @@
-// What servos receive leads the posture: the check finds what export refuses.
+// Servos receive targets that lead the posture: the check finds the faults for which export refuses
+// a table.
 
 #include <gtest/gtest.h>
 
@@ -37,7 +38,7 @@ bool is_of_table(const Finding& f) {
          f.kind == FindingKind::table_rest;
 }
 
-// Of the largest step in the table, with the lead that the servo at hand has.
+// The fault concerns the largest step in the table, with the lead of the servo in question.
 TEST(ServoTarget, TheCheckFindsWhatExportRefuses) {
   int refused = 0;
   for (const double period : {0.37, 0.38, 0.39, 0.40, 0.55}) {
@@ -61,7 +62,7 @@ TEST(ServoTarget, TheCheckFindsWhatExportRefuses) {
   EXPECT_GT(refused, 0);
 }
 
-// Of another profile than the robot's own, a table is no reason against the motion.
+// A table for another profile than the robot's own is no reason against the motion.
 TEST(ServoTarget, OfAStudyTheCheckOnlyWarns) {
   const Pattern pattern = walk_with_period(0.40);
   const CommandSeries series = sample(hoap1(), pattern);

@@ -18,7 +18,8 @@ namespace {
 using namespace std::chrono_literals;
 using OrderedJson = nlohmann::ordered_json;
 
-// How long the server may take for anything here [s]. Chosen: a hundred times what it needs.
+// Longest time that the server may take for anything here [s]. Chosen: a hundred times what it
+// needs.
 constexpr int kServerPatience = 60;
 
 class Server {
@@ -28,7 +29,7 @@ class Server {
     if (::pipe(out.data()) != 0) return;
     process_ = ::fork();
     if (process_ == 0) {
-      ::alarm(5 * kServerPatience);  // should the test be killed
+      ::alarm(5 * kServerPatience);  // in case the test is killed
       ::dup2(out[1], STDOUT_FILENO);
       ::close(out[0]);
       ::close(out[1]);
@@ -81,7 +82,7 @@ class Server {
   std::pair<int, OrderedJson> edit(const OrderedJson& edits) const {
     return post("edit", {{"hash", state()["hash"]}, {"edits", edits}});
   }
-  /// The state once `holds` says yes of it.
+  /// Waits for a state for which `holds` returns true.
   template <typename Holds>
   OrderedJson state_when(const Holds& holds) const {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(kServerPatience);
@@ -92,12 +93,13 @@ class Server {
     }
     return now;
   }
-  /// Seconds from Ctrl-C to the end, and the exit code. First the process rests for `held`.
+  /// The seconds from Ctrl-C to the end, and the exit code. Before Ctrl-C, the process rests for
+  /// `held`.
   std::pair<double, int> interrupt(std::chrono::milliseconds held = 0ms) {
     const auto begin = std::chrono::steady_clock::now();
     ::kill(process_, SIGINT);
     if (held > 0ms) {
-      std::this_thread::sleep_for(10ms);  // it hears of Ctrl-C first
+      std::this_thread::sleep_for(10ms);  // it hears of Ctrl-C before anything else
       ::kill(process_, SIGSTOP);
       std::this_thread::sleep_for(held);
       ::kill(process_, SIGCONT);
@@ -116,7 +118,7 @@ class Server {
   std::string root_;
 };
 
-/// A connection on which nothing is said.
+/// A connection on which nothing is sent.
 class Connection {
  public:
   explicit Connection(int port) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
@@ -147,7 +149,8 @@ struct AuthorServer : testing::Test {
     write(folder / "walk.json.new", text);
     fs::rename(folder / "walk.json.new", file);
   }
-  /// A walk of one step in place of the bundled one, for many edits: each is judged anew.
+  /// A walk of one step instead of the bundled one, for many edits, because the motion is judged
+  /// after each.
   void shorten() {
     const Output made = run_program(
         {"new", "walk", "--steps", "1", "-q", "--force", "-o", file.string()}, folder.path());
@@ -191,14 +194,14 @@ TEST_F(AuthorServer, AnswersOnlyItsOwnPage) {
   ASSERT_TRUE(page);
   EXPECT_NE(page->body.find("<html"), std::string::npos);
   EXPECT_EQ(page->get_header_value("Cache-Control"), "no-store");
-  // The other addresses of this machine do not answer.
+  // The machine does not answer at its other addresses.
   for (const char* const body : {"", "[]", "{", "{\"hash\":3}", "{\"hash\":\"\",\"edits\":7}"})
     EXPECT_GE(client.Post(server.root() + "edit", body, "application/json")->status, 400) << body;
   EXPECT_EQ(contents(file), walk);
   EXPECT_NE(client.Put(server.root() + "state", "", "text/plain")->status, 200);
 }
 
-// Brotli at its highest level took longer than the change of the motion itself.
+// Compressing by Brotli at its highest level took longer than the change of the motion itself.
 TEST_F(AuthorServer, CompressesNothing) {
   const Server server(file);
   httplib::Client client = server.client();
@@ -306,8 +309,8 @@ TEST_F(AuthorServer, WritesEditsIntoTheTextAndTakesThemBack) {
   EXPECT_EQ(contents(file), replaced("\"t\": 0.71", "\"t\": 0.75"));
 }
 
-// What the page shows is computed with the parameters of the command line, and so is what it
-// writes.
+// What the page shows is computed with the parameters of the command line, and so is the text that
+// it writes.
 TEST_F(AuthorServer, EditsExpressionsWithTheParametersOfTheCommand) {
   const std::string text = R"({
   "format": "ayumi.pattern/1", "robot": "hoap1", "units": { "angle": "deg" },
@@ -342,7 +345,7 @@ TEST_F(AuthorServer, EditsExpressionsWithTheParametersOfTheCommand) {
   EXPECT_EQ(contents(file), with("\"${side}\"", "\"${side} + 0.003\""));
 }
 
-// The page has a button, so its words do not name the command.
+// The page has a button, so that its words do not name the command.
 TEST_F(AuthorServer, AdvisesTheButtonOfTheRepair) {
   const Server server(file);
   ASSERT_EQ(server
@@ -356,8 +359,9 @@ TEST_F(AuthorServer, AdvisesTheButtonOfTheRepair) {
   EXPECT_EQ(findings.find("ayumi repair"), std::string::npos) << findings;
 }
 
-// What cannot be read as a pattern is not written; what the robot cannot do is, and is shown at its
-// line. While the motion is older than the text, only places that both have can be changed.
+// A text that cannot be read as a pattern is not written; a motion that the robot cannot do is
+// written, and is shown at its line. While the motion is older than the text, only places that both
+// have can be changed.
 TEST_F(AuthorServer, RefusesEditsThatMakeThePatternUnreadable) {
   const Server server(file);
   const auto set = [](const std::string& pointer, const OrderedJson& value) -> OrderedJson {
@@ -427,7 +431,7 @@ TEST_F(AuthorServer, KeepsLinksAndPermissions) {
       << "nothing else is left behind";
 }
 
-// Where the page would draw the point of a handle, by the row of the table.
+// The point at which the page would draw a handle, taken from the row of the table.
 std::array<double, 3> cog_of(const OrderedJson& state, const OrderedJson& row) {
   std::array<double, 3> cog{};
   const auto& columns = state["replay"]["columns"];
@@ -448,8 +452,8 @@ OrderedJson row_at(const Server& server, const OrderedJson& state, double time) 
   return row;
 }
 
-// What the page shows while something is dragged is what the pattern is once it is written.
-// Durations, relative steps and blocks that repeat: edits meet the words that the author wrote.
+// While something is dragged, the page shows the pattern as it is once it is written. The text has
+// durations, relative steps and blocks that repeat: edits change the words that the author wrote.
 TEST_F(AuthorServer, EditsAPatternInFewWords) {
   const std::string text = R"({
   "format": "ayumi.pattern/1", "robot": "hoap1", "units": { "angle": "deg" },
@@ -499,17 +503,18 @@ TEST_F(AuthorServer, EditsAPatternInFewWords) {
     EXPECT_NE(at, std::string::npos) << what;
     return changed.replace(at, what.size(), by);
   };
-  // The foot that has landed goes 5 mm ahead: the step is 5 mm longer, and nothing else changes.
+  // The foot that has landed is moved 5 mm ahead: the step is 5 mm longer, and nothing else
+  // changes.
   const auto& feet = state["handles"];
   ASSERT_EQ(feet[1]["name"], "right_foot");
   const std::string longer =
       dragged({{"time", 1.5}, {"drag", "right_foot"}, {"to", {0.035, -0.039, 0.0}}});
   EXPECT_EQ(longer, with("\"forward\": 0.03 ", "\"forward\": 0.035 "));
-  // A key between two that count their times: the one behind it stays where it is.
+  // A key is moved between two keys with relative times: the later one stays where it is.
   const std::string keyed = dragged({{"time", 0.2}, {"joints", {{"l_elbow", -0.5}}}});
   EXPECT_NE(keyed.find("\"t\": 0.2"), std::string::npos) << keyed;
   EXPECT_NE(keyed.find("{ \"after\": 0.4, \"zmp\": \"center\", "), std::string::npos) << keyed;
-  // Within a block there is no room for a key of one round.
+  // Within a block, there is no room for a key of one round only.
   const auto [status, answer] =
       server.post("pose", {{"time", 1.3}, {"joints", {{"l_elbow", -0.5}}}});
   EXPECT_EQ(status, 422) << answer;
@@ -528,7 +533,7 @@ TEST_F(AuthorServer, SaysThatTheFileIsGone) {
           .get<bool>());
 }
 
-// The arm moves between the keyframes around the new key only.
+// The arm only moves between the keyframes around the new key.
 TEST_F(AuthorServer, TheFirstKeyOfAJointKeepsTheMotionAround) {
   const Server server(file);
   const OrderedJson before = server.state();
@@ -604,7 +609,8 @@ TEST_F(AuthorServer, ADragOfTheTrunkLeansItOrMovesItUpAndDown) {
   EXPECT_EQ(rise.find("torso"), std::string::npos) << rise;
 }
 
-// An arm at its limits turns back there, and the targets of its servos lead it beyond them.
+// An arm at its limits turns back there, and the targets of its servos exceed the limits because
+// they lead the motion.
 TEST_F(AuthorServer, AnArmThatIsDraggedTooFarStaysWithinItsLimits) {
   const Server server(file);
   for (const double t : {2.0, 2.5, 3.0}) {
@@ -631,7 +637,8 @@ TEST_F(AuthorServer, SaysWhatCannotBeReached) {
   EXPECT_EQ(server.post("pose", {{"time", 2.4}, {"drag", "tail"}, {"to", {0, 0, 0}}}).first, 422);
 }
 
-// A key where goals replace keys would make the pattern unreadable: nothing is written.
+// A key in a phase with goals instead of keys would make the pattern unreadable: nothing is
+// written.
 TEST_F(AuthorServer, RefusesAKeyInsideAViipPhase) {
   const std::string text = contents(AYUMI_SOURCE_DIR "/patterns/hoap1_viip_step.json");
   save(text);
@@ -732,7 +739,7 @@ TEST_F(AuthorServer, JobsAnswerOnTheSameTimeline) {
   EXPECT_TRUE(fs::exists(folder / "walk_hoap.csv"));
   EXPECT_EQ(result_of(server, "check")["result"]["kind"], "check");
   EXPECT_EQ(result_of(server, "export")["result"]["files"], OrderedJson({"walk_hoap_2.csv"}));
-  // A faulty pattern is repaired, and the text of the repair is taken.
+  // A faulty pattern is repaired, and the text of the repair is accepted.
   save(replaced(R"({ "t": 3.771, "zmp": "left" })",
                 R"({ "t": 3.771, "zmp": "left", "joints": { "l_elbow": -170 } })"));
   server.state_when([](const OrderedJson& now) { return now["consistent"] == false; });
@@ -762,7 +769,7 @@ TEST_F(AuthorServer, AJobIsCancelledAndCtrlCEndsTheServerWithinASecond) {
     std::this_thread::sleep_for(10ms);
   }
   EXPECT_EQ(again, 200) << "the job has ended";
-  // A page that listens, and a client that says nothing.
+  // One client is a page that listens, and the other sends nothing.
   std::thread listener([&] {
     httplib::Client client = server.client();
     client.Get(server.root() + "events", [](const char*, size_t) { return true; });
@@ -788,7 +795,7 @@ TEST_F(AuthorServer, CtrlCEndsEachJobWithinASecond) {
   }
 }
 
-// A busy machine lets a program wait for longer than the patience with it.
+// On a busy machine, a program may have to wait for longer than the patience of its caller.
 TEST_F(AuthorServer, AServerThatEndsLateHasEndedAsItShould) {
   Server server(file);
   ASSERT_EQ(server.post("job", {{"kind", "push"}}).first, 200);

@@ -1,5 +1,5 @@
 #pragma once
-// The real program in the background, to be stopped by a signal.
+// Runs the real program in the background, to stop it by a signal.
 
 #include <chrono>
 #include <functional>
@@ -23,7 +23,7 @@ inline pid_t start(const std::vector<std::string>& arguments, const fs::path& fo
   return child;
 }
 
-/// Whether the condition holds within `seconds`.
+/// Whether the condition becomes true within `seconds`.
 inline bool holds_within(double seconds, const std::function<bool()>& condition) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
   while (!condition()) {

@@ -1,4 +1,5 @@
-// Broken input of every kind: one clear complaint, exit 3, nothing written, no crash.
+// Broken input of every kind gives one clear complaint and exit code 3; nothing is written, and
+// nothing crashes.
 
 #include <array>
 #include <cmath>
@@ -16,7 +17,7 @@ struct Broken {
   std::string name;
   /// Puts the broken input into the folder and returns the command line.
   std::function<std::vector<std::string>(const Folder&)> prepare;
-  std::string complaint;  ///< must be in the one line on stderr
+  std::string complaint;  ///< text that the one line on stderr must contain
 };
 std::ostream& operator<<(std::ostream& out, const Broken& broken) { return out << broken.name; }
 
@@ -32,7 +33,7 @@ const char* const kInertia =
     "<inertial><mass value='1'/><inertia ixx='0.01' ixy='0' ixz='0' iyy='0.01' iyz='0' "
     "izz='0.01'/></inertial>";
 
-/// Two links and a joint.
+/// A robot of two links and a joint.
 std::string small_urdf() {
   const std::string inertia = kInertia;
   return "<robot name='small'><link name='trunk'>" + inertia + "</link><link name='arm'>" +
@@ -42,7 +43,7 @@ std::string small_urdf() {
          "</robot>";
 }
 
-/// `inspect` of small_urdf() with one change.
+/// The case of `inspect` with small_urdf() after one change.
 Broken urdf(const std::string& name, const std::string& from, const std::string& to,
             const std::string& complaint) {
   return {name,
@@ -53,7 +54,7 @@ Broken urdf(const std::string& name, const std::string& from, const std::string&
           complaint};
 }
 
-/// `inspect` of HOAP-1's sidecar with one change.
+/// The case of `inspect` with HOAP-1's sidecar after one change.
 Broken sidecar(const std::string& name, const std::string& from, const std::string& to,
                const std::string& complaint) {
   return {name,
@@ -66,7 +67,7 @@ Broken sidecar(const std::string& name, const std::string& from, const std::stri
           complaint};
 }
 
-/// A round outline as JSON.
+/// A round outline, as JSON.
 std::string outline_of(int corners) {
   std::string text;
   for (int i = 0; i < corners; ++i) {
@@ -77,7 +78,7 @@ std::string outline_of(int corners) {
   return text + "]]";
 }
 
-/// `inspect` of a file with the given bytes.
+/// The case of `inspect` with a file of the given bytes.
 Broken robot_file(const std::string& name, const std::string& file, const std::string& bytes,
                   const std::string& complaint) {
   return {name,
@@ -168,7 +169,7 @@ std::vector<Broken> broken_robots() {
   };
 }
 
-/// A step of HOAP-1 that is in order.
+/// A correct pattern with one step of HOAP-1.
 const char* const kPattern = R"({
   "format": "ayumi.pattern/1",
   "robot": "hoap1",
@@ -190,7 +191,7 @@ const char* const kPattern = R"({
   ]
 })";
 
-/// The commands that read a pattern, up to its name.
+/// The commands that read a pattern, up to the name of the pattern.
 const std::map<std::string, std::vector<std::string>>& pattern_commands() {
   static const std::map<std::string, std::vector<std::string>> commands = {
       {"check", {"check", "--quiet"}},
@@ -201,7 +202,7 @@ const std::map<std::string, std::vector<std::string>>& pattern_commands() {
   return commands;
 }
 
-/// kPattern with one change; the command comes before the pattern's name.
+/// kPattern with one change. The command comes before the pattern's name.
 Broken pattern(const std::string& name, const std::string& from, const std::string& to,
                const std::string& complaint) {
   return {name,
@@ -274,7 +275,7 @@ std::vector<Broken> broken_patterns() {
   };
 }
 
-/// `simulate` of kPattern with one change, or with more words.
+/// The case of `simulate` with kPattern after one change, or with more words.
 Broken simulation(const std::string& name, const std::string& from, const std::string& to,
                   const std::string& complaint, const std::vector<std::string>& more = {}) {
   return {name,
@@ -304,7 +305,7 @@ std::vector<Broken> broken_simulations() {
   };
 }
 
-/// Every broken pattern under every command that reads patterns.
+/// Every broken pattern with every command that reads patterns.
 std::vector<Broken> broken_patterns_by_command() {
   std::vector<Broken> all;
   for (const auto& [command, words] : pattern_commands())
@@ -329,7 +330,7 @@ TEST_P(BrokenInput, IsRefusedWithOneClearLine) {
   const std::vector<std::string> before = folder.files();
   const Output output = run_program(command, folder.path());
   EXPECT_EQ(output.exit_code, 3) << output.err;
-  if (command.front() != "run") {  // run names each pattern as it begins
+  if (command.front() != "run") {  // run names each pattern at its beginning
     EXPECT_EQ(output.out, "");
   }
   EXPECT_NE(output.err.find(GetParam().complaint), std::string::npos) << output.err;
@@ -347,7 +348,7 @@ INSTANTIATE_TEST_SUITE_P(Patterns, BrokenInput, testing::ValuesIn(broken_pattern
 INSTANTIATE_TEST_SUITE_P(Simulations, BrokenInput, testing::ValuesIn(broken_simulations()),
                          name_of_case);
 
-// The pattern that the cases above change is in order itself.
+// The pattern that the cases above change is itself correct.
 TEST(SoundInput, IsTaken) {
   const Folder folder;
   write(folder / "p.json", kPattern);
@@ -361,7 +362,7 @@ TEST(SoundInput, IsTaken) {
   }
 }
 
-// A word of a file may have a megabyte; what is said about it fits on a screen.
+// A word of a file may have a megabyte; the message about it still fits on a screen.
 TEST(LongMessage, LosesItsMiddle) {
   const Folder folder;
   write(folder / "p.json",
@@ -376,7 +377,8 @@ TEST(LongMessage, LosesItsMiddle) {
   }
 }
 
-// Names come from strangers' files and are printed, so none may steer the terminal of the reader.
+// Names come from files of strangers and are printed, so that none may control the terminal of the
+// reader.
 TEST(SoundInput, NamesAreShownWithoutControlCharacters) {
   const Folder folder;
   write(folder / "p.json",
@@ -396,7 +398,7 @@ TEST(SoundInput, NamesAreShownWithoutControlCharacters) {
   }
 }
 
-// Before, the program took all memory.
+// Before, the program used up all memory.
 TEST(StandardInput, WithoutEndIsRefused) {
   const std::string command = program_under_test() + " check - 2>&1 </dev/zero";
   FILE* const program = ::popen(command.c_str(), "r");

@@ -1,5 +1,5 @@
-// ayumi certify: the same bytes for any number of threads and shards, goes on where it was stopped,
-// and its cases can be simulated one by one.
+// `ayumi certify` gives the same bytes for any number of threads and shards, continues where it was
+// stopped, and its cases can be simulated one by one.
 
 #include <nlohmann/json.hpp>
 
@@ -33,7 +33,8 @@ struct CertifyStudy {
     words.insert(words.end(), more.begin(), more.end());
     return run(words);
   }
-  /// Its results with all cases, which are the same bytes each time: they are computed once.
+  /// The results of the study with all cases. They are the same bytes each time, so that they are
+  /// computed once.
   static const std::string& whole() {
     static const std::string text = [] {
       const CertifyStudy study("CertifyStudy");
@@ -79,7 +80,7 @@ TEST(CertifyCommand, GoesOnAndRefusesOtherStudies) {
   write(study.folder / "cases.json", whole);
   Json partly = Json::parse(whole);
   for (int i = 0; i < 20; ++i) partly["cases"].erase(3);
-  partly["cases"][0][4] = 0.125;  // taken over, not simulated again
+  partly["cases"][0][4] = 0.125;  // this result is kept and not simulated again
   write(study.folder / "cases.json", partly.dump());
   ASSERT_EQ(study.certify({"-o", "cases.json"}).exit_code, 1);
   Json again = Json::parse(contents(study.folder / "cases.json"));
@@ -92,8 +93,8 @@ TEST(CertifyCommand, GoesOnAndRefusesOtherStudies) {
       << other.err;
 }
 
-// Before, the comparison with the own study descended into it by recursion, and the program
-// crashed.
+// Before, the comparison with the program's own study descended into these results by recursion,
+// and the program crashed.
 TEST(CertifyCommand, RefusesResultsThatAreNestedDeeply) {
   const CertifyStudy study;
   const std::string deep = std::string(300'000, '[') + std::string(300'000, ']');
@@ -106,7 +107,8 @@ TEST(CertifyCommand, RefusesResultsThatAreNestedDeeply) {
       << refused.err;
 }
 
-// A command that needs fewer cases leaves the others in the file, and reads back what it needs.
+// A command that needs fewer cases leaves the others in the file, and reads the cases that it
+// needs.
 TEST(CertifyCommand, KeepsTheCasesThatItDoesNotNeed) {
   const CertifyStudy study;
   const std::string& whole = CertifyStudy::whole();

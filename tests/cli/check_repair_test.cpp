@@ -1,4 +1,4 @@
-// The commands check and repair on the HOAP-1 walk, whole and with faults put into its file.
+// The commands check and repair on the HOAP-1 walk, both correct and with faults put into its file.
 
 #include <algorithm>
 #include <cstdlib>
@@ -19,7 +19,7 @@ class CheckRepair : public testing::Test {
     return run_program(arguments, folder.path());
   }
 
-  /// The walk with `from` replaced by `to`, as a file of the scratch folder.
+  /// Writes the walk with `from` replaced by `to` as a file of the scratch folder.
   void plant(const std::string& name, const std::string& from, const std::string& to) {
     std::string text = contents(kWalk);
     const size_t at = text.find(from);
@@ -27,7 +27,7 @@ class CheckRepair : public testing::Test {
     write(folder / name, text.replace(at, from.size(), to));
   }
 
-  // The ZMP of the second step on the left foot, 10 mm beyond its outer edge.
+  // Puts the ZMP of the second step on the left foot 10 mm beyond its outer edge.
   void plant_zmp_outside(const std::string& name) {
     const std::string key = R"("zmp": "left" },
     { "t": 2.671, "zmp": "left" })";
@@ -52,7 +52,7 @@ TEST_F(CheckRepair, TheWalkIsConsistent) {
   EXPECT_TRUE(folder.files().empty());
 }
 
-// The distance of bodies that overlap was a negative distance.
+// Before, the distance of bodies that overlap was reported as a negative distance.
 TEST_F(CheckRepair, BodiesThatOverlapAreSaidTo) {
   plant("arm.json", R"({ "t": 0, "zmp": "center" })",
         R"({ "t": 0, "zmp": "center", "joints": { "l_shoulder_roll": -40 } })");
@@ -60,7 +60,7 @@ TEST_F(CheckRepair, BodiesThatOverlapAreSaidTo) {
   EXPECT_NE(out.out.find("; bodies overlap by "), std::string::npos) << out.out;
 }
 
-// The mistake is what is said first, also where the motion cannot even be sampled.
+// The mistake is named first, even if the motion cannot be sampled at all.
 TEST_F(CheckRepair, TheMistakeIsNamedFirst) {
   plant("far.json", R"("to": [0.09, -0.039])", R"("to": [0.9, -0.039])");
   const Output far = ayumi({"check", "far.json", "-q"});
@@ -70,8 +70,8 @@ TEST_F(CheckRepair, TheMistakeIsNamedFirst) {
             std::string::npos)
       << far.err;
   EXPECT_NE(far.err.find("the first error is: /phases/5: t = "), std::string::npos);
-  // A value that is wrong by a factor of a thousand has a range too, which holds what it is read
-  // as.
+  // A value that is wrong by a factor of a thousand also has a range, which contains the value that
+  // it may stand for.
   write(folder / "step.json", R"({"format": "ayumi.pattern/1", "robot": "hoap1",
       "phases": [{"duration": 1.2, "support": "both"},
                  {"duration": 0.6, "support": "left",
@@ -84,7 +84,7 @@ TEST_F(CheckRepair, TheMistakeIsNamedFirst) {
                       "with the number read in mm (0.03 m), or with values up to 0.0"),
             std::string::npos)
       << step;
-  // What is written once is named once, however often the block is repeated.
+  // A value that is written once is named once, however often the block is repeated.
   write(folder / "rounds.json", R"({"format": "ayumi.pattern/1", "robot": "hoap1",
       "phases": [{"duration": 1.2, "support": "both"},
                  {"repeat": 2, "phases": [
@@ -108,7 +108,8 @@ TEST_F(CheckRepair, TheMistakeIsNamedFirst) {
       << foot.out;
 }
 
-// No other number mends a name that nothing has: the name is what is said, and nothing is searched.
+// No other number mends a name that nothing has: only the name is reported, and nothing is
+// searched.
 TEST_F(CheckRepair, AnUnknownNameIsSaidAloneAtOnce) {
   const std::string key = R"({ "t": 2.22, "zmp": "left" })";
   const std::vector<std::pair<std::string, std::string>> misspelt = {
@@ -127,8 +128,8 @@ TEST_F(CheckRepair, AnUnknownNameIsSaidAloneAtOnce) {
   }
 }
 
-// The key of a foot that carries is named, with where the foot stands, and not a change of times
-// with which the motion can be sampled.
+// The key of a foot that carries is named, with the place where the foot stands. A change of times
+// with which the motion can be sampled is not named.
 TEST_F(CheckRepair, AFootThatItsKeysDragIsNamed) {
   EXPECT_EQ(ayumi({"new", "kick", "--robot", "hoap1", "-o", "kick.json", "-q"}).exit_code, 0);
   std::string text = contents(folder / "kick.json");
@@ -145,7 +146,7 @@ TEST_F(CheckRepair, AFootThatItsKeysDragIsNamed) {
   EXPECT_EQ(answer.err.find("likely cause"), std::string::npos) << answer.err;
 }
 
-// The author knows the load: the motion has to bear it, and the answer says how much it bears.
+// The author knows the load: the motion has to bear it, and the answer says how much mass it bears.
 TEST_F(CheckRepair, APayloadOfTheScenarioIsPartOfTheVerdict) {
   plant(
       "load.json",
@@ -167,7 +168,7 @@ TEST_F(CheckRepair, APayloadOfTheScenarioIsPartOfTheVerdict) {
   EXPECT_EQ(light.exit_code, 0) << light.out;
 }
 
-// `repair` judges as `check` does: what the motion does not bear is no repair.
+// `repair` judges as `check` does: a motion that does not bear the load is no repair.
 TEST_F(CheckRepair, ARepairHasToBearThePayload) {
   const std::string push =
       R"("type": "impulse", "at": 3, "duration": 0.02, "on": "cog", "direction": [0, 1, 0], "impulse": 1.1)";
@@ -184,7 +185,7 @@ TEST_F(CheckRepair, ARepairHasToBearThePayload) {
   EXPECT_NE(refused["status"], "already_consistent");
   EXPECT_NE(heavy.out.find("the payload on r_forearm is 60 kg"), std::string::npos) << heavy.out;
 
-  // A mass that is just too large: the answer is one that `check` accepts.
+  // A mass that is just too large: `check` accepts the mass that the answer names.
   plant("little.json", push,
         R"("type": "payload", "at": 1, "duration": 3, "on": "r_forearm", "mass": 1.4)");
   ASSERT_EQ(ayumi({"check", "little.json", "-q"}).exit_code, 1);
@@ -193,7 +194,7 @@ TEST_F(CheckRepair, ARepairHasToBearThePayload) {
   const Output checked = ayumi({"check", "mended.json", "-q"});
   EXPECT_EQ(checked.exit_code, 0) << checked.out;
 
-  // What the motion bears asks for no repair.
+  // A load that the motion bears needs no repair.
   plant("light.json", push,
         R"("type": "payload", "at": 1, "duration": 3, "on": "r_forearm", "mass": 0.5)");
   const Output light = ayumi({"repair", "light.json", "-o", "same.json", "--json", "-q"});
@@ -222,7 +223,7 @@ TEST_F(CheckRepair, JointsAreDrawnAgainstTheirLimits) {
   const std::string svg = contents(folder / "joints.svg");
   for (const char* words : {"r_knee [deg/s]", "l_hip_roll [N m]", "[deg]", "limit of a joint"})
     EXPECT_NE(svg.find(words), std::string::npos) << words;
-  EXPECT_EQ(ayumi({"check", kWalk, "--plot", "joints.svg"}).exit_code, 3);  // it exists
+  EXPECT_EQ(ayumi({"check", kWalk, "--plot", "joints.svg"}).exit_code, 3);  // the file exists
   EXPECT_EQ(ayumi({"check", kWalk, kWalk, "--plot", "two.svg"}).exit_code, 2);
 }
 
@@ -275,7 +276,7 @@ TEST_F(CheckRepair, HelpOfACommandIsThatOfItsOption) {
   EXPECT_EQ(wrong.err, "ayumi: help: ayumi new has no command 'wlak'; did you mean 'walk'?\n");
 }
 
-// Rows of an answer on a terminal of 80 columns.
+// The rows of an answer on a terminal of 80 columns.
 class ChecksOn80Columns : public CheckRepair {
  protected:
   ChecksOn80Columns() { ::setenv("COLUMNS", "80", 1); }
@@ -287,11 +288,11 @@ class ChecksOn80Columns : public CheckRepair {
     for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 80u) << answer;
   }
 
-  // The command above and the prompt below it take two of 24 rows.
+  // The command above the answer and the prompt below it take two of 24 rows.
   static void expect_one_screen(const std::string& answer) { expect_fits(answer, 22); }
 };
 
-// A jump with seven kinds of warnings took 60 rows, so the verdict was out of sight.
+// A jump with seven kinds of warnings took 60 rows, so that the verdict was out of sight.
 TEST_F(ChecksOn80Columns, WhatIsConsistentFitsOnOneScreen) {
   std::vector<std::string> patterns;
   for (const auto& entry : fs::directory_iterator(AYUMI_SOURCE_DIR "/patterns"))
@@ -320,13 +321,13 @@ TEST_F(ChecksOn80Columns, WhatIsShortenedIsPrintedWithAll) {
   EXPECT_EQ(all.find("shortened"), std::string::npos) << all;
   EXPECT_NE(all.find("sampled from"), std::string::npos) << all;
   EXPECT_NE(all.find("make the motion of r_knee smoother"), std::string::npos) << all;
-  // A line that is not for a terminal is not broken.
+  // A line that is not for a terminal is not broken into several.
   ::unsetenv("COLUMNS");
   EXPECT_NE(ayumi({"check", "jump.json", "-q"}).out.find(" mm in ZMP and 0.00 N in force; the ZMP"),
             std::string::npos);
 }
 
-// Twenty remarks of one kind, and errors at as many places.
+// There are twenty remarks of one kind, and errors at as many places.
 TEST_F(ChecksOn80Columns, ManyDisturbancesDoNotPushTheVerdictOutOfSight) {
   Json late = Json::array(), heavy = Json::array();
   for (int i = 0; i < 20; ++i) {
@@ -380,7 +381,7 @@ TEST_F(ChecksOn80Columns, TheAnswerOfARunFitsOnAScreen) {
   EXPECT_EQ(all.out.find("shortened"), std::string::npos) << all.out;
 }
 
-// A terminal of the program `script`; without it, colours are not tried.
+// The program `script` provides a terminal; without it, colours are not tested.
 TEST_F(CheckRepair, ATerminalHasColoursUnlessTheyAreRefused) {
   if (std::system("command -v script > /dev/null") != 0) GTEST_SKIP() << "no program `script`";
   const auto shown = [&](const std::string& environment, const std::string& pattern = kWalk) {
@@ -482,7 +483,7 @@ TEST_F(CheckRepair, AZmpOutsideIsFoundAndRepaired) {
   EXPECT_EQ(after.substr(0, end), before.substr(0, end));
   EXPECT_EQ(ayumi({"check", "good.json"}).exit_code, 0);
 
-  // Once more changes nothing, byte for byte.
+  // Doing it once more changes nothing, not even a byte.
   const Output again = ayumi({"repair", "good.json", "-o", "again.json", "--json"});
   EXPECT_EQ(again.exit_code, 0);
   EXPECT_EQ(Json::parse(again.out)["status"], "already_consistent");
@@ -503,8 +504,9 @@ TEST_F(CheckRepair, WhatCannotBeRepairedWritesNothing) {
   EXPECT_EQ(folder.files(), std::vector<std::string>{"bad.json"});
 }
 
-// Too fast between two keys that must stay: the reason, the time it needs, and the parameter's
-// value with which the pattern passes, near the least one.
+// The motion is too fast between two keys that must stay. The message tells the reason, the time
+// that is needed, and a value of the parameter with which the pattern passes, near the smallest
+// such value.
 TEST_F(CheckRepair, TheParameterThatWouldDoIsNamed) {
   write(folder / "lift.json", R"({ "format": "ayumi.pattern/1", "robot": "hoap1",
     "units": { "angle": "deg" }, "parameters": { "time": 0.2 },
@@ -572,7 +574,7 @@ TEST_F(CheckRepair, BakedAndTakenToAnotherFolder) {
   ASSERT_EQ(ayumi({"repair", "outside.json", "-o", "dense.json", "--baked"}).exit_code, 0);
   EXPECT_EQ(contents(folder / "dense.json").find("keyframes"), std::string::npos);
   EXPECT_EQ(ayumi({"check", "dense.json"}).exit_code, 0);
-  // Consistent: the same bytes, with the table they name.
+  // A consistent pattern keeps its bytes, and the table that it names.
   std::filesystem::create_directory(folder / "away");
   const Output copied = ayumi({"repair", "dense.json", "-o", "away/copy.json"});
   ASSERT_EQ(copied.exit_code, 0) << copied.err;
@@ -581,8 +583,8 @@ TEST_F(CheckRepair, BakedAndTakenToAnotherFolder) {
   EXPECT_EQ(ayumi({"check", "away/copy.json"}).exit_code, 0);
 }
 
-// What the file wishes is kept, in the correction and in the table of another folder; the command
-// line adds to it.
+// The wishes in the file are kept, in the correction and in the table in another folder; the
+// command line adds to them.
 TEST_F(CheckRepair, WishesOfTheFile) {
   plant_zmp_outside("plain.json");
   std::string text = contents(folder / "plain.json");
@@ -640,7 +642,7 @@ TEST_F(CheckRepair, LocksInWords) {
   }
   const Output weight = ayumi({"repair", "outside.json", "-o", "out.json", "--weight", "l_knee"});
   EXPECT_EQ(weight.exit_code, 2);
-  // The step that is wrong is locked: what is in the way is told.
+  // The step that is wrong is locked: the message names what prevents the repair.
   const Output locked =
       ayumi({"repair", "outside.json", "-o", "out.json", "--lock", "2..2.9", "--json"});
   EXPECT_EQ(locked.exit_code, 4) << locked.out << locked.err;

@@ -1,4 +1,5 @@
-// `ayumi compare`: a recording made from the log of a run, 0.2 degrees away at one knee.
+// `ayumi compare` with a recording made from the log of a run, in which one knee is 0.2 degrees
+// away.
 
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -10,7 +11,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Columns t and theta of an exported log as a recording.
+/// The columns t and theta of an exported log, as a recording.
 std::string recording_of(const std::string& log, double late, double knee) {
   std::istringstream lines(log);
   std::string line, text;
@@ -62,7 +63,7 @@ TEST(CompareCommand, NumbersPictureAndReport) {
     EXPECT_NEAR(joint.at("mean"), joint.at("name") == "l_knee" ? knee : 0.0, 1e-5) << joint;
   const std::string picture = contents(folder / "c.svg");
   EXPECT_NE(picture.find("l_knee [deg]"), std::string::npos);
-  // The recording is a ghost: it has no outcome of its own.
+  // The recording is drawn as a ghost and has no outcome of its own.
   const std::string page = contents(folder / "c.html");
   EXPECT_NE(page.find("<option value=\"measured\">"), std::string::npos);
   EXPECT_EQ(page.find("measured (stands)"), std::string::npos);
@@ -73,8 +74,8 @@ TEST(CompareCommand, NumbersPictureAndReport) {
   EXPECT_NE(none.err.find("name a recording"), std::string::npos);
 }
 
-// Servos of the default profile hide those of the robot: the sidecar of `identify` has effect all
-// the same, and the zero offset that the recording shows is that of the simulated joint.
+// Servos of the default profile override those of the robot. The sidecar of `identify` has an
+// effect nevertheless, and the zero offset that the recording shows is that of the simulated joint.
 TEST(IdentifyCommand, ItsSidecarHasEffectOverServosOfAProfile) {
   const Folder folder;
   const auto ayumi = [&](const std::vector<std::string>& words) {

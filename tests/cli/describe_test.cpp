@@ -1,4 +1,4 @@
-// --describe: the manual page and the completion of shells have every command and its options.
+// --describe: the manual page and the completion of shells contain every command and its options.
 
 #include <regex>
 #include <set>
@@ -9,7 +9,7 @@
 namespace ayumi::test {
 namespace {
 
-/// Long options in the help of a command.
+/// The long options in the help of a command.
 std::set<std::string> options_in_help(const std::vector<std::string>& command) {
   std::vector<std::string> words = command;
   words.emplace_back("--help");
@@ -67,10 +67,11 @@ std::string names(std::vector<std::string> words) {
 TEST(Names, AreThoseOfTheRobotOnTheCommandLine) {
   EXPECT_NE(names({"robots"}).find("\nhoap1\n"), std::string::npos);
   EXPECT_NE(names({"gains"}).find("\nka\n"), std::string::npos);
-  EXPECT_NE(names({"gains"}).find("\nsoonest\n"), std::string::npos);  // of a baseline
+  // The name of a baseline's gain.
+  EXPECT_NE(names({"gains"}).find("\nsoonest\n"), std::string::npos);
   EXPECT_NE(names({"controllers"}).find("\nfoot-guided\n"), std::string::npos);
   EXPECT_NE(names({"postures", "posture", "draw", "hoap1"}).find("\nhome\n"), std::string::npos);
-  // A posture belongs to a robot, which is named before it.
+  // A posture belongs to a robot, whose name comes before it.
   const std::string first = names({"robots,postures", "posture", "draw"});
   EXPECT_NE(first.find("\nhoap1\n"), std::string::npos) << first;
   EXPECT_EQ(first.find("\nhome\n"), std::string::npos) << first;
@@ -82,7 +83,7 @@ TEST(Names, AreThoseOfTheRobotOnTheCommandLine) {
   EXPECT_EQ(names({"joints", "new", "walk"}).find("\nneck"), std::string::npos);
   const std::string profiles = names({"profiles", "check", "patterns/hoap1_walk.json"});
   EXPECT_NE(profiles.find("\nhoap1-strong\n"), std::string::npos) << profiles;
-  // A shell that completes wants no message.
+  // A shell that completes a word must not get a message.
   const Output broken = run_program({"--names", "joints", "no/such.json"}, testing::TempDir());
   EXPECT_EQ(broken.exit_code, 0);
   EXPECT_EQ(broken.err, "");
@@ -106,7 +107,7 @@ TEST(Names, AreAskedForByEveryCompletion) {
   EXPECT_NE(names({"equations"}).find("\n22\n"), std::string::npos);
 }
 
-/// Command lines and a word that completes them, and one that must not.
+/// Command lines, each with a word that completes it and one that must not.
 struct Completed {
   std::string line, word, other;
 };
@@ -124,13 +125,13 @@ const std::vector<Completed> kCompleted = {
     {"ayumi posture draw ", "hoap1", "home"},
     {"ayumi check w", "w.json", "other.csv"}};
 
-/// The folder with w.json, a walk, and the completion for a shell.
+/// Fills the folder with w.json, which is a walk, and the completion for a shell.
 void prepare(const Folder& folder, const std::string& shell, const std::string& file) {
   write(folder / file, described(shell));
   write(folder / "w.json", contents(kWalk));
   write(folder / "other.csv", "t\n");
 }
-/// What a shell prints in the folder; it finds the program and no settings of a user.
+/// The output of a shell in the folder. The shell finds the program, and no settings of a user.
 Output in_shell(const Folder& folder, const std::vector<std::string>& words) {
   const std::string programs = fs::path(program_under_test()).parent_path().string();
   std::vector<std::string> all = {"HOME=" + folder.path().string(),
@@ -155,12 +156,12 @@ TEST(Names, CompleteInFish) {
     EXPECT_NE(lines.find("\n" + each.word), std::string::npos) << each.line << lines << output.err;
     EXPECT_EQ(lines.find("\n" + each.other), std::string::npos) << each.line << lines;
   }
-  // A command that is chosen is not offered again.
+  // A command that is already chosen is not offered again.
   const Output chosen = completed_by_fish(folder, "ayumi new walk ");
   EXPECT_EQ(chosen.out.find("squat"), std::string::npos) << chosen.out;
   EXPECT_EQ(completed_by_fish(folder, "ayumi --describe z").out, "zsh\n");
-  // The help of an option stands beside the option, not beside each of its values; a value that is
-  // no file offers no files.
+  // The help of an option is shown beside the option, not beside each of its values. For a value
+  // that is no file, no files are offered.
   const std::string joints = completed_by_fish(folder, "ayumi repair w.json --lock ").out;
   EXPECT_NE(("\n" + joints).find("\nl_knee\n"), std::string::npos) << joints;
   EXPECT_EQ(joints.find("w.json"), std::string::npos) << joints;
@@ -176,7 +177,7 @@ TEST(Names, CompleteInZsh) {
   if (!installed("zsh")) GTEST_SKIP() << "zsh is not installed";
   const Folder folder;
   prepare(folder, "zsh", "_ayumi");
-  // zsh completes at a terminal only, so a second zsh gives one to the first.
+  // zsh only completes at a terminal, so that a second zsh provides one to the first.
   write(folder / "terminal.zsh", R"(
     zmodload zsh/zpty
     zpty shell 'zsh -f -i'
@@ -198,7 +199,7 @@ TEST(Names, CompleteInBash) {
   write(folder / "complete.sh", described("bash") +
                                     "COMP_WORDS=(ayumi repair w.json --lock l_k); COMP_CWORD=4\n"
                                     "_ayumi; echo \"${COMPREPLY[@]}\"\n"
-                                    // A robot may be a file, its postures are none.
+                                    // A robot may be a file, but its postures are not.
                                     "touch a.json; for robot in '' hoap1; do\n"
                                     "COMP_WORDS=(ayumi posture draw $robot ''); COMPREPLY=()\n"
                                     "COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _ayumi\n"
@@ -215,7 +216,8 @@ TEST(Names, CompleteInBash) {
 
 // OSMesa brings a compiler, which takes longer to load than all other libraries together.
 TEST(Start, TheProgramLoadsNoOsmesa) {
-  ::setenv("LD_TRACE_LOADED_OBJECTS", "1", 1);  // the loader prints the libraries and stops
+  // With this setting, the loader prints the libraries and stops.
+  ::setenv("LD_TRACE_LOADED_OBJECTS", "1", 1);
   const Output output = run_program({}, testing::TempDir());
   ::unsetenv("LD_TRACE_LOADED_OBJECTS");
   EXPECT_NE(output.out.find("libstdc++"), std::string::npos) << output.out;
@@ -226,7 +228,7 @@ TEST(BundledFiles, APatternIsFoundByItsNameWhereverTheProgramIsStarted) {
   const Folder folder;
   EXPECT_EQ(run_program({"check", "patterns/hoap1_walk.json"}, folder.path()).exit_code, 0);
   EXPECT_EQ(run_program({"check", "examples/motions/bow.json"}, folder.path()).exit_code, 0);
-  // A file of the same name in the working folder goes first.
+  // A file of the same name in the working folder has priority.
   write(folder / "patterns/hoap1_walk.json", "{");
   EXPECT_EQ(run_program({"check", "patterns/hoap1_walk.json"}, folder.path()).exit_code, 3);
 }

@@ -1,4 +1,4 @@
-// The commands edit and import, and check that watches.
+// The commands edit and import, and check with --watch.
 
 #include <signal.h>
 
@@ -30,14 +30,15 @@ TEST_F(Edit, BakedMotionIsTheSameMotion) {
   EXPECT_EQ(folder.files(), (std::vector<std::string>{"baked.csv", "baked.json"}));
   const Output again = ayumi({"check", "baked.json", "--json"});
   EXPECT_EQ(again.exit_code, 0) << again.out << again.err;
-  // Baking what is baked changes nothing, byte for byte.
+  // Baking a baked pattern changes nothing, not even a byte.
   ASSERT_EQ(ayumi({"edit", "bake", "baked.json", "-o", "twice.json"}).exit_code, 0);
   EXPECT_EQ(contents(folder / "twice.csv"), contents(folder / "baked.csv"));
-  // What is there is not overwritten.
+  // An existing file is not overwritten.
   EXPECT_EQ(ayumi({"edit", "bake", kWalk, "-o", "baked.json"}).exit_code, 3);
 }
 
-// Named from another folder, by a way that goes up: the table is found beside the new pattern.
+// The pattern is named from another folder by a path that goes up: its table is found beside the
+// new pattern.
 TEST_F(Edit, ATableIsFoundFromWhereverItsPatternWasMade) {
   fs::create_directories(folder / "in");
   fs::create_directories(folder / "out");
@@ -91,7 +92,7 @@ TEST_F(Edit, RetimeToLimitsIsTheFastestThatPasses) {
   const double scale = json["scale"];
   EXPECT_LT(scale, 1);
   EXPECT_FALSE(json["limited_by"].is_null());
-  // The COG keeps its height in this walk: the force stays the weight.
+  // The COG keeps its height in this walk, so that the force stays equal to the weight.
   EXPECT_NEAR(double(json["fz_N"]["after"][1]), double(json["fz_N"]["before"][1]), 1e-6);
   EXPECT_LT(double(json["zmp_margin_m"]["after"]), double(json["zmp_margin_m"]["before"]));
   EXPECT_EQ(ayumi({"check", "fast.json"}).exit_code, 0);
@@ -100,7 +101,8 @@ TEST_F(Edit, RetimeToLimitsIsTheFastestThatPasses) {
   EXPECT_NE(broken.exit_code, 0);
 }
 
-// Slower only where a limit binds: quicker than at one pace, and as good for the check.
+// The motion is only slower where a limit binds: it is quicker than at one pace, and equally good
+// for the check.
 TEST_F(Edit, RetimeLocallyIsQuicker) {
   const auto retimed = [&](std::vector<std::string> options) {
     options.insert(options.begin(), {"edit", "retime", kWalk, "--to-limits", "--json", "-q"});
@@ -117,7 +119,7 @@ TEST_F(Edit, RetimeLocallyIsQuicker) {
   for (const Json& limit : local["limited_by"]) share += double(limit["share"]);
   EXPECT_NEAR(share, 1, 1e-9);
   EXPECT_EQ(ayumi({"check", "local.json"}).exit_code, 0);
-  // The whole support may be used where the author says so.
+  // The whole support may be used if the author says so.
   const Json bare = retimed({"--local", "--margin", "0", "-o", "bare.json"});
   EXPECT_LT(double(bare["duration_s"]), double(local["duration_s"]));
   EXPECT_LT(double(bare["zmp_margin_m"]["after"]), double(local["zmp_margin_m"]["after"]));
@@ -129,7 +131,8 @@ TEST_F(Edit, RetimeLocallyIsQuicker) {
       2);
 }
 
-// The time in which nothing moves is as long as in the given motion: a choreography stays in time.
+// The time in which nothing moves is as long as in the given motion, so that a choreography stays
+// in time.
 TEST_F(Edit, RetimeKeepsPausesWhereAsked) {
   ASSERT_EQ(ayumi({"new", "bow", "-o", "bow.json", "-q"}).exit_code, 0);
   const auto retimed = [&](const std::string& out, std::vector<std::string> more) {
@@ -149,17 +152,17 @@ TEST_F(Edit, RetimeKeepsPausesWhereAsked) {
   const Json kept = retimed("kept.json", {"--keep-pauses"}), quick = retimed("quick.json", {});
   EXPECT_EQ(paused(quick), 0);
   EXPECT_GT(paused(kept), 0.5);
-  // What moves is as quick with the pauses as without them.
+  // The moving parts are as quick with the pauses as without them.
   EXPECT_NEAR(double(kept["duration_s"]) - paused(kept), double(quick["duration_s"]),
               0.25 * double(quick["duration_s"]));
   EXPECT_EQ(ayumi({"check", "kept.json"}).exit_code, 0);
-  // Pauses are a matter of local timing.
+  // Pauses only concern local timing.
   EXPECT_EQ(ayumi({"edit", "retime", "bow.json", "--to-limits", "--keep-pauses", "-o", "a.json"})
                 .exit_code,
             2);
 }
 
-// Two steps in the middle of a walk, again and again.
+// Two steps in the middle of a walk are repeated again and again.
 TEST_F(Edit, TheCycleOfAWalkIsRepeated) {
   const auto looped = [&](const std::string& out, std::vector<std::string> more, int exit_code) {
     std::vector<std::string> words = {"edit", "loop", kWalk, "--cycle", "--json", "-q", "-o", out};
@@ -186,7 +189,7 @@ TEST_F(Edit, TheCycleOfAWalkIsRepeated) {
     EXPECT_EQ(finding["kind"], "table_rest");
   }
 
-  // A walk of two steps has no such cycle, and a wish for the cycle alone needs one.
+  // A walk of two steps has no such cycle, and asking for the cycle alone needs one.
   ASSERT_EQ(ayumi({"new", "walk", "--steps", "2", "-o", "short.json", "-q"}).exit_code, 0);
   const Output refused = ayumi({"edit", "loop", "short.json", "--cycle", "-o", "a.json", "-q"});
   EXPECT_EQ(refused.exit_code, 3);
@@ -195,7 +198,7 @@ TEST_F(Edit, TheCycleOfAWalkIsRepeated) {
   EXPECT_NE(ayumi({"edit", "loop", kWalk, "--alone", "-o", "a.json", "-q"}).exit_code, 0);
 }
 
-// The same twice, and a squat where a walk that turned has ended.
+// The same motion is joined twice, and a squat follows where a walk that turned has ended.
 TEST_F(Edit, MotionsJoin) {
   const Output made = ayumi({"new", "walk", "--steps", "2", "--turn", "4", "-o", "walk.json"});
   ASSERT_EQ(made.exit_code, 0) << made.err;
@@ -245,18 +248,18 @@ TEST_F(Edit, MistakesOfTheCall) {
   EXPECT_TRUE(folder.files().empty());
 }
 
-// The walk as the robot would play it, and back: its steps are found again.
+// The walk is exported as the robot would play it, and imported again: its steps are found again.
 TEST_F(Edit, SequencesComeBack) {
   ASSERT_EQ(ayumi({"export", kWalk, "--format", "hoap", "-o", "walk.csv"}).exit_code, 0);
   const Output out = ayumi({"import", "walk.csv", "--robot", "hoap1", "-o", "back.json", "--json"});
   ASSERT_EQ(out.exit_code, 0) << out.out << out.err;
   const Json json = Json::parse(out.out);
   EXPECT_EQ(json["format"], "hoap");
-  // Eight steps, a closing one, and where both feet stood before.
+  // The contacts are eight steps, a closing step, and the places where both feet stood before.
   EXPECT_EQ(json["contacts"].size(), 11u) << out.out;
   const Json last = json["contacts"].back();
   EXPECT_NEAR(last["position_m"][0], 0.24, 0.004);
-  // Made for the robot's own file, the table takes the name of no other.
+  // A table that is made for the robot's own file does not take the name of another file.
   EXPECT_EQ(ayumi({"import", "walk.csv", "--robot", "hoap1", "-o", "walk.json"}).exit_code, 3);
   const Output own =
       ayumi({"import", "walk.csv", "--robot", "hoap1", "-o", "walk.json", "--force"});
@@ -269,15 +272,15 @@ TEST_F(Edit, SequencesComeBack) {
   EXPECT_LT(summary["max_foot_penetration_m"], 0.004);
 }
 
-// Recorded sequences begin with a count per row, which is quick for a robot at rest: smoothed, they
-// begin and end at rest, and the ground is not asked for what no robot does there.
+// Recorded sequences begin with a count per row, which is fast for a robot at rest. They are
+// smoothed so that they begin and end at rest, and need no ground force that is impossible there.
 TEST_F(Edit, ImportedSequencesBeginAndEndAtRest) {
   std::string rows;
   const int home[20] = {0, 0, 3696,  9537,  -5841, 0, 18810,  -2000, 0, 8800,
                         0, 0, -3696, -9537, 5841,  0, -18810, 2000,  0, -8800};
   for (int k = 0; k < 1000; ++k) {
     rows += "2,2";
-    const int turn = k < 500 ? k : 999 - k;  // a count each row, there and back
+    const int turn = k < 500 ? k : 999 - k;  // a count in each row, to and fro
     for (int i = 0; i < 20; ++i)
       rows += "," + std::to_string(home[i] + (i == 2    ? turn
                                               : i == 3  ? 2 * turn
@@ -307,7 +310,7 @@ TEST_F(Edit, ImportReadsStandardInputAndNamesMistakes) {
   EXPECT_EQ(folder.files(), std::vector<std::string>{"bad.csv"});
 }
 
-// Waits until `file` holds `text`, up to 20 s.
+// Waits until `file` contains `text`, for at most 20 s.
 bool appears(const fs::path& file, const std::string& text) {
   for (int i = 0; i < 200; ++i) {
     if (contents(file).find(text) != std::string::npos) return true;

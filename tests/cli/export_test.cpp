@@ -1,4 +1,4 @@
-// `ayumi export` as a person or a script meets it.
+// `ayumi export` as a person or a script uses it.
 
 #include <nlohmann/json.hpp>
 
@@ -107,7 +107,7 @@ TEST_F(Export, UnsafeTablesAreRefused) {
   EXPECT_TRUE(fs::exists(folder.path() / "h.UNSAFE.csv.txt"));
 }
 
-// HOAP-1 whose servos take a target every 2 ms.
+// A HOAP-1 whose servos take a target every 2 ms.
 TEST_F(Export, TablesAreAtTheServoPeriodOfTheRobot) {
   fs::copy(AYUMI_SOURCE_DIR "/robots/hoap1", folder.path() / "slow", fs::copy_options::recursive);
   const fs::path sidecar = folder.path() / "slow/robot.json";
@@ -208,8 +208,8 @@ TEST_F(Export, HoapNamesTheTorqueBeyondTheRobotsOwnMotors) {
   EXPECT_TRUE(named) << output.out;
 }
 
-// A sequence of HOAP-1 around its home posture: `tail` behind the motors, `end` of the lines. The
-// left elbow turns by a count in so many rows, also in the last one.
+// A sequence of HOAP-1 around its home posture. `tail` comes after the motors, and `end` ends the
+// lines. The left elbow turns by a count in so many rows, including the last one.
 std::string sequence(const std::string& interval, const std::string& tail, const std::string& end,
                      int rows = 60, bool waist = false, double slowness = 10) {
   const int home[20] = {0, 0, 3607,  9107,  -5500, 0, 18810,  -2090, 0, 5225,
@@ -227,7 +227,7 @@ std::string sequence(const std::string& interval, const std::string& tail, const
   return text;
 }
 
-// What the import makes of a sequence, exported unchanged, is the sequence: to the byte.
+// If the result of importing a sequence is exported unchanged, every byte is that of the sequence.
 TEST_F(Export, ImportedSequencesComeBackToTheByte) {
   struct Case {
     const char* name;
@@ -267,16 +267,16 @@ TEST_F(Export, ImportedSequencesComeBackToTheByte) {
     }
 }
 
-/// An action file as the editor of ROBOTIS leaves it, with what a table does not have: two motions,
-/// speeds, pauses, exits, gains, bytes of unused fields, and a page without steps.
+/// An action file as the editor of ROBOTIS writes it, with content that a table does not have: two
+/// motions, speeds, pauses, exits, gains, bytes of unused fields, and a page without steps.
 std::string action_file() {
   std::string bytes(256 * 512, '\0');
   const auto set = [&](size_t at, int value) { bytes[at] = static_cast<char>(value); };
   const auto page = [&](size_t number, const std::string& name, int steps, int next) {
     const size_t begin = 512 * number;
     bytes.replace(begin, name.size(), name);
-    set(begin + 14, 7);  // not used
-    set(begin + 15, 2);  // repeats
+    set(begin + 14, 7);  // a field that is not used
+    set(begin + 15, 2);  // number of repetitions
     set(begin + 20, steps);
     set(begin + 22, 40);  // speed
     set(begin + 24, 17);
@@ -306,7 +306,7 @@ std::string action_file() {
   return bytes;
 }
 
-// Whichever motion of the file is read, the file that is written is the whole file.
+// Whichever motion of the file is read, the written file is the whole file.
 TEST_F(Export, ImportedActionFilesComeBackToTheByte) {
   const std::string bytes = action_file();
   write(folder.path() / "motion_4095.bin", bytes);
@@ -329,7 +329,7 @@ TEST_F(Export, ImportedActionFilesComeBackToTheByte) {
     EXPECT_NE(imported.out.find("i.sequence.bin"), std::string::npos) << imported.out;
     EXPECT_TRUE(written({}) == bytes) << motion;
   }
-  // At another rate the steps are computed.
+  // At another rate, the steps are computed anew.
   EXPECT_TRUE(written({"--interval", "40"}) != bytes);
   write(folder.path() / "i.sequence.bin", bytes + "x");
   EXPECT_EQ(ayumi({"i.json", "--format", "op3-action", "-o", "c.bin"}).exit_code, 3);
@@ -356,7 +356,7 @@ TEST_F(Export, RampAndHoldAroundAnImportedSequence) {
   for (const std::string& line : lines("b.csv")) EXPECT_TRUE(line.ends_with('\r')) << line;
 }
 
-// A motion that was changed has rows of its own, in the columns of the robot.
+// A changed motion has rows of its own, in the columns of the robot.
 TEST_F(Export, AChangedImportedSequenceIsComputed) {
   write(folder.path() / "s.csv", sequence("2", ",75,60,R,R,R,R", "\n", 60, true));
   ASSERT_EQ(
@@ -374,7 +374,7 @@ TEST_F(Export, AChangedImportedSequenceIsComputed) {
   write(folder.path() / "i.sequence.csv", "1,2\n");
   EXPECT_EQ(
       run_program({"import", "s.csv", "--robot", "hoap1", "-o", "i.json"}, folder.path()).exit_code,
-      3);  // it would overwrite
+      3);  // it would overwrite a file
 }
 
 TEST_F(Export, AKeptSequenceThatWasChangedIsRefused) {
@@ -390,7 +390,7 @@ TEST_F(Export, AKeptSequenceThatWasChangedIsRefused) {
   EXPECT_FALSE(fs::exists(folder.path() / "b.csv"));
 }
 
-// HOAP takes a row each 1, 2 or 10 ms; other tables have any rate. Both clocks are named.
+// HOAP takes a row every 1, 2 or 10 ms; other tables have any rate. Both clocks are named.
 TEST_F(Export, RatesAndClocks) {
   const Output two = ayumi({"p.json", "--format", "hoap", "-o", "two.csv", "--interval", "2"});
   ASSERT_EQ(two.exit_code, 0) << two.err << two.out;
@@ -400,7 +400,7 @@ TEST_F(Export, RatesAndClocks) {
   EXPECT_EQ(rows.size(), 1000u + 1001 + 250);
   ASSERT_EQ(ayumi({"p.json", "--format", "hoap", "-o", "one.csv"}).exit_code, 0);
   const auto fine = lines("one.csv");
-  for (size_t k = 1000; k < 2001; ++k)  // the motion: every second row
+  for (size_t k = 1000; k < 2001; ++k)  // the motion consists of every second row
     EXPECT_EQ(rows[k].substr(1), fine[2 * k].substr(1));
   const Output ten = ayumi({"p.json", "--format", "hoap", "-o", "t.csv", "--rate", "100"});
   EXPECT_EQ(ten.exit_code, 0) << ten.err;

@@ -1,4 +1,5 @@
-// ayumi gains, tune, explain: numbers one can work out by hand, and reasons for refusals.
+// `ayumi gains`, `tune` and `explain`: numbers that can be computed by hand, and reasons for
+// refusals.
 
 #include <cmath>
 #include <cstring>
@@ -35,7 +36,7 @@ TEST(GainsCommand, PolesGiveKAndD) {
   EXPECT_NEAR(json["gains"]["ks"].get<double>(), 10 / w, 1e-9);
   EXPECT_TRUE(json["stable"].get<bool>());
   EXPECT_GT(json["decay_1_s"].get<double>(), 0);
-  // Standing: m omega times the way to the front edge, 49 mm.
+  // The impulse of a standing robot is m omega times the distance to the front edge, 49 mm.
   EXPECT_NEAR(json["recoverable"][0]["dcm_m"].get<double>(), 0.049, 2e-4);
   EXPECT_NEAR(json["recoverable"][0]["impulse_Ns"].get<double>(), 6.5 * w * 0.049, 0.01);
 }
@@ -82,7 +83,7 @@ TEST(GainsCommand, WhatItRefusesIsNotRunUnlessAsked) {
   };
   EXPECT_FALSE(outcome({"--gain", "ka=40", "--allow-unstable"}).empty());
   EXPECT_EQ(outcome({"--controller", "dtad-literal", "--profile", "hoap1-soft"}),
-            "fell");  // a demonstration needs no leave
+            "fell");  // a demonstration needs no permission
 }
 
 TEST(TuneCommand, BettersItsObjectiveTheSameWayForAnyNumberOfThreads) {
@@ -103,7 +104,7 @@ TEST(TuneCommand, BettersItsObjectiveTheSameWayForAnyNumberOfThreads) {
   EXPECT_NE(json["gains"], json["start"]);
   command.back() = "2";
   EXPECT_EQ(run_here(command).out, first.out);
-  // The text of the author stays; the gains stand in it.
+  // The text of the author stays, with the gains added to it.
   write(folder / "mine.json", "// Mine.\n" + contents(folder / "stand.json"));
   command[1] = "mine.json";
   command.insert(command.end(), {"-o", "tuned.json"});
@@ -154,8 +155,9 @@ TEST(ExplainCommand, WordsAndTheNumbersOfARun) {
   EXPECT_EQ(run_here({"explain", "18", "run"}).exit_code, 2);
 }
 
-/// Writes the samples before, at and after k as a log of their own, for which they are 0, 1 and 2:
-/// the whole log takes a third of a second to read. Events keep their distance from the sample.
+/// Writes the samples before, at and after k as a log of their own, in which they are 0, 1 and 2,
+/// because reading the whole log takes a third of a second. Events keep their distance from the
+/// sample.
 void write_instant(const SimulationLog& log, size_t k, const fs::path& file) {
   SimulationLog instant = log;
   const size_t first = k > 0 ? k - 1 : 0;
@@ -165,7 +167,7 @@ void write_instant(const SimulationLog& log, size_t k, const fs::path& file) {
   write_log(file, instant);
 }
 
-/// What `explain` prints about the sample that write_instant() has in the middle.
+/// The text that `explain` prints about the sample that write_instant() puts in the middle.
 Output explained(int equation, const Folder& folder, double dt, bool json) {
   std::vector<std::string> words = {"explain", std::to_string(equation),
                                     "instant.bin@" + text::exact(dt)};
@@ -173,7 +175,7 @@ Output explained(int equation, const Folder& folder, double dt, bool json) {
   return run_program(words, folder.path());
 }
 
-/// Every column of a log's sample by its name.
+/// Every column of a log's sample, by its name.
 std::map<std::string, double> columns_of(const SimulationLog& log, size_t k) {
   std::string bytes;
   append_values(log.samples.at(k), log.joints.size(), bytes);
@@ -224,11 +226,11 @@ TEST(ExplainCommand, EveryNumberIsTheLogsOwn) {
       write_instant(log, k, folder / "instant.bin");
       size_t values = 0;
       for (int n = 1; n <= 29; ++n) {
-        // All equations once under each of DTAD, VIIP and its jump, else one of each group.
+        // For DTAD, VIIP and its jump, all equations are tested once; otherwise one of each group.
         if (!(run.all && t == run.times[0]) && !groups.contains(n)) continue;
         SCOPED_TRACE(std::string(run.name) + " (" + std::to_string(n) + ") at " +
                      std::to_string(t));
-        // One of them from the whole run, in which the row of a time has to be found.
+        // One of them is taken from the whole run, in which the row of a time has to be found.
         const Output each =
             n == 14
                 ? run_program({"explain", "14", "run@" + text::exact(t), "--json"}, folder.path())
@@ -254,7 +256,8 @@ TEST(ExplainCommand, EveryNumberIsTheLogsOwn) {
   }
 }
 
-// A baseline is named, and no equation of the paper is claimed for its ZMP.
+// A baseline is named, and the text does not say that its ZMP follows from an equation of the
+// paper.
 TEST(ExplainCommand, NamesTheBaselineThatChoseTheZmp) {
   for (const auto& [name, words] : {std::pair{"preview", "is the ZMP of the previewed COG"},
                                     std::pair{"foot-guided", "times the error of the DCM"}}) {
@@ -278,10 +281,10 @@ TEST(ExplainCommand, NamesTheBaselineThatChoseTheZmp) {
   }
 }
 
-// A ZMP is said to be moved into the support exactly where the log has one that was.
+// The text says that a ZMP is moved into the support exactly where this happened in the log.
 TEST(ExplainCommand, SaysCutOnlyWhereSomethingWasCut) {
   const Folder folder;
-  std::string pattern = contents(kWalk);  // with a push that takes the ZMP to the edge
+  std::string pattern = contents(kWalk);  // the pattern has a push that moves the ZMP to the edge
   const std::string gentle = "\"impulse\": 1.1", hard = "\"impulse\": 1.5";
   ASSERT_NE(pattern.find(gentle), std::string::npos);
   pattern.replace(pattern.find(gentle), gentle.size(), hard);
@@ -292,7 +295,7 @@ TEST(ExplainCommand, SaysCutOnlyWhereSomethingWasCut) {
   for (size_t k = 0; k < log.samples.size(); ++k) {
     const SimulationSample& s = log.samples[k];
     const bool moved = (s.reference_zmp - s.law.wanted_zmp).head<2>().norm() > 1e-12;
-    // Four of each kind.
+    // Four samples of each kind are enough.
     int& count = moved ? cut : whole;
     if (count == 4 || (count > 0 && k % 50 != 0)) continue;
     ++count;

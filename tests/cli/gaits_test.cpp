@@ -1,5 +1,6 @@
-// ayumi gaits: a library of walks with index, map, tables and archives; cells that cannot be made
-// are named; a stopped library goes on; the same bytes for any number of threads.
+// `ayumi gaits` makes a library of walks with index, map, tables and archives. Cells that cannot be
+// made are named; a library that was stopped is continued; the bytes are the same for any number of
+// threads.
 
 #include <csignal>
 #include <nlohmann/json.hpp>
@@ -50,7 +51,7 @@ TEST(Gaits, ALibraryOfTwoCellsHasAllItsParts) {
     EXPECT_GE(cell["certificate"]["runs"], 5);
     EXPECT_GT(cell["zmp_margin_m"], 0.002);
     const Json& cycle = cell["cycle"];
-    // Two steps of the speed that was asked for.
+    // There are two steps of the speed that was asked for.
     const double period = cell["period_s"];
     EXPECT_NEAR(cycle["duration_s"], 2 * period, 1e-9);
     EXPECT_NEAR(cycle["displacement_m"][0], 2 * period * cell["forward_m_s"].get<double>(), 2e-4);
@@ -132,7 +133,7 @@ TEST(Gaits, AKilledLibraryGoesOn) {
   ::kill(child, SIGKILL);
   ::waitpid(child, nullptr, 0);
   ASSERT_TRUE(begun);
-  if (!fs::exists(folder / "lib/index.json")) {  // the machine was not too fast
+  if (!fs::exists(folder / "lib/index.json")) {  // otherwise the machine was too fast
     const Output other =
         run_program(with(kTwoCells, {"--uncertified", "--rate", "25", "-o", "lib"}), folder.path());
     EXPECT_EQ(other.exit_code, 3);

@@ -1,4 +1,4 @@
-// What stands in the way of a repair, and what would pass: every value told has to be true.
+// What prevents a repair, and which values would pass: every reported value has to be true.
 
 #include <chrono>
 #include <csignal>
@@ -21,7 +21,8 @@ class Infeasible : public testing::Test {
   Folder folder;
 };
 
-// Two arms, each too quick by its own parameter: neither alone is enough.
+// Two arms are each too quick because of a parameter of their own: changing one of them is not
+// enough.
 TEST_F(Infeasible, ValuesAndPacesToldPass) {
   write(folder / "two.json", R"({ "format": "ayumi.pattern/1", "robot": "hoap1",
     "units": { "angle": "deg" }, "parameters": { "left": 0.2, "right": 0.2 },
@@ -57,7 +58,8 @@ TEST_F(Infeasible, ValuesAndPacesToldPass) {
             1);
 }
 
-// The left foot lands on the right one: the foothold is named, as by check, and nothing is solved.
+// The left foot lands on the right one: the foothold is named, as by check, and no repair is
+// computed.
 TEST_F(Infeasible, AFootholdOnTheOtherFootIsNamed) {
   std::string walk = contents(fs::path(AYUMI_SOURCE_DIR) / "patterns/hoap1_walk.json");
   const std::string good = "\"to\": [0.06, 0.039]";
@@ -74,7 +76,7 @@ TEST_F(Infeasible, AFootholdOnTheOtherFootIsNamed) {
   EXPECT_FALSE(fs::exists(folder / "out.json"));
 }
 
-// What is told to need 5.2 times as long does pass when it gets that.
+// A motion that is reported to need 5.2 times as long passes if it gets that time.
 TEST_F(Infeasible, AWindowFarTooShortIsStillAMatterOfTime) {
   write(folder / "slap.json", R"({ "format": "ayumi.pattern/1", "robot": "hoap1",
     "units": { "angle": "deg" }, "parameters": { "time": 0.2 },
@@ -100,7 +102,7 @@ TEST_F(Infeasible, AWindowFarTooShortIsStillAMatterOfTime) {
             0);
 }
 
-// A foot out of reach cannot even be sampled; the error names the stride that would do.
+// A foot out of reach cannot even be sampled; the error names the stride that would pass.
 TEST_F(Infeasible, AFootOutOfReachNamesTheStrideThatPasses) {
   write(folder / "step.json", R"({ "format": "ayumi.pattern/1", "robot": "hoap1",
     "units": { "angle": "deg" }, "parameters": { "stride": 0.2 },
@@ -121,8 +123,8 @@ TEST_F(Infeasible, AFootOutOfReachNamesTheStrideThatPasses) {
   EXPECT_EQ(ayumi({"check", "step.json", "--set", "stride=" + value}).exit_code, 0) << value;
 }
 
-// A walk on ice: the repair works for a long time, says what it works on although it is quiet, and
-// on Ctrl-C says what is left.
+// For a walk on ice, the repair works for a long time. It says what it works on even with quiet
+// output, and on Ctrl-C it says what is left.
 TEST_F(Infeasible, ALongRepairSaysWhatItStrugglesWith) {
   ASSERT_EQ(ayumi({"new", "walk", "--steps", "30", "-o", "ice.json"}).exit_code, 0);
   std::string text = contents(folder / "ice.json");

@@ -33,7 +33,7 @@ TEST(Init, ThreeCommandsToAWalk) {
   expect_walks_in_three_commands({.name = "opposed", .opposed = true, .placeholders = true});
 }
 
-// Arms that hang beside the thighs at 0 are moved aside, so that the legs can walk.
+// Arms that hang beside the thighs when joints are at 0 are moved aside, so that the legs can walk.
 TEST(Init, ArmsAreClearOfTheLegs) {
   Folder folder;
   const Output init =
@@ -46,8 +46,8 @@ TEST(Init, ArmsAreClearOfTheLegs) {
   EXPECT_EQ(ayumi(folder, {"check", "walk.json"}).exit_code, 0) << made.out;
 }
 
-// Without the roll of the ankles the COG hardly goes aside: the walk becomes a shuffle, and what
-// the legs cannot do is said once.
+// Without the roll of the ankles the COG hardly moves to the side: the walk becomes a shuffle, and
+// the limitation of the legs is reported once.
 TEST(Init, FiveJointLegsShuffle) {
   Folder folder;
   write(folder / "robot.urdf", UrdfBiped{.ankle_roll = false}.text());
@@ -88,8 +88,8 @@ TEST(Init, OpenDuckStandsAfterQuickSteps) {
   EXPECT_EQ(slower.exit_code, 0) << slower.err;
 }
 
-// Open Duck Mini with softer servos than its own: `init` writes gains of the law with which it
-// stands, or says how stiff the servos must be.
+// A version of Open Duck Mini with softer servos than its own: `init` writes gains of the law with
+// which it stands, or says how stiff the servos must be.
 TEST(Init, SoftServosGetGains) {
   const fs::path own = AYUMI_SOURCE_DIR "/../shared/data/open_duck_mini_v2";
   if (!fs::exists(own)) GTEST_SKIP() << "no file of Open Duck Mini";
@@ -118,7 +118,7 @@ TEST(Init, SoftServosGetGains) {
             std::string::npos);
 }
 
-// One joint turns both hips: a turn is done with it and with the trunk.
+// One joint turns both hips, so that the robot turns by this joint and by its trunk.
 TEST(Init, CoupledHipsTurn) {
   Folder folder;
   write(folder / "robot.urdf", UrdfBiped{.coupled_hips = true}.text());
@@ -147,7 +147,8 @@ TEST(Init, LegsThatCannotTurnApartSaySo) {
   EXPECT_EQ(made.err.find("out of reach by"), std::string::npos) << made.err;
 }
 
-// A centre of mass far from its link was a warning of `inspect` alone, which a beginner never runs.
+// Before, only `inspect` warned of a centre of mass far from its link, and a beginner never runs
+// `inspect`.
 TEST(Init, SuspiciousLinksAreOnTheList) {
   Folder folder;
   std::string text = UrdfBiped{}.text();
@@ -182,7 +183,7 @@ TEST(Init, MotorsWithoutLimitsAreSaid) {
       << run.out;
 }
 
-// A sidecar whose home posture is straight: every motion crouches by itself.
+// The sidecar has a straight home posture: every motion crouches without being asked.
 TEST(Init, StraightHomeCrouches) {
   Folder folder;
   write(folder / "robot.urdf", UrdfBiped{}.text());
@@ -195,7 +196,8 @@ TEST(Init, StraightHomeCrouches) {
   }
 }
 
-// Long shanks, weak motors: values are found that pass, and what was too much is said.
+// The robot has long shanks and weak motors: values are found that pass, and the values that were
+// too large are named.
 TEST(Init, ValuesThatPassAreFound) {
   Folder folder;
   UrdfBiped kind{.thigh = 0.22, .shank = 0.22, .speed = 1.2};
@@ -207,7 +209,7 @@ TEST(Init, ValuesThatPassAreFound) {
       << made.out;
   EXPECT_NE(made.out.find("trials, these values were found: "), std::string::npos);
   EXPECT_EQ(ayumi(folder, {"check", "w.json"}).exit_code, 0);
-  // What is asked for stays.
+  // Values that were asked for stay.
   const Output asked = ayumi(
       folder, {"new", "walk", "--robot", "robot.urdf", "--stride", "0.06", "-o", "asked.json"});
   EXPECT_EQ(asked.out.find("--stride"), std::string::npos) << asked.out;

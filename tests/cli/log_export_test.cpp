@@ -1,4 +1,4 @@
-// `ayumi export` of everything that a run knows, for other programs.
+// `ayumi export` of everything that is known about a run, for other programs.
 
 #include <cmath>
 #include <map>
@@ -19,7 +19,7 @@ const char* const kPushed = R"({
   "scenario": [{ "type": "impulse", "at": 0.3, "impulse": 0.3, "direction": [1, 0, 0], "duration": 0.05 }]
 })";
 
-// One run for all tests.
+// There is one run for all tests.
 class LogExport : public testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -43,7 +43,7 @@ class LogExport : public testing::Test {
     EXPECT_EQ(std::count(output.err.begin(), output.err.end(), '\n'), 1) << output.err;
     EXPECT_FALSE(fs::exists(folder->path() / arguments.back())) << message;
   }
-  // Columns by name; cells are separated by commas and not quoted.
+  // Columns by name. Cells are separated by commas and not quoted.
   static std::map<std::string, std::vector<double>> columns(const std::string& file) {
     std::istringstream stream(contents(folder->path() / file));
     std::vector<std::string> names;
@@ -79,7 +79,7 @@ TEST_F(LogExport, CsvHasAllColumnsOfTheLog) {
         "torque.l_elbow[N m]", "cog.z[m]", "ref.zmp.x[m]", "left.force.z[N]", "zmp.margin[m]",
         "push.force.x[N]", "disturbance.1_impulse", "energy[J]"})
     EXPECT_TRUE(table.contains(name)) << name;
-  // The header of the log names its columns; the export has them all.
+  // The header of the log names its columns, and the export has all of them.
   const std::string log = contents(folder->path() / "run/log_closed_loop.bin");
   const size_t begin = log.find("\"columns\":[") + 10, end = log.find("],\"rows\"", begin) + 1;
   const auto logged = nlohmann::json::parse(log.substr(begin, end - begin));
@@ -87,7 +87,7 @@ TEST_F(LogExport, CsvHasAllColumnsOfTheLog) {
   for (const auto& name : logged) EXPECT_TRUE(table.contains(name)) << name;
 }
 
-// The second route to what follows from the columns of the log.
+// Quantities that follow from the columns of the log are computed by a second route.
 TEST_F(LogExport, DerivedColumnsFollowFromTheOthers) {
   ASSERT_EQ(ayumi({"run", "--format", "csv-log", "-o", "derived.csv"}).exit_code, 0);
   auto table = columns("derived.csv");
@@ -192,7 +192,7 @@ TEST_F(LogExport, BadInputGetsOneLine) {
                  "is a single log");
 }
 
-// A light run has no tables and no pictures, and everything that is made from a run is the same.
+// A light run has no tables and no pictures, but everything that is made from a run is the same.
 TEST_F(LogExport, LightRunGivesTheSameFiles) {
   for (const std::string kind : {"full", "light"}) {
     std::vector<std::string> words = {"run", "-q", "p.json", "-o", kind};
@@ -222,7 +222,7 @@ TEST_F(LogExport, LightRunGivesTheSameFiles) {
   std::sort(files.begin(), files.end());
   EXPECT_EQ(files, (std::vector<std::string>{"log_closed_loop.bin", "log_open_loop.bin",
                                              "log_undisturbed.bin", "run.json"}));
-  // The command line of the run is in the heads: the options differ, and nothing else.
+  // The command line of the run is in the heads: only the options differ.
   const auto without = [](std::string text, const std::string& word) {
     for (size_t at = text.find(word); at != std::string::npos; at = text.find(word, at))
       text.erase(at, word.size());

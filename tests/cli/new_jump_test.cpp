@@ -1,4 +1,5 @@
-// `ayumi new jump`: the stoop it finds, the profile it writes, what it says when there is neither.
+// `ayumi new jump`: the stoop that it finds, the profile that it writes, and its message if there
+// is neither.
 
 #include <nlohmann/json.hpp>
 

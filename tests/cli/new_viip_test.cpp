@@ -1,4 +1,4 @@
-// `ayumi new viip`: what the robot can do is written, what it cannot is refused in one line.
+// `ayumi new viip`: motions that the robot can do are written, and others are refused in one line.
 
 #include <nlohmann/json.hpp>
 

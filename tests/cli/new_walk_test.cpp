@@ -1,5 +1,5 @@
-// `ayumi new walk`: the profile it writes, and what it says where none is enough. Other kinds for
-// robots from public files.
+// `ayumi new walk`: the profile that it writes, and its message if no profile is enough. Other
+// kinds are tested with robots from public files.
 
 #include <filesystem>
 
@@ -23,7 +23,8 @@ TEST(NewWalk, StairsAreWrittenForTheProfileThatClimbsThem) {
       << out.out;
   EXPECT_NE(contents(folder.path() / "w.json").find("\"profile\": \"hoap1-strong\""),
             std::string::npos);
-  // It passes with the motors it asks for, and a table for the robot as it is would be refused.
+  // The pattern passes with the motors that it asks for, and a table for the robot as it is would
+  // be refused.
   const Output check = run_program({"check", "-q", "w.json"}, folder.path());
   EXPECT_EQ(check.exit_code, 0);
   EXPECT_NE(
@@ -64,7 +65,8 @@ TEST(NewWalk, WhatNoProfileMendsIsSaid) {
   EXPECT_NE(out.out.find(" is the most that the legs can reach"), std::string::npos) << out.out;
 }
 
-// A way aside that asks too much of the ankles, or is out of reach, is told with the one that fits.
+// A sway to the side that asks too much of the ankles, or is out of reach, is reported with the one
+// that fits.
 TEST(NewWalk, AsideNoFartherThanTheLegsCan) {
   Folder folder;
   const Output far = made(folder, {"--steps", "2", "--stride", "0", "--side", "0.04"});
@@ -85,8 +87,8 @@ TEST(NewWalk, AsideNoFartherThanTheLegsCan) {
 
 class NewKinds : public testing::TestWithParam<const char*> {};
 
-// An elbow at its limit at home (SR1), arms that are not raised beside the head (mighty), legs that
-// must bend for a turn (mighty), shins that meet in a turn (DARwIn-OP).
+// The robots have an elbow at its limit at home (SR1), arms that are not raised beside the head
+// (mighty), legs that must bend for a turn (mighty), and shins that meet in a turn (DARwIn-OP).
 TEST_P(NewKinds, ATurnAndAWaveAreConsistent) {
   const std::filesystem::path robot =
       std::filesystem::path(AYUMI_SOURCE_DIR "/../shared/data") / GetParam();
@@ -104,7 +106,8 @@ TEST_P(NewKinds, ATurnAndAWaveAreConsistent) {
   }
 }
 
-// A robot that finds no walk was told only that its legs do not reach, which no option mends.
+// Before, the message for a robot that finds no walk only said that its legs do not reach, which no
+// option mends.
 TEST(NewWalk, NamesTheWalkThatComesNearest) {
   const std::filesystem::path robot =
       AYUMI_SOURCE_DIR "/../shared/data/open_duck_mini_v2/open_duck_mini_v2.xml";

@@ -25,14 +25,14 @@ class OneSet : public testing::Test {
  protected:
   Folder folder;
 
-  /// Whether `check` calls it consistent.
+  /// Whether `check` calls the pattern consistent.
   bool consistent(const std::string& file) {
     const Output output = run_program({"check", file, "--json"}, folder.path());
     EXPECT_TRUE(output.exit_code == 0 || output.exit_code == 1) << file << output.err;
     return output.exit_code == 0;
   }
 
-  /// Whether `export` writes it, in both forms alike.
+  /// Whether `export` writes the pattern, with the same answer for both forms.
   bool accepted(const std::string& file) {
     std::vector<bool> written;
     for (const char* format : {"hoap", "csv"}) {

@@ -1,4 +1,4 @@
-// The command posture: what it writes is what patterns include.
+// The command posture writes what patterns can include.
 
 #include <sys/resource.h>
 
@@ -51,12 +51,12 @@ TEST_F(PostureCommand, MirroredTwiceAPostureIsUnchanged) {
   mirror("image", "again");
   const Json all = postures("mine.json");
   EXPECT_EQ(all["again"], all["lean"]);
-  // Both roll axes of HOAP-1 point ahead, so the image turns the other way.
+  // Both roll axes of HOAP-1 point ahead, so that the mirror image turns the other way.
   EXPECT_NEAR(all["image"]["r_hip_roll"].get<double>(), -12 * M_PI / 180, 1e-8);
   EXPECT_EQ(all["image"].value("l_hip_roll", 0.0), 0.0);
 }
 
-// [s] of processor time of the programs that have ended.
+// The processor time of the programs that have ended [s].
 double time_of_children() {
   rusage used{};
   ::getrusage(RUSAGE_CHILDREN, &used);
@@ -73,7 +73,7 @@ TEST_F(PostureCommand, ListsPosturesInTimeThatIsLinearInTheirNumber) {
   EXPECT_LT(time_of_children() - begin, 5.0);
   EXPECT_EQ(all.size(), 80'000u);
   EXPECT_EQ(all["p79999"]["l_elbow"], 1);
-  // Nor does a message name them all.
+  // A message does not name all of them either.
   const Output wrong = ayumi({"posture", "adjust", "many.json", "q", "--joint", "l_elbow=1", "--as",
                               "r", "-o", "mine.json"});
   EXPECT_EQ(wrong.exit_code, 2);
@@ -121,7 +121,7 @@ TEST_F(PostureCommand, ShellsProposeThePosturesOfALibrary) {
   EXPECT_EQ(ayumi({"--names", "postures", "posture", "draw", "mine.json"}).out, "ready\n");
 }
 
-// Servos leave a ten-thousandth of a degree on joints that nothing moves.
+// Servos leave an angle of a ten-thousandth of a degree on joints that nothing moves.
 TEST_F(PostureCommand, AJointThatRestsAtZeroIsCapturedAtZero) {
   ASSERT_EQ(ayumi({"new", "bow", "-o", "bow.json", "-q"}).exit_code, 0);
   ASSERT_EQ(ayumi({"simulate", "bow.json", "-o", "run", "-q"}).exit_code, 0);

@@ -1,5 +1,5 @@
 #pragma once
-// Runs the real program and collects what a person or a script would see.
+// Runs the real program and collects the output that a person or a script would see.
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 inline const std::string kWalk = AYUMI_SOURCE_DIR "/patterns/hoap1_walk.json";
 
 struct Output {
-  int exit_code = -1;  ///< 128 + signal when it was killed
+  int exit_code = -1;  ///< 128 + signal if the program was killed
   std::string out, err;
 };
 
@@ -41,7 +41,7 @@ inline std::string program_under_test() {
   return installed ? installed : AYUMI_PROGRAM;
 }
 
-/// `program arguments…` as exec() takes them.
+/// The words of `program arguments…` in the form that exec() takes.
 class ArgumentVector {
  public:
   ArgumentVector(const std::string& program, const std::vector<std::string>& arguments)
@@ -52,7 +52,7 @@ class ArgumentVector {
   }
   ArgumentVector(const ArgumentVector&) = delete;
   ArgumentVector& operator=(const ArgumentVector&) = delete;
-  /// Replaces this process by the program; comes back only where that fails.
+  /// Replaces this process by the program; returns only if that fails.
   void execute() const { ::execv(pointers_.front(), pointers_.data()); }
 
  private:
@@ -60,7 +60,7 @@ class ArgumentVector {
   std::vector<char*> pointers_;
 };
 
-/// Runs `program arguments…` in `folder`, its streams going to files that are read back.
+/// Runs `program arguments…` in `folder`. Its streams go to files that are read back.
 inline Output run_program(const std::vector<std::string>& arguments, const fs::path& folder,
                           const std::string& program = program_under_test()) {
   const fs::path streams =
@@ -89,11 +89,11 @@ inline Output run_program(const std::vector<std::string>& arguments, const fs::p
   return result;
 }
 
-/// A scratch folder of one test, removed with what it holds.
+/// A scratch folder of one test, which is removed with its content.
 class Folder {
  public:
   Folder() : Folder(name_of_test()) {}
-  /// For the tests of a suite together, which have no test of their own to be named after.
+  /// For all tests of a suite together, after none of which it could be named.
   explicit Folder(const std::string& name)
       : path_(fs::path(testing::TempDir()) / ("ayumi_" + std::to_string(::getpid()) + "_" + name)) {
     fs::remove_all(path_);
@@ -106,7 +106,7 @@ class Folder {
   const fs::path& path() const { return path_; }
   fs::path operator/(const std::string& name) const { return path_ / name; }
 
-  /// Every file below, relative, sorted: what a command left behind.
+  /// Every file below the folder, as relative paths in order: the files that a command left behind.
   std::vector<std::string> files() const {
     std::vector<std::string> found;
     for (const auto& entry : fs::recursive_directory_iterator(path_))

@@ -1,4 +1,5 @@
-// ayumi push: the same for any number of threads, goes on where it was stopped, draws its map.
+// `ayumi push` gives the same for any number of threads, continues where it was stopped, and draws
+// its map.
 
 #include <nlohmann/json.hpp>
 
@@ -53,7 +54,7 @@ TEST(PushCommand, GoesOnFromItsResultsForAnyNumberOfThreads) {
     EXPECT_GT(c["limits"][0]["impulse_Ns"].get<double>(), 0.8 * c["bound_Ns"].get<double>());
   }
   partly["cases"].erase(0);
-  partly["cases"][0]["open_loop"]["runs"] = 1234;  // taken over, not worked out again
+  partly["cases"][0]["open_loop"]["runs"] = 1234;  // this result is kept and not computed again
   write(study.folder / "results.json", partly.dump());
   std::vector<std::string> again = study.command;
   again.back() = "2";
@@ -71,8 +72,8 @@ TEST(PushCommand, GoesOnFromItsResultsForAnyNumberOfThreads) {
       << other.err;
 }
 
-// Before, the comparison with the own study descended into it by recursion, and the program
-// crashed.
+// Before, the comparison with the program's own study descended into these results by recursion,
+// and the program crashed.
 TEST(PushCommand, RefusesResultsThatAreNestedDeeply) {
   const Study study;
   const std::string deep = std::string(300'000, '[') + std::string(300'000, ']');
@@ -96,7 +97,7 @@ TEST(PushCommand, DrawsItsMapAndPrintsJson) {
   const Json json = Json::parse(good.out);
   EXPECT_EQ(json["thresholds"].size(), 2u);
   EXPECT_GT(json["worst_ratio"].get<double>(), 0.8);
-  // J/m and J/(m sqrt(g z)) from the robot's mass and the height of its COG.
+  // J/m and J/(m sqrt(g z)) follow from the robot's mass and the height of its COG.
   const Json stored = Json::parse(contents(study.folder / "results.json"))["cases"][0];
   const double mass = stored["mass_kg"], height = stored["height_m"];
   EXPECT_NEAR(mass, 6, 1);

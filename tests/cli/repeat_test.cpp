@@ -1,4 +1,5 @@
-// Same command, same bytes: in every file written and on stdout, for any number of threads.
+// The same command gives the same bytes in every written file and on stdout, for any number of
+// threads.
 
 #include "tests/cli/program.hpp"
 

@@ -31,14 +31,14 @@ class Replay : public testing::Test {
   Folder folder;
 };
 
-// Each plant of the program judges a table that was exported: the robot stands, nothing is clamped.
+// Each plant of the program judges an exported table: the robot stands, and no value is clamped.
 TEST_F(Replay, WhatWasExportedStands) {
   export_bow("hoap", "h.csv");
   export_bow("csv", "t.csv");
   export_bow("json", "t.json");
   for (const std::string file : {"h.csv", "t.csv", "t.json"}) {
     std::vector<std::string> words = {"replay", file, "--json", "-q", "--robot", "hoap1"};
-    if (file != "h.csv") words.resize(4);  // the head names the robot
+    if (file != "h.csv") words.resize(4);  // the head of the table names the robot
     const Output out = ayumi(words);
     ASSERT_EQ(out.exit_code, 0) << file << out.err << out.out;
     const Json json = Json::parse(out.out);
@@ -51,7 +51,7 @@ TEST_F(Replay, WhatWasExportedStands) {
   }
 }
 
-// A jump is clamped to 57 counts per millisecond; a bow that is too deep lets the robot fall.
+// A jump is clamped to 57 counts per millisecond; with a bow that is too deep, the robot falls.
 TEST_F(Replay, JumpsAreClampedAndFallsAreFound) {
   const int home[20] = {0, 0, 3607,  9107,  -5500, 0, 18810,  -2090, 0, 5225,
                         0, 0, -3607, -9107, 5500,  0, -18810, 2090,  0, -5225};
@@ -103,14 +103,15 @@ TEST_F(Replay, BadTablesLeaveNothing) {
   EXPECT_EQ(ayumi({"replay", "h.csv", "--robot", "hoap1", "--plant", "bullet"}).exit_code, 2);
 }
 
-// One file and one picture per joint; only this joint moves, by 5 degrees.
+// There are one file and one picture per joint; only this joint moves, by 5 degrees.
 TEST_F(Replay, TheSignTestMovesOneJointAtATime) {
   const Output out =
       ayumi({"export", "hoap1", "--sign-test", "--format", "hoap", "-o", "signs", "--json", "-q"});
   ASSERT_EQ(out.exit_code, 0) << out.err;
   const Json tests = Json::parse(out.out).at("tests");
   ASSERT_EQ(tests.size(), 20u);
-  EXPECT_EQ(folder.files().size(), 1 + 20u + 20 + 1);  // the folder, tables, pictures, sheet
+  // The folder, the tables, the pictures and the sheet.
+  EXPECT_EQ(folder.files().size(), 1 + 20u + 20 + 1);
   for (size_t i = 0; i < 20; ++i) {
     const std::string text = contents(folder / ("signs/" + std::string(tests[i].at("file"))));
     std::vector<int> first, most(20, 0);

@@ -1,4 +1,4 @@
-// A robot of one's own, named by a path: what the commands write still finds it.
+// A user's own robot is named by a path: the files that the commands write still find it.
 
 #include "tests/cli/program.hpp"
 

@@ -1,4 +1,4 @@
-// `ayumi run` and the table it gives to a robot, as a person or a script meets them.
+// `ayumi run` and the table that it makes for a robot, as a person or a script uses them.
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-// HOAP-1 lifts an arm; `scenario` is put in.
+// HOAP-1 lifts an arm. `scenario` is inserted into the pattern.
 std::string arm_up(const std::string& scenario = "", const std::string& more_keys = "") {
   return R"({
   "format": "ayumi.pattern/1", "name": "arm up", "robot": "hoap1", "units": { "angle": "deg" },
@@ -29,7 +29,7 @@ const std::string kPush =
     R"({ "type": "impulse", "at": 0.5, "duration": 0.02, "direction": [0, 1, 0], "impulse": 0.5 })";
 const std::string kTooHard =
     R"({ "type": "impulse", "at": 0.5, "duration": 0.02, "direction": [0, 1, 0], "impulse": 9 })";
-// An elbow that would have to turn by 60 degrees in a hundredth of a second.
+// A keyframe for which an elbow would have to turn by 60 degrees in a hundredth of a second.
 const std::string kTooFast =
     R"(, { "t": 1.2, "joints": { "l_elbow": -25 } }, { "t": 1.21, "joints": { "l_elbow": -85 } })";
 
@@ -47,7 +47,7 @@ class Run : public testing::Test {
     words.insert(words.end(), more.begin(), more.end());
     return ayumi(words);
   }
-  /// Puts a run of a pattern at `out`; each is run once for all tests that only need a run.
+  /// Puts a run of a pattern at `out`. Each pattern is run once for all tests that only need a run.
   void given_run(const std::string& pattern) {
     if (!made_) made_ = std::make_unique<Folder>("Run");
     if (!fs::exists(*made_ / pattern)) {
@@ -64,7 +64,7 @@ class Run : public testing::Test {
     words.insert(words.end(), more.begin(), more.end());
     return ayumi(words);
   }
-  /// The rows of a table, without its head.
+  /// The rows of a table without its head.
   std::string rows(const std::string& file) {
     const std::string text = contents(folder / file);
     return text.substr(text.find("\nt[s]") + 1);
@@ -94,7 +94,7 @@ TEST_F(Run, TheTableIsThatOfTheRunWithoutDisturbances) {
             std::string::npos);
 }
 
-// Whatever disturbs the run, the tables for the robot are those of the run without it.
+// Whatever disturbs the run, the tables for the robot are those of the run without disturbances.
 TEST_F(Run, TheTablesOfManyDisturbedRunsAreThoseOfTheUndisturbedRun) {
   ASSERT_NO_FATAL_FAILURE(given_run("calm.json"));
   const std::string table = rows("out/reference.csv"), hoap = contents(folder / "out/hoap.csv");
@@ -136,7 +136,7 @@ TEST_F(Run, TablesAreMadeForAServo) {
       made.push_back(rows("t"));
     }
   ASSERT_EQ(exported({"--ramp", "0", "--hold", "0", "--force"}, "csv").exit_code, 0);
-  EXPECT_TRUE(rows("t") == made[1]);  // the lead is the default
+  EXPECT_TRUE(rows("t") == made[1]);  // the lead is used by default
   EXPECT_TRUE(made[0] != made[1] && made[1] != made[2] && made[0] != made[2]);
   EXPECT_TRUE(made[3] != made[4] && made[4] != made[5] && made[3] != made[5]);
   const Output table =
@@ -166,7 +166,7 @@ TEST_F(Run, TheTableOfAPushedRunIsExportedWithPushedOnlyAndSaysSo) {
   EXPECT_EQ(Json::parse(contents(folder / "t")).at("disturbances"), "0.5 N s on cog at 0.5 s");
 }
 
-// The caution goes along with a table that becomes a pattern.
+// If a table becomes a pattern, the caution stays with it.
 TEST_F(Run, APatternMadeOfAPushedTableIsNotForARobotEither) {
   ASSERT_NO_FATAL_FAILURE(given_run("pushed.json"));
   ASSERT_EQ(
@@ -209,7 +209,7 @@ TEST_F(Run, ARunThatFellGivesNoTableForARobot) {
   EXPECT_FALSE(fs::exists(folder / "t"));
   const Output forced = exported({"--force-unsafe"}, "csv");
   EXPECT_EQ(forced.exit_code, 0);
-  EXPECT_FALSE(fs::exists(folder / "t"));  // the name says it too
+  EXPECT_FALSE(fs::exists(folder / "t"));  // the name also says that the table is unsafe
   EXPECT_NE(contents(folder / "t.UNSAFE").find("# unfit: under its disturbances the run fell at"),
             std::string::npos);
   // The forced table is still marked, and refused as it stands.
@@ -323,7 +323,8 @@ TEST_F(Run, OneFolderIsWrittenByOneRunAtATime) {
   EXPECT_EQ(refused.exit_code, 3);
   EXPECT_NE(refused.err.find("out: another run is being written to this folder"), std::string::npos)
       << refused.err;
-  ::close(held);  // as when that process ends, however it ends: the file alone locks nothing
+  // This is the same as the end of that process, however it ends: the file alone locks nothing.
+  ::close(held);
   ASSERT_TRUE(fs::exists(lock));
   EXPECT_EQ(run("calm.json").exit_code, 0);
   EXPECT_FALSE(fs::exists(lock));
@@ -338,7 +339,7 @@ TEST_F(Run, BadInputLeavesNoFolder) {
   EXPECT_FALSE(fs::exists(folder / "out"));
 }
 
-// What is there under the name of an output and is no regular file stays as it is.
+// If something that is no regular file has the name of an output, it stays as it is.
 TEST_F(Run, NoCommandReplacesALinkADeviceOrAPipe) {
   ASSERT_NO_FATAL_FAILURE(given_run("calm.json"));
   write(folder / "target", "mine");

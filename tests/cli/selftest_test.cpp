@@ -1,4 +1,4 @@
-// One set of hashes, whatever the machine is set to.
+// There is one set of hashes, whatever the settings of the machine are.
 
 #include <nlohmann/json.hpp>
 
@@ -7,7 +7,7 @@
 namespace ayumi::test {
 namespace {
 
-/// The program in an environment of its own.
+/// Runs the program in an environment of its own.
 Output selftest(const std::vector<std::string>& settings, const std::vector<std::string>& options,
                 const fs::path& folder) {
   std::vector<std::string> words = settings;
@@ -19,8 +19,8 @@ Output selftest(const std::vector<std::string>& settings, const std::vector<std:
 
 TEST(Selftest, GivesTheCommittedHashesEverywhere) {
   const Folder folder;
-  // As the machine is, and without fused multiply-add and AVX2 in the C library, with another BLAS
-  // kernel and other words for numbers and times.
+  // The settings are those of the machine, and others: without fused multiply-add and AVX2 in the C
+  // library, with another BLAS kernel, and with other words for numbers and times.
   const std::vector<std::vector<std::string>> machines = {
       {},
       {"GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX2_Usable,-FMA_Usable",

@@ -1,4 +1,4 @@
-// Ctrl-C, and programs that Ayumi starts and that are missing or hang.
+// Ctrl-C, and programs that Ayumi starts but that are missing or hang.
 
 #include <chrono>
 #include <csignal>
@@ -12,7 +12,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// PATH is this folder alone until the end of the test.
+/// PATH contains only this folder until the end of the test.
 class OnlyPath {
  public:
   explicit OnlyPath(const fs::path& folder) : before_(std::getenv("PATH")) {
@@ -24,7 +24,7 @@ class OnlyPath {
   std::string before_;
 };
 
-/// An `ffmpeg` that writes its process id to the file `started` and then does nothing, ever.
+/// An `ffmpeg` that writes its process id to the file `started` and then hangs for ever.
 void write_hanging_ffmpeg(const Folder& folder) {
   write(folder / "bin/ffmpeg", "#!/bin/sh\necho $$ > " + (folder / "pid").string() + "\nmv " +
                                    (folder / "pid").string() + " " + (folder / "started").string() +
@@ -57,7 +57,7 @@ TEST(Stopping, CtrlCEndsARunAndTheFfmpegThatHangs) {
     }
     int status = 0;
     ::waitpid(run, &status, 0);
-    // A loaded machine may take longer to start threads, but not several times.
+    // A loaded machine may take longer to start threads, but not several times as long.
     EXPECT_LT(std::chrono::duration<double>(Clock::now() - begin).count(), 3.0);
     EXPECT_TRUE((WIFEXITED(status) && WEXITSTATUS(status) == 130) ||
                 (twice && WIFSIGNALED(status) && WTERMSIG(status) == SIGINT))

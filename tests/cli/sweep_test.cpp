@@ -1,5 +1,5 @@
-// ayumi sweep: one row per case, the same bytes for any number of threads, shards and stops, and
-// one clear line for bad input.
+// `ayumi sweep` writes one row per case and the same bytes for any number of threads, shards and
+// stops, and one clear line for bad input.
 
 #include <signal.h>
 
@@ -55,7 +55,7 @@ std::string read_csv(const Sweep& s, const std::string& database) {
   return contents(s.folder / "read.csv");
 }
 
-/// The cells of a CSV without quotes.
+/// The cells of a CSV file without quotes.
 class Table {
  public:
   explicit Table(const std::string& csv) {
@@ -113,7 +113,8 @@ TEST(SweepCommand, SameBytesForThreadsAndShards) {
   EXPECT_EQ(read_csv(s, "a.db"), whole);
 }
 
-// kill -9 in the middle, then the same command: nothing twice, nothing lost.
+// After kill -9 in the middle and the same command again, nothing is there twice and nothing is
+// lost.
 TEST(SweepCommand, GoesOnAfterKill) {
   const Sweep s;
   s.write_study(R"({"seed": {"from": 1, "to": 60, "count": 60}, "value.impulse": [0.2, 0.6]})");
@@ -163,7 +164,7 @@ TEST(SweepCommand, RecordsFailuresAndRunsThemAgain) {
   EXPECT_EQ(s.sweep({"-o", "r.db", "--expect", "errors == 1"}).exit_code, 0);
 }
 
-// A case that is not asked for keeps the record of its failure.
+// A case that is not selected keeps the record of its failure.
 TEST(SweepCommand, RetryForgetsOnlyCasesThatItRuns) {
   const Sweep s;
   write(s.folder / "study.json", R"({"format": "ayumi.study/1", "sweep": {
@@ -182,7 +183,7 @@ TEST(SweepCommand, MergeNamesTheFilesThatDiffer) {
   const std::string all = contents(s.folder / "a.db");
   std::string other = all;
   for (size_t i = other.find("stands"); i != std::string::npos; i = other.find("stands", i + 1))
-    other[i + 5] = 'S';  // also in the views, which only count
+    other[i + 5] = 'S';  // the change is also in the views, which only count
   write(s.folder / "b.db", other);
   const Output merged = s.run({"sweep", "merge", "a.db", "b.db", "-o", "m.db"});
   EXPECT_EQ(merged.exit_code, 3);
@@ -201,7 +202,7 @@ TEST(SweepCommand, FilesOfOneCommandDiffer) {
   EXPECT_FALSE(fs::exists(s.folder / "x.db"));
 }
 
-// A check is no simulation: nothing is known of falls then.
+// A check is no simulation, so that nothing is known of falls.
 TEST(SweepCommand, WhatIsNotMeasuredMeetsNoExpectation) {
   const Sweep s;
   write(s.folder / "study.json", R"({"format": "ayumi.study/1", "sweep": {
@@ -316,12 +317,14 @@ TEST(SweepCommand, OneClearLineForBadInput) {
   expect(s.sweep({"-o", "good.db"}), 3, "another study (the study is different)");
   ASSERT_EQ(s.sweep({"-o", "other.db"}).exit_code, 0);
   expect(s.run({"sweep", "merge", "good.db", "other.db"}), 3, "other.db: this file holds");
-  // A wrong expectation makes no file and takes the place of none, and readers leave none.
+  // A wrong expectation makes no file and replaces none, and commands that only read leave none
+  // behind.
   expect(s.sweep({"-o", "y.db", "--expect", "fals == 0"}), 2, "did you mean 'falls'?");
   EXPECT_FALSE(fs::exists(s.folder / "y.db"));
   expect(s.sweep({"-o", "good.db", "--force", "--expect", "fals == 0"}), 2, "did you mean");
   EXPECT_TRUE(contents(s.folder / "good.db") == good);
-  // Nor does a refused file of another version, which differs in the head of the database.
+  // The same holds for a refused file of another version, which differs in the head of the
+  // database.
   std::string later = good;
   later.replace(60, 4, std::string("\0\0\0\2", 4));  // PRAGMA user_version
   write(s.folder / "later.db", later);
@@ -331,7 +334,7 @@ TEST(SweepCommand, OneClearLineForBadInput) {
       EXPECT_FALSE(fs::exists(s.folder / (std::string(file) + part))) << file;
 }
 
-// The file may not grow over a limit, as on a full disk: what was committed stays.
+// The file may not grow beyond a limit, as on a full disk: everything that was committed stays.
 TEST(SweepCommand, AFullDiskLosesNothing) {
   const Sweep s;
   s.write_study(R"({"seed": {"from": 1, "to": 3000, "count": 3000}, "value.impulse": 0.2})",
@@ -377,8 +380,8 @@ TEST(SweepCommand, ThePageWorksInABrowser) {
   EXPECT_EQ(said.out, "ok\n");
 }
 
-// A draw is the case of `certify` and `simulate --case`, and each measure belongs to the robot of
-// its case.
+// A draw is the same case as in `certify` and `simulate --case`, and each measure belongs to the
+// robot of its case.
 TEST(SweepCommand, DrawsProfilesRobotsAndParameters) {
   const Sweep s;
   std::string text = contents(s.folder / "stand.json");
@@ -425,8 +428,8 @@ TEST(SweepCommand, ALimitOfTimeOfOneCase) {
       << limited.out;
 }
 
-// A stand-in for Slurm: sbatch runs every task at once, and drops the tasks that `drop` names (as a
-// node that dies). The real one is tried by tests/cluster.
+// A stand-in for Slurm: sbatch runs every task at once, and drops the tasks that `drop` names, as
+// if a node had died. tests/cluster tries the real one.
 struct StandIn {
   Sweep s;
   StandIn() {
@@ -466,7 +469,8 @@ TEST(SweepOnSlurm, LostTasksAreSubmittedAgainUpToALimit) {
       "--memory 2G --sbatch=--account=lab");
   ASSERT_EQ(out.exit_code, 0) << out.out << out.err;
   EXPECT_EQ(contents(slurm.s.folder / "a.csv"), whole);
-  // Five tasks; those of 5 and 5 cases that were lost; and one of these two once more.
+  // The tasks are: five tasks, then those of the 5 and 5 cases that were lost, and one of these two
+  // once more.
   EXPECT_NE(out.out.find("10 cases of lost tasks"), std::string::npos) << out.out;
   EXPECT_NE(out.out.find("5 cases of lost tasks"), std::string::npos) << out.out;
   const std::string log = contents(slurm.s.folder / "sbatch.log");

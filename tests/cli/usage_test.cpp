@@ -1,4 +1,4 @@
-// What every call of the program has in common: help, version, mistakes, exit codes.
+// What all calls of the program have in common: help, version, mistakes and exit codes.
 
 #include <cstdlib>
 #include <map>
@@ -67,7 +67,7 @@ TEST_F(Usage, HelpOfASubcommandHasItsOwnExamples) {
       << bake;
 }
 
-// An example that names an option of the past would be pasted and refused.
+// An example with an option that no longer exists would be pasted and refused.
 TEST_F(Usage, ExamplesOfTheHelpUseOptionsThatExist) {
   const std::string all = ayumi({"--help"}).out;
   std::map<std::vector<std::string>, std::string> helps;
@@ -109,19 +109,20 @@ TEST_F(Usage, ExamplesOfTheHelpUseOptionsThatExist) {
   EXPECT_GT(options, 60);
 }
 
-// A switch that turns something off is shown as it is typed.
+// A switch that turns something off is shown as it is to be typed.
 TEST_F(Usage, HelpShowsSwitchesAsTyped) {
   const Output help = ayumi({"run", "--help"});
   EXPECT_NE(help.out.find("--no-pictures "), std::string::npos) << help.out;
   EXPECT_EQ(help.out.find("{false}"), std::string::npos) << help.out;
 }
 
-// Where the program was built without MuJoCo, help and error say how to get it.
+// If the program was built without MuJoCo, help and error say how to get it.
 TEST_F(Usage, PlantMujocoIsThereOrHowToGetItIsSaid) {
   for (const char* command : {"run", "simulate", "push"}) {
     const Output help = ayumi({command, "--help"});
     const Output chosen = ayumi({command, "absent.json", "-o", "out", "--plant", "mujoco"});
-    if (help.out.find("libmujoco-dev") == std::string::npos) {  // built with MuJoCo
+    // Otherwise the program was built with MuJoCo.
+    if (help.out.find("libmujoco-dev") == std::string::npos) {
       EXPECT_EQ(chosen.exit_code, 3) << "absent.json: no such file";
       continue;
     }
@@ -132,7 +133,8 @@ TEST_F(Usage, PlantMujocoIsThereOrHowToGetItIsSaid) {
   }
 }
 
-// Both are found before any work: an empty name is mostly a variable without a value.
+// Both are found before any work starts: an empty name usually comes from a variable without a
+// value.
 TEST_F(Usage, EmptyNamesAndNamesThatAreNotTextAreRefusedAtOnce) {
   for (const char* command : {"run", "simulate", "check", "repair", "push"}) {
     const Output empty = ayumi({command, kWalk, "-o", ""});
@@ -171,7 +173,7 @@ TEST_F(Usage, ACommandWithoutItsKindListsTheKinds) {
   EXPECT_NE(unknown.find("did you mean 'walk'?"), std::string::npos) << unknown;
 }
 
-// What the words alone show to be wrong is refused before a pattern is sampled, and in few words.
+// Words that are wrong in themselves are refused before a pattern is sampled, in a short message.
 TEST_F(Usage, WrongWordsAreRefusedFirst) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
       {{"check", kWalk, "--tolerance", "nix=1"}, "there is no kind of finding 'nix'"},

@@ -1,4 +1,5 @@
-// The angular momentum task: A_G by a second route, the moment it gives, its bounds, its return.
+// The angular momentum task: A_G by a second route, the moment that it gives, its bounds, and its
+// return.
 #include "ayumi/control/angular_momentum.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +18,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double kHoapOmega = 6.3, kMomentumTick = 0.001;  // of HOAP-1
+constexpr double kHoapOmega = 6.3, kMomentumTick = 0.001;  // values of HOAP-1
 
 struct AtHome {
   RobotModel model;
@@ -31,7 +32,7 @@ struct AtHome {
   ActuatorLimits limits() const { return model.limits(); }
 };
 
-/// Angular momentum of these bodies about their centre of mass, from two postures dt apart.
+/// The angular momentum of these bodies about their centre of mass, from two postures dt apart.
 Vector3d momentum(const RobotModel& model, const std::vector<bool>& counted, const RobotData& from,
                   const RobotData& to, double dt) {
   double mass = 0;
@@ -145,7 +146,7 @@ TEST_P(UpperBody, StaysWithinRangeSpeedAndTorqueAndComesBack) {
   EXPECT_LT(last.joints.norm(), 0.01);
 }
 
-// A robot whose file states no torques: no bound says how fast its trunk could be stopped.
+// The file of the robot states no torques: no bound tells how fast its trunk could be stopped.
 TEST_P(UpperBody, WhatStatesNoTorqueDoesNotTurn) {
   AtHome b(GetParam());
   for (const bool arms : {false, true}) {
@@ -172,7 +173,8 @@ TEST_P(UpperBody, WhatStatesNoTorqueDoesNotTurn) {
   }
 }
 
-// A trunk that the plan tilts is turned less far to this side: together not as far as a fall.
+// A trunk that the plan tilts is turned less far to this side, so that both together stay away from
+// a fall.
 TEST_P(UpperBody, ATiltedTrunkIsTurnedLessFar) {
   AtHome b(GetParam());
   const Vector2d tilt(0, 0.5);
@@ -195,7 +197,7 @@ TEST_P(UpperBody, ATiltedTrunkIsTurnedLessFar) {
     }
 }
 
-// W: what is made heavy turns less, and the rest takes over.
+// With W, a part that is made heavy turns less, and the rest takes over.
 TEST_P(UpperBody, WeightsMoveTheTurnFromTheArmsToTheTrunk) {
   AtHome b(GetParam());
   const Vector3d moment = 1e-3 * b.model.mass() * Vector3d(1, 0, 0);

@@ -42,18 +42,20 @@ TEST(PreviewControl, GainsSolveTheRiccatiEquation) {
                                        g.A.transpose() * PB * PB.transpose() * g.A / size + g.Q -
                                        g.P;
       EXPECT_LT(residual.norm(), 1e-8 * g.P.norm()) << tick << " " << effort;
-      // What lies ahead counts like what is now: a shift of all places changes nothing.
+      // Places ahead count like the present one: a shift of all places changes nothing.
       EXPECT_NEAR(g.preview.sum(), -g.state[0], 1e-9 * std::abs(g.state[0]));
       EXPECT_NEAR(g.preview[0], -g.integral, 1e-9 * std::abs(g.integral));
     }
 }
 
-// With a jerk that costs nothing, the regulator mirrors the pendulum's pole at +1: poles -1, -1.
+// If the jerk costs nothing, the regulator mirrors the pendulum's pole at +1, so that the poles are
+// -1 and -1.
 TEST(PreviewControl, ZmpAnswersTheMeasuredCogAsTheSlowPolesSay) {
   const PreviewGains cheap = preview_gains(1e-3, 1e-9, 5);
   EXPECT_NEAR(cheap.zmp[0], 2, 0.03);
   EXPECT_NEAR(cheap.zmp[1], 2, 0.03);
-  // The pendulum with these gains moves as the regulated table does, after its fast poles.
+  // With these gains, the pendulum moves as the regulated table does, after its fast poles have
+  // decayed.
   const double tick = 0.005;
   const PreviewGains g = preview_gains(tick, 5e-7, 5);
   Eigen::Vector4d table(0, 1, 0, 0);  // (e, change of the state)
@@ -69,20 +71,20 @@ TEST(PreviewControl, ZmpAnswersTheMeasuredCogAsTheSlowPolesSay) {
   EXPECT_NEAR(x, table[1], 0.02 * std::abs(table[1]));
 }
 
-// Without an end of the horizon the last gain holds nothing that lies beyond.
+// Without an end of the horizon, the last gain contains nothing from beyond it.
 TEST(PreviewControl, GainsBeyondTheHorizonVanish) {
   const PreviewGains g = preview_gains(0.01, 5e-7, 30);
   EXPECT_LT(std::abs(g.preview[g.preview.size() - 1]), 1e-9 * g.preview.cwiseAbs().maxCoeff());
 }
 
-// Kajita's own figures: T = 5 ms, z = 0.814 m, Q = 1, R = 1e-6. The default effort is theirs.
+// Kajita's own values are T = 5 ms, z = 0.814 m, Q = 1, R = 1e-6. The default effort is theirs.
 TEST(PreviewControl, DefaultEffortIsTheirsWithoutDimension) {
   const double omega = std::sqrt(kGravity / 0.814), tick = 0.005 * omega;
   EXPECT_NEAR(DtadParams().preview_effort, 1e-6 * elementary::power<6>(omega) * tick * tick, 5e-8);
   EXPECT_NEAR(DtadParams().preview_horizon, 1.6 * omega, 0.1);
 }
 
-// The optimal inputs to a step of the ZMP by a second route: the least squares over all inputs.
+// The optimal inputs for a step of the ZMP follow by a second route: least squares over all inputs.
 TEST(PreviewControl, FollowsAStepAsTheBestInputsDo) {
   const double tick = 0.1, effort = 1e-3;
   const int steps = 220, step_at = 110;
@@ -115,7 +117,8 @@ TEST(PreviewControl, FollowsAStepAsTheBestInputsDo) {
     for (int j = 1; j <= g.preview.size(); ++j) u -= g.preview[j - 1] * reference(k + j);
     u_best += best[k];
     most = std::max(most, std::abs(u));
-    // The law goes on from the input before, which would have begun to act on the step already.
+    // The law continues from the input before, which would already have begun to respond to the
+    // step.
     if (k >= 10) {
       EXPECT_NEAR(u, u_best, 1e-4) << k;
     }
@@ -138,8 +141,8 @@ TEST(FootGuided, BringsTheDcmBackInExactlyTheTime) {
   EXPECT_LT(std::abs(error), 1e-6);
 }
 
-// Along the way the ZMP decays as exp(-omega t), the path of the least integral of its square: no
-// other path that brings the DCM back costs less.
+// Along the way, the ZMP decays as exp(-omega t), the path with the smallest integral of its
+// square: no other path that brings the DCM back costs less.
 TEST(FootGuided, CostsLeast) {
   const double omega = 6.6, time = 0.4, dt = 1e-4;
   const int n = 4000;
@@ -173,7 +176,7 @@ TEST(FootGuided, TimeIsThatToTheNextSupport) {
   EXPECT_GT(guide.time_to_support(1571), 0.4);
   EXPECT_EQ(guide.time_to_support(100000), std::numeric_limits<double>::infinity());
   EXPECT_EQ(guide.gain(100000, 6.6), 2);
-  EXPECT_NEAR(guide.gain(1570, 6.6), foot_guided_gain(6.6, 1 / 6.6), 1e-12);  // not infinite
+  EXPECT_NEAR(guide.gain(1570, 6.6), foot_guided_gain(6.6, 1 / 6.6), 1e-12);  // it is not infinite
 }
 
 // ---- Steps ----
@@ -221,7 +224,7 @@ TEST(StepProgram, NothingIsChangedWithoutAnError) {
   EXPECT_NEAR(c.growth, 8, 1e-10);
 }
 
-// The equation holds, what is chosen is allowed, and nothing near it that is allowed costs less.
+// The equation holds, the chosen values are allowed, and no allowed values near them cost less.
 TEST(StepProgram, IsTheBestOfWhatIsAllowed) {
   Random random(5);
   const StepWeights w;
@@ -251,7 +254,8 @@ TEST(StepProgram, IsTheBestOfWhatIsAllowed) {
   EXPECT_GT(limited, 10);
 }
 
-// A push outwards takes a longer time or a wider step, one to the next foot a shorter one.
+// A push outwards leads to a longer time or a wider step, and a push towards the next foot to a
+// shorter step.
 TEST(StepProgram, ThePushDecidesPlaceAndTime) {
   const StepChoice towards = choose_step(on_one_foot({0, -0.06}, 6), {});
   EXPECT_LT(towards.growth, 6);

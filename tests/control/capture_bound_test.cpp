@@ -1,4 +1,5 @@
-// The capture bound against closed forms: standing, one known change of support, one-foot limits.
+// The capture bound agrees with closed forms: standing, one known change of support, and limits on
+// one foot.
 #include "ayumi/control/capture_bound.hpp"
 
 #include <gtest/gtest.h>
@@ -49,7 +50,8 @@ TEST(CaptureBound, StandingIsTheDistanceToTheEdge) {
   }
 }
 
-// Left foot for T, then right foot for ever: h(n) = (1 - e^-wT) h_left(n) + e^-wT h_right(n).
+// With the left foot for T and then the right foot for ever, h(n) = (1 - e^-wT) h_left(n) + e^-wT
+// h_right(n).
 TEST(CaptureBound, OneKnownStep) {
   const RobotModel model = test::biped();
   CommandSeries series;
@@ -68,8 +70,9 @@ TEST(CaptureBound, OneKnownStep) {
               unit * (stay * kFoot - (1 - stay) * kFoot + kHalfWidth), 1e-9);
   EXPECT_NEAR(capture_bound(region, towards(-M_PI / 2)),
               unit * (kHalfWidth - stay * kFoot + (1 - stay) * kFoot), 1e-9);
-  // The pendulum itself agrees: from just inside the bound, with the ZMP held on the front edge of
-  // each support in turn, dcm ends inside the last one; from just outside it does not.
+  // The pendulum itself agrees. If it starts just inside the bound, with the ZMP held on the front
+  // edge of each support in turn, its DCM ends inside the last one; if it starts just outside, it
+  // does not.
   const double bound = capture_bound(region, towards(0)) / unit;
   for (double share : {0.99, 1.01}) {
     double dcm = 0.01 + share * bound;

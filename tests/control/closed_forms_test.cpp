@@ -13,7 +13,7 @@ using test::LevelPendulum;
 using test::Motion;
 
 /// Whether a pendulum at rest over the middle of a support of half length `edge` comes back after
-/// an impulse [N s], with a ZMP that feeds dcm = x + v/omega back and saturates at the edges.
+/// an impulse [N s], with a ZMP that feeds back dcm = x + v/omega and saturates at the edges.
 bool survives(const LevelPendulum& pendulum, double edge, double impulse) {
   const double omega = pendulum.omega(), q = 0.25;
   Motion s = {0, impulse / pendulum.mass};
@@ -38,11 +38,11 @@ TEST(ClosedForms, CaptureBoundOfAStandingRobot) {
 
 struct Leap {
   double release = 0;  ///< height of lift-off above the reference [m]
-  double apex = 0;     ///< above the reference [m]
+  double apex = 0;     ///< height of the apex above the reference [m]
 };
 
-/// (24) with the gains of (26), gravity compensated, from rest at the depth of the stoop. Lifts off
-/// at the reference height, or where the spring no longer pushes.
+/// (24) with the gains of (26) and gravity compensated, from rest at the depth of the stoop. The
+/// mass lifts off at the reference height, or where the spring no longer pushes.
 Leap leap(double mass, double apex_height, double stoop_depth, bool until_no_force) {
   const double kp = 2 * mass * kGravity * apex_height / (stoop_depth * stoop_depth);
   auto fz = [&](double z) { return -kp * z + mass * kGravity; };

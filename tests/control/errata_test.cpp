@@ -23,7 +23,7 @@ class Errata : public testing::Test {
  protected:
   Errata() : model(load_robot(AYUMI_SOURCE_DIR "/robots/hoap1/robot.json")), data(model) {}
 
-  /// The home posture bent a little at every joint, base level at the origin.
+  /// The home posture with every joint bent a little, and the base level at the origin.
   RobotState bent() const {
     test::Random random(7);
     RobotState state = model.rest_state();
@@ -86,7 +86,7 @@ TEST_F(Errata, Equations6And7CountTheRootMass) {
   const MatrixXd corrected = cog_jacobian_with(model.mass());
   EXPECT_LT((corrected - cog_jacobian(model, data, Side::left)).norm(), 1e-12);
 
-  // Central differences of the COG with the left sole held.
+  // These are central differences of the COG while the left sole is held.
   MatrixXd differences(3, n);
   const double h = 1e-5;
   auto cog_at = [&](int joint, double change) {
@@ -101,8 +101,8 @@ TEST_F(Errata, Equations6And7CountTheRootMass) {
   EXPECT_GT((printed - differences).cwiseAbs().maxCoeff(), 1e-2);
 }
 
-/// Distance of the COG from its command after `time`, started 10 mm off at rest, under
-/// z = cmd z - K delta + sign D ddelta, delta = cmd x - x.
+/// The distance of the COG from its command after `time`, if it starts at rest 10 mm away, under z
+/// = cmd z - K delta + sign D ddelta, delta = cmd x - x.
 double after(double time, double K, double D, double sign) {
   const LevelPendulum pendulum;
   const double dt = 1e-4;
@@ -129,7 +129,7 @@ TEST_F(Errata, GainsFromPoles) {
   const double omega = LevelPendulum().omega();
   const double q1 = 1.0, q2 = 0.25;
   const double K = 1 + q1 * q2, D = (q1 + q2) / omega;
-  auto mode = [&](double q, double t) {  // started on one pole, the motion stays on it
+  auto mode = [&](double q, double t) {  // a motion that starts on one pole stays on it
     const LevelPendulum pendulum;
     Motion s = {0.010, -q * omega * 0.010};
     const double dt = 1e-4;
@@ -158,13 +158,13 @@ TEST_F(Errata, Equation23ResolvesTheTask) {
       command + winv * J.transpose() * (J * winv * J.transpose()).inverse() * v_printed;
   EXPECT_NEAR((J * printed - u)[0], -1.2, 1e-12);
 
-  // Nothing that meets the task is nearer to the command.
+  // No solution that meets the task is nearer to the command.
   auto cost = [&](const VectorXd& x) { return (x - command).dot(w.asDiagonal() * (x - command)); };
   const VectorXd null = (VectorXd(2) << 1, -1).finished();
   for (double a : {-0.1, -1e-3, 1e-3, 0.1}) EXPECT_GT(cost(corrected + a * null), cost(corrected));
 }
 
-/// How far (24) passes its goal height when started 20 mm above it [m].
+/// The distance by which (24) exceeds its goal height if it starts 20 mm above it [m].
 double overshoot(double mass, double kp, double kd) {
   Motion s = {0.020, 0};
   double lowest = 0;
@@ -178,7 +178,7 @@ double overshoot(double mass, double kp, double kd) {
   return -lowest;
 }
 
-// (25): the gains are forces per metre, so the mass belongs into the condition.
+// (25): the gains are forces per metre, so that the mass belongs into the condition.
 TEST_F(Errata, Equation25NeedsTheMass) {
   for (auto [mass, expected] : {std::pair{6.5, 5.2e-3}, {35.0, 11.7e-3}}) {
     const double kp = mass * 100;
@@ -199,7 +199,7 @@ TEST_F(Errata, Equation17LosesItsMeaningInFlight) {
   EXPECT_LT(std::abs(zmp_at(1.0)), 0.005);
   EXPECT_GT(std::abs(zmp_at(1e-3)), 4.0);
   EXPECT_FALSE(std::isfinite(zmp_at(0)));
-  // What Ayumi does instead: below a small force the ZMP is not formed at all.
+  // Ayumi does this instead: below a small force, the ZMP is not computed at all.
   Eigen::Matrix<double, 6, 1> wrench = Eigen::Matrix<double, 6, 1>::Zero();
   wrench.head<3>() = Vector3d(mass * 0.2, 0, 1e-3 * mass * kGravity);
   const GroundReaction held = ground_reaction(cog, wrench, 0, 0.05 * mass * kGravity);

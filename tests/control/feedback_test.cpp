@@ -31,8 +31,8 @@ TEST(Feedback, ErrorIsCommandLessMeasured) {
   EXPECT_LT((error.velocity - Eigen::Vector3d(-0.3, 0.0, -0.4)).norm(), 1e-15);
 }
 
-/// Distance of a pendulum from its command at 0 after `time` [s], started 10 mm off at rest, with
-/// the ZMP of (18).
+/// The distance of a pendulum from its command at 0 after `time` [s], if it starts at rest 10 mm
+/// away, with the ZMP of (18).
 double distance_after(double time, double K, double D) {
   const LevelPendulum pendulum;
   const double dt = 1e-4;
@@ -53,7 +53,7 @@ TEST(Feedback, LongTermBringsThePendulumBack) {
   EXPECT_GT(distance_after(3, 0.9, D), 0.010);
 }
 
-// With the poles -omega and -q omega only the divergent component is fed back.
+// With the poles -omega and -q omega, only the divergent component is fed back.
 TEST(Feedback, RegulatorIsTheLongTermLawWithChosenPoles) {
   const double q = 0.25, omega = LevelPendulum().omega();
   const Vector2d goal(0.02, -0.01);
@@ -64,8 +64,9 @@ TEST(Feedback, RegulatorIsTheLongTermLawWithChosenPoles) {
   EXPECT_LT((regulating_zmp(goal, q, dcm) - general).norm(), 1e-15);
 }
 
-// Of a robot whose servos follow, the real acceleration omega^2 (x - zmp) is the one of the
-// reference: zmp = (x + k ref) / (1 + k). The larger the gain k, the nearer is (14) with ref ZMP.
+// If the servos of a robot follow, its real acceleration omega^2 (x - zmp) is that of the
+// reference: zmp = (x + k ref) / (1 + k). The larger the gain k is, the nearer is (14) with ref
+// ZMP.
 TEST(Feedback, ShortTermTendsToEquation14) {
   const double omega2 = 44;
   const Vector2d cog(0.03, -0.02), ref(0.01, 0.02);
@@ -82,7 +83,7 @@ TEST(Feedback, ShortTermTendsToEquation14) {
   EXPECT_EQ(short_term_acceleration(0, omega2, cog - ref), Vector2d(0, 0));
 }
 
-// (20) with critical damping: no overshoot.
+// (20) with critical damping does not overshoot.
 TEST(Feedback, LongTermForceBringsTheHeightBack) {
   const double mass = 6.5, omega = 6.6;
   Motion s = {-0.010, 0};
@@ -99,7 +100,7 @@ TEST(Feedback, LongTermForceBringsTheHeightBack) {
   EXPECT_LT(highest, 1e-6);
 }
 
-/// Vertical motion of a point mass under (24) with this stiffness per mass about z = 0.
+/// The vertical motion of a point mass under (24) with this stiffness per mass, about z = 0.
 Motion spring_step(const Motion& s, double stiffness, double mass) {
   return test::step(s, 1e-6, [&](const Motion& m) {
     const HeightGains gains = {mass * stiffness, 0};
@@ -107,7 +108,7 @@ Motion spring_step(const Motion& s, double stiffness, double mass) {
   });
 }
 
-// (26): released at the reference height, the speed carries the mass to z_H above it.
+// (26): after the release at the reference height, the speed carries the mass to z_H above it.
 TEST(Feedback, PushReachesThePlannedApex) {
   const double z_H = 0.03, z_d = 0.04;
   Motion s = {-z_d, 0};

@@ -31,7 +31,7 @@ const Walk& walk() {
 
 double omega_of(const CommandSample& c) { return std::sqrt(kGravity / (c.cog.z() - c.zmp.z())); }
 
-/// What a robot on its plan measures, its DCM off by `error`.
+/// The measured state of a robot on its plan, in which the DCM is wrong by `error`.
 Estimate on_plan(const CommandSample& plan, const Vector2d& error) {
   Estimate e;
   e.state = plan.state;
@@ -80,9 +80,10 @@ TEST(FootholdShift, NothingLeftOverIsThePatternToTheLastBit) {
 
 constexpr size_t kJump = 2450;
 
-/// A pendulum that walks beside the pattern, with (18)(19) about the plan on its ZMP: y is its COG
-/// less the pattern's, so y'' = omega^2 (y - (Z - pattern's Z)) whatever the plan does. Its DCM
-/// jumps at tick kJump. Returns how far its DCM is from the plan's at the end of the walk.
+/// A pendulum that walks beside the pattern, with (18)(19) about the plan acting on its ZMP: y is
+/// its COG minus the pattern's, so that y'' = omega^2 (y - (Z - pattern's Z)) whatever the plan
+/// does. Its DCM jumps at tick kJump. Returns the distance of its DCM from the plan's at the end of
+/// the walk.
 double pendulum_error(double share, const Vector2d& jump) {
   const std::vector<CommandSample>& s = walk().series.samples;
   const double omega = omega_of(s.front()), dt = walk().series.dt;
@@ -114,8 +115,8 @@ TEST(FootholdShift, PendulumStepsOutWhatItsSupportCannotAnswer) {
   }
 }
 
-// The COG's velocity in the plan is the derivative of its place while footholds move, and the plan
-// ends where its feet do.
+// While footholds move, the velocity of the COG in the plan is the derivative of its place, and the
+// plan ends where its feet end.
 TEST(FootholdShift, ShiftedPlanIsSmooth) {
   FootholdShift shift(walk().model, walk().series, {.share = 1, .time_scale_limit = 1.5});
   const double dt = walk().series.dt;
@@ -134,9 +135,9 @@ TEST(FootholdShift, ShiftedPlanIsSmooth) {
   EXPECT_LT((shift.plan().cog - end.cog - moved).norm(), 1e-6);
 }
 
-// The plan has the foot next to the ground for the last part of a swing. Load on it is the planned
-// landing then, and the plan's motion goes on without a jump; the velocity of the COG changes by no
-// more than the ZMP at the edge of a sole asks for, 3 mm/s in a tick.
+// In the plan, the foot is next to the ground for the last part of a swing. A load on it then
+// counts as the planned landing, and the plan's motion continues without a jump; the velocity of
+// the COG changes by no more than the ZMP at the edge of a sole requires, 3 mm/s in a tick.
 TEST(FootholdShift, AFootThatBearsWhereThePlanHasItOnTheGroundIsNotEarly) {
   FootholdShift shift(walk().model, walk().series, {.share = 1, .time_scale_limit = 1.5});
   const std::vector<PlannedSwing> swings = swings_of(walk().series);
@@ -162,10 +163,10 @@ TEST(FootholdShift, AFootThatBearsWhereThePlanHasItOnTheGroundIsNotEarly) {
 
 struct Outcomes {
   SimulationResult result;
-  Vector2d beside;  // change of the feet against each other [m]
-  Vector2d moved;   // of both feet at the end, on average [m]
-  double nearest;   // least distance of the planned feet across [m]
-  double stride;    // largest along [m]
+  Vector2d beside;  // change of the feet relative to each other [m]
+  Vector2d moved;   // displacement of both feet at the end, on average [m]
+  double nearest;   // smallest distance of the planned feet across the path [m]
+  double stride;    // largest stride along the path [m]
 };
 
 Outcomes pushed(double at, const Vector3d& direction, double impulse, double step) {
@@ -220,7 +221,7 @@ TEST(FootholdShift, WalkWithoutAPushIsTheSame) {
   EXPECT_EQ(free.moved, Vector2d(0, 0));
 }
 
-// The pattern's own footholds may be nearer to each other than moved ones.
+// The pattern's own footholds may be nearer to each other than footholds that are moved.
 TEST(FootholdShift, TurningAndSideWalksWithoutAPushAreTheSame) {
   const RobotModel& model = walk().model;
   for (const WalkParameters& gait : {WalkParameters{.steps = 4, .stride = 0.02, .turn = 0.2},

@@ -1,4 +1,5 @@
-// Footholds and the divergent component they ask for, against the pendulum stepped in time.
+// Footholds, and the divergent component that they require, agree with the pendulum stepped in
+// time.
 #include "ayumi/control/footsteps.hpp"
 
 #include <gtest/gtest.h>
@@ -30,7 +31,8 @@ TEST(Footsteps, LandingOffsetsOfASteadyWalk) {
   EXPECT_NEAR(first.y(), -W / (E + 1), 1e-12);
 }
 
-// Whatever the footholds are, a pendulum with its ZMP on each of them in turn passes them all.
+// Whatever the footholds are, a pendulum whose ZMP is on each of them in turn passes over all of
+// them.
 TEST(Footsteps, LandingOffsetsCarryThePendulumToTheEnd) {
   const double E = 9.0;
   const std::vector<Vector2d> footholds = {{0, 0.04}, {0.03, -0.05}, {0.08, 0.03}, {0.08, -0.04}};
@@ -64,7 +66,8 @@ TEST(Footsteps, SoleFrameAndGroundPoseAreInverse) {
   EXPECT_NEAR(back.yaw, pose.yaw, 1e-14);
 }
 
-// Swings on the path of a turning walk: n - 1 steps of v T each, the last one closes beside.
+// Swings on the path of a turning walk are n - 1 steps of v T each, and the last one closes the
+// feet.
 TEST(Footsteps, PathOfATurningWalkEndsWithTheFeetTogether) {
   const Walker w;
   const double period = 0.4;
@@ -88,7 +91,7 @@ TEST(Footsteps, PathOfATurningWalkEndsWithTheFeetTogether) {
   EXPECT_NEAR(feet[1].yaw, turned, 1e-12);
   const Vector2d across = feet[0].position - feet[1].position;
   EXPECT_LT((across - Eigen::Rotation2Dd(turned) * Vector2d(0, 0.1)).norm(), 1e-12);
-  // Five chords of v T, each turned by half a step more than the last heading.
+  // The path has five chords of v T, each turned by half a step more than the last heading.
   Vector2d middle = Vector2d::Zero();
   for (int i = 0; i < 5; ++i)
     middle += Eigen::Rotation2Dd((i + 0.5) * period * goal.turn) * Vector2d(0.04, 0);
@@ -102,7 +105,7 @@ TEST(Footsteps, ErrorOfPlaceFadesByTheShareAsked) {
   off.position += Vector2d(0.01, 0.005);
   const PlannedStep step = steps.step({}, Side::left, off, 4, Vector2d::Zero());
   EXPECT_LT((step.landing.position - Vector2d(0.007, -0.05 + 0.0035)).norm(), 1e-12);
-  // An error beyond what is taken back moves the path instead.
+  // An error beyond the part that is taken back moves the path instead.
   off.position.x() += 1;
   steps.meet(Side::left, off);
   const PlannedStep far = steps.step({}, Side::left, off, 4, Vector2d::Zero());

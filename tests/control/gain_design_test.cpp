@@ -1,4 +1,4 @@
-// Poles of the loop against closed forms and against stepping the loop in time.
+// The poles of the loop agree with closed forms and with stepping the loop in time.
 #include "ayumi/control/gain_design.hpp"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ void expect_pole(const LoopAnalysis& analysis, Complex pole, double tolerance) {
   EXPECT_LT(nearest, tolerance * std::abs(pole)) << pole;
 }
 
-// Without the short-term loop body and reference are alone: two quadratics in s.
+// Without the short-term loop, body and reference are independent: two quadratics in s.
 TEST(GainDesign, PolesOfTheSeparateParts) {
   DtadParams p;
   p.zmp_gain = 0;
@@ -49,7 +49,7 @@ TEST(GainDesign, PolesOfTheSeparateParts) {
   EXPECT_TRUE(analysis.stable);
 }
 
-/// Growth rate of the loop stepped in time, written out once more without matrices [1/s].
+/// The growth rate of the loop stepped in time, written once more without matrices [1/s].
 double stepped_growth(const Ankle& loop, const DtadParams& p, double seconds) {
   const double w = std::sqrt(kGravity / loop.height), dt = loop.tick;
   const double s = loop.stiffness / (loop.mass * kGravity * loop.height);
@@ -78,7 +78,7 @@ double stepped_growth(const Ankle& loop, const DtadParams& p, double seconds) {
     }
     size.push_back(std::abs(x) + std::abs(v) / w);
   }
-  // Largest of the last tenth against the largest of the tenth in the middle.
+  // The largest value of the last tenth is compared with the largest of the tenth in the middle.
   const auto largest = [&](double from) {
     const auto begin = size.begin() + static_cast<long>(from * ticks);
     return *std::max_element(begin, begin + ticks / 10);
@@ -126,7 +126,7 @@ TEST(GainDesign, Hoap1DefaultsAreStableAndTooMuchIsRefused) {
   }
 }
 
-// Where no ka alone helps, other gains do, or the refusal asks for stiffer servos.
+// If no ka alone helps, other gains do, or the refusal asks for stiffer servos.
 TEST(GainDesign, SoftServosGetGainsThatAreStable) {
   const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
   const DtadParams defaults;

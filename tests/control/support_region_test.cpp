@@ -32,7 +32,7 @@ TEST(SupportRegion, IsThePolygonLessItsMargin) {
   expect_right(Support::both, 0.004);
   expect_right(Support::none, 0.004);
   EXPECT_TRUE(region.update(model, feet, Support::none, 0.004).empty());
-  expect_right(Support::both, 1);  // nothing is left but the middle
+  expect_right(Support::both, 1);  // only the middle is left
   EXPECT_EQ(region.update(model, feet, Support::both, 1).vertices().size(), 1u);
 }
 

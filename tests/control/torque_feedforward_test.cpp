@@ -1,5 +1,5 @@
-// What servos receive beyond the posture: the torque of the motion, within the motor's, and
-// nothing where it is in the table already. An integrator judges it in scenarios/open_loop_test.
+// Servos receive, beyond the posture, the torque of the motion, within the motor's limits, and
+// nothing if the table already contains it. An integrator judges it in scenarios/open_loop_test.
 #include "ayumi/control/torque_feedforward.hpp"
 
 #include <gtest/gtest.h>
@@ -23,11 +23,13 @@ const CommandSeries& squat() {
   return series;
 }
 
-// From rest to the deepest point, where the COG rests again, the motors' work is the weight's.
+// From rest to the deepest point, where the COG rests again, the work of the motors is that of the
+// weight.
 TEST(TorqueFeedforward, WorksAsTheWeightDoes) {
   const std::vector<CommandSample>& samples = squat().samples;
   const Eigen::MatrixXd lead = torque_feedforward(hoap1(), hoap1().limits("hoap1-strong"), squat());
-  ASSERT_EQ(lead.cols(), static_cast<Eigen::Index>(samples.size()) + 1);  // one at rest
+  // One for the state of rest.
+  ASSERT_EQ(lead.cols(), static_cast<Eigen::Index>(samples.size()) + 1);
   size_t deepest = 0;
   for (size_t k = 0; k < samples.size(); ++k)
     if (samples[k].cog.z() < samples[deepest].cog.z()) deepest = k;

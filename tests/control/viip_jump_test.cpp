@@ -1,5 +1,5 @@
-// The closed forms of (26)(27) as the controller uses them, against their springs integrated, and
-// the goals it refuses.
+// The closed forms of (26)(27) as the controller uses them agree with their integrated springs. The
+// goals that it refuses are tested too.
 #include "ayumi/control/laws/viip_jump.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,8 @@ JumpGoal goal_of(double height, double stoop, JumpGoal::Release release) {
   return goal;
 }
 
-// (26) from rest by small steps: where and when the ground lets go, how fast, how high after that.
+// (26) from rest by small steps: where and when contact is lost, the speed there, and the height
+// reached after that.
 JumpFigures integrated(const JumpGoal& goal) {
   const double k = 2 * kGravity * goal.height / (goal.stoop * goal.stoop), dt = 1e-6;
   double z = -goal.stoop, v = 0, t = 0;
@@ -48,7 +49,7 @@ TEST(JumpFigures, MatchTheSpringIntegrated) {
       EXPECT_NEAR(f.lift_off, g.lift_off, 1e-6);
       EXPECT_NEAR(f.lift_off_speed, g.lift_off_speed, 1e-5);
       EXPECT_NEAR(f.push, g.push, 1e-5);
-      // Up from lift-off and down to ref z_G.
+      // The time up from lift-off and down to ref z_G.
       const double T = f.flight, v = f.lift_off_speed;
       EXPECT_NEAR(f.lift_off + v * T - 0.5 * kGravity * T * T, 0, 1e-12);
       EXPECT_NEAR(f.touchdown_speed, kGravity * T - v, 1e-12);

@@ -10,7 +10,7 @@
 namespace ayumi {
 namespace {
 
-// Largest overshoot of a point mass brought up by 20 mm under (24) [m].
+// The largest overshoot of a point mass that is raised by 20 mm under (24) [m].
 double overshoot(const ViipParams& params, double mass) {
   const double omega = 6.4, dt = 1e-5;
   double z = 0.205, dz = 0, over = 0;
@@ -25,14 +25,14 @@ double overshoot(const ViipParams& params, double mass) {
 
 TEST(Viip, CorrectedCondition25DoesNotOvershoot) {
   for (const double mass : {1.0, 6.5, 35.0}) {
-    ViipParams params;  // K_Dz^2 = 4 m K_Pz
+    ViipParams params;  // here K_Dz^2 = 4 m K_Pz
     EXPECT_LE(overshoot(params, mass), 0.0002) << mass;
     params.height_damping = 1.5;
     EXPECT_LE(overshoot(params, mass), 0.0002) << mass;
   }
 }
 
-// (25) as printed, K_Dz^2 = 4 K_Pz, is dz = 1 / sqrt(m): right for a mass of 1 kg only.
+// (25) as printed, K_Dz^2 = 4 K_Pz, is dz = 1 / sqrt(m), which is only right for a mass of 1 kg.
 TEST(Viip, PrintedCondition25Overshoots) {
   const auto printed = [](double mass) {
     ViipParams params;
@@ -56,13 +56,13 @@ TEST(Viip, TheSpringDependsOnTheFeetThatBear) {
     EXPECT_NEAR(gains.damping * gains.damping, 4 * mass * gains.stiffness, 1e-6);
 }
 
-// A ring of the mass m that is turned about its centre, the COG, by the ground alone: with the
-// acceleration of turning_acceleration() the ZMP stays under the COG.
+// A ring of mass m is turned about its centre, the COG, by the ground alone: with the acceleration
+// of turning_acceleration() the ZMP stays under the COG.
 TEST(Viip, ATurningBodyKeepsItsZmp) {
   const double mass = 6.5, z = 0.22, weight = mass * kGravity;
   const Eigen::Vector3d rate(0.3, -0.2, 0);  // L' [N m]
   const Eigen::Vector2d a = turning_acceleration(rate, mass, z);
-  // Moment of the ground about the COG: (zmp - cog) x f = L'.
+  // The moment of the ground about the COG is (zmp - cog) x f = L'.
   const Eigen::Vector3d force(mass * a.x(), mass * a.y(), weight), arm(0, 0, -z);
   EXPECT_NEAR((arm.cross(force) - rate).norm(), 0, 1e-12);
 }

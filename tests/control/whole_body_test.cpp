@@ -1,4 +1,4 @@
-// What gives way where a joint is at its limit, on the real HOAP-1.
+// Which task gives way if a joint is at its limit, on the real HOAP-1.
 #include "ayumi/control/whole_body.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ struct Standing {
   CommandSample command;
   RobotData data{model};
 
-  /// At rest with this bend of the knees, trunk upright and soles level.
+  /// The robot is at rest with this bend of the knees, the trunk upright and the soles level.
   explicit Standing(double knee, bool at_stop = false) {
     if (at_stop) {
       RobotDescription description = model.description();
@@ -46,7 +46,7 @@ struct Standing {
                    0.001, model.joint_weight());
   }
 
-  /// Velocity of the COG and of the right sole that the rates give.
+  /// The velocities of the COG and of the right sole that the rates give.
   std::pair<Vector3d, Vector3d> moves(const Resolution& r) {
     RobotState s = command.state;
     RobotData now(model), next(model);

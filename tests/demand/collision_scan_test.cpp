@@ -1,4 +1,4 @@
-// What the scan says of the clearances of a motion, against every pair at every sample.
+// The scan's clearances of a motion agree with those of every pair at every sample.
 
 #include "ayumi/demand/collision_scan.hpp"
 
@@ -13,7 +13,7 @@
 namespace ayumi::test {
 namespace {
 
-constexpr double kExact = 0.002, kNear = 0.012;  // of the check [m]
+constexpr double kExact = 0.002, kNear = 0.012;  // distances of the check [m]
 
 // The robot hangs in the air. The right leg swings across the left one at `speed` [rad/s] and back
 // again, the right arm waves, and everything else rests.
@@ -68,7 +68,7 @@ TEST(CollisionScan, WhatIsNearIsExactAndTheRestAreLowerBounds) {
 }
 
 // Bodies that rest relative to each other are measured once: a robot that stands for ten seconds
-// costs little more than one that stands for one.
+// takes little more time than one that stands for one second.
 TEST(CollisionScan, NothingIsMeasuredAgainWhereNothingMoves) {
   const CollisionModel collisions(hoap1());
   CommandSeries still;

@@ -35,7 +35,8 @@ std::array<Eigen::Isometry3d, 2> random_soles(Random& random, bool level) {
 
 }  // namespace
 
-// On level ground the plane gives the ZMP of dynamics/zmp.hpp, by its own formula.
+// On level ground, the plane gives the same ZMP as dynamics/zmp.hpp, which has a formula of its
+// own.
 TEST(Residuals, GroundUseAgreesWithGroundReaction) {
   Random random(1);
   for (int i = 0; i < 50; ++i) {
@@ -72,7 +73,7 @@ TEST(Residuals, MomentAboutZmpIsNormalOnASlope) {
   }
 }
 
-// The rows the nonlinear program constrains give the margin the report prints.
+// The rows that the nonlinear program constrains give the margin that the report prints.
 TEST(Residuals, SupportRowsGiveTheMargin) {
   Random random(3);
   int inside = 0;
@@ -96,7 +97,7 @@ TEST(Residuals, SupportRowsGiveTheMargin) {
   EXPECT_GT(inside, 30);
 }
 
-// Second route: points drawn evenly, kept when they and their mirror image are inside.
+// Second route: points are drawn evenly, and kept if they and their mirror image are inside.
 TEST(Residuals, YawLeverAgreesWithSampling) {
   Random random(4);
   const ConvexPolygon polygon({{-0.05, -0.03}, {0.05, -0.03}, {0.06, 0.02}, {-0.04, 0.035}});
@@ -145,8 +146,8 @@ TEST(Residuals, FootWrenchesAndMotorsBalance) {
   }
 }
 
-// Where the ZMP is inside the hull of two level feet, each foot's own centre of pressure is inside
-// its sole.
+// If the ZMP is inside the hull of two level feet, each foot's own centre of pressure is inside its
+// sole.
 TEST(Residuals, CentresOfPressureStayInTheSoles) {
   Random random(6);
   int tried = 0;
@@ -190,7 +191,7 @@ TEST(Residuals, SoleErrorOfKnownDisplacements) {
   EXPECT_NEAR(e.penetration, 0.002, 1e-15);
   EXPECT_EQ(e.gap, 0);
   actual.setIdentity();
-  actual.linear() = exp_rotation({0, 0.1, 0}).toRotationMatrix();  // toes down
+  actual.linear() = exp_rotation({0, 0.1, 0}).toRotationMatrix();  // the toes point down
   e = sole_error(sole, actual, planned);
   EXPECT_NEAR(e.penetration, 0.055 * std::sin(0.1), 1e-12);
   EXPECT_NEAR(e.gap, 0.045 * std::sin(0.1), 1e-12);

@@ -12,7 +12,7 @@
 namespace ayumi::test {
 namespace {
 
-/// Commands that are not run here, by what they begin with, and the reason.
+/// Commands that are not run here, by their beginning, with the reason.
 struct NotRun {
   const char* prefix;
   const char* reason;
@@ -35,10 +35,10 @@ const NotRun kNotRun[] = {
 };
 
 struct Command {
-  int line = 0;           ///< where it begins, from 1
-  std::string text;       ///< all its lines, a here-document included
-  int exit_code = 0;      ///< the one it must end with
-  const char* not_run{};  ///< why it is left out, or null
+  int line = 0;           ///< line where it begins, counted from 1
+  std::string text;       ///< all its lines, including a here-document
+  int exit_code = 0;      ///< exit code with which it must end
+  const char* not_run{};  ///< reason why it is not run, or null
 };
 
 bool ends_with_backslash(const std::string& line) { return !line.empty() && line.back() == '\\'; }
@@ -110,7 +110,7 @@ class Page : public testing::TestWithParam<std::string> {
   fs::path page() const { return fs::path(AYUMI_SOURCE_DIR) / GetParam(); }
 };
 
-class CommandsOfPage : public Page {};  // slow: its own suite
+class CommandsOfPage : public Page {};  // this is slow and has a suite of its own
 class LinksOfPage : public Page {};
 
 TEST_P(CommandsOfPage, CanBePasted) {
@@ -130,8 +130,8 @@ TEST_P(CommandsOfPage, CanBePasted) {
   EXPECT_EQ(output.exit_code, 0) << output.err.substr(last == std::string::npos ? 0 : last);
 }
 
-/// Names by which links can point at the headings of a page: lower case, blanks as hyphens, without
-/// punctuation.
+/// Names by which links can refer to the headings of a page: in lower case, with hyphens for
+/// blanks, without punctuation.
 std::vector<std::string> anchors_of(const std::string& page) {
   std::vector<std::string> anchors;
   std::istringstream lines(page);
@@ -175,7 +175,7 @@ std::string test_name(const testing::TestParamInfo<std::string>& page) {
 INSTANTIATE_TEST_SUITE_P(Docs, CommandsOfPage, testing::ValuesIn(pages()), test_name);
 INSTANTIATE_TEST_SUITE_P(Docs, LinksOfPage, testing::ValuesIn(pages()), test_name);
 
-// The reading of a page itself: continued lines, here-documents, comments and exit codes.
+// How a page itself is read: continued lines, here-documents, comments and exit codes.
 TEST(PageCommands, AreReadAsAShellReadsThem) {
   const std::vector<Command> commands = commands_of(
       "text\n```sh\nayumi check \\\n  a.json  # exit code 3\ncat > b <<'EOF'\nnot a command\nEOF\n"

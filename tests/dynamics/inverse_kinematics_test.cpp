@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::array<Side, 2> kSides = {Side::left, Side::right};
 
-// What a random posture near home reaches is asked back from the home posture.
+// The pose that a random posture near home reaches is searched from the home posture.
 void expect_round_trip(const RobotModel& model, unsigned seed) {
   test::Random random(seed);
   const InverseKinematics ik(model, model.posture());
@@ -29,7 +29,7 @@ void expect_round_trip(const RobotModel& model, unsigned seed) {
     target.cog = data.cog;
     target.trunk = data.rotation[model.trunk_body()];
 
-    RobotState state = wanted;  // joints that are not solved stay
+    RobotState state = wanted;  // joints that are not solved keep their values
     for (const Side side : kSides)
       for (const int dof : ik.leg(side)) state.theta[dof] = model.posture()[dof];
     state.base = BasePose{};
@@ -45,13 +45,13 @@ void expect_round_trip(const RobotModel& model, unsigned seed) {
           1e-10);
     EXPECT_LT((data.cog - target.cog).norm(), 1e-10);
     EXPECT_LT((data.rotation[model.trunk_body()] - target.trunk).norm(), 1e-10);
-    EXPECT_LT((state.theta - wanted.theta).norm(), 1e-8);  // the same branch
+    EXPECT_LT((state.theta - wanted.theta).norm(), 1e-8);  // the solution is on the same branch
   }
 }
 
 TEST(InverseKinematics, MeetsRandomTargets) { expect_round_trip(test::biped(), 1); }
 
-// Determinant of the Jacobian of a leg of six joints.
+// The determinant of the Jacobian of a leg of six joints.
 double leg_determinant(const RobotModel& model, const InverseKinematics& ik, const RobotData& data,
                        Side side) {
   const Eigen::MatrixXd all =
@@ -61,9 +61,9 @@ double leg_determinant(const RobotModel& model, const InverseKinematics& ik, con
   return A.determinant();
 }
 
-// From guesses at any distance, legs on either side of the straight knee: the target is met to
-// rounding, and a leg counts as flipped just where the determinant of its Jacobian has changed
-// sign.
+// The guesses have any distance, and the legs are on either side of the straight knee: the target
+// is met to rounding, and a leg counts as flipped exactly if the determinant of its Jacobian has
+// changed sign.
 TEST(InverseKinematics, NearGuessesEndAtTheTargetAndOnItsSide) {
   for (const RobotModel& model : {test::biped(), test::biped({.waist = true})}) {
     test::Random random(5);
@@ -97,7 +97,7 @@ TEST(InverseKinematics, NearGuessesEndAtTheTargetAndOnItsSide) {
       for (const Side side : kSides)
         for (const int dof : ik.leg(side)) state.theta[dof] += random.uniform(-away, away);
       const PostureSolution solution = ik.solve(target, state, data);
-      if (!solution.reached) continue;  // nearly straight
+      if (!solution.reached) continue;  // the leg is nearly straight
       update_positions(model, state, data);
       bool changed = false;
       for (const Side side : kSides) {
@@ -121,7 +121,7 @@ TEST(InverseKinematics, TrunkAboveAWaistJoint) {
   expect_round_trip(test::biped({.waist = true}), 2);
 }
 
-// A seventh joint in each leg: reached as well, by damped least squares.
+// Targets of legs with a seventh joint are reached as well, by damped least squares.
 TEST(InverseKinematics, SevenJointLegs) {
   RobotDescription robot = test::biped_description();
   for (const std::string s : {"l_", "r_"}) {
@@ -147,8 +147,8 @@ TEST(InverseKinematics, SevenJointLegs) {
   EXPECT_LT(solution.error, 1e-10);
 }
 
-// Without the ankle's roll, and with feet that stand still, the COG goes aside only where the trunk
-// leans; soles stay within the stated tolerance.
+// Without the ankle's roll, and with feet that stand still, the COG only moves to the side if the
+// trunk leans; soles stay within the stated tolerance.
 TEST(InverseKinematics, FiveJointLegsLean) {
   RobotDescription robot = test::biped_description();
   for (JointDescription& joint : robot.joints)
@@ -178,7 +178,7 @@ TEST(InverseKinematics, FiveJointLegsLean) {
   }
 }
 
-// A sole that swings carries nothing, so that it yields, and the one that carries keeps its place.
+// A sole that swings carries nothing, so that it yields, and the sole that carries keeps its place.
 TEST(InverseKinematics, FiveJointLegsLetTheSwingingFootYield) {
   RobotDescription robot = test::biped_description();
   for (JointDescription& joint : robot.joints)
@@ -191,14 +191,14 @@ TEST(InverseKinematics, FiveJointLegsLetTheSwingingFootYield) {
   PostureTarget target;
   for (const Side side : kSides) target.feet[static_cast<int>(side)] = sole_pose(model, data, side);
   target.feet[1].translation().z() += 0.02;
-  double before = 1;  // miss of the left sole
+  double before = 1;  // distance of the left sole from its place
   for (const double hold : {1.0, 0.25, 0.0}) {
     target.cog = data.cog + Eigen::Vector3d(0, 0.024, 0);
     target.hold = {1, hold};
     RobotState solved = state;
     RobotData there(model);
     const PostureSolution solution = ik.solve(target, solved, there);
-    // Held alike, each misses its place by more than a sole that carries may.
+    // If both are held alike, each misses its place by more than a sole that carries may.
     EXPECT_EQ(solution.reached, hold < 1)
         << hold << " " << solution.miss[0] << " " << solution.miss[1];
     EXPECT_LT(solution.miss[0], before) << hold;
@@ -209,7 +209,7 @@ TEST(InverseKinematics, FiveJointLegsLetTheSwingingFootYield) {
   EXPECT_LT(before, 1e-4);
 }
 
-// Both knees come forward, whatever the signs of their axes, where the limits do not tell.
+// Both knees come forward, whatever the signs of their axes, if the limits do not decide.
 TEST(InverseKinematics, StraightKneesComeForwardByGeometry) {
   RobotDescription robot = test::biped_description();
   for (JointDescription& joint : robot.joints) {
@@ -226,7 +226,7 @@ TEST(InverseKinematics, StraightKneesComeForwardByGeometry) {
   EXPECT_FALSE(ik.positive_bends_forward(Side::right));
 }
 
-// A knee that has room to one side only bends to this side.
+// A knee that has room to one side only bends to that side.
 TEST(InverseKinematics, LimitsTellTheKneeOfABird) {
   RobotDescription robot = test::biped_description();
   for (JointDescription& joint : robot.joints)
@@ -240,8 +240,8 @@ TEST(InverseKinematics, LimitsTellTheKneeOfABird) {
   EXPECT_LT(InverseKinematics(model, model.posture()).start()[model.find_dof("l_knee")], -0.1);
 }
 
-// Where hips or ankles leave the knees little room to come forward, and more to go back, they go
-// back: so built is Open Duck Mini.
+// If hips or ankles leave the knees little room to come forward, and more to go back, they go back.
+// Open Duck Mini is built in this way.
 TEST(InverseKinematics, HipsTellTheKneeOfABird) {
   for (const std::string limited : {"hip_pitch", "ankle_pitch"}) {
     RobotDescription robot = test::biped_description();
@@ -249,7 +249,7 @@ TEST(InverseKinematics, HipsTellTheKneeOfABird) {
       if (joint.name.ends_with("knee")) joint.lower = -(joint.upper = 1.57);
       if (joint.name.ends_with(limited)) {
         joint.lower =
-            -0.5;  // less than half of a crouch, to the side of the knee that comes forward
+            -0.5;  // less than half of a crouch, on the side of the knee that comes forward
         joint.upper = 1.2;
       }
     }
@@ -258,7 +258,7 @@ TEST(InverseKinematics, HipsTellTheKneeOfABird) {
     const RobotModel model(robot);
     const int knee = model.find_dof("l_knee");
     EXPECT_LT(InverseKinematics(model, model.posture()).start()[knee], -0.1) << limited;
-    // With room to both sides, it comes forward.
+    // With room on both sides, it comes forward.
     for (JointDescription& joint : robot.joints)
       if (joint.name.ends_with(limited)) joint.lower = -0.7;
     const RobotModel free(robot);

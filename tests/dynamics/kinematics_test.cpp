@@ -1,4 +1,4 @@
-// (1)-(13): what follows from a foot that stays where it is.
+// (1)-(13): consequences of a foot that stays where it is.
 
 #include "ayumi/dynamics/kinematics.hpp"
 
@@ -31,7 +31,7 @@ class Anchored : public testing::TestWithParam<Side> {
     sole = sole_pose(model, data, GetParam());
   }
 
-  /// The state after the joints moved for a time t, the sole held.
+  /// The state after the joints have moved for a time t while the sole is held.
   RobotState moved(double t) {
     RobotState s = state;
     s.theta += t * dtheta;
@@ -56,7 +56,7 @@ TEST_P(Anchored, CogJacobianMatchesDifferences) {
   EXPECT_LT(((after - data.cog) / (2 * h) - J * dtheta).norm(), 1e-9);
 }
 
-// (10)(11): the base moves so that the foot does not.
+// (10)(11): the base moves so that the foot does not move.
 TEST_P(Anchored, VelocityMapHoldsTheSole) {
   const MatrixXd map = anchored_velocity_map(model, data, GetParam());
   const VectorXd velocity = map * dtheta;
@@ -72,7 +72,7 @@ TEST_P(Anchored, VelocityMapHoldsTheSole) {
   EXPECT_LT((turn - velocity.segment<3>(3)).norm(), 1e-9);
 }
 
-// Moving or turning the world changes nothing but the frame.
+// Moving or turning the world only changes the frame.
 TEST_P(Anchored, CogJacobianTurnsWithTheWorld) {
   const MatrixXd J = cog_jacobian(model, data, GetParam());
   const Eigen::Quaterniond turn = exp_rotation({0.3, -0.2, 1.5});
@@ -88,7 +88,7 @@ TEST_P(Anchored, AnchoringPutsTheSoleWhereItIsAsked) {
   EXPECT_NEAR(s.base.attitude.norm(), 1, 1e-14);
 }
 
-// (1)(2): velocities along the tree against differences of positions.
+// (1)(2): velocities along the tree agree with differences of positions.
 TEST_P(Anchored, VelocitiesMatchDifferences) {
   test::Random random(12);
   const RobotState s = test::random_state(model, random);
@@ -106,8 +106,8 @@ TEST_P(Anchored, VelocitiesMatchDifferences) {
   EXPECT_LT(((after.cog - before.cog) / (2 * h) - now.dcog).norm(), 1e-8);
 }
 
-// (13) by screws against (13) by products of Jacobians: the floating Jacobian of the COG times the
-// generalised velocity that holds the sole.
+// (13) by screws agrees with (13) by products of Jacobians: the floating Jacobian of the COG times
+// the generalised velocity that holds the sole.
 TEST_P(Anchored, CogJacobianByASecondRoute) {
   MatrixXd J;
   cog_jacobian(model, data, GetParam(), J);
@@ -118,7 +118,7 @@ TEST_P(Anchored, CogJacobianByASecondRoute) {
   EXPECT_LT((J - floating.rightCols(model.dof_count())).norm(), 1e-13 * J.norm());
 }
 
-// Where the rates keep both feet, both supports say what either does.
+// If the rates keep both feet at rest, the result for both supports is that for either one.
 TEST_P(Anchored, BothFeetAgreeWithEither) {
   const Side side = GetParam();
   const MatrixXd map = anchored_velocity_map(model, data, side);
@@ -148,7 +148,7 @@ TEST_P(Anchored, BothFeetAgreeWithEither) {
   }
 }
 
-// In flight the limbs move the base and leave momentum and COG alone.
+// In flight, the limbs move the base and do not change momentum and COG.
 TEST_P(Anchored, FlightKeepsMomentumAndCog) {
   const VectorXd velocity = flight_velocity_map(model, data) * dtheta;
   RobotState s = state;

@@ -20,7 +20,7 @@ namespace {
 using test::relative_error;
 
 constexpr int kStates = 100;
-// With one set of numbers the two differ by rounding alone.
+// If both have the same numbers, they differ by rounding alone.
 constexpr double kSameNumbers = 1e-10;
 // MuJoCo's reader turns inertias into principal axes and rounds on the way.
 constexpr double kOwnReader = 1e-6;

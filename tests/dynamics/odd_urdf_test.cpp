@@ -1,5 +1,5 @@
-// Robots nobody has seen, as URDF text, against a MuJoCo model written from the same numbers
-// without the library: what is read, and what the dynamics make of it.
+// Random robots as URDF text are compared with a MuJoCo model that is written from the same numbers
+// without the library: both the robot that is read and its dynamics.
 
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ using Eigen::VectorXd;
 using test::relative_error;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// The robot with every joint free, in MuJoCo, and what ties its joints.
+/// The robot with every joint free, in MuJoCo, and the equations that tie its joints.
 class Judge {
  public:
   explicit Judge(const test::OddRobot& robot) {
@@ -51,7 +51,7 @@ class Judge {
     Map<Vector3d>(model->opt.gravity) = Vector3d(0, 0, -kGravity);
   }
 
-  /// Puts it there and fills `T`: MuJoCo's velocities per Ayumi's.
+  /// Sets the state and fills `T`, which gives MuJoCo's velocities from Ayumi's.
   void set_state(const test::OddRobot& robot, const RobotModel& ours, const RobotState& s) {
     mjData* d = data.get();
     const Eigen::Quaterniond& q = s.base.attitude;
@@ -86,7 +86,7 @@ class Judge {
     mj_jacSubtreeCom(model.get(), data.get(), J.data(), 1);
     return J * T;
   }
-  /// Of a point of a body: linear over angular.
+  /// The Jacobian of a point of a body: linear over angular.
   MatrixXd jacobian(int body, const Vector3d& point) const {
     RowMajor linear(3, model->nv), angular(3, model->nv);
     mj_jac(model.get(), data.get(), linear.data(), angular.data(), point.data(), body);
@@ -152,7 +152,7 @@ TEST_P(OddUrdf, AgreesWithMujoco) {
     EXPECT_LT(relative_error(M, judge.mass_matrix()), 1e-9);
     EXPECT_LT(relative_error(bias, judge.bias()), 1e-9);
     fast.forward(state, force, found);
-    // What an ill-conditioned mass matrix makes of rounding is nobody's error.
+    // The rounding that an ill-conditioned mass matrix amplifies is nobody's error.
     EXPECT_LT(relative_error(judge.mass_matrix() * found + judge.bias(), force), 1e-9);
     EXPECT_LT((data.cog - Map<Vector3d>(judge.data->subtree_com)).norm(), 1e-12);
     EXPECT_LT(relative_error(cog_jacobian_floating(model, data), judge.cog_jacobian()), 1e-9);
@@ -165,7 +165,7 @@ TEST_P(OddUrdf, AgreesWithMujoco) {
   }
 }
 
-/// A state a little further along one direction of the generalised velocity.
+/// The state a little further along one direction of the generalised velocity.
 RobotState stepped(const RobotState& state, const VectorXd& direction, double h) {
   RobotState s = state;
   s.base.position += h * direction.head<3>();

@@ -38,7 +38,7 @@ const Vector3d kHand(0, 0, -0.08);
 
 }  // namespace
 
-// What a random posture of the arm reaches is asked back from the home posture.
+// The place that a random posture of the arm reaches is searched from the home posture.
 TEST(Reach, MeetsWhatTheArmCanReach) {
   const RobotModel& model = limited_biped();
   const int hand = body_of(model, "l_elbow");
@@ -62,7 +62,8 @@ TEST(Reach, MeetsWhatTheArmCanReach) {
   }
 }
 
-// A place beyond a stretched leg's length: what is missing is that distance less the length.
+// The place is beyond the length of a stretched leg: what is missing is its distance minus that
+// length.
 TEST(Reach, SaysWhatIsMissing) {
   const RobotModel& model = limited_biped();
   const int foot = body_of(model, "l_ankle_roll");
@@ -75,7 +76,8 @@ TEST(Reach, SaysWhatIsMissing) {
   EXPECT_NEAR(found.missing, 0.1, 1e-4);  // thigh and shank are 0.1 m long each
 }
 
-// Wherever the place is, no joint leaves its range, and the point never ends farther away.
+// Wherever the place is, no joint leaves its range, and the point never ends farther away than it
+// began.
 TEST(Reach, StaysWithinLimits) {
   const RobotModel& model = limited_biped();
   const int hand = body_of(model, "r_elbow");
@@ -115,12 +117,13 @@ TEST(Reach, LimbsEndWhereTheyMeet) {
   EXPECT_EQ(names(model, limb_dofs(model, body_of(model, "r_ankle_roll"))),
             (std::set<std::string>{"r_hip_yaw", "r_hip_roll", "r_hip_pitch", "r_knee",
                                    "r_ankle_pitch", "r_ankle_roll"}));
-  // A body inside a limb is moved by what is above it.
+  // A body inside a limb is moved by the joints above it.
   EXPECT_EQ(names(model, limb_dofs(model, body_of(model, "r_hip_pitch"))),
             (std::set<std::string>{"r_hip_yaw", "r_hip_roll", "r_hip_pitch"}));
 }
 
-// Fingers are parts of a hand: the arm moves them, and what carries them is the limb's end.
+// Fingers are parts of a hand: the arm moves them, and the body that carries them is the end of the
+// limb.
 TEST(Reach, HandsWithFingersAreEnds) {
   RobotDescription d = limited_biped_description();
   for (const std::string side : {"l_", "r_"})

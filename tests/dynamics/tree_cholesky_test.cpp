@@ -64,7 +64,8 @@ TEST_P(Trees, MovedBaseIsAnUpdateOfThePositions) {
   }
 }
 
-// The parts that the plant takes singly: rows, products, halves of the solve, several right sides.
+// The parts that the plant uses separately: rows, products, halves of the solve, several right
+// sides.
 TEST_P(Trees, RowsAndPathsAreTheMatrixAndItsChains) {
   for (const bool mimic : {false, true}) {
     const RobotModel model(test::random_tree(GetParam(), 14, mimic));

@@ -1,4 +1,4 @@
-// Derivatives of inverse and forward dynamics and what rotors and friction do to them.
+// Derivatives of inverse and forward dynamics, and the effect of rotors and friction on them.
 
 #include <gtest/gtest.h>
 
@@ -77,7 +77,7 @@ TEST_P(ForwardDynamics, DerivativesMatchCentralDifferences) {
   }
 }
 
-// Twelve numbers per subtree against matrices of six.
+// Twelve numbers per subtree give the same as matrices of six.
 TEST_P(ForwardDynamics, InverseDerivativesAgreeWithTheSecondRoute) {
   const VectorXd acceleration = random.vector(model.velocity_count(), 5.0);
   InverseDynamicsDerivatives found, expected;
@@ -90,14 +90,14 @@ TEST_P(ForwardDynamics, InverseDerivativesAgreeWithTheSecondRoute) {
             1e-12 * expected.acceleration.norm());
 }
 
-// The motors' share on top of the tree's force gives the same motion back.
+// The motors' share, added to the tree's force, gives the same motion back.
 TEST_P(ForwardDynamics, UndoesInverseDynamicsWithDrives) {
   const VectorXd wanted = random.vector(model.velocity_count(), 5.0);
   VectorXd needed = inverse_dynamics(model, state, wanted, data);
   needed.tail(model.dof_count()) +=
       drive_torque(drive, state.dtheta, wanted.tail(model.dof_count()));
   const VectorXd found = acceleration(state, needed, &drive);
-  // Two routes through M, whose condition is what rounding can cost.
+  // There are two routes through M, whose condition limits the precision.
   EXPECT_LT((inverse_dynamics(model, state, found, data) +
              (VectorXd(model.velocity_count()) << VectorXd::Zero(6),
               drive_torque(drive, state.dtheta, found.tail(model.dof_count())))

@@ -63,7 +63,7 @@ TEST_P(FastTrees, AgreeWithTheRecursionsInWorldAxes) {
   }
 }
 
-// Nothing depends on the instruction set or on the neighbours in a batch, to the last bit.
+// To the last bit, nothing depends on the instruction set or on the neighbours in a batch.
 TEST_P(FastTrees, GiveTheSameBitsAloneAndInAnyBatch) {
   for (const RobotModel& model : models()) {
     TreeDynamics plain(model, InstructionSet::plain), best(model);
@@ -103,7 +103,8 @@ TEST_P(FastTrees, GiveTheSameBitsAloneAndInAnyBatch) {
   }
 }
 
-// The series for sine and cosine over the whole circle, many turns and beyond its reach.
+// The series for sine and cosine is tested over the whole circle, for many turns and beyond its
+// range.
 TEST(FastTreesAngles, GoAnyNumberOfTurns) {
   const RobotModel model(test::random_tree(4, 12, false));
   RobotData data(model);

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// (14)(15): a horizontal force f_z (x_G - x_Z)/(z_G - z_Z) is what leaves no moment about the COG.
+// (14)(15): only a horizontal force f_z (x_G - x_Z)/(z_G - z_Z) leaves no moment about the COG.
 TEST(Pendulum, ForceThroughTheCogLeavesNoMoment) {
   test::Random random(5);
   for (int i = 0; i < 50; ++i) {
@@ -30,7 +30,7 @@ TEST(Pendulum, OmegaOfARobotAtRestIsThatOfAPendulumOfItsHeight) {
   EXPECT_NEAR(omega_squared(6.5 * kGravity, 6.5, 0.225), kGravity / 0.225, 1e-12);
 }
 
-// The ZMP from the base wrench of inverse dynamics against the one from momentum rates.
+// The ZMP from the base wrench of inverse dynamics agrees with the one from momentum rates.
 TEST(GroundReaction, TwoRoutesToTheZmp) {
   for (unsigned seed = 1; seed <= 10; ++seed) {
     const RobotModel model(test::random_tree(seed, 12, false));
@@ -58,7 +58,7 @@ TEST(GroundReaction, TwoRoutesToTheZmp) {
         (after.linear - before.linear) / (2 * h) + Vector3d(0, 0, model.mass() * kGravity);
     const Vector3d rate = (after.angular - before.angular) / (2 * h);
     update_positions(model, state, data);
-    // The force acts at the ZMP: what is left of the moment about the COG is vertical.
+    // The force acts at the ZMP, so that the remaining moment about the COG is vertical.
     const Vector3d left = rate - (reaction.zmp - data.cog).cross(force);
     EXPECT_LT(left.head<2>().norm(), 1e-4 * (1 + rate.norm()));
     EXPECT_NEAR(left.z(), reaction.yaw_moment, 1e-4 * (1 + rate.norm()));

@@ -1,7 +1,7 @@
 #pragma once
-// What the fuzz targets share. A target is one source <name>_fuzz.cpp with LLVMFuzzerTestOneInput,
-// as libFuzzer and AFL++ call it. An input is one file or several: further files begin after a
-// separator with their names.
+// Code that the fuzz targets share. A target is one source <name>_fuzz.cpp with
+// LLVMFuzzerTestOneInput, as libFuzzer and AFL++ call it. An input is one file or several: further
+// files begin after a separator with their names.
 
 #include <cstddef>
 #include <cstdint>
@@ -17,12 +17,12 @@
 
 namespace ayumi::fuzz {
 
-/// Before the name of a further file, which ends with the line. Definition: the record separator of
-/// ASCII, which is no part of any text format here.
+/// Separator before the name of a further file, which ends with the line. Definition: the record
+/// separator of ASCII, which is no part of any text format here.
 constexpr char kSeparator = '\x1e';
 
 struct Part {
-  std::string name;  ///< of the file, without a folder; "" for the first
+  std::string name;  ///< name of the file without a folder; "" for the first file
   std::string bytes;
 };
 
@@ -32,8 +32,8 @@ std::string joined(const std::vector<Part>& parts);
 /// The input with `bytes` as the first file and with further files.
 class InputFolder {
  public:
-  /// Writes the parts into a folder of this process, in memory where the system has such a place;
-  /// the first one as `first`. Names with a slash are left out.
+  /// Writes the parts into a folder of this process, in memory if the system has such a place. The
+  /// first part gets the name `first`. Names with a slash are left out.
   InputFolder(const std::vector<Part>& parts, const std::string& first);
   ~InputFolder();
   InputFolder(const InputFolder&) = delete;
@@ -45,7 +45,7 @@ class InputFolder {
   std::vector<std::string> names_;
 };
 
-/// [bytes] Chosen: larger inputs show nothing new, but take longer.
+/// Largest size of an input [bytes]. Chosen: larger inputs show nothing new, but take longer.
 constexpr size_t kLargestInput = 65536;
 
 [[noreturn]] inline void report(const std::string& what) {
@@ -53,8 +53,8 @@ constexpr size_t kLargestInput = 65536;
   std::abort();
 }
 
-/// Calls `read`. An Error about the input is what a reader may throw, with one line of text. An
-/// Error about Ayumi itself, and any other exception, is a defect. Returns whether it was accepted.
+/// Calls `read`. A reader may throw an Error about the input, with one line of text. An Error about
+/// Ayumi itself, and any other exception, is a defect. Returns whether the input was accepted.
 template <typename Read>
 bool accepts(const Read& read) {
   try {
@@ -64,14 +64,14 @@ bool accepts(const Read& read) {
     const std::string text = error.what();
     if (error.code() == ErrorCode::internal) report("an invariant of Ayumi is broken: " + text);
     if (text.empty()) report("an error without a message");
-    // A word of the input may stand in it once or twice, lists of names are bounded.
+    // A word of the input may occur in it once or twice, and lists of names are bounded.
     if (text.size() > kLargestInput * 4)
       report("a message of " + std::to_string(text.size()) + " bytes");
     return false;
   }
 }
 
-/// For properties of what was accepted.
+/// Checks a property of input that was accepted.
 inline void expect(bool condition, const char* what) {
   if (!condition) report(std::string("a property does not hold: ") + what);
 }

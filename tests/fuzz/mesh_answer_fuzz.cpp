@@ -1,5 +1,5 @@
-// Answers of the mesh reader, which Ayumi does not trust. What is accepted
-// survives encoding and reading.
+// Answers of the mesh reader, which Ayumi does not trust. An accepted answer is the same after
+// encoding and reading.
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-// Mesh files through the confined reader, which Ayumi starts for each. The first line of an input
+// Mesh files, read by the confined reader, which Ayumi starts for each. The first line of an input
 // is the name of the file. A file that breaks the reader gives one message.
 
 #include "ayumi/io/robot/mesh.hpp"

@@ -1,5 +1,5 @@
-// Motions in the formats of other programs. The first line of an input is the name of the format,
-// or empty: then the content says what it is. What is read is written in the same format.
+// Motions in the formats of other programs. The first line of an input is the name of the format;
+// if it is empty, the content decides. A motion that was read is written in the same format.
 
 #include "ayumi/io/formats/motion_formats.hpp"
 #include "fuzz_target.hpp"

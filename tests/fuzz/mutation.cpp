@@ -8,7 +8,7 @@
 
 #include "fuzz_target.hpp"
 
-/// libFuzzer's own mutation of bytes. AFL++ brings none and mutates bytes itself.
+/// libFuzzer's own mutation of bytes. AFL++ has no such function and mutates bytes itself.
 extern "C" __attribute__((weak)) size_t LLVMFuzzerMutate(uint8_t* data, size_t size, size_t most);
 
 namespace ayumi::fuzz {
@@ -20,7 +20,7 @@ using Json = nlohmann::ordered_json;
 size_t below(Random& random, size_t count) { return count ? random() % count : 0; }
 bool chance(Random& random, size_t one_in) { return below(random, one_in) == 0; }
 
-// Numbers at which readers decide.
+// Numbers at which readers make decisions.
 const char* const kNumbers[] = {"0",
                                 "-0",
                                 "1",
@@ -181,7 +181,7 @@ std::string mutate_json(const std::string& text, Random& random) {
 
 namespace {
 
-// A tag or the text between two tags.
+// A tag, or the text between two tags.
 struct Token {
   std::string text;
   enum class Kind { text, open, close, single } kind = Kind::text;
@@ -210,7 +210,7 @@ std::vector<Token> tokens_of(const std::string& text) {
   return tokens;
 }
 
-// One past the end of the element that begins at `first`.
+// The index after the end of the element that begins at `first`.
 size_t end_of(const std::vector<Token>& tokens, size_t first) {
   size_t depth = 0;
   for (size_t i = first; i < tokens.size(); ++i) {
@@ -222,8 +222,8 @@ size_t end_of(const std::vector<Token>& tokens, size_t first) {
 }
 
 struct Attribute {
-  size_t begin = 0, end = 0;              // with its value and quotes
-  size_t value_begin = 0, value_end = 0;  // without the quotes
+  size_t begin = 0, end = 0;              // the attribute with its value and quotes
+  size_t value_begin = 0, value_end = 0;  // the value without the quotes
 };
 
 std::vector<Attribute> attributes_of(const std::string& tag) {
@@ -317,7 +317,7 @@ struct Span {
   size_t begin = 0, end = 0;
 };
 
-// Runs of characters that are in `set` (`in`), or not in it.
+// Runs of characters that are in `set` (with `in`), or not in it.
 std::vector<Span> spans(const std::string& text, const char* set, bool in) {
   std::vector<Span> all;
   for (size_t at = 0; at < text.size() && all.size() < 50'000;) {
@@ -381,7 +381,8 @@ std::string mutate_input(const std::string& input, Random& random) {
 
 extern "C" size_t LLVMFuzzerCustomMutator(uint8_t* data, size_t size, size_t most, unsigned seed) {
   ayumi::fuzz::Random random(seed % 2147483646 + 1);
-  // Bytes as well: what no structure shows, and what libFuzzer has learned from comparisons.
+  // Bytes are mutated as well, because they can do what no structure allows, and libFuzzer has
+  // learned from comparisons.
   if (random() % 2 == 0 && LLVMFuzzerMutate) return LLVMFuzzerMutate(data, size, most);
   const std::string mutant =
       ayumi::fuzz::mutate_input({reinterpret_cast<const char*>(data), size}, random);

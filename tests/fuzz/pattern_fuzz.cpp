@@ -1,4 +1,5 @@
-// Patterns with what they include. What is read is written and read again as the same pattern.
+// Patterns with their includes. A pattern that was read is written, and read again as the same
+// pattern.
 
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "fuzz_target.hpp"

@@ -65,7 +65,7 @@ class Page : public httplib::Server {
   }
   app::OrderedJson state() { return app::OrderedJson::parse(session_.state()); }
 
-  /// The pattern is the seeds' one again, and no job runs.
+  /// Resets the pattern to that of the seeds, with no job running.
   void put_back() {
     const app::OrderedJson now = state();
     if (now["text"] != fuzz::kAuthored) {
@@ -98,7 +98,7 @@ void replace_all(std::string& text, const std::string& what, const std::string& 
     text.replace(at, what.size(), by);
 }
 
-/// Lines end as HTTP wants it, and the length is that of the body.
+/// The request with lines that end as HTTP requires, and with the length of the body.
 std::string request_of(const std::vector<fuzz::Part>& parts) {
   std::string head = parts[0].bytes;
   const std::string body = parts.size() > 1 ? parts[1].bytes : "";
@@ -119,14 +119,14 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const auto parts = fuzz::parts_of({reinterpret_cast<const char*>(data), size});
   const std::string request = request_of(parts);
   std::string answer = page.answer(request);
-  // "Expect: 100-continue" has an answer of its own before the answer.
+  // "Expect: 100-continue" is answered separately before the actual answer.
   if (answer.starts_with("HTTP/1.1 100 ")) answer.erase(0, answer.find("\r\n\r\n") + 4);
   if (answer.empty()) return 0;  // the head of the request was not complete
   fuzz::expect(answer.starts_with("HTTP/1.1 "), "an answer is one of HTTP");
   const std::string status = answer.substr(9, 3);
   fuzz::expect(status != "500", "the server can answer every request");
   const bool done = status[0] == '2';
-  // The path may be written with %30 and the like.
+  // The path may be written with %30 and similar codes.
   fuzz::expect(!done || has(request, kSecret) || has(request, "%"),
                "only who knows the secret asks");
   const std::string port = ":" + std::to_string(fuzz::kPort);

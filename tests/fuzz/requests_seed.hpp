@@ -1,6 +1,6 @@
 #pragma once
-// What the target of HTTP requests and its seeds have in common: the pattern that is authored, and
-// the secret of the address.
+// What the target of HTTP requests and its seeds share: the pattern that is authored, and the
+// secret of the address.
 
 namespace ayumi::fuzz {
 
@@ -11,7 +11,8 @@ inline constexpr const char* kAuthored = R"({"format": "ayumi.pattern/1", "name"
 )";
 inline constexpr const char* kSecret = "00112233445566778899aabbccddeeff";
 inline constexpr int kPort = 8080;
-/// In a header: the number of bytes of the body, so that a mutated body is still read as a whole.
+/// Stands in a header for the number of bytes of the body, so that a mutated body is still read as
+/// a whole.
 inline constexpr const char* kLengthOfBody = "LENGTH";
 
 }  // namespace ayumi::fuzz

@@ -1,5 +1,5 @@
-// Run folders: run.json, then tables and logs. Its fingerprints are made to fit, so that what is
-// behind them is reached.
+// Run folders: run.json, then tables and logs. Fingerprints are corrected to fit, so that the code
+// behind their check is reached.
 
 #include <nlohmann/json.hpp>
 

@@ -40,7 +40,7 @@ class Seeds {
            const std::vector<fuzz::Part>& parts) const {
     put(target, name, fuzz::joined(parts));
   }
-  /// Words of a schema: keys, and the strings of enumerations.
+  /// The words of a schema: keys, and the strings of enumerations.
   void dictionary(const std::string& target, const std::set<std::string>& words) const {
     std::string text;
     for (const std::string& word : words) {
@@ -84,7 +84,7 @@ std::set<std::string> words_of_schemas(const std::vector<std::string>& names) {
   return words;
 }
 
-/// Names of elements and attributes of an XML text.
+/// The names of elements and attributes of an XML text.
 std::set<std::string> words_of_xml(const std::string& text) {
   std::set<std::string> words;
   for (size_t at = 0; at < text.size(); ++at)
@@ -262,7 +262,8 @@ void run_seeds(const Seeds& seeds) {
 "iterations": 3, "reasons": []})"},
       {"export",
        R"({"safe": true, "max_step_ratio": 0.5, "worst_joint": "l_knee", "violations": []})"}};
-  // In a folder of its own, then as one input. (A log has any byte: it stays outside.)
+  // The run is written into a folder of its own, and then as one input. (A log may contain any
+  // byte, so that it stays outside.)
   const fuzz::InputFolder folder({{"", ""}}, "none");
   const fs::path place = folder.path("run");
   fs::remove_all(place);

@@ -19,9 +19,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// [s] Chosen: what an input may take is 2 s; other programs share the processor.
+// Longest time of an input [s]. Chosen: an input may take 2 s; other programs share the processor.
 constexpr double kMost = 20;
-// [bytes] Chosen: the largest seed has half of it.
+// Largest size of an input [bytes]. Chosen: the largest seed has half of it.
 constexpr size_t kLargest = 1 << 20;
 
 void run(const std::string& input) {

@@ -1,4 +1,4 @@
-// URDF files without a sidecar: what is not stated is guessed.
+// URDF files without a sidecar, for which values that are not stated are guessed.
 
 #include "fuzz_target.hpp"
 

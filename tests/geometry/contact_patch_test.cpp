@@ -16,7 +16,7 @@ Isometry3d at(const Vector3d& place, const Vector3d& turn = Vector3d::Zero()) {
   return Eigen::Translation3d(place) * exp_rotation(turn);
 }
 
-/// Largest distance of a point of `expected` from the patch.
+/// The largest distance of a point of `expected` from the patch.
 double misses(const ContactPatch& patch, const std::vector<Vector3d>& expected) {
   double worst = 0;
   for (const Vector3d& p : expected) {
@@ -31,7 +31,7 @@ double misses(const ContactPatch& patch, const std::vector<Vector3d>& expected) 
 TEST(ContactPatch, EqualBoxesShareFourCorners) {
   const Collider box(Box{{0.2, 0.1, 0.04}});
   for (const double gap : {-1e-7, 0.0, 1e-4}) {
-    // The whole turned and moved: nothing depends on the axes.
+    // Everything is turned and moved together: nothing depends on the axes.
     const Isometry3d all = at({3, -2, 1}, {0.4, -0.3, 1.1});
     const ContactPatch patch = contact_patch(box, all, box, all * at({0, 0, 0.04 + gap}), 1e-3);
     ASSERT_EQ(patch.count, 4);
@@ -45,7 +45,7 @@ TEST(ContactPatch, EqualBoxesShareFourCorners) {
   }
 }
 
-// Planks across each other: no corner of one lies on the other.
+// The planks lie across each other: no corner of one lies on the other.
 TEST(ContactPatch, CrossedPlanksMeetWhereTheirEdgesCross) {
   const Collider plank(Box{{0.4, 0.06, 0.02}});
   const ContactPatch patch =
@@ -80,7 +80,7 @@ TEST(ContactPatch, RoundShapesOnABox) {
   ASSERT_EQ(patch.count, 1);
   EXPECT_NEAR(patch.points[0].gap, -1e-4, 1e-9);
   EXPECT_LT((patch.points[0].position - Vector3d(0.1, 0, 0.05)).norm(), 1e-4);
-  // A rod and a can lying: the ends of the line they touch along.
+  // A rod and a can are lying: the patch has the ends of the line of contact.
   patch = contact_patch(box, ground, rod, at({0, 0, 0.07}, {M_PI / 2, 0, 0}), 1e-3);
   ASSERT_EQ(patch.count, 2);
   EXPECT_LT(misses(patch, {{0, -0.1, 0.05}, {0, 0.1, 0.05}}), 1e-9);
@@ -88,7 +88,7 @@ TEST(ContactPatch, RoundShapesOnABox) {
   ASSERT_EQ(patch.count, 2);
   EXPECT_LT(misses(patch, {{0, -0.05, 0.05}, {0, 0.05, 0.05}}), 1e-9);
   EXPECT_NEAR(patch.normal.z(), -1, 1e-9);
-  // Standing: a ring.
+  // The can is standing: the patch is a ring.
   patch = contact_patch(box, ground, can, at({0.2, 0, 0.1}), 1e-3);
   ASSERT_EQ(patch.count, 8);
   for (int i = 0; i < 8; ++i)

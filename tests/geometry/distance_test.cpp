@@ -26,9 +26,9 @@ TEST(Distance, SegmentsAgainstSampling) {
     EXPECT_GE(d, nearest - 0.03);
   }
   const Vector3d X = Vector3d::UnitX(), Y = Vector3d::UnitY();
-  EXPECT_NEAR(segment_distance({0, 0, 0}, X, Y, X + Y), 1, 1e-15);       // parallel
-  EXPECT_NEAR(segment_distance({0, 0, 0}, X, 3 * X, 2 * X), 1, 1e-15);   // in line
-  EXPECT_NEAR(segment_distance(Y, Y, {-1, 0, 0}, {1, 0, 0}), 1, 1e-15);  // a point
+  EXPECT_NEAR(segment_distance({0, 0, 0}, X, Y, X + Y), 1, 1e-15);      // the segments are parallel
+  EXPECT_NEAR(segment_distance({0, 0, 0}, X, 3 * X, 2 * X), 1, 1e-15);  // the segments are in line
+  EXPECT_NEAR(segment_distance(Y, Y, {-1, 0, 0}, {1, 0, 0}), 1, 1e-15);  // one segment is a point
 }
 
 TEST(Distance, BoxesFaceToFace) {
@@ -40,8 +40,8 @@ TEST(Distance, BoxesFaceToFace) {
   EXPECT_NEAR(clearance(a, A, b, B), -0.01, 1e-9);
 }
 
-// Boxes that overlap with almost parallel faces: the depth in closed form, whatever rounding makes
-// of faces in one plane. The tilt of up to e moves corners by less than 3 e half edges.
+// Boxes overlap with almost parallel faces: the depth is known in closed form, whatever the
+// rounding of faces in one plane is. The tilt of up to e moves corners by less than 3 e half edges.
 TEST(Distance, OverlapOfNearlyParallelBoxes) {
   std::mt19937 generator(1);
   std::uniform_real_distribution<double> uniform(-1, 1);
@@ -72,7 +72,8 @@ TEST(Distance, OverlapOfNearlyParallelBoxes) {
   }
 }
 
-// A sphere against a box: distance of a point to a box in closed form, minus the radius.
+// For a sphere and a box, the distance of a point from a box is known in closed form, minus the
+// radius.
 TEST(Distance, SphereAndBoxInClosedForm) {
   Random random(2);
   const Vector3d half(0.1, 0.05, 0.07);
@@ -86,8 +87,8 @@ TEST(Distance, SphereAndBoxInClosedForm) {
   }
 }
 
-// Capsules go the closed-form way, cylinders the general one: a thin capsule and a thin cylinder of
-// the same length are nearly one shape.
+// Capsules use the closed form, and cylinders the general method: a thin capsule and a thin
+// cylinder of the same length have nearly the same shape.
 TEST(Distance, CapsulesAgreeWithCylinders) {
   Random random(3);
   const Collider capsule(Capsule{0.001, 0.2}), cylinder(Cylinder{0.001, 0.2}),
@@ -134,8 +135,8 @@ TEST(Distance, MeshIsItsBox) {
   EXPECT_NEAR(clearance(a, A, b, B), 0.04, 1e-6);
 }
 
-// How deep two boxes are in each other: the least of the overlaps along the faces' normals and the
-// cross products of the edges (separating axes).
+// The depth by which two boxes overlap: the smallest of the overlaps along the faces' normals and
+// the cross products of the edges (separating axes).
 TEST(Distance, DepthOfBoxesBySeparatingAxes) {
   Random random(5);
   int meeting = 0;
@@ -167,7 +168,7 @@ TEST(Distance, DepthOfBoxesBySeparatingAxes) {
   EXPECT_GT(meeting, 200);
 }
 
-// Deep in each other, nearest points lie across from each other along the normal, also where the
+// If bodies overlap deeply, nearest points lie opposite each other along the normal, even if the
 // deepest facet is made of several triangles.
 TEST(Distance, PointsOfDeepBoxesLieAcross) {
   Random random(9);
@@ -183,8 +184,8 @@ TEST(Distance, PointsOfDeepBoxesLieAcross) {
   EXPECT_GT(deep, 500);
 }
 
-// The nearest points have the clearance between them, and their normal is its slope, apart and
-// deep.
+// The nearest points have the clearance between them, and their normal is its gradient, for bodies
+// apart and overlapping.
 TEST(Distance, SlopeOfTheClearance) {
   Random random(6);
   std::vector<Collider> shapes;
@@ -210,5 +211,5 @@ TEST(Distance, SlopeOfTheClearance) {
     const double h = 1e-5;
     if (std::abs((moved(h) - moved(-h)) / (2 * h) - slope) > 2e-3) ++rough;
   }
-  EXPECT_LE(rough, 8);  // a kink between two features in a few of the poses
+  EXPECT_LE(rough, 8);  // a few of the poses have a kink between two features
 }

@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// Corners of a box seen from axes in which it stands askew.
+/// The corners of a box, seen from axes against which the box is turned.
 MeshShape box_mesh(const Vector3d& half, const Isometry3d& in_mesh) {
   MeshShape mesh;
   mesh.mesh.parts.resize(1);
@@ -52,8 +52,8 @@ TEST(MeshHull, FacesOfSolids) {
   for (const HullFace& face : faces) EXPECT_EQ(face.corners.size(), 3u);
 }
 
-// Of any points: each face has all of them on one side, its corners turn left seen from outside,
-// and every edge belongs to two faces (Euler's count).
+// For any points, each face has all of them on one side, its corners turn left as seen from
+// outside, and every edge belongs to two faces (Euler's count).
 TEST(MeshHull, FacesCloseAroundRandomPoints) {
   Random random(4);
   for (int i = 0; i < 10; ++i) {
@@ -93,7 +93,7 @@ TEST(MeshHull, DistanceIsThatOfTheShapeAndNotOfItsBox) {
   }
 }
 
-// The patch of a mesh with a box is that of the box it is a mesh of.
+// The patch of a mesh with a box is that of the shape that the mesh represents.
 TEST(MeshHull, PatchIsThatOfTheShape) {
   Random random(6);
   const Collider table(Shape{Box{{0.1, 0.1, 0.1}}});

@@ -29,7 +29,7 @@ const SimulationLog& walk_log() {
 
 Index rows_of(const SimulationLog& log) { return static_cast<Index>(log.samples.size()); }
 
-/// The angles of the run from its row `first` on, each of them `late` rows old.
+/// The angles of the run from its row `first` on, each delayed by `late` rows.
 AngleTable angles_from(Index first, Index late = 0) {
   const SimulationLog& log = walk_log();
   AngleTable table;
@@ -43,7 +43,7 @@ AngleTable angles_from(Index first, Index late = 0) {
   return table;
 }
 
-/// The loads of the feet from row `first` on, each `late` rows old.
+/// The loads of the feet from row `first` on, each delayed by `late` rows.
 SensorTable loads_from(Index first, Index late) {
   const SimulationLog& log = walk_log();
   SensorTable table;
@@ -191,7 +191,7 @@ TEST(Compare, ALandingOfOnlyOneIsListedWithItsTime) {
   SensorTable sensors = loads_from(0, 0);
   const Comparison whole = compared(angles_from(0), sensors, {.shift = 0});
   ASSERT_GE(whole.landings.size(), 2u);
-  // One swing without any air: the recording lacks this landing.
+  // One swing stays on the ground: the recording lacks this landing.
   const ComparedLanding& lost = whole.landings[1];
   const auto k = static_cast<Index>(std::lround(lost.measured / sensors.dt));
   const Index foot = lost.foot == Side::left ? 0 : 1;
@@ -204,7 +204,8 @@ TEST(Compare, ALandingOfOnlyOneIsListedWithItsTime) {
   EXPECT_NEAR(found.lone_landings[0].t, lost.simulated, 1e-9);
 }
 
-// A run that fell is compared until its fall, and the recording is not called another robot's.
+// A run that fell is compared until its fall, and the recording is not taken for that of another
+// robot.
 TEST(Compare, EndsWhereTheRunFell) {
   SimulationLog fallen = walk_log();
   fallen.result.outcome = Outcome::fell;

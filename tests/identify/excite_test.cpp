@@ -1,5 +1,5 @@
 // The motions of `new excite` on the simulated robot: the constants of its servos are found from
-// what its encoders would have measured, with noise and in counts.
+// what its encoders would have measured, with noise and as counts.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,8 @@
 namespace ayumi::test {
 namespace {
 
-constexpr double kEncoderNoise = 2e-4, kEncoderCount = M_PI / 180 / 209;  // [rad]
+// Noise and size of a count [rad].
+constexpr double kEncoderNoise = 2e-4, kEncoderCount = M_PI / 180 / 209;
 
 bool is_arm(const std::string& joint) {
   return joint.find("shoulder") != std::string::npos || joint.find("elbow") != std::string::npos;
@@ -41,7 +42,8 @@ RobotModel robot_with_servos(double backlash) {
   return RobotModel(robot);
 }
 
-/// What the servos received and what the encoders measured in a run without a controller.
+/// The commands that the servos received, and the angles that the encoders measured, in a run
+/// without a controller.
 RecordedMotion recorded_run(const RobotModel& model, const Pattern& pattern) {
   SimulateOptions options;
   options.controller.type = ControllerKind::none;
@@ -72,13 +74,13 @@ void expect_covers(const ServoEstimate& estimate, double truth, const std::strin
   EXPECT_GE(estimate.upper, truth) << what;
 }
 
-// kp to 10 % and the delay to half a millisecond wherever they are called known, every constant
-// within its interval, and kp known at the joints that carry the robot.
+// kp is found to 10 % and the delay to half a millisecond wherever they are called known; every
+// constant is within its interval, and kp is known for the joints that carry the robot.
 TEST(ExciteRoundTrip, FindsTheServosOfTheSimulatedRobot) {
   const RobotModel model = robot_with_servos(0);
   IdentifyOptions options;
   options.threads = 2;
-  // As large as `new excite` finds to be within the limits of the robot's motors.
+  // The motion is as large as `new excite` allows within the limits of the robot's motors.
   const Identification found =
       identify(model, recorded_run(model, excite_pattern(model, 0.5)), options, "m.csv");
   std::map<std::string, IdentifiedJoint> joints;
@@ -101,15 +103,16 @@ TEST(ExciteRoundTrip, FindsTheServosOfTheSimulatedRobot) {
       EXPECT_TRUE(joints.at(side + name).kp.known) << side + name;
 }
 
-// The play of gears is found where the load goes from one flank to the other with weight: at the
+// The play of gears is found if the load changes from one flank to the other with weight: at the
 // knees, which carry the robot and then the leg in the air.
 TEST(ExciteBacklash, IsFoundAtTheKnees) {
-  constexpr double kPlay = 0.01;  // [rad]
+  constexpr double kPlay = 0.01;  // play [rad]
   const RobotModel model = robot_with_servos(kPlay);
   IdentifyOptions options;
   options.threads = 2;
   RecordedMotion motion = recorded_run(model, excite_pattern(model, 0.5));
-  // Only joints that have a command are identified: the legs, whose loads belong together.
+  // Only joints that have a command are identified. These are the legs, whose loads belong
+  // together.
   for (int j = 0; j < model.dof_count(); ++j)
     if (is_arm(model.dofs()[static_cast<size_t>(j)].name))
       motion.command.has[static_cast<size_t>(j)] = 0;
@@ -123,7 +126,7 @@ TEST(ExciteBacklash, IsFoundAtTheKnees) {
   EXPECT_EQ(knees, 2);
 }
 
-// On both feet, the legs may press against each other: nothing is said of their stiffness.
+// On both feet, the legs may press against each other: no stiffness is reported.
 TEST(ExciteRoundTrip, SaysThatTwoFeetDoNotShowTheLoad) {
   const RobotModel model = robot_with_servos(0);
   SquatParameters squat = squat_defaults(model);

@@ -64,8 +64,8 @@ void expect_the_servos_of_the_walk(bool with_loads) {
   EXPECT_NEAR(0.5 * (delays[6] + delays[7]), 0.0036, 0.0003);
   EXPECT_NEAR(delays.front(), 0.0036, 0.0005);
   EXPECT_NEAR(delays.back(), 0.0036, 0.0005);
-  // The weight shows the stiffness of knees and hip rolls: 2500 to 5000 N m/rad by lever, with 10 %
-  // for it, and that of one side agrees with that of the other.
+  // The weight shows the stiffness of knees and hip rolls: 2500 to 5000 N m/rad, with an
+  // uncertainty of 10 % for the lever, and the two sides agree with each other.
   for (const std::string joint : {"LFE_%_KN_joint", "LR_%_LAA_joint"}) {
     std::vector<ServoEstimate> sides;
     for (const IdentifiedJoint& each : result.joints)
@@ -89,7 +89,7 @@ TEST(IdentifyHoap3, FindsTheServosOfTheRecordedWalk) {
   expect_the_servos_of_the_walk(true);
 }
 
-// How the feet share the weight then follows from the geometry.
+// In this case, the way in which the feet share the weight follows from the geometry.
 TEST(IdentifyHoap3, FindsTheServosWithoutLoadCells) {
   if (!has_recordings()) GTEST_SKIP() << "no recordings of HOAP-3 at " << kHoap3;
   expect_the_servos_of_the_walk(false);
@@ -124,7 +124,7 @@ Eigen::MatrixXd without_rows(const Eigen::MatrixXd& whole, Eigen::Index gap, Eig
   return rest;
 }
 
-// Rows of files without time are missing or repeated: the message names the row, to two rows.
+// Rows of files without times are missing or repeated: the message names the row, to two rows.
 TEST(IdentifyHoap3, RefusesMissingRows) {
   if (!has_recordings()) GTEST_SKIP() << "no recordings of HOAP-3 at " << kHoap3;
   const RobotModel model = recorded_robot();
@@ -144,7 +144,7 @@ TEST(IdentifyHoap3, RefusesMissingRows) {
       ASSERT_TRUE(said.starts_with("m.csv: at data row ")) << said;
       EXPECT_NEAR(std::stod(said.substr(19)), static_cast<double>(gap + 1), 2) << said;
     }
-  // Where nothing moves, the number of rows tells.
+  // Where nothing moves, the total number of rows shows it.
   for (const Eigen::Index missing : {1, 2, 3}) {
     motion.measured.theta = without_rows(whole, 300, missing);
     EXPECT_NE(

@@ -52,7 +52,7 @@ SyntheticServo stiff() {
   return servo;
 }
 
-// Seven servos, simulated side by side and one after the other.
+// Seven servos are simulated side by side and one after the other.
 TEST(ServoResponse, SeveralServosGiveTheNumbersOfEach) {
   constexpr Eigen::Index kRows = 400;
   JointRecording joint;
@@ -82,14 +82,14 @@ TEST(ServoResponse, SeveralServosGiveTheNumbersOfEach) {
       for (Eigen::Index i = 0; i < 7; ++i) {
         servo_responses(joint, {servos[static_cast<size_t>(i)]}, alone);
         EXPECT_EQ(together.col(i), alone.col(0)) << i;
-        if (i > 0 && !at_once) {  // which leaves the damping out
+        if (i > 0 && !at_once) {  // this leaves the damping out
           EXPECT_NE(together.col(i), together.col(0)) << i;
         }
       }
     }
 }
 
-// Six seconds with noise and counts: the delay to half a millisecond, the others to 10 %.
+// Six seconds with noise and counts: the delay is found to half a millisecond, the others to 10 %.
 TEST(Identify, FindsTheConstantsOfASyntheticServo) {
   for (const SyntheticServo& servo : {soft(), stiff()}) {
     const Eigen::VectorXd theta = simulated_angles(servo, 6, excitation);
@@ -104,7 +104,8 @@ TEST(Identify, FindsTheConstantsOfASyntheticServo) {
   }
 }
 
-// The intervals are those of 95 %: of a hundred noises, at most seven may lead them astray.
+// The intervals are those of 95 %: of a hundred noises, at most seven may give an interval without
+// the true value.
 TEST(IdentifyIntervals, CoverTheTruth) {
   const SyntheticServo servo = soft();
   const Eigen::VectorXd theta = simulated_angles(servo, 6, excitation);
@@ -125,7 +126,8 @@ TEST(IdentifyIntervals, CoverTheTruth) {
   EXPECT_GE(coulomb, 93);
 }
 
-// Neither a load that changes nor quick motion: what cannot be told apart is named.
+// There is neither a load that changes nor a quick motion: constants that cannot be distinguished
+// are named.
 TEST(Identify, NamesWhatItCannotTellApart) {
   const SyntheticServo servo = stiff();
   const auto slow = [](double t) { return 0.05 * std::sin(2 * M_PI * 0.4 * t); };
@@ -153,7 +155,7 @@ TEST(Identify, TheSameForAnyNumberOfThreads) {
   EXPECT_EQ(one.delay.upper, four.delay.upper);
 }
 
-// What a servo may be behind is a named limit; half of it is told in one line.
+// The largest lag of a servo is a named limit; from half of it on, there is a message of one line.
 TEST(Identify, SaysThatTheRecordingMayBeShifted) {
   const SyntheticServo servo = soft();
   const Eigen::VectorXd theta = simulated_angles(servo, 6, excitation);
@@ -204,7 +206,7 @@ TEST(RecordingChecks, OneLineForARecordingThatIsNotTheAnswer) {
   said(answer_error(late_by(800)),
        "ms behind their command, but a servo is at most 30 ms behind (--longest-lag); the "
        "recording is shifted");
-  // 50 ms are no lag of a servo either.
+  // A lag of 50 ms is not that of a servo either.
   said(answer_error(late_by(50)),
        "ms behind their command, but a servo is at most 30 ms behind (--longest-lag); the "
        "recording is shifted");
@@ -225,13 +227,13 @@ TEST(RecordingChecks, OneLineForARecordingThatIsNotTheAnswer) {
        "the command of this recording moves no joint by 0.5 deg");
 }
 
-/// Two movements, and 1.5 s of rest between them.
+/// Two movements with 1.5 s of rest between them.
 double moves_with_a_rest(double t) {
   const double moved = t < 4 ? t : t < 5.5 ? 4 : t - 1.5;
   return 0.35 * (1 - std::cos(2 * M_PI * moved / 2)) + 0.1 * std::sin(2 * M_PI * moved);
 }
 
-// Three rows are lost while nothing moves, and the recorder ran on at the end: the delays before
+// Three rows are lost while nothing moves, and the recorder continued at the end: the delays before
 // and after show it. Without a lost row, and with times of the rows, nothing is wrong.
 TEST(RecordingChecks, RowsThatAreMissingInARest) {
   const SyntheticServo servo = soft();

@@ -12,14 +12,14 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kRow = 0.001;        // [s]
-constexpr double kAngleNoise = 2e-4;  // of the measured angles [rad]
+constexpr double kRow = 0.001;        // time between rows [s]
+constexpr double kAngleNoise = 2e-4;  // noise of the measured angles [rad]
 
 constexpr Index kJoints = 10, kFirst = 5;
 const std::vector<Index> kAll = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
 
-// Ten joints for 24 s. With `one_after_the_other`, five move until 12 s and the others afterwards;
-// else all move all the time.
+// Ten joints for 24 s. With `one_after_the_other`, five of them move until 12 s and the others
+// afterwards; otherwise all move all the time.
 AngleTable commands(bool one_after_the_other) {
   AngleTable table;
   table.dt = kRow;
@@ -39,8 +39,8 @@ AngleTable commands(bool one_after_the_other) {
   return table;
 }
 
-// The answer: the first five joints are 5 ms late, the others 8.3 ms. From row `at` on, `lost` rows
-// are missing; negative: the row is repeated.
+// The answer, in which the first five joints are 5 ms late and the others 8.3 ms. From row `at` on,
+// `lost` rows are missing; if the number is negative, the row is repeated.
 AngleTable recording(const AngleTable& command, Index at = 0, Index lost = 0) {
   AngleTable table = command;
   Random random(7);
@@ -73,7 +73,7 @@ TEST(LostRows, AreFoundWhereJointsMove) {
     }
 }
 
-// The message advises a time column only where there is none.
+// The message only advises a time column if there is none.
 TEST(LostRows, TheRemedyFitsTheFile) {
   const AngleTable command = commands(false);
   AngleTable measured = recording(command, 6000, 2);

@@ -16,7 +16,7 @@ struct SyntheticServo {
   double kp = 800, kd = 2, viscous = 1.5, coulomb = 0.4, delay = 0.0036, offset = 0.004;
   double rotor_inertia = 0.004;
   double backlash = 0;
-  // The link: its inertia about the axis, and mass times lever.
+  // The link: its mass and lever, and the rest of its inertia about the axis.
   double mass = 1.2, length = 0.15, own_inertia = 0.002;
   double inertia() const { return own_inertia + mass * length * length; }
 };
@@ -47,21 +47,21 @@ inline RobotDescription pendulum_robot(const SyntheticServo& servo) {
   robot.joints = {joint};
   robot.postures["home"] = {};
   ServoDescription given;
-  given.kp = 600;  // what the file believes
+  given.kp = 600;  // the value in the file
   given.kd = servo.kd;
   given.rotor_inertia = servo.rotor_inertia;
   robot.servos["arm_joint"] = given;
   return robot;
 }
 
-/// Slow sweep, chirp and steps: 6 s.
+/// A slow sweep, a chirp and steps, for 6 s.
 inline double excitation(double t) {
   if (t < 2.4) return 0.7 * std::sin(2 * M_PI * t / 2.4);
   if (t < 4.4) {
     const double s = t - 2.4;
     return 0.25 * std::sin(2 * M_PI * (0.5 * s + 1.625 * s * s));
   }
-  // Steps of 50 ms, minimum jerk.
+  // Each step takes 50 ms with minimum jerk.
   const double levels[] = {0.0, 0.2, 0.45, 0.1, -0.2, -0.5, -0.1, 0.1, 0.1};
   const int step = std::min(7, static_cast<int>((t - 4.4) / 0.2));
   const double u = std::min(1.0, (t - 4.4 - 0.2 * step) / 0.05);
@@ -69,7 +69,7 @@ inline double excitation(double t) {
   return from + (levels[step] - from) * u * u * u * (10 - 15 * u + 6 * u * u);
 }
 
-/// Angles at 1 kHz without noise.
+/// The angles at 1 kHz without noise.
 inline Eigen::VectorXd simulated_angles(const SyntheticServo& servo, double seconds,
                                         const std::function<double(double)>& command) {
   const int rows = static_cast<int>(std::lround(seconds * 1000)) + 1, fine = 100;
@@ -94,7 +94,7 @@ inline Eigen::VectorXd simulated_angles(const SyntheticServo& servo, double seco
   return theta;
 }
 
-/// The recording with an encoder of `count` [rad] and noise of that standard deviation [rad].
+/// The recording by an encoder of `count` [rad] with noise of that standard deviation [rad].
 inline RecordedMotion recorded(const Eigen::VectorXd& theta, double noise, double count,
                                std::uint64_t seed, const std::function<double(double)>& command) {
   RecordedMotion motion;

@@ -41,7 +41,7 @@ std::string sidecar(const std::string& more) {
   return "{ \"format\": \"ayumi.robot/1\", \"urdf\": \"robot.urdf\"" + more + " }";
 }
 
-// The message of loading `name` in a folder with the folder's path taken out of it.
+// The message of loading `name` in a folder, from which the folder's path is removed.
 std::string message_of(const TemporaryFolder& folder, const std::string& name,
                        const LoadOptions& options = {}) {
   try {
@@ -112,7 +112,7 @@ TEST(BrokenRobot, WhatIsNoUrdf) {
   EXPECT_EQ(urdf_error("<robot name=\"r\"/>"), "r.urdf: the robot has no link; add one");
 }
 
-// Each took minutes, gigabytes or the stack.
+// Before, each of these took minutes, gigabytes or the whole stack.
 TEST(BrokenRobot, WhatIsFarTooLarge) {
   std::string chain = link("l0");
   for (int i = 1; i < 10'000; ++i) {

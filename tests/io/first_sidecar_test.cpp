@@ -26,7 +26,8 @@ RobotGuess guess(const UrdfBiped& kind, const TemporaryFolder& folder) {
                                             {}, {.guess = false}));
 }
 
-// Where the knee is ahead of the line from hip to ankle, from the positions of the bodies alone.
+// The distance by which the knee is ahead of the line from hip to ankle, from the positions of the
+// bodies alone.
 double knee_ahead(const RobotModel& model, const std::string& side) {
   RobotData data(model);
   update_positions(model, model.rest_state(), data);
@@ -75,8 +76,8 @@ TEST(FirstSidecar, SolesAreNotWiderThanWhatTouches) {
   }
 }
 
-// A foot that is not level where every joint is at 0, or at the limit nearest to 0, has the sole of
-// the same foot that is.
+// A foot that is not level with every joint at 0, or at the limit nearest to 0, has the same sole
+// as a foot that is level there.
 TEST(FirstSidecar, SolesOfTiltedFeetAreThoseOfLevelOnes) {
   const TemporaryFolder folder;
   const RobotModel level(guess({.name = "level"}, folder).robot);
@@ -102,8 +103,9 @@ TEST(FirstSidecar, SolesOfTiltedFeetAreThoseOfLevelOnes) {
   }
 }
 
-// A passive joint of 1 deg beside a motor with the same axis is the play of its gear; one across it
-// or of 20 deg is a joint. As an MJCF file gives them: passive joints have servos without gains.
+// A passive joint of 1 deg beside a motor with the same axis is the play of its gear; a passive
+// joint across that axis, or one of 20 deg, is a joint. As in an MJCF file, passive joints have
+// servos without gains.
 TEST(FirstSidecar, PlayOfGearsBecomesBacklash) {
   const auto robot = [](double range, const Eigen::Vector3d& axis) {
     RobotDescription made;
@@ -130,7 +132,7 @@ TEST(FirstSidecar, PlayOfGearsBecomesBacklash) {
   EXPECT_EQ(geared.joints[1].type, JointType::fixed);
   EXPECT_NEAR(geared.servos.at("motor").backlash, kRightAngle / 90, 1e-15);
   EXPECT_FALSE(geared.servos.contains("play"));
-  EXPECT_TRUE(gaps_of_the_files(geared, 0).empty());  // what is held is no passive joint
+  EXPECT_TRUE(gaps_of_the_files(geared, 0).empty());  // a joint that is held is no passive joint
   RobotDescription across = robot(kRightAngle / 90, Eigen::Vector3d::UnitX());
   EXPECT_TRUE(hold_play_of_gears(across).empty());
   RobotDescription wide = robot(20 * kRightAngle / 90, Eigen::Vector3d::UnitZ());
@@ -154,7 +156,7 @@ TEST(FirstSidecar, HomeIsBalancedInsideTheLimits) {
       const Sole& sole = model.sole(side);
       const Eigen::Isometry3d pose = sole_pose(model, data, side);
       middle += 0.5 * (pose * Eigen::Vector3d(sole.center.x(), sole.center.y(), 0));
-      EXPECT_GT(pose.linear()(2, 2), 1 - 1e-8);  // level
+      EXPECT_GT(pose.linear()(2, 2), 1 - 1e-8);  // the sole is level
     }
     EXPECT_LT((data.cog - middle).head<2>().norm(), 1e-4 * kind.size);
     for (const std::string side : {"l_", "r_"}) EXPECT_GT(knee_ahead(model, side), 0.02);
@@ -181,7 +183,7 @@ TEST(FirstSidecar, KneesOfOpposedAxesBothComeForward) {
   EXPECT_EQ(direction_in_words(model, model.find_dof("l_shoulder")), "positive moves l_arm back");
 }
 
-// The figures of a torque-controlled robot of 28 kg: efforts differ from joint to joint.
+// The values are those of a torque-controlled robot of 28 kg: efforts differ from joint to joint.
 TEST(FirstSidecar, ServosFollowTheEffortOfEachJoint) {
   const TemporaryFolder folder;
   UrdfBiped kind{.size = 2.6, .mass = 4.2};
@@ -213,7 +215,7 @@ TEST(FirstSidecar, PlaceholdersAreNamed) {
   EXPECT_TRUE(guess({}, folder).placeholders.empty());
 }
 
-// What is written reads back as what the bare URDF is read as.
+// The sidecar that is written reads back as the values that were guessed for the bare URDF.
 TEST(FirstSidecar, ReadsBackAsItWasGuessed) {
   const TemporaryFolder folder;
   for (const UrdfBiped& kind : {UrdfBiped{.name = "turned", .facing = -kRightAngle},
@@ -244,7 +246,8 @@ TEST(FirstSidecar, ReadsBackAsItWasGuessed) {
   }
 }
 
-// Rounding to tenths of a millimetre leaves the outline of round edges convex, inside the true one.
+// Rounding to tenths of a millimetre leaves the outline of round edges convex and inside the true
+// outline.
 TEST(FirstSidecar, SolesOfCylindersStayConvex) {
   const TemporaryFolder folder;
   for (const double width : {0.03, 0.0401, 0.0532, 0.0707}) {
@@ -265,7 +268,7 @@ TEST(FirstSidecar, SolesOfCylindersStayConvex) {
   }
 }
 
-// Whether the remarks have these words, wherever their lines end.
+// Whether the remarks contain these words, wherever their lines end.
 bool says(std::string text, const std::string& words) {
   const std::string line_end = "\n  // ";
   for (size_t at = 0; (at = text.find(line_end, at)) != std::string::npos;)
@@ -273,7 +276,8 @@ bool says(std::string text, const std::string& words) {
   return text.find(words) != std::string::npos;
 }
 
-// The trunk is the link that carries both legs, wherever the file begins. Soles and legs are named.
+// The trunk is the link that carries both legs, whichever link the file begins with. Soles and legs
+// are named.
 TEST(FirstSidecar, TheTrunkCarriesBothLegs) {
   const TemporaryFolder folder;
   std::string text = UrdfBiped{}.text();
@@ -292,7 +296,7 @@ TEST(FirstSidecar, TheTrunkCarriesBothLegs) {
                       "r_hip_yaw"),
             std::string::npos)
       << said;
-  // A chest that carries the pelvis, which is still named "trunk", by a waist joint.
+  // The chest carries the pelvis, which is still named "trunk", by a waist joint.
   text.replace(
       text.find("</robot>"), 8,
       "<link name=\"chest\"><inertial><origin xyz=\"0 0 0.1\"/><mass value=\"1\"/><inertia "
@@ -306,7 +310,7 @@ TEST(FirstSidecar, TheTrunkCarriesBothLegs) {
   EXPECT_TRUE(says(chest.text, "Guess: the link that carries both legs"));
 }
 
-// Inertias of 1 kg m^2 and impossible ones are replaced by those of boxes; others stay.
+// Inertias of 1 kg m^2 and impossible inertias are replaced by those of boxes; the others stay.
 TEST(FirstSidecar, PlaceholdersOfInertiasBecomeThoseOfTheShapes) {
   const TemporaryFolder folder;
   const std::string good = UrdfBiped{}.text();
@@ -346,8 +350,8 @@ TEST(FirstSidecar, RefusesARobotThatHasOne) {
   EXPECT_THROW(first_sidecar(robot, robot), Error);
 }
 
-// With the meshes of the legs missing, the hands were taken for feet, and `init` failed because the
-// COG was below them. What is missing is on the list.
+// Before, with the meshes of the legs missing, the hands were taken for feet, and `init` failed
+// because the COG was below them. What is missing is on the list.
 TEST(FirstSidecar, HandsAreNoFeetWhereTheShapesOfTheFeetAreMissing) {
   const TemporaryFolder folder;
   std::string text = UrdfBiped{}.text();

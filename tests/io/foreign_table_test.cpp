@@ -24,14 +24,15 @@ std::string refusal(const std::string& text, ImportOptions options = {}) {
     read(text, options);
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::bad_file);
-    const std::string message = error.what();  // how the format was recognized stands at the end
+    // The end of the message tells how the format was recognized.
+    const std::string message = error.what();
     return message.substr(0,
                           message.find(" (read as table with a head row, because the first row"));
   }
   return "read";
 }
 
-// Two joints turn evenly, 20 rows in 0.19 s.
+// A table of 20 rows in 0.19 s, in which two joints turn evenly.
 std::string table(const std::string& head, char separator, char point, double time, double angle,
                   const std::string& end = "\n") {
   const auto number = [&](double value) {
@@ -76,7 +77,7 @@ TEST(ForeignTable, UnitsMayStandInTheHeadRow) {
       "what the column says goes before the option");
 }
 
-// Three decimals at 500 rows per second: accelerations that no motion has.
+// Three decimals at 500 rows per second give accelerations that no motion has.
 TEST(ForeignTable, RoughAnglesAreSaid) {
   const auto rough = [](double decimals, ImportOptions options) {
     std::string text = "t,l_knee\n";

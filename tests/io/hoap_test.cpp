@@ -59,7 +59,7 @@ TEST(Hoap, ReadsBackWithinOneCount) {
     worst = std::max(worst, (back.rows[k].theta - table.rows[k].theta).cwiseAbs().maxCoeff());
   EXPECT_LT(worst, 0.51 / 209 * kDegree);
   EXPECT_GT(worst, 0);
-  EXPECT_EQ(hoap_csv(robot, back), text);  // counts survive a second trip
+  EXPECT_EQ(hoap_csv(robot, back), text);  // counts stay the same on a second round trip
 }
 
 TEST(Hoap, BlanksAndLineEndsOfRealFiles) {
@@ -102,7 +102,7 @@ TEST(Hoap, SaysWhatIsWrong) {
   EXPECT_NE(hoap_error("1,2,0,40000,0,R,R,R\n").find("column 4: '40000' is not a whole number"),
             std::string::npos);
   EXPECT_NE(hoap_error("0,2,0,0,0,R,R,R\n").find("'0' is not an interval"), std::string::npos);
-  // Cut in half in its second row.
+  // The file is cut off in its second row.
   EXPECT_NE(hoap_error("1,2,0,0,0,R,R,R\n1,2,0,0,\n")
                 .find("s.csv:2: the row has 5 columns, but the rows"),
             std::string::npos);
@@ -122,7 +122,7 @@ TEST(Hoap, NeedsEncodersAndWholeMilliseconds) {
   EXPECT_THROW(hoap_csv(test::bus_robot(), table), Error);
 }
 
-// The layout of the sidecar says what stands around the motors, and which intervals there are.
+// The layout in the sidecar says which columns surround the motors, and which intervals there are.
 TEST(Hoap, LayoutsAreThoseOfTheSidecar) {
   RobotDescription description = test::bus_description();
   description.layouts = {{"two words", {"interval", "2"}, {"60", "75", "R"}, 3, false, {1, 2}},
@@ -142,7 +142,8 @@ TEST(Hoap, LayoutsAreThoseOfTheSidecar) {
   EXPECT_FALSE(looks_like_hoap("7,1,2,3\n", robot));
 }
 
-// HOAP-1 swaying its hips and arms: 25 columns, inside every limit, back within one count.
+// HOAP-1 sways its hips and arms: the table has 25 columns, is inside every limit, and reads back
+// within one count.
 TEST(Hoap, TableOfHoap1) {
   const RobotModel& robot = hoap1();
   ReferenceTrajectory motion;
@@ -179,8 +180,8 @@ TEST(Hoap, TableOfHoap1) {
     }
 }
 
-// A kick as the robot's own files have it in radians: the knees flex, whatever their encoders'
-// sign.
+// A kick as in the robot's own files in radians: the knees flex, whatever the signs of their
+// encoders are.
 TEST(Hoap, RowsOfRadiansHaveTheSignsOfTheEncoders) {
   const RobotModel& robot = hoap1();
   std::string bytes;

@@ -30,8 +30,8 @@ TEST(JsonReader, NamesLineAndColumnOfASyntaxError) {
             "f.json: the key 'b' appears twice in one object; keep one");
 }
 
-// What an author mistypes, and what the message says of it: the line and column where the text is
-// put right, and what is missing there or too much.
+// Typing errors of an author, and the message about each: the line and column where the text must
+// be corrected, and what is missing or too much there.
 TEST(JsonReader, NamesASlipInWordsAboutTheText) {
   const std::vector<std::pair<std::string, std::string>> slips = {
       {"{\n \"t\": 0.5\n \"zmp\": 1}", "f.json:2:10: a comma is missing after 0.5"},
@@ -82,8 +82,8 @@ TEST(JsonReader, NamesASlipInWordsAboutTheText) {
     EXPECT_TRUE(parse_error(text).starts_with(words)) << text << "\n" << parse_error(text);
 }
 
-// A character that is left out of a pattern: the message names its line, and for a bracket, whose
-// line only its author knows, it names some slip in any case.
+// A character is left out of a pattern: the message names its line. For a bracket, whose line only
+// its author knows, it names some slip in any case.
 TEST(JsonReader, NamesTheLineOfAnyCharacterThatIsLeftOut) {
   const std::string text = R"({
   "name": "kick", // a comment, with "quotes"
@@ -127,8 +127,8 @@ TEST(JsonReader, RefusesTextThatNestsTooDeeply) {
             "brackets");
 }
 
-// 100,000 members took minutes, because each of them was visited again after every other.
-// Values that are read otherwise than by parse_json.
+// Before, 100,000 members took minutes, because each of them was visited again after every other.
+// These values are not read by parse_json().
 TEST(JsonReader, DepthIsCountedOutsideOfStringsAndComments) {
   const std::string deep(201, '['), flat(200, '[');
   EXPECT_EQ(nested_too_deep(deep), std::optional<size_t>(200));
@@ -153,7 +153,7 @@ TEST(JsonReader, TakesTimeThatIsLinearInTheNumberOfMembers) {
   EXPECT_EQ(document["p99999"]["a"][1], 2);
 }
 
-// A slip at the end of a long line, which may have any number of brackets.
+// The slip is at the end of a long line, which may have any number of brackets.
 TEST(JsonReader, FindsASlipInTimeThatIsLinearInTheText) {
   std::string text = "[";
   for (int i = 0; i < 300'000; ++i) text += "[{\"a\": 1}], ";

@@ -1,4 +1,4 @@
-// A log is drawn and computed with only where it is one of its robot.
+// A log is only drawn and used in computations if it is a log of its robot.
 #include "ayumi/io/run/log_robot.hpp"
 
 #include <gtest/gtest.h>
@@ -58,7 +58,7 @@ TEST(LogRobot, PosturesOfAnotherRobotAreRefused) {
     EXPECT_EQ(message.find("run: at t = 0.300 s the COG of robot '"), 0u) << message;
     EXPECT_NE(message.find(differs), std::string::npos) << message;
   }
-  // The load is there, but not in the scenario; or the other way round.
+  // The load is in the samples but not in the scenario, or the other way round.
   SimulationLog other = standing({load(0.2, 0.5, 0.2)});
   other.scenario.clear();
   EXPECT_NE(refused(other).find(differs), std::string::npos);
@@ -93,7 +93,7 @@ TEST(LogRobot, AttitudesAreRotations) {
             "has changed; run the pattern again");
 }
 
-// Its masses are in no file.
+// The masses of this robot are in no file.
 TEST(LogRobot, ADrawnRobotMayHaveOtherMasses) {
   SimulationLog log = standing();
   for (SimulationSample& sample : log.samples) sample.cog.x() += 0.01;

@@ -1,4 +1,4 @@
-// A log that is written while it grows is the log that is written at once.
+// A log that is written while it grows is the same as a log that is written at once.
 #include "ayumi/io/run/log_writer.hpp"
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ SimulationLog log_of_rows(size_t rows) {
   return log;
 }
 
-/// Of more than one block; made once, because most tests only read it.
+/// A log of more than one block. It is made once, because most tests only read it.
 const SimulationLog& long_log() {
   static const SimulationLog log = log_of_rows(kLogBlockRows + 3);
   return log;
@@ -93,7 +93,7 @@ TEST(LogWriter, WritesTheBytesOfTheWholeLog) {
   EXPECT_EQ(read_file(folder / "log.bin"), long_bytes());
   EXPECT_EQ(written.log_hash, log_hash(long_log()));
   EXPECT_EQ(written.file_hash, sha256(long_bytes()));
-  // No scratch file stays.
+  // No scratch file is left.
   EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1);
 }
 
@@ -156,13 +156,13 @@ TEST(LogInBlocks, IsReadBackWhole) {
   ASSERT_EQ(back.samples.size(), long_log().samples.size());
   EXPECT_TRUE(log_hash(back) == log_hash(long_log()));
   EXPECT_TRUE(log_bytes(back) == long_bytes());
-  // A log of one block is one of version 3.
+  // A log of one block is a log of version 3.
   const std::string short_bytes = log_bytes(log_of_rows(20));
   EXPECT_EQ(short_bytes[8], 3);
   EXPECT_FALSE(header(short_bytes).contains("block_rows"));
 }
 
-// A file without the places of the largest shares is one from before they were stored.
+// A file without the places of the largest shares was written before these were stored.
 TEST(LogInBlocks, KeepsTheJointAndTheTimeOfTheLargestShares) {
   SimulationLog log = log_of_rows(20);
   const SimulationLog old = parse_log(log_bytes(log), "x.bin");
@@ -182,7 +182,7 @@ TEST(LogInBlocks, BrokenFilesGetOneClearMessage) {
             std::string::npos);
   EXPECT_NE(log_error(good + "xy").find("damaged: there are 2 bytes after the samples"),
             std::string::npos);
-  std::string third = good;  // says that all blocks are one
+  std::string third = good;  // this one says that all blocks are one
   third[8] = 3;
   EXPECT_NE(log_error(third).find("damaged: there are "), std::string::npos);
   std::string flipped = good;

@@ -1,5 +1,5 @@
-// Meshes are read in a process of its own: hostile files, readers that fail, and answers that are
-// not to be believed.
+// Meshes are read in a separate process: hostile files, readers that fail, and answers that must
+// not be believed.
 
 #include <gtest/gtest.h>
 
@@ -24,8 +24,8 @@ using test::TemporaryFolder;
 
 const char* const kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
-/// A tetrahedron. `accessor`: attributes of the accessor of its places; `nodes`: a library of
-/// nodes; `node`: what the node of the scene holds.
+/// A tetrahedron. `accessor` has the attributes of the accessor of its places, `nodes` is a library
+/// of nodes, and `node` is the content of the node of the scene.
 std::string collada(const std::string& accessor, const std::string& nodes,
                     const std::string& node) {
   return R"(<?xml version="1.0" encoding="utf-8"?>
@@ -52,7 +52,7 @@ std::string repeated(const std::string& text, int times) {
   return all;
 }
 
-/// 4^20 instances of one geometry.
+/// A file with 4^20 instances of one geometry.
 std::string bomb() {
   std::string nodes = "<library_nodes>";
   for (int i = 0; i < 20; ++i)
@@ -75,14 +75,14 @@ std::string glb(char version) {
 
 struct Hostile {
   std::string file, bytes;
-  std::string message;  ///< one of the parts between bars is in the message
+  std::string message;  ///< one of the parts between bars must be in the message
 };
 std::ostream& operator<<(std::ostream& out, const Hostile& hostile) { return out << hostile.file; }
 
 class HostileMesh : public testing::TestWithParam<Hostile> {};
 
-// The memory of this process cannot grow, since the reader has it; what is left to see is that this
-// process lives, answers soon and gives one message.
+// The memory of this process cannot grow, since the reader has it. The test therefore shows that
+// this process lives, answers soon and gives one message.
 TEST_P(HostileMesh, IsRefusedInOneLine) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "the sanitizers reserve terabytes of addresses, so the reader has no limit";
@@ -150,7 +150,8 @@ TEST(HostileMesh, HidesNoneOfTheOthers) {
                           repeated("<node>", 200000) + kInstance + repeated("</node>", 200000)));
   const auto words = folder.write("words.stl", "no mesh at all");
   MeshFailure failure;
-  // One reader has the good mesh, the deep one and, after it crashed, a fresh one the last.
+  // One reader reads the good mesh and the deep one; after it has crashed, a fresh one reads the
+  // last.
   EXPECT_EQ(load_meshes({{good}, {good}, {good}, {good}, {good}, {good}}, failure).size(), 6u);
   EXPECT_FALSE(failure.error);
   load_meshes({{good}, {good}, {words}, {good}, {good}, {deep}}, failure);
@@ -161,7 +162,7 @@ TEST(HostileMesh, HidesNoneOfTheOthers) {
             std::string::npos);
 }
 
-// A stop was heard after all meshes had been read, which took seconds.
+// Before, a stop had an effect only after all meshes had been read, which took seconds.
 TEST(MeshReader, IsStoppedWhileItReads) {
   const TemporaryFolder folder;
   const auto mesh = folder.write("good.obj", kTriangle);
@@ -191,10 +192,10 @@ TEST(MeshCompanions, AreOpenedOnlyWhereTheyMayBelongToAMesh) {
   EXPECT_FALSE(is_red("/etc/passwd"));
 }
 
-// A reader that is a script of the shell; its connection is its standard input.
+// A reader that is a shell script; its connection is its standard input.
 class FailingMeshReader : public testing::Test {
  protected:
-  // A hello; kind 0x4d595901 and version 1, least byte first.
+  // A hello, with kind 0x4d595901 and version 1, least byte first.
   const std::string hello =
       "printf '\\001\\131\\131\\115\\000\\000\\000\\000\\001\\000\\000\\000\\000\\000\\000\\000' "
       ">&0\n";
@@ -206,7 +207,8 @@ class FailingMeshReader : public testing::Test {
     return error_message([&] { load_mesh(mesh_, Eigen::Vector3d::Ones(), reading); },
                          ErrorCode::bad_file);
   }
-  // A message of the kind with a size, both in octal bytes for printf, least byte first.
+  // The head of a message of this kind with a size, both as octal bytes for printf, least byte
+  // first.
   static std::string head(const std::string& kind, const std::string& size) {
     return "printf '" + kind + "\\131\\131\\115\\000\\000\\000\\000" + size + "' >&0\n";
   }
@@ -291,7 +293,7 @@ std::string line_of_process(const std::string& process, const std::string& file,
 TEST(MeshReaderProcess, IsConfined) {
   ChildProcess child(find_mesh_reader(), {});
   child.set_time(20);
-  MeshMessageHead hello;  // it is confined when it says so
+  MeshMessageHead hello;  // the process is confined when it says so
   ASSERT_EQ(child.receive(&hello, sizeof hello), ChildProcess::Exchange::done);
   std::ifstream children("/proc/thread-self/children");
   std::string process;
@@ -360,7 +362,7 @@ TEST(EncodedMesh, IsNotBelieved) {
             "part 1: the texture is neither a name nor a picture");
 }
 
-// Whatever a single byte says, the decoder refuses the mesh or returns one that is in order.
+// Whatever value a single byte gets, the decoder either refuses the mesh or returns a correct one.
 TEST(EncodedMesh, MayHaveAnyByteChanged) {
   const std::string bytes = encode_mesh(square());
   int refused = 0;

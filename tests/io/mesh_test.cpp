@@ -14,11 +14,11 @@ namespace {
 
 using test::TemporaryFolder;
 
-// A tetrahedron with corners at 0 and at 1, 2, 3 along the axes; volume 1.
+// A tetrahedron with corners at 0 and at 1, 2 and 3 along the axes; its volume is 1.
 const char* const kTetrahedron =
     "v 0 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 3\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
 
-// Volume enclosed, by the divergence theorem: positive when the triangles face outwards.
+// The enclosed volume by the divergence theorem, which is positive if the triangles face outwards.
 double volume(const TriangleMesh& mesh) {
   double sum = 0;
   for (const MeshPart& part : mesh.parts)
@@ -29,7 +29,7 @@ double volume(const TriangleMesh& mesh) {
   return sum;
 }
 
-// Least cosine between a triangle's face normal and the normals of its corners.
+// The smallest cosine between a triangle's face normal and the normals of its corners.
 double worst_normal(const TriangleMesh& mesh) {
   double worst = 1;
   for (const MeshPart& part : mesh.parts)
@@ -88,7 +88,7 @@ TEST(Mesh, ReadsBinaryStlAndRefusesACutOne) {
   EXPECT_EQ(mesh.parts[0].triangles.size(), 1u);
   EXPECT_FALSE(mesh.parts[0].has_color);
   EXPECT_THROW(load_mesh(folder.write("b.stl", bytes.substr(0, 100))), Error);
-  bytes[83] = 127;  // claims two thousand million triangles
+  bytes[83] = 127;  // the file claims to have two thousand million triangles
   EXPECT_THROW(load_mesh(folder.write("c.stl", bytes)), Error);
 }
 
@@ -139,7 +139,7 @@ TEST(Mesh, AppliesColladaUnitsAndIgnoresItsUpAxis) {
     low = std::min(low, vertex.z());
     high = std::max(high, vertex.z());
   }
-  EXPECT_NEAR(low, 0.5, 1e-6);  // the node's own shift, in the file's unit
+  EXPECT_NEAR(low, 0.5, 1e-6);  // the shift of the node itself, in the unit of the file
   EXPECT_NEAR(high, 3.5, 1e-6);
   std::string wrong = text;
   wrong.replace(wrong.find("1 2 3 2 0 3"), 1, "-1");
@@ -152,7 +152,7 @@ TEST(Mesh, AppliesColladaUnitsAndIgnoresItsUpAxis) {
   }
 }
 
-// The project's own meshes: closed, facing outwards, with normals that follow their faces.
+// The project's own meshes are closed, face outwards, and have normals that follow their faces.
 TEST(Mesh, Hoap1FacesOutwards) {
   const RobotModel model = load_robot("hoap1", {{AYUMI_SOURCE_DIR "/robots"}}, {.meshes = true});
   for (const Link& link : model.links()) {

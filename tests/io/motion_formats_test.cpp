@@ -1,5 +1,5 @@
 // Motions in the formats of other programs: round trips, recognition, mapping of joints, and one
-// line for what cannot be read.
+// line for files that cannot be read.
 
 #include "ayumi/io/formats/motion_formats.hpp"
 
@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 struct RoundTrip {
   std::string format;
-  double angle, place;  // largest difference [rad, m]
+  double angle, place;  // largest differences [rad, m]
   bool names, root;
   double rate = 50;
 };
@@ -71,11 +71,11 @@ INSTANTIATE_TEST_SUITE_P(
         RoundTrip{"webots", 0, 0, true, false}, RoundTrip{"webots-1.1", 0, 0, true, false},
         RoundTrip{"choreonoid", 0, 0, true, true}, RoundTrip{"tracking-npz", 0, 0, true, true},
         RoundTrip{"gmr-npz", 0, 0, true, true},
-        // Half a count of 4096 a turn; servos of 8 ms.
+        // The error is half a count of 4096 per turn; the servos have a period of 8 ms.
         RoundTrip{"op3-action", 0.5 * EIGEN_PI / 2048 + 1e-12, 0, true, false, 62.5},
         RoundTrip{"ros-trajectory", 0, 0, true, false},
         RoundTrip{"play-motion2", 0, 0, true, false},
-        // Degrees with twelve digits.
+        // The format has degrees with twelve digits.
         RoundTrip{"qianim", 1e-12, 0, true, false}, RoundTrip{"poppy-move", 1e-12, 0, true, false},
         RoundTrip{"open-duck", 0, 0, true, true}, RoundTrip{"deepmimic", 0, 0, true, true},
         RoundTrip{"zvs", 0, 1e-15, true, true}, RoundTrip{"transposed-csv", 0, 0, true, false},
@@ -92,7 +92,7 @@ std::string refusal_of(const std::string& bytes, const std::string& file = "m.da
   return error_message([&] { read_motion_rows(bytes, file, hoap1(), options); });
 }
 
-// A root at 1e30 m, as a damaged number makes it, is no motion.
+// A root at 1e30 m, which a damaged number can cause, is no motion.
 TEST(MotionFormats, PlacesThatNoMotionReachesAreRefused) {
   const auto rows = [](const std::string& x) {
     std::string text;
@@ -141,14 +141,14 @@ TEST(MotionFormats, ForeignFilesAreNamed) {
   EXPECT_NE(refusal_of("This robot, as I said, walks at 3 m/s.\nIt has no motion here.\n")
                 .find("this is a text without rows of numbers"),
             std::string::npos);
-  // Numbers under words that blanks separate are a table, whose separators are wrong.
+  // Numbers under words that are separated by blanks are a table with wrong separators.
   EXPECT_NE(refusal_of("time l_knee r_knee\n0 0.1 0.2\n").find("only blanks separate"),
             std::string::npos);
   for (const std::string& name : read_format_names())
     EXPECT_NE(refusal_of("???").find(name), std::string::npos) << name;
 }
 
-// The end of the message of a file that was recognized.
+// The end of the message about a file whose format was recognized.
 std::string told(const std::string& message) {
   const size_t at = message.find("; import reads tracking-npz, ");
   EXPECT_NE(at, std::string::npos) << message;
@@ -214,7 +214,7 @@ TEST(MotionFormats, TheRobotBesideAZvsNamesItsJoints) {
   write_file(main, files[0].bytes);
   EXPECT_NE(refusal_of(files[0].bytes, main).find("without names; give --order"),
             std::string::npos);
-  // The order of this robot is another one than that of the model.
+  // This robot has its joints in another order than the model.
   std::vector<std::string> turned = model.dof_names();
   std::reverse(turned.begin(), turned.end());
   write_file(robot, ztk_text(model.description(), turned));
@@ -222,7 +222,7 @@ TEST(MotionFormats, TheRobotBesideAZvsNamesItsJoints) {
   for (int i = 0; i < model.dof_count(); ++i)
     EXPECT_EQ(read.motion.theta.col(i), written.values.col(model.dof_count() - 1 - i)) << i;
   EXPECT_EQ(read.motion.base.size(), written.base.size());
-  // A robot with another number of joints, and one that cannot be read, are said and not used.
+  // A robot with another number of joints, and one that cannot be read, are reported and not used.
   turned.pop_back();
   for (const std::string& other :
        {ztk_text(model.description(), turned), std::string("[roki::chain]\n[roki::link]\n")}) {
@@ -248,7 +248,7 @@ TEST(MotionFormats, JointsAreMappedByNameAndByOrderOnlyOnRequest) {
   EXPECT_NE(refusal_of(rows).find("20 joint columns without names; give --order"),
             std::string::npos)
       << refusal_of(rows);
-  // An order of 20 joints does not name 19 columns.
+  // An order of 20 joints does not fit 19 columns.
   const std::string fewer = refusal_of(std::regex_replace(rows, std::regex(",[^,]*\n"), "\n"));
   EXPECT_NE(fewer.find("19 joint columns without names, but 'hoap1' has 20 joints"),
             std::string::npos)
@@ -314,7 +314,7 @@ TEST(MotionFormats, WrittenOnlyFormatsHaveARowForEachRow) {
   EXPECT_NE(keys.find("<key name=\"k39\" time=\"0.78\" qpos=\"0.39 "), std::string::npos);
 }
 
-// Keys are met, and nothing swings over them.
+// The motion passes through the keys, and does not swing beyond them.
 TEST(MotionFormats, KeysAreMet) {
   const std::string text = "time,0,0.5,1.5\nl_knee,0,1,1\nr_knee,0,0.5,1\n";
   const ImportedMotion read = read_motion_rows(text, "k.csv", hoap1());
@@ -326,8 +326,8 @@ TEST(MotionFormats, KeysAreMet) {
   EXPECT_LE(knee.maxCoeff(), 1 + 1e-12);
 }
 
-// A row of words below the joints, as soccerbot's files have it, is no joint. A word among numbers
-// is a mistake.
+// A row of words below the joints, as in soccerbot's files, does not name joints. A word among
+// numbers is a mistake.
 TEST(MotionFormats, RowsOfWordsAreNoJoints) {
   const std::string keys = "time,0.5,1.5,2\nl_knee,0,1,1\nr_knee,0,0.5,1\n";
   const ImportedMotion read =
@@ -343,7 +343,7 @@ TEST(MotionFormats, RowsOfWordsAreNoJoints) {
             std::string::npos);
 }
 
-// The robot stands in its home posture, with the soles `height` [m] over the ground in each row.
+// The robot stands in its home posture, with the soles `height` [m] above the ground in each row.
 RawMotion standing(const std::vector<double>& height, double dt) {
   const RobotModel& model = hoap1();
   RawMotion motion;
@@ -364,7 +364,7 @@ TEST(MotionFormats, SolesThatHoverCarryAndSolesThatFallDoNot) {
   std::vector<double> hovers, jumps;
   for (int k = 0; k < 100; ++k) {
     hovers.push_back(0.005 + 0.004 * std::sin(0.1 * k));
-    const double t = 0.02 * (k - 40);  // in the air from row 40 to row 60
+    const double t = 0.02 * (k - 40);  // it is in the air from row 40 to row 60
     jumps.push_back(k < 40 || k > 60 ? 0 : 0.5 * 9.80665 * t * (0.4 - t));
   }
   const RawMotion hovering = standing(hovers, 0.02);
@@ -383,7 +383,7 @@ TEST(MotionFormats, SolesThatHoverCarryAndSolesThatFallDoNot) {
   EXPECT_TRUE(grounded(hoap1(), low, "t.csv").notes.empty());
 }
 
-// A recording that is cut at both ends: a knee turns at 1 rad/s all the time, the root goes
+// A recording is cut off at both ends: a knee turns at 1 rad/s all the time, and the root moves
 // forward.
 TEST(MotionFormats, RampsLetARecordingBeginAndEndAtRest) {
   RawMotion motion = standing(std::vector<double>(60, 0), 0.02);
@@ -408,7 +408,7 @@ TEST(MotionFormats, RampsLetARecordingBeginAndEndAtRest) {
   EXPECT_EQ(ramped.theta.middleRows(20, 40), motion.theta.middleRows(10, 40));
   EXPECT_EQ(ramped.theta.row(0), motion.theta.row(0));
   EXPECT_EQ(ramped.theta.row(79), motion.theta.row(59));
-  double jump = 0;  // of the rate, from rest at both ends [rad/s]
+  double jump = 0;  // largest jump of the rate, from rest at both ends [rad/s]
   for (int k = 0; k <= 79; ++k) {
     const double before = k > 0 ? ramped.theta(k, knee) - ramped.theta(k - 1, knee) : 0;
     const double after = k < 79 ? ramped.theta(k + 1, knee) - ramped.theta(k, knee) : 0;
@@ -417,7 +417,8 @@ TEST(MotionFormats, RampsLetARecordingBeginAndEndAtRest) {
                 1e-12);
     jump = std::max(jump, std::abs(after - before) / 0.02);
   }
-  // Minimum jerk from 0 to 1 rad/s in 20 rows: 1.875 / 20 at most; without a ramp it is 1.
+  // A minimum-jerk ramp from 0 to 1 rad/s in 20 rows has at most 1.875 / 20; without a ramp the
+  // jump is 1.
   EXPECT_LT(jump, 0.1);
   EXPECT_TRUE(cut_ends(hoap1(), ramped).words.empty());
   EXPECT_NE(error_message([&] { with_ramps(hoap1(), motion, 2); }).find("too long for a motion"),
@@ -426,7 +427,7 @@ TEST(MotionFormats, RampsLetARecordingBeginAndEndAtRest) {
   EXPECT_EQ(with_ramps(hoap1(), still, 0.4).theta.rows(), 60);
 }
 
-// The right foot twitches for a moment, while the COG is between the feet, far from either.
+// The right foot twitches for a moment, while the COG is between the feet and far from either.
 TEST(MotionFormats, AFootThatTheCogIsFarFromDoesNotCarryAlone) {
   RawMotion motion = standing(std::vector<double>(100, 0), 0.01);
   const RobotModel& model = hoap1();
@@ -443,11 +444,12 @@ TEST(MotionFormats, AFootThatTheCogIsFarFromDoesNotCarryAlone) {
     turn("r_hip_pitch", -0.15, first, count);
     turn("r_ankle_pitch", -0.15, first, count);
   };
-  for (BasePose& base : motion.base) base.position.z() -= 0.01;  // about; the lowest sole is found
+  // The height is approximate, because the lowest sole is found anyway.
+  for (BasePose& base : motion.base) base.position.z() -= 0.01;
   twitch(50, 3);
   const std::vector<Support> brief = detect_supports(model, motion);
   EXPECT_EQ(std::count(brief.begin(), brief.end(), Support::both), 100);
-  twitch(20, 25);  // a quarter of a second is no moment
+  twitch(20, 25);  // a quarter of a second is more than a moment
   const std::vector<Support> longer = detect_supports(model, motion);
   EXPECT_EQ(longer[32], Support::left);
   EXPECT_EQ(longer[51], Support::both);
@@ -476,7 +478,7 @@ TEST(MotionFormats, OneOfSeveralMotionsIsChosen) {
                 .find("there is no motion 'jump'; the file has 1 'wave', 2 'bow'"),
             std::string::npos);
 
-  // Two pages of an action file that do not follow each other.
+  // These are two pages of an action file that do not follow each other.
   MotionFile short_motion = moving(hoap1(), 7, 62.5);
   short_motion.name = "nod";
   std::string bytes = find_motion_format("op3-action")->write(hoap1(), short_motion)[0].bytes;
@@ -497,8 +499,8 @@ TEST(MotionFormats, OneOfSeveralMotionsIsChosen) {
       << said;
 }
 
-// A damaged page was played when another page led to it, and a file that was cut was of no known
-// format.
+// Before, a damaged page was played if another page led to it, and a file that was cut off had no
+// known format.
 TEST(MotionFormats, DamagedPagesOfAnActionFileAreRefused) {
   MotionFile motion = moving(hoap1(), 15, 62.5);
   motion.name = "nod";
@@ -555,11 +557,11 @@ TEST(MotionFormats, KeyPosesOfAnotherVersionOrWithAJointTwiceAreRefused) {
             0u);
   EXPECT_EQ(refusal("# Body pose sequence format version 1.0, by a program\n" + head + keys),
             "no error");
-  // "refer:" within a word is no key.
+  // "refer:" within a word does not count as a key.
   std::string remarks;
   for (int i = 0; i <= 20'000; ++i) remarks += "# prefer:\n";
   EXPECT_EQ(refusal(head + remarks + keys), "no error");
-  // The character that marks lists, as such and as an escape.
+  // The character that marks lists is written as such, and as an escape.
   for (const std::string del : {"\x7f", "\\x7f"})
     EXPECT_EQ(refusal(replaced(head, "PoseSeq\n", "PoseSeq\nlabel: \"a" + del + "\"\n") + keys),
               "no error");
@@ -568,7 +570,8 @@ TEST(MotionFormats, KeyPosesOfAnotherVersionOrWithAJointTwiceAreRefused) {
             0u);
 }
 
-// Lists of numbers are read past the parser; what only looks like one is a text as before.
+// Lists of numbers are not read by the parser; text that only looks like such a list is read as
+// before.
 TEST(MotionFormats, ListsOfNumbersInYamlAreThoseOfTheParser) {
   const YamlNode root = parse_yaml(
       "a: [ 1, -2.5e-3 , +3 ]\n"
@@ -602,7 +605,8 @@ TEST(MotionFormats, AChangeInTheLastRowMakesNoPhase) {
   EXPECT_NEAR(pattern.phases[0].until, 0.38, 1e-12);
 }
 
-// Real files of other projects. Their robots are not here, so the joints are named after this one.
+// These are real files of other projects. Their robots are not here, so that the joints of this
+// robot are renamed after them.
 TEST(MotionFormats, RealFilesAreRead) {
   const fs::path data = fs::path(AYUMI_SOURCE_DIR) / "../shared/data";
   if (!fs::exists(data)) GTEST_SKIP() << "no real files";
@@ -611,7 +615,7 @@ TEST(MotionFormats, RealFilesAreRead) {
     const std::string file = entry.path().string();
     if (entry.path().extension() != ".motion") continue;
     const std::string bytes = read_file(file);
-    // Another robot: the message says which joints match.
+    // For another robot, the message says which joints match.
     EXPECT_NE(refusal_of(bytes, file).find("this is a motion of another robot"), std::string::npos);
     ++tried;
   }

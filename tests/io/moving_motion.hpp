@@ -10,7 +10,7 @@
 
 namespace ayumi::test {
 
-/// Numbers have all their digits.
+/// A motion whose numbers have all their digits.
 inline MotionFile moving(const RobotModel& model, int rows = 40, double rate = 50) {
   MotionFile motion;
   motion.rate = rate;
@@ -29,7 +29,7 @@ inline MotionFile moving(const RobotModel& model, int rows = 40, double rate = 5
   return motion;
 }
 
-/// The same as a joint table.
+/// The same motion as a joint table.
 inline ReferenceTrajectory table_of(const RobotModel& model, const MotionFile& motion) {
   ReferenceTrajectory table;
   table.dt = 1 / motion.rate;
@@ -46,7 +46,7 @@ inline ReferenceTrajectory table_of(const RobotModel& model, const MotionFile& m
   return table;
 }
 
-/// Every row as a key pose of Choreonoid, with all joints by their numbers.
+/// The key poses of Choreonoid with every row as one key, and all joints by their numbers.
 inline std::string key_poses_of(const RobotModel& model, const MotionFile& motion) {
   std::string text = "type: PoseSeq\nname: moving\ntargetBody: r\nrefs:\n";
   for (Eigen::Index k = 0; k < motion.rows(); ++k) {
@@ -62,7 +62,7 @@ inline std::string key_poses_of(const RobotModel& model, const MotionFile& motio
   return text;
 }
 
-/// The main file of the motion in a format that is read; "": there is no way to write one here.
+/// The main file of the motion in a format that can be read; "" if it cannot be written here.
 inline std::string file_of(const MotionFormat& format, const RobotModel& model,
                            const MotionFile& motion) {
   if (format.write) return format.write(model, motion)[0].bytes;

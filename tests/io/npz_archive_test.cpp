@@ -16,7 +16,7 @@ TEST(NpzArchive, HoldsWhatWasWritten) {
   EXPECT_EQ(arrays.at("angles").numbers, (std::vector<double>{1, 2.5, -3, 4e-300, 5, 6}));
 }
 
-// Every bit of the numbers is under the checksum of the archive.
+// The checksum of the archive covers every bit of the numbers.
 TEST(NpzArchive, AChangedBitIsNoticed) {
   const std::string numbers(6 * sizeof(double), '\0'),
       whole = zip_of({{"angles.npy", npy_bytes("<f8", {6}, numbers)}});

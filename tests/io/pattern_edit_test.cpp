@@ -1,4 +1,4 @@
-// Edits of a pattern's text leave every byte alone that they are not about.
+// Edits of a pattern's text change no byte that they are not about.
 #include "ayumi/io/pattern/pattern_edit.hpp"
 
 #include <gtest/gtest.h>
@@ -51,7 +51,7 @@ std::string on_one_line(const std::string& text) {
   return Document::parse(text, nullptr, true, true).dump();
 }
 
-// The bundled patterns and texts as people write them.
+// The bundled patterns, and texts in the style of authors.
 std::vector<std::string> texts() {
   std::vector<std::string> all = {kAuthored, with_crlf(kAuthored), on_one_line(kAuthored)};
   std::vector<fs::path> files;
@@ -103,7 +103,7 @@ TEST(PatternEdit, ASetValueIsTheOnlyChange) {
       const std::string rest = text.substr(place->end);
       ASSERT_GE(after.size(), rest.size());
       EXPECT_EQ(after.substr(after.size() - rest.size()), rest) << pointer;
-      if (value.is_string() && !words) continue;  // the next test
+      if (value.is_string() && !words) continue;  // the next test covers words
       Document expected = before;
       expected.at(at) = wanted;
       EXPECT_EQ(document_of(after), expected) << pointer;

@@ -110,7 +110,7 @@ TEST_F(PatternFile, TableBesideThePattern) {
   EXPECT_EQ(p.table->joints, std::vector<std::string>{"l_knee"});
   EXPECT_EQ(p.table->theta(2, 0), 1.5);
   EXPECT_EQ(p.table->fz.at(1), 61);
-  // Elsewhere, the path is rewritten so that it still leads to the table.
+  // In another folder, the path is rewritten so that it still leads to the table.
   fs::create_directories(folder_ / "sub");
   write_pattern(folder_ / "sub" / "q.json", p);
   EXPECT_EQ(read_pattern(folder_ / "sub" / "q.json").table->theta, p.table->theta);

@@ -81,7 +81,7 @@ TEST(PatternInFewWords, DurationsAddUp) {
       "keyframes": [{"after": 0.1, "zmp": "center"}, {"t": 0.2, "zmp": "left"},
                     {"after": 0.1, "zmp": "center"}])");
   ASSERT_EQ(p.phases.size(), 3u);
-  EXPECT_EQ(p.phases[2].until, 0.6);  // 0.5 + 0.1 as it would be written
+  EXPECT_EQ(p.phases[2].until, 0.6);  // 0.5 + 0.1, as it would be written
   EXPECT_EQ(p.keyframes[0].t, 0.1);
   EXPECT_EQ(p.keyframes[2].t, 0.3);
   EXPECT_NE(said(R"("phases": [{"support": "both"}])")
@@ -99,7 +99,7 @@ TEST(PatternInFewWords, DurationsAddUp) {
             std::string::npos);
 }
 
-// Blocks are what somebody writes out: the same numbers, in the same order.
+// A block gives the same numbers in the same order as the text without it.
 TEST(PatternInFewWords, RepeatedBlocksAreWrittenOut) {
   const Pattern few = few_words(R"~("parameters": {"T": 0.5},
       "phases": [{"until": 1, "support": "both"},
@@ -123,7 +123,8 @@ TEST(PatternInFewWords, RepeatedBlocksAreWrittenOut) {
   EXPECT_DOUBLE_EQ(few.keyframes[1].t, 0.5);
   EXPECT_DOUBLE_EQ(few.keyframes[2].t, 1.5);
   EXPECT_DOUBLE_EQ(few.keyframes[2].joints.at("l_elbow"), 10 * M_PI / 180);
-  EXPECT_EQ(few.parameters, (std::map<std::string, double>{{"T", 0.5}}));  // no counts
+  // Counts are not among them.
+  EXPECT_EQ(few.parameters, (std::map<std::string, double>{{"T", 0.5}}));
 }
 
 TEST(PatternInFewWords, MistakesInBlocksAreNamed) {
@@ -146,7 +147,7 @@ TEST(PatternInFewWords, MistakesInBlocksAreNamed) {
   EXPECT_NE(block("\"repeat\": 2, \"count\": \"a{\", " + step).find("must not contain"),
             std::string::npos);
   EXPECT_NE(block("\"repeat\": 2, \"until\": 3, " + step).find("until"), std::string::npos);
-  // The round is named, because the place alone does not tell it.
+  // The round is named, because the place alone does not identify it.
   EXPECT_NE(block(R"("repeat": 3, "count": "i", "phases": [{"until": "2 - ${i}",
                      "support": "both"}])")
                 .find("this phase begins at 2 s and ends at 1 s; give a later time; if 1 s are "
@@ -154,7 +155,7 @@ TEST(PatternInFewWords, MistakesInBlocksAreNamed) {
                       "\"until\" (round 2 of "
                       "3)"),
             std::string::npos);
-  // A count is known in its block only.
+  // A count is only known inside its block.
   EXPECT_NE(said(R"("keyframes": [{"t": "${i}", "zmp": "center"}], "phases": [{"repeat": 2,
                     "count": "i", )" +
                  step + "}]")
@@ -169,7 +170,7 @@ TEST(PatternInFewWords, MistakesInBlocksAreNamed) {
   EXPECT_NE(said("\"phases\": [" + many + "]").find("more than 100000 items"), std::string::npos);
 }
 
-// Poses by hand: a turn and a displacement in the frame of the other sole.
+// The poses are computed by hand: a turn and a displacement in the frame of the other sole.
 TEST(PatternInFewWords, StepsAreSeenFromTheOtherFoot) {
   const Pattern p = with_phases(R"({"until": 1, "support": "both"},
       {"until": 1.5, "support": "left", "swing": {"foot": "right",
@@ -231,7 +232,7 @@ TEST(PatternInFewWords, WrittenAndMirroredStepsStay) {
   EXPECT_NEAR(matrix_to_rpy(there.linear()).z(), -matrix_to_rpy(here.linear()).z(), 1e-9);
 }
 
-// An edit of a value in a block: what changes is the expression's last number.
+// A value in a block is edited: only the last number of its expression changes.
 TEST(PatternInFewWords, ValuesInBlocksAreEdited) {
   const std::string text = R"({ "parameters": { "w": 0.04 },
   "phases": [ { "repeat": 3, "count": "i", "phases": [
@@ -245,7 +246,7 @@ TEST(PatternInFewWords, ValuesInBlocksAreEdited) {
   EXPECT_THROW(value_in_text(text, "/phases/0/count/0"), std::exception);
 }
 
-// A parameter that is set from outside has that value when an expression is shifted.
+// If an expression is shifted, a parameter that is set from outside has that value.
 TEST(PatternInFewWords, ExpressionsAreEditedWithTheParametersThatAreSet) {
   const std::string text = R"({ "parameters": { "w": 0.04, "t": 1 }, "x": "2*${w}", "y": "${t}" })";
   EXPECT_DOUBLE_EQ(value_in_text(text, "/x", {{"w", 0.05}}), 0.1);

@@ -41,7 +41,7 @@ TEST_F(PatternSchema, KnowsExactlyTheKeysOfTheReader) {
             pattern.at("$defs").at("units").at("properties"));
 }
 
-// Every value of an enumeration in the schema is accepted by the reader, and nothing near it.
+// The reader accepts every value of an enumeration in the schema, and no similar word.
 TEST_F(PatternSchema, SchemaEnumerationsAreTheReaders) {
   const auto schema =
       nlohmann::json::parse(read_file(AYUMI_SOURCE_DIR "/docs/schemas/pattern-1.schema.json"));
@@ -67,15 +67,16 @@ nlohmann::json with_comments(const std::string& text) {
   return nlohmann::json::parse(text, nullptr, true, true);
 }
 
-// Schema and reader agree: what is written fits, what the reader refuses for its form does not.
+// Schema and reader agree: written files fit the schema, and files that the reader refuses for
+// their form do not.
 TEST_F(PatternSchema, SchemaAndReaderAgree) {
   const JsonSchema schema(
       nlohmann::json::parse(read_file(AYUMI_SOURCE_DIR "/docs/schemas/pattern-1.schema.json")));
   EXPECT_TRUE(schema.accepts(with_comments(kTwoSteps)));
   for (unsigned seed = 0; seed < 60; ++seed)
     EXPECT_TRUE(schema.accepts(with_comments(pattern_text(random_pattern(seed))))) << seed;
-  // Beyond a schema: order of times, meaning of names and expressions, other files, lengths of
-  // vectors.
+  // Some rules are beyond a schema: order of times, meaning of names and expressions, other files,
+  // lengths of vectors.
   const std::vector<std::string> beyond = {"give a later time",
                                            "carries the robot",
                                            "is already set",
@@ -106,7 +107,7 @@ TEST_F(PatternSchema, SchemaAndReaderAgree) {
     };
     if (std::any_of(beyond.begin(), beyond.end(), part_of_reason)) continue;
     const auto document = nlohmann::json::parse(with(each.key, each.value), nullptr, false, true);
-    if (document.is_discarded()) continue;  // not even JSON
+    if (document.is_discarded()) continue;  // the text is not even JSON
     EXPECT_FALSE(schema.accepts(document)) << each.key << ": " << each.value;
     ++judged;
   }

@@ -1,5 +1,5 @@
 #pragma once
-// Patterns as text, whole and broken, and a folder to read them from.
+// Patterns as text, correct and broken, and a folder to read them from.
 
 #include <gtest/gtest.h>
 
@@ -75,7 +75,7 @@ inline const char* const kTwoSteps = R"({
   "tolerances": { "foot_slip": 0.002 }
 })";
 
-// Small pattern with one piece replaced.
+// A small pattern with one piece replaced.
 inline std::string with(const std::string& key, const std::string& value) {
   const std::map<std::string, std::string> parts = {
       {"format", "\"ayumi.pattern/1\""},

@@ -1,4 +1,4 @@
-// Recordings of robots: what is read, and one line for what cannot be read.
+// Recordings of robots: those that are read, and one line for those that cannot be read.
 
 #include "ayumi/io/table/recording.hpp"
 
@@ -85,7 +85,7 @@ TEST(Recording, ATableWithGapsOrOtherUnitsGetsOneLine) {
   EXPECT_EQ(recording_error("t,r_knee\n0,45\n0.001,45\n0.002,45\n"),
             "m.csv: r_knee reaches 45 rad, which is more than a turn; if the angles are in "
             "degrees, give --unit deg");
-  // Degrees that move by more than a motor does are degrees first.
+  // If angles are degrees and move by more than a motor can, the unit is reported first.
   EXPECT_EQ(recording_error("t,r_knee\n0,40\n0.001,45\n0.002,45\n"),
             "m.csv: r_knee reaches 45 rad, which is more than a turn; if the angles are in "
             "degrees, give --unit deg");

@@ -47,7 +47,7 @@ TEST(ResultsJson, CheckHasTheKeysOfTheCommandLine) {
   EXPECT_EQ(Json::parse(check_json(report)).at("verdict"), "consistent");
 }
 
-// All figures of a check, each with a value of its own, survive run.json.
+// All figures of a check, each with a different value, are read back from run.json.
 TEST(ResultsJson, EveryFigureOfACheckIsReadBack) {
   ConsistencyReport report;
   report.profile = "hoap1";

@@ -38,7 +38,7 @@ TEST(Hoap1, HasTheFiguresOfItsReadme) {
   EXPECT_NEAR(knee.upper, 120 * kDegree, 1e-12);
   const ServoDescription& servo = model.limits().servo[model.find_dof("l_knee")];
   EXPECT_NEAR(servo.lag(), 0.0036, 1e-4);
-  EXPECT_GE(servo.kp, 2500);  // as measured: 2500 to 5000 N m/rad
+  EXPECT_GE(servo.kp, 2500);  // the measured values are 2500 to 5000 N m/rad
   EXPECT_LE(servo.kp, 5000);
   const ServoDescription& soft = model.limits("hoap1-soft").servo[model.find_dof("l_knee")];
   EXPECT_EQ(soft.kp, 600);
@@ -57,7 +57,7 @@ TEST(Hoap1, StandsAtHomeOverTheMiddleOfItsSoles) {
   RobotState state = model.rest_state();
   update_positions(model, state, data);
   anchor_base(model, Side::left, Eigen::Isometry3d::Identity(), state, data);
-  EXPECT_TRUE(state.base.attitude.toRotationMatrix().isIdentity(1e-12));  // upright
+  EXPECT_TRUE(state.base.attitude.toRotationMatrix().isIdentity(1e-12));  // the trunk is upright
   const Eigen::Isometry3d right = sole_pose(model, data, Side::right);
   EXPECT_TRUE(right.linear().isIdentity(1e-12));
   EXPECT_TRUE(right.translation().isApprox(Eigen::Vector3d(0, -0.078, 0), 1e-12));
@@ -74,7 +74,8 @@ TEST(Hoap1, IsTheSameByNameFolderAndFile) {
                                  read_file(kRobots + "/hoap1/robot.json")));
 }
 
-// A folder is a folder, whatever its name ends with, and also without the slash behind it.
+// A folder is recognized as a folder, whatever its name ends with, and also without the slash at
+// its end.
 TEST(RobotFile, TheNameOfAFolderMayEndLikeThatOfAFile) {
   const std::string sha256 = load_robot_description("hoap1", {{kRobots}}).sha256;
   const TemporaryFolder folder;
@@ -85,7 +86,7 @@ TEST(RobotFile, TheNameOfAFolderMayEndLikeThatOfAFile) {
     EXPECT_EQ(load_robot_description(path).sha256, sha256) << name;
     EXPECT_EQ(load_robot_description(path + "/").sha256, sha256) << name;
   }
-  // Such a folder is no robot file of the folder that holds it.
+  // Such a folder does not count as a robot file of the folder that contains it.
   folder.write("nested/robot.urdf", read_file(kRobots + "/hoap1/robot.urdf"));
   folder.write("nested/meshes.xml/notes.txt", "no robot here");
   EXPECT_EQ(load_robot_description((folder.path() / "nested").string()).sha256,
@@ -99,7 +100,7 @@ TEST(RobotFile, TheNameOfAFolderMayEndLikeThatOfAFile) {
   }
 }
 
-// The bare URDF: what is inferred is close to what the sidecar says, and said.
+// Values that are inferred from the bare URDF are close to those of the sidecar, and are reported.
 // Before, the robot was read without its sidecar, with servos that nobody had stated.
 TEST(RobotFile, ASidecarThatIsNoFileIsRefused) {
   const TemporaryFolder folder;
@@ -143,7 +144,7 @@ TEST(RobotFile, AnEarlierFolderHidesALaterOne) {
   EXPECT_THROW(load_robot("hoap2", {{kRobots}}), Error);
 }
 
-// A working folder may well hold a folder of that name with other things in it.
+// A working folder may contain a folder of that name with other things in it.
 TEST(RobotFile, AFolderWithoutARobotHidesNone) {
   const TemporaryFolder folder;
   folder.write("hoap1/notes.txt", "no robot here");
@@ -267,7 +268,7 @@ TEST(Sidecar, StatesLoadCellsAndTheLatencyOfEachSensor) {
   }
 }
 
-// The published schema takes the bundled sidecar, and refuses what the reader refuses.
+// The published schema accepts the bundled sidecar, and refuses what the reader refuses.
 TEST(Sidecar, FitsItsSchema) {
   const auto json = [](const std::string& file) {
     return nlohmann::json::parse(read_file(file), nullptr, true, true);

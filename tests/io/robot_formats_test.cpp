@@ -1,4 +1,5 @@
-// One robot in several formats is one robot: mass matrix, bias forces, COG, limits.
+// One robot in several formats is the same robot: mass matrix, bias forces, COG and limits are
+// equal.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +22,7 @@ namespace {
 using test::relative_error;
 using test::TemporaryFolder;
 
-// Relative to the norms: the formats hold every digit, and what is left is rounding.
+// Difference relative to the norms: the formats keep every digit, so that only rounding is left.
 constexpr double kSameRobot = 1e-9;
 
 bool has_mujoco() {
@@ -37,7 +38,7 @@ RobotModel from_text(const std::string& text, const std::string& name) {
   return RobotModel(parse_robot(text, name, {}));
 }
 
-// Columns of `other` in the order of the joints of `model`.
+// The columns of `other` are in the order of the joints of `model`.
 void expect_same(const RobotModel& model, const RobotModel& other, const std::string& what,
                  double degree_rounding = 0) {
   ASSERT_EQ(other.dof_count(), model.dof_count()) << what;
@@ -49,7 +50,7 @@ void expect_same(const RobotModel& model, const RobotModel& other, const std::st
     ASSERT_GE(there, 0) << what << ": " << model.dofs()[i].name;
     column[static_cast<size_t>(6 + i)] = 6 + there;
     EXPECT_EQ(other.dofs()[there].limited, model.dofs()[i].limited) << what;
-    // Some formats hold degrees, which round.
+    // Some formats have degrees, which causes rounding.
     EXPECT_NEAR(other.dofs()[there].lower, model.dofs()[i].lower, degree_rounding) << what;
     EXPECT_NEAR(other.dofs()[there].upper, model.dofs()[i].upper, degree_rounding) << what;
   }
@@ -227,8 +228,8 @@ RobotDescription mjcf(const std::string& inside, const std::string& around = "")
                      "m.xml", {});
 }
 
-// What MuJoCo's rules make of a model: classes, several joints of a body, inertia from shapes,
-// actuators, equalities, excluded pairs and what the MuJoCo at hand does not know.
+// The result of MuJoCo's rules for a model: classes, several joints of a body, inertia from shapes,
+// actuators, equalities, excluded pairs, and elements that the installed MuJoCo does not know.
 TEST(Mjcf, IsReadAsMujocoCompilesIt) {
   if (!has_mujoco()) GTEST_SKIP() << "built without MuJoCo";
   const RobotDescription robot = parse_robot(R"(
@@ -280,8 +281,8 @@ TEST(Mjcf, IsReadAsMujocoCompilesIt) {
   EXPECT_EQ(servo.kp, 80);
   EXPECT_NEAR(servo.kd, 1.2, 1e-12);
   EXPECT_EQ(servo.rotor_inertia, 0.01);
-  EXPECT_EQ(robot.servos.at("e").kp, 0);  // no actuator
-  EXPECT_EQ(joint("c").effort, 0);        // neither, whatever limits its force
+  EXPECT_EQ(robot.servos.at("e").kp, 0);  // it has no actuator
+  EXPECT_EQ(joint("c").effort, 0);        // it has none either, whatever limits its force
   EXPECT_EQ(robot.sensors.imu_link, "base");
   EXPECT_TRUE(robot.sensors.imu_position.isApprox(Eigen::Vector3d(0.01, 0, 0.02)));
   ASSERT_EQ(robot.collision_ignore.size(), 1u);
@@ -339,7 +340,7 @@ TEST(Mjcf, MeshesAreReadAsInOtherFormats) {
   EXPECT_THROW(load_robot(folder.write("n.xml", without).string()), Error);
 }
 
-// A primitive that names a mesh gets the size that MuJoCo fits, and not the size of its own.
+// A primitive that names a mesh gets the size that MuJoCo fits to the mesh, and not its own size.
 TEST(Mjcf, PrimitivesFittedToAMeshHaveItsSize) {
   if (!has_mujoco()) GTEST_SKIP() << "built without MuJoCo";
   const TemporaryFolder folder;
@@ -472,7 +473,8 @@ TEST(Sdf, FramesPosesAndNestedModels) {
     return link_pose(robot, data, robot.find_link(link)).translation().eval();
   };
   EXPECT_TRUE(at("leg::thigh").isApprox(Eigen::Vector3d(0, 1.1, 1), 1e-12)) << at("leg::thigh");
-  EXPECT_TRUE(at("leg::foot").isApprox(Eigen::Vector3d(0, 1.1, 0.5), 1e-12));  // its joint
+  // The place of its joint.
+  EXPECT_TRUE(at("leg::foot").isApprox(Eigen::Vector3d(0, 1.1, 0.5), 1e-12));
   const Body& foot = robot.bodies()[static_cast<size_t>(
       robot.links()[static_cast<size_t>(robot.find_link("leg::foot"))].body)];
   EXPECT_TRUE((data.rotation[static_cast<size_t>(
@@ -480,7 +482,7 @@ TEST(Sdf, FramesPosesAndNestedModels) {
                foot.axis)
                   .isApprox(Eigen::Vector3d(0, 1, 0), 1e-12));
   EXPECT_EQ(nested.joints[1].effort, 7);
-  // Before version 1.5 an axis is in the frame of the model.
+  // Before version 1.5, an axis is given in the frame of the model.
   const std::string turned =
       "<link name='a'>" + mass + "</link><link name='b'><pose>0 0 0 0 0 1.5707963267948966</pose>" +
       mass +
@@ -531,7 +533,7 @@ TEST(ChoreonoidBody, WrongBodiesAreRefusedInOneLine) {
   has(error(head + "  - { name: a, mass: 1\n"), "not YAML");
   has(error("format: ChoreonoidBody\n"), "no list of links");
   has(error(head + "  - { name: a }\n  - { name: b, parent: a, joint_type: ball }\n"), "'ball'");
-  // Aliases inside aliases.
+  // The file has aliases inside aliases.
   std::string bomb = "format: ChoreonoidBody\na0: &a0 { Shape: {} }\n";
   for (int i = 1; i < 40; ++i)
     bomb += "a" + std::to_string(i) + ": &a" + std::to_string(i) +

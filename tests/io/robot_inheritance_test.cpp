@@ -1,4 +1,4 @@
-// Robots that hold only what differs from another one.
+// Robot files that only contain the differences from another one.
 
 #include <gtest/gtest.h>
 

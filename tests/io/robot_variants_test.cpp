@@ -1,5 +1,5 @@
-// Robots as people have them: URDF with byte order marks, comments, other capitals, packages that
-// lie elsewhere, misspelt elements, missing meshes and links without mass.
+// Robots as they occur in practice: URDF with byte order marks, comments, other capitals, packages
+// in other places, misspelt elements, missing meshes and links without mass.
 
 #include <gtest/gtest.h>
 
@@ -110,7 +110,7 @@ TEST(RobotVariants, MisspeltElementsAreCounted) {
             std::string::npos);
   EXPECT_NE(error("<limit ", "<limits ").find("did you mean <limit>?"), std::string::npos);
   EXPECT_NE(error("geometry>", "geometri>").find("did you mean <geometry>?"), std::string::npos);
-  // What others know is none of Ayumi's business.
+  // Elements that only other programs know do not matter to Ayumi.
   EXPECT_EQ(message_of(folder.write(
                 "r.urdf", replaced(biped, "</robot>",
                                    "<gazebo/><transmission name=\"t\"/><sensor/></robot>"))),
@@ -126,7 +126,8 @@ TEST(RobotVariants, PackagesLieElsewhere) {
   };
   folder.write("one/legs_bringup/urdf/r.urdf", with_mesh(name));
   EXPECT_EQ(meshes("one/legs_bringup/urdf/r.urdf"), 0u);
-  folder.write("one/legs_description-main/package.xml", package);  // beside, under another name
+  // The package is beside it, under another name.
+  folder.write("one/legs_description-main/package.xml", package);
   folder.write("one/legs_description-main/meshes/a.obj", kTriangleText);
   EXPECT_EQ(meshes("one/legs_bringup/urdf/r.urdf"), 1u);
   folder.write("two/r.urdf", with_mesh(name));
@@ -162,7 +163,8 @@ TEST(RobotVariants, AllMissingMeshesAreListedAtOnceAndLeftOut) {
   EXPECT_EQ(robot.soles.size(), 2u);
 }
 
-// The parser wants an effort wherever a joint states a limit, also of a joint that does not move.
+// The parser requires an effort wherever a joint states a limit, even for a joint that does not
+// move.
 TEST(RobotVariants, FixedJointsMayStateLimitsWithoutEffort) {
   const TemporaryFolder folder;
   std::string text = test::UrdfBiped{}.text();

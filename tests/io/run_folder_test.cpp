@@ -112,7 +112,7 @@ std::string parse_message(const std::string& bytes) {
 TEST(SimulationLogFile, EveryFieldSurvives) {
   const SimulationLog log = random_log(1);
   const SimulationLog back = parse_log(log_bytes(log), "x.bin");
-  // Second route: field by field for a few, the whole by its bytes.
+  // Second route: a few fields are compared one by one, and the whole by its bytes.
   ASSERT_EQ(back.samples.size(), log.samples.size());
   EXPECT_EQ(back.samples[7].state.base.attitude.coeffs(),
             log.samples[7].state.base.attitude.coeffs());
@@ -139,7 +139,7 @@ TEST(SimulationLogFile, EveryFieldSurvives) {
   EXPECT_EQ(log_bytes(back), log_bytes(log));
 }
 
-// A field that for_each_field forgets would be lost without a sound: the size tells.
+// A field that for_each_field() forgets would be lost silently: the size shows it.
 TEST(SimulationLogFile, NoFieldOfASampleIsForgotten) {
   const SimulationLog log = random_log(2);
   const std::string bytes = plain_log_bytes(log);
@@ -166,7 +166,7 @@ TEST(SimulationLogFile, ReadsFilesOfOlderVersions) {
   EXPECT_EQ(present[8], 3);
   EXPECT_NE(old.find("ayumi.log/1"), std::string::npos);
   EXPECT_NE(present.find("ayumi.log/3"), std::string::npos);
-  // So few rows show no relation of columns, which version 2 did not have.
+  // With so few rows, no relation of columns is found, which version 2 did not have.
   std::string second = present;
   second[8] = 2;
   EXPECT_EQ(log_bytes(parse_log(second, "x.bin")), present);
@@ -174,7 +174,7 @@ TEST(SimulationLogFile, ReadsFilesOfOlderVersions) {
   EXPECT_EQ(plain_log_bytes(parse_log(present, "x.bin")), old);
 }
 
-// Columns can be restored only where none follows from itself through others.
+// A column can only be restored if it does not follow from itself through others.
 TEST(SimulationLogFile, NoColumnFollowsFromItself) {
   const std::vector<std::vector<size_t>> sources = log_sources({"a", "b", "c"});
   std::vector<char> known(sources.size(), 0);
@@ -189,11 +189,11 @@ TEST(SimulationLogFile, NoColumnFollowsFromItself) {
       related += sources[c].empty() ? 0 : 1;
     }
   EXPECT_EQ(count, sources.size());
-  // base, cog, ref.cog and others of three, joint vectors of three, two forces.
+  // Related are base, cog, ref.cog and other vectors of three, three joint vectors, and two forces.
   EXPECT_EQ(related, 3u * 9 + 3u * 3 + 2u);
 }
 
-// A walk of 8 s had 13 MB. Smooth columns and constant ones make up a log.
+// Before, a walk of 8 s had 13 MB. Most columns of a log are smooth or constant.
 TEST(SimulationLogFile, IsHalfAsLargeAsPlain) {
   SimulationLog log = random_log(9);
   log.samples.resize(4000, log.samples.front());
@@ -220,7 +220,7 @@ TEST(SimulationLogFile, OnlyFiniteNumbersAreRead) {
   }
 }
 
-// With a tick of 1e-300 s, the export to MCAP divided by 0.
+// Before, with a tick of 1e-300 s, the export to MCAP divided by 0.
 TEST(SimulationLogFile, TicksAreServoPeriods) {
   for (const double dt : {0.0, 1e-300, 1e-8, 11.0, 1e300}) {
     SimulationLog log = random_log(3);
@@ -257,9 +257,9 @@ TEST(SimulationLogFile, BrokenFilesGetOneClearMessage) {
             std::string::npos);
   EXPECT_NE(parse_message(good.substr(0, good.size() - 1)).find("truncated"), std::string::npos);
   EXPECT_NE(parse_message(good + "x").find("damaged: there are 1 bytes after"), std::string::npos);
-  // Any flipped byte of the header, its checksum or the samples is seen, or changes nothing that is
-  // read: zstd has codes that say the same. (What stands before them is the magic word, the version
-  // and a length.)
+  // Any flipped byte of the header, its checksum or the samples is noticed, or changes nothing that
+  // is read, because zstd has different codes with the same meaning. (Before these parts come the
+  // magic word, the version and a length.)
   int without_effect = 0;
   for (size_t at = 8; at < good.size(); ++at) {
     std::string flipped = good;
@@ -271,7 +271,7 @@ TEST(SimulationLogFile, BrokenFilesGetOneClearMessage) {
   EXPECT_LE(without_effect, 3);
 }
 
-// A file of version 1 has no checksums: its structure is what can be examined.
+// A file of version 1 has no checksums: only its structure can be examined.
 TEST(SimulationLogFile, BrokenFilesOfVersionOneGetOneClearMessage) {
   const std::string good = plain_log_bytes(random_log(5));
   EXPECT_EQ(parse_message(good), "no error");
@@ -291,7 +291,7 @@ TEST(SimulationLogFile, BrokenFilesOfVersionOneGetOneClearMessage) {
   column.replace(column.find("measured.fz"), 11, "measured.fx");
   EXPECT_NE(parse_message(column).find("/columns: these are not the columns of this version"),
             std::string::npos);
-  // No prefix of a log and no flipped byte of its header may do worse than an Error.
+  // No prefix of a log and no flipped byte of its header may have a worse effect than an Error.
   for (size_t length = 0; length < good.size(); length += 97) parse_message(good.substr(0, length));
   for (size_t at = 0; at < 2000 && at < good.size(); ++at) {
     std::string flipped = good;

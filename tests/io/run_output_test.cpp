@@ -38,8 +38,8 @@ class RunOutputTest : public testing::Test {
   }
   using Names = std::vector<std::string>;
 
-  /// A process that is killed while it delivers a run of the files a.csv and c.csv: it has moved
-  /// `away` what was there, and `in` what is new.
+  /// Imitates a process that is killed while it delivers a run of the files a.csv and c.csv: it has
+  /// moved the old files `away`, and the new files `in`.
   void killed_delivery(const Names& away, const Names& in) const {
     const pid_t child = ::fork();
     if (child == 0) {
@@ -90,8 +90,8 @@ TEST_F(RunOutputTest, TakesOverWhatAnInterruptedProcessLeft) {
   EXPECT_EQ(names(), (Names{"a.csv", "run.json"}));
 }
 
-// A folder that a stranger has packed may hold such links. Before, the files behind the second one
-// were moved into the folder of the run.
+// A folder that a stranger has packed may contain such links. Before, the files behind the second
+// link were moved into the folder of the run.
 TEST_F(RunOutputTest, LinksInPlaceOfItsHiddenFoldersAreNotFollowed) {
   for (const std::string name : {".ayumi_part", ".ayumi_replaced"}) {
     fs::remove_all(target);
@@ -119,7 +119,7 @@ TEST_F(RunOutputTest, AKilledDeliveryIsUndoneByTheNextStart) {
   }
 }
 
-// What was moved to its place and changed afterwards is a file of the user.
+// A file that was moved to its place and changed afterwards belongs to the user.
 TEST_F(RunOutputTest, AKilledDeliveryLeavesFilesThatHaveChangedSince) {
   killed_delivery({}, {"a.csv"});
   folder.write("out/a.csv", "mine");
@@ -162,7 +162,7 @@ TEST_F(RunOutputTest, LeavesALinkOrAFolderInPlaceOfAFileOfTheRun) {
   EXPECT_EQ(read_file(target / "a.csv" / "inside"), "mine");
 }
 
-// A run.json from elsewhere may name any file. Only those in the folder itself are of the run.
+// A run.json from elsewhere may name any file. Only those in the folder itself belong to the run.
 TEST_F(RunOutputTest, RemovesNothingOutsideItsFolder) {
   folder.write("mine", "text");
   folder.write("out/deeper/mine", "text");

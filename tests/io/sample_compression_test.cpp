@@ -19,7 +19,7 @@ std::string bytes_of(const std::vector<double>& values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double)};
 }
 
-// Every pair of bits may stand in a row: numbers of both signs and of all sizes, zeros of both
+// A row may contain any pattern of bits: numbers of both signs and of all sizes, zeros of both
 // signs, infinities, and NaN with its payload.
 TEST(SampleCompression, NoBitIsLost) {
   test::Random random(1);
@@ -46,9 +46,9 @@ TEST(SampleCompression, NoBitIsLost) {
   EXPECT_EQ(decompress_samples(compress_samples("", 5), 5, 0, "x"), "");
 }
 
-// The prediction of a smooth quantity misses by its fourth difference. That of a sine with steps of
-// 0.005 rad is at most 0.005^4, which has 22 of the 64 bits of a number between 1 and 4, the sign
-// included.
+// The error of predicting a smooth quantity is its fourth difference. For a sine with steps of
+// 0.005 rad it is at most 0.005^4, which takes 22 of the 64 bits of a number between 1 and 4,
+// including the sign.
 TEST(SampleCompression, SmoothColumnsAreSmall) {
   std::vector<double> values;
   for (int k = 0; k < 8000; ++k)
@@ -57,8 +57,9 @@ TEST(SampleCompression, SmoothColumnsAreSmall) {
   EXPECT_LT(compress_samples(plain, 3).size(), 22 * plain.size() / 64);
 }
 
-// An angle that a simulator integrates from its rate, a torque that follows from both but for a few
-// rows at its peak, and a copy: what follows from other columns costs next to nothing.
+// The columns are an angle that a simulator integrates from its rate, a torque that follows from
+// both except for a few rows at its peak, and a copy: columns that follow from others take almost
+// no space.
 struct Servo {
   std::vector<double> values;
   ColumnSources sources = {{1}, {}, {0, 1, 3}, {}, {3}};
@@ -81,8 +82,8 @@ TEST(SampleCompression, RelatedColumnsAreSmallAndExact) {
   const std::string related = compress_samples(plain, 5, servo.sources);
   EXPECT_EQ(decompress_samples(related, 5, 6000, "x"), plain);
   EXPECT_EQ(decompress_samples(alone, 5, 6000, "x"), plain);
-  // Rate and target are left, and the rounding of the two that are integrated or computed: three
-  // bits of each sample.
+  // Only the rate and the target are left, and the rounding of the two that are integrated or
+  // computed: three bits of each sample.
   std::vector<double> two;
   for (size_t i = 0; i < servo.values.size(); i += 5)
     two.insert(two.end(), {servo.values[i + 1], servo.values[i + 3]});
@@ -129,7 +130,7 @@ TEST(SampleCompression, DamageGetsOneMessage) {
             "x.bin: the file is damaged: there are 3 bytes after the samples");
   EXPECT_EQ(message(good, 2, 301),
             "x.bin: the file is damaged: the samples are not 301 rows of 2 columns");
-  // Any flipped bit is seen: by zstd, or by the checksum of what it decompresses.
+  // Any flipped bit is noticed, by zstd or by the checksum of the decompressed bytes.
   for (size_t at = 0; at < good.size(); ++at) {
     std::string flipped = good;
     flipped[at] = static_cast<char>(flipped[at] ^ 0x20);

@@ -1,5 +1,5 @@
-// Servos of a sidecar and parameter files of BAM: what is read, and what is refused with which
-// words.
+// Servos of a sidecar and parameter files of BAM: which are read, and which are refused with which
+// message.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ using test::TemporaryFolder;
 
 constexpr double kDegrees = std::numbers::pi / 180;
 
-/// A sidecar over the small biped.
+/// A sidecar based on the small biped.
 std::string servo_sidecar(const std::string& servos, const std::string& more = "") {
   return R"({"format": "ayumi.robot/1", "urdf": ")" AYUMI_SOURCE_DIR
          R"(/examples/biped/biped.urdf", "servos": [{"joints": ["*"], "kp": 100, "kd": 2}, )" +
@@ -37,7 +37,7 @@ ServoDescription knee_of(const std::string& keys) {
   return knee(robot_of(folder, servo_sidecar("{\"joints\": [\"*_knee\"], " + keys + "}")));
 }
 
-/// The message without the folder.
+/// The message without the path of the folder.
 std::string error_of(const TemporaryFolder& folder, const std::string& text) {
   try {
     robot_of(folder, text);
@@ -56,7 +56,7 @@ std::string group_error(const std::string& keys) {
   return error_of(folder, servo_sidecar("{\"joints\": [\"*_knee\"], " + keys + "}"));
 }
 
-/// Numbers as a fit writes them, for a model of BAM; what its model does not have is there too.
+/// Numbers as a fit writes them for a model of BAM, including numbers that the model does not use.
 nlohmann::json bam_numbers(const std::string& model) {
   return {{"model", model},
           {"actuator", "example"},
@@ -208,7 +208,7 @@ TEST(ServoReader, AKeyBesideABamFileGoesOverIt) {
   EXPECT_EQ(servo.stall_torque, 1.6 * 6 / 2.1);
 }
 
-// The base stands in another folder than the unit, each beside parameter files of its own.
+// The base is in another folder than the unit, and each has parameter files of its own beside it.
 TEST(ServoReader, ABamFileStandsBesideTheFileThatNamesIt) {
   const TemporaryFolder folder;
   folder.write("type/motor.json", bam_numbers("m1").dump());

@@ -91,8 +91,8 @@ TEST(StudyFile, SaysWhatIsWrongAndWhere) {
             std::string::npos);
 }
 
-// The part of a normal distribution above its mean is the mirror image of that below, far away
-// from the mean too, where it is close to an exponential distribution.
+// The part of a normal distribution above its mean is the mirror image of the part below. This also
+// holds far away from the mean, where it is close to an exponential distribution.
 TEST(StudyFile, TruncatedTailsAreMirrorImages) {
   for (const double far : {0.0, 3.0, 9.0, 20.0, 29.0}) {
     Distribution above = {.kind = Distribution::Kind::truncated,
@@ -146,7 +146,7 @@ TEST(StudyFile, APatternKeepsItsUncertainty) {
   EXPECT_TRUE(schema.accepts(nlohmann::json::parse(once, nullptr, true, true)));
 }
 
-// The schema of studies refers to that of patterns.
+// The schema of studies refers to the schema of patterns.
 TEST(StudyFile, BundledStudiesFitTheSchemaAndHaveSources) {
   auto schema =
       nlohmann::json::parse(read_file(AYUMI_SOURCE_DIR "/docs/schemas/study-1.schema.json"));
@@ -190,9 +190,9 @@ TEST(AssumedStudy, IsAStudyOfWhatTheRobotHasAndSaysThatItIsAssumed) {
   ASSERT_FALSE(study.uncertainty.quantities.empty());
   for (const UncertainQuantity& quantity : study.uncertainty.quantities)
     EXPECT_TRUE(is_assumed(quantity.source)) << quantity.name;
-  // Written, it is the same study.
+  // After it is written, it is the same study.
   EXPECT_EQ(study_of_text(assumed_study_text(biped), "again").sha256, study.sha256);
-  // The COG is displaced by a share of the height of the robot: 5 mm for HOAP-1.
+  // The COG is displaced by a fraction of the height of the robot: 5 mm for HOAP-1.
   const Study hoap = assumed_study(test::hoap1());
   const auto cog =
       std::find_if(hoap.uncertainty.quantities.begin(), hoap.uncertainty.quantities.end(),

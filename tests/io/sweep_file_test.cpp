@@ -50,7 +50,8 @@ TEST(SweepFile, CombinesProductsAndLists) {
   EXPECT_EQ(all.size(), 8u);
 }
 
-// Of the equal parts of each range, every part has one sample, and a whole number is one.
+// Each range is divided into equal parts, and every part has one sample. A range of whole numbers
+// gives whole numbers.
 TEST(SweepFile, LatinHypercubeHasOneSampleInEachPart) {
   const SweepStudy s = sweep_of(R"("settings": {"pattern": "p.json", "world": "floor"},
     "cases": {"latin_hypercube": {"samples": 50, "seed": 3,

@@ -34,7 +34,7 @@ std::string reference_message(const std::string& text) {
   return test::error_message([&] { read_reference(put(text)); }, ErrorCode::bad_file);
 }
 
-// Any finite double, with the awkward ones among them.
+// Any finite double, including the awkward ones.
 class Random {
  public:
   double number() {
@@ -216,7 +216,7 @@ TEST(Table, MotionOfAPatternKeepsItsBits) {
   EXPECT_EQ(back.zmp, table.zmp);
   EXPECT_EQ(back.fz, table.fz);
   EXPECT_TRUE(back.cog.empty() && back.base.empty());
-  // A stabilised reference may serve as a pattern's motion too.
+  // A stabilised reference may also serve as the motion of a pattern.
   EXPECT_EQ(read_dense_table(put(reference_csv(random_reference()))).theta.rows(), 200);
 }
 

@@ -1,6 +1,7 @@
-// What people and programs do to motion files: cut, saved in another encoding, with other line ends
-// or decimal commas, with values that are none, far too long. A file of every format that is read
-// is made and spoilt, so that a new format is tried by itself.
+// Damage that people and programs do to motion files: they are cut off, saved in another encoding,
+// with other line ends or decimal commas, with values that are no numbers, or far too long. A file
+// of every format that can be read is made and damaged, so that a new format is tested
+// automatically.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +17,7 @@ namespace ayumi::test {
 namespace {
 
 double rate_for(const MotionFormat& format) {
-  return format.name == "op3-action" ? 62.5 : 100;  // what all others can state
+  return format.name == "op3-action" ? 62.5 : 100;  // all other formats can state this rate
 }
 
 ImportOptions options_for(const MotionFormat& format) {
@@ -27,7 +28,7 @@ ImportOptions options_for(const MotionFormat& format) {
 }
 
 struct Outcome {
-  std::string message;  ///< of the Error; "": it was read
+  std::string message;  ///< message of the Error; "" if the file was read
   ImportedMotion motion = {};
 };
 
@@ -54,7 +55,8 @@ Outcome outcome_of(const MotionFormat& format, const std::string& bytes) {
   }
 }
 
-// One line with the file, what it was taken for or what is read, and nothing that a terminal obeys.
+// The message is one line with the file and its assumed format or the formats that are read, and
+// contains nothing that a terminal obeys.
 void expect_one_line(const std::string& message, const std::string& what) {
   EXPECT_TRUE(message.starts_with("folder/m.dat:")) << what << ": " << message;
   EXPECT_LT(message.size(), 1500u) << what << ": " << message;
@@ -69,7 +71,7 @@ void expect_one_line(const std::string& message, const std::string& what) {
       << what << ": " << message;
 }
 
-// The first rows of the motion, or one line.
+// The result is the first rows of the motion, or a message of one line.
 void expect_part_or_one_line(const Outcome& outcome, const MotionFile& whole,
                              const std::string& what) {
   if (!outcome.message.empty()) {
@@ -78,7 +80,7 @@ void expect_part_or_one_line(const Outcome& outcome, const MotionFile& whole,
   }
   const Eigen::MatrixXd& theta = outcome.motion.motion.theta;
   ASSERT_LE(theta.rows(), whole.rows()) << what;
-  // A number that was cut is another number: that may be in the last row alone, and is said.
+  // A number that was cut off is another number: this may only be in the last row, and is reported.
   const auto& said = outcome.motion.filled;
   const bool warned = std::any_of(said.begin(), said.end(), [](const std::string& line) {
     return line.starts_with("the last line of the file has no line end");
@@ -105,7 +107,7 @@ std::string utf16(const std::string& text, bool little) {
   return wide;
 }
 
-// The number that stands in the middle of the file, as bytes [begin, end).
+// The number in the middle of the file, as bytes [begin, end).
 std::pair<size_t, size_t> middle_number(const std::string& text) {
   const auto digit = [&](size_t i) {
     return std::isdigit(static_cast<unsigned char>(text[i])) || text[i] == '.' || text[i] == '-';
@@ -172,7 +174,7 @@ TEST_P(UnreadableMotions, AreRefusedInOneLineOrReadAsTheyWere) {
     if (commas[i] == '.' && std::isdigit(static_cast<unsigned char>(commas[i - 1])) &&
         std::isdigit(static_cast<unsigned char>(commas[i + 1])))
       commas[i] = ',';
-  if (commas == good) return;  // whole numbers only
+  if (commas == good) return;  // the file has only whole numbers
   const std::string refused = outcome_of(format(), commas).message;
   expect_one_line(refused, "decimal commas");
   EXPECT_NE(refused.find("decimal point"), std::string::npos) << refused;
@@ -189,9 +191,9 @@ TEST_P(UnreadableMotions, AnotherNumberOfJointsIsRefused) {
   EXPECT_NE(message.find("'hoap1' has 20 joints"), std::string::npos) << message;
 }
 
-// Two joints, so that a million rows are a file that may be opened.
+// There are only two joints, so that a file of a million rows may be opened.
 TEST_P(UnreadableMotions, AMillionRowsAreRefusedBeforeTheyTakeTime) {
-  if (format().binary || format().name == "hoap") return;  // a row has all motors
+  if (format().binary || format().name == "hoap") return;  // here a row has all motors
   MotionFile two = motion();
   two.joints = {"l_knee", "r_knee"};
   two.values = Eigen::MatrixXd::Constant(40, 2, 0.5);
@@ -199,7 +201,7 @@ TEST_P(UnreadableMotions, AMillionRowsAreRefusedBeforeTheyTakeTime) {
   for (Eigen::Vector3d& zmp : two.zmp) zmp.setZero();
   const std::string good = file_of(format(), hoap1(), two);
   const size_t begin = good.find('\n', good.size() / 2) + 1, end = good.find('\n', begin) + 1;
-  if (begin >= good.size() || end == 0) return;  // the rows are not lines
+  if (begin >= good.size() || end == 0) return;  // here the rows are not lines
   const std::string row = good.substr(begin, end - begin);
   std::string lines = good.substr(0, begin);
   for (int i = 0; i < 1'000'000; ++i) lines += row;

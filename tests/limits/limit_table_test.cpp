@@ -1,4 +1,4 @@
-// The table of limits: every kind is defined once, and visitors find what they ask for.
+// In the table of limits, every kind is defined once, and visitors find what they ask for.
 
 #include "ayumi/limits/limit_table.hpp"
 

@@ -13,7 +13,7 @@ namespace {
 
 using namespace planted;
 
-/// A walk of HOAP-1 in which one joint swings with this acceleration, a sine of one period.
+/// A walk of HOAP-1 in which one joint swings with this acceleration, as a sine of one period.
 CommandSeries swung(const std::string& joint, double acceleration, double period) {
   CommandSeries series = sample(hoap1(), walk());
   const int dof = hoap1().find_dof(joint);
@@ -36,7 +36,7 @@ double peak_over_inertia(const RobotModel& model, const std::string& joint) {
 
 TEST(MotorAcceleration, ItsFigureIsTheClosedForm) {
   const double most = peak_over_inertia(hoap1(), "l_elbow");
-  EXPECT_NEAR(most, 3 / 0.003, 1e-9);  // the robot's file
+  EXPECT_NEAR(most, 3 / 0.003, 1e-9);  // as stated in the robot's file
   for (const double share : {0.25, 0.8}) {
     const ConsistencyReport r = check_consistency(hoap1(), swung("l_elbow", share * most, 0.02));
     EXPECT_NEAR(r.summary[FindingKind::motor_acceleration], share, 0.02 * share);

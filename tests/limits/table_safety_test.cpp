@@ -38,7 +38,7 @@ TEST(ExportSafety, RampLeavesThePostureAndArrivesAtRest) {
   const auto a = [&](size_t k) { return safe.table.rows[k].theta[0] / kDegree; };
   EXPECT_NEAR(a(0), 10, 1e-12);
   EXPECT_NEAR(a(1), 10, 1e-6);     // starts at rest
-  EXPECT_NEAR(a(1000), 20, 1e-9);  // half way at half time
+  EXPECT_NEAR(a(1000), 20, 1e-9);  // it is half way at half of the time
   EXPECT_NEAR(a(1999), 30, 1e-6);  // arrives at rest
   EXPECT_EQ(a(2000), a(2509));
   // Peak speed of the minimum jerk: 1.875 distance / duration.
@@ -56,8 +56,8 @@ TEST(ExportSafety, RampGrowsWithTheDistance) {
   EXPECT_EQ(safe.report.worst_joint, "a");
 }
 
-// The report on the targets alone is that on the table with ramp and hold, which a plain loop over
-// its rows confirms.
+// The report on the targets alone is the same as that on the table with ramp and hold, and a plain
+// loop over its rows confirms it.
 TEST(ExportSafety, TargetsAloneGiveTheReportOfTheirTable) {
   const RobotModel robot = test::bus_robot();
   test::Random random(5);
@@ -181,7 +181,7 @@ TEST(ExportSafety, RefusesAnotherRobotsTable) {
   EXPECT_THROW(make_safe(robot, table, {}), Error);
 }
 
-// At exactly the speed limit, and at the position limits, rounding alone must not break a limit.
+// At exactly the speed limit, and at the position limits, rounding alone must not exceed a limit.
 TEST(ExportSafety, RoundingKeepsTheLimitsThatTheMotionKeeps) {
   const RobotModel robot = test::bus_robot();
   ReferenceTrajectory table = still(1, {0, 0, 0});

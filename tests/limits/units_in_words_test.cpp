@@ -1,4 +1,4 @@
-// Texts for people have the unit of the pattern's angles, for angles and for their rates.
+// Texts for people use the unit of the pattern's angles, for angles and for their rates.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ using namespace planted;
 CommandSeries too_fast(double angle) {
   CommandSeries series = sample(hoap1(), walk());
   const int dof = hoap1().find_dof("l_elbow");
-  const double rise = angle / 30;  // at 30 rad/s [s]
+  const double rise = angle / 30;  // time at 30 rad/s [s]
   for (size_t k = 0; k < series.samples.size(); ++k) {
     const double t = static_cast<double>(k) * series.dt;
     CommandSample& s = series.samples[k];
@@ -34,7 +34,7 @@ std::string words_of(const ConsistencyReport& report) {
 }
 
 TEST(UnitsInWords, AreThoseOfThePattern) {
-  const CommandSeries series = too_fast(3);  // beyond its range, too
+  const CommandSeries series = too_fast(3);  // this is also beyond its range
   CheckOptions options;
   const ConsistencyReport in_degrees = check_consistency(hoap1(), series, options);
   options.degrees = false;
@@ -71,7 +71,7 @@ TEST(UnitsInWords, OfARefusedTableToo) {
       << text_of(violation, false);
 }
 
-// Values of results and JSON do not depend on it.
+// Values of results and JSON do not depend on that unit.
 TEST(UnitsInWords, ValuesStayInSiUnits) {
   const CommandSeries series = too_fast(3);
   CheckOptions options;

@@ -35,7 +35,7 @@ TEST(BoundedCog, StepZmp) {
   }
 }
 
-// Second route: the solution obeys x'' = w2 (x - z) by differences, with a varying w2 as well.
+// Second route: the solution satisfies x'' = w2 (x - z) by differences, also with a varying w2.
 TEST(BoundedCog, MeetsThePendulumLaw) {
   const double h = 0.005;
   const int n = 600;
@@ -66,7 +66,7 @@ TEST(RestToRest, StartsAndEndsAtRestWithASmallBump) {
   // Without the bump the motion would start at about w * (anticipation) m/s.
   const VectorXd plain = bounded_cog(z, w2, h);
   EXPECT_GT(std::abs(plain[1] - plain[0]) / h, 1e-4);
-  // The same motion from a ZMP that carries the bumps.
+  // A ZMP that already contains the bumps gives the same motion.
   VectorXd bumped = z;
   for (int k = 0; k <= n; ++k)
     bumped[k] +=

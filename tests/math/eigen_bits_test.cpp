@@ -1,6 +1,6 @@
-// What Eigen computes has the same bits on every processor: CMakeLists.txt sets the options that
-// make it so. The expected sums are those of x86-64 with SSE2 and of ARM64; another version of
-// Eigen may have others.
+// Eigen's results have the same bits on every processor: CMakeLists.txt sets the options for this.
+// The expected sums are those of x86-64 with SSE2 and of ARM64; another version of Eigen may have
+// other sums.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ MatrixXd random_matrix(Random& random, int rows, int columns) {
   return matrix;
 }
 
-// Small ones are solved coefficient by coefficient, larger ones in blocks of registers, and the
+// Small matrices are solved coefficient by coefficient, larger ones in blocks of registers, and the
 // largest in blocks of the cache.
 std::uint64_t sum_of_bits(int size) {
   Random random(7);

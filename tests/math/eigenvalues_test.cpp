@@ -27,7 +27,7 @@ TEST(Eigenvalues, OfACompanionMatrixAreItsRoots) {
   }
 }
 
-// Of Q diag(d) Q' with a rotation Q they are d, in rising order.
+// The eigenvalues of Q diag(d) Q' with a rotation Q are d, in rising order.
 TEST(Eigenvalues, OfASymmetricMatrixRise) {
   const Eigen::Vector3d d(0.3, 1.7, 2.9);
   const Eigen::Matrix3d Q = Eigen::Quaterniond(0.5, -0.1, 0.7, 0.4).normalized().toRotationMatrix();

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Distance of `value` from `exact` in units of the last place of a double.
+/// The distance of `value` from `exact` in units of the last place of a double.
 double units_off(double value, long double exact) {
   const double nearest = static_cast<double>(exact);
   const double unit = std::max(std::abs(nearest - std::nextafter(nearest, 0.0)),
@@ -25,13 +25,13 @@ struct Sampling {
   double (*own)(double);
   long double (*exact)(long double);
   double from, to;
-  double most;  ///< error [units of the last place]
+  double most;  ///< largest error [units of the last place]
 };
 std::ostream& operator<<(std::ostream& out, const Sampling& s) { return out << s.name; }
 
 class Elementary : public testing::TestWithParam<Sampling> {};
 
-// The C library's functions of more digits are the second route.
+// The C library's functions with more digits are the second route.
 TEST_P(Elementary, IsRightToTheLastPlace) {
   const Sampling& s = GetParam();
   Random random(1);

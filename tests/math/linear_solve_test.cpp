@@ -36,7 +36,7 @@ TEST(LinearSolve, MeetsTheEquations) {
   }
 }
 
-// What is left over is perpendicular to every column; two equal columns do no harm.
+// The remainder is perpendicular to every column; two equal columns do no harm.
 TEST(LinearSolve, LeastSquaresLeaveWhatIsPerpendicular) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     test::Random random(seed);
@@ -49,8 +49,8 @@ TEST(LinearSolve, LeastSquaresLeaveWhatIsPerpendicular) {
   }
 }
 
-// Of rank 4 in 7 columns: what is left is perpendicular to the columns, and the solution to the
-// kernel.
+// The matrix has rank 4 in 7 columns: the remainder is perpendicular to the columns, and the
+// solution to the kernel.
 TEST(LinearSolve, LeastNormStaysOutOfTheKernel) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     test::Random random(seed);

@@ -1,4 +1,5 @@
-// The quickest timing against bang-bang motions in closed form and against a search by brute force.
+// The quickest timing agrees with bang-bang motions in closed form and with a search by brute
+// force.
 
 #include "ayumi/math/path_timing.hpp"
 
@@ -34,15 +35,15 @@ double duration(const std::vector<TimingPoint>& points) {
 
 }  // namespace
 
-// From rest to rest over a length L with |s''| <= a: half of the way it speeds up, half of it slows
-// down, 2 sqrt(L / a).
+// From rest to rest over a length L with |s''| <= a, the motion speeds up on half of the way and
+// slows down on the other half: 2 sqrt(L / a).
 TEST(PathTiming, OneAxisFromRestToRest) {
   auto points = straight(0.8, 200, 5, 100);
   rest_at_ends(points);
   EXPECT_NEAR(duration(points), 2 * std::sqrt(0.8 / 5), 1e-9);
 }
 
-// With a largest speed v below sqrt(L a): L / v + v / a.
+// With a largest speed v below sqrt(L a), the time is L / v + v / a.
 TEST(PathTiming, OneAxisWithALargestSpeed) {
   auto points = straight(0.8, 400, 5, 1);
   rest_at_ends(points);
@@ -62,7 +63,8 @@ TEST(PathTiming, TheOwnPaceOfThePathDoesNotMatter) {
   EXPECT_NEAR(duration(points), 2 * std::sqrt(length / most), 2e-3);
 }
 
-// Where the limits of speed have a narrow place, the timing slows before it and speeds up after it.
+// Where the limits of speed have a narrow place, the timing slows down before it and speeds up
+// after it.
 TEST(PathTiming, SlowsOnlyAroundANarrowPlace) {
   auto points = straight(1, 1000, 4, 10);
   const double slow = 0.2;
@@ -76,7 +78,7 @@ TEST(PathTiming, SlowsOnlyAroundANarrowPlace) {
   }
 }
 
-// Rows may ask for a least pace too, as a foot does that cannot carry the standing robot.
+// Rows may also require a smallest pace, such as a foot that cannot carry the standing robot.
 TEST(PathTiming, ALeastPaceIsKept) {
   auto points = straight(1, 100, 4, 10);
   points[50].rows.push_back({0, -1, -2});
@@ -93,8 +95,8 @@ TEST(PathTiming, ARowThatNoPaceKeepsIsNamed) {
   EXPECT_EQ(quickest_timing(points).stuck, 30);
 }
 
-// Random rows: every timing that keeps the rows, found by a grid over (x, u) from behind, is as
-// slow or slower at every point.
+// For random rows, every timing that keeps the rows, found by a grid over (x, u) from the end, is
+// as slow or slower at every point.
 TEST(PathTiming, NoTimingOnAGridIsQuicker) {
   Random random(7);
   const auto uniform = [&](double low, double high) {
@@ -124,7 +126,7 @@ TEST(PathTiming, NoTimingOnAGridIsQuicker) {
       EXPECT_TRUE(keeps(points[i], u, timing.x[i])) << trial << " " << i;
       EXPECT_TRUE(keeps(points[i + 1], u, timing.x[i + 1])) << trial << " " << i;
     }
-    // Which of the grid's x lead to the end.
+    // Finds which x of the grid lead to the end.
     const int cells = 400;
     const auto x_of = [&](int cell) { return 4.0 * cell / cells; };
     std::vector<std::vector<char>> leads(count, std::vector<char>(cells + 1, 0));

@@ -47,7 +47,8 @@ TEST_P(RandomPolygons, ProjectionIsInsideNearestAndIdempotent) {
     const Vector2d q = polygon.project(p);
     EXPECT_GE(polygon.margin(q), -1e-12);
     EXPECT_LT((polygon.project(q) - q).norm(), 1e-12);
-    // Nearest: no point of the polygon lies beyond the line through q across p - q.
+    // The point is nearest: no point of the polygon lies beyond the line through q perpendicular to
+    // p - q.
     if ((p - q).norm() > 1e-9) {
       EXPECT_LE(polygon.support((p - q).normalized()), (p - q).normalized().dot(q) + 1e-9);
       EXPECT_NEAR(polygon.margin(p), -(p - q).norm(), 1e-9);

@@ -19,7 +19,7 @@ double value(const QuadraticProgram& q, const VectorXd& x) {
   return 0.5 * x.dot(q.H * x) + q.f.dot(x);
 }
 
-/// Boxes and slanted inequalities around a point that keeps them.
+/// A program with boxes and slanted inequalities around a point that satisfies them.
 QuadraticProgram random_program(Random& random, int n, int slanted, const VectorXd& inside) {
   const auto number = [&] { return 2 * random.uniform() - 1; };
   MatrixXd root(n, n);
@@ -40,7 +40,7 @@ QuadraticProgram random_program(Random& random, int n, int slanted, const Vector
   return q;
 }
 
-/// The least value over the feasible solutions of all subsets of inequalities that hold as
+/// The smallest value over the feasible solutions of all subsets of inequalities that hold as
 /// equalities.
 double least_by_trial(const QuadraticProgram& q) {
   const auto n = static_cast<int>(q.f.size()), rows = static_cast<int>(q.b.size());
@@ -85,7 +85,7 @@ TEST(QuadraticProgram, KeepsTheConditionsAndIsTheBestOfAllActiveSets) {
     EXPECT_NEAR(value(q, s.x), least_by_trial(q), 1e-9);
     met += static_cast<int>((s.multipliers.array() > 0).count());
   }
-  EXPECT_GT(met, 100);  // the inequalities were not idle
+  EXPECT_GT(met, 100);  // the inequalities had an effect
 }
 
 TEST(QuadraticProgram, BeginsOnEdgesAndInCorners) {

@@ -13,7 +13,7 @@ TEST(Quintic, MeetsBothEnds) {
     EXPECT_NEAR(p.rate, end.rate, 1e-12);
     EXPECT_NEAR(p.acceleration, end.acceleration, 1e-11);
   }
-  // Rates are those of the values.
+  // The rates are the derivatives of the values.
   constexpr double h = 1e-6;
   for (double t = 0.25; t < 0.9; t += 0.1) {
     const TrackPoint a = quintic_at(from, to, t - h), b = quintic_at(from, to, t + h);

@@ -22,7 +22,8 @@ TEST(Random, SeveralNormalNumbersAreThoseOfSingleCalls) {
     }
   }
   EXPECT_EQ(one.bits(), many.bits());
-  // Five standard deviations of the mean and of the mean square of so many numbers.
+  // The tolerances are five standard deviations of the mean and of the mean square of this many
+  // numbers.
   EXPECT_NEAR(sum / drawn, 0, 5 / std::sqrt(drawn));
   EXPECT_NEAR(square / drawn, 1, 5 * std::sqrt(2.0 / drawn));
 }

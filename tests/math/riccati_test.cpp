@@ -1,4 +1,5 @@
-// Riccati equation: its residual, the closed form of one state, and the cost summed step by step.
+// The Riccati equation: its residual, the closed form for one state, and the cost summed step by
+// step.
 #include "ayumi/math/riccati.hpp"
 
 #include <gtest/gtest.h>

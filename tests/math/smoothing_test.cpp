@@ -48,11 +48,11 @@ TEST(Smoothing, RoundsCornersAsFarAsTheBandGoes) {
   EXPECT_LE((smooth - corner).cwiseAbs().maxCoeff(), 21);
   double most = 0;
   for (int k = 2; k < 398; ++k) most = std::max(most, std::abs(second(smooth, k)));
-  EXPECT_LT(most, 2.0);                    // of 16
-  EXPECT_GT(most, 16 * 16 / (16.0 * 21));  // no curve inside the band bends less
+  EXPECT_LT(most, 2.0);                    // the corner has 16
+  EXPECT_GT(most, 16 * 16 / (16.0 * 21));  // no curve inside the band can bend less
 }
 
-// What the conditions of an optimum say, by a second route: no feasible change makes it better.
+// The conditions of an optimum by a second route: no feasible change makes it better.
 TEST(Smoothing, NoChangeWithinTheBandIsBetter) {
   VectorXd x(120);
   for (int k = 0; k < 120; ++k) x[k] = std::round(30 * std::sin(0.05 * k)) + (k % 17 == 0 ? 3 : 0);

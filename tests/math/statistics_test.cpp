@@ -9,7 +9,7 @@
 namespace ayumi::test {
 namespace {
 
-/// Probability of at most k events in n runs, summed term by term.
+/// The probability of at most k events in n runs, summed term by term.
 double binomial(long k, long n, double p) {
   double sum = 0;
   for (long i = 0; i <= k; ++i)
@@ -19,7 +19,7 @@ double binomial(long k, long n, double p) {
   return sum;
 }
 
-// The bounds are the probabilities at which the observed number is just so likely.
+// The bounds are the probabilities for which the observed number is just likely enough.
 TEST(Statistics, BoundsOfAProbabilityInvertTheBinomialDistribution) {
   for (const long n : {1L, 7L, 59L, 299L, 2995L})
     for (const long k : {0L, 1L, 3L, n / 2, n - 1, n}) {
@@ -50,7 +50,7 @@ TEST(Statistics, NormalQuantileAndProbabilityAreInverse) {
     EXPECT_NEAR(normal_quantile(normal_probability(z)), z, 1e-9);
 }
 
-// Smallest rank whose chance to lie below the quantile is small enough, from the sum.
+// The smallest rank whose chance of lying below the quantile is small enough, from the sum.
 TEST(Statistics, QuantileBoundsNeedTheRunsOfACertificate) {
   EXPECT_EQ(quantile_bound_rank(298, 0.99, 0.95), 0);
   EXPECT_EQ(quantile_bound_rank(299, 0.99, 0.95), 299);
@@ -74,7 +74,7 @@ TEST(Statistics, QuantileBoundsHoldForAnyDistribution) {
     std::sort(values.begin(), values.end());
     covered += values[static_cast<size_t>(r - 1)] >= std::exp(3 * normal_quantile(0.95));
   }
-  // Three standard deviations of the counted coverage [1].
+  // The tolerance is three standard deviations of the counted coverage [1].
   EXPECT_GE(covered, kStudies * (0.95 - 3 * std::sqrt(0.95 * 0.05 / kStudies)));
 }
 

@@ -37,7 +37,8 @@ TEST(Track, PassesThroughItsKeysAndHoldsOutside) {
   }
 }
 
-// A straight track through keys at times of many spacings: the right segment is always found.
+// For a straight track through keys with many different spacings, the right segment is always
+// found.
 TEST(Track, FindsTheSegmentHoweverTheKeysAreSpaced) {
   std::mt19937 engine(3);
   std::uniform_real_distribution<double> uniform(0, 1);

@@ -10,7 +10,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// (22)(23): meets the task, and no other solution of the task costs less.
+// (22)(23): the solution meets the task, and no other solution of the task costs less.
 TEST(WeightedLeastNorm, MeetsTheTaskAtLeastCost) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     test::Random random(seed);

@@ -28,7 +28,7 @@ JointDescription& joint(RobotDescription& robot, const std::string& name) {
   throw std::runtime_error(name);
 }
 
-// What the doctor says of HOAP-1 after a change, one warning a line.
+// The messages of the diagnosis for HOAP-1 after a change, one warning per line.
 std::string findings(const std::function<void(RobotDescription&)>& spoil) {
   RobotDescription robot = hoap1();
   spoil(robot);
@@ -68,20 +68,20 @@ TEST(Diagnose, NamesImplausibleInertias) {
                        "link l_foot", "above that of lead"));
 }
 
-// Without a sidecar the mass of the root is a common trap.
+// Without a sidecar, the mass of the root is a common mistake.
 TEST(Diagnose, NamesTheMassOfTheRoot) {
   EXPECT_TRUE(mentions(findings([](auto& r) { r.sidecar_file.clear(); }), "link torso",
                        "some URDF readers ignore it"));
 }
 
 TEST(Diagnose, NamesShapesThatDoNotFitTheRobot) {
-  // A mesh in millimetres.
+  // The mesh is in millimetres.
   EXPECT_TRUE(
       mentions(findings([](auto& r) {
                  link(r, "l_shank").visuals.push_back({.name = "shin", .shape = Box{{30, 40, 0}}});
                }),
                "link l_shank", "the shape is far larger than the robot"));
-  // No shape says how large the link is, but the robot is 0.5 m high.
+  // No shape says how large the link is, but the robot is known to be 0.5 m high.
   const auto bare = [](double gyration) {
     return findings([&](auto& r) {
       LinkDescription& shank = link(r, "l_shank");
@@ -163,7 +163,7 @@ TEST(Diagnose, NamesLinksWithoutCollisionShape) {
                        "link l_foot", "no collision shape is stated"));
 }
 
-// One cause is one line, whatever the number of joints and links.
+// One cause gives one line, whatever the number of joints and links is.
 TEST(Diagnose, SaysEachCauseOnce) {
   const std::string text = findings([](auto& r) {
     for (auto& [name, speed] : r.profiles[0].speed) speed = 100;
@@ -175,7 +175,7 @@ TEST(Diagnose, SaysEachCauseOnce) {
   EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 3) << text;
 }
 
-// Partners are found where their names say nothing about sides.
+// Partners are found even if their names say nothing about sides.
 TEST(Diagnose, FindsMirroredPartnersByPlace) {
   RobotDescription robot = hoap1();
   const auto renamed = [](const std::string& name) { return "part_" + sha256(name).substr(0, 8); };

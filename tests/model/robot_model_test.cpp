@@ -45,7 +45,8 @@ SoleDescription sole_on(const std::string& link) {
   return sole;
 }
 
-// trunk - l_hip - l_shank, trunk - r_hip - r_shank, and a cap fixed to the left shank.
+// A robot of trunk - l_hip - l_shank and trunk - r_hip - r_shank, with a cap fixed to the left
+// shank.
 RobotDescription biped() {
   RobotDescription robot;
   robot.name = "biped";
@@ -99,7 +100,7 @@ TEST(RobotModel, FollowsTheGivenJointOrder) {
   EXPECT_EQ(model.bodies()[model.dofs()[3].body].name, "l_shank");
 }
 
-// Kinetic energy of a rigid pair, link by link and merged, for random twists.
+// The kinetic energy of a rigid pair is the same link by link and merged, for random twists.
 TEST(RobotModel, MergedInertiaHasTheEnergyOfItsLinks) {
   const RobotModel model(biped());
   const int cap = model.find_link("cap"), shank = model.find_link("l_shank");
@@ -183,7 +184,7 @@ TEST(RobotModel, PosturesLeaveOtherJointsAtZero) {
   const RobotModel model(robot);
   EXPECT_DOUBLE_EQ(model.posture("bow")[model.find_dof("l_hip")], 0.5);
   EXPECT_DOUBLE_EQ(model.posture("bow")[model.find_dof("r_hip")], 0.0);
-  EXPECT_DOUBLE_EQ(model.posture()[model.find_dof("r_knee")], 0.1);  // nearest to 0
+  EXPECT_DOUBLE_EQ(model.posture()[model.find_dof("r_knee")], 0.1);  // the value nearest to 0
   EXPECT_THROW(model.posture("bouw"), Error);
 }
 
@@ -373,8 +374,9 @@ TEST(RobotModel, NamesSolesThatCannotBe) {
             "corners; give one load cell for each corner, or one for all");
 }
 
-// What no motor of a robot of this mass and size can have is refused, in a profile too. Two links
-// of a leg are 0.1 m long each, and a centre of mass is 37 mm away: 0.474 m stretched out and 6 kg.
+// Values that no motor of a robot of this mass and size can have are refused, also in a profile.
+// Two links of a leg are 0.1 m long each, and a centre of mass is 37 mm away, which makes 0.474 m
+// stretched out and 6 kg.
 TEST(RobotModel, RefusesServosThatAreTooLargeForIt) {
   const auto with = [](double ServoDescription::*constant, double value) {
     return error_of([&](RobotDescription& robot) { robot.servos["l_knee"].*constant = value; });
@@ -396,7 +398,7 @@ TEST(RobotModel, RefusesServosThatAreTooLargeForIt) {
               robot.profiles[1].servos["r_hip"].coulomb = 100;
             }).find("robot.json: profile 'second': joint r_hip: coulomb 100 N m is too large"),
             std::string::npos);
-  // Of a sliding joint the mass of the whole robot is the bound.
+  // For a sliding joint, the bound is the mass of the whole robot.
   EXPECT_NE(
       error_of([](RobotDescription& robot) {
         robot.joints[0].type = JointType::prismatic;

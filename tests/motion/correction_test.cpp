@@ -51,7 +51,8 @@ TEST(Correction, WeightsSumToOneAndHaveTheirDerivatives) {
   EXPECT_EQ(correction_weights(track, 1.71).value.norm(), 0);
 }
 
-// A linear ramp of coefficients is a line: the knots' times are those of the middle control points.
+// A linear ramp of coefficients gives a line: the times of the knots are those of the middle
+// control points.
 TEST(Correction, ALineIsReproduced) {
   CorrectionTrack track;
   track.begin = 0;
@@ -69,7 +70,7 @@ TEST(Correction, VelocitiesAndAccelerationsFollow) {
   WalkParameters p;
   p.steps = 2;
   const CommandSeries series = sample(model, walk_pattern(model, p));
-  // 0.3 rad takes the closed form of the rotation's Jacobian, 0.01 rad its series.
+  // For 0.3 rad, the closed form of the rotation's Jacobian is used, and for 0.01 rad its series.
   for (const double scale : {0.01, 0.3}) {
     const CommandSeries corrected = apply_correction(model, series, random_track(model, scale));
     std::vector<CommandSample> again = corrected.samples;
@@ -115,7 +116,7 @@ TEST(Correction, NamesWhatIsWrong) {
   EXPECT_NE(message(track).find("8 columns"), std::string::npos);
 }
 
-// A track that does not fit the robot, or is no track, is refused.
+// A track that does not fit the robot, or that is no valid track, is refused.
 TEST(Correction, TracksThatDoNotFitAreRefused) {
   const RobotModel model = test::biped();
   const CommandSeries series = sample(model, stand_pattern(model, 0.5));

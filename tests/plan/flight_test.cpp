@@ -1,5 +1,5 @@
-// Jumps as patterns: between lift-off and touchdown the COG is a parabola, nothing turns the robot
-// and the soles clear the ground; on the ground they stand still.
+// Jumps as patterns: between lift-off and touchdown the COG follows a parabola, nothing turns the
+// robot, and the soles clear the ground; on the ground they stand still.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,10 +28,10 @@ JumpParameters small_jump(const RobotModel& model) {
 }
 
 struct FlightFigures {
-  double momentum = 0;   // largest angular, about the COG [N m s]
-  double fall = 0;       // largest departure of the COG acceleration from free fall [m/s^2]
-  double rise = 0;       // of the COG above lift-off [m]
-  double clearance = 0;  // of the lower sole, at its highest [m]
+  double momentum = 0;   // largest angular momentum about the COG [N m s]
+  double fall = 0;       // largest deviation of the COG acceleration from free fall [m/s^2]
+  double rise = 0;       // rise of the COG above lift-off [m]
+  double clearance = 0;  // largest clearance of the lower sole [m]
 };
 
 FlightFigures flight_of(const RobotModel& model, const CommandSeries& series) {
@@ -101,7 +101,8 @@ TEST(Flight, OnTheGroundTheSolesStandAndTheZmpIsAsAsked) {
       }
     }
     if (s.support == Support::none) continue;
-    // As the moment about the commanded ZMP over the weight: near lift-off there is little force.
+    // The error is the moment about the commanded ZMP divided by the weight: near lift-off there is
+    // little force.
     const GroundReaction full = full_model_reaction(model, s, data);
     const double share = std::min(1.0, full.force.z() / (model.mass() * kGravity));
     EXPECT_LT(share * (full.zmp - s.zmp).norm(), 0.002) << k;
@@ -172,7 +173,7 @@ TEST(Flight, AHandFollowsItsTargetInTheAir) {
     if (t < begin || t > end) continue;
     ++in_flight;
     const double u = (t - begin) / (end - begin);
-    const double share = u * u * u * (10 - 15 * u + 6 * u * u);  // of a minimum jerk
+    const double share = u * u * u * (10 - 15 * u + 6 * u * u);  // share of a minimum-jerk motion
     EXPECT_LT((in_trunk(series.samples[k].state) - (from + share * (to - from))).norm(), 1e-4) << t;
   }
   EXPECT_GT(in_flight, 50);

@@ -32,7 +32,8 @@ TEST(FootPlan, StartsUnderTheDefaultPosture) {
   EXPECT_LT((plan.support_center(0) - Vector3d(0.01, 0, 0)).norm(), 1e-12);
 }
 
-// A foot is held where it carries, and least in the middle of the other foot's single support.
+// A foot is held firmly while it carries, and least in the middle of the other foot's single
+// support.
 TEST(FootPlan, HoldsWhatCarries) {
   const FootPlan plan(test::biped(), one_step());
   const auto hold = [&](double t) { return plan.hold(Side::right, t); };

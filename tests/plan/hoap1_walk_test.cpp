@@ -25,7 +25,7 @@ struct Figures {
   double position = 0, speed = 0, torque = 0, continuous = 0;  // shares of the limits
 };
 
-// Joint torques with the ground force at the ZMP, shared between the soles by its place.
+// The joint torques with the ground force at the ZMP, which the soles share according to its place.
 VectorXd joint_torques(const RobotModel& model, const CommandSample& now, RobotData& data) {
   const VectorXd force = inverse_dynamics(model, now.state, now.acceleration, data);
   const GroundReaction ground =

@@ -18,7 +18,7 @@ CommandSeries walk(const RobotModel& model) {
   return sample(model, walk_pattern(model, p));
 }
 
-// The joints of a solved walk as a table, its phases without swings.
+// The joints of a solved walk as a table; its phases have no swings.
 Pattern as_table(const RobotModel& model, const CommandSeries& series, bool with_base) {
   WalkParameters p;
   p.steps = 3;
@@ -97,7 +97,7 @@ TEST(JointDriven, LegKeysKeepTheCarryingSoleAndCommandsStand) {
                 1e-9);
     EXPECT_LT((now.cog - data.cog).norm(), 1e-12);
   }
-  // Given, so kept: checking compares it with the full model.
+  // A given ZMP is kept: the check compares it with the full model.
   EXPECT_NEAR(series.samples.back().zmp.x(), 0.123, 1e-12);
   EXPECT_LT(series.samples.back().cog.z(), series.samples.front().cog.z() - 0.01);
 }
@@ -113,7 +113,7 @@ TEST(JointDriven, PostureKeysAloneMoveTheLegs) {
   const CommandSeries series = sample(model, pattern);
   EXPECT_LT((series.samples.back().state.theta - model.posture("squat")).norm(), 1e-12);
   EXPECT_EQ(series.origin.at("joints").find("posture keys"), 0u);
-  // With the body given too, inverse kinematics owns the legs.
+  // If the body is given too, inverse kinematics determines the legs.
   pattern.keyframes[0].zmp = ZmpKey{ZmpKey::Place::center, Eigen::Vector2d::Zero()};
   const CommandSeries solved = sample(model, pattern);
   EXPECT_GT((solved.samples.back().state.theta - model.posture("squat")).norm(), 0.1);

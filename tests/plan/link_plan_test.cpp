@@ -1,5 +1,5 @@
-// Hands, links and the gaze: they are where the keys say, legs and balance hold, and what cannot be
-// reached is said by how much.
+// Hands, links and the gaze are where the keys say, legs and balance stay, and for places that
+// cannot be reached the missing distance is reported.
 #include "ayumi/plan/link_plan.hpp"
 
 #include <gtest/gtest.h>
@@ -52,8 +52,8 @@ LinkTarget place(const Vector3d& position, LinkTarget::Frame frame = LinkTarget:
 const LinkTarget kFree;
 
 struct Hand {
-  Vector3d end, along;      // world
-  Vector3d in_trunk, aims;  // the same in the frame of the trunk
+  Vector3d end, along;      // vectors in the world
+  Vector3d in_trunk, aims;  // the same vectors in the frame of the trunk
 };
 
 Hand hand_at(const RobotModel& model, const RobotState& state, int body) {
@@ -73,7 +73,8 @@ const CommandSample& sample_at(const CommandSeries& series, double t) {
   return series.samples[static_cast<size_t>(std::lround(t / series.dt))];
 }
 
-// The hand of a posture of the arm some way from home, joints well inside their limits.
+// The hand of a random posture of the arm at some distance from home, with joints well inside their
+// limits.
 RobotState random_arm(const RobotModel& model, int body, std::mt19937& random, double off = 0.35) {
   RobotState state = model.rest_state();
   std::uniform_real_distribution<double> share(0.5 - off, 0.5 + off);
@@ -138,10 +139,11 @@ TEST(LinkPlan, AHandHeldInTheWorldStaysWhileTheBodySways) {
   }
   EXPECT_LT(sole, 1e-11);
   EXPECT_LT(cog, 1e-11);
-  // Smooth where targets take over and let go: accelerations as of minimum jerk over half a second.
+  // The motion is smooth where targets take over and end: accelerations are as for minimum jerk
+  // over half a second.
   EXPECT_LT(speed, 80);
   EXPECT_LT(jump, 2);
-  // Before the hand is led, and after, the joints have their own angles.
+  // Before the hand is led by a target, and after that, the joints have their own angles.
   for (const double t : {0.0, 3.7, 4.0})
     for (const int dof : limb_dofs(model, body))
       EXPECT_NEAR(sample_at(series, t).state.theta[dof], model.rest_state().theta[dof], 1e-12);
@@ -167,8 +169,8 @@ TEST(LinkPlan, RandomPlacesAndDirectionsAreMet) {
   }
 }
 
-// No posture near it puts the hand there and is nearer to the keys: the way to them has no part
-// along which the hand stays.
+// No posture nearby puts the hand there and is nearer to the keys: no part of the way to the keys
+// leaves the hand in its place.
 TEST(LinkPlan, TheElbowGoesWhereTheKeysAskFor) {
   const RobotModel& model = humanoid30();
   const int body = hand_body(model, Side::right);
@@ -275,7 +277,7 @@ TEST(LinkPlan, SaysByHowMuchAHandIsOutOfReach) {
 }
 
 // On the way to a key in the world, the trunk may be elsewhere than at the time of the key. A
-// target that only the bent trunk brings within reach is not said to be far out of reach.
+// target that is only within reach of the bent trunk is not reported as far out of reach.
 TEST(LinkPlan, DoesNotMeasureTheReachOfATrunkThatIsOnItsWay) {
   const auto bow = [](double bent, double set_out) {
     Pattern pattern = standing(4);
@@ -286,7 +288,7 @@ TEST(LinkPlan, DoesNotMeasureTheReachOfATrunkThatIsOnItsWay) {
     at(pattern, 3).torso = Vector3d(0, 35 * M_PI / 180, 0);
     return pattern;
   };
-  // Where the hand is when the arm hangs from the bent trunk.
+  // This is the place of the hand when the arm hangs from the bent trunk.
   Pattern hangs = bow(2, 0);
   at(hangs, 2).joints = {{"r_shoulder_pitch", 0.96}, {"r_elbow", -0.1}};
   at(hangs, 3).joints = {{"r_shoulder_pitch", 0.96}, {"r_elbow", -0.1}};
@@ -303,7 +305,8 @@ TEST(LinkPlan, DoesNotMeasureTheReachOfATrunkThatIsOnItsWay) {
   const auto error_of = [&](const Pattern& pattern) {
     return test::error_message([&] { sample(hoap1(), in_order(pattern)); }, ErrorCode::bad_pattern);
   };
-  // The hand is nearly there before the trunk bends: refused for the way alone.
+  // The hand is nearly there before the trunk bends: the pattern is refused because of the way
+  // alone.
   Pattern early = bow(2.9, 0);
   at(early, 2.2).torso = Vector3d::Zero();
   at(early, 0.2).hands["right"] = LinkTarget{};
@@ -314,7 +317,7 @@ TEST(LinkPlan, DoesNotMeasureTheReachOfATrunkThatIsOnItsWay) {
             std::string::npos)
       << message;
   EXPECT_NE(message.find("the trunk is on its way, too"), std::string::npos) << message;
-  // It shall be there before the trunk bends: out of reach at the key itself.
+  // The hand should be there before the trunk bends: the place is out of reach at the key itself.
   at(too_early, 1.5).hands["right"] = place(end);
   const std::string at_key = error_of(too_early);
   EXPECT_NE(at_key.find("/hands/right: t = 1.500 s: the right hand is out of reach by "),
@@ -322,7 +325,7 @@ TEST(LinkPlan, DoesNotMeasureTheReachOfATrunkThatIsOnItsWay) {
       << at_key;
   EXPECT_NE(at_key.find("; move the target, or move or tilt the trunk"), std::string::npos)
       << at_key;
-  // With the trunk bent first, the same place is reached.
+  // If the trunk is bent first, the same place is reached.
   Pattern late = bow(1.5, 1.5);
   at(late, 3).hands["right"] = place(end);
   EXPECT_NO_THROW(sample(hoap1(), in_order(late)));
@@ -357,7 +360,7 @@ TEST(LinkPlan, MirroredTargetsMoveTheMirroredArm) {
   }
 }
 
-// Keys of the legs move the base, and the hand is held all the same.
+// Keys of the legs move the base, and the hand is held nevertheless.
 TEST(LinkPlan, AHandIsHeldWhileKeysMoveTheLegs) {
   const RobotModel& model = hoap1();
   const int body = hand_body(model, Side::right);

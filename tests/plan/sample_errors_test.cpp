@@ -1,4 +1,4 @@
-// What an author gets wrong is told with file, place and remedy.
+// Mistakes of an author are reported with file, place and remedy.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace ayumi {
 namespace {
 
-// The message sample() fails with after `change`, "" when it does not fail.
+// The message with which sample() fails after `change`, or "" if it does not fail.
 std::string message_of(const std::function<void(Pattern&)>& change) {
   const RobotModel model = test::biped();
   WalkParameters p;
@@ -125,7 +125,7 @@ TEST(SampleErrors, FootKeysThatDragASupportingFoot) {
                }),
                {"phases/0", "left foot", "while it carries", "the key /keyframes/1 at ",
                 "is at [0.05, 0.05, 0] m, 50 mm away", "the place where the foot stands"});
-  // What rounding leaves of a place is no other place.
+  // A place that differs by rounding only is not another place.
   EXPECT_EQ(message_of([](Pattern& p) {
               for (Phase& phase : p.phases) phase = {phase.until, Support::both, {}};
               Foothold foot;
@@ -135,7 +135,7 @@ TEST(SampleErrors, FootKeysThatDragASupportingFoot) {
               for (Keyframe& key : p.keyframes) key.zmp.reset();
             }),
             "");
-  // A key that is missing where the foot leaves the ground: it moves before.
+  // A key is missing where the foot leaves the ground: the foot moves before that.
   expect_words(message_of([](Pattern& p) {
                  for (Phase& phase : p.phases) phase.swing.reset();
                  Foothold foot;
@@ -151,7 +151,7 @@ TEST(SampleErrors, FootKeysThatDragASupportingFoot) {
                 "Give the foot a key at ", " s where it stands"});
 }
 
-// A walk with a table of one arm, 10 ms between its rows.
+// The message for a walk with a table of one arm, with 10 ms between its rows.
 std::string message_of_table(const std::function<void(DenseTable&)>& change) {
   return message_of([&](Pattern& p) {
     for (Keyframe& key : p.keyframes) key.joints.clear();

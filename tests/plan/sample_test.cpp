@@ -1,5 +1,5 @@
-// Sampling a walk: the full model agrees with what was asked, and nothing depends on where the
-// world's origin lies, on which side is called left, or on when it starts.
+// Sampling a walk: the full model agrees with the pattern, and nothing depends on the place of the
+// world's origin, on which side is called left, or on the start time.
 #include "ayumi/plan/sample.hpp"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ WalkParameters short_walk() {
   return p;
 }
 
-// Worst distance between commanded and full-model ZMP [m].
+// The largest distance between the commanded ZMP and that of the full model [m].
 double worst_zmp_error(const RobotModel& model, const CommandSeries& series) {
   RobotData data(model);
   double worst = 0;
@@ -69,7 +69,7 @@ TEST(Sample, FullModelZmpMeetsTheKeys) {
     const CommandSeries series = sample(model, pattern);
     EXPECT_LT(worst_zmp_error(model, series), 0.0005) << pattern.name;
     EXPECT_GT(least_margin(model, series), 0.025) << pattern.name;
-    // The point mass alone leaves more.
+    // With the point mass alone, a larger error is left.
     Pattern point_mass = pattern;
     point_mass.full_model = false;
     EXPECT_GT(worst_zmp_error(model, sample(model, point_mass)), 0.002) << pattern.name;
@@ -109,7 +109,8 @@ TEST(Sample, VelocitiesAndAccelerationsAreDerivatives) {
     const CommandSample& a = series.samples[k - 1];
     const CommandSample& now = series.samples[k];
     const CommandSample& b = series.samples[k + 1];
-    // Integrating the mean velocity of both neighbours' midpoints lands on the next sample.
+    // Integrating the mean of the velocities at the two neighbouring midpoints leads to the next
+    // sample.
     const RobotState moved = test::integrate(a.state, now.state.velocity(), 2 * series.dt);
     EXPECT_LT((moved.theta - b.state.theta).norm(), 2e-6);
     EXPECT_LT((moved.base.position - b.state.base.position).norm(), 1e-6);
@@ -117,7 +118,7 @@ TEST(Sample, VelocitiesAndAccelerationsAreDerivatives) {
     const VectorXd difference = (b.state.velocity() - a.state.velocity()) / (2 * series.dt);
     EXPECT_LT((difference - now.acceleration).cwiseAbs().maxCoeff(),
               0.05 + 0.02 * now.acceleration.cwiseAbs().maxCoeff());
-    // The COG's rate by the floating Jacobian: another way to the same number.
+    // The rate of the COG by the floating Jacobian is a second route to the same number.
     update_velocities(model, now.state, data);
     EXPECT_LT((data.dcog - now.dcog).norm(), 1e-5);
   }
@@ -202,7 +203,7 @@ TEST(Sample, StartingLaterIsTheSameMotionLater) {
   const CommandSeries a = sample(model, pattern), b = sample(model, later);
   const auto offset = static_cast<size_t>(std::lround(shift / a.dt));
   ASSERT_EQ(a.samples.size() + offset, b.samples.size());
-  // Only the small bump that buys the start from rest differs, and it dies away.
+  // Only the small bump that allows a start from rest differs, and it decays.
   for (size_t k = 0; k < a.samples.size(); k += 5)
     EXPECT_LT((a.samples[k].cog - b.samples[k + offset].cog).norm(), 1e-3);
   for (size_t k = 1700; k < a.samples.size(); k += 5)
@@ -269,7 +270,7 @@ TEST(Sample, CogKeysGiveZmpAndForceOfTheFullModel) {
   EXPECT_LT(worst_zmp_error(model, series), 1e-9);
   EXPECT_NEAR(series.samples.back().cog.x(), 0.02, 1e-12);
   EXPECT_NEAR(series.samples.back().cog.z(), 0.25, 1e-12);
-  // One coordinate keyed, the other solved.
+  // One coordinate is keyed, and the other is solved.
   pattern.keyframes[0].cog_y.reset();
   const CommandSeries half = sample(model, pattern);
   EXPECT_NEAR(half.samples.back().cog.x(), 0.02, 1e-12);
@@ -304,7 +305,8 @@ TEST(Sample, SamePatternSameBytes) {
   }
 }
 
-// More samples than several threads take in one go, with the COG solved and with the COG keyed.
+// There are more samples than several threads take at once, with the COG solved and with the COG
+// keyed.
 TEST(Sample, SameBytesForAnyNumberOfThreads) {
   const RobotModel model = test::biped();
   Pattern walk = walk_pattern(model, short_walk());
@@ -336,7 +338,7 @@ TEST(Sample, SameBytesForAnyNumberOfThreads) {
   }
 }
 
-// Of several places that cannot be reached, the first is named.
+// If several places cannot be reached, the first is named.
 TEST(Sample, SameErrorForAnyNumberOfThreads) {
   const RobotModel model = test::biped();
   Pattern pattern = walk_pattern(model, short_walk());
@@ -371,7 +373,8 @@ TEST(Sample, EightSecondsInAboutOneSecond) {
   const CommandSeries series = sample(model, pattern);
   const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
   RecordProperty("seconds", std::to_string(spent.count()));
-  EXPECT_LT(spent.count(), 10.0) << series.duration() << " s of motion";  // slack for debug builds
+  // Leaves room for debug builds.
+  EXPECT_LT(spent.count(), 10.0) << series.duration() << " s of motion";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// VIIP phases take no time from the keys: the posture is held meanwhile.
+// VIIP phases take no time from the keys: the posture is held during them.
 #include "ayumi/plan/viip_phases.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ WalkParameters single_step_walk() {
   return p;
 }
 
-// The walk, later by `wait`, after a VIIP phase of that length.
+// The walk, delayed by `wait`, after a VIIP phase of that length.
 Pattern after_goal(Pattern walk, double wait) {
   for (Phase& phase : walk.phases) phase.until += wait;
   for (Keyframe& key : walk.keyframes) key.t += wait;
@@ -82,7 +82,7 @@ TEST(ViipPhases, ComplaintsNameThePlace) {
   EXPECT_NE(complaint(keyed).find("keyframes/0: the key at 0.2 s lies inside the VIIP phase"),
             std::string::npos);
 
-  // Cut into the walk: on one foot, then between its steps.
+  // The phase is inserted into the walk, first on one foot and then between its steps.
   Pattern broken = walk;
   const double on_one_foot = walk.phases[1].until;
   broken.phases.resize(2);

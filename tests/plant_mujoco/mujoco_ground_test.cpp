@@ -1,4 +1,5 @@
-// Ground and disturbances in MuJoCo: closed forms with a block, and what Ayumi's own plant says.
+// Ground and disturbances in MuJoCo agree with closed forms for a block, and with Ayumi's own
+// plant.
 
 #include <gtest/gtest.h>
 
@@ -82,7 +83,7 @@ TEST(MujocoGround, PatchesHaveTheirOwnFriction) {
   }
 }
 
-// A height field that is an inclined plane, above and below the plane around it.
+// The height field is an inclined plane, above and below the plane around it.
 TEST(MujocoGround, AnInclinedFieldIsASlope) {
   const double angle = 0.3, mu = 0.15;
   const World world = test::inclined_field(angle, mu);
@@ -95,7 +96,8 @@ TEST(MujocoGround, AnInclinedFieldIsASlope) {
   EXPECT_NEAR((block.position() - start).norm(), distance, 0.02 * distance);
 }
 
-// Shaken more gently than friction holds, a block goes with the floor; more strongly, it slips.
+// A block on a floor that is shaken more gently than friction holds moves with the floor; with
+// stronger shaking it slips.
 TEST(MujocoGround, AMovingFloorCarriesABlockAsFarAsFrictionHolds) {
   const double mu = 0.4, w = 2 * M_PI * 2;
   for (const double share : {0.8, 1.5}) {
@@ -110,7 +112,7 @@ TEST(MujocoGround, AMovingFloorCarriesABlockAsFarAsFrictionHolds) {
   }
 }
 
-/// One of each kind, from 0.3 s for 0.7 s.
+/// One disturbance of each kind, from 0.3 s for 0.7 s.
 std::vector<Disturbance> disturbances() {
   std::vector<Disturbance> all;
   const auto add = [&](const auto& what, double duration = 0.7) {
@@ -137,7 +139,7 @@ std::vector<Disturbance> disturbances() {
 
 class MujocoDisturbance : public testing::TestWithParam<Disturbance> {};
 
-// Both plants under each of the twelve: COG and force on the ground.
+// COG and force on the ground agree in both plants under each of the twelve disturbances.
 TEST_P(MujocoDisturbance, DoesTheSameInBothPlants) {
   static const CommandSeries stand = test::standing(hoap1(), 1.3);
   SimulateOptions options;
@@ -149,7 +151,7 @@ TEST_P(MujocoDisturbance, DoesTheSameInBothPlants) {
   ASSERT_EQ(ours.samples.size(), theirs.samples.size());
   double largest = 0, moved = 0, force = 0;
   for (size_t k = 0; k < ours.samples.size(); ++k) {
-    // The balls at the corners are flush with the sole only while it is flat.
+    // The balls at the corners are only flush with the sole while it is flat.
     largest = std::max(largest, (ours.samples[k].cog - theirs.samples[k].cog).norm());
     moved = std::max(moved, (ours.samples[k].cog - ours.samples[250].cog).norm());
     if (k > 1000) force += (ours.samples[k].fz - theirs.samples[k].fz) / 300;

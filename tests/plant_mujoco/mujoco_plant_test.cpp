@@ -1,4 +1,4 @@
-// Two integrators, one robot: what Ayumi's plant says against MuJoCo.
+// Two integrators simulate one robot: Ayumi's plant is compared with MuJoCo.
 
 #include "ayumi/sim/plant_mujoco/mujoco_plant.hpp"
 
@@ -39,11 +39,11 @@ TEST(MujocoPlant, StandingCarriesTheWeight) {
 }
 
 struct FlightDifference {
-  double ours = 0, theirs = 0;  ///< of the COG from its parabola [m]
-  double attitude = 0;          ///< of one base from the other [rad]
+  double ours = 0, theirs = 0;  ///< deviation of the COG from its parabola [m]
+  double attitude = 0;          ///< difference of the attitudes of the two bases [rad]
 };
 
-/// After 0.3 s of flight with limbs that move.
+/// The differences after 0.3 s of flight with limbs that move.
 FlightDifference flight_difference(double step) {
   RobotState s = hoap1().rest_state();
   s.base.position.z() = 2;
@@ -65,8 +65,8 @@ FlightDifference flight_difference(double step) {
           ours.state().base.attitude.angularDistance(theirs.state().base.attitude)};
 }
 
-// Ours keeps the parabola whatever the step; what the two differ by falls in proportion to it or
-// faster: both go to the same motion.
+// Ayumi's plant keeps the parabola with any step. The difference between the two falls in
+// proportion to the step or faster: both converge to the same motion.
 TEST(MujocoPlant, AgreesInFlightAsTheStepShrinks) {
   FlightDifference d[3];
   for (int i = 0; i < 3; ++i) {
@@ -113,7 +113,7 @@ TEST_P(MujocoWalk, GoesTheSameWay) {
 
 INSTANTIATE_TEST_SUITE_P(Controllers, MujocoWalk, testing::Values("none", "dtad"));
 
-// A copy goes on from the same state to the last bit, so that pushes can branch off one run.
+// A copy continues from the same state to the last bit, so that pushes can branch off one run.
 TEST(MujocoPlant, CopiesAreBranches) {
   SimulateOptions options;
   options.plant = mujoco_plant_kind();

@@ -1,6 +1,6 @@
-// The same pushes in both plants: the robot stands or falls in both, and where they differ the push
-// is near the threshold. The whole set of 100 runs on demand:
-// plant_mujoco_tests --gtest_also_run_disabled_tests --gtest_filter=*Hundred*
+// The same pushes in both plants: the robot stands or falls in both, and if they differ, the push
+// is near the threshold. The whole set of 100 runs is only made on demand: plant_mujoco_tests
+// --gtest_also_run_disabled_tests --gtest_filter=*Hundred*
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ namespace {
 using test::hoap1;
 using test::hoap1_walk;
 
-/// Up to the push once, then a copy per push.
+/// Runs up to the push once, and then makes a copy per push.
 class Runs {
  public:
   Runs(const PlantKind& kind, double at, int substeps = 1) : at_(at) {
@@ -37,7 +37,7 @@ class Runs {
     }
     return !run.fell() && run.result().outcome == Outcome::stands;
   }
-  /// Smallest impulse between two that make it fall, to 2 %.
+  /// The smallest impulse between the two that makes the robot fall, to 2 %.
   double threshold(double direction, double low, double high) const {
     while (high - low > 0.02 * high)
       (stands(direction, 0.5 * (low + high)) ? low : high) = 0.5 * (low + high);
@@ -54,7 +54,7 @@ struct Comparison {
   double farthest = 0;  ///< of a differing push from the threshold, as a share of it
 };
 
-/// Pushes of these shares of our threshold, in every direction at every time.
+/// Pushes of these shares of Ayumi's threshold, in every direction and at every time.
 Comparison compare(const std::vector<double>& times, int directions,
                    const std::vector<double>& shares, const PlantKind& other, int substeps = 1) {
   Comparison result;

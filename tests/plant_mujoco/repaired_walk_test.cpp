@@ -1,5 +1,5 @@
-// Walks with a fault planted, repaired and played open loop: an independent integrator, with servos
-// that sag, has them standing at the end.
+// Walks with a planted fault are repaired and played in open loop: in an independent integrator,
+// with servos that sag, the robot stands at the end.
 
 #include <gtest/gtest.h>
 
@@ -38,14 +38,15 @@ void expect_stands_repaired(const Pattern& pattern, const std::string& profile) 
   EXPECT_LT(result.final_cog_error, 0.002);
 }
 
-// Sideways, 15 mm a step; the foot has to come down 60 ms earlier.
+// The walk goes sideways, 15 mm per step; the foot has to come down 60 ms earlier.
 TEST(RepairedWalk, StandsAfterAnEarlyContact) {
   Pattern pattern = table_of({.steps = 9, .stride = 0, .side = 0.03});
   pattern.phases[middle_step(pattern)].until -= 0.06;
   expect_stands_repaired(pattern, "hoap1-strong");
 }
 
-// The swinging leg's knee thrown 70 degrees, beyond its limit, with 8 degrees of turn a step.
+// The knee of the swinging leg is moved by 70 degrees, beyond its limit, in a walk that turns by 8
+// degrees per step.
 TEST(RepairedWalk, StandsAfterAThrownKnee) {
   Pattern pattern = table_of({.steps = 8, .stride = 0.02, .period = 0.7, .turn = 8 * M_PI / 180});
   const size_t step = middle_step(pattern);
@@ -56,7 +57,8 @@ TEST(RepairedWalk, StandsAfterAThrownKnee) {
   expect_stands_repaired(pattern, "hoap1-strong");
 }
 
-// In place and sideways, the whole motion in 0.62 of its time: a knee is too fast.
+// The walks are in place and sideways, with the whole motion in 0.62 of its time: a knee is too
+// fast.
 TEST(RepairedWalk, StandsInLessTime) {
   Pattern pattern = table_of({.steps = 8, .stride = 0.02, .period = 0.7, .side = 0.016});
   squeeze(pattern, 0.62);

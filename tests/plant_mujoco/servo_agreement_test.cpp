@@ -1,4 +1,4 @@
-// Every form of a servo in both plants: the same joint under the same load.
+// Every form of a servo in both plants, with the same joint under the same load.
 
 #include <gtest/gtest.h>
 

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The made-up run, and the same as if it fell over at 0.6 s.
+/// The made-up run, and the same run as if the robot fell at 0.6 s.
 struct TwoRuns {
   RobotModel model = test::box_robot();
   SimulationLog standing = test::box_run(model);
@@ -34,7 +34,7 @@ struct TwoRuns {
   std::vector<LociRun> both() const { return {{"open loop", &falling}, {"DTAD", &standing}}; }
 };
 
-/// Texts of a drawing, in order.
+/// The texts of a drawing, in order.
 std::vector<std::string> texts(const Drawing& drawing) {
   std::vector<std::string> out;
   for (const auto& item : drawing.items)
@@ -74,7 +74,7 @@ TEST(Loci, ThePanelOfTheForceHasItsReference) {
   EXPECT_TRUE(has(draw_loci(runs.both(), with), "reference f_z of DTAD"));
 }
 
-// A change is drawn by what it changed; the rest is named.
+// A change is drawn by the panels in which it is visible; the other panels are named.
 TEST(Loci, OnlyWhatDiffersIsDrawnWithJointsAndLimits) {
   TwoRuns runs;
   SimulationLog moved = runs.standing;
@@ -118,7 +118,7 @@ TEST(Loci, AFallenRunIsCutOffAndItIsSaid) {
     EXPECT_EQ(text.find("edge of the axes"), std::string::npos) << "no curve ends there";
 }
 
-// No foot carries a robot that falls in the air, so that it has no ZMP then.
+// No foot carries a robot that falls in the air, so that there is no ZMP.
 TEST(Loci, AFallInTheAirHasNoMarkOfTheZmp) {
   TwoRuns runs;
   for (size_t k = 250; k < runs.falling.samples.size(); ++k)
@@ -130,8 +130,7 @@ TEST(Loci, AFallInTheAirHasNoMarkOfTheZmp) {
     }
 }
 
-// Nothing stands and the margin has no command: its range is what it was before the fall, and not
-// a metre.
+// No run stands, and the margin has no command: its range is that before the fall, and not a metre.
 TEST(Loci, TheMarginOfAFallenRunIsThatBeforeItsFall) {
   const TwoRuns runs;
   LociOptions options;
@@ -140,7 +139,8 @@ TEST(Loci, TheMarginOfAFallenRunIsThatBeforeItsFall) {
   const std::vector<std::string> all = texts(drawing);
   const auto margin = std::find(all.begin(), all.end(), "margin [mm]");
   ASSERT_NE(margin, all.end());
-  // The numbers of an axis come before its name or after it, those of the panel below further on.
+  // The numbers of an axis come before its name or after it, and those of the panel below come
+  // later.
   double most = 0;
   int numbers = 0;
   for (auto text = margin - 1; text >= all.begin(); --text, ++numbers) {
@@ -220,7 +220,7 @@ Eigen::AlignedBox2d box_of(const DrawnText& text) {
           Eigen::Vector2d(left + wide, text.position.y())};
 }
 
-/// Whether any two words that are read from left to right lie over each other.
+/// The first two words, read from left to right, that overlap, if there are any.
 std::string words_over_each_other(const Drawing& drawing) {
   std::vector<DrawnText> all;
   for (const auto& item : drawing.items)
@@ -232,8 +232,8 @@ std::string words_over_each_other(const Drawing& drawing) {
   return "";
 }
 
-// Steps that lie over each other, on the spot and in a circle: every foothold has its number and
-// time, and the labels stand apart.
+// Steps overlap, on the spot and in a circle: every foothold has its number and time, and the
+// labels do not touch.
 TEST(Loci, FootholdsAreNumberedAndTheirLabelsStandApart) {
   TwoRuns runs;
   for (const double stride : {0.0, 0.03, -0.2}) {
@@ -251,7 +251,7 @@ TEST(Loci, FootholdsAreNumberedAndTheirLabelsStandApart) {
                                    std::to_string((n - 1) % 10) + "0 s"))
           << n << " " << stride;
     EXPECT_EQ(words_over_each_other(drawing), "") << stride;
-    // What lands after a fall is no foothold.
+    // A foot that lands after a fall makes no foothold.
     log.result.outcome = Outcome::fell;
     log.result.fell_at = 0.45;
     const Drawing fallen = draw_support(runs.model, {{"DTAD", &log}}, {});
@@ -260,7 +260,7 @@ TEST(Loci, FootholdsAreNumberedAndTheirLabelsStandApart) {
   }
 }
 
-// A motion of the joints alone leaves COG and ZMP where they are: the joints are what is seen.
+// A motion of the joints alone leaves COG and ZMP in their places: only the joints show it.
 TEST(Loci, ShowWhatMovesMost) {
   TwoRuns runs;
   SimulationLog log = runs.standing;
@@ -269,8 +269,8 @@ TEST(Loci, ShowWhatMovesMost) {
     s.state.theta.setZero();
     s.state.theta[1] = 0.6 * std::sin(0.01 * double(k));
     s.state.theta[2] = 0.2 * std::cos(0.02 * double(k));
-    s.state.theta[4] = 0.6 * std::sin(0.01 * double(k)) + 0.001;  // as the first
-    s.state.theta[3] = 0.01 * std::sin(0.3 * double(k));          // too little
+    s.state.theta[4] = 0.6 * std::sin(0.01 * double(k)) + 0.001;  // it moves like the first one
+    s.state.theta[3] = 0.01 * std::sin(0.3 * double(k));          // it moves too little
   }
   LociOptions options;
   options.model = &runs.model;
@@ -288,7 +288,7 @@ TEST(Loci, ShowWhatMovesMost) {
   EXPECT_TRUE(has(draw_loci({{"DTAD", &log}}, options), "trunk roll"));
 }
 
-/// Points of lines of a drawing with that width of the stroke.
+/// The points of a drawing's lines with that width of the stroke.
 std::vector<Eigen::Vector2d> points_of(const Drawing& drawing, double width) {
   std::vector<Eigen::Vector2d> points;
   for (const auto& item : drawing.items)
@@ -319,7 +319,7 @@ TEST(Loci, LandingForcesAreDrawnToTheirTop) {
     EXPECT_FALSE(text.ends_with(" N")) << text << ": nothing lands";
 }
 
-// Of a lift-off and a landing soon after it: the value of the first was under the second.
+// A lift-off is soon followed by a landing: before, the value of the first was under the second.
 TEST(Loci, ValuesOfForcesStandBesideTheCurves) {
   TwoRuns runs;
   SimulationLog log = runs.standing;
@@ -355,14 +355,15 @@ TEST(Loci, ThereIsNoZmpInFlight) {
   LociOptions options{.cog = false, .fz = false};
   const Drawing drawing = draw_loci({{"DTAD", &log}}, options);
   const double left = 78, right = options.width - 18;                       // of the panels
-  const auto time = [&](double x) { return (x - left) / (right - left); };  // of one second
+  const auto time = [&](double x) { return (x - left) / (right - left); };  // for one second
   for (const double width : {1.6, 1.3, 1.1})
     for (const Eigen::Vector2d& p : points_of(drawing, width))
       EXPECT_FALSE(p.y() > 60 && time(p.x()) > 0.401 && time(p.x()) < 0.597)
           << width << ", below the legend";
 }
 
-// A telephone is 360 pixels wide: all is inside, apart, and no letter smaller than 11.
+// A telephone is 360 pixels wide: everything is inside, nothing touches, and no letter is smaller
+// than 11.
 TEST(Loci, NarrowDrawingsCanBeRead) {
   TwoRuns runs;
   runs.standing.provenance.pattern = "a_walk_with_a_rather_long_name_of_its_file.json";

@@ -18,7 +18,7 @@ TEST(Ticks, AreRoundAndInside) {
        {Interval{-0.013, 0.021}, Interval{0.2371, 0.2379}, Interval{0, 4.2}, Interval{-3, 127}}) {
     for (const int count : {3, 5, 9}) {
       const std::vector<double> ticks = nice_ticks(interval, count);
-      // One number does not show a scale, so that up to four may stand in place of one.
+      // One number does not show a scale, so that up to four may be there instead of one.
       ASSERT_GE(ticks.size(), 2u);
       EXPECT_LE(ticks.size(), size_t(std::max(count, 4)));
       EXPECT_GE(ticks.front(), interval.low - 1e-12);

@@ -1,4 +1,5 @@
-// The map of a library of walks: its cells are where their speeds say, and missing ones have marks.
+// The map of a library of walks: the cells are at the places of their speeds, and missing ones have
+// marks.
 
 #include "ayumi/plot/gait_map.hpp"
 

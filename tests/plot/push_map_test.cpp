@@ -65,8 +65,8 @@ TEST(PushMap, SaysWhatItShows) {
     }
 }
 
-// The dot of a largest value lies on the outer ring, beside the name of its direction. The number
-// of a ring was covered by the dots of what is forward.
+// The dot of a largest value lies on the outer ring, beside the name of its direction. Before, the
+// number of a ring was covered by dots of pushes forward.
 TEST(PushMap, NamesOfDirectionsAndRingsStandBesideTheDots) {
   PushMap map = four_directions();
   map.phases[0].curves[1] = {{5, 5, 5, 5}, {false, false, false, false}};
@@ -96,7 +96,7 @@ TEST(PushMap, NamesOfDirectionsAndRingsStandBesideTheDots) {
   }
 }
 
-// On a page of 390 pixels: nothing is cut off, and letters have 11 pixels or more.
+// On a page of 390 pixels, nothing is cut off, and letters have 11 pixels or more.
 TEST(PushMap, ANarrowMapFitsOnATelephone) {
   const Drawing drawing = draw_push_map(four_directions(), PushMapLayout::narrow);
   EXPECT_LE(drawing.width, 350);

@@ -1,7 +1,7 @@
-// Properties of patterns and of the check that hold for motions of every kind, tried on motions
-// made from a seed: what is accepted can be sampled or is refused with its place, files keep what
-// was written, left and right are names, and the check does not depend on where the world's origin
-// lies and obeys the laws of time scaling.
+// Properties of patterns and of the check that hold for motions of every kind, tested on motions
+// that are made from a seed. An accepted pattern can be sampled or is refused with its place; files
+// keep what was written; left and right are only names; the check does not depend on the world's
+// origin; and it obeys the laws of time scaling.
 
 #include <gtest/gtest.h>
 
@@ -140,7 +140,7 @@ TEST(Properties, AnAcceptedPatternIsSampledOrRefusedWithItsPlace) {
     } catch (const Error& error) {
       const std::string message = error.what();
       EXPECT_NE(error.code(), ErrorCode::internal) << seed << message;
-      // A key, a phase or the defaults, or a time.
+      // The message names a key, a phase or the defaults, or a time.
       EXPECT_TRUE(message.starts_with("p.json: /") || message.find(" s") != std::string::npos)
           << seed << message;
     }
@@ -186,7 +186,7 @@ TEST(Properties, MirroredTwiceIsTheIdentityAndMirroredOnceIsAsConsistent) {
 
 // ---- the check
 
-/// The same motion seen from another origin.
+/// The same motion as seen from another origin.
 CommandSeries moved(CommandSeries series, double yaw, const Vector3d& by) {
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(yaw, Vector3d::UnitZ()));
   Eigen::Isometry3d frame = Eigen::Isometry3d::Identity();
@@ -224,7 +224,7 @@ TEST(Properties, TheCheckDoesNotDependOnTheOrigin) {
     }
     for (const std::string& name : finding_kind_names()) {
       const FindingKind kind = *finding_kind(name);
-      // Figures of the command's agreement are those of the worst axis of the world, which turns.
+      // Figures of the agreement of commands are those of the worst axis of the world, which turns.
       if (name.ends_with("residual") || name.ends_with("gap") || name == "angular_momentum")
         continue;
       EXPECT_NEAR(a.summary[kind], b.summary[kind], 1e-6 * (1 + std::abs(a.summary[kind])))
@@ -233,7 +233,7 @@ TEST(Properties, TheCheckDoesNotDependOnTheOrigin) {
   }
 }
 
-/// The same path `slower` times as slow; COG, ZMP and f_z are those of the full model.
+/// The same path, `slower` times as slow. COG, ZMP and f_z are those of the full model.
 CommandSeries retimed(CommandSeries series, double slower) {
   series.dt *= slower;
   RobotData data(hoap1());
@@ -251,8 +251,9 @@ CommandSeries retimed(CommandSeries series, double slower) {
   return series;
 }
 
-// With the same path, speeds go with 1 / s. What the ground carries is gravity and inertia, and the
-// latter goes with 1 / s^2: so the differences of the ZMP between three paces have a known ratio.
+// With the same path, speeds change with 1 / s. The ground carries gravity and inertia, and the
+// latter changes with 1 / s^2: so the differences of the ZMP between three paces have a known
+// ratio.
 TEST(Properties, TheCheckObeysTimeScaling) {
   for (unsigned seed = 0; seed < 4; ++seed) {
     Dice dice(300 + seed);
@@ -273,7 +274,7 @@ TEST(Properties, TheCheckObeysTimeScaling) {
       one.samples = {series.samples[k]};
       const auto zmp_force = [&](double slower) {
         const CommandSample s = retimed(one, slower).samples.front();
-        return Vector3d(s.zmp * s.fz);  // the moment about the origin, which is what adds up
+        return Vector3d(s.zmp * s.fz);  // the moment about the origin, which can be added
       };
       const Vector3d fast = zmp_force(1) - zmp_force(2), slow = zmp_force(2) - zmp_force(4);
       EXPECT_LT((fast - 4 * slow).head<2>().norm(), 1e-6) << seed << " " << k;

@@ -1,4 +1,4 @@
-// `ayumi preview` of many runs, its further formats, and what it says when something is wrong.
+// `ayumi preview` of many runs, its further formats, and its messages for mistakes.
 
 #include <gtest/gtest.h>
 

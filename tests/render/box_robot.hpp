@@ -1,5 +1,6 @@
 #pragma once
-// A small walking machine of boxes, capsules and a ball, and a made-up run of it: enough to draw.
+// A small walking machine of boxes, capsules and a ball, and a made-up run of it, for tests that
+// draw.
 
 #include <cmath>
 
@@ -46,7 +47,8 @@ inline JointDescription hinge(const std::string& name, const std::string& parent
   return joint;
 }
 
-/// 0.48 m tall, trunk above two legs of two hinges each; base 0.30 m above the soles.
+/// A robot 0.48 m tall with a trunk above two legs of two hinges each; its base is 0.30 m above the
+/// soles.
 inline RobotModel box_robot() {
   RobotDescription d;
   d.name = "box_robot";
@@ -73,7 +75,8 @@ inline RobotModel box_robot() {
   return RobotModel(d);
 }
 
-/// One second of swaying while moving on at 0.1 m/s, pushed by 20 N for 20 ms at 0.3 s.
+/// A run of one second in which the robot sways while it moves at 0.1 m/s, and is pushed by 20 N
+/// for 20 ms at 0.3 s.
 inline SimulationLog box_run(const RobotModel& model) {
   SimulationLog log;
   log.dt = 0.002;
@@ -107,7 +110,7 @@ inline SimulationLog box_run(const RobotModel& model) {
   return log;
 }
 
-/// The picture of the robot alone.
+/// Options for a picture of the robot alone.
 inline OverlayOptions no_marks() {
   return {.cog = false,
           .zmp = false,

@@ -89,7 +89,7 @@ TEST(CameraPath, EveryNamedViewHoldsTheRobotWhole) {
   }
 }
 
-// Parallel lines stay parallel: a metre is as long near as far, and heights are straight down.
+// Parallel lines stay parallel: a metre has the same length near and far, and heights are vertical.
 TEST(CameraPath, TheOrthographicSideViewMeasures) {
   const CameraPath path({.view = "ortho-side"}, walk(), 0.01, 0.48, 1.6);
   const Camera camera = path.at(1);
@@ -104,7 +104,7 @@ TEST(CameraPath, TheOrthographicSideViewMeasures) {
   EXPECT_GT(at(0, 0.4, 0).z(), at(0, -0.3, 0).z()) << "and still knows what is nearer";
 }
 
-// A squat and a jump do not move the camera; a fall and stairs do, so that the robot stays in
+// A squat and a jump do not move the camera; a fall and stairs do, so that the robot remains in
 // sight.
 TEST(CameraPath, FollowsAFallAndStairs) {
   const auto height_at = [](double end, CameraMode mode) {

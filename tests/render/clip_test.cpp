@@ -109,7 +109,8 @@ TEST_F(Clip, AFolderOfFramesReplacesFramesAlone) {
   options.end = 0.5;
   EXPECT_EQ(write_clip(model, log, frames, options).frames, 3);
   EXPECT_EQ(std::distance(fs::directory_iterator(frames), fs::directory_iterator()), 3);
-  // A file of the user stays, and the frames beside it, even where it has nearly the name of one.
+  // A file of the user stays, and so do the frames beside it, even if it has nearly the name of a
+  // frame.
   for (const char* name : {"notes.txt", "frame_title.png", "frame_00001.jpg", "frame_00001b.png"}) {
     const std::string before = read_file(frames / "frame_00000.png");
     write_file(frames / name, "mine");
@@ -186,8 +187,8 @@ TEST_F(Clip, ThePushStaysVisibleForAWhile) {
   EXPECT_EQ(pink(renderer.frame(0.901)), 0);
 }
 
-// The legend of a picture names a push where the picture shows one, that of a clip where one of its
-// pictures does.
+// The legend of a picture names a push if the picture shows one; that of a clip names it if one of
+// its pictures does.
 TEST_F(Clip, TheLegendNamesAPushWhereOneIsShown) {
   ClipOptions without_pushes = options;
   without_pushes.overlay.push = false;
@@ -204,7 +205,7 @@ TEST_F(Clip, TheLegendNamesAPushWhereOneIsShown) {
     without.frame_robot({0.0, t});
     EXPECT_EQ(legend(with) == legend(without), t < 0.3) << t;
   }
-  options.begin = without_pushes.begin = 0.95;  // it has faded
+  options.begin = without_pushes.begin = 0.95;  // the push has faded
   EXPECT_EQ(ClipRenderer(model, log, options).clip_frame(1).rgb,
             ClipRenderer(model, log, without_pushes).clip_frame(1).rgb);
 }
@@ -247,7 +248,7 @@ TEST_F(Clip, EncoderMessagesAreHandedOn) {
   EXPECT_EQ(files(), 1u);
 }
 
-// ffmpeg ends well although what it wrote was cut off.
+// ffmpeg ends without an error although its file was cut off.
 TEST_F(Clip, AFullDiskLeavesNoHalfClip) {
   const fs::path script = folder / "encoder.sh";
   write_file(script, "#!/bin/sh\ntrap '' XFSZ\nulimit -f 4\nexec ffmpeg \"$@\"\n");

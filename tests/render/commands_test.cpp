@@ -1,4 +1,4 @@
-// `ayumi preview` and `ayumi plot` on a run of HOAP-1 standing.
+// `ayumi preview` and `ayumi plot` on a run in which HOAP-1 stands.
 
 #include <nlohmann/json.hpp>
 

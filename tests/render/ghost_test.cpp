@@ -1,4 +1,5 @@
-// The robot a second time, heat of joints near their limits, surfaces simplified on the way.
+// A second drawing of the robot, heat of joints near their limits, and surfaces that are simplified
+// for this.
 
 #include <gtest/gtest.h>
 
@@ -24,7 +25,7 @@ ClipOptions bare() {
   return options;
 }
 
-/// Pixels that differ, and the middle of them in x.
+/// The number of pixels that differ, and the middle of them in x.
 std::pair<int, double> changed(const Image& a, const Image& b) {
   int count = 0;
   double sum = 0;
@@ -104,7 +105,7 @@ TEST(Heat, RisesTowardsTheNearestLimit) {
   EXPECT_GT(changed(cold, ClipRenderer(model, log, hot).frame(0)).first, 50);
 }
 
-// Whatever the home posture is, even with joints at their limits.
+// This holds for any home posture, even with joints at their limits.
 TEST(Heat, TheHomePostureIsCold) {
   for (const char* robot : {"hoap1", "humanoid30"}) {
     const RobotModel model = load_robot(std::string(AYUMI_SOURCE_DIR) + "/robots/" + robot);
@@ -122,8 +123,8 @@ TEST(Heat, TheHomePostureIsCold) {
   EXPECT_GT(joint_heat(at_limit, "", s)[size_t(at_limit.dofs()[1].body)], 0.5);
 }
 
-// A ghost in the robot's own posture is hidden by it, but for a few pixels of outlines: of about
-// 4000 that it has.
+// A ghost in the robot's own posture is hidden by the robot, except for a few of its about 4000
+// pixels, at outlines.
 TEST(Ghost, HasNoSpeckleWhereItCoincides) {
   const RobotModel model = box_robot();
   SimulationLog log = box_run(model);
@@ -141,7 +142,7 @@ TEST(Ghost, HasNoSpeckleWhereItCoincides) {
   }
 }
 
-/// One box of this colour, and one of an eighth of its edge.
+/// A box of this colour, and one of an eighth of its edge.
 std::vector<BodySurface> two_boxes(const Eigen::Vector4f& large, const Eigen::Vector4f& small) {
   std::vector<BodySurface> robot(2);
   robot[0].closed = tessellate(Box{Eigen::Vector3d::Constant(0.4)}, large);
@@ -149,7 +150,7 @@ std::vector<BodySurface> two_boxes(const Eigen::Vector4f& large, const Eigen::Ve
   return robot;
 }
 
-/// Angle between the hues of two colours [deg].
+/// The angle between the hues of two colours [deg].
 double between(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
   const auto hue = [](const Eigen::Vector3f& c) {
     return Eigen::Vector2f(c[0] - (c[1] + c[2]) / 2, std::sqrt(0.75f) * (c[1] - c[2])).normalized();
@@ -183,7 +184,7 @@ TEST(Ghost, OfAGreyRobotIsOrangeAndOfAHotOneIsNot) {
   for (const float heat : {0.0f, 1.0f}) EXPECT_GT(between(hot, heat_color(heat).head<3>()), 110);
 }
 
-// Clips and pages show one colour: the pages take it from the robot's file.
+// Clips and pages show the same colour: the pages take it from the robot's file.
 TEST(Ghost, HasOneColourInClipsAndOnPages) {
   const RobotModel model = box_robot();
   const auto look = robot_look(model);

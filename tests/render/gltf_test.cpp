@@ -42,7 +42,7 @@ struct Glb {
     return values;
   }
 
-  /// Value k of an animated property of a node, or the node's own.
+  /// Value k of an animated property of a node, or the node's own value.
   std::vector<float> value(const Json& animation, int node, const std::string& path,
                            size_t k) const {
     for (const Json& channel : animation.at("channels")) {
@@ -57,7 +57,7 @@ struct Glb {
     return json.at("nodes").at(size_t(node)).at(path).get<std::vector<float>>();
   }
 
-  /// Pose of a node in the scene at key k, by multiplying down from the scene's root.
+  /// The pose of a node in the scene at key k, by multiplication down from the scene's root.
   Eigen::Isometry3d pose(const Json& animation, int node, size_t k) const {
     Eigen::Isometry3d local = Eigen::Isometry3d::Identity();
     if (node > 0) {
@@ -191,7 +191,7 @@ TEST(Simplify, KeepsTheShapeWithinACell) {
     EXPECT_GT(face.dot(corner[0] + corner[1] + corner[2]), 0) << "faces look outwards";
     area += 0.5 * face.norm();
   }
-  // It was drawn from both sides, which takes twice as long.
+  // Before, it was drawn from both sides, which takes twice as long.
   EXPECT_TRUE(surface[0].open.indices.empty()) << "still closed";
   EXPECT_NEAR(area, 4 * M_PI * 0.01, 0.12 * 4 * M_PI * 0.01) << "no holes";
 }

@@ -1,5 +1,6 @@
-// Pictures against pictures kept in tests/render/golden, with a tolerance for what an eye does not
-// see. AYUMI_WRITE_GOLDEN=1 writes them anew; look at them before they are committed.
+// Pictures are compared with pictures kept in tests/render/golden, with a tolerance for differences
+// that an eye does not see. AYUMI_WRITE_GOLDEN=1 writes them anew; look at them before they are
+// committed.
 
 #include <gtest/gtest.h>
 
@@ -18,11 +19,11 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Difference {
-  double mean = 0;   ///< over the picture, of 255
-  double share = 0;  ///< of pixels that differ by more than 24 of 255
+  double mean = 0;   ///< mean difference over the picture, of 255
+  double share = 0;  ///< share of pixels that differ by more than 24 of 255
 };
 
-/// Mean of the 3 x 3 pixels around (x, y): edges may move by a fraction of a pixel.
+/// The mean of the 3 x 3 pixels around (x, y), since edges may move by a fraction of a pixel.
 Eigen::Array3d softened(const Image& image, int x, int y) {
   Eigen::Array3d sum = Eigen::Array3d::Zero();
   for (int dy = -1; dy <= 1; ++dy)
@@ -86,7 +87,7 @@ ClipOptions small() {
   return options;
 }
 
-/// HOAP-1 standing on the ground, knees bent, pushed from its right.
+/// A log in which HOAP-1 stands on the ground with bent knees, pushed from its right.
 SimulationLog bent(const RobotModel& model) {
   SimulationLog log;
   log.controller = ControllerKind::dtad;

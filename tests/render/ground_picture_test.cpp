@@ -28,8 +28,8 @@ struct View {
     plane.center = {0.1, 0.2};
     to_clip = projection_matrix(camera, double(kWide) / kTall) * view_matrix(camera);
   }
-  /// Where the ray of a pixel meets the plane, its coordinates and the distance along the view; the
-  /// latter negative behind the camera.
+  /// The coordinates at which the ray of a pixel meets the plane, and the distance along the view,
+  /// which is negative behind the camera.
   Vector3d met(double x, double y) const {
     const Eigen::Matrix4d back = to_clip.inverse();
     const Vector3d p =
@@ -43,7 +43,7 @@ struct View {
   }
 };
 
-// By a second route: rays of single pixels.
+// The second route uses rays of single pixels.
 TEST(GroundPicture, ShowsThePlaneWhereRaysMeetIt) {
   int shown = 0, hidden = 0;
   for (const Vector3d& eye : {Vector3d(2, -2, 1), Vector3d(1.5, 0.2, 0.35), Vector3d(0.1, 0, 3)})
@@ -63,7 +63,7 @@ TEST(GroundPicture, ShowsThePlaneWhereRaysMeetIt) {
             for (const PixelSpan& span : spans) is |= x >= span.begin && x < span.end;
             const Vector3d at = view.met(x + 0.5, y + 0.5);
             const Eigen::Vector2d off = at.head<2>() - middle;
-            // Pixels whose ray passes an edge within a thousandth may go either way.
+            // Pixels whose ray passes within a thousandth of an edge may have either result.
             const double far = std::max(off.cwiseAbs().maxCoeff() / reach, at.z() / 100);
             const double near = 0.05 / at.z();
             if (std::abs(far - 1) < 1e-3 || std::abs(near - 1) < 1e-3) continue;
@@ -122,7 +122,7 @@ TEST(GroundPicture, IsAllSkySeenFromBelowOnEdgeOrWithoutGround) {
   }
 }
 
-// By a second route: every pixel on its own, with the formulas written down once more.
+// The second route computes every pixel separately, with the formulas written once more.
 TEST(GroundPicture, IsWhatEachPixelShows) {
   const auto lines = [](double p, double footprint, double spacing, double width) {
     const double away = std::abs(p / spacing - std::round(p / spacing)) * spacing;
@@ -202,11 +202,11 @@ TEST(LayPixelsOver, MixesByCoverFromTheBottomUpwards) {
     const std::uint8_t* p = image.pixel(x, y);
     EXPECT_EQ((std::array<int, 3>{p[0], p[1], p[2]}), (std::array<int, 3>{r, g, b})) << x << y;
   };
-  is(1, 2, 10, 20, 30);     // covered
-  is(2, 2, 100, 100, 100);  // not covered
-  is(1, 1, 100, 110, 120);  // by half
+  is(1, 2, 10, 20, 30);     // the pixel is covered
+  is(2, 2, 100, 100, 100);  // the pixel is not covered
+  is(1, 1, 100, 110, 120);  // the pixel is half covered
   is(2, 1, 101, 102, 103);
-  is(0, 2, 100, 100, 100);  // beside the part
+  is(0, 2, 100, 100, 100);  // the pixel is beside the part
   is(3, 1, 100, 100, 100);
   is(1, 0, 100, 100, 100);
 }

@@ -34,7 +34,7 @@ TEST(HiddenParts, ABallInABoxGoesAndOneThatLooksOutStays) {
   append(robot[0].open, ball, moved(0.02, 0, 0));
   leave_out_hidden(robot);
   EXPECT_EQ(count_of(robot), box.indices.size() / 3) << "the box stays";
-  // Half of it is outside.
+  // Half of the ball is outside.
   robot.assign(1, {});
   append(robot[0].closed, box);
   append(robot[0].closed, ball, moved(0.1, 0, 0));
@@ -61,7 +61,7 @@ TEST(HiddenParts, WhatHidesMustBeConvexOpaqueAndOfTheSameBody) {
   append(robot[0].closed, box);
   append(robot[1].closed, ball);
   expect_all_stays(robot);
-  // A box with a dent: one corner is drawn inwards.
+  // The box has a dent: one corner is moved inwards.
   Triangles dented = box;
   for (RenderVertex& vertex : dented.vertices)
     if (vertex.position.minCoeff() > 0) vertex.position *= 0.2f;
@@ -71,7 +71,7 @@ TEST(HiddenParts, WhatHidesMustBeConvexOpaqueAndOfTheSameBody) {
   expect_all_stays(robot);
 }
 
-// By a second route: pictures from all sides.
+// The second route compares pictures from all sides.
 TEST(HiddenParts, PicturesAreTheSame) {
   const RobotModel model =
       load_robot(std::string(AYUMI_SOURCE_DIR) + "/robots/hoap1", {}, {.meshes = true});
@@ -86,7 +86,8 @@ TEST(HiddenParts, PicturesAreTheSame) {
   for (Eigen::Index i = 0; i < state.theta.size(); ++i) state.theta[i] += i % 2 ? 0.3 : -0.3;
   scene.poses = body_poses(model, state);
   scene.camera.target = {0, 0, 0.25};
-  // (The shadow is that of a simplified robot, and simpler where less is to be simplified.)
+  // The shadow is left out, because it is that of a simplified robot, which differs if there are
+  // fewer triangles.
   const RenderOptions options = {.width = 320, .height = 320, .shadow = false};
   Renderer all(whole, options), few(seen, options);
   for (const Vector3d& eye : {Vector3d(1, 0, 0.3), Vector3d(0, 1, 0.4), Vector3d(-1, 0.1, 0.3),

@@ -105,7 +105,7 @@ TEST(LogReading, AWalkIsShownOnBothFeet) {
   SimulationLog log = test::box_run(test::box_robot());
   for (SimulationSample& sample : log.samples) sample.push_force.setZero();
   for (size_t k = 0; k < log.samples.size(); ++k) {
-    const bool left = k % 100 < 50;  // 0.1 s on each foot
+    const bool left = k % 100 < 50;  // 0.1 s on each foot in turn
     log.samples[k].planned_contact = {left, !left};
   }
   const std::vector<double> times = telling_instants(log, 6);  // evenly: all on the left foot
@@ -117,7 +117,8 @@ TEST(LogReading, AWalkIsShownOnBothFeet) {
   EXPECT_TRUE(std::is_sorted(times.begin(), times.end()));
 }
 
-/// A run at rest but for one joint, which goes to `angle` and back around `at`, half a second each.
+/// A run at rest except for one joint, which moves to `angle` and back around `at`, half a second
+/// each.
 SimulationLog nod(double at, double angle, double length) {
   SimulationLog log = test::box_run(test::box_robot());
   for (SimulationSample& s : log.samples) {
@@ -141,7 +142,7 @@ bool shows(const std::vector<double>& times, double t, double near) {
                      [&](double shown) { return std::abs(shown - t) <= near; });
 }
 
-// The stoop and the landing of a jump look alike: only the stoop was shown.
+// Before, the stoop and the landing of a jump looked alike, and only the stoop was shown.
 TEST(LogReading, TheLandingOfAJumpIsWorthShowing) {
   SimulationLog log = nod(1.2, 1.2, 6);
   const double home = log.samples.front().cog.z();
@@ -149,7 +150,7 @@ TEST(LogReading, TheLandingOfAJumpIsWorthShowing) {
     const double t = static_cast<double>(k) * log.dt;
     const bool flies = t > 3.1 && t < 3.3;
     if (flies) log.samples[k].planned_contact = {false, false};
-    // Deep from 2 to 3 s and from 3.4 to 4.4 s, and as high as at rest in between.
+    // The robot is low from 2 to 3 s and from 3.4 to 4.4 s, and as high as at rest in between.
     const double away = std::min(std::abs(t - 2.5), std::abs(t - 3.9));
     const double depth = std::clamp((0.7 - away) / 0.2, 0.0, 1.0);
     log.samples[k].cog.z() = home * (1 - 0.2 * depth);
@@ -162,7 +163,7 @@ TEST(LogReading, TheLandingOfAJumpIsWorthShowing) {
   }
 }
 
-// Wherever in a run a joint turns back, and however long the run is.
+// Extremes are shown wherever in a run a joint turns back, and however long the run is.
 TEST(LogReading, ExtremesAreWorthShowing) {
   for (const double length : {4.0, 20.0})
     for (const double at : {0.7, 1.9, 3.3})
@@ -174,7 +175,7 @@ TEST(LogReading, ExtremesAreWorthShowing) {
       }
 }
 
-// Between its first and its last picture, a run of one short move at rest is shown while it moves.
+// Between its first and its last picture, a run with one short move is shown while it moves.
 TEST(LogReading, NoPostureIsShownTwice) {
   const SimulationLog log = nod(1.2, 1.2, 10);
   const std::vector<double> times = telling_instants(log, 6);
@@ -189,7 +190,7 @@ TEST(LogReading, NoPostureIsShownTwice) {
       }
 }
 
-// A push in one part and a kick in another: both are shown.
+// A push is in one part and a kick in another: both are shown.
 TEST(LogReading, AKickAndAPushAreWorthShowing) {
   SimulationLog log = nod(1.2, 1.2, 10);
   for (size_t k = 3500; k < 3510; ++k) {
@@ -202,7 +203,7 @@ TEST(LogReading, AKickAndAPushAreWorthShowing) {
   EXPECT_TRUE(std::is_sorted(times.begin(), times.end()));
 }
 
-// A push while the leg of a kick comes back: the kick itself is shown, too.
+// A push acts while the leg of a kick comes back: the kick itself is shown, too.
 TEST(LogReading, AKickInWhichThePushFallsIsWorthShowing) {
   SimulationLog log = nod(1.2, 1.2, 4);
   for (size_t k = 350; k < 900; ++k) log.samples[k].planned_contact = {true, false};
@@ -236,7 +237,7 @@ TEST(LogReading, TheGroundIsTheSlopeWithEveryMotionOfTheFloor) {
   EXPECT_NEAR(n.y(), -std::sin(0.1), 1e-12);
   EXPECT_NEAR(n.z(), std::cos(0.1), 1e-12);
   EXPECT_TRUE(ground_at(log, 0.4).translation().isApprox(-0.02 * n, 1e-12));
-  // A shift by the world, there and back, and a tilt by the scenario, which stays.
+  // The world shifts the ground there and back, and the scenario adds a tilt that stays.
   log.world.motions = {
       {.at = 0, .duration = 0.8, .path = {.shape = MotionShape::half_sine, .shift = {0, 0.05, 0}}}};
   log.scenario = {{.at = 0.2, .duration = 0.2, .what = FloorPath{.tilt = {0.05, 0}}}};
@@ -277,8 +278,8 @@ TEST(Overlay, SupportPolygonIsTheHullOfThePlannedSoles) {
     EXPECT_NEAR(tilted.linear().col(2).dot(corner), 0, 1e-12);
 }
 
-/// A run that does what its plan says, at a place and in a direction of its own, which change while
-/// the robot is in the air.
+/// A run that follows its plan exactly, at a place and in a direction of its own, which change
+/// while the robot is in the air.
 SimulationLog displaced(const RobotModel& model, const std::array<Eigen::Isometry3d, 2>& by) {
   SimulationLog log = test::box_run(model);
   for (size_t k = 0; k < log.samples.size(); ++k) {
@@ -304,8 +305,8 @@ Eigen::Isometry3d turned(double x, double y, double yaw) {
   return pose;
 }
 
-// Wherever the robot is, plan and run lie over each other in one frame; in that of the foot nothing
-// is left of the place where it all was.
+// Wherever the robot is, plan and run coincide in one frame; in the frame of the foot, nothing
+// depends on the place of the run.
 TEST(Frames, PlanAndRunAreInOneFrame) {
   const RobotModel model = test::box_robot();
   const SimulationLog here =
@@ -341,7 +342,7 @@ TEST(Frames, WhatCannotBeShownIsSaid) {
   EXPECT_THROW(require_level_ground(log, Frame::foot), Error);
 }
 
-// The log holds the last ZMP while the robot flies; no picture shows it.
+// The log keeps the last ZMP while the robot flies, but no picture shows it.
 TEST(Overlay, ThereIsNoZmpInFlight) {
   const RobotModel model = test::box_robot();
   SimulationLog log = test::box_run(model);

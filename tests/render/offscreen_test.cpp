@@ -16,7 +16,8 @@ bool has(Offscreen way) {
   return std::find(ways.begin(), ways.end(), way) != ways.end();
 }
 
-/// On a thread of its own: the two ways share OpenGL's idea of the current context.
+/// The picture is drawn on a thread of its own, because the two ways share OpenGL's notion of the
+/// current context.
 Image picture(Offscreen way) {
   Image image;
   std::thread([&] {

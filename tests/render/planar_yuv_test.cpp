@@ -61,7 +61,8 @@ TEST(PlanarYuv, PixelsStayInTheirPlaces) {
             (std::vector<std::uint8_t>{122, 128, 128, 128, 156, 128, 128, 128}));
 }
 
-// By a second route: pictures of two pixels a side have no eight pixels to be taken at once.
+// The second route uses pictures of two pixels a side, which do not have eight pixels to be
+// converted at once.
 TEST(PlanarYuv, EightPixelsAtOnceGiveTheSameBytes) {
   std::mt19937 random(11);
   std::uniform_int_distribution<int> byte(0, 255);

@@ -31,7 +31,7 @@ Scene ball_scene(double height) {
   return scene;
 }
 
-/// Much more red than anything else.
+/// Whether the pixel has much more red than other colours.
 bool is_red(const std::uint8_t* p) { return p[0] > 60 && p[0] > 2 * p[1] && p[0] > 2 * p[2]; }
 
 int count_red(const Image& image) {
@@ -47,7 +47,7 @@ TEST(Renderer, ABallCoversThePixelsItShould) {
     Renderer renderer(ball(radius, {0.9f, 0.05f, 0.05f, 1}),
                       {.width = 240, .height = 180, .antialias = antialias});
     const Image image = renderer.render(ball_scene(0.6));
-    // Seen from `distance` a ball fills the cone of sine r/d.
+    // Seen from `distance`, a ball fills the cone whose sine is r/d.
     const double focal = 90 / std::tan(0.25);
     const double apparent = focal * std::tan(std::asin(radius / distance));
     EXPECT_NEAR(count_red(image) / (std::numbers::pi * apparent * apparent), 1, 0.03) << antialias;
@@ -57,7 +57,8 @@ TEST(Renderer, ABallCoversThePixelsItShould) {
 }
 
 TEST(Renderer, NoPartIsBlack) {
-  // White from all sides: the dark side too is well above black, nothing is blown out.
+  // The ball is white from all sides: its dark side is well above black too, and nothing is
+  // overexposed.
   std::vector<BodySurface> surface = ball(0.3, {0.8f, 0.8f, 0.8f, 1});
   Renderer renderer(surface, {.width = 100, .height = 80, .ground = false});
   Scene scene = ball_scene(0.6);
@@ -138,7 +139,7 @@ TEST(Renderer, ASlopeTiltsTheGround) {
                     {.width = 120, .height = 90, .shadow = false});
   Scene scene = ball_scene(0.3);
   scene.overlay = {};
-  scene.ground.rotate(Eigen::AngleAxisd(0.2, Vector3d::UnitX()));  // rises with y
+  scene.ground.rotate(Eigen::AngleAxisd(0.2, Vector3d::UnitX()));  // the ground rises with y
   add_sphere(scene.overlay, {0, 0.5, 0.5 * std::tan(0.2)}, 0.05, {0.9f, 0.05f, 0.05f, 1});
   scene.camera.eye = {3, 0, 0.3};
   const Image image = renderer.render(scene);

@@ -14,7 +14,7 @@
 namespace ayumi::test {
 namespace {
 
-/// A ball with dents, of 2 n^2 triangles.
+/// A ball with dents that has 2 n^2 triangles.
 MeshPart dented_ball(int n) {
   MeshPart part;
   for (int i = 0; i <= n; ++i)
@@ -33,7 +33,7 @@ MeshPart dented_ball(int n) {
   return part;
 }
 
-/// The box robot with such a ball for a head.
+/// The box robot with such a ball as its head.
 RobotModel heavy_robot(int n) {
   RobotDescription d;
   d.name = "heavy";
@@ -72,7 +72,7 @@ TEST(RobotLook, OfAnOrdinaryRobotIsItsOwnSurface) {
   EXPECT_EQ(alone.rgb, ClipRenderer(model, log, options).frame(0.5).rgb);
 }
 
-// A stop was heard only after all triangles had been joined, several seconds later.
+// Before, a stop had an effect only after all triangles had been joined, several seconds later.
 TEST(RobotLook, WorkOnAHeavyRobotStopsWhenAsked) {
   const RobotModel model = heavy_robot(460);
   int heard = 0;
@@ -81,7 +81,7 @@ TEST(RobotLook, WorkOnAHeavyRobotStopsWhenAsked) {
   EXPECT_EQ(heard, 3);
 }
 
-// Snapshots, clip and page each read, joined and simplified all triangles for themselves.
+// Before, snapshots, clip and page each read, joined and simplified all triangles separately.
 TEST(RobotLook, OfAHeavyRobotHasFewTrianglesThatLookTheSame) {
   const RobotModel model = heavy_robot(460);
   const auto look = robot_look(model);
@@ -120,7 +120,7 @@ TEST(RobotLook, ThinsFurtherUntilFewEnoughAreLeft) {
   EXPECT_LT(triangle_count(least), triangle_count(few));
 }
 
-// A small clip joined the triangles of every robot by a grid of many pixels.
+// Before, a small clip joined the triangles of every robot by a grid of many pixels.
 TEST(RobotLook, OfAnOrdinaryRobotIsMovedInNoClip) {
   const RobotModel model = heavy_robot(60);
   const SimulationLog log = still(model);

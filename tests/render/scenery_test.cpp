@@ -42,7 +42,7 @@ TEST(Scenery, ABumpComesUpWhereTheFootIsAndGoes) {
   log.scenario = {{.at = 0.5, .duration = 0.2, .what = bump}};
   const std::vector<RisingBump> bumps = rising_bumps(model, log);
   ASSERT_EQ(bumps.size(), 1u);
-  // Trunk at (0.05, 0.02 sin 3), the left sole's frame at (0.01, 0.04) from it.
+  // The trunk is at (0.05, 0.02 sin 3), and the left sole's frame is at (0.01, 0.04) from it.
   EXPECT_NEAR(bumps[0].block.center.x(), 0.05 + 0.01 + 0.02, 1e-9);
   EXPECT_NEAR(bumps[0].block.center.y(), 0.02 * std::sin(3.0) + 0.04, 1e-9);
   const auto top = [&](double t) {
@@ -55,7 +55,7 @@ TEST(Scenery, ABumpComesUpWhereTheFootIsAndGoes) {
   EXPECT_EQ(top(0.71), -1);
 }
 
-/// Share of the pixels that differ between two instants of a run.
+/// The share of pixels that differ between two instants of a run.
 double changed(const RobotModel& model, const SimulationLog& log, double a, double b) {
   ClipOptions options;
   options.picture = {.width = 160, .height = 120};

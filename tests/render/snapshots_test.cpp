@@ -21,14 +21,14 @@ StripOptions small(int count) {
   return options;
 }
 
-/// The made-up run without its push, around which snapshots would gather.
+/// The made-up run without its push, because snapshots would gather around it.
 SimulationLog unpushed(const RobotModel& model) {
   SimulationLog log = box_run(model);
   for (SimulationSample& sample : log.samples) sample.push_force.setZero();
   return log;
 }
 
-/// Part of a sheet.
+/// A part of a sheet.
 Image cut(const Image& sheet, int left, int top, int width, int height) {
   Image out = tile(width, height, 0);
   for (int y = 0; y < height; ++y)
@@ -47,7 +47,7 @@ TEST(Strip, TilesLieInReadingOrder) {
   EXPECT_EQ(draw_sheet({tile(4, 3, 10)}, 9).width, 4) << "no more columns than tiles";
 }
 
-// One title above and one legend below all snapshots, which have no captions of their own.
+// There is one title above and one legend below all snapshots, which have no captions of their own.
 TEST(Strip, IsASheetWithOneTitleAndOneLegend) {
   const RobotModel model = box_robot();
   const SimulationLog log = unpushed(model);
@@ -60,7 +60,7 @@ TEST(Strip, IsASheetWithOneTitleAndOneLegend) {
   EXPECT_EQ(sheet.width, bare.width);
   EXPECT_GT(sheet.height, bare.height + 20);
   EXPECT_EQ(sheet.pixel(127, sheet.height - 1)[0], 255) << "the legend stands on white";
-  // Of a snapshot itself only the corner with its time differs.
+  // In the snapshot itself, only the corner with its time differs.
   ClipRenderer renderer(model, log, small(4).clip);
   const Image title = tile(128, 40, 255);
   Image written = title;
@@ -72,7 +72,7 @@ TEST(Strip, IsASheetWithOneTitleAndOneLegend) {
           << x << " " << y;
 }
 
-// Seen from any side, from near or far, in a posture or lying on the ground.
+// The robot is seen from any side, from near or far, in a posture or lying on the ground.
 TEST(Strip, TheRobotFillsItsCells) {
   const RobotModel model = box_robot();
   SimulationLog log = unpushed(model);
@@ -122,7 +122,7 @@ TEST(Strip, ChosenInstantsAreHeldWithinTheRun) {
 TEST(Strip, SeveralInstantsInOnePicture) {
   const RobotModel model = box_robot();
   SimulationLog log = unpushed(model);
-  for (size_t k = 0; k < log.samples.size(); ++k)  // two metres sideways
+  for (size_t k = 0; k < log.samples.size(); ++k)  // the robot moves two metres sideways
     log.samples[k].state.base.position.y() = log.samples[k].cog.y() = 0.004 * double(k);
   StripOptions options = small(3);
   options.one_picture = true;
@@ -132,7 +132,8 @@ TEST(Strip, SeveralInstantsInOnePicture) {
   options.times = {0, 0.5, 1};
   const Image all = draw_strip(model, log, options);
   ASSERT_EQ(all.width, 240);
-  // Walking to the right of the picture: three robots, further left the earlier and the lighter.
+  // The robot walks to the right of the picture: there are three robots, and earlier ones are
+  // further left and lighter.
   options.count = 1;
   options.times = {99};
   const Image last = draw_strip(model, log, options);

@@ -1,5 +1,5 @@
 #pragma once
-// A run folder of HOAP-1 standing, for tests of the commands that show runs.
+// A run folder in which HOAP-1 stands, for tests of the commands that show runs.
 
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
@@ -12,7 +12,7 @@ inline RobotModel hoap1(bool meshes) {
   return load_robot(std::string(AYUMI_SOURCE_DIR) + "/robots/hoap1", {}, {.meshes = meshes});
 }
 
-/// A fifth of a second of standing still, soles on the ground.
+/// A log in which the robot stands still for a fifth of a second with its soles on the ground.
 inline SimulationLog standing(const RobotModel& model) {
   SimulationSample sample;
   sample.state = model.rest_state();

@@ -14,7 +14,7 @@
 namespace ayumi::test {
 namespace {
 
-/// Red above, green below on the left, blue below on the right.
+/// A picture that is red at the top, green at the bottom left and blue at the bottom right.
 Image flag() {
   Image image{8, 8, std::vector<std::uint8_t>(3 * 64, 0)};
   for (int y = 0; y < 8; ++y)
@@ -22,7 +22,7 @@ Image flag() {
   return image;
 }
 
-/// A square of one metre facing +x, its left edge at y = 0.5 as seen from there.
+/// A square of one metre that faces +x; its left edge is at y = 0.5 as seen from there.
 constexpr const char* kSquare =
     "mtllib square.mtl\nv 0 -0.5 -0.5\nv 0 0.5 -0.5\nv 0 0.5 0.5\nv 0 -0.5 0.5\n"
     "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl flag\nf 1/1 2/2 3/3 4/4\n";
@@ -42,7 +42,7 @@ class Textured : public testing::Test {
     model.emplace(d);
     return robot_surface(*model);
   }
-  /// Colour at a share of the picture's width and height, seen from +x.
+  /// The colour at a share of the picture's width and height, seen from +x.
   Eigen::Vector3i seen(const std::vector<BodySurface>& surface, double right, double down) {
     Renderer renderer(surface, {.width = 90, .height = 90, .shadow = false, .ground = false});
     Scene scene;

@@ -37,7 +37,7 @@ double area(const Triangles& surface) {
   return sum;
 }
 
-/// Distance of a point from the nearest triangle.
+/// The distance of a point from the nearest triangle.
 double distance(const Vector3d& p, const Triangles& surface) {
   double least = INFINITY;
   for (size_t i = 0; i < surface.indices.size(); i += 3) {
@@ -104,13 +104,13 @@ TEST(Thin, EdgesAndCornersStay) {
   const Triangles thin = thinned(box, 1e-2);
   EXPECT_EQ(count(thin), 12u);
   EXPECT_NEAR(volume(thin), 0.006, 1e-8);
-  // Nothing is left of what is smaller than the tolerance, and it does no harm.
+  // Parts that are smaller than the tolerance vanish, which does no harm.
   EXPECT_LE(count(thinned(box, 10)), 12u);
   EXPECT_EQ(count(thinned({}, 1)), 0u);
 }
 
 TEST(Thin, BordersOfColoursStay) {
-  // A strip whose left half is red: flat, so only the border keeps its course.
+  // A flat strip whose left half is red, so that only the border of colours keeps its course.
   Triangles strip;
   for (int half = 0; half < 2; ++half)
     for (int y = 0; y < 10; ++y) {
@@ -135,7 +135,7 @@ TEST(Thin, BordersOfColoursStay) {
   EXPECT_NEAR(red, 0.1, 1e-6);
 }
 
-// What a clip leaves out is not seen: its frames are those of the whole robot.
+// The triangles that a clip leaves out cannot be seen: its frames are those of the whole robot.
 TEST(Thin, AClipShowsWhatASinglePictureShows) {
   const RobotModel model =
       load_robot(std::string(AYUMI_SOURCE_DIR) + "/robots/hoap1", {}, {.meshes = true});

@@ -48,7 +48,7 @@ TEST(Triangles, PrimitivesHaveTheirVolumeAndFaceOutwards) {
   }
 }
 
-/// A tetrahedron around the origin as a mesh file would give it.
+/// A tetrahedron around the origin, as it would come from a mesh file.
 MeshPart tetrahedron(bool inside_out, bool open) {
   MeshPart part;
   part.vertices = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};

@@ -38,7 +38,7 @@ GroundRectangle level_ground(double height) {
   return ground;
 }
 
-// The simulated ground and the drawn one are two types, and a program can use both.
+// The simulated ground and the drawn ground are two types, and a program can use both.
 TEST(VisibleRegion, CompilesBesideTheGroundOfTheSimulation) {
   static_assert(!std::is_same_v<Ground, GroundRectangle>);
   const Ground simulated{World{}};
@@ -75,7 +75,7 @@ TEST(VisibleRegion, StaysInThePictureAndTakesItWholeForWhatIsBehindTheCamera) {
   EXPECT_EQ(behind.pixels().height, kHeight);
 }
 
-// By a second route: points inside the body, each at its pixel.
+// The second route uses points inside the body, each at its pixel.
 TEST(CoveredTiles, HoldsEveryPointOfABodyAndLeavesMuchOut) {
   const Camera camera = camera_at({1.2, -1, 0.7});
   const PixelBox part{20, 10, 280, 180};
@@ -128,7 +128,7 @@ TEST(CoveredTiles, TakesAllForWhatIsBehindTheCameraAndNothingForWhatIsOutside) {
   EXPECT_EQ(area({}), 0);
 }
 
-// A corner beside the camera is hundreds of pictures away; its edges keep their direction.
+// A corner beside the camera is hundreds of pictures away, but its edges keep their direction.
 TEST(CoveredTiles, ACornerFarOutsideDoesNotTurnItsEdges) {
   const Camera camera = camera_at({1.2, -1, 0.7});
   const Vector3d forward = (camera.target - camera.eye).normalized(),

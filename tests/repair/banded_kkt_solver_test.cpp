@@ -1,6 +1,7 @@
-// Ipopt with the banded solver against Ipopt with MUMPS: the same solution after the same number of
-// iterations, for programs along time, programs without order, and one that is not convex. And
-// which programs of a process the banded solver serves: those of Ayumi and no others.
+// Ipopt with the banded solver is compared with Ipopt with MUMPS: the same solution after the same
+// number of iterations, for programs along time, programs without order, and one that is not
+// convex. It is also tested which programs of a process the banded solver serves: those of Ayumi
+// and no others.
 
 #include <coin/HSLLoader.h>
 #include <gtest/gtest.h>
@@ -17,7 +18,8 @@ using Eigen::VectorXd;
 
 namespace {
 
-// min 1/2 x' H x + c' x with rows in bounds, H and the rows of width `band` about the diagonal.
+// The minimum of 1/2 x' H x + c' x with rows in bounds, where H and the rows have the width `band`
+// about the diagonal.
 struct Quadratic {
   MatrixXd H, A;
   VectorXd c;
@@ -41,14 +43,14 @@ Nlp program(const Quadratic& q) {
   nlp.start = VectorXd::Zero(n);
   nlp.lower = VectorXd::Constant(n, -kNoBound);
   nlp.upper = VectorXd::Constant(n, kNoBound);
-  nlp.upper[0] = 0.01;  // a variable with a bound of its own
+  nlp.upper[0] = 0.01;  // this variable has a bound of its own
   nlp.constraint_lower = VectorXd::Constant(m, -0.02);
   nlp.constraint_upper = VectorXd::Constant(m, 0.03);
   nlp.constraint_upper[0] = kNoBound;
   for (Eigen::Index i = 0; i < m; ++i)
     for (Eigen::Index j = 0; j < n; ++j) {
       if (q.A(i, j) == 0) continue;
-      // Two nonzeros for one place: they add.
+      // Two nonzeros for one place are added.
       nlp.jacobian.add(static_cast<int>(i), static_cast<int>(j));
       nlp.jacobian.add(static_cast<int>(i), static_cast<int>(j));
     }
@@ -101,7 +103,7 @@ TEST(BandedKktSolver, UnknownsInAnyOrder) {
   expect_same(program(q));
 }
 
-// Rows of one unknown, and unknowns of one row.
+// There are rows of one unknown, and unknowns of one row.
 TEST(BandedKktSolver, SingleNeighbours) {
   Random random(23);
   Quadratic q = random_quadratic(random, 12, 12, 1);
@@ -112,7 +114,7 @@ TEST(BandedKktSolver, SingleNeighbours) {
   expect_same(program(q));
 }
 
-// A Hessian of the wrong sign is regularized: down the hill to the edge of a disc.
+// A Hessian of the wrong sign is regularized: the solution goes downhill to the edge of a disc.
 TEST(BandedKktSolver, NotConvex) {
   Nlp nlp;
   nlp.start = Eigen::Vector2d(0.1, 0.02);
@@ -136,7 +138,7 @@ TEST(BandedKktSolver, NotConvex) {
   EXPECT_LT((s.x - Eigen::Vector2d(1, 0)).norm(), 1e-5);
 }
 
-// Wide vectors do not change a bit.
+// The width of the vectors does not change a bit.
 TEST(BandedKktSolver, EveryInstructionSetGivesTheSameBits) {
   Random random(25);
   for (const int n : {7, 40, 133}) {
@@ -171,7 +173,8 @@ void host_defaults(int*, double*) { ++host_calls; }
 extern "C" void ma27ad_(int*, int*, const int*, const int*, int*, int*, int*, int*, int*, int*,
                         int*, double*, int*, double*);
 
-// INFO(1) of an analysis of the unit matrix by the MA27 of the process: 0 where somebody serves it.
+// INFO(1) of an analysis of the unit matrix by the MA27 of the process; it is 0 if some library
+// serves it.
 int outcome_of_ma27() {
   int n = 2, nz = 2, liw = 100, steps = 0, flag = 0, iw[100], ikeep[6], iw1[4], icntl[30] = {},
       info[20] = {};
@@ -199,8 +202,8 @@ TEST(BandedKktSolver, LeavesNothingBehindInIpopt) {
   EXPECT_FALSE(LSL_isMA27available());
 }
 
-// Other programs run on another thread of the host, and on the same one from within the progress
-// callback. Where no HSL library is installed, their analysis fails as it would without Ayumi.
+// Other programs run on another thread of the host, and on the same thread from within the progress
+// callback. If no HSL library is installed, their analysis fails as it would without Ayumi.
 TEST(BandedKktSolver, ServesAyumisProgramsAlone) {
   if (LSL_isHSLLoaded()) GTEST_SKIP() << "an HSL library is loaded";
   int asked = 0, in_callback = 0, on_thread = 0;
@@ -209,7 +212,8 @@ TEST(BandedKktSolver, ServesAyumisProgramsAlone) {
     in_callback += outcome_of_ma27() == 0;
     std::thread other([&] { on_thread += outcome_of_ma27() == 0; });
     other.join();
-    EXPECT_EQ(solve(small_program()).status, NlpStatus::solved);  // one of Ayumi within another
+    // A program of Ayumi within another.
+    EXPECT_EQ(solve(small_program()).status, NlpStatus::solved);
     return true;
   };
   EXPECT_EQ(solve(small_program(), {}, progress).status, NlpStatus::solved);

@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-// With their edges.
+// The pair of two bodies' shapes with their edges.
 ShapePair pair_of(const CollisionModel& collisions, const char* one, const char* other) {
   const int a = hoap1().links()[hoap1().find_link(one)].body;
   const int b = hoap1().links()[hoap1().find_link(other)].body;
@@ -29,7 +29,7 @@ ShapePair pair_of(const CollisionModel& collisions, const char* one, const char*
   return {};
 }
 
-// Legs of a walk anywhere near each other.
+// A state in which the legs of a walk are near each other.
 RobotState near_state(Random& random) {
   RobotState state = hoap1().rest_state();
   for (const Side side : {Side::left, Side::right})
@@ -37,7 +37,7 @@ RobotState near_state(Random& random) {
   return state;
 }
 
-// Two arms of three joints each on a base, of every kind of shape.
+// Two arms of three joints each on a base, with every kind of shape.
 RobotModel shapely_arms() {
   RobotDescription d;
   d.name = "arms";
@@ -71,7 +71,8 @@ RobotModel shapely_arms() {
 
 }  // namespace
 
-// Second route: a ball about the point against the box by the general distance of two shapes.
+// Second route: a ball around the point is compared with the box by the general distance of two
+// shapes.
 TEST(ClearanceRows, PointFromBoxIsThatOfASmallBall) {
   Random random(3);
   const Vector3d half(0.05, 0.03, 0.01);
@@ -147,7 +148,7 @@ TEST(ClearanceRows, GradientAgainstDifferences) {
                       (moved[1][row].clearance - moved[0][row].clearance) / (2 * h), 1e-5)
               << row;
       }
-    EXPECT_LT(by.leftCols<3>().norm(), 1e-12);  // moved as one they stay as far apart
+    EXPECT_LT(by.leftCols<3>().norm(), 1e-12);  // if both move as one body, their distance stays
   }
 }
 
@@ -171,7 +172,7 @@ TEST(ClearanceRows, GradientOfEveryShapeAgainstDifferences) {
       const double least = shape_clearance(collisions, each, data, 1);
       const Eigen::MatrixXd by = clearance_gradient(model, collisions, each, data);
       for (size_t row = 0; row < points.size(); ++row) {
-        if (least < 1e-3) continue;  // cores that meet have no gradient at their surface
+        if (least < 1e-3) continue;  // where cores meet, there is no gradient at their surface
         ++near;
         EXPECT_GE(points[row].clearance, least - 1e-7);
         for (int joint = 0; joint < model.dof_count(); ++joint) {
@@ -193,7 +194,7 @@ TEST(ClearanceRows, GradientOfEveryShapeAgainstDifferences) {
   EXPECT_GT(near, 500);
 }
 
-// Two long boxes crossed on edge: no corner tells how near they are.
+// Two long boxes are crossed on their edges: no corner tells how near they are.
 TEST(ClearanceRows, EdgesAreARowWhereNoCornerIsNearer) {
   const RobotModel model = shapely_arms();
   const CollisionModel collisions(model);
@@ -223,7 +224,8 @@ TEST(ClearanceRows, EdgesAreARowWhereNoCornerIsNearer) {
 TEST(ClearanceRows, RowsByWhatShapesEndIn) {
   const RobotModel model = shapely_arms();
   const CollisionModel collisions(model);
-  // One has a box, a capsule, a sphere; the other a box, a cylinder, a capsule, a sphere.
+  // One body has a box, a capsule and a sphere; the other has a box, a cylinder, a capsule and a
+  // sphere.
   const int ends_a[] = {8, 2, 0}, ends_b[] = {8, 2, 2, 0};
   for (ShapePair each : shape_pairs(collisions, 0)) {
     const int count = ends_a[each.a] + ends_b[each.b];

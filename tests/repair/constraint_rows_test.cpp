@@ -1,5 +1,5 @@
-// Every kind of row of the repair's program, on two robots, walking and jumping: its derivatives
-// against central differences, and its number against what the check says of the same motion.
+// Every kind of row of the repair's program, for two robots that walk and jump: its derivatives are
+// compared with central differences, and its value with the check of the same motion.
 
 #include <gtest/gtest.h>
 
@@ -48,7 +48,7 @@ void bring_near(const RobotModel& model, const CollisionModel& collisions, Comma
   ADD_FAILURE() << "no arm comes near";
 }
 
-// Waves in all joints and in the base, so that soles slip and sink and no residual is zero.
+// Adds waves to all joints and to the base, so that soles slip and sink and no residual is zero.
 void disturb(const RobotModel& model, CommandSeries& series) {
   Random random(3);
   const VectorXd share = random.vector(model.velocity_count(), 0.004);
@@ -75,7 +75,7 @@ class ConstraintRows : public testing::TestWithParam<RobotMotion> {
     return result;
   }();
 
-  // Everything has rows.
+  // A specification in which everything has rows.
   CorrectionSpec spec(Trust trust) const {
     CorrectionSpec s;
     s.windows = {{0, series.duration()}};
@@ -93,12 +93,12 @@ class ConstraintRows : public testing::TestWithParam<RobotMotion> {
 
 struct Tally {
   int rows = 0, kinks = 0;
-  double worst = 0;  // of the others
+  double worst = 0;  // worst error of the others
 };
 
-// The Jacobian against central differences along a direction, relative where the derivative is
-// above one. Where the differences of two widths disagree there is a kink between them: dry
-// friction turns its sign, a foot begins to bear, nearest points jump to another corner.
+// Compares the Jacobian with central differences along a direction, relatively if the derivative is
+// above one. If the differences of two widths disagree, there is a kink between them: dry friction
+// changes its sign, a foot begins to carry, or nearest points jump to another corner.
 void compare(const CorrectionProblem& problem, const VectorXd& x, const VectorXd& direction,
              std::map<std::string, Tally>& tallies) {
   const Nlp nlp = problem.nlp();
@@ -111,7 +111,7 @@ void compare(const CorrectionProblem& problem, const VectorXd& x, const VectorXd
         (problem.constraints(x + h * direction) - problem.constraints(x - h * direction)) /
         (2 * h));
   };
-  // Nearest points are found to 1e-10 m, which a short step would magnify.
+  // Nearest points are exact to 1e-10 m, and a short step would magnify this error.
   for (const bool clearance : {false, true}) {
     const double h = clearance ? 1e-4 : 1e-6;
     const VectorXd wide = difference(2 * h), narrow = difference(h);
@@ -165,7 +165,7 @@ TEST_P(ConstraintRows, DerivativesAgainstCentralDifferences) {
                                "dcm"};
   if (!jumps) {
     all.erase("flight");
-    all.erase("normal_force");  // the ground is never light in a walk
+    all.erase("normal_force");  // in a walk, the ground force is never small
   }
   for (const std::string& kind : all) EXPECT_TRUE(tallies.contains(kind)) << kind << " has no rows";
   for (const auto& [kind, tally] : tallies) {
@@ -175,7 +175,8 @@ TEST_P(ConstraintRows, DerivativesAgainstCentralDifferences) {
   }
 }
 
-// At every sample, with no correction: what the program bounds is what the check finds.
+// At every sample, with no correction, the values that the program bounds are those that the check
+// finds.
 TEST_P(ConstraintRows, NumbersAreThoseOfTheCheck) {
   std::map<std::string, double> most, of_check;
   const auto raise = [&most](const std::string& name, double value) {
@@ -213,9 +214,10 @@ TEST_P(ConstraintRows, NumbersAreThoseOfTheCheck) {
       const VectorXd rows = g.segment(b.row, b.rows());
       const GroundDemand use = motion.at(k).use;
       const double light = use.normal_force / weight;
-      const std::string_view kind = b.kind->name;  // landing and foot_clearance: of no figure
+      const std::string_view kind = b.kind->name;  // landing and foot_clearance belong to no figure
       if (kind == "support") {
-        // f_n (distance of the ZMP inside the edges - margin) / (m g); the program's margin.
+        // The row is f_n (distance of the ZMP inside the edges - margin) / (m g), with the
+        // program's margin.
         if (!use.has_zmp) continue;
         EXPECT_NEAR(rows.minCoeff() / light + b.most_violation + all.zmp_margin, use.margin, 1e-10)
             << k;
@@ -272,7 +274,7 @@ TEST_P(ConstraintRows, NumbersAreThoseOfTheCheck) {
       } else if (kind == "cog") {
         raise("cog", rows.norm());
       } else if (kind == "dcm") {
-        // By the momentum of the links; the command is a plain shift aside.
+        // The value follows from the momentum of the links; the command is simply shifted aside.
         const CommandSample& s = series.samples[static_cast<size_t>(k)];
         const double omega = std::sqrt(kGravity / (s.cog.z() - s.zmp.z()));
         update_positions(model, s.state, data);
@@ -282,7 +284,7 @@ TEST_P(ConstraintRows, NumbersAreThoseOfTheCheck) {
         if (use.has_zmp) raise("zmp", (rows.tail<2>() / light).norm());
       }
     }
-    for (size_t k = 2; k + 2 < turning.size(); ++k) {  // the check takes a mean of five
+    for (size_t k = 2; k + 2 < turning.size(); ++k) {  // the check takes a mean of five samples
       Vector3d sum = Vector3d::Zero();
       int count = 0;
       for (size_t i = k - 2; i <= k + 2; ++i)
@@ -304,7 +306,7 @@ TEST_P(ConstraintRows, NumbersAreThoseOfTheCheck) {
               {"cog", summary[FindingKind::cog_residual]}};
   if (jumps) of_check["ballistic"] = summary[FindingKind::ballistic];
   if (summary[FindingKind::self_collision] <
-      0) {  // ends are less deep inside than shapes have to be parted
+      0) {  // ends are less deep inside than the distance by which shapes have to be parted
     EXPECT_GT(most["overlap"], 0);
     EXPECT_LE(most["overlap"], of_check["overlap"] + 1e-9);
     of_check.erase("overlap");
@@ -312,7 +314,7 @@ TEST_P(ConstraintRows, NumbersAreThoseOfTheCheck) {
   for (const auto& [name, value] : of_check)
     EXPECT_NEAR(most[name], value, 1e-9 * std::max(1.0, std::abs(value))) << name;
   if (!jumps) return;
-  // About the commanded COG here, about the posture's there, 2.3 mm apart.
+  // This value is about the commanded COG, and the other about that of the posture, 2.3 mm apart.
   EXPECT_NEAR(most["momentum"], summary[FindingKind::angular_momentum],
               0.0025 * model.mass() * most["ballistic"] + 1e-9);
 }

@@ -33,8 +33,8 @@ WalkShape short_walk() {
   return w;
 }
 
-// The Jacobian against central differences of two widths, extrapolated, by group: relative where a
-// derivative is above one.
+// Compares the Jacobian with central differences of two widths, extrapolated, by group; the error
+// is relative if a derivative is above one.
 void expect_jacobian(const CorrectionProblem& problem, const VectorXd& x, double tolerance) {
   const Nlp nlp = problem.nlp();
   VectorXd values(nlp.jacobian.size());
@@ -154,7 +154,7 @@ TEST(CorrectionProblem, JacobianAgainstDifferences) {
   expect_jacobian(problem, random.vector(problem.variable_count(), 0.05), 1e-6);
 }
 
-// Torques, accelerations, and what is trusted or locked.
+// These are rows of torques and accelerations, with quantities that are trusted or locked.
 TEST(CorrectionProblem, JacobianOfTorquesAndCommands) {
   const CommandSeries series = walk(limited_biped(), short_walk());
   for (const Trust trust : {Trust::cog, Trust::zmp}) {
@@ -174,7 +174,7 @@ TEST(CorrectionProblem, JacobianOfTorquesAndCommands) {
   }
 }
 
-// Shapes that pass each other: apart, near and overlapping.
+// The shapes pass each other: they are apart, near and overlapping.
 TEST(CorrectionProblem, JacobianOfClearances) {
   const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
   const CollisionModel collisions(model);
@@ -212,7 +212,8 @@ TEST(CorrectionProblem, JacobianOfClearances) {
   EXPECT_GT(deep, 2);
 }
 
-// What the program constrains is what the check prints: torques, speeds, clearances, COG.
+// The values that the program constrains are those that the check prints: torques, speeds,
+// clearances, COG.
 TEST(CorrectionProblem, RowsAreTheFiguresOfTheCheck) {
   const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
   const CollisionModel collisions(model);
@@ -223,7 +224,7 @@ TEST(CorrectionProblem, RowsAreTheFiguresOfTheCheck) {
   spec.windows = {{0, 10}};
   spec.free_ends = {true, true};
   spec.watched_share = 0;
-  spec.points_per_knot = 50;  // every sample
+  spec.points_per_knot = 50;  // limits are kept at every sample
   spec.trust = Trust::cog;
   spec.collisions = &collisions;
   const CorrectionProblem problem(model, series, spec);
@@ -256,7 +257,7 @@ TEST(CorrectionProblem, JacobianInFlightAndOnASlope) {
   expect_jacobian(problem, random.vector(problem.variable_count(), 0.02), 1e-6);
 }
 
-// The constrained support rows are the margin the check prints.
+// The constrained support rows are the margin that the check prints.
 TEST(CorrectionProblem, SupportRowsAreTheMarginOfTheCheck) {
   const CommandSeries series = walk(limited_biped(), short_walk());
   CorrectionSpec spec;
@@ -275,7 +276,7 @@ TEST(CorrectionProblem, SupportRowsAreTheMarginOfTheCheck) {
   }
 }
 
-// Second route to the objective: the integral by a fine sum over the track itself.
+// The second route to the objective is the integral as a fine sum over the track itself.
 TEST(CorrectionProblem, ObjectiveIsTheIntegral) {
   const CommandSeries series = walk(limited_biped(), short_walk());
   CorrectionSpec spec;
@@ -304,7 +305,7 @@ TEST(CorrectionProblem, ObjectiveIsTheIntegral) {
   EXPECT_NEAR(gradient.dot(e), (nlp.objective(x + e) - nlp.objective(x - e)) / 2, 1e-10);
 }
 
-// For any number of threads, and whatever was evaluated before.
+// The results do not depend on the number of threads, nor on earlier evaluations.
 TEST(CorrectionProblem, FunctionsGiveTheSameBytesForAnyNumberOfThreads) {
   const CommandSeries series = walk(limited_biped(), short_walk());
   CorrectionSpec spec;

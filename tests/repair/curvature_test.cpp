@@ -1,6 +1,6 @@
-// The Hessian of the repair's program against differences of its gradient: at the motion itself,
-// held still in the middle of a step, where nothing is left out; along directions of base and
-// legs.
+// The Hessian of the repair's program is compared with differences of its gradient: at the motion
+// itself, held still in the middle of a step, where no term is left out, along directions of base
+// and legs.
 
 #include <gtest/gtest.h>
 
@@ -47,7 +47,7 @@ class CurvatureOfRows : public testing::TestWithParam<RobotMotion> {
   }
 };
 
-// Of J' l, by central differences of two widths along a direction.
+// The slope of J' l, by central differences of two widths along a direction.
 VectorXd slope(const Nlp& nlp, const VectorXd& multipliers, const VectorXd& direction) {
   constexpr double kStep = 2e-6;
   VectorXd sum = VectorXd::Zero(direction.size()), values(nlp.jacobian.size());
@@ -76,7 +76,7 @@ VectorXd computed(const Nlp& nlp, const VectorXd& multipliers, const VectorXd& d
 
 TEST_P(CurvatureOfRows, AgainstDifferencesOfTheGradient) {
   std::set<std::string> seen;
-  for (const bool slopes : {false, true}) {  // on a slope a robot at rest slides
+  for (const bool slopes : {false, true}) {  // on a slope, a robot at rest slides
     const CommandSeries series = still(slopes);
     const CorrectionProblem problem(model, series, spec(series));
     const Nlp nlp = problem.nlp();
@@ -89,7 +89,7 @@ TEST_P(CurvatureOfRows, AgainstDifferencesOfTheGradient) {
     const VectorXd direction = random.vector(problem.variable_count(), 1).cwiseProduct(mask);
     for (const std::string kind :
          {"support", "friction", "stance", "path", "swing", "landing", "foot_clearance"}) {
-      if (kind == "friction" && !slopes) continue;  // beside its rounded tip
+      if (kind == "friction" && !slopes) continue;  // there it is near its rounded tip
       VectorXd multipliers = random.vector(problem.constraint_count(), 1);
       for (const RowBlock& b : problem.blocks()) {
         if (b.kind->name == kind) seen.insert(kind);

@@ -1,5 +1,6 @@
-// A posture that is wrong for a moment takes the COG with it. Repaired, the walk has its divergent
-// component where it was planned, and with it its capture bounds and the pushes it withstands.
+// A posture that is wrong for a moment moves the COG. In the repaired walk, the divergent component
+// is where it was planned, and therefore the capture bounds and the pushes that it withstands are
+// as planned.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +18,7 @@
 namespace ayumi::test {
 namespace {
 
-constexpr double kStep = 0.06;  // of a push study's search, times the bound
+constexpr double kStep = 0.06;  // step of a push study's search, in units of the bound
 
 // A walk whose swinging knee is thrown up by 75 degrees in its second step.
 class ThrownKnee : public testing::Test {
@@ -42,7 +43,8 @@ class ThrownKnee : public testing::Test {
     return result;
   }
 
-  // Moments and directions, of eight, in which `series` has less room than planned by a step.
+  // The number of pairs of a moment and one of eight directions in which `series` has at least a
+  // step less room than planned.
   int smaller_bounds(const CommandSeries& series) const {
     int count = 0;
     for (size_t k = 0; k < planned.samples.size(); k += 20) {
@@ -69,15 +71,15 @@ TEST_F(ThrownKnee, LeavesTheCaptureBoundsAsTheyWerePlanned) {
   EXPECT_LT(cheapest.change.change, repaired().change.change);
 }
 
-// DTAD plays the planned COG over the planned feet: a thrown knee of the posture is nothing to it,
-// and the repaired pattern has to withstand what that plan does.
+// DTAD plays the planned COG over the planned feet: a thrown knee of the posture does not affect
+// it, and the repaired pattern has to withstand what that plan withstands.
 TEST_F(ThrownKnee, RepairedWithstandsThePushesOfItsPlan) {
   PushOptions options;
   options.phases = {{"middle of the step", begin + 0.35 * (end - begin), false}};
   options.controllers = {{ControllerKind::dtad, {}}};
   options.directions = 4;
   options.replicas = 0;
-  options.step = kStep / 3;  // levels of two plans differ by as much as one of them
+  options.step = kStep / 3;  // levels of two plans may differ by as much as one of them
   const auto before = push_limits(hoap1(), thrown, options);
   const auto after = push_limits(hoap1(), repaired().series, options);
   for (size_t i = 0; i < before.size(); ++i)
@@ -85,7 +87,8 @@ TEST_F(ThrownKnee, RepairedWithstandsThePushesOfItsPlan) {
         << before[i].direction << " rad";
 }
 
-// 15 mm aside for half a second: the command is wrong there, and no aim for the posture.
+// The command is 15 mm aside for half a second: it is wrong there, and the posture must not follow
+// it.
 TEST_F(ThrownKnee, FollowsNoPlanThatIsItselfAtFault) {
   Pattern pattern = plan;
   const double middle = 0.5 * (begin + end);

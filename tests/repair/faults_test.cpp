@@ -46,8 +46,8 @@ class Faults : public testing::Test {
   RepairOptions options;
   CommandSeries series;
 
-  // The fault is there, its repair passes the check within the tolerance of the solver, and once
-  // more changes nothing.
+  // The fault is there, its repair passes the check within the tolerance of the solver, and a
+  // second repair changes nothing.
   RepairResult repaired(const std::string& kind) {
     series = sample(hoap1(), pattern);
     const ConsistencyReport before = check_consistency(hoap1(), series, options.check);
@@ -85,7 +85,7 @@ TEST_F(Faults, CogKeyMovedAndTrusted) {
   EXPECT_LT(r.check.summary[FindingKind::cog_residual], 0.002);
 }
 
-// The trusted COG draws the feet of a quick walk through each other: boxes that pass closely, whose
+// The trusted COG moves the feet of a quick walk through each other: boxes that pass closely, whose
 // nearest points jump.
 TEST_F(Faults, CogMovedAndTrustedPartsTheFeet) {
   WalkParameters quick{.steps = 11, .stride = 0.04, .period = 0.5, .lift = 0.018};
@@ -122,7 +122,7 @@ TEST_F(Faults, ArmJointBeyondItsLimit) {
   move_joint(hoap1(), table, "l_elbow", 40 * M_PI / 180, 3, 0.8);
   const RepairResult r = repaired("joint_position");
   EXPECT_EQ(r.where, "l_elbow");
-  // The servo target, which turns round before the posture does, comes back to the limit itself.
+  // The servo target, which turns back before the posture does, comes back to the limit itself.
   const int elbow = hoap1().find_dof("l_elbow");
   const Dof& dof = hoap1().dofs()[static_cast<size_t>(elbow)];
   const double lead = velocity_lead(hoap1().limits())[elbow];
@@ -165,7 +165,8 @@ TEST_F(Faults, ArmThroughTheTorso) {
   EXPECT_GE(r.check.summary[FindingKind::self_collision], 0.002);
 }
 
-// On a walk of three steps: the friction leaves little room, and the time goes with the length.
+// The walk has three steps: the friction leaves little room, and the computing time grows with the
+// length.
 TEST_F(Faults, SeveralAtOnce) {
   Pattern walk = walk_pattern(hoap1(), {.steps = 3});
   walk.robot = "hoap1";
@@ -194,8 +195,8 @@ TEST_F(Faults, LockedWindowStaysToTheBit) {
   }
 }
 
-// Locked instants: the pose is what it was, a moment before and after it need not be. An arm is
-// too quick from one kept pose to the next, which a straighter way can mend.
+// At locked instants the pose stays, while it may change a moment before and after. An arm is too
+// quick from one kept pose to the next, which a straighter path can mend.
 TEST_F(Faults, LockedInstantKeepsItsPoseAndLetsTheMotionThroughItMove) {
   move_joint(hoap1(), table, "l_shoulder_roll", 22 * M_PI / 180, 3.1, 0.24);
   options.locked_windows = {{3.1, 3.1}, {3.2404, 3.2404}, {0, 0}, {7, 7}};
@@ -214,7 +215,7 @@ TEST_F(Faults, LockedInstantKeepsItsPoseAndLetsTheMotionThroughItMove) {
         << k;
 }
 
-// A posture that is wrong where it is locked is told as such; a speed there is not.
+// A posture that is wrong where it is locked is reported as such; a speed there is not.
 TEST_F(Faults, APostureLockedWhereItIsWrongIsNamed) {
   move_joint(hoap1(), table, "l_elbow", 40 * M_PI / 180, 3, 0.8);
   options.locked_windows = {{3, 3}};
@@ -269,7 +270,8 @@ TEST_F(Faults, SteeringThatIsWrongIsRefused) {
 
 // ---- what cannot be
 
-// One swing in a locked window, far too fast: the speed and how much longer it has to take.
+// One swing in a locked window is far too fast: the message has the speed and the time that it
+// needs.
 TEST_F(Faults, ReasonsNameJointTimeRatioAndTimeNeeded) {
   squeeze(pattern, 0.6);
   options.locked_windows = {{1.75, 2.1}};

@@ -1,4 +1,4 @@
-// Why no repair was found, in words: each kind of finding in its own unit.
+// The reason why no repair was found, in words: each kind of finding has its own unit.
 
 #include "ayumi/repair/infeasibility_report.hpp"
 
@@ -12,7 +12,8 @@ namespace {
 
 using namespace planted;
 
-// A foot whose contact ends 60 ms before the foot leaves the ground: milliseconds, not millimetres.
+// The contact of a foot ends 60 ms before the foot leaves the ground: the message has milliseconds
+// and not millimetres.
 TEST(InfeasibilityReport, NamesTheTimeForWhichAFootStandsOn) {
   Pattern pattern = walk();
   pattern.phases[2].until -= 0.060;
@@ -34,8 +35,8 @@ TEST(InfeasibilityReport, NamesTheTimeForWhichAFootStandsOn) {
       << found[0].text;
 }
 
-// A caller is told what is wrong with the motion at every stage, so that it can say it while the
-// work goes on and when it is stopped.
+// At every stage, the caller is told what is wrong with the motion, so that it can say this while
+// the work continues and when it is stopped.
 TEST(InfeasibilityReport, TellsWhatIsLeftWhileItWorks) {
   Pattern pattern = walk();
   pattern.phases[2].until -= 0.060;
@@ -59,7 +60,7 @@ TEST(InfeasibilityReport, TellsWhatIsLeftWhileItWorks) {
   EXPECT_TRUE(told.back().empty());
 }
 
-// A foot that is planned to land on the other one: nothing is solved, and the foothold is named.
+// A foot is planned to land on the other one: nothing is solved, and the foothold is named.
 TEST(InfeasibilityReport, FeetInOnePlaceEndBeforeTheFirstRound) {
   Pattern pattern = walk_pattern(hoap1(), {.steps = 3});
   pattern.robot = "hoap1";
@@ -79,7 +80,7 @@ TEST(InfeasibilityReport, FeetInOnePlaceEndBeforeTheFirstRound) {
   EXPECT_FALSE(overlapping_feet(hoap1(), sample(hoap1(), walk()), r.before));
 }
 
-// Findings know the bodies, joints and feet that they speak of, apart from their words.
+// Findings have the bodies, joints and feet that they concern as data, apart from their words.
 TEST(InfeasibilityReport, PlacesAreTyped) {
   Finding at_joint, at_bodies;
   at_joint.place = JointPlace{3};

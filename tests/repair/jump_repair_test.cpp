@@ -1,4 +1,4 @@
-// Jumps whose posture is at fault, in flight and after it.
+// Jumps whose posture is wrong, in flight and after it.
 
 #include <gtest/gtest.h>
 
@@ -69,7 +69,7 @@ TEST_F(JumpRepair, ArmThatSwingsInFlight) {
   EXPECT_LT(repaired("ballistic").check.summary[FindingKind::ballistic], 0.5);
 }
 
-// The window reaches over the flight, which stays as sound as it is.
+// The window includes the flight, which stays as correct as it was.
 TEST_F(JumpRepair, ArmBeyondItsLimitAfterLanding) {
   const int arm = hoap1().find_dof("l_shoulder_pitch");
   const double at = flight().first + 0.28;

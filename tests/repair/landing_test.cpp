@@ -1,5 +1,5 @@
-// A swinging sole that is low is level and over its place, and others are not low, in programs and
-// in what they repair.
+// A swinging sole that is low must be level and over its place, and other soles must not be low.
+// This is tested for programs and for the motions that they repair.
 
 #include <gtest/gtest.h>
 
@@ -27,8 +27,9 @@ Pattern table_of(const WalkParameters& parameters) {
   return baked(hoap1(), pattern);
 }
 
-// 3 mm ahead, 4 mm to the left and 20 mm above a place that is turned and on a slope, rolled by
-// 0.01 and turned by 0.02 rad: along the place's axes, and 70 mm away, where the sole ends.
+// The sole is 3 mm ahead, 4 mm to the left and 20 mm above a place that is turned and on a slope,
+// rolled by 0.01 and turned by 0.02 rad: along the place's axes, and 70 mm away, where the sole
+// ends.
 TEST(Landing, OffsetIsAlongThePlacesAxes) {
   Isometry3d place = Isometry3d::Identity();
   place.linear() = exp_rotation({0.1, -0.05, 0.8}).toRotationMatrix();
@@ -40,12 +41,12 @@ TEST(Landing, OffsetIsAlongThePlacesAxes) {
   const double reach = std::hypot(0.056, 0.0315);
   EXPECT_NEAR(offset[0], 0.003, 1e-12);
   EXPECT_NEAR(offset[1], 0.004, 1e-12);
-  EXPECT_NEAR(offset[2], 0.01 * reach, 3e-7);  // its sine
+  EXPECT_NEAR(offset[2], 0.01 * reach, 3e-7);  // the sine of that angle
   EXPECT_NEAR(offset[3], 0, 1e-12);
   EXPECT_NEAR(offset[4], 0.02 * reach, 3e-7);
 }
 
-// The rows of a walk as it was made hold: they ask for nothing that it does not do.
+// The rows hold for an unchanged walk: they ask for nothing that it does not do.
 TEST(Landing, ASoundWalkMeetsItsRows) {
   const Pattern pattern = table_of({.steps = 3, .stride = 0.025, .turn = 0.08, .side = 0.02});
   const CommandSeries series = sample(hoap1(), pattern);
@@ -67,8 +68,8 @@ TEST(Landing, ASoundWalkMeetsItsRows) {
   EXPECT_GT(rows["foot_clearance"], 100);
 }
 
-// What a swinging foot is off its place while it is lower than 1.5 mm, in the tenth of a second
-// before it lands [m].
+// The distance of a swinging foot from its place while it is lower than 1.5 mm, in the tenth of a
+// second before it lands [m].
 double low_offset(const CommandSeries& series, Side side, int landing) {
   const Isometry3d place = series.samples[landing + 10].feet[static_cast<int>(side)];
   RobotData data(hoap1());
@@ -81,8 +82,8 @@ double low_offset(const CommandSeries& series, Side side, int landing) {
   return most;
 }
 
-// A foot that has to come down 60 ms earlier came in low, 7 mm from its place: a robot whose
-// servos sag under its weight by a millimetre stumbled over it.
+// Before, a foot that has to come down 60 ms earlier came in low, 7 mm from its place: a robot
+// whose servos sag under its weight by a millimetre stumbled over it.
 TEST(Landing, EarlyContactComesDownOnItsPlace) {
   Pattern pattern = table_of({.steps = 9, .stride = 0, .side = 0.03});
   size_t step = pattern.phases.size() / 2;
@@ -95,7 +96,7 @@ TEST(Landing, EarlyContactComesDownOnItsPlace) {
   EXPECT_LT(low_offset(r.series, pattern.phases[step].swing->foot, landing), 0.0012);
 }
 
-// The lowest corner of a foot in the middle half of a swing [m].
+// The height of the lowest corner of a foot in the middle half of a swing [m].
 double clearance_of(const CommandSeries& series, Side side, int lift, int landing) {
   RobotData data(hoap1());
   const int quarter = (landing - lift) / 4;
@@ -109,8 +110,8 @@ double clearance_of(const CommandSeries& series, Side side, int lift, int landin
   return least;
 }
 
-// A knee that stretches by 75 degrees drives the swinging foot through the ground: brought back to
-// the ground alone, it scraped over it as the servos sagged, and the robot fell.
+// A knee that stretches by 75 degrees moves the swinging foot through the ground. Before, the foot
+// was only brought back to the ground: it scraped over it as the servos sagged, and the robot fell.
 TEST(Landing, AThrownKneePassesOverTheGround) {
   Pattern pattern = table_of({.steps = 5, .stride = 0.02, .lift = 0.018, .turn = 0.08});
   size_t step = pattern.phases.size() / 2;

@@ -1,7 +1,7 @@
-// The repaired motion against twenty others that pass the check as well: shares of the correction,
-// the correction with smooth noise over it, and where it leans on so many limits that noise breaks
-// one of them, the same on the way to a correction that keeps from them. For every fault that asks
-// for a motion.
+// The repaired motion is compared with twenty others that also pass the check: parts of the
+// correction, the correction with smooth noise, and, if it touches so many limits that noise breaks
+// one of them, the same on the way to a correction that keeps away from them. This is done for
+// every fault that needs a change of the motion.
 
 #include <gtest/gtest.h>
 
@@ -29,7 +29,8 @@ const Pattern& trial_walk() {
   return pattern;
 }
 
-// Control points of the track's own size anywhere in it; the base moves a tenth of the joints.
+// Noise at all control points, as large as the track itself; the base moves by a tenth of the
+// joints.
 CorrectionTrack with_noise(const CorrectionTrack& track, double size, Random& random) {
   CorrectionTrack noisy = track;
   for (Eigen::Index i = 3; i < track.coefficients.rows() - 3; ++i)
@@ -38,7 +39,7 @@ CorrectionTrack with_noise(const CorrectionTrack& track, double size, Random& ra
   return noisy;
 }
 
-// a with its control points and joints where b has them too, and zeros elsewhere.
+// The track a, with control points and joints where b also has them, and zeros elsewhere.
 CorrectionTrack laid_on(const CorrectionTrack& a, const CorrectionTrack& b) {
   CorrectionTrack track = b;
   track.coefficients.setZero();
@@ -82,19 +83,19 @@ class LeastChange : public testing::Test {
             phase.support == Support::left ? Side::left : Side::right};
   }
 
-  // Whether it passes the check; then it must not be cheaper.
+  // Judges whether the motion passes the check; if it does, it must not be cheaper.
   void judge(const CorrectionTrack& track, const std::string& how) {
     const CommandSeries other = apply_correction(hoap1(), series, track);
     if (!check_consistency(hoap1(), other, options.check).consistent) return;
     ++others;
-    constexpr double kRounding = 2e-5;  // of limits, and what the solver leaves
+    constexpr double kRounding = 2e-5;  // rounding of limits, and the error that the solver leaves
     WeightedChange cost = weighted_change(hoap1(), series, other);
     if (cost.change < least.total())
       cost.safety = robustness_cost(hoap1(), series, other, options, before);
     EXPECT_GE(cost.total(), (1 - kRounding) * least.total()) << how << ", change " << cost.change;
   }
 
-  // Nine tenths of the way and less to what `stricter` limits would make of it.
+  // Judges nine tenths, and less, of the way to the correction for `stricter` limits.
   void judge_on_the_way(const CorrectionTrack& track, const RepairOptions& stricter,
                         Random& random) {
     const RepairResult far = repair(hoap1(), series, stricter);
@@ -181,7 +182,7 @@ TEST_F(LeastChange, ZmpOutside) {
   expect_least();
 }
 
-// What is wrong with the commands alone needs no motion, and none is the least.
+// A fault of the commands alone needs no change of the motion, and no change is the smallest.
 TEST_F(LeastChange, CommandsFollowAStillPosture) {
   for_rows(table, [&](double t, size_t k) {
     table.cog[k].y() += 0.015 * bump(t, 2, 0.6);

@@ -21,7 +21,7 @@ TEST(MotionChange, NamesJointsTimesAndQuantities) {
     after.samples[k].state.base.position.x() += 0.003 * bump(t, 1.0, 0.2);
     after.samples[k].zmp.y() += 0.004 * bump(t, 1.5, 0.2);
   }
-  after.samples.resize(901);  // shorter: only what both have is compared
+  after.samples.resize(901);  // it is shorter, so that only the common part is compared
   const MotionChange change = motion_change(limited_biped(), before, after);
   EXPECT_NEAR(change.compared, 1.8, 1e-9);
   ASSERT_EQ(change.joints.size(), 2u);

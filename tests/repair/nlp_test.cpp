@@ -8,7 +8,8 @@ using Eigen::VectorXd;
 
 namespace {
 
-// min (x0 - 2)^2 + (x1 - 1)^2 on a disc: the point (2, 1) / sqrt 5 for radius 1.
+// The minimum of (x0 - 2)^2 + (x1 - 1)^2 on a disc, which is the point (2, 1) / sqrt 5 for radius
+// 1.
 Nlp disc(double radius2) {
   Nlp nlp;
   nlp.start = VectorXd::Zero(2);

@@ -36,7 +36,7 @@ const CommandSeries& good_walk() {
   return series;
 }
 
-// The trunk jerks back in one step, and the ZMP leaves the sole before the toes by about 10 mm.
+// The trunk jerks back during one step, and the ZMP leaves the sole at the toes by about 10 mm.
 CommandSeries zmp_outside() {
   CommandSeries series = good_walk();
   RobotData data(limited_biped());
@@ -62,7 +62,8 @@ RobotModel hoap1_with(const std::function<void(RobotDescription&)>& change) {
   return RobotModel(d);
 }
 
-// Joint limits 2 degrees inside what the walk needs, left and right: every step breaks them.
+// A robot whose joint limits, left and right, are 2 degrees inside the range that the walk needs:
+// every step exceeds them.
 RobotModel hoap1_with_tight(const std::string& joint, const CommandSeries& series) {
   return hoap1_with([&](RobotDescription& d) {
     const RobotModel model(d);
@@ -98,7 +99,7 @@ TEST(Repair, ZmpComesInsideAndNothingChangesTwice) {
   expect_repaired(r);
   EXPECT_GT(r.check.summary[FindingKind::support_margin], 0.0019);
   EXPECT_NEAR(r.at, middle_of_step(3), 0.3);
-  // Only the time around the fault moves.
+  // The motion only changes around the time of the fault.
   for (size_t k = 0; k < series.samples.size(); ++k) {
     if (std::abs(k * series.dt - middle_of_step(3)) < 0.8) continue;
     ASSERT_EQ(r.series.samples[k].state.theta, series.samples[k].state.theta);
@@ -107,7 +108,7 @@ TEST(Repair, ZmpComesInsideAndNothingChangesTwice) {
   EXPECT_EQ(again.status, RepairStatus::already_consistent);
 }
 
-// Random motions of the same control points that stay feasible cost more.
+// Random motions from the same control points that stay feasible cost more.
 TEST(Repair, NothingNearbyIsCheaper) {
   const CommandSeries series = zmp_outside();
   RepairOptions options;
@@ -129,7 +130,7 @@ TEST(Repair, NothingNearbyIsCheaper) {
     other.coefficients *= scale;
     const CommandSeries moved = apply_correction(limited_biped(), series, other);
     const ConsistencyReport report = check_consistency(limited_biped(), moved);
-    // As far inside as the repair had to be: its program keeps 2.5 mm.
+    // The ZMP must be as far inside as in the repair, whose program keeps 2.5 mm.
     if (!report.consistent || report.summary[FindingKind::support_margin] < 0.0025) continue;
     ++feasible;
     EXPECT_GE(weighted_change(limited_biped(), series, other), 0.999 * least) << "scale " << scale;
@@ -210,7 +211,7 @@ TEST(Repair, Hoap1FastKnees) {
   expect_repaired(repair(model, series));
 }
 
-// The walk begins and ends with the knee beyond its limit: the posture there moves as well.
+// The walk begins and ends with the knee beyond its limit: the posture there changes as well.
 TEST(Repair, AFaultyFirstPostureIsMovedToo) {
   RobotDescription d = limited_biped_description();
   const int knee = limited_biped().find_dof("l_knee");
@@ -267,7 +268,7 @@ TEST(Repair, JointBeyondItsLimitToTheEndIsBroughtBackThereToo) {
   for (JointDescription& joint : d.joints)
     if (joint.name == "l_shoulder_pitch") joint.upper = limit;
   const RobotModel model(d);
-  // A slow ramp to 0.05 rad beyond the limit, held to the end.
+  // A slow ramp to 0.05 rad beyond the limit, which is held to the end.
   const double over = 0.25;
   const double T = 0.8 * series.duration();
   for (size_t k = 0; k < series.samples.size(); ++k) {
@@ -300,7 +301,8 @@ TEST(BadStarts, EndAtTheSameMotion) {
   }
 }
 
-// A repair whose work is used up ends with the motion that passed so far, on every machine.
+// A repair that reaches its limit of work ends with the best motion so far that passes, on every
+// machine.
 TEST(Repair, EndsWithinItsWork) {
   const CommandSeries series = zmp_outside();
   const RepairResult whole = repair(limited_biped(), series);
@@ -323,7 +325,8 @@ TEST(Repair, SameBytesForAnyNumberOfThreads) {
   EXPECT_EQ(a.correction.coefficients, b.correction.coefficients);
 }
 
-// The plan of a walk and of a squat, and no motion: legs and arms are as they are at home.
+// There is only the plan of a walk and of a squat, and no motion: legs and arms are as they are at
+// home.
 TEST(FromScratch, MakesAMotionOfThePlanAlone) {
   Pattern squat;
   squat.robot = "hoap1";

@@ -1,4 +1,4 @@
-// `ayumi report` on a run of HOAP-1 standing.
+// `ayumi report` on a run in which HOAP-1 stands.
 
 #include <gtest/gtest.h>
 

@@ -36,7 +36,7 @@ struct Made {
   }
 };
 
-/// The page of Made, made once for all tests that only read it.
+/// The page of Made, which is made once for all tests that only read it.
 const Report& whole_page() {
   static const Made made;
   static const Report report = make_report(made.model, made.input);
@@ -82,7 +82,7 @@ TEST(Report, ShowsFindingsRepairAndThresholds) {
     EXPECT_NE(html.find(words), std::string::npos) << words;
 }
 
-// "0 % of the limit" was said of robots that state no limit.
+// Before, "0 % of the limit" was written for robots that state no limit.
 TEST(Report, SaysWhichLimitsAreNotStatedAndHowSoftTheSolesAre) {
   Made made;
   ASSERT_FALSE(has_limit(made.model, FindingKind::continuous_torque));
@@ -98,7 +98,7 @@ TEST(Report, SaysWhichLimitsAreNotStatedAndHowSoftTheSolesAre) {
             std::string::npos);
 }
 
-// Lengths in mm and angles in deg wherever they stand, with three digits.
+// Lengths are in mm and angles in deg wherever they occur, with three digits.
 TEST(Report, NamesTheJointAndTheTimeOfTheLargestShares) {
   Made made;
   ReportOptions plain;
@@ -157,7 +157,7 @@ TEST(Report, OnlyWhatIsGoodIsGreen) {
   EXPECT_NE(good.find("<span class=\"good\">stands</span>"), std::string::npos);
 }
 
-// Every phase and law of a study, whatever directions it has.
+// The page has every phase and law of a study, whatever directions it has.
 TEST(Report, ShowsThePushMap) {
   Made made;
   for (const char* phase : {"left foot", "standing"})
@@ -225,7 +225,7 @@ TEST(AuthorPage, PartsThatNeedNoBrowser) {
   EXPECT_EQ(said.exit_code, 0) << said.out << said.err;
 }
 
-// Runs the trials of a script on the live page of a pattern.
+// Runs the trials in a script on the live page of a pattern.
 void expect_page_works(const std::string& script, const Folder& folder, const char* pattern) {
   const fs::path file = folder / pattern;
   const Output said = run_program({AYUMI_SOURCE_DIR "/tests/report/" + script, AYUMI_CHROMEDRIVER,
@@ -240,7 +240,7 @@ TEST(AuthorPage, IsWorkedWithInABrowser) {
   if (std::string(AYUMI_CHROMEDRIVER).empty())
     GTEST_SKIP() << "chromium-driver is not installed: the page is not tried in a browser";
   const Folder folder;
-  // The bundled walk without its last five steps: the trials change what comes before.
+  // The bundled walk without its last five steps; the trials change the part before them.
   ASSERT_EQ(run_program({"new", "walk", "--steps", "3", "-q", "-o", "three.json"}, folder.path())
                 .exit_code,
             0);
@@ -256,7 +256,7 @@ TEST(AuthorPage, IsWorkedWithInABrowser) {
   expect_page_works("author_browser.mjs", folder, "walk.json");
 }
 
-// humanoid30 with seven fingers on each hand: 44 joints.
+// The robot is humanoid30 with seven fingers on each hand, which makes 44 joints.
 void write_robot_with_fingers(const Folder& folder) {
   fs::create_directories(folder / "fingers");
   fs::create_symlink(AYUMI_SOURCE_DIR "/robots/humanoid30/meshes", folder / "fingers/meshes");
@@ -281,7 +281,7 @@ void write_robot_with_fingers(const Folder& folder) {
   write(folder / "fingers/robot.json", sidecar.insert(sidecar.find(last) + last.size(), names));
 }
 
-// A minute of standing in which a hand and the gaze go from target to target.
+// A minute of standing, in which a hand and the gaze move from target to target.
 std::string minute_of_targets() {
   std::string keys;
   for (int i = 0; i < 15; ++i) {
@@ -304,7 +304,7 @@ TEST(AuthorPage, ShowsTargetsOfManyJointsForAMinute) {
     GTEST_SKIP() << "chromium-driver is not installed: the page is not tried in a browser";
   const Folder folder;
   write_robot_with_fingers(folder);
-  // As the trials write it.
+  // The text is as the trials write it.
   write(folder / "targets.json", nlohmann::ordered_json::parse(minute_of_targets()).dump(1));
   expect_page_works("author_targets.mjs", folder, "targets.json");
 }

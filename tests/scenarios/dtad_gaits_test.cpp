@@ -1,5 +1,5 @@
-// The same gains on gaits they were not chosen on: turning, sideways, a sudden stop, a slope with a
-// push, the large robot. Actuators as they are.
+// The same gains on gaits for which they were not chosen: turning, sideways, a sudden stop, a slope
+// with a push, the large robot. Actuators are unchanged.
 #include <gtest/gtest.h>
 
 #include "ayumi/author/generate/generate.hpp"
@@ -37,7 +37,7 @@ SimulationResult run(const RobotModel& model, const Pattern& pattern,
   return simulate(model, sample(model, pattern), options).result;
 }
 
-/// In the middle of the fourth step: left foot down.
+/// The time in the middle of the fourth step, with the left foot down.
 double middle_of_step(const Pattern& pattern) {
   return 0.5 * (pattern.phases[6].until + pattern.phases[7].until);
 }
@@ -72,7 +72,7 @@ TEST(DtadGaits, ClimbingStairsOfTenMillimetres) {
 
 TEST(DtadGaits, SuddenStopWithTheFeetApart) {
   Pattern pattern = walk_pattern(hoap1(), {.steps = 8});
-  pattern.phases.resize(8);  // ends with the fourth step in the air
+  pattern.phases.resize(8);  // it ends with the fourth step in the air
   const double end = pattern.phases.back().until;
   std::erase_if(pattern.keyframes, [&](const Keyframe& key) { return key.t > end; });
   Keyframe stop = pattern.keyframes.back();
@@ -94,7 +94,7 @@ TEST(DtadGaits, PushOnASlopeThatThePatternDoesNotKnow) {
   }
 }
 
-/// Largest distance between the loci of two runs [m].
+/// The largest distance between the loci of two runs [m].
 double apart(const SimulationLog& a, const SimulationLog& b) {
   double most = 0;
   for (size_t k = 0; k < std::min(a.samples.size(), b.samples.size()); ++k)
@@ -102,8 +102,8 @@ double apart(const SimulationLog& a, const SimulationLog& b) {
   return most;
 }
 
-// What the servos received is what the table holds. As the table of a pattern it moves the robot
-// alike without control: the lead of the servos is not put in twice.
+// The table contains what the servos received. As the table of a pattern, it moves the robot in the
+// same way without control: the lead of the servos is not added twice.
 TEST(DtadGaits, TheExportedReferenceReplaysToTheSameLoci) {
   const Pattern pattern = read_pattern(AYUMI_SOURCE_DIR "/patterns/hoap1_walk.json");
   const CommandSeries series = sample(hoap1(), pattern);
@@ -122,18 +122,18 @@ TEST(DtadGaits, TheExportedReferenceReplaysToTheSameLoci) {
   const SimulationLog open = simulate(hoap1(), played, options);
   EXPECT_EQ(open.result.outcome, Outcome::stands);
   EXPECT_LT(apart(closed, open), 5e-5);
-  // The postures behind the table are the reference's: its COG is that of the posture.
+  // The postures behind the table are those of the reference: its COG is that of the posture.
   RobotData data(hoap1());
   for (const CommandSample& s : played.samples) {
     update_positions(hoap1(), s.state, data);
     EXPECT_LT((data.cog - s.cog).norm(), 1e-3);
   }
-  // Taken as postures, the same table is led twice.
+  // If it is taken for postures, the lead is added to the same table twice.
   replay.table->commands = false;
   EXPECT_GT(apart(closed, simulate(hoap1(), sample(hoap1(), replay), options)), 4e-4);
 }
 
-/// A keyed jump of `height` [m] as the robot's profile does it.
+/// A keyed jump of `height` [m], played with the robot's profile.
 SimulationLog jump(const RobotModel& model, const Pattern& pattern, ControllerKind law,
                    const std::string& profile, const std::vector<Disturbance>& scenario) {
   SimulateOptions options;
@@ -150,7 +150,7 @@ double largest_force(const SimulationLog& log) {
   return most;
 }
 
-// Off the ground the law asks for no force. The robot lands no harder than without a law, on stiff
+// In the air, the law asks for no force. The robot lands no harder than without a law, on stiff
 // servos and on soft ones.
 TEST(DtadGaits, JumpsLandSoftly) {
   for (const double height : {0.01, 0.03}) {
@@ -171,8 +171,8 @@ TEST(DtadGaits, JumpsLandSoftly) {
   }
 }
 
-// The push turns the robot and carries it away in the air: the legs stay upright, and the law takes
-// up the rest after the landing.
+// The push turns the robot in the air and moves it away: the legs stay upright, and the law
+// corrects the rest after the landing.
 TEST(DtadGaits, APushInFlight) {
   const Pattern pattern = jump_pattern(hoap1(), {.height = 0.02, .times = 3});
   const double middle = 0.5 * (pattern.phases[0].until + pattern.phases[1].until);
@@ -187,9 +187,9 @@ TEST(DtadGaits, APushInFlight) {
   }
 }
 
-// Motions that lean the trunk or lower the COG, pushed in the middle near the capture bound: where
-// the robot stands in open loop, it stands with the law. A trunk that bows by 29 deg must not be
-// turned on until it counts as fallen.
+// Motions that lean the trunk or lower the COG are pushed in the middle, near the capture bound: if
+// the robot stands in open loop, it also stands with the law. A trunk that bows by 29 deg must not
+// be turned so far that it counts as fallen.
 TEST(DtadGaits, StandsWhereOpenLoopStands) {
   int stood = 0;
   for (const char* name : {"hoap1", "humanoid30"}) {

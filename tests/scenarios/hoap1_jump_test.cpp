@@ -1,5 +1,5 @@
-// The jumps of HOAP-1 carried by VIIP on the actuators of the paper's simulations, read from the
-// log: how high, how they land, what is conserved on the way.
+// The jumps of HOAP-1 under VIIP with the actuators of the paper's simulations, read from the log:
+// their height, their landing, and the quantities that are conserved during the flight.
 #include <gtest/gtest.h>
 
 #include "ayumi/author/generate/generate.hpp"
@@ -46,14 +46,15 @@ void expect_landing(const SimulationLog& log, double drift, const Eigen::Vector2
   EXPECT_LE(test::feet_drift(hoap1(), log, way), drift);
 }
 
-// What any one jump of these is held to, released without angular momentum.
+// The expectations on each of these jumps, if it is released without angular momentum.
 void expect_jump(const SimulationLog& log, double apex, double error, double stoop) {
   const auto jumps = test::jumps_of(hoap1(), log, kRef);
   ASSERT_EQ(jumps.size(), 1u);
   const test::JumpMeasured& j = jumps[0];
   EXPECT_NEAR(j.apex, apex, error * apex);
   EXPECT_NEAR(log.result.apex, j.apex, 1e-4);
-  // Without the soles' rebounds; a spring's force fades through the 5 % at which flight begins.
+  // Rebounds of the soles do not count; the force of a spring decreases through the 5 % at which
+  // flight begins.
   EXPECT_NEAR(log.result.flight, j.touchdown - j.lift_off, 0.006);
   EXPECT_GT(j.clearance, 0.003);
   EXPECT_NEAR(j.stoop, stoop, 0.15 * stoop);
@@ -71,8 +72,8 @@ TEST(Hoap1Jump, RisesAsPlannedLandsAndSettles) {
     }
 }
 
-// The landing: at most twice the force of (27), which is m (speed^2 / z_d + g), no bounce above 5
-// ms, and the spring of (27) by the speed that the COG really had.
+// At the landing, the force is at most twice that of (27), which is m (speed^2 / z_d + g); no
+// bounce lasts longer than 5 ms; and the spring is that of (27) for the real speed of the COG.
 void expect_soft_landing(const SimulationLog& log, double stoop, double bounce) {
   const double mass = hoap1().mass(), weight = mass * 9.80665;
   const auto jumps = test::jumps_of(hoap1(), log, kRef);
@@ -99,7 +100,7 @@ TEST(Hoap1Jump, LegsYieldAtTheTouchdown) {
       for (const double height : {0.02, 0.03, 0.04, 0.05})
         for (const double stoop : {0.03, 0.035, 0.04}) {
           if (release == Release::spring && height <= 0.5 * stoop) continue;
-          // With stiff servos and the deepest stoop, the knees come to their stops, or are nearly
+          // With stiff servos and the deepest stoop, the knees reach their stops, or are nearly
           // straight before the landing.
           if (std::string(profile) == "hoap1-strong" && stoop == 0.04) continue;
           SCOPED_TRACE(testing::Message() << profile << ", " << height << ", " << stoop

@@ -1,5 +1,5 @@
-// The walk of patterns/hoap1_walk.json under its push, on bad ground and with bad sensors, on the
-// real actuators of HOAP-1. The limits are those a user relies on.
+// The walk of patterns/hoap1_walk.json under its push, on bad ground and with bad sensors, with the
+// real actuators of HOAP-1. A user can rely on these limits.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -64,8 +64,8 @@ TEST(Hoap1Walk, PushFellsReplayAndTheLiteralLawButNotDtad) {
   EXPECT_EQ(run(pushed("dtad-literal")).outcome, Outcome::fell);
 }
 
-/// Largest turn of an arm's joint against the plan [rad], where the standing robot is pushed to the
-/// left so hard that no ZMP inside its soles holds it.
+/// The largest turn of an arm's joint against the plan [rad], if the standing robot is pushed to
+/// the left so hard that no ZMP inside its soles holds it.
 double arm_turn(const std::map<std::string, double>& weights, double t) {
   Pattern pattern = stand_pattern(walk().model, 2);
   Keyframe key;
@@ -99,7 +99,7 @@ TEST(Hoap1Walk, ArmsTakeUpMomentumAsTheirWeightsInTheKeyframesSay) {
   EXPECT_GT(arm_turn(heavy, 1.5), 0.9 * free);  // after the push they change nothing
 }
 
-// What the support cannot give, the angular momentum gives: 3.6 N s, 1.24 times the capture bound.
+// The angular momentum provides what the support cannot: 3.6 N s, 1.24 times the capture bound.
 TEST(Hoap1Walk, StandsAPushThatNeedsAngularMomentum) {
   const CommandSeries series = sample(walk().model, stand_pattern(walk().model, 2));
   SimulateOptions options = unpushed("dtad");
@@ -143,8 +143,8 @@ TEST(Hoap1Walk, PushWithAWeightInOneHand) {
   }
 }
 
-// A slope is a constant disturbance: what the long-term term alone would answer with a lasting
-// offset, the washout forgets.
+// A slope is a constant disturbance: the long-term term alone would answer it with a lasting
+// offset, which the washout removes.
 TEST(Hoap1Walk, SlopeThatThePatternDoesNotKnowInEveryDirection) {
   for (int i = 0; i < 8; ++i) {
     const double angle = i * M_PI / 4;
@@ -157,7 +157,7 @@ TEST(Hoap1Walk, SlopeThatThePatternDoesNotKnowInEveryDirection) {
   }
 }
 
-/// A plate of this height under the foothold of a swing, counted from 0.
+/// A plate of this height under the foothold of a swing. Swings are counted from 0.
 GroundBlock plate(int swing, double height) {
   const Pattern& pattern = walk().pattern;
   for (const Phase& phase : pattern.phases) {
@@ -171,7 +171,7 @@ GroundBlock plate(int swing, double height) {
   return {};
 }
 
-/// Of the side's touchdowns, the first in a window [s]; -1 when there is none.
+/// The first touchdown of this side in a window [s]; -1 if there is none.
 double touchdown(const SimulationLog& log, const char* side, double from, double to) {
   for (const SimulationEvent& event : log.events)
     if (event.kind == "touchdown" && event.text.starts_with(side) && event.t >= from &&
@@ -180,13 +180,13 @@ double touchdown(const SimulationLog& log, const char* side, double from, double
   return -1;
 }
 
-// The plate makes its own landing early and the next one, of the other foot, late.
+// The plate makes the landing on it early, and the next landing, that of the other foot, late.
 TEST(Hoap1Walk, LandingsEarlyAndLate) {
   const SimulationLog level = simulate(walk().model, walk().series, unpushed("dtad"));
   for (const double height : {0.0015, 0.003}) {
     SCOPED_TRACE(height);
     SimulateOptions options = unpushed("dtad");
-    options.world.blocks.push_back(plate(2, height));  // right foot, planned at 2.671 s
+    options.world.blocks.push_back(plate(2, height));  // the right foot, planned at 2.671 s
     const SimulationLog log = simulate(walk().model, walk().series, options);
     EXPECT_LE(touchdown(log, "right", 2.4, 2.9), touchdown(level, "right", 2.4, 2.9) - 0.02);
     EXPECT_GE(touchdown(log, "left", 2.95, 3.5), touchdown(level, "left", 2.95, 3.5) + 0.02);
@@ -194,7 +194,8 @@ TEST(Hoap1Walk, LandingsEarlyAndLate) {
   }
 }
 
-/// The walk over discs of 3 mm, one to three under every foothold, somewhere under the sole.
+/// The walk over discs of 3 mm, of which one to three are under every foothold, somewhere under the
+/// sole.
 SimulationResult over_discs(std::uint64_t seed) {
   Random random(seed);
   SimulateOptions options = unpushed("dtad");
@@ -223,13 +224,13 @@ TEST(Hoap1Walk, DiscsUnderEveryFoot) {
 }
 
 // A sole of 63 mm with one half on a plate of 3 mm leans by 5 deg, and with stiff ankles the trunk
-// with it; the ankle that gives in takes a part of that away.
+// leans with it; a compliant ankle removes a part of that.
 TEST(Hoap1Walk, AnkleGivesInOnHalfAPlate) {
   double conforming = 0, stiff = 0;
   for (int swing = 1; swing <= 4; ++swing) {
     SimulateOptions options = unpushed("dtad");
-    options.profile = "hoap1-soft";  // on stiff servos the robot falls with or without
-    options.controller.gains = {{"momentum", 0}};  // turns the trunk on purpose
+    options.profile = "hoap1-soft";  // on stiff servos, the robot falls with and without it
+    options.controller.gains = {{"momentum", 0}};  // otherwise the law turns the trunk on purpose
     options.world.blocks.push_back(plate(swing, 0.003));
     options.world.blocks.back().low.y() += 0.0345;
     const SimulationResult soft = run(options);

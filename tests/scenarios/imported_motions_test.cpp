@@ -1,5 +1,5 @@
-// DTAD on motions that nobody made for it: sequences of a real robot, plans that end or begin in
-// motion, plans whose ZMP no ground gives.
+// DTAD on motions that were not made for it: sequences of a real robot, plans that end or begin in
+// motion, and plans with a ZMP that no ground can give.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -37,8 +37,8 @@ CommandSeries sway() {
   return sample(hoap1(), pattern);
 }
 
-// The robot stops where the plan ends and stands there: it neither goes on with the last velocity
-// nor seeks the ZMP of the last acceleration.
+// The robot stops where the plan ends and stands there: it neither continues with the last velocity
+// nor moves to the ZMP of the last acceleration.
 TEST(ImportedMotions, APlanThatEndsInMotion) {
   CommandSeries series = sway();
   size_t fastest = 0;
@@ -57,8 +57,8 @@ TEST(ImportedMotions, APlanThatEndsInMotion) {
   }
 }
 
-// For 10 ms the plan has its ZMP 0.8 m in front of the feet, as differences of a coarse table give
-// it. Trunk and arms do not answer what is no disturbance.
+// For 10 ms, the plan has its ZMP 0.8 m in front of the feet, as differences of a coarse table give
+// it. Trunk and arms do not respond, because this is no disturbance.
 TEST(ImportedMotions, AZmpThatNoGroundGives) {
   CommandSeries series = sway();
   const size_t at = series.samples.size() / 2;
@@ -70,8 +70,8 @@ TEST(ImportedMotions, AZmpThatNoGroundGives) {
     EXPECT_LT((s.reference_theta - s.command_theta).cwiseAbs().maxCoeff(), 0.03);
 }
 
-// A file whose ZMP is 15 mm off the one of its own motion: a robot that was another one, a ZMP that
-// was measured from another place. The robot moves and ends as the posture says.
+// The ZMP of a file differs by 15 mm from that of its own motion: the robot was another one, or the
+// ZMP was measured from another place. The robot moves and ends as the posture says.
 TEST(ImportedMotions, AZmpThatIsNotThatOfTheMotion) {
   for (const Eigen::Vector2d& off : {Eigen::Vector2d(0.015, 0), {-0.01, 0.01}, {0, -0.015}}) {
     SCOPED_TRACE(off.transpose());
@@ -109,8 +109,8 @@ std::string ik_link(const std::string& name, const Eigen::Isometry3d& pose,
          "\n          rotation: " + yaml_list(rows.reshaped()) + "\n" + more;
 }
 
-// Key poses of a step: the right foot goes 30 mm forward, and an arm is lifted meanwhile. The robot
-// of the file is this one.
+// The key poses of a step: the right foot moves 30 mm forward, while an arm is lifted. The robot of
+// the file is this one.
 std::string step_of_key_poses(const RobotModel& model) {
   RobotState state = model.rest_state();
   RobotData data(model);
@@ -189,17 +189,18 @@ TEST(ImportedMotions, KeyPosesAreKeysOfAPattern) {
   const int arm = model.find_dof("l_shoulder_pitch");
   EXPECT_NEAR(at(1.7).state.theta[arm], at(0).state.theta[arm], 1e-9);
   EXPECT_NEAR(at(2).state.theta[arm], 0.5, 1e-9);
-  // A motion in another format is none of key poses.
+  // A motion in another format is not read as key poses.
   EXPECT_FALSE(read_key_poses("time,0,1\nl_knee,0,1\n", "k.csv", model).has_value());
 }
 
-// A file with steps and one ZMP key: the ZMP stays in the soles, as where the editor generates it.
+// A file with steps and one ZMP key: the ZMP stays in the soles, as it does when the editor
+// generates it.
 TEST(ImportedMotions, KeyPosesWithoutZmpStepWithTheZmpUnderTheStandingFoot) {
   const RobotModel& model = hoap1();
   std::string text = step_of_key_poses(model);
   for (size_t at = text.find("      zmp: ") + 1;
        (at = text.find("      zmp: ", at)) != std::string::npos;)
-    text.erase(at, text.find('\n', at) + 1 - at);  // all but the first one
+    text.erase(at, text.find('\n', at) + 1 - at);  // all keys except the first one
   ImportOptions options;
   options.by_order = true;
   std::optional<ImportedKeys> keys = read_key_poses(text, "step.pseq", model, options);
@@ -218,8 +219,8 @@ TEST(ImportedMotions, KeyPosesWithoutZmpStepWithTheZmpUnderTheStandingFoot) {
   EXPECT_NE(said.find("under the middle of the standing foot"), std::string::npos) << said;
 }
 
-// A file of every format and robot, whole and cut at either end: what was read makes a pattern that
-// can be written, read and sampled.
+// Files of every format and robot, whole and cut off at either end: what was read makes a pattern
+// that can be written, read and sampled.
 TEST(ImportedMotions, EveryFormatCanBeSampled) {
   int tried = 0;
   for (const char* name : {"hoap1", "humanoid30"}) {
@@ -255,7 +256,7 @@ TEST(ImportedMotions, EveryFormatCanBeSampled) {
         try {
           files = format.write(model, motion);
         } catch (const Error&) {
-          continue;  // this robot has no servo numbers
+          continue;  // this robot has no numbers of servos
         }
         test::TemporaryFolder folder;
         for (const WrittenFile& file : files)
@@ -287,8 +288,8 @@ TEST(ImportedMotions, EveryFormatCanBeSampled) {
   EXPECT_GE(tried, 2 * 3 * 2 * 14);
 }
 
-// Every sequence of HOAP-3 that is at hand. The data are not part of this program: without them
-// the test is skipped.
+// Every available sequence of HOAP-3. The data are not part of this program: without them the test
+// is skipped.
 TEST(ImportedMotions, SequencesOfARealRobot) {
   const std::filesystem::path data = AYUMI_SOURCE_DIR "/../shared/data/hoap3";
   if (!std::filesystem::exists(data / "motions"))

@@ -1,5 +1,5 @@
-// A walk played without anything measured: the servo targets make up for lag and sag, so
-// that an integrator which knows nothing of the plan moves as planned.
+// A walk is played without measurements: the servo targets compensate for lag and sag, so that an
+// integrator that knows nothing of the plan moves as planned.
 #include <gtest/gtest.h>
 
 #include "ayumi/io/pattern/pattern_file.hpp"
@@ -21,7 +21,7 @@ SimulationLog played(const CommandSeries& series, const std::string& profile = "
   return simulate(hoap1(), series, options);
 }
 
-/// Largest distance of the COG from its command [m].
+/// The largest distance of the COG from its command [m].
 double cog_off(const SimulationLog& log) {
   double most = 0;
   for (const SimulationSample& s : log.samples)
@@ -39,7 +39,8 @@ TEST(OpenLoop, TheRobotMovesAsCommanded) {
   }
 }
 
-// The same angles taken for what servos received are sent as they are, and the robot gives way.
+// If the same angles are taken for values that servos received, they are sent as they are, and the
+// robot gives way.
 TEST(OpenLoop, SentAsTheyAreTheSameAnglesSag) {
   CommandSeries series = hoap1_walk();
   series.servo_commands = true;

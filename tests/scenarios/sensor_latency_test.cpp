@@ -1,5 +1,5 @@
-// Sensors whose readings are late. A short-term loop that is closed too fast makes a robot that
-// stands still oscillate from edge to edge of its soles after a small push.
+// Sensors whose readings are late. If the short-term loop is too fast, a robot that stands still
+// oscillates between the edges of its soles after a small push.
 #include <gtest/gtest.h>
 
 #include "ayumi/author/generate/generate.hpp"
@@ -13,8 +13,8 @@ namespace {
 
 using test::hoap1;
 
-/// The robot stands on both feet for 3 s with sensors that are late [s] and is pushed to the left
-/// by 0.3 N s after 1 s. It survives more than ten times as much.
+/// The robot stands on both feet for 3 s with sensors that are late [s], and is pushed to the left
+/// by 0.3 N s after 1 s. It can survive more than ten times as much.
 SimulationLog stands_pushed(const RobotModel& model, double latency,
                             const std::string& controller = "dtad") {
   Pattern pattern = stand_pattern(model, 3.0);
@@ -30,7 +30,7 @@ SimulationLog stands_pushed(const RobotModel& model, double latency,
   return simulate(model, sample(model, pattern), options);
 }
 
-/// Both feet stay loaded, hardly slip, and the measured ZMP stays near ref ZMP.
+/// Both feet stay loaded and hardly slip, and the measured ZMP stays near ref ZMP.
 void expect_calm(const SimulationLog& log) {
   EXPECT_EQ(log.result.outcome, Outcome::stands);
   EXPECT_LT(log.result.zmp_tracking_rms, 0.008);
@@ -68,12 +68,12 @@ TEST(SensorLatency, ViipStaysCalmUpToFourteenMilliseconds) {
 
 struct LateWalk {
   std::string pattern;
-  double slope, sole;  // [rad], [N/m]; 0: as the pattern and the robot have it
-  double most;         // rms of measured ZMP - ref ZMP with sensors that are 14 ms late [m]
+  double slope, sole;  // [rad], [N/m]; 0 for the values of the pattern and the robot
+  double most;         // largest rms of measured ZMP - ref ZMP with sensors that are 14 ms late [m]
 };
 
-// 10 ms of the sensors, and as much again as the servos of HOAP-1 lag. Measured: 8.9, 30.6, 19.7,
-// 23.1 and 9.4 mm. Without the gain damp, HOAP-1 hammers in all of them.
+// The sensors are 10 ms late, and the servos of HOAP-1 lag as much again. Measured: 8.9, 30.6,
+// 19.7, 23.1 and 9.4 mm. Without the gain damp, the feet of HOAP-1 hammer in all cases.
 TEST(SensorLatency, NoFootHammersWhileWalkingAndStepping) {
   for (const LateWalk& c :
        {LateWalk{"hoap1_walk", 0, 0, 0.011}, LateWalk{"hoap1_walk", -3 * M_PI / 180, 0, 0.036},

@@ -1,4 +1,4 @@
-// The edge of stability that gains are judged by, against the robot's simulation.
+// The edge of stability by which gains are judged agrees with the robot's simulation.
 
 #include "ayumi/control/stance_loop.hpp"
 
@@ -27,7 +27,7 @@ RobotModel robot_with(double sole) {
   return RobotModel(description);
 }
 
-// Whether the rocking of a standing robot grows that a push of 0.005 N s has left.
+// Whether the rocking that a push of 0.005 N s has left on a standing robot grows.
 bool grows(const RobotModel& model, const Case& c, double ka) {
   SimulateOptions options;
   options.settle = 0;
@@ -38,7 +38,7 @@ bool grows(const RobotModel& model, const Case& c, double ka) {
        .duration = 0.01,
        .what = Push{.magnitude = 0.005, .direction = Eigen::Vector3d(1, 1, 0).normalized()}}};
   const SimulationLog log = simulate(model, test::standing(model, 3.0), options);
-  // Over 20 ms, which leaves out the slow return of the COG [m].
+  // The rocking over 20 ms, without the slow return of the COG [m].
   const auto rocking = [&](double begin, double end) {
     double sum = 0;
     for (auto k = std::lround(begin / log.dt); k < std::lround(end / log.dt); ++k) {
@@ -47,12 +47,13 @@ bool grows(const RobotModel& model, const Case& c, double ka) {
     }
     return std::sqrt(sum * log.dt / (end - begin));
   };
-  constexpr double kHammering = 1e-3;  // a tenth of what the push can make it [m]
+  constexpr double kHammering = 1e-3;  // a tenth of the largest rocking that the push can cause [m]
   const double later = rocking(2.5, 3.0);
   return later > kHammering || later > rocking(1.5, 2.0);
 }
 
-// Over ka, latency, tau_z, damp and the stiffness of the soles. Measured: 4 % at most.
+// The cases vary ka, latency, tau_z, damp and the stiffness of the soles. Measured: the difference
+// is at most 4 %.
 TEST(StanceLoop, AgreesWithSimulationOnTheEdgeOfStability) {
   constexpr double kMost = 7;  // the largest ka that is compared
   int edges = 0;
@@ -86,7 +87,8 @@ TEST(StanceLoop, AgreesWithSimulationOnTheEdgeOfStability) {
   EXPECT_GE(edges, 16);
 }
 
-// Sensors that are 8 ms late, and a push of 0.3 N s sideways: without the damping the feet hammer.
+// The sensors are 8 ms late, and a push of 0.3 N s acts sideways: without the damping, the feet
+// hammer.
 TEST(StanceLoop, FeetThatHammerAreUnsettled) {
   SimulateOptions options;
   options.scenario = {{.at = 0, .duration = 10, .what = Latency{0.008}},
@@ -115,7 +117,7 @@ TEST(StanceLoop, NoiseOfTheSensorsIsNoHammering) {
   EXPECT_LT(r.zmp_amplitude, 0.003);
 }
 
-// What ankles on stiff servos do with the noise of the IMU.
+// This is the effect of the IMU's noise on ankles with stiff servos.
 TEST(StanceLoop, WalkingWithNoiseStaysWithinTenMillimetres) {
   SimulateOptions options;
   options.sensor_noise = true;

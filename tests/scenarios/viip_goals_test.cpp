@@ -1,4 +1,4 @@
-// Goals that a robot cannot reach are refused with what it can.
+// Goals that a robot cannot reach are refused, and the message says what it can reach.
 #include "ayumi/control/viip_goals.hpp"
 
 #include <gtest/gtest.h>
@@ -51,8 +51,8 @@ TEST(ViipGoals, DisplacementsBeyondFeetOrLegsAreRefused) {
         << refusal(CogGoal{c.displacement});
 }
 
-// A velocity counts from where the goals before it lead, for the time of its phase. Downwards, the
-// 66.4 mm of a displacement are 14.8 mm/s.
+// A velocity acts from the place to which the goals before it lead, for the duration of its phase.
+// Downwards, the 66.4 mm of a displacement are 14.8 mm/s.
 TEST(ViipGoals, VelocitiesThatLeadBeyondFeetOrLegsAreRefused) {
   const double time = 4.5;
   const auto refused = [&](const Vector3d& way) { return refusal(CogVelocityGoal{way / time}); };
@@ -67,7 +67,7 @@ TEST(ViipGoals, VelocitiesThatLeadBeyondFeetOrLegsAreRefused) {
   EXPECT_THROW(require_reachable_goals(hoap1(), sample(hoap1(), p), p.controller), Error);
   p.phases.back().viip = CogVelocityGoal{{-0.07, 0, 0}};
   require_reachable_goals(hoap1(), sample(hoap1(), p), p.controller);
-  // Short, but too fast to stop before the toes.
+  // The phase is short, but the goal is too fast to stop before the toes.
   Pattern fast = with(CogVelocityGoal{{0.4, 0, 0}}, 0.55);
   try {
     require_reachable_goals(hoap1(), sample(hoap1(), fast), fast.controller);
@@ -84,7 +84,7 @@ TEST(ViipGoals, StepsBeyondTheLegsAreRefused) {
   EXPECT_NE(refusal(aside).find("out of range"), std::string::npos) << refusal(aside);
 }
 
-// What is not refused is reached, up to the edge of it.
+// A goal that is accepted is reached, even at the edge of what is accepted.
 TEST(ViipGoals, WhatIsAcceptedIsReached) {
   for (const Vector3d& way : {Vector3d(0.045, 0, 0), Vector3d(-0.044, 0, 0), Vector3d(0, 0.05, 0),
                               Vector3d(0, 0, 0.019), Vector3d(0, 0, -0.064)}) {

@@ -1,5 +1,5 @@
-// VIIP on HOAP-1 in Ayumi's integrator: what a user relies on, in metres, seconds and newton
-// seconds.
+// VIIP on HOAP-1 in Ayumi's integrator: results on which a user relies, in metres, seconds and
+// newton seconds.
 #include <gtest/gtest.h>
 
 #include "ayumi/author/generate/generate.hpp"
@@ -22,7 +22,7 @@ struct Goal {
   ViipGoal goal;
 };
 
-// Legs bent enough for long steps, unless another depth is given.
+// A pattern of these goals with legs bent enough for long steps, unless another height is given.
 Pattern goals(const std::vector<Goal>& list, double height = 0.225) {
   Pattern pattern;
   pattern.robot = "hoap1";
@@ -78,14 +78,14 @@ TEST(ViipHoap1, CogGoesToADisplacementOnBothFeet) {
     }
     EXPECT_LE(settled, 1.1);
     EXPECT_LE(std::sqrt(squares / 3000), 0.0015);
-    // Height does not overshoot: (25) with the mass.
+    // The height does not overshoot: (25) with the mass holds.
     for (const SimulationSample& s : log.samples)
       EXPECT_GE(s.reference_cog.z() - from.z(), way.z() - 0.0003);
   }
 }
 
-// The COG moves at the goal's velocity, ref v_G, and stops where the phase ends: also after a push
-// on the way, with noisy and late sensors.
+// The COG moves at the goal's velocity, ref v_G, and stops where the phase ends. This also holds
+// after a push on the way, and with noisy and late sensors.
 TEST(ViipHoap1, CogMovesAtACommandedVelocityOnBothFeet) {
   const double from = 0.5, moving = 1.2, push_at = 0.9;
   for (const Vector3d& velocity : {Vector3d(0.03, 0, 0), Vector3d(-0.02, 0.025, 0),
@@ -102,8 +102,8 @@ TEST(ViipHoap1, CogMovesAtACommandedVelocityOnBothFeet) {
       EXPECT_EQ(log.result.outcome, Outcome::stands);
       const Vector3d start = log.samples[499].cog;
       EXPECT_LT((log.samples.back().cog - start - moving * velocity).norm(), hard ? 4e-3 : 1e-3);
-      // The mean velocity over the third quarter of the way, when a push is over. The COG is then
-      // up to 1.3 mm/s faster, because it makes up for its late start.
+      // The mean velocity over the third quarter of the way, when the effect of a push is over. The
+      // COG is then up to 1.3 mm/s faster, because it compensates for its late start.
       const Vector3d mean = (log.samples[1690].cog - log.samples[1390].cog) / 0.3;
       EXPECT_LT((mean - velocity).norm(), hard ? 8e-3 : 2e-3) << mean.transpose();
       for (const SimulationSample& s : log.samples) EXPECT_GT(s.fz, 30.0);
@@ -140,7 +140,7 @@ TEST(ViipHoap1, YieldsToAnImpulseFromAboveAsKpzSays) {
   const Pattern pattern = goals({{3, CogGoal{}}});
   for (const double kz : {0.5, 1.5, 3.0})
     for (const double impulse : {0.3, 1.5}) {
-      if (kz < 1 && impulse > 1) continue;  // deeper than the legs
+      if (kz < 1 && impulse > 1) continue;  // this would be deeper than the legs allow
       SCOPED_TRACE(testing::Message() << "kz " << kz << ", " << impulse << " N s");
       Conditions c{.profile = "hoap1-strong", .gains = {{"kz", kz}}};
       c.pushes = {push(0.5, {0, 0, -1}, impulse)};
@@ -154,7 +154,7 @@ TEST(ViipHoap1, YieldsToAnImpulseFromAboveAsKpzSays) {
     }
 }
 
-// K_Pz and K_Dz of (24) change with the feet that bear load.
+// K_Pz and K_Dz of (24) change with the feet that carry load.
 TEST(ViipHoap1, TheSpringChangesWithTheContact) {
   const double omega2 = 9.80665 / 0.225, weight = hoap1().mass() * 9.80665;
   const SimulationLog log = run_viip(goals({{0.5, CogGoal{}}, {4.5, walk(6, 0.05)}}),
@@ -184,11 +184,11 @@ TEST(ViipHoap1, TheSpringChangesWithTheContact) {
 }
 
 // The ZMP follows the one that the law asks for, in the bundled patterns without their pushes. With
-// noise, the figures are means of several seeds.
+// noise, the figures are means over several seeds.
 TEST(Viip, TheZmpFollows) {
   struct Case {
     const char* pattern;
-    double error, noisy;  // [m]
+    double error, noisy;  // largest error without and with noise [m]
   };
   for (const Case& c : {Case{"hoap1_viip_step", 0.005, 0.010},
                         {"hoap1_viip_walk", 0.006, 0.011},
@@ -230,7 +230,7 @@ TEST(ViipHoap1, WalksAtTheCommandedVelocity) {
     SCOPED_TRACE(velocity);
     const SimulationLog log = run_viip(goals({{0.3, CogGoal{}}, {8.6, walk(14, velocity)}}));
     EXPECT_EQ(log.result.outcome, Outcome::stands);
-    // Thirteen steps of v T, T = 2.1 / omega.
+    // There are thirteen steps of v T, with T = 2.1 / omega.
     const double way = 13 * velocity * 2.1 / std::sqrt(9.80665 / log.samples[0].cog.z());
     EXPECT_NEAR(log.samples.back().cog.x() - log.samples.front().cog.x(), way, 0.02 * way);
     EXPECT_NEAR(log.samples.back().cog.y(), 0, 0.012);
@@ -256,7 +256,7 @@ TEST(ViipHoap1, StepsWithNoisyLateSensors) {
               Outcome::stands);
 }
 
-// m omega times the way to the toes is 2.1 N s: only a step ahead can stop this one.
+// m omega times the distance to the toes is 2.1 N s: only a step forward can stop the robot here.
 TEST(ViipHoap1, APushWhileSteppingMovesTheFeet) {
   const Pattern steps = goals({{0.3, CogGoal{}}, {7.0, walk(10, 0)}});
   Conditions pushed;
@@ -265,10 +265,10 @@ TEST(ViipHoap1, APushWhileSteppingMovesTheFeet) {
   EXPECT_EQ(log.result.outcome, Outcome::stands);
   double ahead = 0;
   for (const SimulationSample& s : log.samples) ahead = std::max(ahead, s.reference_zmp.x());
-  EXPECT_GT(ahead, 0.07);  // the sole it stood on ends at 0.056
+  EXPECT_GT(ahead, 0.07);  // the sole on which it stood ends at 0.056
 }
 
-// Pushed forward in the middle of a double support by 2.05 times m omega d_edge.
+// The robot is pushed forward in the middle of a double support by 2.05 times m omega d_edge.
 TEST(ViipHoap1, AStepThatComesSoonerStopsALargerPush) {
   const Pattern steps = goals({{0.5, CogGoal{}}, {5.5, walk(12, 0)}});
   Conditions pushed;
@@ -279,7 +279,8 @@ TEST(ViipHoap1, AStepThatComesSoonerStopsALargerPush) {
 }
 
 TEST(ViipHoap1, WithNothingMeasuredItFallsWhereNoticedLandingsAreEnough) {
-  const Pattern pattern = goals({{0.5, CogGoal{}}, {6.5, walk(14, 0.18)}}, 0);  // legs as at home
+  // The legs are as at home.
+  const Pattern pattern = goals({{0.5, CogGoal{}}, {6.5, walk(14, 0.18)}}, 0);
   Conditions conditions;
   conditions.controller = "viip-landings";
   EXPECT_EQ(run_viip(pattern, conditions).result.outcome, Outcome::stands);
@@ -287,8 +288,8 @@ TEST(ViipHoap1, WithNothingMeasuredItFallsWhereNoticedLandingsAreEnough) {
   EXPECT_EQ(run_viip(pattern, conditions).result.outcome, Outcome::fell);
 }
 
-// The hardest case: weight goes over to the left foot, the push to its outer side, where no foot
-// can follow without crossing. The nominal ZMP inside the sole leaves the room for it.
+// The hardest case: the weight is moving to the left foot, and the push is to its outer side, where
+// no foot can follow without crossing. The nominal ZMP inside the sole leaves the room for it.
 TEST(ViipHoap1, APushToTheOuterSideOfTheNextStanceFootIsTakenByTheSole) {
   const Pattern steps = goals({{0.5, CogGoal{}}, {5.5, walk(12, 0)}});
   SimulateOptions options;
@@ -301,13 +302,14 @@ TEST(ViipHoap1, APushToTheOuterSideOfTheNextStanceFootIsTakenByTheSole) {
   EXPECT_EQ(run_viip(steps, pushed).result.outcome, Outcome::stands);
 }
 
-// DTAD -> VIIP walks ahead -> DTAD goes on with its keys where the feet are.
+// First DTAD controls, then VIIP walks ahead, and then DTAD continues with its keys at the place of
+// the feet.
 TEST(ViipHoap1, PhasesPassTheRobotBetweenDtadAndViip) {
   Pattern pattern = walk_pattern(hoap1(), {.steps = 2});
   const double first = pattern.duration(), wait = 4.5;
   Pattern again = pattern;
   pattern.phases.push_back({first + wait, Support::both, {}, walk(4, 0.08)});
-  // The same steps once more: footholds go on from where the first ones ended.
+  // The same steps follow once more: footholds continue from where the first ones ended.
   const double x = again.phases[again.phases.size() - 2].swing->to.position.x();
   for (Phase& phase : again.phases) {
     phase.until += first + wait;

@@ -1,5 +1,5 @@
-// The baselines on the bundled walks of both robots: unpushed they stand at the end, and a push
-// that fells open loop does not fell them.
+// The baselines on the bundled walks of both robots: without a push the robot stands at the end,
+// and it does not fall after a push with which it falls in open loop.
 #include <gtest/gtest.h>
 
 #include "ayumi/author/generate/generate.hpp"
@@ -52,8 +52,8 @@ TEST_P(Baselines, SurviveAPushThatFellsOpenLoop) {
   EXPECT_EQ(run(walk, GetParam(), 1.5).outcome, Outcome::stands);
 }
 
-// 1.32 times the capture bound, forwards: the ratio q = 1 of the sidecar asks for the ZMP that
-// foot-guided control asks for. With the 0.25 of HOAP-1 the robot falls.
+// The push forward is 1.32 times the capture bound: the ratio q = 1 of the sidecar asks for the
+// same ZMP as foot-guided control. With the 0.25 of HOAP-1 the robot falls.
 TEST(DtadBesideBaselines, StandsThePushThatFootGuidedControlStands) {
   const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/humanoid30");
   const CommandSeries series = sample(model, stand_pattern(model, 2));

@@ -1,5 +1,5 @@
-// Once they have met their largest problem, the inner loops allocate nothing: every call of malloc
-// in this program is counted, which operator new and Eigen end in.
+// After their largest problem, the inner loops allocate nothing. Every call of malloc in this
+// program is counted; operator new and Eigen also call malloc.
 
 #include <gtest/gtest.h>
 
@@ -51,7 +51,7 @@ class Allocations : public testing::Test {
 #endif
 };
 
-/// Allocations during a call; operator new goes through malloc as well.
+/// The number of allocations during a call; operator new goes through malloc as well.
 template <typename Call>
 long allocations_of(const Call& call) {
   allocations = 0;
@@ -118,7 +118,7 @@ TEST_F(Allocations, ATickOfTheClosedLoopHasNoneAfterTheFirstSteps) {
     options.sensor_noise = true;
     Simulator simulator(model, series, options);
     simulator.keep_samples(false);  // the log itself grows
-    simulator.advance(2000);        // two steps: both kinds of support have been
+    simulator.advance(2000);        // after two steps, both kinds of support have occurred
     for (int i = 0; i < 10; ++i)
       EXPECT_EQ(allocations_of([&] { simulator.advance(200); }), 0)
           << name_of(controller) << " from " << simulator.time() - 0.2 << " s";
@@ -127,7 +127,7 @@ TEST_F(Allocations, ATickOfTheClosedLoopHasNoneAfterTheFirstSteps) {
   }
 }
 
-// Footholds move from 3 s on, under the pattern's push and more.
+// Footholds move from 3 s on, under the pattern's push and further pushes.
 TEST_F(Allocations, ATickThatMovesFootholdsHasNoneAfterTheFirstSteps) {
   const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
   const Pattern pattern = read_pattern(AYUMI_SOURCE_DIR "/patterns/hoap1_walk.json");

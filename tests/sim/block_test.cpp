@@ -1,5 +1,5 @@
-// Closed forms of the plant: impacts of a rocking block, landing, an ankle's torque at rest, energy
-// in flight; and what it refuses.
+// Closed forms of the plant: impacts of a rocking block, landing, an ankle's torque at rest, and
+// energy in flight. It is also tested what the plant refuses.
 
 #include "tests/support/block.hpp"
 
@@ -27,15 +27,15 @@ using test::error_message;
 
 constexpr double kHigh = 5.0;  // friction that holds every edge
 
-// Energy lost by a block that rocks about its edges, as shares left after each impact, from the
-// turning points (energy above rest).
+// The energy of a block that rocks about its edges, as the share that is left after each impact,
+// from the turning points (energy above rest).
 std::vector<double> rocking_ratios(const Vector3d& size, double lean, int impacts, double h) {
   const double alpha = std::atan2(size.x(), size.z());
   const double radius = 0.5 * std::hypot(size.x(), size.z());
   const RobotModel model(test::block_description(size, 2.0));
   Plant plant(model, model.limits(), World{kHigh});
   RobotState s = model.rest_state();
-  const double tilt = lean * alpha;  // about the edge at +x
+  const double tilt = lean * alpha;  // lean about the edge at +x
   s.base.attitude = exp_rotation({0, tilt, 0});
   s.base.position = Vector3d(0.5 * size.x(), 0, 0) +
                     s.base.attitude * Vector3d(-0.5 * size.x(), 0, 0.5 * size.z());
@@ -56,9 +56,10 @@ std::vector<double> rocking_ratios(const Vector3d& size, double lean, int impact
   return ratios;
 }
 
-// Each impact multiplies the rate by 1 - 1.5 sin^2(a), a the angle between a side and a diagonal:
-// the angular momentum about the new edge is kept. Blocks of a walking robot's sizes, slender and
-// squat, at the default step; energy between impacts must be kept for the shares to come out.
+// Each impact multiplies the rate by 1 - 1.5 sin^2(a), where a is the angle between a side and a
+// diagonal: the angular momentum about the new edge is kept. The blocks have the sizes of parts of
+// a walking robot, slender and squat, at the default step. Energy must also be kept between impacts
+// for the shares to be right.
 TEST(RockingBlock, LosesEnergyAtEachImpactAsRigidBodiesDo) {
   struct Case {
     Vector3d size;
@@ -86,7 +87,8 @@ TEST(RockingBlock, ErrorFallsWithTheStep) {
   EXPECT_NEAR(rocking_ratios(size, 0.6, 1, 2.5e-4)[0], share, 5e-4);
 }
 
-// The step that meets the ground ends on it; the next one rests, and nothing rebounds.
+// The step that meets the ground ends on it; after the next step the block rests, and it does not
+// rebound.
 TEST(Landing, StopsBouncingInOneStep) {
   const RobotModel model(test::block_description({0.2, 0.1, 0.04}, 2.0));
   for (const double h : {1e-3, 2.5e-4}) {
@@ -114,7 +116,7 @@ TEST(Landing, StopsBouncingInOneStep) {
   }
 }
 
-/// A foot plate with a body on an ankle hinge about y, `lever` ahead of it [m].
+/// A foot plate with a body on an ankle hinge about y, which is `lever` ahead of it [m].
 RobotDescription leaning_description(double mass, double lever) {
   RobotDescription d = test::block_description({0.3, 0.1, 0.02}, 1.0);
   LinkDescription body;
@@ -146,7 +148,7 @@ TEST(Ankle, TorqueAtRestIsWeightTimesLever) {
     plant.set_state(s);
     StepReport report;
     for (int i = 0; i < 3000; ++i) report = plant.step(VectorXd::Zero(1), {}, 1e-3);
-    // The lever as it is after the servo has given way.
+    // This is the lever after the servo has given way.
     RobotData data(model);
     update_positions(model, plant.state(), data);
     const double now = data.com[1].x() - data.position[1].x();
@@ -155,7 +157,7 @@ TEST(Ankle, TorqueAtRestIsWeightTimesLever) {
   }
 }
 
-// Bodies tumbling with loose joints: the energy's error halves with the step.
+// Bodies tumble with loose joints: half the step gives half the error of the energy.
 TEST(PassiveFlight, EnergyErrorFallsWithFirstOrder) {
   RobotDescription d = test::random_tree(3, 10, false);
   for (JointDescription& joint : d.joints) {
@@ -207,7 +209,7 @@ TEST(Plant, RefusesNumbersThatAreNoneWithPlaceAndTime) {
             std::string::npos);
   EXPECT_NE(error_message([&] { plant.step(target, {}, 0); }).find("step length"),
             std::string::npos);
-  plant.step(target, {}, 1e-3);  // still usable
+  plant.step(target, {}, 1e-3);  // the plant can still be used
   s.base.position.x() = nan;
   EXPECT_NE(error_message([&] { plant.set_state(s); }).find("base position"), std::string::npos);
 }

@@ -14,7 +14,7 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double kRowStep = 1e-3;  // [s]
+constexpr double kRowStep = 1e-3;  // time step [s]
 
 /// A step of a random robot with contacts at random places of some of its bodies.
 struct ContactStep {
@@ -55,7 +55,7 @@ struct ContactStep {
     return placed;
   }
 
-  /// The change of velocity by the contact problem.
+  /// The change of velocity that follows from the contact problem.
   VectorXd by_rows(ContactSolution& solution) {
     rows.set(contacts, data, factor, before, kRowStep);
     EXPECT_TRUE(factor.factor(mass));
@@ -83,7 +83,7 @@ struct ContactStep {
     return x;
   }
 
-  /// Takes the impulses of the last solve as those of the last step.
+  /// Uses the impulses of the last solve as those of the last step.
   void keep_impulses() {
     for (size_t i = 0; i < contacts.size(); ++i) contacts[i].impulse = rows.impulse(i);
   }
@@ -98,15 +98,15 @@ struct ContactStep {
   std::vector<ActiveContact> contacts;
 };
 
-// Where the contact problem says that all that press stick, the springs give its solution; and they
-// say themselves where they do not.
+// If, by the contact problem, all contacts that press stick, the springs give its solution;
+// otherwise they say so themselves.
 TEST(ContactRows, SpringsSolveTheContactProblemWhereAllStick) {
   int agreed = 0, refused = 0, open = 0;
   for (unsigned seed = 1; seed <= 60; ++seed) {
     ContactStep step(seed, 1 + static_cast<int>(seed % 3));
     for (ActiveContact& contact : step.contacts) {
       if (seed % 4 == 0) contact.friction = 0.05;
-      if (seed % 5 == 0 && contact.key % 2 == 1) contact.gap = 5e-3;  // stays open
+      if (seed % 5 == 0 && contact.key % 2 == 1) contact.gap = 5e-3;  // this contact stays open
     }
     ContactSolution solution;
     const VectorXd expected = step.by_rows(solution);
@@ -115,7 +115,7 @@ TEST(ContactRows, SpringsSolveTheContactProblemWhereAllStick) {
     std::vector<Vector3d> impulses;
     for (const ActiveContact& contact : step.contacts) impulses.push_back(contact.impulse);
     if (!step.rows.all_stick()) {
-      // Springs in place of contacts that slide: the same call has to refuse its result.
+      // Springs are used for contacts that slide: the same call has to refuse its result.
       step.by_springs();
       VectorXd change = step.by_springs();
       ContactSolution of_springs;
@@ -129,7 +129,8 @@ TEST(ContactRows, SpringsSolveTheContactProblemWhereAllStick) {
     ContactSolution of_springs;
     ASSERT_TRUE(step.rows.take_springs(step.data, step.factor, change, of_springs)) << seed;
     EXPECT_LE(of_springs.residual, kContactTolerance);
-    // Rounding of the stiffest springs, 1e5 N/m in 1 ms, against the least masses of 0.05 kg.
+    // The tolerance is the rounding of the stiffest springs, 1e5 N/m in 1 ms, on the smallest
+    // masses of 0.05 kg.
     EXPECT_LT((change - expected).cwiseAbs().maxCoeff(), 1e-9) << seed;
     for (size_t i = 0; i < impulses.size(); ++i) {
       EXPECT_LT((step.rows.impulse(i) - impulses[i]).norm(), 1e-9) << seed;
@@ -142,8 +143,8 @@ TEST(ContactRows, SpringsSolveTheContactProblemWhereAllStick) {
   EXPECT_GT(open, 10);
 }
 
-// A contact that pressed and is now pulled, and one that was open and is now driven into the
-// ground, are not taken for springs and open contacts.
+// A contact that pressed and is now pulled is not taken for a spring, and one that was open and is
+// now driven into the ground is not taken for open.
 TEST(ContactRows, SpringsRefuseWhatTheyHaveNotExpected) {
   ContactStep step(7, 2);
   ContactSolution solution;
@@ -154,7 +155,8 @@ TEST(ContactRows, SpringsRefuseWhatTheyHaveNotExpected) {
   step.rows.set(step.contacts, step.data, step.factor, step.before, kRowStep);
   ASSERT_TRUE(step.rows.all_stick());
   const VectorXd free = step.by_springs();
-  EXPECT_FALSE(step.rows.take_springs(step.data, step.factor, free, solution));  // it penetrates
+  // The contact penetrates.
+  EXPECT_FALSE(step.rows.take_springs(step.data, step.factor, free, solution));
   step.contacts[0].impulse = {1, 0, 0};
   step.contacts[0].gap = 0.1;
   const VectorXd pulled = step.by_springs();

@@ -12,8 +12,8 @@ using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Eigen::VectorXd;
 
-/// A rigid body touching level ground in n points: rank 6, the rest of A only the compliance, as on
-/// a real sole.
+/// A rigid body touches level ground in n points: A has rank 6, and the rest of A is only the
+/// compliance, as on a real sole.
 ContactProblem random_problem(test::Random& random, int n, double compliance) {
   ContactProblem problem;
   const double mass = random.uniform(1, 10);
@@ -23,7 +23,7 @@ ContactProblem random_problem(test::Random& random, int n, double compliance) {
   MatrixXd J(3 * n, 6);
   for (int i = 0; i < n; ++i) {
     const Eigen::Vector3d r(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), -0.2);
-    Eigen::Matrix3d ground;  // rows: normal, tangents
+    Eigen::Matrix3d ground;  // rows: the normal and the tangents
     ground << 0, 0, 1, 1, 0, 0, 0, 1, 0;
     J.block<3, 3>(3 * i, 0) = ground;
     J.block<3, 3>(3 * i, 3) = -ground * skew(r);
@@ -79,11 +79,11 @@ TEST(ContactSolver, FrictionlessAndSingleContactsHaveClosedForms) {
   VectorXd l = VectorXd::Zero(3);
   solve_contacts(problem, l);
   EXPECT_NEAR((l - Eigen::Vector3d(2, 0, 0)).norm(), 0, 1e-12);
-  problem.friction = {0.2};  // slides: l_t = mu l_n against the motion
+  problem.friction = {0.2};  // it slides: l_t = mu l_n against the motion
   l.setZero();
   solve_contacts(problem, l);
   EXPECT_NEAR((l - Eigen::Vector3d(2, -0.4, 0)).norm(), 0, 1e-12);
-  problem.friction = {0.5};  // sticks
+  problem.friction = {0.5};  // it sticks
   l.setZero();
   solve_contacts(problem, l);
   EXPECT_NEAR((l - Eigen::Vector3d(2, -0.6, 0)).norm(), 0, 1e-12);

@@ -1,4 +1,4 @@
-// Every disturbance, by what it does to a standing HOAP-1 in N, m and s.
+// The effect of every disturbance on a standing HOAP-1, in N, m and s.
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ int dof(const std::string& name) {
   return static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
-/// From 0.5 s for 1 s.
+/// A disturbance from 0.5 s on, for 1 s.
 template <typename What>
 Disturbance lasting(const What& what) {
   return {.at = 0.5, .duration = 1.0, .what = what};
@@ -37,7 +37,7 @@ SimulationLog run(const std::vector<Disturbance>& scenario, double friction = 0.
                   double settle = 0) {
   SimulateOptions options;
   options.controller.type = ControllerKind::none;
-  options.profile = "hoap1-soft";  // which comes to rest where a disturbance has put it
+  options.profile = "hoap1-soft";  // it comes to rest where a disturbance has moved it
   options.settle = settle;
   options.scenario = scenario;
   options.world.friction = friction;
@@ -53,10 +53,10 @@ TEST(Payload, WeighsWhileItIsCarried) {
   const SimulationLog log = run({lasting(load)});
   const double weight = hoap1().mass() * kGravity;
   EXPECT_NEAR(at(log, 0.499).fz, weight, 1e-3);
-  EXPECT_GT(std::abs(at(log, 0.501).fz - weight), 1e-3);  // felt in the first step
+  EXPECT_GT(std::abs(at(log, 0.501).fz - weight), 1e-3);  // it has an effect in the first step
   EXPECT_NEAR(at(log, 1.45).fz, weight + 0.3 * kGravity, 0.05);
   EXPECT_NEAR(at(log, 1.99).fz, weight, 0.05);
-  // ... and leans the ZMP to its side: moments about the ground.
+  // It moves the ZMP to its side, by the moments about the ground.
   const RobotModel& model = hoap1();
   RobotData data(model);
   const SimulationSample& s = at(log, 1.45);
@@ -73,7 +73,7 @@ TEST(Payload, WeighsWhileItIsCarried) {
   EXPECT_EQ(log.events[1].text, "payload of 0.3 kg on r_forearm: over");
 }
 
-// What is there from the start has settled when the run begins.
+// The robot has settled under a payload from the start when the run begins.
 TEST(Payload, FromTheStartIsThereWhileTheRobotSettles) {
   Disturbance d = lasting(Payload{.on = "r_forearm", .mass = 0.3});
   d.at = 0;
@@ -81,7 +81,7 @@ TEST(Payload, FromTheStartIsThereWhileTheRobotSettles) {
   EXPECT_NEAR(at(log, 0).fz, (hoap1().mass() + 0.3) * kGravity, 0.2);
 }
 
-// A pull that ground of 0.8 holds and ground of 0.1 does not.
+// The pull is one that ground of friction 0.8 holds and ground of 0.1 does not.
 TEST(Friction, LetsTheRobotSlideOnce) {
   const Disturbance pull = lasting(Push{.kind = PushKind::force,
                                         .magnitude = 0.2 * hoap1().mass() * kGravity,
@@ -91,12 +91,12 @@ TEST(Friction, LetsTheRobotSlideOnce) {
   const SimulationLog log = run({pull, slippery});
   EXPECT_LT(std::abs(at(log, 0.79).cog.y() - at(log, 0.49).cog.y()), 0.005);
   const double slid = at(log, 1.0).cog.y() - at(log, 0.79).cog.y();
-  // Both feet together, from rest: a = (0.2 - 0.1) g, less the upper body's sway.
+  // Both feet slide together from rest: a = (0.2 - 0.1) g, minus the sway of the upper body.
   EXPECT_NEAR(slid, 0.5 * 0.1 * kGravity * 0.04, 0.010);
   EXPECT_GT(slid, 0.010);
 }
 
-// A servo holds a torque with a sag of torque / kp; with half the gain, twice that.
+// A servo holds a torque with a sag of torque / kp; with half of the gain, the sag doubles.
 TEST(GainLoss, SagsByTorqueOverGain) {
   const SimulationLog log = run({lasting(GainLoss{.joint = "l_knee", .share = 0.5})});
   const int knee = dof("l_knee");
@@ -109,8 +109,8 @@ TEST(GainLoss, SagsByTorqueOverGain) {
   }
 }
 
-// Servo and controller read the same wrong angle: the joint is off by the offset, and neither
-// knows.
+// Servo and controller read the same wrong angle: the joint is displaced by the offset, and neither
+// notices it.
 TEST(EncoderOffset, MovesTheJointUnseen) {
   const std::string joint = hoap1().dof_names().back();
   SimulateOptions options;
@@ -140,15 +140,15 @@ TEST(JointFriction, HoldsWhatTheServoCannotMove) {
     for (int i = 0; i < 400; ++i) plant.step(target, input, 1e-3);
     const double before = plant.state().theta[j];
     target[j] += 0.5 / kp;  // the servo asks for half a newton metre
-    // 0.1 s: joints that stick creep by 1e-4 rad/s under a tenth of their dry friction.
+    // In 0.1 s, joints that stick creep by 1e-4 rad/s under a tenth of their dry friction.
     for (int i = 0; i < 100; ++i) plant.step(target, input, 1e-3);
     const double moved = (plant.state().theta[j] - before) * kp / 0.5;
     EXPECT_NEAR(moved, coulomb > 0 ? 0 : 1, 0.05);
   }
 }
 
-// A stiff servo far from its target asks for a rate that no motor reaches. The joint still moves at
-// the full torque, then at the speed limit, and arrives.
+// A stiff servo far from its target asks for a rate that no motor reaches. The joint nevertheless
+// moves at full torque, then at the speed limit, and arrives.
 TEST(TorqueLimit, AFarTargetIsReachedAtTheSpeedLimit) {
   const RobotModel& model = hoap1();
   const ActuatorLimits& limits = model.limits("hoap1");
@@ -168,7 +168,7 @@ TEST(TorqueLimit, AFarTargetIsReachedAtTheSpeedLimit) {
       if (rate < 0.95 * limits.speed[j] && fastest < limits.speed[j]) {
         EXPECT_EQ(torque, -limits.peak_torque[j]);
       }
-      // The momentum of the base carries the arm on, the motor does not.
+      // The momentum of the base moves the arm on, and the motor does not.
       if (rate > 1.1 * limits.speed[j]) {
         EXPECT_GE(torque, 0);
       }
@@ -178,7 +178,7 @@ TEST(TorqueLimit, AFarTargetIsReachedAtTheSpeedLimit) {
   }
 }
 
-// Every reading is three ticks older than without; the motion (open loop) is the same.
+// Every reading is three ticks older than without latency; the motion (open loop) is the same.
 TEST(Latency, DelaysEveryReading) {
   const Disturbance push{.at = 0.6, .duration = 0.02, .what = Push{.magnitude = 0.2}};
   const Disturbance latency = lasting(Latency{0.003});
@@ -238,7 +238,7 @@ TEST(Bump, LiftsTheFootItRisesUnder) {
   const Eigen::Vector2d place = hoap1().sole(Side::left).center;
   const SimulationLog log = run({lasting(bump_under_the_left_foot())});
   RobotData data(hoap1());
-  const auto height = [&](double t) {  // of the sole over the bump's middle
+  const auto height = [&](double t) {  // height of the sole over the middle of the bump
     update_positions(hoap1(), at(log, t).state, data);
     return (sole_pose(hoap1(), data, Side::left) * Vector3d(place.x(), place.y(), 0)).z();
   };
@@ -275,7 +275,8 @@ TEST(Scenario, UnknownJointsAreNamed) {
   }
 }
 
-// The energy of the log: what gravity gives in a fall is kinetic energy, to the order of the step.
+// In the log, the energy that gravity gives in a fall becomes kinetic energy, to the order of the
+// step.
 TEST(Energy, IsKeptInFreeFlight) {
   CommandSeries series = stand();
   for (CommandSample& s : series.samples) s.state.base.position.z() += 5;

@@ -1,5 +1,5 @@
-// What servos, ground, pushes and joint friction do to the robot is what its energy changes by: the
-// difference falls with the step.
+// The robot's energy changes by the work that servos, ground, pushes and joint friction do on it:
+// the difference decreases with the step.
 
 #include <gtest/gtest.h>
 
@@ -20,8 +20,8 @@ using Eigen::VectorXd;
 
 double sum(const EnergyBalance& w) { return w.servos + w.contacts + w.outside + w.joints; }
 
-// A block that falls 20 mm and comes to rest: the ground takes m g h, at the impact all of it. The
-// step of the impact begins somewhere in the last v dt of the fall, and gravity acts through it.
+// A block falls 20 mm and comes to rest: the ground takes m g h, all of it at the impact. The step
+// of the impact begins somewhere in the last v dt of the fall, and gravity acts during it.
 TEST(Energy, TheGroundTakesWhatAFallingBlockHad) {
   const RobotModel model(test::block_description({0.2, 0.1, 0.04}, 2.0));
   for (const double dt : {1e-3, 1.25e-4}) {
@@ -37,7 +37,7 @@ TEST(Energy, TheGroundTakesWhatAFallingBlockHad) {
   }
 }
 
-// Sliding: friction times way.
+// The energy of sliding is friction times distance.
 TEST(Energy, FrictionTakesForceTimesWay) {
   const RobotModel model(test::block_description({0.2, 0.1, 0.04}, 2.0));
   Plant plant(model, model.limits(), World{.friction = 0.3});
@@ -50,7 +50,8 @@ TEST(Energy, FrictionTakesForceTimesWay) {
   EXPECT_NEAR(taken, -0.5 * 2.0, 1e-3);
 }
 
-/// HOAP-1 squats, is pushed, and its joints rub: largest difference of energy and work.
+/// HOAP-1 squats and is pushed, and its joints have friction: the result is the largest difference
+/// of energy and work.
 double imbalance(const RobotModel& model, double h) {
   const CommandSample start = test::standing(model, 0).samples[0];
   Plant plant(model, model.limits(), World{});

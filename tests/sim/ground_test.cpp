@@ -1,4 +1,5 @@
-// Ground that is more than a plane, and that moves: closed forms with blocks, and HOAP-1's soles.
+// Ground that is more than a plane, and ground that moves: closed forms with blocks, and HOAP-1's
+// soles.
 
 #include "tests/support/ground.hpp"
 
@@ -57,8 +58,8 @@ TEST(Ground, BlocksRestOnStepsAndOnThePlaneBelow) {
   EXPECT_NEAR(beside.position().z(), 0.01, 1e-6);
 }
 
-// Tiles under tiles are ground on which nothing stands, and too many edges under a sole are refused
-// instead of taking hours.
+// Tiles under other tiles are not stood upon, and too many edges under a sole are refused instead
+// of taking hours.
 TEST(Ground, WhatAHigherBlockCoversIsNoContactAndTooManyEdgesAreRefused) {
   const std::vector<Vector3d> sole = {
       {-0.05, -0.03, 0.0205}, {0.05, -0.03, 0.0205}, {0.05, 0.03, 0.0205}, {-0.05, 0.03, 0.0205}};
@@ -93,7 +94,7 @@ TEST(Ground, TheSideOfAStepStopsASlidingBlock) {
   s.base_velocity.x() = 1.0;
   block.plant.set_state(s);
   block.run(1.0);
-  EXPECT_NEAR(block.position().x(), 0.2, 0.002);  // its front on the riser
+  EXPECT_NEAR(block.position().x(), 0.2, 0.002);  // its front is at the riser
   EXPECT_LT(block.plant.state().base_velocity.norm(), 1e-3);
 }
 
@@ -118,7 +119,8 @@ TEST(Ground, PatchesHaveTheirOwnFriction) {
   }
 }
 
-// A height field that is an inclined plane is a slope: a second route to the same slide.
+// A height field that is an inclined plane is a slope, which gives a second route to the same
+// slide.
 TEST(Ground, AnInclinedFieldIsASlope) {
   const double angle = 0.3, mu = 0.15;
   const World world = test::inclined_field(angle, mu);
@@ -135,7 +137,8 @@ TEST(Ground, AnInclinedFieldIsASlope) {
   EXPECT_NEAR((block.position() - start).norm(), distance, 0.005 * distance);
 }
 
-// Shaken more gently than friction holds, a block goes with the floor; more strongly, it slips.
+// A block on a floor that is shaken more gently than friction holds moves with the floor; with
+// stronger shaking it slips.
 TEST(MovingFloor, CarriesABlockAsFarAsFrictionHolds) {
   const double mu = 0.4, w = 2 * M_PI * 2;
   for (const double share : {0.8, 1.5}) {
@@ -150,8 +153,8 @@ TEST(MovingFloor, CarriesABlockAsFarAsFrictionHolds) {
   }
 }
 
-// A slowly tilting floor: the block tips about its lower edge, at the angle where the weight passes
-// over it, and not before.
+// The floor tilts slowly: the block tips about its lower edge, at the angle at which the weight
+// passes over that edge, and not before.
 TEST(MovingFloor, TipsABlockAtTheRightEdgeAndAngle) {
   const Vector3d size(0.06, 0.2, 0.2);
   const double expected = std::atan2(size.x(), size.z());
@@ -176,13 +179,14 @@ TEST(MovingFloor, TipsABlockAtTheRightEdgeAndAngle) {
       EXPECT_NEAR(edge.z(), 0, 1e-3);
     }
   }
-  // From the balance it takes a moment to fall by 2 mrad, while the floor goes on.
+  // From the balance, the block takes a moment to fall by 2 mrad, while the floor continues to
+  // tilt.
   EXPECT_GT(tipped_at, 0.995 * expected);
   EXPECT_LT(tipped_at, 1.05 * expected);
 }
 
-// Discs smaller than the soles carry the robot between the corners: the cells share the load so
-// that its centre is on the disc.
+// Discs smaller than the soles carry the robot between the corners: the cells share the load in
+// such a way that its centre is on the disc.
 TEST(Ground, BumpsUnderTheSolesCarryBetweenTheirCorners) {
   const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
   const CommandSample start = test::standing(model, 0).samples[0];

@@ -1,4 +1,4 @@
-// Bodies of one robot against each other, and shapes that lie over the edges of blocks.
+// Contact between bodies of one robot, and shapes that lie over the edges of blocks.
 
 #include <gtest/gtest.h>
 
@@ -24,8 +24,8 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 using test::kStep;
 
-/// Adds a box that is free to go anywhere: three slides and three turns without motors, on links
-/// that weigh next to nothing.
+/// Adds a box that is free to move anywhere: it has three slides and three turns without motors, on
+/// links of almost no weight.
 void add_free_box(const std::string& name, const Vector3d& size, double mass, const Vector3d& place,
                   RobotDescription& d) {
   std::string parent = "block";
@@ -43,13 +43,14 @@ void add_free_box(const std::string& name, const Vector3d& size, double mass, co
     joint.child = parent = link.name;
     joint.axis = Vector3d::Unit(k % 3);
     if (k == 0) joint.origin.translation() = place;
-    d.servos[joint.name] = ServoDescription{};  // stated, and without a gain: no motor
+    // The servo is stated, but without a gain, so that there is no motor.
+    d.servos[joint.name] = ServoDescription{};
     d.links.push_back(link);
     d.joints.push_back(joint);
   }
 }
 
-/// Three boxes on each other, the second and third turned out of line.
+/// Three boxes on top of each other, of which the second and third are turned out of line.
 RobotDescription stack_description() {
   RobotDescription d = test::block_description({0.2, 0.16, 0.05}, 3.0);
   add_free_box("middle", {0.12, 0.12, 0.06}, 1.0, {0.01, -0.01, 0.055}, d);
@@ -113,7 +114,8 @@ TEST(Stack, IsAtRestWithoutCreep) {
   EXPECT_LT(stack.plant.state().dtheta.cwiseAbs().maxCoeff(), 1e-6);
 }
 
-// A pull on the top box: held by friction below mu m g, sliding by Coulomb's law beyond.
+// A pull on the top box: friction holds the box below mu m g, and beyond that the box slides by
+// Coulomb's law.
 TEST(Stack, TheTopSlidesOnTheMiddleByCoulombsLaw) {
   for (const double share : {0.9, 1.1}) {
     Stack stack;
@@ -145,9 +147,9 @@ TEST(Stack, AJointThatStatesNoServoIsRefused) {
   }
 }
 
-// HOAP-1 in the air presses its upper arms against its trunk: they stop there.
+// HOAP-1 in the air presses its upper arms against its trunk, where they stop.
 TEST(SelfContact, AnArmStopsAtTheTrunk) {
-  // Its own joints' limits keep it away.
+  // The limits of its own joints would keep the arm away.
   RobotDescription d = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1").description();
   for (JointDescription& joint : d.joints) {
     if (!joint.name.starts_with("l_shoulder") && joint.name != "l_elbow") continue;
@@ -164,7 +166,7 @@ TEST(SelfContact, AnArmStopsAtTheTrunk) {
       least = std::min(least, shapes.clearance(pair, data, 1));
     return least;
   };
-  // The forearm bent across the belly.
+  // The forearm is bent across the belly.
   VectorXd target = s.theta;
   double overlap = 1;
   for (const double twist : {-1.5, 1.5}) {
@@ -191,7 +193,7 @@ TEST(SelfContact, AnArmStopsAtTheTrunk) {
   EXPECT_LT(deepest, 1e-5);
   EXPECT_GT(deepest, -1e-4);
   EXPECT_GE(plant.step(target, {}, kStep).self_contact[0], 0);
-  // What links do to each other leaves the whole robot's momentum alone: it falls as a stone.
+  // Forces between links do not change the momentum of the whole robot: it falls freely.
   EXPECT_NEAR(plant.data().dcog.z(), -kGravity * 0.801, 1e-9);
 }
 
@@ -203,7 +205,7 @@ GroundBlock rectangle(double x0, double x1, double height) {
   return block;
 }
 
-/// A plank let down over two supports of 0.05 m at x = -0.1 and 0.05: it lies still on them.
+/// A plank is let down onto two supports of 0.05 m at x = -0.1 and 0.05, and lies still on them.
 struct Plank {
   explicit Plank(const World& world,
                  const RobotDescription& description = test::block_description({0.5, 0.06, 0.02},
@@ -225,15 +227,16 @@ struct Plank {
   Plant plant;
 };
 
-// A plank over two rails that are narrower apart than it is long: no corner of it meets anything.
+// A plank lies over two rails whose distance is smaller than its length: no corner of it touches
+// anything.
 TEST(Edges, APlankLiesOnTwoRails) {
   World world{.friction = 0.6};
   world.blocks = {rectangle(-0.12, -0.10, 0.05), rectangle(0.05, 0.07, 0.05)};
   const Plank plank(world);
 }
 
-/// A box as a mesh whose own axes are turned by half a right angle about y, so that the box around
-/// it in these is many times as high.
+/// A box as a mesh whose own axes are turned by half a right angle about y, so that the bounding
+/// box in these axes is many times as high.
 PlacedShape askew_mesh(const Vector3d& size) {
   PlacedShape placed;
   MeshShape mesh;
@@ -248,7 +251,7 @@ PlacedShape askew_mesh(const Vector3d& size) {
   return placed;
 }
 
-// A mesh lies over edges with its own faces.
+// A mesh rests on edges with its own faces.
 TEST(Edges, AMeshLiesOnTwoRails) {
   World world{.friction = 0.6};
   world.blocks = {rectangle(-0.12, -0.10, 0.05), rectangle(0.05, 0.07, 0.05)};
@@ -257,7 +260,7 @@ TEST(Edges, AMeshLiesOnTwoRails) {
   const Plank plank(world, d);
 }
 
-// Boxes given as meshes on top of each other rest where boxes do.
+// Boxes that are given as meshes on top of each other come to rest where boxes do.
 TEST(Stack, OfMeshesRestsLikeOneOfBoxes) {
   RobotDescription d = stack_description();
   for (LinkDescription& link : d.links)
@@ -275,7 +278,7 @@ TEST(Stack, OfMeshesRestsLikeOneOfBoxes) {
   EXPECT_LT(stack.plant.state().dtheta.cwiseAbs().maxCoeff(), 1e-6);
 }
 
-// The same over two ridges of a height field: no node is a corner of the plank.
+// The same over two ridges of a height field: no node is at a corner of the plank.
 TEST(Edges, APlankLiesOnTwoRidgesOfAField) {
   World world{.friction = 0.6};
   HeightField field;
@@ -287,7 +290,7 @@ TEST(Edges, APlankLiesOnTwoRidgesOfAField) {
   world.fields = {field};
   Plank plank(world);
   Plant& plant = plank.plant;
-  // A push down on its end turns it about the nearer ridge.
+  // A push down on its end turns the plank about the nearer ridge.
   StepInput input;
   ExternalWrench push;
   push.body = 0;
@@ -303,7 +306,7 @@ TEST(Edges, APlankLiesOnTwoRidgesOfAField) {
   EXPECT_NEAR(on_ridge.z(), -0.01, 1e-4) << "it turns about the ridge";
 }
 
-// One end on the ground, the middle over an edge: the height over the edge is geometry's.
+// One end is on the ground and the middle over an edge: geometry gives the height over the edge.
 TEST(Edges, APlankLeansOverAStep) {
   World world{.friction = 0.9};
   world.blocks = {rectangle(0.1, 1, 0.05)};
@@ -313,7 +316,7 @@ TEST(Edges, APlankLeansOverAStep) {
   const double tilt = -0.35;  // about y: the end at +x is up
   RobotState s = model.rest_state();
   s.base.attitude = exp_rotation({0, tilt, 0});
-  // Its lower end at x = -0.2, on the ground.
+  // Its lower end is on the ground at x = -0.2.
   s.base.position =
       Vector3d(-0.2, 0, 0.0) - s.base.attitude * Vector3d(-0.5 * size.x(), 0, -0.5 * size.z());
   plant.set_state(s);

@@ -1,5 +1,5 @@
 // Load cells with dead zone, hysteresis, gain, saturation and a running mean, and sensors of
-// different ages, by closed forms.
+// different ages, compared with closed forms.
 
 #include "ayumi/sim/load_cell.hpp"
 
@@ -46,7 +46,7 @@ TEST(LoadCell, HysteresisLosesTheAreaOfItsLoop) {
   };
   for (int i = 0; i <= count; ++i) visit(i, false);
   for (int i = count; i >= 0; --i) visit(i, false);
-  EXPECT_NEAR(last, h / 2, 1e-9);  // what remains without load
+  EXPECT_NEAR(last, h / 2, 1e-9);  // this remains without load
   for (int i = 0; i <= count; ++i) {
     const double y = visit(i, true);
     if (i * step > h) {
@@ -62,7 +62,7 @@ TEST(LoadCell, HysteresisLosesTheAreaOfItsLoop) {
   EXPECT_NEAR(area, h * (most - h), most * step);
 }
 
-// Where the load turns back, it must change by the whole hysteresis to be felt.
+// Where the load turns back, it must change by the whole hysteresis before the reading changes.
 TEST(LoadCell, ChangesWithinTheHysteresisHaveNoEffect) {
   LoadCell cell({.hysteresis = 2}, 1);
   const double first = cell.felt(30);
@@ -80,7 +80,7 @@ TEST(LoadCell, SaturatesBeforeItsMean) {
 
 TEST(LoadCell, MeanOfEightFollowsARiseThreeAndAHalfTicksLate) {
   LoadCell cell({}, 8);
-  EXPECT_EQ(cell.reported(0), 0);  // the mean of the one reading that there is
+  EXPECT_EQ(cell.reported(0), 0);  // the mean of the only reading
   for (int k = 1; k < 100; ++k) {
     const double mean = cell.reported(2.0 * k);
     if (k >= 7) {
@@ -96,7 +96,7 @@ TEST(LoadCell, MeanOfEightHasItsFrequencyResponse) {
     const double w = 2 * M_PI * hertz * kReading;
     double sine = 0, cosine = 0;
     const int period =
-        static_cast<int>(std::lround(1 / (hertz * kReading) * 6));  // six, whole ticks
+        static_cast<int>(std::lround(1 / (hertz * kReading) * 6));  // six periods in whole ticks
     for (int k = 0; k < 20 + period; ++k) {
       const double mean = cell.reported(std::sin(w * k));
       if (k < 20) continue;
@@ -108,7 +108,7 @@ TEST(LoadCell, MeanOfEightHasItsFrequencyResponse) {
   }
 }
 
-/// The biped at rest with these sensors; each of its eight cells carries the same force [N].
+/// The biped at rest with these sensors. Each of its eight cells carries the same force [N].
 struct StandingRobot {
   explicit StandingRobot(const SensorDescription& s, std::uint64_t seed = 1)
       : model([&] {
@@ -186,7 +186,7 @@ TEST(LoadCells, AMeanOfEightDividesTheNoiseByTheRootOfEight) {
     for (int k = 0; k < count; ++k) squares += std::pow(standing.read(50).feet[0].fz - 200, 2);
     return std::sqrt(squares / count);
   };
-  EXPECT_NEAR(deviation(1), 2, 0.1);  // four cells
+  EXPECT_NEAR(deviation(1), 2, 0.1);  // there are four cells
   EXPECT_NEAR(deviation(8), 2 / std::sqrt(8.0), 0.05);
 }
 
@@ -212,7 +212,7 @@ TEST(LoadCells, EachKindOfSensorIsAsLateAsItsOwnLatency) {
   EXPECT_NEAR(s.oldest(kReading), 0.0045, 1e-15);
 }
 
-// A scenario's latency adds to each.
+// A scenario's latency is added to each.
 TEST(LoadCells, AddedLatencyCountsForEverySensor) {
   SensorDescription s;
   s.force_latency = 0.004;

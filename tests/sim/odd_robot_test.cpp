@@ -1,5 +1,5 @@
-// Robots nobody has seen (tests/support/odd_urdf.hpp) in the plant: links without mass, mimic
-// chains, slides, meshes.
+// Random robots (tests/support/odd_urdf.hpp) in the plant: links without mass, mimic chains,
+// slides, meshes.
 
 #include <gtest/gtest.h>
 
@@ -97,7 +97,7 @@ std::string box_mesh(const Vector3d& size, bool stl) {
 }
 
 // A mesh in millimetres, made smaller by its scale and turned against its link, lands on a slope
-// and stays; its weight is on the ground and it lies as the box it is.
+// and stays there. Its weight is on the ground, and it lies as the box that it represents.
 TEST(MeshOnTheGround, LiesWhereItsShapeIs) {
   for (const std::string name : {"box.stl", "box.obj"}) {
     const test::TemporaryFolder folder;
@@ -126,7 +126,7 @@ TEST(MeshOnTheGround, LiesWhereItsShapeIs) {
   }
 }
 
-// A mesh touches with its corners, not with those of a box around it.
+// A mesh touches the ground with its corners, not with those of a box around it.
 TEST(MeshOnTheGround, AnOctahedronLiesOnItsFace) {
   RobotDescription d = test::block_description({0.1, 0.1, 0.1}, 1.0);
   MeshShape octahedron;
@@ -149,7 +149,8 @@ TEST(MeshOnTheGround, AnOctahedronLiesOnItsFace) {
   EXPECT_LT(plant.state().base_angular_velocity.norm(), 1e-9);
 }
 
-// Balls, capsules and cylinders roll down by g sin / (1 + k), k = I / (m r^2), without slipping.
+// Balls, capsules and cylinders roll down with g sin / (1 + k), where k = I / (m r^2), without
+// slipping.
 TEST(RollingDown, FollowsTheInertia) {
   const double r = 0.05, slope = 0.1, mass = 2;
   const std::pair<Shape, double> cases[] = {
@@ -174,7 +175,7 @@ TEST(RollingDown, FollowsTheInertia) {
   }
 }
 
-// On its end it stands, and tips over the rim's corner.
+// The cylinder stands on its end, and tips over a corner of its rim.
 TEST(RollingDown, ACylinderStandsOnItsEnd) {
   RobotDescription d = test::block_description({0.1, 0.1, 0.2}, 1.0);
   d.links[0].collisions[0].shape = Cylinder{0.05, 0.2};

@@ -31,7 +31,7 @@ struct BlockOnSlope {
   Plant plant;
 };
 
-// Rotation about +y by a positive angle turns x downhill.
+// A rotation about +y by a positive angle turns x downhill.
 TEST(Block, SlidesDownASlopeByCoulombsLaw) {
   const double angle = 0.4, mu = 0.2;
   BlockOnSlope block(angle, mu);
@@ -80,7 +80,7 @@ TEST(Block, SticksBelowTheFrictionAngleWithoutCreep) {
 }
 
 TEST(Block, TipsAtTheRightAngle) {
-  // Half length 0.02 over half height 0.05: tips beyond atan(0.4).
+  // Half the length is 0.02 and half the height 0.05: the block tips beyond atan(0.4).
   const double critical = std::atan(0.4);
   for (const double share : {0.97, 1.03}) {
     BlockOnSlope block(share * critical, 5.0, {0.04, 0.1, 0.1});

@@ -1,4 +1,5 @@
-// Servos against a second route: closed forms, and the same joint integrated in steps of 2 us.
+// Servos are compared with a second route: closed forms, and the same joint integrated in steps of
+// 2 us.
 
 #include "ayumi/sim/servo.hpp"
 
@@ -18,7 +19,7 @@ using test::kFlywheel;
 using test::kHold;
 using test::OneJoint;
 
-/// Of the Stribeck curve, which is computed in single precision [N m].
+/// Error of the Stribeck curve, which is computed in single precision [N m].
 constexpr double kPart = 1e-7;
 
 /// Largest error of the plant at steps of 1 ms [rad]. Derived: the flywheels turn at up to 2 rad/s,
@@ -53,7 +54,7 @@ struct Rig {
 
 class ServoForm : public testing::TestWithParam<OneJoint> {};
 
-// What the plant differs by is the error of its integrator: it falls with the step.
+// The error of the plant is that of its integrator: it decreases with the step.
 TEST_P(ServoForm, MovesAsInSmallSteps) {
   const OneJoint& joint = GetParam();
   const RobotModel model = test::model_of(joint);
@@ -80,7 +81,8 @@ TEST_P(ServoForm, ACopyContinuesToTheSameBits) {
   run(rig.plant, 400, 800);
   run(copy, 400, 800);
   run(again.plant, 0, 800);
-  again.plant.set_state(again.fresh().state());  // forgets what the servo has received
+  // It forgets the targets that the servo has received.
+  again.plant.set_state(again.fresh().state());
   run(again.plant, 0, 800);
   for (const Plant* other : {&copy, &again.plant}) {
     EXPECT_EQ(other->state().theta, rig.plant.state().theta);
@@ -91,14 +93,15 @@ TEST_P(ServoForm, ACopyContinuesToTheSameBits) {
 INSTANTIATE_TEST_SUITE_P(Forms, ServoForm, testing::ValuesIn(test::servo_forms()),
                          [](const auto& form) { return form.param.name; });
 
-// The mean of the held targets over the window of a step, the delay ago, summed in steps of 10 us.
+// The mean of the held targets over the window of a step, earlier by the delay, summed in steps of
+// 10 us.
 TEST(ServoDelay, IsTheMeanOfTheTargetsOfTheDelayAgo) {
   constexpr double kDelay = 0.0037, kFine = 1e-5;
   test::Random random(7);
   for (const std::vector<double>& steps :
        {std::vector<double>{1e-3}, {5e-4}, {2e-3}, {1e-2}, {1e-3, 5e-4, 5e-4, 2e-3, 1e-4}}) {
     TargetDelay delay({{.delay = kDelay}, {.delay = 0}, {.delay = 0.004}});
-    std::vector<double> held;  // target of each 10 us since the start
+    std::vector<double> held;  // target at every 10 us since the start
     for (int k = 0; k < 60; ++k) {
       const double dt = steps[static_cast<size_t>(k) % steps.size()];
       const double target = random.uniform();
@@ -117,7 +120,7 @@ TEST(ServoDelay, IsTheMeanOfTheTargetsOfTheDelayAgo) {
   }
 }
 
-// On a ramp a joint is behind the target by rate times (delay + kd/kp), whatever the step.
+// On a ramp, a joint is behind the target by rate times (delay + kd/kp), for any step.
 TEST(ServoDelay, OfARampIsTheSameForEveryStep) {
   constexpr double kRate = 0.5;
   ServoDescription servo = test::plain_servo();
@@ -132,7 +135,8 @@ TEST(ServoDelay, OfARampIsTheSameForEveryStep) {
   }
 }
 
-// No answer before the delay has passed; from there on the answer of a servo without one.
+// There is no answer before the delay has passed; after it, the answer is that of a servo without
+// delay.
 TEST(ServoDelay, OfAStepIsAnAnswerThatComesLater) {
   ServoDescription late = test::plain_servo();
   late.delay = 0.004;
@@ -152,19 +156,21 @@ TEST(ServoDelay, OfAStepIsAnAnswerThatComesLater) {
   }
 }
 
-// P on position with gain 20 1/s: the speed stays at its bound, then the error decays.
+// With P control of the position with gain 20 1/s, the speed stays at its bound, and then the error
+// decays.
 TEST(ServoSpeedLoop, TurnsAtItsBoundThenDecays) {
   ServoDescription servo{.kp = 20 * 2.0, .kd = 2, .rotor_inertia = 0.01};
   servo.speed_command_limit = 0.5;
   Rig rig(servo);
   for (int k = 0; k < 500; ++k) rig.step(1);
   EXPECT_NEAR(rig.rate(), 0.5, 1e-6);
-  EXPECT_NEAR(rig.theta(), 0.5 * (0.5 - 0.06 / 2.0), 2e-3);  // inertia / speed_gain to get there
+  // Inertia / speed_gain is the time to reach it.
+  EXPECT_NEAR(rig.theta(), 0.5 * (0.5 - 0.06 / 2.0), 2e-3);
   rig.rest(1);
   EXPECT_NEAR(rig.theta(), 1, 1e-9);
 }
 
-// A load that grows by 1 N m/s moves the joint when it passes coulomb + stribeck_torque.
+// A load that grows by 1 N m/s begins to move the joint when it exceeds coulomb + stribeck_torque.
 TEST(ServoFriction, BreaksAwayAtItsLargestAndSlidesByItsCurve) {
   ServoDescription servo{.rotor_inertia = 0.01, .viscous = 0.3, .coulomb = 0.6};
   servo.stribeck_torque = 0.3;
@@ -173,8 +179,9 @@ TEST(ServoFriction, BreaksAwayAtItsLargestAndSlidesByItsCurve) {
   Rig rig(servo);
   int k = 0;
   while (std::abs(rig.rate()) < 1.1e-3 && k < 2000) rig.step(0, 1e-3 * ++k);
-  EXPECT_NEAR(1e-3 * k, 0.9, 0.005);  // friction falls by 2 % at the rate up to which it sticks
-  servo.kp = 600, servo.kd = 60;      // pulls the joint along at a steady rate
+  // Friction falls by 2 % at the rate up to which the joint sticks.
+  EXPECT_NEAR(1e-3 * k, 0.9, 0.005);
+  servo.kp = 600, servo.kd = 60;  // the servo pulls the joint along at a steady rate
   for (const double rate : {0.05, 0.2, 0.5, 1.5}) {
     Rig pulled(servo);
     for (int i = 0; i < 3000; ++i) pulled.step(rate * i * kHold);
@@ -184,7 +191,8 @@ TEST(ServoFriction, BreaksAwayAtItsLargestAndSlidesByItsCurve) {
   }
 }
 
-// The friction models of BAM by hand: t_m = 3 N m, t_e = -2 N m, at rest and at the Stribeck rate.
+// The friction models of BAM are computed by hand: t_m = 3 N m, t_e = -2 N m, at rest and at the
+// Stribeck rate.
 TEST(ServoFriction, IsThatOfTheModelsM1ToM6) {
   const auto friction = [](ServoDescription servo, double rate) {
     return dry_friction(servo, rate, 3, -2);
@@ -209,8 +217,8 @@ TEST(ServoFriction, IsThatOfTheModelsM1ToM6) {
               kPart);  // both push the same way
 }
 
-// A target that turns round does not move the joint over 2 friction / kp. Under a load the friction
-// is as large as its part of the load.
+// When a target turns back, the joint does not move over 2 friction / kp. Under a load, the
+// friction also has a part proportional to the load.
 TEST(ServoFriction, OfAHeldLoadWidensTheBandInWhichAJointStays) {
   constexpr double kLoad = -5, kRate = 0.01;  // [N m, rad/s]
   ServoDescription servo{.kp = 100, .kd = 5, .rotor_inertia = 0.01, .coulomb = 0.2};
@@ -226,13 +234,14 @@ TEST(ServoFriction, OfAHeldLoadWidensTheBandInWhichAJointStays) {
       if (k == 3999) highest = target;
       if (k >= 4000 && returns && lowest == 0) lowest = target;
     }
-    // At the turn the servo pulls with friction and kd rate, and returns half as fast.
+    // At the turning point, the servo pulls with friction and kd rate, and returns half as fast.
     const double band = (2 * (0.2 + 0.1 * std::abs(load)) + 1.5 * 5 * kRate) / 100;
     EXPECT_NEAR(highest - lowest, band, 0.03 * band) << load;
   }
 }
 
-// A load that reverses moves the joint by the play and the gear's give, and the motor by its own.
+// A load that reverses moves the joint by the play and the gear's compliance, and the motor by its
+// own compliance.
 TEST(ServoBacklash, GivesWayByThePlay) {
   ServoDescription servo = test::plain_servo();
   servo.backlash = 0.02;
@@ -245,7 +254,7 @@ TEST(ServoBacklash, GivesWayByThePlay) {
   EXPECT_NEAR(motor - rig.step(0.1, -1.5).motor[0], 2 * 1.5 / 60, 1e-7);
 }
 
-// The joint of a slow triangle stands at the turn while the motor crosses the play.
+// The joint of a slow triangle stands still at the turning point while the motor crosses the play.
 TEST(ServoBacklash, IsTheHysteresisOfASlowTriangle) {
   ServoDescription servo{.kp = 400, .kd = 20, .rotor_inertia = 0.01};
   servo.backlash = 0.03;
@@ -255,7 +264,7 @@ TEST(ServoBacklash, IsTheHysteresisOfASlowTriangle) {
   double target = 0, drag = 0;
   for (int k = 0; k < 6000; ++k) {
     target = kRate * kHold * (k < 3000 ? k : 6000 - k);
-    drag = -0.4 * rig.rate();  // lets the joint lie on the flank that drives it
+    drag = -0.4 * rig.rate();  // the joint lies on the flank that drives it
     rig.step(target, drag);
     const double lag = rig.step(target, drag, 1e-9).motor[0] - rig.theta();
     if (k == 2900) {
@@ -270,8 +279,8 @@ TEST(ServoBacklash, IsTheHysteresisOfASlowTriangle) {
   }
 }
 
-/// Largest difference of the energy of wheel and rotor to the work [J]. A base that does not move
-/// leaves no error of the integrator.
+/// The largest difference between the energy of wheel and rotor and the work [J]. A base that does
+/// not move leaves no error of the integrator.
 double imbalance(ServoDescription servo, double h) {
   servo.backlash = 0.02;
   servo.coulomb = 0.05;
@@ -325,7 +334,7 @@ TEST(ServoBacklash, DoesNotBounceNorGainEnergy) {
   }
 }
 
-// The gear of a servo with stiffness alone is a spring in series with the servo.
+// The gear of a servo that has stiffness alone is a spring in series with the servo.
 TEST(ServoGear, IsASpringInSeriesWithTheServo) {
   ServoDescription servo = test::plain_servo();
   servo.gear_stiffness = 120;
@@ -335,7 +344,8 @@ TEST(ServoGear, IsASpringInSeriesWithTheServo) {
   EXPECT_NEAR(rig.step(0.2, -3).torque[0], 3, 1e-6);
 }
 
-// Towards a far target: stall torque at rest, stall / back-EMF at the end, a straight line between.
+// On the way to a far target, the torque is the stall torque at rest, the speed ends at stall /
+// back-EMF, and a straight line lies between.
 TEST(ServoVoltage, BoundsTheTorqueByALineOverTheSpeed) {
   ServoDescription servo{.kp = 1000, .kd = 1, .rotor_inertia = 0.01};
   servo.stall_torque = 2;
@@ -351,8 +361,8 @@ TEST(ServoVoltage, BoundsTheTorqueByALineOverTheSpeed) {
   EXPECT_NEAR(held.step(100, -2).torque[0], 2, 1e-8);
 }
 
-// Driven beyond its no-load speed, a motor with its full voltage brakes: the line goes on below 0,
-// beyond the peak torque too.
+// If a motor is driven beyond its no-load speed, its full voltage brakes: the line continues below
+// 0, and beyond the peak torque.
 TEST(ServoVoltage, BrakesBeyondTheNoLoadSpeed) {
   ServoDescription servo{.kp = 1000, .kd = 1, .rotor_inertia = 0.01};
   servo.stall_torque = 2;
@@ -369,7 +379,7 @@ TEST(ServoVoltage, BrakesBeyondTheNoLoadSpeed) {
   }
 }
 
-// A joint within the dead band feels no position error; a load pushes it to the edge and beyond.
+// A joint within the dead band has no position error; a load pushes it to the edge and beyond.
 TEST(ServoDeadBand, HoldsNothingWithinIt) {
   ServoDescription servo = test::plain_servo();
   servo.dead_band = 0.03;
@@ -385,8 +395,8 @@ TEST(ServoDeadBand, HoldsNothingWithinIt) {
   }
 }
 
-// 2 counts per degree: target and reading are rounded, so a joint rests where its load lets a whole
-// count flip.
+// There are 2 counts per degree. Target and reading are rounded, so that a joint rests where its
+// load makes a whole count flip.
 TEST(ServoCounts, RoundTargetAndReading) {
   ServoDescription servo = test::plain_servo();
   servo.quantized = true;
@@ -396,12 +406,13 @@ TEST(ServoCounts, RoundTargetAndReading) {
   Rig rig(joint);
   rig.rest(0.49 * count);
   EXPECT_EQ(rig.theta(), 0);
-  rig.rest(7.4 * count, 0.5 * 60 * count);  // half a count of torque: one count of reading or none
+  // The torque of half a count, with one count of reading or none.
+  rig.rest(7.4 * count, 0.5 * 60 * count);
   EXPECT_GT(rig.theta(), 7.4 * count);
   EXPECT_LT(rig.theta(), 7.6 * count);
 }
 
-// The joint rests at the target plus the offset, where its encoder reads the target.
+// The joint rests at the target plus the offset, which is where its encoder reads the target.
 TEST(ServoOffset, IsWhereTheEncoderReadsTheTarget) {
   ServoDescription servo = test::plain_servo();
   servo.offset = 0.02;
@@ -426,10 +437,10 @@ TEST(ServoOffset, IsWhereTheEncoderReadsTheTarget) {
   }
   const double joint_at = plant.state().theta[elbow] - start.theta[elbow];
   EXPECT_NEAR(plant.step(start.theta, {}, kHold).motor[elbow] - start.theta[elbow], 0.02, 1e-3);
-  EXPECT_NEAR(joint_at, 0.02, 0.005 + 1e-3);  // anywhere in the play
+  EXPECT_NEAR(joint_at, 0.02, 0.005 + 1e-3);  // the joint may be anywhere in the play
 }
 
-// A push of the servo's own stop loads its gear: the end stop is part of what acts from outside.
+// Pushing into the servo's own stop loads its gear: the end stop is part of the external load.
 TEST(ServoFriction, CountsTheEndStopAsLoad) {
   ServoDescription servo{.kp = 20, .kd = 2, .rotor_inertia = 0.01, .coulomb = 0.1};
   servo.load.external = 0.2;
@@ -449,9 +460,10 @@ TEST(ServoFriction, CountsTheEndStopAsLoad) {
       torque = plant.step(VectorXd::Constant(1, target), {}, kHold).torque[0];
     return torque;
   };
-  const double torque = rest(0.6);  // pushes into the stop, which gives way by 1/20 of its error
+  const double torque = rest(0.6);  // it pushes into the stop, which gives way by 1/20 of its error
   const double press = 20 * 20 * (plant.state().theta[0] - 0.1);
-  // At rest the friction holds anything up to its bound, and it came to rest while it slid in.
+  // At rest, the friction holds any torque up to its bound, and the joint came to rest while it
+  // slid in.
   const double friction = std::abs(torque - press);
   EXPECT_LE(friction, 0.1 + 0.2 * press + 1e-9);
   EXPECT_GT(friction, 3 * 0.1);

@@ -1,4 +1,5 @@
-// A copy of a Simulator is a branch: same state, same future, its own scenario.
+// A copy of a Simulator is a branch: it has the same state and the same future, with a scenario of
+// its own.
 #include "ayumi/sim/simulator.hpp"
 
 #include <gtest/gtest.h>
@@ -58,7 +59,7 @@ TEST(Simulator, SamplesThatAreSentAreThoseOfTheLog) {
 TEST(Simulator, BranchGoesOnToTheSameBits) {
   const Stand stand;
   const std::string expected = log_hash(simulate(stand.model, stand.series, stand.options));
-  // The trunk of the branches neither knows the push nor outlives them.
+  // The original run of the branches neither notices the push nor lives longer than they do.
   SimulateOptions unpushed = stand.options;
   unpushed.scenario.clear();
   auto trunk = std::make_unique<Simulator>(stand.model, stand.series, unpushed);
@@ -88,7 +89,7 @@ TEST(Simulator, WithoutSamplesTheVerdictIsTheSame) {
   EXPECT_EQ(kept.take_log().samples.size(), 801u);
 }
 
-// Every tenth tick is looked at, and the robot that is pushed hard falls.
+// Every tenth tick is examined, and a robot that is pushed hard falls.
 TEST(Simulator, GatheringTheVerdictAloneIsTheSameRun) {
   Stand stand;
   for (const ControllerKind controller : {ControllerKind::dtad, ControllerKind::none})
@@ -145,7 +146,7 @@ TEST(Simulator, RefusesAnUnknownLinkWhenTheScenarioIsReplaced) {
   }
 }
 
-// Second route: the COG of the logged posture, in the noise of sensors and under a push.
+// Second route: the COG of the logged posture, with the noise of sensors and under a push.
 TEST(Simulator, ALogRowHasPostureAndBaseOfOneTick) {
   Stand stand;
   stand.options.scenario = {Stand::push(0.8)};
@@ -163,7 +164,7 @@ TEST(Simulator, ALogRowHasPostureAndBaseOfOneTick) {
   for (size_t k = 1; k < log.samples.size(); ++k)
     fastest = std::max(
         fastest, (log.samples[k].reference_cog - log.samples[k - 1].reference_cog).norm() / log.dt);
-  EXPECT_GT(fastest, 0.01);  // it moves, so a row that mixed two ticks would be seen
+  EXPECT_GT(fastest, 0.01);  // the robot moves, so that a row that mixed two ticks would be noticed
 }
 
 TEST(Simulator, ServosReceiveWholeCountsWhereSensorsAreSimulated) {
@@ -185,7 +186,7 @@ TEST(Simulator, ServosReceiveWholeCountsWhereSensorsAreSimulated) {
   EXPECT_GT(off(exact), 0.1);
 }
 
-// Dry and viscous friction that the sidecar states costs the unpushed walk next to nothing.
+// Dry and viscous friction that the sidecar states has almost no effect on the unpushed walk.
 TEST(Friction, OfTheSidecarIsFedForward) {
   const RobotModel smooth = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
   const auto rms = [](const RobotModel& model, ControllerKind kind, const char* pattern) {
@@ -214,7 +215,8 @@ TEST(Friction, OfTheSidecarIsFedForward) {
   }
 }
 
-// Ankles whose encoders are off by about a degree, of one foot, of both, and about both axes.
+// The encoders of the ankles are wrong by about a degree: those of one foot, of both feet, and
+// about both axes.
 TEST(StandingCalibration, FindsTheOffsetsOfTheAnkles) {
   const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
   const CommandSeries series = sample(model, stand_pattern(model, 0.6));
@@ -252,7 +254,7 @@ TEST(StandingCalibration, FindsTheOffsetsOfTheAnkles) {
   }
 }
 
-// The bias of the IMU, 5 mrad about x and y, is all that the noise of the sensors leaves.
+// The only error that the noise of the sensors leaves is the bias of the IMU, 5 mrad about x and y.
 TEST(StandingCalibration, FindsAnOffsetInTheNoiseOfTheSensors) {
   Stand stand;
   stand.options.scenario = {
@@ -267,7 +269,7 @@ TEST(StandingCalibration, FindsAnOffsetInTheNoiseOfTheSensors) {
   EXPECT_NEAR(found, 0.03 * 180 / M_PI, 0.45);
 }
 
-// Nothing but the word of the event changes where a slope of the ground explains as much.
+// If a slope of the ground explains the readings as well, only the text of the event changes.
 TEST(StandingCalibration, BothAnklesAlikeMayBeASlope) {
   Stand stand;
   stand.options.sensor_noise = false;

@@ -1,5 +1,5 @@
-// HOAP-1 in the closed loop: stillness at rest for every servo gain, what half the integrator's
-// step changes, and a world that is elsewhere.
+// HOAP-1 in the closed loop: stillness at rest for every servo gain, the effect of half the
+// integrator's step, and a world at another place.
 
 #include <gtest/gtest.h>
 
@@ -34,7 +34,7 @@ const CommandSeries& walk() {
   return series;
 }
 
-/// Turning left, stepping aside to the right: like nothing its own mirror image has.
+/// The walk turns left and steps aside to the right, so that it is not like its own mirror image.
 const CommandSeries& curve() {
   static const CommandSeries series = [] {
     WalkParameters parameters = walk_defaults(hoap1());
@@ -99,7 +99,7 @@ TEST_P(Walking, HardlyChangesWithHalfTheStep) {
   }
 }
 
-/// The plan as seen by someone who stands elsewhere: turned by `yaw`, then moved.
+/// The plan as seen from another place: turned by `yaw`, then moved.
 CommandSeries moved(CommandSeries series, double yaw, const Vector3d& offset) {
   const Eigen::Quaterniond R = exp_rotation({0, 0, yaw});
   const auto place = [&](Vector3d& p) { p = (R * p + offset).eval(); };
@@ -133,8 +133,9 @@ TEST_P(Walking, IsTheSameElsewhere) {
   }
 }
 
-// Robot, plan and world as a mirror shows them walk as the mirror shows the walk, pushed or not:
-// nothing in dynamics, contact or control knows left from right, nor the order of the contacts.
+// The mirror images of robot, plan and world give the mirror image of the walk, with and without a
+// push: nothing in dynamics, contact or control depends on left and right, or on the order of the
+// contacts.
 TEST_P(Walking, IsTheSameInAMirror) {
   const RobotModel image(test::mirrored(hoap1().description()));
   const std::pair<const CommandSeries*, double> cases[] = {

@@ -1,5 +1,5 @@
-// Every number a plant is given may be none, infinite or absurd; each is refused by name, with the
-// time, and the plant is as it was.
+// Every number that a plant is given may be not a number, infinite or absurd. Each such number is
+// refused by name, with the time, and the plant stays as it was.
 
 #include "ayumi/sim/step_check.hpp"
 

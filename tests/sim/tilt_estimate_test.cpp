@@ -1,5 +1,5 @@
-// The inertial unit's own estimate of its tilt, by closed forms of its two-pole filter and on a
-// walking robot.
+// The inertial unit's own estimate of its tilt, compared with closed forms of its two-pole filter,
+// and on a walking robot.
 
 #include "ayumi/sim/tilt_estimate.hpp"
 
@@ -20,12 +20,12 @@ using Eigen::Vector3d;
 constexpr double kTick = 1e-3;
 const Vector3d kUp(0, 0, kGravity);
 
-/// Rotation of an estimate against the unit's true attitude, world axes [rad].
+/// The rotation of an estimate against the unit's true attitude, in world axes [rad].
 Vector3d error(const TiltEstimate& tilt, const Quaterniond& truth) {
   return log_rotation(tilt.attitude() * truth.conjugate());
 }
 
-// Both poles at -1/(2T): an error e0 without bias falls as e0 (1 - t/2T) exp(-t/2T).
+// Both poles are at -1/(2T): an error e0 without bias falls as e0 (1 - t/2T) exp(-t/2T).
 TEST(TiltEstimate, ForgetsAWrongStartAsItsPolesSay) {
   TiltEstimate tilt;
   tilt.start(exp_rotation({0.02, -0.01, 0}), Vector3d::Zero());
@@ -37,8 +37,8 @@ TEST(TiltEstimate, ForgetsAWrongStartAsItsPolesSay) {
   }
 }
 
-// a sin(wt) tilts the apparent vertical by a/g; gravity corrects by 1/T of that, so a/(g w T) gets
-// through.
+// An acceleration a sin(wt) tilts the apparent vertical by a/g; gravity corrects by 1/T of that, so
+// that a/(g w T) remains.
 TEST(TiltEstimate, SwayTiltsItByLittle) {
   const double a = 1.3, w = 2 * M_PI * 0.7;
   TiltEstimate tilt;
@@ -65,10 +65,11 @@ TEST(TiltEstimate, FollowsTurnsByTheGyro) {
     tilt.update(rate(i * kTick), truth.conjugate() * kUp, kTick);
     largest = std::max(largest, error(tilt, truth).norm());
   }
-  EXPECT_LT(largest, 1.5e-3);  // the first step knows one end of its rate only
+  EXPECT_LT(largest, 1.5e-3);  // the first step knows only one end of its rate
 }
 
-// A bias of the gyro that comes later tilts by at most b 2T/e and is found out.
+// A bias of the gyro that comes later tilts the estimate by at most b 2T/e, and is then
+// compensated.
 TEST(TiltEstimate, FindsABiasOfTheGyro) {
   const Vector3d bias(0.004, 0, 0);
   TiltEstimate tilt;
@@ -91,7 +92,8 @@ TEST(TiltEstimate, FlightCorrectsNothing) {
   EXPECT_LT(error(tilt, start).norm(), 1e-15);
 }
 
-// The unit is not where its link turns: what it feels there is part of its reading.
+// The unit is away from the axis about which its link turns: the acceleration there is part of its
+// reading.
 TEST(TiltEstimate, SensorsGiveItTheForceWhereTheUnitIs) {
   RobotDescription description = test::biped_description();
   SensorDescription& s = description.sensors;
@@ -104,7 +106,7 @@ TEST(TiltEstimate, SensorsGiveItTheForceWhereTheUnitIs) {
   StepReport report;
   for (int side = 0; side < 2; ++side)
     report.soles[side].resize(model.sole(static_cast<Side>(side)).polygon.size());
-  // The base sways about a line 0.3 m below it, once in 0.8 s.
+  // The base sways about a line 0.3 m below it, once every 0.8 s.
   const double w = 2 * M_PI / 0.8, lean = 0.05;
   double largest = 0;
   for (int i = 0; i < 4000; ++i) {
@@ -117,7 +119,7 @@ TEST(TiltEstimate, SensorsGiveItTheForceWhereTheUnitIs) {
     const Measurement& m = sensors.read(state, data, report);
     largest = std::max(largest, log_rotation(m.attitude * state.base.attitude.conjugate()).norm());
   }
-  // Apparent gravity turns by up to lean w^2 0.4 m / g = 0.126 rad, besides.
+  // In addition, apparent gravity turns by up to lean w^2 0.4 m / g = 0.126 rad.
   EXPECT_LT(largest, 1.3 * 0.126 / (w * kTiltTime) + 1e-3);
   EXPECT_GT(largest, 1e-4);
 }

@@ -134,7 +134,7 @@ TEST(UncertainTask, ValuesBelongToNamesAndNotToTheirOrder) {
   EXPECT_NE(values_of(one.task, 3)[0], values_of(one.task, 4)[0]);
 }
 
-// Shares of draws against the distribution, and a correlation by a factor.
+// Shares of draws agree with the distribution, and a factor gives the correlation.
 TEST(UncertainTask, DrawsFollowTheirDistributions) {
   const StandingTask t(R"("factors": [{"name": "battery", "source": "test"}], "quantities": [
     {"what": "friction", "uniform": [0.4, 1], "source": "test"},
@@ -158,7 +158,7 @@ TEST(UncertainTask, DrawsFollowTheirDistributions) {
     product += normal_quantile(shares[1]) * normal_quantile(shares[2]) / kDraws;
     twos += v[3] == 2;
   }
-  // Four standard deviations of a mean of 4000 draws, which is sd / 63.
+  // The tolerance is four standard deviations of a mean of 4000 draws, which is sd / 63.
   EXPECT_NEAR(mean[0], 0.7, 4 * 0.1733 / 63);
   EXPECT_NEAR(mean[1], 1, 4 * 0.1 / 63);
   EXPECT_NEAR(std::sqrt(square[1] - mean[1] * mean[1]), 0.1, 0.005);
@@ -243,7 +243,7 @@ struct PushedStudy {
     options.most = 60;
     options.all = true;
   }
-  /// All its cases, which depend on nothing else: they are run once.
+  /// The results of all its cases, which depend on nothing else: they are run once.
   static const KnownResults& results() {
     static const KnownResults all = [] {
       const PushedStudy study;
@@ -313,7 +313,7 @@ TEST(Certify, LawsAreComparedInTheSameCases) {
   EXPECT_LT(c.difference.low, 0);
 }
 
-// Rare failures of the simulated robot: the same probability as by brute force.
+// For rare failures of the simulated robot, the probability is the same as by brute force.
 TEST(Certify, SubsetSimulationAgreesWithBruteForce) {
   const StandingTask stand(R"("pushes": [{"unit": "B", "size": {"uniform": [0.2, 1.1],
     "source": "assumed: test"}, "direction": {"uniform": [0, 360], "source": "assumed: test"},

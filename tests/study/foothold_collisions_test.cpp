@@ -1,4 +1,4 @@
-// A collision of the two feet is said of the step that brings them together.
+// A collision of the two feet is reported for the step that brings them together.
 #include "ayumi/task/foothold_collisions.hpp"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,8 @@
 namespace ayumi {
 namespace {
 
-// Two steps to the left of `turn` deg each; the second one lands beside the right foot.
+// The text of two steps to the left, of `turn` deg each; the second foot lands beside the right
+// foot.
 std::string turning_text(const std::string& unit, const std::string& turn) {
   return R"({"format": "ayumi.pattern/1", "robot": "hoap1", "units": {"angle": ")" + unit + R"("},
   "defaults": {"cog_height": 0.235},
@@ -52,7 +53,7 @@ TEST(FootholdCollisions, NameTheStepAndValuesThatAreConsistent) {
   EXPECT_NE(found[0].words.find(" deg, no error remains"), std::string::npos) << found[0].words;
 }
 
-// Feet that are exchanged overlap by much more, which is another mistake.
+// Feet that are exchanged overlap by much more, and this is reported as another mistake.
 TEST(FootholdCollisions, LeaveExchangedSidesToTheSearch) {
   Pattern pattern = task_of(turning_text("deg", "5")).pattern;
   pattern.phases[5].swing->step->side = -0.07;
@@ -60,7 +61,7 @@ TEST(FootholdCollisions, LeaveExchangedSidesToTheSearch) {
   EXPECT_TRUE(found_in(task).empty());
 }
 
-// The same angle in another unit: the same words, but for the unit of the turn.
+// The same angle in another unit gives the same words, except for the unit of the turn.
 TEST(FootholdCollisions, AreInTheUnitOfThePattern) {
   const std::vector<Mistake> found = found_in(task_of(turning_text("rad", "0.523599")));
   ASSERT_EQ(found.size(), 1u);
@@ -68,7 +69,7 @@ TEST(FootholdCollisions, AreInTheUnitOfThePattern) {
   EXPECT_EQ(found[0].words.find("deg"), std::string::npos) << found[0].words;
 }
 
-// The values that are named are the least ones: with the next smaller step the feet are too near.
+// The named values are the smallest ones: with the next smaller change, the feet are too near.
 TEST(FootholdCollisions, NameTheLeastChange) {
   const Task task = task_of(turning_text("deg", "30"));
   const std::string words = found_in(task).at(0).words;

@@ -1,5 +1,5 @@
-// The quickest timing along a motion: its rows against the check's inverse dynamics, one
-// joint against its bang-bang motion, walks against their fastest uniform pace.
+// The quickest timing along a motion: its rows agree with the check's inverse dynamics, one joint
+// agrees with its bang-bang motion, and walks are compared with their fastest uniform pace.
 
 #include "ayumi/study/local_retime.hpp"
 
@@ -33,7 +33,7 @@ Outcome open_loop(const RobotModel& model, const CommandSeries& series) {
   return simulate(model, series, options).result.outcome;
 }
 
-// Both arms are raised to the side from one posture to the other; nothing else moves.
+// Both arms are raised to the side from one posture to another; nothing else moves.
 Pattern raised_arms(double angle, double duration) {
   Pattern pattern = stand_pattern(hoap1(), duration);
   pattern.robot = "hoap1";
@@ -53,8 +53,8 @@ Pattern raised_arms(double angle, double duration) {
 
 }  // namespace
 
-// At a random timing (u, x), the rows of torques, friction and the ZMP say what the check computes
-// for the motion with these rates: the room of a row is that of the limit.
+// At a random timing (u, x), the rows of torques, friction and the ZMP agree with the check of the
+// motion with these rates: the room of a row is that of the limit.
 TEST(LocalRetime, RowsAreThoseOfInverseDynamics) {
   Pattern walk = walk_pattern(hoap1(), {.steps = 2, .stride = 0.03});
   const CommandSeries path = sample(hoap1(), walk);
@@ -113,8 +113,8 @@ TEST(LocalRetime, RowsAreThoseOfInverseDynamics) {
   EXPECT_GT(compared["table_step"], 1000);
 }
 
-// One joint from rest to rest by an angle L with a largest acceleration a: 2 sqrt(L / a), whatever
-// the course of the given motion; the smoothing adds 36 ms.
+// One joint turns from rest to rest by an angle L with a largest acceleration a: it takes 2 sqrt(L
+// / a), whatever the course of the given motion is; the smoothing adds 36 ms.
 TEST(LocalRetime, OneJointTakesItsBangBangTime) {
   const double angle = 1, most = 8;
   LocalRetimeOptions options;
@@ -133,7 +133,7 @@ TEST(LocalRetime, OneJointTakesItsBangBangTime) {
   }
 }
 
-// The same with a largest speed v that binds: L / v + v / a.
+// The same with a largest speed v that limits the motion takes L / v + v / a.
 TEST(LocalRetime, OneJointTakesItsTimeAtALargestSpeed) {
   const double angle = 1.4, most = 40, speed = hoap1().limits().speed[0];
   LocalRetimeOptions options;
@@ -145,8 +145,8 @@ TEST(LocalRetime, OneJointTakesItsTimeAtALargestSpeed) {
   EXPECT_NEAR(pace.series.duration(), angle / v + v / a + 0.036, 0.03);
 }
 
-// Quicker than the fastest uniform pace by a tenth and more, consistent, and standing in open loop
-// where that does.
+// The walks are at least a tenth quicker than at the fastest uniform pace, consistent, and the
+// robot stands in open loop if it does so at that pace.
 TEST(LocalRetime, WalksAreQuickerThanAtTheirFastestUniformPace) {
   const RobotModel humanoid = load_robot(AYUMI_SOURCE_DIR "/robots/humanoid30");
   struct Case {
@@ -166,7 +166,7 @@ TEST(LocalRetime, WalksAreQuickerThanAtTheirFastestUniformPace) {
     const LocalPace pace = local_pace(c.model, walk);
     ASSERT_TRUE(pace.found) << pace.limited_by;
     EXPECT_LE(pace.series.duration(), 0.9 * at_once.duration());
-    // What is written is what was checked.
+    // The written motion is the one that was checked.
     const CommandSeries again = sample(c.model, pace.pattern);
     EXPECT_TRUE(check_consistency(c.model, again).consistent);
     EXPECT_EQ(again.samples.size(), pace.series.samples.size());
@@ -195,7 +195,7 @@ TEST(LocalRetime, ThePathStaysAndThePlanMovesAlong) {
     EXPECT_LT((after - before).cwiseAbs().maxCoeff(), 0.01) << i;
     EXPECT_EQ(pace.pattern.phases[i].support, walk.phases[i].support);
   }
-  // Between the same two phases as before.
+  // They are between the same two phases as before.
   const auto phase_of = [](const Pattern& pattern, double t) {
     size_t i = 0;
     while (pattern.phases[i].until < t) ++i;
@@ -208,12 +208,12 @@ TEST(LocalRetime, ThePathStaysAndThePlanMovesAlong) {
             1e-8);
 }
 
-// A pause between two motions and those at both ends last as long as the author wrote, also with
-// the COG solved from the ZMP, and also in a table; otherwise they become shorter.
+// A pause between two motions, and the pauses at both ends, last as long as the author wrote. This
+// also holds if the COG is solved from the ZMP, and in a table; otherwise they become shorter.
 TEST(LocalRetime, PausesKeepTheirLength) {
   Pattern walk = walk_pattern(hoap1(), {.steps = 2, .stride = 0.03});
   const double end = walk.phases.back().until;
-  // Three seconds of standing at the end, an arm that moves, and half a second more.
+  // Three seconds of standing at the end, then an arm that moves, and half a second more.
   walk.phases.push_back({end + 4, Support::both, {}, {}, {}});
   Keyframe before, after;
   before.t = end + 3;
@@ -237,7 +237,7 @@ TEST(LocalRetime, PausesKeepTheirLength) {
     const std::vector<TimeSpan> kept = pauses_of(pace.series);
     ASSERT_EQ(kept.size(), pauses.size());
     for (size_t i = 0; i < kept.size(); ++i)
-      // The COG of a quicker walk has more to come to rest from: ln(scale^-2) / omega later.
+      // The COG of a quicker walk takes longer to come to rest: ln(scale^-2) / omega.
       EXPECT_NEAR(length(kept[i]), length(pauses[i]), 0.2) << i;
     double paused = 0;
     for (const BindingLimit& limit : pace.binding)
@@ -250,7 +250,7 @@ TEST(LocalRetime, PausesKeepTheirLength) {
   }
 }
 
-// Gravity makes the time of a flight.
+// Gravity determines the time of a flight.
 TEST(LocalRetime, AFlightKeepsItsTime) {
   const Pattern jump = jump_pattern(hoap1(), jump_defaults(hoap1()));
   LocalRetimeOptions options;
@@ -267,7 +267,7 @@ TEST(LocalRetime, AFlightKeepsItsTime) {
   EXPECT_NEAR(flight(pace.pattern), flight(jump), 1e-6);
 }
 
-// A posture beyond a joint's limit stays there with any timing.
+// A posture beyond a joint's limit stays beyond it with any timing.
 TEST(LocalRetime, APostureThatIsWrongIsTold) {
   const LocalPace pace = local_pace(hoap1(), raised_arms(3, 3));
   EXPECT_FALSE(pace.found);

@@ -46,7 +46,7 @@ TEST(Push, LimitsAreLevelsAroundTheBoundAndDoNotDependOnThreads) {
     EXPECT_NEAR(c.bound, c.edge_bound, 1e-6 * c.bound);
     const double steps = c.limits[0].impulse / level;
     EXPECT_NEAR(steps, std::round(steps), 1e-9);
-    // A pendulum's bound is met within a step by a robot that stands on stiff legs.
+    // A robot that stands on stiff legs reaches the bound of a pendulum to within a step.
     EXPECT_GE(c.limits[0].impulse, 0.79 * c.bound);
     EXPECT_LE(c.limits[0].impulse, 1.21 * c.bound);
     EXPECT_TRUE(c.limits[0].moderate.survives);

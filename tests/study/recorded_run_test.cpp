@@ -1,4 +1,4 @@
-// The set around the run without a push: what is in it stands at the end.
+// The set around the run without a push: a robot whose state is in the set stands at the end.
 #include "ayumi/study/recorded_run.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 namespace ayumi {
 namespace {
 
-constexpr double kPushTime = 1.6;  // [s]
+constexpr double kPushTime = 1.6;  // time of the push [s]
 
 /// A short walk under a law, recorded at every tick, and a copy just before the push.
 struct RecordedWalk {
@@ -35,7 +35,7 @@ struct RecordedWalk {
     EXPECT_EQ(run.result().outcome, Outcome::stands);
   }
 
-  /// Along +y, in capture bounds.
+  /// A copy of the run with a push along +y, whose level is in capture bounds.
   Simulator pushed(double level) const {
     const long k = std::lround(kPushTime / series.dt);
     const double bound = capture_bound(capture_region(model, series, k), {0, 1});
@@ -46,7 +46,7 @@ struct RecordedWalk {
     return run;
   }
 
-  /// When the run is in the set for the first time after the push; none: never.
+  /// The first time after the push at which the run is in the set; nothing if that never happens.
   std::optional<double> returns(Simulator& run) const {
     while (run.advance(1) && !run.fell())
       if (run.time() > kPushTime + 0.02 && unpushed->contains(run)) return run.time();
@@ -94,7 +94,8 @@ TEST(RecordedRun, DecidesNothingAtTheEnd) {
 }
 
 TEST(RecordedRun, OnUnevenGroundContainsOnlyWhatIsInTheSamePlace) {
-  // The block is far from the walk. The runs are the same, but their places count where it is.
+  // The block is far from the walk. The runs are the same, but with such a block their places
+  // count.
   World world;
   world.blocks = {{.low = {5, 5}, .high = {6, 6}, .height = 0.1}};
   const RecordedWalk level(ControllerKind::dtad), uneven(ControllerKind::dtad, world);

@@ -1,4 +1,5 @@
-// The fastest uniform scaling that passes, on patterns too quick, warm or wrong in their posture.
+// The fastest uniform scaling that passes, for patterns that are too quick, too warm or wrong in
+// their posture.
 
 #include "ayumi/study/retime.hpp"
 
@@ -15,7 +16,7 @@ namespace {
 
 constexpr double kTick = 0.01;
 
-// Motors of a fifth less lasting torque.
+// Options with motors whose lasting torque is a fifth smaller.
 CheckOptions warm() {
   CheckOptions options;
   options.tolerances = {{"continuous_torque", 0.83}};
@@ -47,8 +48,8 @@ bool passes(const Pattern& pattern, double scale) {
 
 }  // namespace
 
-// At 2.6 of its time the arm is slow enough; at 3.1 a leg stands alone for so long that its motors
-// grow too warm. What passes is a window between the two.
+// At 2.6 times its duration, the arm is slow enough; at 3.1 times, a leg stands alone for so long
+// that its motors grow too warm. The scales that pass are a window between the two.
 TEST(Retime, FindsAPaceBetweenTooQuickAndTooWarm) {
   const Pattern walk = walk_with_a_quick_arm();
   const FastestPace pace = fastest_pace(hoap1(), walk, {.check = warm(), .dt = kTick});
@@ -62,7 +63,7 @@ TEST(Retime, FindsAPaceBetweenTooQuickAndTooWarm) {
   EXPECT_LT(pace.evaluations, 90);
 }
 
-// No pace mends a posture that is wrong; that is told at once, of a table.
+// No pace mends a wrong posture; for a table, this is reported at once.
 TEST(Retime, APostureThatIsWrongIsToldAtOnce) {
   Pattern walk = walk_with_a_quick_arm();
   walk.keyframes.erase(std::remove_if(walk.keyframes.begin(), walk.keyframes.end(),

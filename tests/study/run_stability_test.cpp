@@ -1,4 +1,4 @@
-// The strip of a run against what can be said of it in another way.
+// The strip of a run agrees with results that follow in another way.
 #include "ayumi/task/run_stability.hpp"
 
 #include <gtest/gtest.h>
@@ -57,7 +57,7 @@ TEST(RunStability, SharesAreThoseOfTheResult) {
               log.dt * static_cast<double>(log.samples.size()), strip.dt);
 }
 
-// The plan of a robot that stands and its run are nearly the same motion, so their strips are.
+// The plan and the run of a robot that stands are nearly the same motion, and so are their strips.
 TEST(RunStability, OfARobotThatStandsItIsThatOfThePlan) {
   Pattern pattern;
   pattern.phases = {{.until = 2, .support = Support::both, .swing = {}}};
@@ -72,7 +72,7 @@ TEST(RunStability, OfARobotThatStandsItIsThatOfThePlan) {
   }
 }
 
-// A push drives the ZMP to the edge of the soles, which the plan knows nothing of.
+// A push drives the ZMP to the edge of the soles, which the plan does not contain.
 TEST(RunStability, APushLeavesItsTrace) {
   Pattern pattern;
   pattern.phases = {{.until = 2, .support = Support::both, .swing = {}}};

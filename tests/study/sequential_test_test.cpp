@@ -46,7 +46,7 @@ TEST(SequentialTest, GivesUpWhenItIsHopeless) {
   EXPECT_EQ(bad.runs, static_cast<long>(test.plan().size()));
   EXPECT_EQ(test.upper_bound(bad), 1);
   EXPECT_GT(test.lower_bound(bad), 0.7);
-  // With as many runs as a certificate needs, the first failure ends the study.
+  // With only as many runs as a certificate needs, the first failure ends the study.
   const SequentialTest short_test(0.01, 0.95, 299);
   std::vector<bool> one(299, false);
   one[41] = true;
@@ -55,7 +55,7 @@ TEST(SequentialTest, GivesUpWhenItIsHopeless) {
             std::string::npos);
 }
 
-// The error is bounded for the whole sequence of looks, and certificate and bound say the same.
+// The error is bounded for the whole sequence of looks, and certificate and bound agree.
 TEST(SequentialTest, ErrorIsBoundedOverAllLooks) {
   for (const double p0 : {0.001, 0.01, 0.05, 0.2})
     for (const double confidence : {0.8, 0.95, 0.99}) {
@@ -68,7 +68,8 @@ TEST(SequentialTest, ErrorIsBoundedOverAllLooks) {
         const long runs = test.plan()[k], failures = static_cast<long>(k);
         const SequentialOutcome outcome{true, true, runs, failures};
         EXPECT_LE(test.upper_bound(outcome), p0 * (1 + 1e-12));
-        // The looks cost something: the bound is never better than that of a fixed number of runs.
+        // Looking several times has a cost: the bound is never better than that of a fixed number
+        // of runs.
         EXPECT_GE(test.upper_bound(outcome), upper_bound(failures, runs, confidence) * (1 - 1e-12));
       }
       const SequentialOutcome hopeless{true, false, test.plan().back(),
@@ -77,7 +78,7 @@ TEST(SequentialTest, ErrorIsBoundedOverAllLooks) {
     }
 }
 
-// Probability of a certificate by counting made-up studies, as a second route.
+// The probability of a certificate follows from counting made-up studies, as a second route.
 TEST(SequentialTest, PowerAgreesWithMadeUpStudies) {
   const SequentialTest test(0.05, 0.95, 590);
   ayumi::Random random(3);
@@ -86,12 +87,12 @@ TEST(SequentialTest, PowerAgreesWithMadeUpStudies) {
     int certified = 0;
     for (int i = 0; i < kStudies; ++i) certified += made_up(test, p, random).certified;
     const double share = test.power(p);
-    // Four standard deviations of the counted share [1].
+    // The tolerance is four standard deviations of the counted share [1].
     EXPECT_NEAR(certified, kStudies * share, 4 * std::sqrt(kStudies * share * (1 - share)));
   }
 }
 
-// 10,000 made-up studies for each failure probability: both bounds hold in 95 % or more.
+// In 10,000 made-up studies for each failure probability, both bounds hold in 95 % or more.
 TEST(SequentialTest, BoundsCoverInTenThousandMadeUpStudies) {
   const SequentialTest test(0.05, 0.95, 590);
   std::map<std::pair<long, long>, RateInterval> bounds;
@@ -107,7 +108,7 @@ TEST(SequentialTest, BoundsCoverInTenThousandMadeUpStudies) {
       below += p >= place->second.low;
       wrong += outcome.certified && p > test.failure();
     }
-    // Three standard deviations of a counted share of 95 % [1].
+    // The tolerance is three standard deviations of a counted share of 95 % [1].
     const double least = kStudies * 0.95 - 3 * std::sqrt(kStudies * 0.95 * 0.05);
     EXPECT_GE(above, least) << p;
     EXPECT_GE(below, least) << p;

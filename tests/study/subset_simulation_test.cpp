@@ -32,14 +32,14 @@ TEST(SubsetSimulation, FindsRareEventsOfAClosedForm) {
       covered += r.interval.low <= exact && exact <= r.interval.high;
       EXPECT_LE(r.runs, 6000);
     }
-    // Twelve studies of 1000 runs a level, whose variation is 0.2 to 0.4 at 1e-5.
+    // There are twelve studies of 1000 runs per level, whose variation is 0.2 to 0.4 at 1e-5.
     EXPECT_NEAR(mean / exact, 1, 0.3) << exact;
     // The interval is approximate: over 200 studies it covers in 90 % at 1e-5, in 95 % at 1e-3.
     EXPECT_GE(covered, 8) << exact;
   }
 }
 
-// The noise of the sensors is a part of what is drawn: here half of the variance.
+// The noise of the sensors is part of what is drawn: here it has half of the variance.
 TEST(SubsetSimulation, DrawsNewNoiseToo) {
   const auto severity = [](const CaseNumbers& numbers) {
     const double u = (static_cast<double>(numbers.noise >> 11) + 0.5) * 0x1.0p-53;

@@ -1,6 +1,6 @@
 #pragma once
-// A small two-legged robot with six-joint legs, one waist and one shoulder joint per side, in code:
-// for tests that must not depend on robot files.
+// A small two-legged robot with six-joint legs, one waist and one shoulder joint per side, written
+// in code, for tests that must not depend on robot files.
 
 #include <string>
 
@@ -10,7 +10,7 @@ namespace ayumi::test {
 
 struct BipedOptions {
   bool waist = false;   ///< a yaw joint between root (pelvis) and trunk
-  double arm_skew = 0;  ///< added to the mass of the left arm [kg]
+  double arm_skew = 0;  ///< mass that is added to the left arm [kg]
 };
 
 inline LinkDescription box_link(const std::string& name, double mass, const Eigen::Vector3d& com,
@@ -42,7 +42,8 @@ inline JointDescription hinge(const std::string& name, const std::string& parent
   return joint;
 }
 
-/// Hips 0.10 m apart, legs 0.12 + 0.12 + 0.04 m, home with bent knees, 8.1 kg.
+/// The hips are 0.10 m apart, the legs have 0.12 + 0.12 + 0.04 m, the knees are bent at home, and
+/// the mass is 8.1 kg.
 inline RobotDescription biped_description(const BipedOptions& options = {}) {
   const Eigen::Vector3d X(1, 0, 0), Y(0, 1, 0), Z(0, 0, 1), O(0, 0, 0);
   RobotDescription d;

@@ -5,9 +5,9 @@
 
 namespace ayumi::test {
 
-inline constexpr double kStep = 1e-3;  ///< of the integrator [s]
+inline constexpr double kStep = 1e-3;  ///< step of the integrator [s]
 
-/// A homogeneous box of edges `size` [m] and `mass` [kg], its collision shape itself.
+/// A homogeneous box with edges `size` [m] and `mass` [kg], which is its own collision shape.
 inline RobotDescription block_description(const Eigen::Vector3d& size, double mass) {
   RobotDescription d;
   d.name = "block";

@@ -1,5 +1,6 @@
 #pragma once
-// Three joints on a bus, in another order than the model's: for tables, counts and sequences.
+// A robot of three joints on a bus, in another order than the model's, for tests of tables, counts
+// and sequences.
 
 #include "ayumi/model/robot_model.hpp"
 

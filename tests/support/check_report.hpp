@@ -1,5 +1,5 @@
 #pragma once
-// What the check says of a pattern, as `ayumi check` asks it.
+// The report of the check for a pattern, with the options of `ayumi check`.
 
 #include <set>
 #include <sstream>
@@ -18,7 +18,7 @@ inline ConsistencyReport report_of(const RobotModel& model, const Pattern& patte
   return check_consistency(model, sample(model, pattern), options);
 }
 
-/// For HOAP-1.
+/// The report for HOAP-1.
 inline ConsistencyReport report_of(const Pattern& pattern) { return report_of(hoap1(), pattern); }
 
 /// The kinds of the errors.

@@ -12,7 +12,7 @@ namespace ayumi::test {
 class Dice {
  public:
   explicit Dice(std::uint64_t seed) : random_(seed) {
-    for (int i = 0; i < 4; ++i) random_.bits();  // neighbouring seeds begin alike
+    for (int i = 0; i < 4; ++i) random_.bits();  // neighbouring seeds begin with similar numbers
   }
   double between(double low, double high) { return low + (high - low) * random_.uniform(); }
   size_t below(size_t count) { return static_cast<size_t>(random_.bits() % count); }

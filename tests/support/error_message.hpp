@@ -1,5 +1,5 @@
 #pragma once
-// What a call that must fail says.
+// The message of a call that must fail.
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,8 @@
 
 namespace ayumi::test {
 
-/// The message of the Error that `call` throws, which must have this code; "no error" without one.
+/// The message of the Error that `call` throws, which must have this code; "no error" if it throws
+/// none.
 template <typename Call>
 std::string error_message(const Call& call, std::optional<ErrorCode> code = {}) {
   try {

@@ -6,8 +6,8 @@
 
 namespace ayumi::test {
 
-/// The run stands at the end, at most this far from its command [m], and no motor was asked for
-/// more than its torque.
+/// Expects that the robot stands at the end, at most this far from its command [m], and that no
+/// motor was asked for more than its torque.
 inline void expect_stands(const SimulationResult& result, double final_error) {
   EXPECT_EQ(result.outcome, Outcome::stands) << "fell at " << result.fell_at;
   EXPECT_LE(result.final_cog_error, final_error);

@@ -14,13 +14,13 @@
 
 namespace ayumi::test {
 
-/// 1 at `center`, 0 from `width` / 2 away, smooth.
+/// A smooth bump that is 1 at `center`, and 0 from `width` / 2 away on.
 inline double bump(double t, double center, double width) {
   const double s = (t - center) / width;
   return std::abs(s) < 0.5 ? std::pow(std::cos(M_PI * s), 4) : 0;
 }
 
-/// The pattern with every quantity as a column of a table; keyframes give way to it.
+/// The pattern with every quantity as a column of a table, which replaces the keyframes.
 inline Pattern baked(const RobotModel& model, const Pattern& pattern) {
   const CommandSeries series = sample(model, pattern);
   Pattern result = pattern;
@@ -43,7 +43,7 @@ inline Pattern baked(const RobotModel& model, const Pattern& pattern) {
   return result;
 }
 
-/// Row by row: `change(t, row, table)`.
+/// Calls `change(t, row, table)` for each row.
 inline void for_rows(DenseTable& table, const std::function<void(double t, size_t k)>& change) {
   for (size_t k = 0; k < static_cast<size_t>(table.theta.rows()); ++k)
     change(table.dt * static_cast<double>(k), k);
@@ -57,7 +57,7 @@ inline void move_joint(const RobotModel& model, DenseTable& table, const std::st
   });
 }
 
-/// `change(t, base, feet)` of every row; the legs follow by inverse kinematics.
+/// Calls `change(t, base, feet)` for every row; the legs follow by inverse kinematics.
 inline void move_body(const RobotModel& model, DenseTable& table,
                       const std::function<void(double t, BasePose& base,
                                                std::array<Eigen::Isometry3d, 2>& feet)>& change) {
@@ -92,13 +92,13 @@ inline void sway_base(const RobotModel& model, DenseTable& table, const Eigen::V
   });
 }
 
-/// The whole motion is played in `share` of its time; phases too.
+/// Plays the whole motion, including its phases, in `share` of its time.
 inline void squeeze(Pattern& pattern, double share) {
   pattern.table->dt *= share;
   for (Phase& phase : pattern.phases) phase.until *= share;
 }
 
-/// Forgets what the table commands beside the motion; it is then that of the full model.
+/// Removes the commands of the table beside the motion; they are then those of the full model.
 inline void motion_alone(DenseTable& table) {
   table.cog.clear();
   table.zmp.clear();

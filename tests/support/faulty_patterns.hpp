@@ -1,6 +1,6 @@
 #pragma once
-// Short HOAP-1 patterns with one fault each, made by a seeded generator: of different kinds, over
-// different motions, from faults far beyond a limit to motions just beside one.
+// Short HOAP-1 patterns with one fault each, made by a seeded generator. The faults have different
+// kinds, are planted in different motions, and range from far beyond a limit to just beside one.
 
 #include <cstdint>
 
@@ -65,8 +65,8 @@ inline FaultyPattern motion(Dice& dice) {
   return made;
 }
 
-/// Size of a bump of this width whose largest speed is this. Derived: that of cos^4(pi s) is
-/// 3 sqrt(3) / 4 pi.
+/// The size of a bump of this width whose largest speed is this. Derived: that of cos^4(pi s) is 3
+/// sqrt(3) / 4 pi.
 inline double size_of(double speed, double width) {
   return speed * width / (3 * std::sqrt(3.0) / 4 * M_PI);
 }
@@ -79,7 +79,7 @@ inline double soft_distance(const std::string& joint, double theta, double sign)
 
 }  // namespace faulty
 
-/// The pattern of a seed. A fault beside a limit may keep it; the check decides.
+/// The pattern of a seed. A fault near a limit may still keep it; the check decides.
 inline FaultyPattern faulty_pattern(std::uint64_t seed) {
   using namespace faulty;
   Dice dice(seed);

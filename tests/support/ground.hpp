@@ -1,5 +1,5 @@
 #pragma once
-// Ground that a block is tried on in every plant.
+// Ground on which a block is tested in every plant.
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,8 @@
 
 namespace ayumi::test {
 
-/// A height field that is an inclined plane [rad], falling forwards through the origin, above and
-/// below the plane around it.
+/// A height field that is an inclined plane [rad], descending forwards through the origin, above
+/// and below the plane around it.
 inline World inclined_field(double angle, double friction) {
   World world{.friction = friction};
   HeightField field{.origin = {-1, -1}, .spacing = 0.07, .heights = Eigen::MatrixXd(60, 30)};
@@ -21,7 +21,7 @@ inline World inclined_field(double angle, double friction) {
   return world;
 }
 
-/// The way a block slides down such a slope in `time` by Coulomb's law [m].
+/// The distance that a block slides down such a slope in `time` by Coulomb's law [m].
 inline double sliding_distance(double angle, double friction, double v0, double time) {
   const double a = kGravity * (std::sin(angle) - friction * std::cos(angle));
   return v0 * time + 0.5 * a * time * time;
@@ -34,12 +34,13 @@ inline StepInput floor_input(const std::vector<FloorMotion>& motions, long k, do
   return input;
 }
 
-/// A floor shaken along x, 2 Hz.
+/// A floor that is shaken along x at 2 Hz.
 inline std::vector<FloorMotion> shaking(double amplitude) {
   return {{0.2, 10, {MotionShape::sine, 2, {0, 0}, {amplitude, 0, 0}}}};
 }
 
-/// How far a block moves on that floor, once it has caught up: the sine begins at full speed [m].
+/// The distance that a block moves on that floor after it has caught up with it, since the sine
+/// begins at full speed [m].
 template <typename Block>
 double moved_on_floor(Block& block, const std::vector<FloorMotion>& motions, double step) {
   double apart = 0, offset = 0;

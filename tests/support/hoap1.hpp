@@ -1,5 +1,5 @@
 #pragma once
-// HOAP-1 as most tests use it: its file, read once.
+// HOAP-1 as most tests use it: its file is read once.
 
 #include "ayumi/io/robot/robot_file.hpp"
 

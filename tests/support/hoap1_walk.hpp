@@ -1,5 +1,5 @@
 #pragma once
-// The bundled walk of HOAP-1 as most tests use it: sampled once.
+// The bundled walk of HOAP-1 as most tests use it: it is sampled once.
 
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/plan/sample.hpp"

@@ -8,8 +8,8 @@
 
 namespace ayumi::test {
 
-/// Whether `value` fits `schema`; `root` holds the definitions. Throws std::logic_error for a
-/// keyword that is not handled here, so that no rule of a schema goes untested.
+/// Whether `value` fits `schema`; `root` contains the definitions. Throws std::logic_error for a
+/// keyword that is not handled here, so that no rule of a schema remains untested.
 class JsonSchema {
  public:
   using Json = nlohmann::json;
@@ -105,7 +105,7 @@ class JsonSchema {
     return others(keyword);
   }
 
-  // Rules for other types of value do not concern this one; unknown rules do.
+  // Rules for other types of value do not concern this value; unknown rules do.
   static bool others(const std::string& keyword) {
     for (const char* const known :
          {"minimum", "maximum", "exclusiveMinimum", "minLength", "pattern", "minItems", "maxItems",

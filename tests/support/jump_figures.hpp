@@ -1,5 +1,5 @@
 #pragma once
-// What happened in a simulated jump, read from the log alone.
+// The figures of a simulated jump, read from the log alone.
 
 #include <algorithm>
 #include <cmath>
@@ -13,12 +13,12 @@
 namespace ayumi::test {
 
 struct JumpMeasured {
-  double lift_off = 0, touchdown = 0;  ///< [s]
-  double apex = 0;                     ///< of the COG above ref z_G [m]
-  double clearance = 0;                ///< of the lowest sole corner of both feet, at its most [m]
-  double stoop = 0;                    ///< of the COG below its height at touchdown [m]
-  double momentum = 0;                 ///< worst change in flight but by gravity, relative
-  double spin = 0;                     ///< angular momentum about the COG in flight [N m s]
+  double lift_off = 0, touchdown = 0;  ///< times [s]
+  double apex = 0;                     ///< height of the COG above ref z_G [m]
+  double clearance = 0;                ///< largest clearance of the lowest corner of both soles [m]
+  double stoop = 0;                    ///< depth of the COG below its height at touchdown [m]
+  double momentum = 0;  ///< largest relative change in flight, apart from that by gravity
+  double spin = 0;      ///< angular momentum about the COG in flight [N m s]
 };
 
 /// Lowest corner of both soles above the ground [m].
@@ -31,7 +31,7 @@ inline double sole_clearance(const RobotModel& model, const RobotData& data) {
   return lowest;
 }
 
-/// Every flight of at least 40 ms; `ref` is ref z_G.
+/// All flights of at least 40 ms; `ref` is ref z_G.
 inline std::vector<JumpMeasured> jumps_of(const RobotModel& model, const SimulationLog& log,
                                           double ref) {
   std::vector<JumpMeasured> jumps;
@@ -79,11 +79,12 @@ inline std::vector<JumpMeasured> jumps_of(const RobotModel& model, const Simulat
   return jumps;
 }
 
-/// Time after which the COG stays within `near` of ref z_G and, over the ground, of where it ends
-/// [s].
+/// The time after which the COG stays within `near` of ref z_G and, horizontally, of its final
+/// place [s].
 inline double settled_at(const SimulationLog& log, double ref, double near) {
   const auto& s = log.samples;
-  // The plan's frame against the world's, as a mean: what is measured is noisy.
+  // The plan's frame relative to the world's is taken as a mean, because the measured values are
+  // noisy.
   const size_t last = std::min<size_t>(200, s.size());
   Eigen::Vector2d rest = s.back().command_cog.head<2>();
   for (size_t i = s.size() - last; i < s.size(); ++i)
@@ -95,7 +96,8 @@ inline double settled_at(const SimulationLog& log, double ref, double near) {
   return static_cast<double>(k) * log.dt;
 }
 
-/// Largest way of a sole over the ground from the first to the last sample, less `way` [m].
+/// The largest displacement of a sole over the ground from the first to the last sample, minus
+/// `way` [m].
 inline double feet_drift(const RobotModel& model, const SimulationLog& log,
                          const Eigen::Vector2d& way) {
   RobotData first(model), last(model);

@@ -6,7 +6,7 @@
 
 namespace ayumi::test {
 
-/// Kinetic energy, that of the rotors included, and potential energy above z = 0 [J].
+/// Kinetic energy, including that of the rotors, and potential energy above z = 0 [J].
 inline double mechanical_energy(const RobotModel& model, const RobotState& state) {
   RobotData data(model);
   update_velocities(model, state, data);

@@ -1,6 +1,6 @@
 #pragma once
-// A robot and its plan as a mirror shows them: y -> -y. Left and right change places, names with
-// them; every joint keeps its angle, since its axis turns the other way.
+// The mirror images of a robot and its plan: y -> -y. Left and right are exchanged, and so are
+// names with them. Every joint keeps its angle, since its axis turns the other way.
 
 #include "ayumi/model/robot_model.hpp"
 #include "ayumi/motion/command_series.hpp"
@@ -10,7 +10,7 @@ namespace ayumi::test {
 inline Eigen::Matrix3d mirror_matrix() { return Eigen::Vector3d(1, -1, 1).asDiagonal(); }
 
 inline Eigen::Vector3d mirrored(const Eigen::Vector3d& p) { return {p.x(), -p.y(), p.z()}; }
-/// Of a turn, a rate of turning or an axis to turn about.
+/// The mirror image of a rotation, an angular velocity or an axis.
 inline Eigen::Vector3d mirrored_turn(const Eigen::Vector3d& w) { return {-w.x(), w.y(), -w.z()}; }
 
 inline Eigen::Isometry3d mirrored(const Eigen::Isometry3d& pose) {
@@ -20,7 +20,7 @@ inline Eigen::Isometry3d mirrored(const Eigen::Isometry3d& pose) {
   return result;
 }
 
-/// "l_knee" is "r_knee".
+/// The name of the mirrored part: that of "l_knee" is "r_knee".
 inline std::string mirrored(const std::string& name) {
   if (name.starts_with("l_")) return "r_" + name.substr(2);
   if (name.starts_with("r_")) return "l_" + name.substr(2);
@@ -43,7 +43,7 @@ inline void mirror(std::vector<PlacedShape>& shapes) {
   }
 }
 
-/// Names of links, joints and soles; the order of joints by name stays.
+/// Mirrors the names of links, joints and soles; the order of joints by name stays.
 inline RobotDescription mirrored(RobotDescription d) {
   for (LinkDescription& link : d.links) {
     link.name = mirrored(link.name);
@@ -80,7 +80,7 @@ inline RobotDescription mirrored(RobotDescription d) {
   return d;
 }
 
-/// The angles of `model` for the robot in the mirror.
+/// The angles of `model` for the mirrored robot.
 inline Eigen::VectorXd mirrored(const RobotModel& model, const RobotModel& image,
                                 const Eigen::VectorXd& theta) {
   Eigen::VectorXd result(theta.size());

@@ -27,14 +27,14 @@ class MujocoRobot {
   using Vector = Eigen::VectorXd;
   using Matrix = Eigen::MatrixXd;
 
-  /// The tree of `robot` (no mimic joints), every number set to ours exactly.
+  /// The tree of `robot` (which has no mimic joints), with every number set exactly to Ayumi's.
   static MujocoRobot from_model(const RobotModel& robot) {
     MujocoRobot result(robot, compile(tree_text(robot), ".xml"));
     result.set_exact_numbers(robot);
     return result;
   }
 
-  /// What MuJoCo itself reads from a URDF, the root link floating, shapes left out.
+  /// The robot that MuJoCo itself reads from a URDF, with a floating root link and without shapes.
   static MujocoRobot from_urdf(const RobotModel& robot, const std::string& urdf) {
     return MujocoRobot(robot, compile(floating_urdf(robot, urdf), ".urdf"));
   }
@@ -71,7 +71,7 @@ class MujocoRobot {
     mj_jacSubtreeCom(model_.get(), data_.get(), J.data(), 1);
     return J * to_ours();
   }
-  /// Linear momentum, and angular momentum about the COG.
+  /// The linear momentum, and the angular momentum about the COG.
   std::pair<Eigen::Vector3d, Eigen::Vector3d> momentum() const {
     mj_subtreeVel(model_.get(), data_.get());
     return {mass() * Eigen::Map<Eigen::Vector3d>(data_->subtree_linvel + 3),
@@ -83,21 +83,23 @@ class MujocoRobot {
       model_->dof_damping[columns_[i]] = damping[static_cast<int>(i)];
     }
   }
-  /// Acceleration under a generalised force in the last state set, both in Ayumi's coordinates.
+  /// The acceleration under a generalised force in the last state that was set, both in Ayumi's
+  /// coordinates.
   Vector acceleration(const Vector& force) {
     const Matrix T = to_ours();  // a permutation and a turn: its inverse is its transpose
     Eigen::Map<Vector>(data_->qfrc_applied, model_->nv) = T * force;
     mj_forward(model_.get(), data_.get());
     return T.transpose() * Eigen::Map<Vector>(data_->qacc, model_->nv);
   }
-  /// What turns Ayumi's velocities, accelerations and forces into MuJoCo's in the last state set.
+  /// The matrix that turns Ayumi's velocities, accelerations and forces into MuJoCo's in the last
+  /// state that was set.
   Matrix to_theirs() const { return to_ours(); }
 
-  /// qfrc_bias in Ayumi's coordinates.
+  /// The bias force qfrc_bias in Ayumi's coordinates.
   Vector bias_force() const {
     return to_ours().transpose() * Eigen::Map<Vector>(data_->qfrc_bias, model_->nv);
   }
-  /// qM in Ayumi's coordinates.
+  /// The mass matrix qM in Ayumi's coordinates.
   Matrix mass_matrix() const {
     const int n = model_->nv;
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> full(n, n);
@@ -158,7 +160,8 @@ class MujocoRobot {
     return "<mujoco><worldbody>" + body_text(robot, 0) + "</worldbody></mujoco>";
   }
 
-  /// Names the tree's bodies by number and overwrites what the compiler rounded or simplified.
+  /// Finds the tree's bodies by number, and overwrites the values that the compiler rounded or
+  /// simplified.
   void set_exact_numbers(const RobotModel& robot) {
     mjModel* m = model_.get();
     for (size_t i = 0; i < robot.bodies().size(); ++i) {
@@ -186,7 +189,8 @@ class MujocoRobot {
     to[0] = q.w(), to[1] = q.x(), to[2] = q.y(), to[3] = q.z();
   }
 
-  /// The URDF without shapes and materials, its root hung on the world by a floating joint.
+  /// The URDF without shapes and materials, with its root attached to the world by a floating
+  /// joint.
   static std::string floating_urdf(const RobotModel& robot, std::string urdf) {
     for (const std::string element : {"visual", "collision", "transmission", "gazebo"})
       for (size_t begin; (begin = urdf.find("<" + element)) != std::string::npos;) {
@@ -207,7 +211,7 @@ class MujocoRobot {
 
   Model model_;
   Data data_;
-  std::vector<int> columns_;  ///< of MuJoCo's qvel, by dof
+  std::vector<int> columns_;  ///< columns of MuJoCo's qvel, by dof
   Eigen::Matrix3d rotation_ = Eigen::Matrix3d::Identity();
 };
 

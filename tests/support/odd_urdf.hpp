@@ -1,8 +1,8 @@
 #pragma once
-// Odd robots as two texts made of the same numbers: a URDF as users write them (links and joints
-// told in any order, inertias turned against the link, links without mass, chains of mimic joints,
-// meshes) and a MuJoCo model in which every link is a body and every joint is free. Nothing of the
-// library is used on the way.
+// Random robots as two texts made from the same numbers: a URDF as users write them (links and
+// joints in any order, inertias turned against the link, links without mass, chains of mimic
+// joints, meshes) and a MuJoCo model in which every link is a body and every joint is free. The
+// library is not used for this.
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -15,10 +15,11 @@
 namespace ayumi::test {
 
 struct OddLink {
-  std::string name, parent_joint;  ///< joint empty: the root
+  /// Names of the link and its joint; the joint is empty for the root.
+  std::string name, parent_joint;
   double mass = 0;
-  Eigen::Vector3d com, rpy;   ///< of the inertial frame
-  Eigen::Vector3d principal;  ///< moments [kg m^2]
+  Eigen::Vector3d com, rpy;   ///< pose of the inertial frame
+  Eigen::Vector3d principal;  ///< principal moments [kg m^2]
   Eigen::Vector3d turn;       ///< rotation vector from the inertial frame to the principal axes
 };
 
@@ -39,7 +40,7 @@ struct OddRobot {
       if (each.name == name) return &each;
     return nullptr;
   }
-  /// Position of a moving joint = factor * (position of its driver) + offset.
+  /// The position of a moving joint is factor * (position of its driver) + offset.
   struct Tie {
     std::string driver;
     double factor = 1, offset = 0;
@@ -60,7 +61,7 @@ inline std::string number(double x) {
 inline std::string numbers(const Eigen::Vector3d& v) {
   return number(v.x()) + " " + number(v.y()) + " " + number(v.z());
 }
-/// "w x y z"; fixed axes, x first, as URDF has it.
+/// The text "w x y z" of a rotation about fixed axes, x first, as in URDF.
 inline Eigen::Quaterniond from_rpy(const Eigen::Vector3d& rpy) {
   return Eigen::AngleAxisd(rpy.z(), Eigen::Vector3d::UnitZ()) *
          Eigen::AngleAxisd(rpy.y(), Eigen::Vector3d::UnitY()) *
@@ -73,7 +74,7 @@ inline std::string quaternion(const Eigen::Quaterniond& q) {
 inline OddRobot odd_robot(unsigned seed, int count) {
   Random random(seed + 7000);
   OddRobot robot;
-  std::vector<std::string> movers;  // that may be mimicked
+  std::vector<std::string> movers;  // joints that may be mimicked
   for (int i = 0; i < count; ++i) {
     OddLink link;
     link.name = "part" + std::to_string(i);
@@ -109,7 +110,7 @@ inline OddRobot odd_robot(unsigned seed, int count) {
     }
     robot.links.push_back(link);
   }
-  // Bare frames between two axes: whatever has something heavy beyond it.
+  // Frames between two axes are bare if something heavy is beyond them.
   for (OddLink& link : robot.links) {
     const bool inner = std::any_of(
         robot.joints.begin(), robot.joints.end(),
@@ -127,8 +128,8 @@ std::vector<Item> shuffled(std::vector<Item> items, Random& random) {
   return items;
 }
 
-/// Links and joints mixed and in any order: the root is hardly ever first, mimics come before what
-/// they follow.
+/// The URDF with links and joints mixed in any order: the root is hardly ever first, and mimic
+/// joints come before their drivers.
 inline std::string urdf_text(const OddRobot& robot, unsigned seed) {
   Random random(seed + 8000);
   std::vector<std::string> elements;
@@ -166,7 +167,8 @@ inline std::string urdf_text(const OddRobot& robot, unsigned seed) {
   return text + "</robot>\n";
 }
 
-/// Every joint free. MuJoCo wants mass of what moves: give it some, then take it away again.
+/// The body with every joint free. MuJoCo requires that moving parts have mass: they get some,
+/// which is removed later.
 inline std::string mujoco_body_text(const OddRobot& robot, const OddLink& link,
                                     const OddJoint* joint) {
   std::string text = "<body name='" + link.name + "'";

@@ -1,7 +1,7 @@
 #pragma once
 // One joint in free fall on a base that is too heavy to move: the joint turns as a flywheel under
-// its servo and a load torque. Beside it the same joint integrated in very small explicit steps, by
-// formulas of its own.
+// its servo and a load torque. For comparison, the same joint is integrated in very small explicit
+// steps, by separate formulas.
 
 #include <cmath>
 #include <deque>
@@ -15,19 +15,20 @@
 namespace ayumi::test {
 
 inline constexpr double kFlywheel = 0.05;  ///< inertia of the link about its joint [kg m^2]
-inline constexpr double kHold = 1e-3;      ///< for which a target holds [s]
+inline constexpr double kHold = 1e-3;      ///< time for which a target is held [s]
 
-/// A servo with what acts on its joint.
+/// A servo with the load on its joint.
 struct OneJoint {
   std::string name;
   ServoDescription servo;
-  std::function<double(double)> target = [](double) { return 0.0; };  ///< at a tick's start [rad]
-  std::function<double(double)> load = [](double) { return 0.0; };    ///< on the link [N m]
-  double duration = 1;                                                ///< [s]
-  double counts = 0;                                                  ///< of the encoder per degree
-  double peak = 0, speed = 0;  ///< limits [N m, rad/s]; 0: none
-  double error = 0;            ///< largest difference of Ayumi's plant at 1 ms to small steps [rad]
-  double mujoco = 0;           ///< largest difference of the two plants [rad]
+  /// Target at a tick's start [rad].
+  std::function<double(double)> target = [](double) { return 0.0; };
+  std::function<double(double)> load = [](double) { return 0.0; };  ///< load on the link [N m]
+  double duration = 1;                                              ///< duration [s]
+  double counts = 0;           ///< number of counts of the encoder per degree
+  double peak = 0, speed = 0;  ///< limits [N m, rad/s]; 0 for no limit
+  double error = 0;   ///< largest difference between Ayumi's plant at 1 ms and small steps [rad]
+  double mujoco = 0;  ///< largest difference of the two plants [rad]
 };
 
 inline RobotModel model_of(const OneJoint& joint) {
@@ -58,16 +59,16 @@ inline RobotModel model_of(const OneJoint& joint) {
   return RobotModel(d);
 }
 
-/// The load of a step as a couple on the wheel.
+/// The load of a step, as a couple on the wheel.
 inline StepInput input_of(double load) {
   return {{1, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), {0, load, 0}}};
 }
 
 struct JointTrace {
-  std::vector<double> theta, motor, torque;  ///< at the end of every tick [rad, rad, N m]
+  std::vector<double> theta, motor, torque;  ///< values at the end of every tick [rad, rad, N m]
 };
 
-/// The joint in a plant whose steps are 1 / `parts` of a tick.
+/// Simulates the joint in a plant whose steps are 1 / `parts` of a tick.
 template <typename Plant>
 JointTrace simulate(const OneJoint& joint, const RobotModel& model, Plant& plant, int parts) {
   RobotState start = model.rest_state();
@@ -86,7 +87,8 @@ JointTrace simulate(const OneJoint& joint, const RobotModel& model, Plant& plant
   return trace;
 }
 
-/// The same in explicit steps of 2 us. Dry friction stops the motor in a step where it can.
+/// Simulates the same in explicit steps of 2 us. Dry friction stops the motor within a step if it
+/// can.
 inline JointTrace fine_simulation(const OneJoint& joint) {
   constexpr int kParts = 500;
   constexpr double h = kHold / kParts;
@@ -117,7 +119,7 @@ inline JointTrace fine_simulation(const OneJoint& joint) {
       if (s.stall_torque > 0)
         motor = std::clamp(motor, -s.stall_torque - s.back_emf * dphi,
                            s.stall_torque - s.back_emf * dphi);
-      double mesh = 0;  // of the gear on the joint
+      double mesh = 0;  // torque of the gear on the joint
       if (geared) {
         const double play = phi - theta, half = 0.5 * s.backlash;
         const double press = std::abs(play) > half ? play - std::copysign(half, play) : 0;
@@ -171,14 +173,14 @@ inline ServoDescription plain_servo() { return {.kp = 60, .kd = 3, .rotor_inerti
 inline double sine(double t) { return 0.3 * std::sin(2 * M_PI * t); }
 inline double triangle(double t) { return 0.2 * (t < 0.5 ? t : t < 1.5 ? 1 - t : t - 2); }
 
-/// How far the two plants may be apart, in steps of 1/8 ms, with joints at up to 2 rad/s [rad].
+/// Largest differences of the two plants in steps of 1/8 ms, with joints at up to 2 rad/s [rad].
 constexpr double kSmooth = 5e-4;  ///< Derived: two steps, one for each integrator
 constexpr double kRubs = 2e-3;   ///< Measured 1.3e-3: MuJoCo's dry friction yields before it slides
 constexpr double kPlays = 8e-3;  ///< Measured 5.4e-3: MuJoCo's flanks begin to push within the play
 
 /// Every form of a servo on its own, and all of them at once.
 inline std::deque<OneJoint> servo_forms() {
-  std::deque<OneJoint> all;  // whose elements stay where they are while it grows
+  std::deque<OneJoint> all;  // its elements stay in their places while it grows
   const auto add = [&](const char* name, double mujoco) -> OneJoint& {
     OneJoint& joint = all.emplace_back(OneJoint{.name = name, .servo = plain_servo()});
     joint.target = sine;

@@ -1,5 +1,5 @@
 #pragma once
-// A point mass above its ZMP, integrated in small steps: the little world of (14)-(17).
+// A point mass above its ZMP, integrated in small steps: the simple model of (14)-(17).
 
 #include <cmath>
 #include <functional>
@@ -27,10 +27,10 @@ inline Motion step(const Motion& s, double dt, const std::function<double(const 
           s.v + dt / 6 * (k1.v + 2 * k2.v + 2 * k3.v + k4.v)};
 }
 
-/// (14) for a robot of the size of HOAP-1 that keeps its height: x'' for a ZMP at `zmp`.
+/// (14) for a robot of the size of HOAP-1 that keeps its height: x'' for the given ZMP.
 struct LevelPendulum {
-  double mass = 6.5;      ///< [kg]
-  double height = 0.225;  ///< of the COG [m]
+  double mass = 6.5;      ///< mass of the robot [kg]
+  double height = 0.225;  ///< height of the COG [m]
 
   double fz() const { return mass * kGravity; }
   double omega() const { return std::sqrt(omega_squared(fz(), mass, height)); }

@@ -16,7 +16,7 @@
 
 namespace ayumi::test {
 
-/// Pose of every body, by index, as 4 x 4 matrices.
+/// The pose of every body, by index, as 4 x 4 matrices.
 inline std::vector<Eigen::Matrix4d> plain_poses(const RobotModel& model, const RobotState& state) {
   using Eigen::Matrix3d;
   using Eigen::Matrix4d;
@@ -37,7 +37,7 @@ inline std::vector<Eigen::Matrix4d> plain_poses(const RobotModel& model, const R
     const double angle = body.ratio * state.theta[body.dof] + body.offset;
     if (body.prismatic) {
       own.topRightCorner<3, 1>() = angle * body.axis;
-    } else {  // Rodrigues
+    } else {  // the formula of Rodrigues
       Matrix3d cross;
       cross << 0, -body.axis.z(), body.axis.y(), body.axis.z(), 0, -body.axis.x(), -body.axis.y(),
           body.axis.x(), 0;
@@ -53,7 +53,7 @@ inline Eigen::Vector3d at_pose(const Eigen::Matrix4d& pose, const Eigen::Vector3
   return (pose * point.homogeneous()).head<3>();
 }
 
-/// Corners of a sole in the world.
+/// The corners of a sole in the world.
 inline std::vector<Eigen::Vector3d> plain_sole(const RobotModel& model,
                                                const std::vector<Eigen::Matrix4d>& poses,
                                                Side side) {
@@ -68,11 +68,11 @@ inline std::vector<Eigen::Vector3d> plain_sole(const RobotModel& model,
 /// One link at one sample.
 struct PlainLink {
   double mass = 0;
-  Eigen::Vector3d com, acceleration;  ///< world [m], [m/s^2]
+  Eigen::Vector3d com, acceleration;  ///< place and acceleration in the world [m], [m/s^2]
   Eigen::Vector3d spin, spin_rate;    ///< angular momentum about its own COG, and its rate
 };
 
-/// The five samples k-2 ... k+2, links of all bodies.
+/// The links of all bodies at the five samples k-2 ... k+2.
 inline std::vector<PlainLink> plain_links(const RobotModel& model, const CommandSeries& series,
                                           int k) {
   const double h = series.dt;
@@ -125,7 +125,7 @@ inline Eigen::Vector3d plain_cog(const RobotModel& model,
   return sum / mass;
 }
 
-/// What the ground gives: force, and moment about the origin of the world.
+/// The force of the ground, and its moment about the origin of the world.
 struct PlainGround {
   Eigen::Vector3d force = Eigen::Vector3d::Zero(), moment = Eigen::Vector3d::Zero();
 };
@@ -139,9 +139,9 @@ inline PlainGround plain_ground(const std::vector<PlainLink>& links) {
   return ground;
 }
 
-/// Distance of a point inside the hull of `corners`, seen from above, without that hull: of all
-/// directions across a pair of corners the least that the corners reach beyond the point. Holds for
-/// points inside.
+/// The distance of a point inside the hull of `corners`, seen from above, computed without that
+/// hull: of all directions perpendicular to a pair of corners, the smallest distance by which the
+/// corners extend beyond the point. It only holds for points inside.
 inline double plain_margin(const std::vector<Eigen::Vector3d>& corners,
                            const Eigen::Vector2d& point) {
   double least = 1e300;

@@ -1,5 +1,6 @@
 #pragma once
-// Two motions of HOAP-1 as tables to plant faults in, and the errors that the check finds there.
+// Two motions of HOAP-1 as tables in which faults are planted, and the errors that the check finds
+// there.
 
 #include <set>
 #include <sstream>

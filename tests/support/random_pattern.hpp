@@ -16,7 +16,7 @@ class PatternDice {
   }
   bool coin() { return engine_() % 2 == 0; }
   int pick(int count) { return static_cast<int>(engine_() % static_cast<unsigned>(count)); }
-  // An angle the file's unit can hold: any double in rad, a rounded number in degrees.
+  // An angle that the file's unit can hold: any double in rad, or a rounded number in degrees.
   double angle(bool degrees) {
     return degrees ? std::round(uniform(-180, 180) * 1e4) / 1e4 * kDegree : uniform(-3, 3);
   }

@@ -1,12 +1,12 @@
 #pragma once
-// A body anywhere, turned any way.
+// A body at a random place with a random attitude.
 
 #include "ayumi/math/rotation.hpp"
 #include "tests/support/random_robot.hpp"
 
 namespace ayumi::test {
 
-/// No coordinate farther than `reach` [m] from 0.
+/// A pose with no coordinate farther than `reach` [m] from 0.
 inline Eigen::Isometry3d random_pose(Random& random, double reach) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.translation() = random.vector(reach);

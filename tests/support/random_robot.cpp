@@ -12,7 +12,7 @@ Inertia random_inertia(Random& random) {
   Inertia inertia;
   inertia.mass = random.uniform(0.05, 1.0);
   inertia.com = random.vector(0.05);
-  // A solid box of random edges in a random attitude: always a possible body.
+  // A solid box of random edges in a random attitude, which is always a possible body.
   const Eigen::Vector3d e = random.vector(0.05).cwiseAbs() + Eigen::Vector3d::Constant(0.02);
   const Eigen::Vector3d d =
       inertia.mass / 12.0 *
@@ -87,7 +87,7 @@ RobotDescription odd_tree(unsigned seed, int links) {
       joint.mimic_multiplier = random.uniform(-1.5, 1.5);
       joint.mimic_offset = random.uniform(-0.3, 0.3);
     }
-    if (kind >= 4) driver = joint.name;  // mimics of mimics among them
+    if (kind >= 4) driver = joint.name;  // some of these are mimics of mimics
     joint.axis *= random.uniform(0.5, 3);
   }
   for (size_t i = d.joints.size(); i > 1; --i)

@@ -21,18 +21,18 @@ struct Random {
 /// A random tree with revolute, prismatic, fixed and (optionally) mimic joints.
 RobotDescription random_tree(unsigned seed, int links, bool mimic = true);
 
-/// A random tree of every kind the reader knows: continuous joints, chains of mimic joints anywhere
-/// (not only at a leaf), axes of any length, some along the axes of their frame, joints told out of
-/// order.
+/// A random tree with everything that the reader knows: continuous joints, chains of mimic joints
+/// anywhere (not only at a leaf), axes of any length, some of them along the axes of their frame,
+/// and joints out of order.
 RobotDescription odd_tree(unsigned seed, int links);
 
-/// The same tree with its mimic joints set free, and what frees them:
-/// theta of the free tree = G theta + offset.
+/// The same tree with its mimic joints set free, and the map between the two: theta of the free
+/// tree = G theta + offset.
 struct FreedTree {
   explicit FreedTree(const RobotModel& tied);
   static RobotDescription freed(RobotDescription d);
   RobotState state(const RobotState& s) const;
-  /// Generalised velocity of the free tree per that of the tied one.
+  /// The generalised velocity of the free tree for that of the tied tree.
   Eigen::MatrixXd map() const;
   RobotModel model;
   Eigen::MatrixXd G;

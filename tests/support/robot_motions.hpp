@@ -1,5 +1,5 @@
 #pragma once
-// Bundled robots that walk two steps or jump: what is true of any robot and motion is tried on
+// Bundled robots that walk two steps or jump. Properties of any robot and motion are tested on
 // each.
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ inline std::string name_of_case(const testing::TestParamInfo<RobotMotion>& info)
   return info.param.robot + "_" + info.param.motion;
 }
 
-/// Read once.
+/// A bundled robot, which is read once.
 inline const RobotModel& bundled_robot(const std::string& name) {
   static std::map<std::string, RobotModel> robots;
   const auto found = robots.find(name);

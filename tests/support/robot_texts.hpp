@@ -1,6 +1,6 @@
 #pragma once
-// The same robot as MJCF, SDF and Choreonoid body, every number with all its digits: its moving
-// bodies, one link each.
+// The same robot as MJCF, SDF and Choreonoid body, with all digits of every number. Each moving
+// body is one link.
 
 #include <Eigen/Dense>
 #include <functional>
@@ -28,23 +28,25 @@ inline std::string dof_name(const RobotModel& model, const Body& body) {
   return model.dofs()[static_cast<size_t>(body.dof)].name;
 }
 
-/// `offsets`: joints away from the origins of their bodies, and angles that count from a reference.
+/// With `offsets`, joints are away from the origins of their bodies, and angles count from a
+/// reference.
 inline std::string mjcf_text_of(const RobotModel& model, bool diagonal = false,
                                 bool offsets = false) {
   const Eigen::Vector3d away =
       offsets ? Eigen::Vector3d(0.01, -0.02, 0.03) : Eigen::Vector3d(0, 0, 0);
   const double reference = offsets ? 0.1 : 0;
   using Pose = Eigen::Isometry3d;
-  // `above`: the parent's frame in the text, in the parent's own.
+  // `above` is the parent's frame in the text, relative to the parent's own frame.
   const std::function<std::string(int, const Pose&)> body_text = [&](int index, const Pose& above) {
     const Body& body = model.bodies()[static_cast<size_t>(index)];
     Eigen::Isometry3d at = above.inverse() * body.placement;
-    Eigen::Isometry3d moved = Eigen::Isometry3d::Identity();  // body frame of the text, in ours
+    // The body frame of the text, relative to Ayumi's.
+    Eigen::Isometry3d moved = Eigen::Isometry3d::Identity();
     std::string joint;
     if (index == 0) {
       joint = "<freejoint/>";
     } else {
-      // The text's frame is turned with the joint at its reference, and away from its axis.
+      // The text's frame is turned, with the joint at its reference, and is away from its axis.
       if (body.prismatic)
         at = at * Eigen::Translation3d(reference * body.axis);
       else
@@ -88,7 +90,8 @@ inline std::string mjcf_text_of(const RobotModel& model, bool diagonal = false,
          body_text(0, Pose::Identity()) + "</worldbody></mujoco>";
 }
 
-/// Links placed in the model's frame, joints in theirs, some by frames of their own.
+/// Links are placed in the model's frame, joints in the frames of links, and some in frames of
+/// their own.
 inline std::string sdf_text_of(const RobotModel& model) {
   const auto pose = [](const Eigen::Isometry3d& at, const std::string& relative) {
     Eigen::VectorXd v(6);

@@ -48,7 +48,7 @@ inline Matrix6d cross_motion_matrix(const Vector6d& a) {
   return m;
 }
 
-// (h xbar*) S = S x* h.
+// The matrix for which (h xbar*) S = S x* h.
 inline Matrix6d cross_bar_matrix(const Vector6d& h) {
   Matrix6d m = Matrix6d::Zero();
   m.topRightCorner<3, 3>() = m.bottomLeftCorner<3, 3>() = -skew(h.head<3>());
@@ -120,7 +120,7 @@ inline void spatial_derivatives(const RobotModel& model, const RobotState& state
     const Body& body = bodies[i];
     const Subtree& t = tree[i];
     const int row = 6 + body.dof;
-    // Wrench of the subtree per q_i and per dq_i: what every body above feels.
+    // The wrench of the subtree per q_i and per dq_i, which every body above feels.
     const Vector6d per_q = t.twice_b * psi1[i] + t.inertia * psi2[i] + cross_force(S[i], t.force);
     const Vector6d per_dq = t.twice_b * S[i] + 2.0 * t.inertia * psi1[i];
     dq.block<6, 1>(0, row) += per_q;

@@ -1,5 +1,5 @@
 #pragma once
-// A folder of its own for one test, removed with everything in it afterwards.
+// A folder for one test, which is removed with everything in it afterwards.
 
 #include <unistd.h>
 
@@ -24,7 +24,7 @@ class TemporaryFolder {
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
-  /// Path of the file `name` in it, with these bytes.
+  /// The path of the file `name` in it, with these bytes.
   std::filesystem::path write(const std::string& name, const std::string& bytes) const {
     std::filesystem::create_directories((path_ / name).parent_path());
     write_file(path_ / name, bytes);

@@ -1,5 +1,5 @@
 #pragma once
-// A short walk of HOAP-1 with one of ten faults, and a measure of how far two motions are apart.
+// A short walk of HOAP-1 with one of ten faults, and a measure of the distance of two motions.
 
 #include "ayumi/author/generate/generate.hpp"
 #include "ayumi/repair/repair.hpp"
@@ -31,7 +31,7 @@ inline FaultyMotion faulty_motion(const std::string& name,
 
 inline std::vector<FaultyMotion> ten_faulty_motions() {
   constexpr double kDegree = M_PI / 180;
-  // The second step: its middle, and its length [s].
+  // The second step has this middle and this length [s].
   const double middle = 2.4, length = 0.45;
   const auto joint = [&](const char* which, double degrees, double at, double width) {
     return [=](Pattern& p, RepairOptions&) {
@@ -62,7 +62,7 @@ inline std::vector<FaultyMotion> ten_faulty_motions() {
   };
 }
 
-/// Largest difference of a joint [rad], and of the base [m].
+/// The largest difference of a joint [rad], and of the base [m].
 inline double motion_distance(const CommandSeries& a, const CommandSeries& b) {
   double most = 0;
   for (size_t k = 0; k < a.samples.size(); ++k) {

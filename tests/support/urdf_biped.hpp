@@ -1,6 +1,6 @@
 #pragma once
-// The text of a URDF of a two-legged robot, as people have them: with legs that stand straight at
-// 0, in several kinds.
+// The text of a URDF of a two-legged robot, as they occur in practice: with legs that stand
+// straight at 0, in several kinds.
 
 #include <cmath>
 #include <functional>
@@ -17,19 +17,20 @@ struct UrdfBiped {
   double mass = 1;            ///< factor on masses
   std::string hips = "yrp";   ///< order of yaw, roll and pitch from the trunk outwards
   double facing = 0;          ///< turn of the whole robot about z [rad]
-  bool opposed = false;       ///< axes of the right leg the other way round
+  bool opposed = false;       ///< axes of the right leg point the other way
   bool ankle_roll = true;     ///< without it, legs have five joints
   bool coupled_hips = false;  ///< one skew joint moves both hips
-  bool placeholders = false;  ///< +-162 deg, 100 rad/s, 1000 N m on every joint
+  bool placeholders = false;  ///< +-162 deg, 100 rad/s and 1000 N m for every joint
   bool spheres = false;       ///< feet touch with four spheres of 5 mm radius
   bool rollers = false;       ///< feet touch with two cylinders that lie along them
   std::string left = "l_", right = "r_";
   double hip = 0.05, thigh = 0.12, shank = 0.12, ankle = 0.04, foot_length = 0.13,
-         foot_width = 0.07;    ///< [m]
-  double trunk_bottom = 0.03;  ///< above the hips [m]
-  double ankle_shape = 0;  ///< height of a wide cylinder at the ankle above the ground [m]; 0: none
+         foot_width = 0.07;    ///< width of the feet [m]
+  double trunk_bottom = 0.03;  ///< height above the hips [m]
+  /// Height of a wide cylinder at the ankle above the ground [m]; 0 if there is none.
+  double ankle_shape = 0;
   std::function<double(const std::string&)> effort = [](const std::string&) { return 10; };
-  double speed = 8;  ///< [rad/s]
+  double speed = 8;  ///< limit of speed [rad/s]
 
   std::string text() const {
     using text::exact;

@@ -13,7 +13,7 @@
 namespace ayumi::test {
 namespace {
 
-/// x with x - h/g x'' = z, at rest at both ends.
+/// The x with x - h/g x'' = z that is at rest at both ends.
 Eigen::VectorXd solve_pendulum(const Eigen::VectorXd& z, double height, double dt) {
   const int n = static_cast<int>(z.size());
   const double a = height / kGravity / (dt * dt);
@@ -34,7 +34,7 @@ Eigen::VectorXd solve_pendulum(const Eigen::VectorXd& z, double height, double d
 struct FootPlan {
   std::vector<Support> support;
   std::vector<std::array<Eigen::Isometry3d, 2>> feet;
-  Eigen::MatrixXd zmp;  // samples x 2
+  Eigen::MatrixXd zmp;  // ZMP, samples x 2
 };
 
 FootPlan plan_feet(const RobotModel& model, const WalkShape& w,

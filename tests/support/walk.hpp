@@ -1,7 +1,8 @@
 #pragma once
-// Command series for tests, made without the library's own sampler: standing, and a walk whose COG
-// solves (14)(15) for its ZMP at every sample (one tridiagonal system) with three corrections by
-// the full model, legs by Newton's method, velocities and accelerations by central differences.
+// Command series for tests, made without the library's own sampler: standing, and a walk. The COG
+// of the walk solves (14)(15) for its ZMP at every sample (one tridiagonal system) with three
+// corrections by the full model; legs follow by Newton's method, and velocities and accelerations
+// by central differences.
 
 #include <Eigen/Geometry>
 #include <array>
@@ -21,14 +22,15 @@ struct WalkShape {
 /// From 0 at s = 0 to 1 at s = 1, with speed and acceleration 0 at both ends.
 double minimum_jerk(double s);
 
-/// Legs of a level torso at `base` that put both soles at `feet`; arms stay.
+/// Places the legs of a robot with a level torso at `base` so that both soles are at `feet`; the
+/// arms stay.
 void place_legs(const RobotModel& model, const std::array<Eigen::Isometry3d, 2>& feet,
                 RobotState& state, RobotData& data);
 
 /// Fills velocities, accelerations and the command quantities of the full model from the poses.
 void complete_series(const RobotModel& model, CommandSeries& series, double ground = 0);
 
-/// Standing at the home posture, soles level at z = 0.
+/// The robot stands in the home posture, with its soles level at z = 0.
 CommandSeries standing(const RobotModel& model, double duration, double dt = 0.001);
 
 /// A straight walk with a level torso and arms as at home.

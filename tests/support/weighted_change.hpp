@@ -1,5 +1,5 @@
 #pragma once
-// What a repair makes small, summed over the samples.
+// The cost that a repair minimises, summed over the samples.
 
 #include <cmath>
 
@@ -8,7 +8,7 @@
 
 namespace ayumi::test {
 
-// The weighted integral of the correction and its curvature: what a repair makes small.
+// The weighted integral of the correction and its curvature, which a repair minimises.
 inline double weighted_change(const RobotModel& model, const CommandSeries& series,
                               const CorrectionTrack& track) {
   Eigen::VectorXd weight(model.velocity_count());

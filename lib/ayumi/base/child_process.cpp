@@ -23,10 +23,11 @@ namespace {
 
 using std::chrono::steady_clock;
 
-// Chosen: a process that ends by itself does so within milliseconds.
+// Time given to a process to end by itself, and pause between looks. Chosen: a process that ends by
+// itself does so within milliseconds.
 constexpr std::chrono::milliseconds kGrace(1000), kPause(1);
-// [ms] How long an exchange waits before it looks whether it shall stop. Chosen: nobody notices it,
-// and it costs nothing.
+// Time for which an exchange waits before it looks whether it should stop [ms]. Chosen: nobody
+// notices it, and it costs nothing.
 constexpr long kStopPause = 50;
 
 std::vector<char*> pointers_to(std::vector<std::string>& words) {
@@ -46,7 +47,8 @@ int become(const char* program, char* const* words, char* const* variables, int 
     sigaction(signal, &usual, nullptr);  // fails for signals that have their usual effect anyway
   }
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) return ECHILD;  // this process had ended before the line above
+  // This process had ended before the line above was reached.
+  if (getppid() != parent) return ECHILD;
   setpgid(0, 0);
   if (dup2(input, STDIN_FILENO) < 0 || dup2(nowhere, STDOUT_FILENO) < 0 ||
       dup2(errors, STDERR_FILENO) < 0)
@@ -86,7 +88,7 @@ pid_t start_child(const ChildStart& start) {
   pthread_sigmask(SIG_SETMASK, &all, &before);  // no handler of this process runs in the child
   volatile int failed = 0;
   const pid_t parent = getpid();
-  const pid_t child = vfork();  // a copy of the memory could be refused where this process is large
+  const pid_t child = vfork();  // a copy of the memory might be refused if this process is large
   if (child == 0) {
     failed = become(argv[0], argv.data(), envp.data(), start.input, nowhere,
                     start.errors < 0 ? nowhere : start.errors, parent);
@@ -114,8 +116,8 @@ ChildProcess::ChildProcess(const std::filesystem::path& program,
   };
   int ends[2] = {-1, -1};
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) refuse(errno);
-  // The descriptor 0 of this process may be closed, and the child's end then have that number: the
-  // copy to it would keep the mark that closes it.
+  // The descriptor 0 of this process may be closed, and the child's end would then have the number
+  // 0. Copying it to itself would keep the mark that closes it.
   const int connection = fcntl(ends[1], F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
   const int no_copy = errno;
   close(ends[1]);
@@ -144,14 +146,15 @@ ChildProcess::~ChildProcess() {
 }
 
 void ChildProcess::set_time(double seconds) {
-  // Chosen: a year, where no limit is wanted; the clock cannot count to infinity.
+  // Longest time of exchanges [s]. Chosen: a year, which stands for no limit; the clock cannot
+  // count to infinity.
   constexpr double kLongest = 3.2e7;
   deadline_ =
       steady_clock::now() + std::chrono::duration_cast<steady_clock::duration>(
                                 std::chrono::duration<double>(std::clamp(seconds, 0.0, kLongest)));
 }
 
-// Returns false when the time is over.
+// Returns false if the time is over.
 bool ChildProcess::wait_for(short events) {
   while (true) {
     const auto left =
@@ -161,7 +164,8 @@ bool ChildProcess::wait_for(short events) {
     const long longest = stop_ ? kStopPause : 1'000'000;
     const int ready = poll(&waiting, 1, static_cast<int>(std::min<long>(left, longest)));
     if (ready > 0) return true;
-    if (ready < 0 && errno != EINTR) return true;  // the next exchange finds the reason
+    // The next exchange finds the reason for the failure.
+    if (ready < 0 && errno != EINTR) return true;
   }
 }
 
@@ -213,7 +217,7 @@ ChildEnding ChildProcess::end() {
     std::this_thread::sleep_for(kPause);
   }
   process_ = -1;
-  // ended < 0 means that this program ignores SIGCHLD, so nobody knows how the child ended.
+  // ended < 0 means that this program ignores SIGCHLD; then nobody knows how the child ended.
   if (ended < 0 || ending.by_us) return ending;
   if (WIFEXITED(status)) ending.exit_code = WEXITSTATUS(status);
   if (WIFSIGNALED(status)) ending.signal = WTERMSIG(status);

@@ -1,7 +1,7 @@
 #pragma once
-// Errors that name a place and a remedy. Thrown at the edges of the library (files, models,
-// patterns), caught once in the application's main. An inconsistent pattern, a fall or a solver
-// that did not converge is a result, never an Error.
+// Errors that name a place and a remedy. They are thrown at the edges of the library (files,
+// models, patterns), and caught once in the application's main. An inconsistent pattern, a fall or
+// a solver that did not converge is a result and never an Error.
 
 #include <stdexcept>
 #include <string>
@@ -18,22 +18,23 @@ enum class ErrorCode {
   internal      ///< a broken invariant of Ayumi itself (exit 5)
 };
 
-/// What an error is about, for programs. The message alone says everything to people.
+/// The subject of an error, for programs. The message alone says everything to people.
 struct SourcePlace {
   std::string file = {};
-  std::string inside = {};  ///< JSON pointer, or words for what has none; "" for the whole file
-  long line = 0;            ///< counted from 1; 0: not known
-  long column = 0;          ///< counted from 1; 0: not known
-  /// The error names something that does not exist, so changing a number cannot help.
+  /// JSON pointer, or words for something that has no pointer; "" for the whole file.
+  std::string inside = {};
+  long line = 0;    ///< line, counted from 1; 0 if it is not known
+  long column = 0;  ///< column, counted from 1; 0 if it is not known
+  /// Whether the error names something that does not exist, so that changing a number cannot help.
   bool unknown_name = false;
-  /// The message already names the wrong value, so a likely cause is shown only if it explains all
-  /// errors.
+  /// Whether the message already names the wrong value, so that a likely cause is only shown if it
+  /// explains all errors.
   bool names_value = false;
 
   bool empty() const { return file.empty() && inside.empty() && line == 0; }
 };
 
-/// "file:line:column: inside", without the parts that are not known.
+/// The text "file:line:column: inside", without the parts that are not known.
 std::string text_of(const SourcePlace& place);
 
 /// A place within `place`: "/keyframes/3" and "/zmp" give "/keyframes/3/zmp".
@@ -57,21 +58,22 @@ class Interrupted : public std::runtime_error {
   Interrupted() : std::runtime_error("interrupted") {}
 };
 
-/// Throws Error(code, message) about no file.
+/// Throws Error(code, message) that concerns no file.
 [[noreturn]] void fail(ErrorCode code, const std::string& message);
 
 /// Throws Error(code, "place: what", place).
 [[noreturn]] void fail(ErrorCode code, const SourcePlace& place, const std::string& what);
 
-/// Throws Error(bad_pattern) of a pattern that names something that does not exist.
+/// Throws Error(bad_pattern) for a pattern that names something that does not exist.
 [[noreturn]] void fail_unknown_name(SourcePlace place, const std::string& what);
 
-/// Throws `error` again with another message; code and place stay.
+/// Throws `error` again with another message; its code and place stay.
 [[noreturn]] inline void throw_with_message(const Error& error, const std::string& message) {
   throw Error(error.code(), message, error.place());
 }
 
-/// Calls `work`. An Error that leaves it without a place gets this one; its message stays.
+/// Calls `work`. If an Error without a place leaves it, the Error gets this place; its message
+/// stays.
 template <typename Work>
 auto at_place(SourcePlace place, const Work& work) {
   try {
@@ -84,7 +86,8 @@ auto at_place(SourcePlace place, const Work& work) {
   }
 }
 
-/// Throws Error(internal, message) unless `condition` holds. For invariants, not for user input.
+/// Throws Error(internal, message) unless `condition` holds. It is meant for invariants, not for
+/// user input.
 inline void require(bool condition, const char* message) {
   if (!condition) fail(ErrorCode::internal, message);
 }

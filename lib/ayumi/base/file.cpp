@@ -19,7 +19,7 @@ std::string read_file(const fs::path& path, size_t max_bytes) {
   const auto refuse = [&](const std::string& reason) {
     fail(ErrorCode::bad_file, {path.string()}, reason);
   };
-  // What the file is, is asked of the open file, which nobody can exchange any more. Without
+  // The kind of the file is asked of the open file, which nobody can exchange any more. Without
   // O_NONBLOCK, opening a named pipe would wait for its writer.
   const int opened = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
   if (opened < 0 && errno == ENOENT) refuse("no such file");

@@ -7,36 +7,38 @@
 
 namespace ayumi {
 
-/// The bytes of a regular file. Throws Error(bad_file) naming the path and the reason when it is
-/// missing, a directory, a device, a named pipe, a socket, unreadable, or larger than `max_bytes`.
-/// It never waits. Every reader of Ayumi opens files by this function.
+/// Returns the bytes of a regular file. Throws Error(bad_file) with the path and the reason if it
+/// is missing, a directory, a device, a named pipe, a socket, unreadable, or larger than
+/// `max_bytes`. It never waits. Every reader of Ayumi opens files by this function.
 std::string read_file(const std::filesystem::path& path, size_t max_bytes = size_t{1} << 30);
 
-/// Throws Error(bad_file) naming the path where no regular file can be written: it is a folder, a
+/// Throws Error(bad_file) with the path if no regular file can be written there: it is a folder, a
 /// device, a named pipe, a socket or a symbolic link (which is neither replaced nor followed), or
 /// its folder does not exist.
 void require_file_target(const std::filesystem::path& path);
 
-/// Throws Error(bad_file) when something exists at `path` (a symbolic link to nowhere included).
+/// Throws Error(bad_file) if something exists at `path`, even a symbolic link to nowhere.
 void refuse_existing(const std::filesystem::path& path);
 
-/// Writes the whole file or nothing: into a temporary name beside it, then renamed. Throws
-/// Error(bad_file) naming the path and the reason, and as require_file_target(); an older file at
-/// `path` is then untouched.
+/// Writes the whole file or nothing: it writes to a temporary name beside the file, which is then
+/// renamed. Throws Error(bad_file) with the path and the reason, and in the same cases as
+/// require_file_target(); an older file at `path` is then untouched.
 void write_file(const std::filesystem::path& path, const std::string& bytes);
 
-/// Calls `produce` with a temporary path (same folder, same extension), then renames it to `path`.
-/// For writers that need a path of their own. Removes the temporary file when `produce` throws.
+/// Calls `produce` with a temporary path (same folder, same extension), and then renames that file
+/// to `path`. It is meant for writers that need a path of their own. It removes the temporary file
+/// if `produce` throws.
 void write_file_with(const std::filesystem::path& path,
                      const std::function<void(const std::filesystem::path&)>& produce);
 
-/// Makes a folder where needed and locks it against every other FolderLock on it, in this and in
-/// other processes. The operating system ends the lock with the process, however it ends; only the
-/// hidden file `.ayumi_lock` may then stay behind, which the next lock takes over. The destructor
-/// removes that file, and the folder where this lock has made it and it is empty.
+/// Makes a folder if necessary and locks it against every other FolderLock on it, in this and in
+/// other processes. The operating system ends the lock with the process, however the process ends;
+/// only the hidden file `.ayumi_lock` may then stay behind, which the next lock takes over. The
+/// destructor removes that file; it also removes the folder if this lock has made it and it is
+/// empty.
 class FolderLock {
  public:
-  /// Throws Error(bad_file) naming the folder: it cannot be made, or another process holds it.
+  /// Throws Error(bad_file) with the folder if it cannot be made, or if another process holds it.
   explicit FolderLock(const std::filesystem::path& folder);
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;

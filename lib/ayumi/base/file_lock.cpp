@@ -16,8 +16,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Whether the open file still is the one of that name. Its last holder may have removed it between
-// our opening and locking it.
+// Whether the open file is still the one of that name. Its last holder may have removed it after we
+// opened it and before we locked it.
 bool is_file_of(int descriptor, const fs::path& path) {
   struct stat opened {
   }, named{};
@@ -28,7 +28,8 @@ bool is_file_of(int descriptor, const fs::path& path) {
 }  // namespace
 
 LockedFolder lock_folder(const fs::path& folder, const std::string& name, const std::string& busy) {
-  // Chosen: another process may remove folder or file between two calls, but not a hundred times.
+  // Number of tries. Chosen: another process may remove the folder or the file between two calls,
+  // but not a hundred times.
   constexpr int kTries = 100;
   const std::string own =
       name == folder.string() ? "the folder " : "the lock folder " + folder.string() + " ";
@@ -65,7 +66,7 @@ LockedFolder lock_folder(const fs::path& folder, const std::string& name, const 
 void unlock_folder(const LockedFolder& locked) {
   ::unlink(locked.file.c_str());
   ::close(locked.descriptor);
-  if (locked.made) ::rmdir(locked.folder.c_str());  // succeeds on an empty folder only
+  if (locked.made) ::rmdir(locked.folder.c_str());  // this only succeeds for an empty folder
 }
 
 FileLock::FileLock(const fs::path& file)

@@ -1,31 +1,31 @@
 #pragma once
 // Locks that programs hold while they write: of a folder (FolderLock in file.hpp) and of a file.
-// The operating system ends a lock with the process, however it ends.
+// The operating system ends a lock with the process, however the process ends.
 
 #include <filesystem>
 #include <string>
 
 namespace ayumi {
 
-/// A folder that is locked by the file `.ayumi_lock` in it. It is made where needed.
+/// A folder that is locked by the file `.ayumi_lock` in it. It is made if necessary.
 struct LockedFolder {
   std::filesystem::path folder, file;
   bool made = false;  ///< the lock has made the folder
   int descriptor = -1;
 };
 
-/// Throws Error(bad_file) "`name`: why" where the folder cannot be made or another process holds
-/// it; `busy` says the latter.
+/// Throws Error(bad_file) "`name`: why" if the folder cannot be made or another process holds it;
+/// `busy` says that another process holds it.
 LockedFolder lock_folder(const std::filesystem::path& folder, const std::string& name,
                          const std::string& busy);
-/// Removes the file of the lock, and the folder where the lock has made it and it is empty.
+/// Removes the file of the lock; also removes the folder if the lock has made it and it is empty.
 void unlock_folder(const LockedFolder& locked);
 
 /// Locks a file that several programs could write, against every other FileLock on it. The lock is
-/// the folder of that name with `.lock` behind it, because the file itself is replaced.
+/// a folder with the name of the file and `.lock` behind it, because the file itself is replaced.
 class FileLock {
  public:
-  /// Throws Error(bad_file) naming the file: another process writes it, or it cannot be locked.
+  /// Throws Error(bad_file) with the file if another process writes it, or if it cannot be locked.
   explicit FileLock(const std::filesystem::path& file);
   ~FileLock();
   FileLock(const FileLock&) = delete;

@@ -1,5 +1,5 @@
 #pragma once
-// Independent jobs on several threads.
+// Runs independent jobs on several threads.
 
 #include <algorithm>
 #include <atomic>
@@ -10,10 +10,10 @@
 
 namespace ayumi {
 
-/// Runs job(0..count-1) on threads. An exception keeps jobs from being started. Of the exceptions,
-/// that of the first job is thrown again, so it is the same for any number of threads: the jobs
-/// before it were all started. Where the system grants no further thread, those that are there do
-/// the work.
+/// Runs job(0..count-1) on threads. After an exception, no further jobs are started. Of several
+/// exceptions, that of the first job in order is thrown again. It is the same for any number of
+/// threads, because all jobs before it were started. If the system grants no further thread, the
+/// existing threads do the work.
 template <typename Job>
 void in_parallel(size_t count, int threads, std::atomic<bool>& stop, const Job& job) {
   std::atomic<size_t> next = 0;
@@ -41,7 +41,7 @@ void in_parallel(size_t count, int threads, std::atomic<bool>& stop, const Job& 
   std::vector<std::thread> pool;
   try {
     for (size_t i = 1; i < std::min(all, count); ++i) pool.emplace_back(work);
-  } catch (const std::exception&) {  // too many threads, or no memory for one
+  } catch (const std::exception&) {  // there are too many threads, or there is no memory for one
   }
   work();
   for (std::thread& thread : pool) thread.join();

@@ -1,7 +1,7 @@
 #pragma once
-// Numbers for keys in the order in which they come first: a table of open addressing, because a
-// mesh has up to millions of corners and a node of memory for each takes most of the time to read
-// it.
+// Numbers keys in the order in which they first occur. It is a table of open addressing, because a
+// mesh has up to millions of corners, and a separate piece of memory for each would take most of
+// the time of reading it.
 
 #include <array>
 #include <bit>
@@ -17,14 +17,14 @@ class KeyNumbers {
  public:
   using Key = std::array<std::uint32_t, Words>;
 
-  /// Makes a table for at most so many different keys.
+  /// Makes a table for at most this many different keys.
   explicit KeyNumbers(size_t most)
       : shift_(64 - std::bit_width(2 * most + 1)),
         slots_(size_t{1} << std::bit_width(2 * most + 1)) {
     keys_.reserve(most);
   }
 
-  /// Returns the number of the key, which is the next one where the key is new.
+  /// Returns the number of the key; a new key gets the next number.
   std::uint32_t number(const Key& key) {
     std::uint64_t sum = 0;
     for (const std::uint32_t word : key) sum = (sum ^ word) * 0x9E3779B97F4A7C15;
@@ -43,7 +43,7 @@ class KeyNumbers {
 
  private:
   int shift_;
-  std::vector<std::uint32_t> slots_;  // number + 1; 0: free
+  std::vector<std::uint32_t> slots_;  // number of the key + 1; 0 for a free slot
   std::vector<Key> keys_;
 };
 

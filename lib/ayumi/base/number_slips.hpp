@@ -1,5 +1,5 @@
 #pragma once
-// What may have been meant by a number that was typed. Messages name it.
+// Guesses what a person may have meant by a mistyped number. Messages name these numbers.
 
 #include <string>
 #include <vector>
@@ -8,9 +8,9 @@
 
 namespace ayumi {
 
-/// The slips are a decimal point that is one or two places off, thousandths, two neighbouring
-/// digits exchanged, and a zero too many behind the point ("2.03" for "2.3"). The number itself is
-/// never among them.
+/// Slips are: a decimal point that is one or two places off, thousandths, two neighbouring digits
+/// that are exchanged, and a zero too many after the point ("2.03" for "2.3"). The number itself is
+/// never among the results.
 inline std::vector<double> number_slips(double value) {
   std::vector<double> slips = {value / 1000, value / 100, value / 10, value * 10};
   const std::string digits = text::exact(value);

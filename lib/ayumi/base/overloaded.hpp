@@ -1,5 +1,5 @@
 #pragma once
-// One visitor for std::visit, made of a function for each alternative.
+// A visitor for std::visit, made of one function for each alternative.
 
 namespace ayumi {
 

@@ -5,8 +5,8 @@
 
 namespace ayumi {
 
-/// Processor time that this thread has used [s]. Unlike the time of a clock on the wall, it does
-/// not grow while other programs have the processor.
+/// The processor time that this thread has used [s]. Unlike the time of a wall clock, it does not
+/// grow while other programs have the processor.
 inline double thread_seconds() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);

@@ -10,15 +10,16 @@
 namespace ayumi {
 
 struct ProgressEvent {
-  std::string stage;    ///< what is being done, e.g. "simulate"
-  double fraction = 0;  ///< done share of this stage, 0..1; negative when unknown
-  std::string detail;   ///< free text, may be empty
+  std::string stage;  ///< name of the stage, such as "simulate"
+  /// Fraction of this stage that is done, from 0 to 1; negative if it is unknown.
+  double fraction = 0;
+  std::string detail;  ///< free text, may be empty
 };
 
 /// Returns false to stop the work. An empty function means "nobody is watching".
 using Progress = std::function<bool(const ProgressEvent&)>;
 
-/// Reports to `progress`; throws Interrupted when it returns false.
+/// Reports to `progress`. Throws Interrupted if it returns false.
 inline void report(const Progress& progress, const ProgressEvent& event) {
   if (progress && !progress(event)) throw Interrupted();
 }

@@ -1,12 +1,12 @@
 #pragma once
-// Text that has to fit into a picture.
+// Shortens text that has to fit into a picture.
 
 #include <string>
 
 namespace ayumi::text {
 
-/// The UTF-8 text where `fits(text)`; else its longest beginning that fits with dots behind it, or
-/// the dots alone.
+/// The UTF-8 text if `fits(text)` is true; otherwise its longest beginning that fits with dots
+/// behind it, or the dots alone.
 template <typename Fits>
 std::string shortened(std::string text, const Fits& fits) {
   const std::string dots = "…";

@@ -7,30 +7,31 @@
 
 namespace ayumi::text {
 
-/// Shortest text that reads back to the same double ("0.1", "1e-09", "nan", "inf").
+/// The shortest text that reads back to the same double, such as "0.1", "1e-09", "nan" or "inf".
 std::string exact(double value);
 
-/// `value` with `digits` digits after the point ("12.30").
+/// The value with `digits` digits after the point, such as "12.30".
 std::string fixed(double value, int digits);
 
-/// `value` with at most `digits` significant digits, for people ("0.0123").
+/// The value with at most `digits` significant digits, for people, such as "0.0123".
 std::string brief(double value, int digits = 4);
 
-/// The candidate nearest to `word` by edit distance, empty when none is near enough to suggest.
+/// The candidate nearest to `word` by edit distance; empty if none is near enough to be suggested.
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
 
-/// "; did you mean 'x'?" when a candidate is near, otherwise "".
+/// The text "; did you mean 'x'?" if a candidate is near, otherwise "".
 std::string suggestion(std::string_view word, const std::vector<std::string>& candidates);
 
-/// Items joined by `separator`.
+/// The items, joined by `separator`.
 std::string join(const std::vector<std::string>& items, std::string_view separator);
 
-/// "a, b and 3 more": at most `most` items, and the number of the others.
+/// A text such as "a, b and 3 more": at most `most` items, and the number of the others.
 std::string join_first(const std::vector<std::string>& items, size_t most);
 
-/// Text for a terminal: lines and tabs stay, and every other control character (of ASCII and of
-/// Latin-1, the marks that turn the direction of writing, and bytes that are not UTF-8) is written
-/// out as "\\x1b" or "\\u202e". A name in a file can thus not move the cursor or hide what follows.
+/// Makes text safe for a terminal: lines and tabs stay, and every other control character (of ASCII
+/// and of Latin-1, the marks that turn the direction of writing, and bytes that are not UTF-8) is
+/// written out as "\\x1b" or "\\u202e". A name in a file can thus not move the cursor or hide the
+/// text that follows.
 std::string printable(std::string_view text);
 
 }  // namespace ayumi::text

@@ -1,16 +1,16 @@
 #pragma once
-// Text of other programs is not always UTF-8. Defined in text.cpp.
+// Reads text of other programs, which is not always UTF-8. The functions are defined in text.cpp.
 
 #include <string_view>
 
 namespace ayumi::text {
 
 /// Returns the number of bytes of the UTF-8 character that `text` begins with, and puts the number
-/// of the character into `code`. Returns 0 when the bytes are not UTF-8 (RFC 3629: no overlong
-/// forms, no surrogates, at most U+10FFFF).
+/// of the character into `code`. Returns 0 if the bytes are not UTF-8 (RFC 3629: no overlong forms,
+/// no surrogates, at most U+10FFFF).
 size_t utf8_character(std::string_view text, char32_t& code);
 
-/// Index of the first byte that is no part of UTF-8 text; npos: there is none.
+/// The index of the first byte that is no part of UTF-8 text; npos if there is none.
 size_t not_utf8_at(std::string_view text);
 
 }  // namespace ayumi::text

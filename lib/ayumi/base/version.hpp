@@ -2,7 +2,7 @@
 
 namespace ayumi {
 
-/// Version of the library and the command, "major.minor.patch".
+/// The version of the library and the command, as "major.minor.patch".
 const char* version();
 
 }  // namespace ayumi

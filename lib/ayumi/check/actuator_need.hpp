@@ -8,7 +8,7 @@
 namespace ayumi {
 
 struct ActuatorNeed {
-  std::string text;                     ///< in words; empty when the profile is enough
+  std::string text;                     ///< the need in words; empty if the profile is enough
   std::vector<std::string> sufficient;  ///< other profiles that are enough
 };
 

@@ -20,7 +20,7 @@ namespace ayumi {
 namespace attribution {
 namespace {
 
-// ---- what the rules are made of
+// ---- the parts of a rule
 
 /// The findings of a motion while causes are looked for.
 struct Scene {
@@ -59,10 +59,10 @@ struct Effect {
 };
 
 enum class Order {
-  by_time,               ///< causes as they come
+  by_time,               ///< the causes in order of time
   by_severity,           ///< the worst cause first
   worst_of_each_motion,  ///< the worst cause first; between two rests, only one cause has effects
-  by_effect              ///< for each effect its first cause
+  by_effect              ///< each effect follows from its first cause
 };
 
 struct Rule {
@@ -168,9 +168,9 @@ const FindingSet kTorsion = {"`yaw_moment`", is_kind<FindingKind::yaw_moment>};
 
 // ---- intervals
 
-// Number of samples beside a lift-off or landing in which a jump of the path shows. Derived: the
-// reach of differences (3), and two samples on either side, which belong neither to the flight nor
-// to the support.
+// Number of samples before and after a lift-off or landing in which a jump of the path shows.
+// Derived: the reach of differences (3), and two samples on either side, which belong neither to
+// the flight nor to the support.
 constexpr int kEdgeReach = 5;
 
 Interval influence_of(const Scene& scene, int i) {
@@ -252,7 +252,7 @@ const Where kBetweenRests = {
 // Source: docs/attribution.md.
 constexpr double kArmFactor = 2;
 // A sole whose displacement is below this share of the largest one counts as back in its place.
-// Chosen: a tenth. No measured case changes from half to twice (constants.md).
+// Chosen: a tenth. No measured case changes between half and twice the value (constants.md).
 constexpr double kBackShare = 0.1;
 
 bool is_leg_joint(const RobotModel& model, int dof) {
@@ -268,7 +268,7 @@ bool is_jump(const Scene& scene, int j, int sample) {
 }
 
 // Whether a sole leaves its place suddenly, and comes back suddenly or at the end of its contact.
-// Then the joints of the leg jump with the sole, each by the amount that the geometry requires.
+// If so, the joints of the leg jump with the sole, each by the amount that the geometry requires.
 bool stands_before_and_after(const Scene& scene, const FindingWindow& w) {
   const JudgedMotion& motion = scene.motion;
   const int foot = w.worst.item;
@@ -280,7 +280,8 @@ bool stands_before_and_after(const Scene& scene, const FindingWindow& w) {
   return contact.contact && stands(w.first - kDifferenceReach) && stands(w.last + kDifferenceReach);
 }
 
-// From the last jump of the joint before this window to the first one after it.
+// The interval from the last jump of the joint before this window to its first jump after the
+// window.
 Interval held_around(const Scene& scene, const FindingWindow& w, int dof) {
   Interval held = {0, scene.motion.count() - 1};
   for (const FindingWindow& jump : scene.windows) {

@@ -21,7 +21,8 @@ void mark_consequences(JudgedMotion& motion, std::vector<FindingWindow>& windows
 /// between the same two rests where the error is of a rate or a force.
 void add_table_findings(JudgedMotion& motion, std::vector<FindingWindow>& windows);
 
-/// The rows in their order: cause, what follows from it, in which interval, under which condition.
+/// The rows of the table in their order. Each names a cause, what follows from it, in which
+/// interval, and under which condition.
 std::vector<std::array<std::string, 4>> attribution_table();
 
 }  // namespace ayumi

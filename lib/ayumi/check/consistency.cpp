@@ -51,7 +51,7 @@ void judge(JudgedMotion& motion, int threads) {
 // moment of up to kSpikeSize times the limit that lasts less than kSpikeTime turns nothing, so it
 // becomes a warning. Source of both constants: docs/attribution.md.
 constexpr double kSpikeTime = 0.005;  // [s]
-constexpr double kSpikeSize = 3;      // times the limit
+constexpr double kSpikeSize = 3;      // as a multiple of the limit
 
 void excuse_spikes(const JudgedMotion& motion, std::vector<FindingWindow>& windows) {
   for (FindingWindow& w : windows) {
@@ -96,7 +96,7 @@ Finding finding_of(const JudgedMotion& motion, const std::vector<FindingWindow>&
   return f;
 }
 
-// Errors first, then by time. Indices of causes follow.
+// Sorts errors first, then by time, and updates the indices of the causes.
 void sort_findings(std::vector<Finding>& findings) {
   std::vector<int> order(findings.size()), place(findings.size());
   std::iota(order.begin(), order.end(), 0);
@@ -122,7 +122,7 @@ ConsistencyReport report_of(JudgedMotion& motion) {
   ConsistencyReport report;
   report.profile = motion.limits.name;
   report.summary = motion.summary;
-  for (const FindingSpec* spec : summary_figures())  // nothing was near the limit at any time
+  for (const FindingSpec* spec : summary_figures())  // no value: never near the limit
     if (spec->figure.least && !std::isfinite(report.summary[spec->kind]))
       report.summary[spec->kind] = 0;
   // Without collision shapes on both legs, no clearance is known, and nothing was checked.

@@ -16,8 +16,8 @@ struct ConsistencyReport {
   bool consistent = false;        ///< no finding of severity error
   std::vector<Finding> findings;  ///< errors first, then by time
   CheckSummary summary;
-  FigurePlaces summary_at;  ///< where each figure of the summary has its value
-  std::string profile;      ///< actuator profile judged against
+  FigurePlaces summary_at;  ///< the place at which each figure of the summary has its value
+  std::string profile;      ///< the actuator profile by which the motion was judged
 };
 
 /// "consistent" or "inconsistent", in answers, files and pages.

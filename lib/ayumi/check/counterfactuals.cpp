@@ -12,7 +12,7 @@ namespace {
 
 // Largest overlap that bodies at a wrong angle may have and still only touch because of that angle
 // [m]; deeper overlaps are separate findings. Chosen: 3 % of the height of a small humanoid (0.5
-// m). No measured case changes from half to twice (constants.md).
+// m). No measured case changes between half and twice the value (constants.md).
 constexpr double kTouch = 0.015;
 
 }  // namespace

@@ -13,15 +13,15 @@ namespace ayumi {
 /// A consequence of the errors of a group.
 struct GroupConsequence {
   FindingKind kind = FindingKind::cog_residual;
-  int count = 0;  ///< findings
-  int worst = 0;  ///< index into ConsistencyReport::findings
+  int count = 0;  ///< number of findings
+  int worst = 0;  ///< the worst of them, as an index into ConsistencyReport::findings
 };
 
 /// Findings of one kind and severity, at one place or at this place and its mirror image.
 struct FindingGroup {
   std::vector<int> members = {};         ///< indices into ConsistencyReport::findings, by time
-  int worst = 0;                         ///< the one of them that is furthest beyond its limit
-  std::vector<std::string> places = {};  ///< of all members, in words, each once
+  int worst = 0;                         ///< index of the member that is furthest beyond its limit
+  std::vector<std::string> places = {};  ///< the places of all members in words, each place once
   std::vector<GroupConsequence> consequences = {};  ///< in the order of their first finding
 };
 

@@ -8,23 +8,25 @@ namespace ayumi {
 namespace {
 
 // COG deviation that still belongs to a fault [m]. Chosen: a twentieth of the tolerance of the COG.
-// No measured case changes from half to twice (constants.md).
+// No measured case changes between half and twice the value (constants.md).
 constexpr double kTrace = 1e-4;
 // Distance of a sole from its place that is more than rounding [m]. Chosen: between planned
 // contacts, which are met to 1e-12 m, and the smallest tolerance of a sole (3e-4 m). No measured
-// case changes from half to twice (constants.md).
+// case changes between half and twice the value (constants.md).
 constexpr double kOff = 1e-5;
-// Time by which the ZMP reacts before the COG is off by kTrace [s]. Source: docs/attribution.md.
+// Time for which the ZMP reacts before the COG deviates by kTrace [s]. Source: docs/attribution.md.
 constexpr double kPad = 0.050;
-// Rest [rad/s]: joints slower than this, for at least kRest [s]. Chosen: a squat reverses its
-// direction at the lowest point, and this is not a rest. No measured case changes from half to
-// twice (constants.md).
+// A motion rests while all joints are slower than kStill [rad/s] for at least kRest [s]. Chosen: a
+// squat reverses its direction at the lowest point, and this is not a rest. No measured case
+// changes between half and twice the value (constants.md).
 constexpr double kStill = 0.01, kRest = 0.020;
-// Distance back that shows that a joint has turned [rad], [m]. Chosen: above the rounding of tables
-// in 0.1 degrees (1.7e-3 rad). No measured case changes from half to twice (constants.md).
+// A joint has turned back if it has moved back by this distance [rad], [m]. Chosen: above the
+// rounding of tables in 0.1 degrees (1.7e-3 rad). No measured case changes between half and twice
+// the value (constants.md).
 constexpr double kTurning = 2e-3;
 
-// Where theta, going away from its limit, is least before it comes back by kTurning.
+// Follows the joint from sample `from` in the direction `step`. Returns the sample at which its
+// angle is farthest from the limit, before the angle comes back by kTurning.
 int turning_point(const JudgedMotion& motion, int dof, double towards, int from, int step) {
   const auto height = [&](int k) { return towards * motion.series.samples[k].state.theta[dof]; };
   int least = from;

@@ -1,5 +1,6 @@
 #pragma once
-// Influence intervals: the time in which one fault has effects, in samples, the last one included.
+// An influence interval is the time in which one fault has effects, in samples; its last sample is
+// included.
 
 #include "ayumi/limits/judged_motion.hpp"
 
@@ -56,7 +57,7 @@ Interval moved_phases(const JudgedMotion& motion, const Violation& foot);
 /// Whether another step in this interval undoes the joint's largest step.
 bool comes_back(const JudgedMotion& motion, int dof, const Interval& interval);
 
-/// Samples in 50 ms: forces respond before and after a displacement.
+/// The number of samples in 50 ms: forces respond before and after a displacement by this time.
 int pad_samples(const JudgedMotion& motion);
 
 }  // namespace ayumi

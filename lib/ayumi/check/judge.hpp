@@ -8,16 +8,18 @@
 namespace ayumi {
 
 struct Judgement {
-  ConsistencyReport report;  ///< of the motion; `consistent` is the verdict on motion and goals
-  bool motion_consistent = true;  ///< false: errors of the motion itself, which a repair can move
-  ActuatorNeed motion_need;       ///< what the profile lacks for the motion
-  ActuatorNeed goal_need;         ///< what it lacks for the goals
+  /// Report on the motion; its `consistent` is the verdict on motion and goals.
+  ConsistencyReport report;
+  /// false: the motion itself has errors, which a repair can remove.
+  bool motion_consistent = true;
+  ActuatorNeed motion_need;  ///< what the profile lacks for the motion
+  ActuatorNeed goal_need;    ///< what the profile lacks for the goals
 
   bool good() const { return report.consistent; }
   /// What the profile lacks for the motion or, if it suffices for the motion, for the goals.
   const ActuatorNeed& need() const { return motion_need.text.empty() ? goal_need : motion_need; }
   /// "the pattern is inconsistent: joint_torque of r_knee at 1.200 s: 5.2 N m, limit 4.5 N m (and 3
-  /// more errors)"; empty when it is good.
+  /// more errors)"; empty when the pattern is good.
   std::string reason() const;
 };
 

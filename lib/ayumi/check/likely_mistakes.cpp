@@ -26,7 +26,8 @@ using Eigen::Vector3d;
 // A swing that lasts longer is not one of a walking robot [s]. Chosen: the slowest bundled motion
 // swings for 2 s, and seconds written as milliseconds are a thousand times too long.
 constexpr double kLongestSwing = 30;
-// The same for a motion in which no foot swings [s].
+// No motion without a swing lasts longer [s]. Chosen: seconds written as milliseconds are a
+// thousand times too long.
 constexpr double kLongestStand = 1000;
 // A COG below this share of its height at home is nearer to the ground than folded legs allow.
 // Chosen: the deepest squat of HOAP-1 is at 0.6.
@@ -39,25 +40,26 @@ constexpr double kCrossing = 0.02;
 constexpr double kLiftedKey = 0.005;
 // A foot lower than this over the ground counts as standing on it [m].
 constexpr double kOnGround = 1e-3;
-// Angles below this count as none, and angles this near to a whole number as whole ones [deg].
+// Angles below this count as zero, and angles this near to a whole number count as whole [deg].
 // Definition: what rounding to three digits leaves.
 constexpr double kLeastAngle = 1e-3;
 // From this number of angles on, a regularity is not taken for chance. Chosen: two keys of two
 // joints.
 constexpr size_t kManyAngles = 4;
-// A larger friction coefficient of the ground is doubted. Chosen: rubber on dry concrete has 1; at
-// half, rubber soles are doubted, at twice, a friction of 3 passes for a real one.
+// A larger friction coefficient of the ground is doubtful. Chosen: rubber on dry concrete has 1.
+// With half of this bound, rubber soles would be doubtful; with twice, a friction of 3 would pass
+// as real.
 constexpr double kRoughest = 2;
 // A push that gives the whole robot more speed than this is not a useful test of its balance [m/s].
-// Chosen: ten times what walking robots survive; at half and at twice, units that are wrong by 1000
-// are named as well.
+// Chosen: ten times what walking robots survive. With half or twice this bound, units that are
+// wrong by a factor of 1000 are found as well.
 constexpr double kFastestPush = 2;
 // Time for which a force is not answered [s]. Chosen: about a step; against a force that lasts
 // longer, a robot leans.
 constexpr double kUnopposed = 0.5;
 // How long a simulation holds the last posture [s]. Definition: SimulateOptions.
 constexpr double kHeld = 1;
-// Mistakes of one kind that are named one by one.
+// Number of mistakes of one kind that are named one by one.
 constexpr size_t kNamed = 2;
 
 std::string metres(double value) { return text::brief(value, 3) + " m"; }
@@ -121,7 +123,8 @@ class Suspicions {
   std::string key_place(size_t i) const { return pointer_of_keyframe(pattern_, i); }
   std::string phase_place(size_t i) const { return pointer_of_phase(pattern_, i); }
 
-  // Degrees in a pattern whose unit is rad: no joint that has limits turns around that far.
+  // Finds degrees in a pattern whose unit is rad: no joint that has limits can turn by such an
+  // angle.
   void angle_units() {
     if (pattern_.degrees) return;
     std::vector<Mistake> found;
@@ -141,8 +144,8 @@ class Suspicions {
     say(found, Finds::several_in_a_place);
   }
 
-  // Radians in a pattern whose unit is deg: several angles, none of which is more than a turn in
-  // radians, and few of which are whole numbers.
+  // Finds radians in a pattern whose unit is deg: there are several angles, none of them is more
+  // than a turn in radians, and few of them are whole numbers.
   void small_angles() {
     if (!pattern_.degrees) return;
     size_t count = 0, whole = 0;
@@ -197,7 +200,8 @@ class Suspicions {
     say(found);
   }
 
-  // A simulation holds the last posture for a while.
+  // Disturbances may begin after the end of the motion, because a simulation holds the last posture
+  // for a while.
   void late_disturbances() {
     if (!feet_) return;
     std::vector<Mistake> found;
@@ -230,7 +234,8 @@ class Suspicions {
     say(found);
   }
 
-  // The COG height at home, plus the length by which the bent legs can still be stretched.
+  // The largest possible COG height: the height at home, plus the length by which the bent legs can
+  // still be stretched.
   double highest_cog(double home) const {
     RobotData data(model_);
     update_positions(model_, model_.rest_state(), data);
@@ -271,7 +276,7 @@ class Suspicions {
   void footholds() {
     const double leg = leg_length(model_);
     std::vector<Mistake> found;
-    std::array<bool, 2> far = {};  // this foot stands at a foothold that was named
+    std::array<bool, 2> far = {};  // whether this foot stands at a foothold that was already named
     for (size_t i = 0; i < feet_->phases().size(); ++i) {
       if (!feet_->phases()[i].swing) continue;
       const Swing& swing = *feet_->phases()[i].swing;
@@ -319,7 +324,7 @@ class Suspicions {
     say(found);
   }
 
-  // A single support in which the keys before and after its middle are under the other foot.
+  // Finds single supports in which the keys before and after their middle are under the other foot.
   void zmp_keys() {
     std::vector<Mistake> found;
     for (size_t i = 0; i < feet_->phases().size(); ++i) {
@@ -449,7 +454,8 @@ std::vector<Mistake> likely_mistakes(const RobotModel& model, const Pattern& pat
     mistakes.push_back({e.place, e.written + "; " + e.instead, e.enough});
   const std::vector<Mistake> impossible = impossible_values(model, pattern);
   if (mistakes.empty()) mistakes = impossible;
-  // The reason why a value is impossible, before a value that is possible.
+  // If it is known why a value is impossible, the reason comes first, and then the value that is
+  // possible.
   if (!search.found.empty())
     for (const Mistake& why : impossible)
       if (const Explanation& e = search.found.front();

@@ -39,12 +39,12 @@ std::vector<Mistake> doubtful_values(const RobotModel& model, const Pattern& pat
 std::vector<Mistake> likely_mistakes(const RobotModel& model, const Pattern& pattern,
                                      const CheckOptions& options, const Progress& progress = {});
 
-/// Those that are causes, in words.
+/// The words of those mistakes that are causes.
 std::vector<std::string> cause_texts(const std::vector<Mistake>& mistakes);
 
-/// "likely cause: ...; the first thing that fails: MESSAGE", or MESSAGE where no mistake is likely.
-/// If a search found no cause, the changes that it tried follow MESSAGE. The name of the pattern's
-/// file, where MESSAGE begins with it, stays in front.
+/// "likely cause: ...; the first thing that fails: MESSAGE", or MESSAGE alone if no mistake is
+/// likely. If a search found no cause, the changes that it tried follow MESSAGE. If MESSAGE begins
+/// with the name of the pattern's file, this name stays in front.
 std::string with_mistakes(const std::string& message, const Pattern& pattern,
                           const std::vector<Mistake>& mistakes);
 

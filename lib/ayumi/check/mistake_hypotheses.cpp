@@ -28,53 +28,57 @@ namespace ayumi {
 
 namespace {
 
-// Part of a swing that a missing double support takes. Chosen: that of the generated walks.
+// Share of a swing that becomes the missing double support. Chosen: the share of the generated
+// walks.
 constexpr double kDoubleSupport = 0.2;
-// A phase whose duration differs by less than this share from that of its like is as long as it was
-// meant to be. Chosen: generated walks differ by 1 %.
+// A phase is as long as it was meant to be if its duration differs by less than this share from the
+// duration of similar phases. Chosen: generated walks differ by 1 %.
 constexpr double kUsualShare = 0.2;
 // No phase of a robot is shorter [s]. Chosen: ten times less than the shortest steps of small
-// robots; a time in seconds that is read in ms is below half of it, and steps are above twice.
+// robots. A time in seconds that is read in ms is below half of this bound, and steps are above
+// twice this bound.
 constexpr double kShortestPhase = 0.02;
-// From this number on, keyframes that would be at the ends of phases are not taken for chance.
-// Chosen: those of two steps.
+// If at least this many keyframes would fall on the ends of phases, this is no coincidence. Chosen:
+// the keyframes of two steps.
 constexpr long kManyKeys = 4;
-// A time that is nearer to another than this share of it is meant to be the same. Chosen: times are
-// written in milliseconds, and a factor that is read off one of them is out by as much.
+// Two times that differ by less than this share are meant to be equal. Chosen: times are written in
+// milliseconds, and a factor that is derived from such times has an error of this size.
 constexpr double kSameTime = 0.005;
-// A length below this is none [m]. Definition: what rounding leaves.
+// A length below this counts as zero [m]. Definition: what rounding leaves.
 constexpr double kNoLength = 1e-4;
-// Numbers of a target below this are taken for metres, whatever the others are. Chosen: half a
-// millimetre, or half a centimetre.
+// Numbers of a target below this are taken for metres, whatever the other numbers are. Chosen: half
+// a millimetre, or half a centimetre.
 constexpr double kLeastWritten = 0.5;
 // Units in which lengths are written by mistake, in place of metres.
 constexpr std::array kSmallerUnits = {std::pair("mm", 1e-3), std::pair("cm", 1e-2)};
-// An angle below this is none [rad]. Definition: what rounding leaves.
+// An angle below this counts as zero [rad]. Definition: what rounding leaves.
 constexpr double kNoAngle = 1e-6;
-// A level foot below a leg that leans by less than this is no reason [rad]. Chosen: five degrees,
-// which every ankle bends.
+// A level foot below a leg that leans by less than this is not named as a reason [rad]. Chosen:
+// five degrees, which every ankle can bend.
 constexpr double kNotedLean = 0.09;
-// Further keys of a foot that are named with their turn. Chosen: a kick has two or three in the
-// air.
+// Number of further keys of a foot that are named with their turn. Chosen: a kick has two or three
+// keys in the air.
 constexpr size_t kTurnedKeys = 3;
 // Below this, the turn of a foot against the other one is ignored [rad]. Chosen: ten degrees.
 constexpr double kNotedTurn = 0.17;
 // A COG that is farther than this from the middle of the feet is beside them; a share of the length
 // of a leg. Chosen: more than half of a sole.
 constexpr double kNotedOffset = 0.25;
-// Share of the length of a leg that its foot is at most aside. Definition: the sine of an angle.
+// Largest sideways distance of a foot, as a share of the length of its leg. Definition: the sine of
+// an angle.
 constexpr double kMostLean = 0.9;
-// A segment that lasts less than this share of its neighbour is too short before a value is out by
-// a power of ten. Chosen: keys of one motion are seldom so unequal.
+// A segment that lasts less than this share of its neighbour is considered too short before any
+// value is considered wrong by a power of ten. Chosen: keys of one motion are seldom so unequal.
 constexpr double kShortSegment = 0.15;
-// A COG that sinks by less than this share of its stoop below the key before a lift-off, or after a
-// landing, does what its author sees in the keys. Chosen: 3 mm of a stoop of 30 mm.
+// The COG may sink below its lowest key before a lift-off or after a landing. If it sinks by less
+// than this share of the stoop, the motion is what its author sees in the keys. Chosen: 3 mm for a
+// stoop of 30 mm.
 constexpr double kNotedSink = 0.1;
-// Points of a segment at which its lowest value is looked for. Chosen: those between two of them
-// are lower by less than 1e-3 of the stoop.
+// Number of points of a segment at which its lowest value is searched. Chosen: between two points,
+// the value is lower by less than 1e-3 of the stoop.
 constexpr int kSinkPoints = 100;
-// Halvings of a time that is looked for. Chosen: a second becomes a microsecond; times are written
-// in milliseconds.
+// Number of bisection steps in the search for a time. Chosen: an interval of a second becomes a
+// microsecond, and times are written in milliseconds.
 constexpr int kHalvings = 20;
 
 std::string seconds(double t) { return text::brief(t, 5) + " s"; }
@@ -234,7 +238,8 @@ class Hypotheses::Maker {
                         }});
   }
 
-  // Phases that were stretched while the keyframes were left, or the other way round.
+  // The phases were stretched and the keyframes were left as they were, or the keyframes were
+  // stretched and the phases were left.
   void stretched_keys(std::vector<Hypothesis>& made) const {
     const auto& keys = pattern_.keyframes;
     const auto fitting = [&](double factor) {
@@ -295,7 +300,7 @@ class Hypotheses::Maker {
                          [&](const Keyframe& other) { return other.pointer == pointer; }) > 1;
   }
 
-  // Whether a time is within a flight, not at its ends.
+  // Whether a time is within a flight; the ends of a flight do not belong to it.
   bool flies(double t) const {
     double from = 0;
     for (const Phase& phase : pattern_.phases) {
@@ -338,7 +343,7 @@ class Hypotheses::Maker {
       if (i == 0 || (!too_early && belongs_to_phase(keys[i]))) continue;
       const std::string lasts = ", so the segment before it lasts " + seconds(in) +
                                 " and the one after it " + seconds(out);
-      // Between a short and a long neighbour, towards the long one.
+      // The key is between a short and a long neighbour segment, and is moved towards the long one.
       for (const double share : {0.35, 0.6, 0.8}) {
         const double t = in < out ? keys[i].t + share * out : keys[i].t - share * in;
         if (too_early)
@@ -351,8 +356,8 @@ class Hypotheses::Maker {
     }
   }
 
-  // The lowest height between rest at 0 and a lift-off from `rise` with this speed, after `lasts`.
-  // A landing is the same backwards in time.
+  // The lowest height of a push that lasts `lasts` [s]: it begins at rest at height 0 and ends with
+  // a lift-off at height `rise` with this speed. A landing is the same motion backwards in time.
   static double lowest(double rise, double speed, double lasts) {
     double low = 0;
     for (int i = 1; i < kSinkPoints; ++i)
@@ -362,7 +367,8 @@ class Hypotheses::Maker {
     return low;
   }
 
-  // The longest time from rest to this lift-off without a noted sink, at most `lasts` [s].
+  // The longest duration of a push from rest to this lift-off in which the COG does not sink
+  // noticeably, at most `lasts` [s].
   static double longest_push(double rise, double speed, double lasts) {
     double possible = rise / speed, impossible = lasts;
     for (int i = 0; i < kHalvings; ++i) {
@@ -372,10 +378,11 @@ class Hypotheses::Maker {
     return possible;
   }
 
-  // Where the COG has a long time between the lowest key and the lift-off, or the landing and the
-  // lowest key, it sinks below that key: its speed at the ground is that of the flight.
+  // If the time between the lowest key and the lift-off, or between the landing and the lowest key,
+  // is too long, the COG sinks below that key, because its speed at the ground is that of the
+  // flight.
   void stoops(std::vector<Hypothesis>& made) const {
-    std::vector<size_t> keys;  // those of the COG height
+    std::vector<size_t> keys;  // the keys of the COG height
     for (size_t i = 0; i < pattern_.keyframes.size(); ++i)
       if (pattern_.keyframes[i].cog_height) keys.push_back(i);
     const auto key_at = [&](double t) {
@@ -391,7 +398,8 @@ class Hypotheses::Maker {
       const double flight = phase.until - begin_of(i);
       const Keyframe &leaves = pattern_.keyframes[*off], &lands = pattern_.keyframes[*on];
       const double mean = (*lands.cog_height - *leaves.cog_height) / flight;
-      // The key beside the flight, its end of the flight, and the speed away from the key.
+      // For each side: the key beside the flight, the key at this end of the flight, and the mean
+      // speed of the flight away from the first key.
       std::vector<std::tuple<size_t, const Keyframe*, double>> sides;
       if (off != keys.begin()) sides.emplace_back(*(off - 1), &leaves, mean);
       if (on + 1 != keys.end()) sides.emplace_back(*(on + 1), &lands, -mean);
@@ -420,7 +428,8 @@ class Hypotheses::Maker {
     }
   }
 
-  /// The median of the durations of phases that are like this one; nothing without others.
+  /// The median of the durations of other phases of the same kind; no value if there are fewer than
+  /// two of them.
   std::optional<double> usual_duration(size_t phase) const {
     std::vector<double> like;
     for (size_t i = 0; i < pattern_.phases.size(); ++i)
@@ -449,7 +458,7 @@ class Hypotheses::Maker {
       const std::string lasts = "the phase ends at " + seconds(until) + " and lasts " +
                                 seconds(until - begin) +
                                 (usual ? ", while similar phases last " + seconds(*usual) : "");
-      // A motion that goes on so long has keys there.
+      // A motion that really lasts so long has keys at its end, too.
       const bool last = i + 1 == pattern_.phases.size();
       const double keyed = pattern_.keyframes.empty() ? 0 : pattern_.keyframes.back().t;
       const auto is_used = [&](double t) { return !last || t <= until || 2 * keyed > begin + t; };
@@ -492,8 +501,9 @@ class Hypotheses::Maker {
     return sole.contains((place.inverse() * zmp).head<2>());
   }
 
-  /// The keys that lead the ZMP while the robot stands on one foot, and put it elsewhere: those of
-  /// the phase, and where it begins or ends between keys, the nearest ones outside.
+  /// The keys that lead the ZMP while the robot stands on one foot, but do not put it under this
+  /// foot: the keys of the phase and, where the phase begins or ends between two keys, the nearest
+  /// keys outside of it.
   std::vector<size_t> wrong_zmp_keys(size_t phase) const {
     const double begin = begin_of(phase), until = pattern_.phases[phase].until;
     std::vector<size_t> keys, wrong;
@@ -512,7 +522,7 @@ class Hypotheses::Maker {
     return wrong;
   }
 
-  // The ZMP stays in the middle, or elsewhere, in several phases on one foot.
+  // In several phases on one foot, the ZMP stays in the middle between the feet or elsewhere.
   void all_zmp_keys(std::vector<Hypothesis>& made) const {
     std::map<size_t, ZmpKey::Place> meant;
     std::vector<size_t> phases;
@@ -544,9 +554,9 @@ class Hypotheses::Maker {
                                             : "at a point";
   }
 
-  // All keys of the ZMP under the other foot.
+  // All keys of the ZMP are under the other foot.
   void zmp_sides(std::vector<Hypothesis>& made) const {
-    size_t wrong = 0, single = 0;  // phases
+    size_t wrong = 0, single = 0;  // numbers of phases
     for (size_t i = 0; i < pattern_.phases.size(); ++i) {
       const Phase& phase = pattern_.phases[i];
       if (!is_single(phase.support)) continue;
@@ -598,7 +608,7 @@ class Hypotheses::Maker {
     }
   }
 
-  /// Distance that the feet move from foothold to foothold [m].
+  /// Total distance between the successive footholds of each foot [m].
   double way_of_feet(const Pattern& pattern) const {
     double way = 0;
     std::array<std::optional<Eigen::Vector3d>, 2> at;
@@ -611,8 +621,8 @@ class Hypotheses::Maker {
     return way;
   }
 
-  // Exchanged footholds lead the feet back and forth. Footholds in good order would do so after an
-  // exchange.
+  // Exchanged footholds lead the feet back and forth, so that another exchange shortens the way. If
+  // the footholds are in good order, an exchange lengthens the way.
   bool exchange_shortens_way(size_t one, size_t other) const {
     Pattern exchanged = pattern_;
     std::swap(exchanged.phases[one].swing->to, exchanged.phases[other].swing->to);
@@ -669,7 +679,8 @@ class Hypotheses::Maker {
     return (swing.foot == Side::left ? 1 : -1) * (stance.inverse() * swing.to.position).y();
   }
 
-  // Two feet that both land on the side of the other one: two footholds rather than two signs.
+  // If both feet land on the side of the other foot, two footholds were exchanged; this is more
+  // probable than two wrong signs.
   void crossed_footholds(std::vector<Hypothesis>& made) const {
     if (!feet_) return;
     std::vector<Hypothesis> exchanges;
@@ -724,7 +735,7 @@ class Hypotheses::Maker {
 
   Side foot_of(size_t phase) const { return pattern_.phases[phase].swing->foot; }
 
-  // With one of the next two.
+  // Adds the exchange of this foothold with each of the next two.
   void add_foothold_exchanges(
       size_t phase, std::vector<Hypothesis>& made,
       const std::function<bool(size_t)>& with = [](size_t) { return true; }) const {
@@ -745,7 +756,7 @@ class Hypotheses::Maker {
     }
   }
 
-  // A whole foothold or foot key in another unit.
+  // A whole foothold or foot key is written in another unit.
   void footholds(std::vector<Hypothesis>& made) const {
     const auto add = [&](const std::string& place, Side side, const Foothold& foot,
                          const std::function<Foothold&(Pattern&)>& in) {
@@ -838,7 +849,8 @@ class Hypotheses::Maker {
            [in = target.in, factor = factor](Pattern& p) { in(p) *= factor; }});
   }
 
-  // All targets of the hands and other links, or all of the gaze.
+  // All targets of the hands and other links, or all targets of the gaze, are written in another
+  // unit.
   void target_units(std::vector<Hypothesis>& made) const {
     const std::vector<FarTarget> all = far_targets();
     for (const bool gaze : {false, true}) {
@@ -859,7 +871,7 @@ class Hypotheses::Maker {
     }
   }
 
-  // A whole point of the ZMP in another unit.
+  // A whole point of the ZMP is written in another unit.
   void zmp_point(size_t key, std::vector<Hypothesis>& made) const {
     const auto& zmp = pattern_.keyframes[key].zmp;
     if (!zmp || zmp->place != ZmpKey::Place::point || zmp->point.norm() < leg_length(model_) ||
@@ -914,7 +926,7 @@ class Hypotheses::Maker {
          }});
   }
 
-  /// The nearest angle of whole degrees [rad].
+  /// The nearest angle in whole degrees [rad].
   static double whole_degrees(double radians) {
     constexpr double degree = std::numbers::pi / 180;
     return std::round(radians / degree) * degree;
@@ -935,7 +947,8 @@ class Hypotheses::Maker {
     return false;
   }
 
-  // A foothold nearer to the place beside the other foot, with all later ones.
+  // A foothold is moved nearer to the place beside the other foot, and all later footholds are
+  // moved with it.
   void near_footholds(std::vector<Hypothesis>& made) const {
     if (!feet_) return;
     for (size_t i = 0; i < pattern_.phases.size(); ++i) {
@@ -976,7 +989,7 @@ class Hypotheses::Maker {
     }
   }
 
-  // A foot that turns less against the other one, and the later footholds with it.
+  // A foot turns less relative to the other foot, and the later footholds turn with it.
   void lesser_turns(std::vector<Hypothesis>& made) const {
     if (!feet_) return;
     for (size_t i = 0; i < pattern_.phases.size(); ++i) {
@@ -1014,7 +1027,8 @@ class Hypotheses::Maker {
     }
   }
 
-  // As the author can write it: "left": {"position": [0, 0.039, 0.03], "rpy": [0, -20, 0]}.
+  // The foot with its turn as the author can write it: "left": {"position": [0, 0.039, 0.03],
+  // "rpy": [0, -20, 0]}.
   std::string turned_foot(Side side, const Foothold& foot, double roll, double pitch) const {
     const double unit = pattern_.degrees ? std::numbers::pi / 180 : 1;
     const auto written = [](double value) { return text::brief(value, 9); };
@@ -1024,7 +1038,7 @@ class Hypotheses::Maker {
            written(foot.rpy.z() / unit) + "]}";
   }
 
-  // A foot that stays level while its leg leans, which the ankle has to make up for.
+  // A foot stays level while its leg leans, so that the ankle has to compensate for the lean.
   void level_feet(std::vector<Hypothesis>& made) const {
     if (!feet_) return;
     const double leg = leg_length(model_);
@@ -1121,7 +1135,7 @@ class Hypotheses::Maker {
              [i, s, o](Pattern& p) { std::swap(p.keyframes[i].feet[s], p.keyframes[i].feet[o]); }});
       }
       if (!map || key.joints.empty()) continue;
-      // No other key moves its joints.
+      // True if no other key moves the joints of this key.
       const bool is_alone = std::none_of(
           pattern_.keyframes.begin(), pattern_.keyframes.end(), [&](const Keyframe& k) {
             return &k != &key &&
@@ -1166,7 +1180,8 @@ class Hypotheses::Maker {
       if (phase.swing || phase.viip || !is_single(phase.support)) continue;
       const Side idle = other(stance_of(phase.support));
       if (has_foot_key(idle, begin_of(i), phase.until)) continue;
-      // Half the way of the other foot's next step ahead of it, or beside it.
+      // The new foothold is ahead by half the way of the other foot's next step, or beside the
+      // other foot if there is no such step.
       RelativeStep step;
       const Eigen::Isometry3d stance = feet_->pose(other(idle), phase.until);
       for (size_t k = i + 1; k < pattern_.phases.size(); ++k)
@@ -1270,7 +1285,8 @@ class Hypotheses::Maker {
             [i](Pattern& p) { p.keyframes[i].interpolation = Interpolation::minimum_jerk; });
   }
 
-  // The COG keeps its height above the mean of both soles, which a lifted foot raises by half.
+  // The COG keeps its height above the mean of both soles, and a lifted foot raises this mean by
+  // half of its lift.
   void level_cog(std::vector<Hypothesis>& made) const {
     const bool has_height = std::any_of(pattern_.keyframes.begin(), pattern_.keyframes.end(),
                                         [](const Keyframe& key) { return key.cog_height; });
@@ -1303,7 +1319,7 @@ class Hypotheses::Maker {
     }
   }
 
-  // Keys that hold the COG at a place that the feet have left.
+  // Keys hold the COG at a place that the feet have left.
   void held_cog(std::vector<Hypothesis>& made) const {
     if (!feet_) return;
     for (const auto& [axis, key_of] : {std::pair(0, &Keyframe::cog_x), {1, &Keyframe::cog_y}}) {
@@ -1315,7 +1331,7 @@ class Hypotheses::Maker {
         if (!(key.*key_of)) continue;
         const double center = feet_->support_center(key.t)[axis];
         const double off = std::abs(*(key.*key_of) - center);
-        // Behind: nearer to where the feet were first.
+        // Only keys behind the feet count: they are nearer to the place where the feet were first.
         if (off <= most || std::abs(*(key.*key_of) - before) >= off) continue;
         most = off;
         feet_at = center;
@@ -1335,7 +1351,7 @@ class Hypotheses::Maker {
     }
   }
 
-  // Legs that are nearly straight at the height of home, or folded far below it.
+  // The legs are nearly straight at the height of home, or are folded far below it.
   void cog_height(std::vector<Hypothesis>& made) const {
     const double height = default_cog_height(model_, pattern_);
     if (legs_are_folded(model_, pattern_, height)) {

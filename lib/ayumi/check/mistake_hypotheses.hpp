@@ -11,20 +11,21 @@
 
 namespace ayumi {
 
-// A value that would have to change by less than this is at a limit of the robot, and no mistake: a
-// share of its unit (the length of a leg, a radian, the weight, 1). Chosen: 1 mm for a leg of 0.2
-// m, 0.3 deg.
+// A value that would have to change by less than this is at a limit of the robot and is not a
+// mistake. The bound is a share of the value's unit (the length of a leg, a radian, the weight, 1).
+// Chosen: 1 mm for a leg of 0.2 m, 0.3 deg.
 inline constexpr double kLeastMistake = 0.005;
 
-/// Specificity of an explanation.
+/// Specificity of an explanation; the most specific one comes first.
 enum class Rank { unit, geometry, slip, exchange, sign, missing, amount, pace };
 
 struct Hypothesis {
   Rank rank = Rank::amount;
   Explanation says;
   Mend mend;
-  double change = 0;  ///< of a value, as a share of it: the least of several amounts is named first
-  double size = 0;    ///< of this change, as a share of the value's unit
+  /// Change of the value, as a share of it; the smallest of several is named first.
+  double change = 0;
+  double size = 0;  ///< size of this change, as a share of the value's unit
 };
 
 class Hypotheses {
@@ -32,7 +33,8 @@ class Hypotheses {
   enum class Kind {
     units,
     times,
-    irregular,  ///< what differs from its like in the same pattern, or contradicts another part
+    irregular,  ///< phases that differ from similar ones in the same pattern, or contradict another
+                ///< part
     exchanges,
     missing,
     nearer,
@@ -44,7 +46,7 @@ class Hypotheses {
   ~Hypotheses();
 
   const std::vector<WrittenValue>& values() const;
-  /// Their changes refer to this object.
+  /// The hypotheses of one kind. Their changes refer to this object.
   std::vector<Hypothesis> of(Kind kind) const;
 
  private:

@@ -16,47 +16,49 @@ namespace ayumi {
 
 namespace {
 
-// Values that are left out on trial, those that get the other sign, and those that are looked at
+// Numbers of values that are left out on trial, that get the other sign, and that are examined
 // closely. Chosen: a time at which a motion fails lies between at most two keys of each of some ten
 // tracks.
 constexpr size_t kTriedValues = 24;
 constexpr size_t kTriedSigns = 12;
 constexpr size_t kSuspects = 3;
-// Number of bisection steps for the range of a value, from the first that is possible. Chosen: 3 %
-// of the distance.
+// Number of bisection steps for the range of a value, counted from the first value that is
+// possible. Chosen: an accuracy of 3 % of the distance.
 constexpr int kBisections = 5;
-// At most so many steps in all. Chosen: the range of a length that was written in mm in place of m
-// begins at the tenth step.
+// Largest number of bisection steps in all. Chosen: the range of a length that was written in mm in
+// place of m begins at the tenth step.
 constexpr int kMostBisections = 14;
-// A value of which more than this share is possible is no slip of a factor of ten. Chosen: such a
-// slip is at 0.1, and motions seldom bear five times what their author meant.
+// If more than this share of a value is possible, the value is not wrong by a factor of ten.
+// Chosen: a value with a misplaced decimal point is possible up to a share of 0.1, and motions
+// seldom tolerate five times what their author meant.
 constexpr double kGrossShare = 0.5;
-// Where less than this share of a value is possible, its sign is wrong rather than its size.
-// Chosen: what the tolerances of the check let pass.
+// If less than this share of a value is possible, its sign is wrong and not its size. Chosen: what
+// the tolerances of the check allow.
 constexpr double kNoShare = 0.05;
-// A value that is farther than this from its neighbours is tried at a tenth. Chosen: half the
-// length of a leg, half a radian; no step or swing of a joint within one segment is usually as
-// long.
+// A value that is farther than this from its neighbours is tried at a tenth of its size. Chosen:
+// half the length of a leg, or half a radian; a step or a swing of a joint within one segment is
+// usually shorter.
 constexpr double kGrossSuspicion = 0.5;
-// A value without which another error comes is tried at this share of its way from there. Chosen:
-// feet that turn or land less far, but not beside each other.
+// If another error appears without a value, the value is tried at this share of the way from its
+// neutral value to itself. Chosen: feet then turn less or land nearer, but not beside each other.
 constexpr double kHalfWay = 0.5;
-// A small change is by less than this share of a value. Chosen: more than rounding, less than a
-// slip.
+// A change is small if it is less than this share of a value. Chosen: more than rounding, and less
+// than a slip of the pen.
 constexpr double kSmallChange = 0.2;
-// Mistakes that are named of several that explain the same. Chosen: a third one hides the first.
+// Number of mistakes that are named if several explain the same errors. Chosen: a third one would
+// hide the first.
 constexpr size_t kNamedTogether = 2;
-// Mistakes that are looked for one after the other in a pattern with several. Chosen: with more of
-// them, an author mends the first and asks again.
+// Number of mistakes that are searched one after the other in a pattern with several. Chosen: if
+// there are more of them, an author corrects the first and asks again.
 constexpr int kRounds = 3;
-// A value that would have to change by more than this is wrong by much, whatever else is wrong; a
-// share of its unit, too. Chosen: 12 mm for a leg of 0.24 m, 3 deg.
+// A value that would have to change by more than this is clearly wrong, whatever else is wrong. The
+// bound is also a share of the value's unit. Chosen: 12 mm for a leg of 0.24 m, 3 deg.
 constexpr double kLargeChange = 0.05;
-// The change of a value by another sign or digit that mends only a part. Definition: more than all
-// others.
+// The size that is given to a change of sign or digit that removes only a part of the errors.
+// Definition: larger than all other changes.
 constexpr double kGuessed = 1e3;
-// Hypotheses of one kind that are tried. Chosen: more than there are but for errors that last for
-// the whole motion.
+// Number of hypotheses of one kind that are tried. Chosen: more than there usually are, except for
+// errors that last for the whole motion.
 constexpr size_t kTriedOfOneKind = 64;
 
 struct Candidate {
@@ -106,7 +108,8 @@ class Search {
  private:
   using Kind = Hypotheses::Kind;
 
-  // Without hypotheses for which there is no evidence in the pattern: another sign, digit or foot.
+  // The best explanations for slight errors. A hypothesis of another sign, digit or foot is not
+  // tried unless something in the pattern speaks for it.
   std::vector<Candidate> best_of_slight() {
     test(hypotheses_.of(Kind::units));
     if (enough(Rank::unit)) return chosen();
@@ -148,8 +151,8 @@ class Search {
     demote_slips();
   }
 
-  // Whether a value is at fault that is pulled to `share` of the way from what would be there
-  // without it.
+  // Whether one of the values is at fault. Each value is pulled to `share` of the way from its
+  // neutral value to itself.
   bool look_at_best(const std::vector<WrittenValue>& suspects, double share) {
     std::vector<Mend> mends;
     for (const WrittenValue& value : suspects)
@@ -172,7 +175,7 @@ class Search {
     return true;
   }
 
-  // The other sign, and a tenth, of values without which the errors do not vanish.
+  // Tries the other sign and a tenth of those values without which the errors do not vanish.
   void test_other_numbers(const std::vector<WrittenValue>& suspects,
                           const std::vector<TrialOutcome>& without) {
     std::vector<Hypothesis> signs, tenths;
@@ -186,7 +189,8 @@ class Search {
     test(std::move(tenths));
   }
 
-  // Where a small change of another value is enough, a decimal point is as good a guess as a size.
+  // If a small change of another value is enough, a misplaced decimal point is no better a guess
+  // than a wrong size.
   void demote_slips() {
     const auto small = [](const Candidate& c) {
       return c.hypothesis.rank == Rank::amount && c.hypothesis.change < kSmallChange;
@@ -227,8 +231,8 @@ class Search {
                   : up_to;
     tried_.push_back({{Rank::amount,
                        {value.place, written, "with values " + range},
-                       // What is found after this change holds for the least one, which an
-                       // author takes.
+                       // The errors that remain are those after the smallest change, because an
+                       // author takes the smallest one.
                        [value, possible](Pattern& p) { value.pull(p, possible); },
                        number.value == 0 ? 1 : std::abs(1 - limit / number.value),
                        std::abs(number.value - limit) / value.unit(model_)},
@@ -252,7 +256,7 @@ class Search {
                             "), or with values " + up_to + ","},
                        [value, factor](Pattern& p) { value.scale(p, factor); }});
     };
-    // The least change first.
+    // The smallest change comes first.
     if (too_large) add(0.1, "with the decimal point one place further left");
     if (too_large && value.quantity == Quantity::angle && !pattern_.degrees)
       add(std::numbers::pi / 180, "with the number read in deg");
@@ -267,7 +271,8 @@ class Search {
     test(std::move(slips));
   }
 
-  // For a value whose neighbours leave no larger range than the value itself.
+  // The hypothesis of a tenth, for a value whose neighbours leave no larger range than the value
+  // itself.
   Hypothesis tenth_of(const WrittenValue& value) const {
     const double number = value.numbers.front().value;
     return {Rank::slip,
@@ -300,21 +305,23 @@ class Search {
                                              : few(c.outcome.errors, found_.errors);
   }
 
-  /// A value that is wrong by much is worth a look in any case, after those that leave few.
+  /// A value that is clearly wrong is examined in any case, after those values whose change leaves
+  /// few errors.
   bool is_believable(const Candidate& c) const {
     return leaves_few(c) ||
            (c.outcome.errors < found_.errors && c.hypothesis.rank == Rank::amount &&
             (c.hypothesis.change >= kSmallChange || c.hypothesis.size >= kLargeChange));
   }
 
-  /// What contradicts the geometry of the motion counts where it leaves fewer findings, even if
-  /// some of these were consequences before.
+  /// A contradiction of the geometry also counts if its correction leaves fewer findings, even if
+  /// some of these findings were consequences before.
   bool helps(const Candidate& c, Measure measure) const {
     return is_better(c.outcome, found_, measure) ||
            (c.hypothesis.rank == Rank::geometry && is_better(c.outcome, found_, Measure::findings));
   }
 
-  /// The fewest errors that remain, then the most particular rank; the first few of these.
+  /// The first few candidates, sorted by the number of remaining errors, then from the most
+  /// specific rank on.
   std::vector<Candidate> chosen() const {
     std::vector<Candidate> sorted;
     for (const Measure measure : {Measure::errors, Measure::findings}) {
@@ -322,7 +329,7 @@ class Search {
       for (const Candidate& c : tried_)
         if (helps(c, measure) && is_believable(c)) sorted.push_back(c);
     }
-    // Another sign or another digit counts as meant only where nothing is left to mend.
+    // Another sign or another digit counts as intended only if no errors remain.
     const auto is_guess = [](const Candidate& c) { return c.hypothesis.change == kGuessed; };
     for (Candidate& c : sorted)
       if ((c.hypothesis.rank == Rank::sign || c.hypothesis.rank == Rank::slip) &&
@@ -394,14 +401,15 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
   Trials trials(model, pattern, options, progress, most_trials);
   Pattern current = pattern;
   TrialOutcome found = trials.of(current);
-  if (found.good()) {  // what is wrong shows at the servo's period alone
+  if (found.good()) {  // the errors show only at the servo's period
     trials.make_exact();
     found = trials.of(current);
   }
   for (int round = 0; round < kRounds && !found.good() && !trials.ended(); ++round) {
     const int left_rounds = kRounds - round;
     std::optional<Search> search(std::in_place, trials, model, current, found, left_rounds);
-    std::vector<Candidate> best = search->best();  // its corrections refer to the search
+    // The changes of these candidates refer to the search.
+    std::vector<Candidate> best = search->best();
     if (best.empty() && !trials.exact() && trials.finer_when_exact()) {
       // Quick trials may find errors that do not exist in exact trials.
       const TrialOutcome exact = trials.of(current, true);
@@ -434,7 +442,7 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
       c.hypothesis.says.enough = c.outcome.good();
       // The changes of the previous rounds are also needed.
       if (round > 0) c.hypothesis.says.instead += " (together with the change named before)";
-      // What was named beside another change is enough only after it.
+      // A mistake that was named together with another change is enough only after that change.
       std::erase_if(result.found, [&](const Explanation& e) {
         return e.place == c.hypothesis.says.place && e.written == c.hypothesis.says.written;
       });

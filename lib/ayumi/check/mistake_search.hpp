@@ -3,8 +3,8 @@
 // motion is sampled and checked again. Changes that make the pattern consistent are named, the most
 // specific first: a unit, a decimal point, an exchanged side, a sign, something that is missing,
 // then a value that is too large or too small. A motion whose errors are all slight is near its
-// limits: another sign, digit or foot is tried only where something else in the pattern speaks for
-// it.
+// limits. For such a motion, another sign, digit or foot is tried only if something else in the
+// pattern speaks for it.
 
 #include <string>
 #include <vector>
@@ -23,22 +23,23 @@ struct Explanation {
   bool enough = false;  ///< with it, the pattern is consistent
 };
 
-/// Versions of the pattern that are sampled and checked in all rounds together. Chosen: the planted
-/// mistakes of tests/check take 1 to 116; a trial of a walk takes 20 ms of processor time on a
-/// robot of primitive shapes.
+/// Largest number of versions of the pattern that are sampled and checked in all rounds together.
+/// Chosen: the planted mistakes of tests/check take 1 to 116 trials; a trial of a walk takes 20 ms
+/// of processor time on a robot of primitive shapes.
 inline constexpr int kMostTrials = 300;
 
 struct Explanations {
   std::vector<Explanation> found;
-  int trials = 0;        ///< versions of the pattern that were sampled and checked; one with more
+  int trials = 0;        ///< number of versions that were sampled and checked; a version with more
                          ///< samples, or with legs of fewer than six joints, counts as several
-  bool complete = true;  ///< false: more could have been tried when the bound on trials was
-                         ///< reached, and errors are left
+  bool complete = true;  ///< false: the bound on trials was reached, errors remain, and more could
+                         ///< have been tried
 };
 
-/// Where one change is not enough, those of several steps, each with the errors that it leaves.
-/// Empty for a consistent pattern, and where no change that is tried helps. The number of trials is
-/// bounded, not their time, so that the same input gives the same result. `progress` may stop it.
+/// The changes that explain the errors. If one change is not enough, there are several in sequence,
+/// each with the errors that it leaves. The result is empty for a consistent pattern, or if no
+/// change helps. The number of trials is bounded, not their time, so that the same input gives the
+/// same result. `progress` may stop it.
 Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
                                const CheckOptions& options, const Progress& progress,
                                int most_trials = kMostTrials);

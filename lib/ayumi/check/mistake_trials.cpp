@@ -15,27 +15,28 @@ namespace ayumi {
 
 namespace {
 
-// Samples of a trial. Chosen: a walk of 7 s then has a step of 5 ms, and 50 trials take a second of
-// processor time; the step is that of coarse servos.
+// Number of samples of a trial. Chosen: a walk of 7 s then has a step of 5 ms, and 50 trials take a
+// second of processor time; this step is that of coarse servos.
 constexpr double kTrialSamples = 1500;
-// Joints of a leg whose posture has a solution in closed steps of Newton's method, and the trials
-// as which one counts where a leg has fewer. Measured: 1500 postures of Open Duck (five joints)
-// take 36 ms, of HOAP-1 (six) 14 ms.
+// Number of joints with which Newton's method places a leg exactly, and the number of trials as
+// which one trial counts if a leg has fewer joints. Measured: 1500 postures of Open Duck (five
+// joints) take 36 ms, and of HOAP-1 (six joints) 14 ms.
 constexpr size_t kWholeLeg = 6;
 constexpr int kLackingCost = 2;
 // The longest step of a trial [s]. Chosen: twenty samples in a swing of 0.2 s.
 constexpr double kLongestStep = 0.01;
-// Trials after which a person may stop the search. Chosen: those of a walk take 0.1 s.
+// Number of trials after which a person may stop the search. Chosen: so many trials of a walk take
+// 0.1 s.
 constexpr size_t kTrialsBetweenReports = 4;
-// An error is slight where it is beyond its limit by less than this share of the limit, by less
-// than this share of the length of a leg [m], of the weight [N], of both [N m], or by less than
-// this angle [rad]. Chosen: a wrong unit, digit, sign, foot or side is wrong by the whole of what
-// was meant, and so are the errors that it brings about. A motion with slight errors alone is near
-// its limits.
+// An error is slight if it exceeds its limit by less than this share of the limit, of the length of
+// a leg [m], of the weight [N] or of both [N m], or by less than this angle [rad]. Chosen: if a
+// unit, digit, sign, foot or side is wrong, the value is wrong by its whole size, and its errors
+// are large, too. A motion whose errors are all slight is near its limits.
 constexpr double kSlightShare = 0.25, kSlightLength = 0.015, kSlightForce = 0.05,
                  kSlightAngle = 0.05;
-// Errors whose windows say where the mistake may be. Chosen: one mistake is beside the first error
-// that it brings about; the second is where the first lasts for the whole motion.
+// Number of errors whose windows show where the mistake may be. Chosen: one mistake is near the
+// first error that it causes; the second error is used because the first one may last for the whole
+// motion.
 constexpr int kFirstErrors = 2;
 
 // Findings about the table at the servo's own period, which a quick trial does not have.
@@ -90,7 +91,7 @@ TrialOutcome Trials::of(const Pattern& pattern, bool exact) const {
         check_consistency(model_, sample(model_, pattern, {.dt = dt, .threads = 1}), options);
     outcome.errors = outcome.findings = 0;
     outcome.slight = true;
-    for (const Finding& f : report.findings) {  // errors come in order of time
+    for (const Finding& f : report.findings) {  // errors are in order of time
       if (!exact && needs_servo_period(f.kind)) continue;
       if (f.severity != Severity::error && f.cause < 0) continue;
       ++outcome.findings;

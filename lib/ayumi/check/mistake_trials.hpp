@@ -14,7 +14,8 @@
 
 namespace ayumi {
 
-// Errors of a motion that cannot be sampled. Definition: more than of any that can.
+// Number of errors of a motion that cannot be sampled. Definition: more than any other motion can
+// have.
 inline constexpr int kUnsampled = std::numeric_limits<int>::max();
 
 struct Window {
@@ -23,8 +24,9 @@ struct Window {
 
 struct TrialOutcome {
   int errors = kUnsampled;
-  int findings = kUnsampled;         ///< these errors, and what follows from them
-  std::vector<Window> windows = {};  ///< of the errors that follow from no other one [s]
+  int findings = kUnsampled;  ///< number of errors and of the findings that follow from them
+  /// Windows of the first errors that follow from no other one [s].
+  std::vector<Window> windows = {};
 
   bool table_alone = false;  ///< a quick trial has none of these errors
   bool slight = false;       ///< all errors and what follows from them are slight
@@ -43,18 +45,18 @@ using Mend = std::function<void(Pattern&)>;
 /// period, or exactly.
 class Trials {
  public:
-  /// At most `most` quick trials. The references must outlive the object.
+  /// Makes at most `most` quick trials. The references must outlive the object.
   Trials(const RobotModel& model, const Pattern& pattern, const CheckOptions& options,
          const Progress& progress, int most);
 
-  /// From now on trials have the servo's period and all findings. Each counts as the quick ones
-  /// that take as long.
+  /// From now on, trials use the servo's period and have all findings. Each of them counts as the
+  /// number of quick trials that take as long.
   void make_exact() { exact_ = true; }
   bool exact() const { return exact_; }
-  /// Whether exact trials differ from quick ones in the steps of time.
+  /// Whether exact trials have a smaller time step than quick ones.
   bool finer_when_exact() const { return ticks_ > 1; }
 
-  /// The outcome at the servo's period of a version that is good in a quick trial.
+  /// The outcome, at the servo's period, of a version that is good in a quick trial.
   TrialOutcome exactly(Pattern pattern, const Mend& mend) const;
   TrialOutcome of(const Pattern& pattern) const { return of(pattern, exact_); }
   TrialOutcome of(const Pattern& pattern, bool exact) const;
@@ -65,7 +67,7 @@ class Trials {
   /// cannot be sampled.
   std::vector<TrialOutcome> after(const Pattern& pattern, const std::vector<Mend>& mends);
 
-  /// Whether there was something left to try when no trials were left.
+  /// Whether the number of trials ended the search while something was left to try.
   bool ended() const { return ended_; }
   int made() const { return made_; }
 
@@ -76,8 +78,8 @@ class Trials {
   CheckOptions options_;
   const Progress& progress_;
   int threads_ = 0, most_ = 0;
-  int ticks_ = 1;       ///< of the servo in a step of a quick trial
-  int quick_cost_ = 1;  ///< of a quick trial
+  int ticks_ = 1;       ///< ticks of the servo in one time step of a quick trial
+  int quick_cost_ = 1;  ///< number of trials as which a quick trial counts
   int made_ = 0;
   bool ended_ = false, exact_ = false;
 };

@@ -33,7 +33,7 @@ class Watch {
 
  private:
   std::string joint_;
-  double unit_;  // [rad] per count; 1 without counts
+  double unit_;  // angle of one count [rad]; 1 for a joint without counts
   std::vector<Clamp> found_;
 };
 

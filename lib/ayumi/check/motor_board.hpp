@@ -14,22 +14,22 @@ namespace ayumi {
 struct Clamp {
   std::string kind;  ///< "range" (16 bits), "position" or "speed"
   std::string joint;
-  double t = 0;       ///< of the worst, from the first row [s]
-  double change = 0;  ///< from what the table says [rad]
-  int rows = 0;       ///< how many ticks differ
+  double t = 0;       ///< time of the worst sample, from the first row on [s]
+  double change = 0;  ///< largest change of the table's value [rad]
+  int rows = 0;       ///< number of ticks that differ
 };
 
 /// Targets as the servos receive them.
 struct BoardTargets {
   double dt = 0.001;        ///< tick of the board [s]
-  Eigen::MatrixXd targets;  ///< dof x ticks, the robot's order [rad]
+  Eigen::MatrixXd targets;  ///< targets, dof x ticks, in the robot's order of joints [rad]
   std::vector<Clamp> clamps;
 };
 
-/// The rows of the table as the boards pass them on: each row holds until the next one, in ticks of
-/// a millisecond where the interval is a whole number of them, else of the interval. Joints without
-/// an encoder have no counts: their speed limit is that of the profile of the options. Throws
-/// Error(bad_pattern) for a table without rows or with other joints than the robot's.
+/// The rows of the table as the boards pass them on. Each row holds until the next one. A tick is a
+/// millisecond if the interval is a whole number of them, otherwise it is the interval. Joints
+/// without an encoder have no counts: their speed limit is that of the profile of the options.
+/// Throws Error(bad_pattern) for a table without rows or with other joints than the robot's.
 BoardTargets board_targets(const RobotModel& model, const ReferenceTrajectory& table,
                            const SafetyOptions& options = {});
 

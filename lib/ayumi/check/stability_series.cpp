@@ -51,7 +51,7 @@ StabilitySeries empty_stability(size_t size, double dt) {
 
 namespace {
 
-// By sample: the first sample of the next phase of contacts, or -1.
+// For each sample: the index of the first sample of the next phase of contacts, or -1.
 std::vector<int> next_contacts(const CommandSeries& series) {
   const int count = static_cast<int>(series.samples.size());
   std::vector<int> next(series.samples.size(), -1);
@@ -60,7 +60,8 @@ std::vector<int> next_contacts(const CommandSeries& series) {
   return next;
 }
 
-// Of the soles on the ground now and of those that land next, in the plane of the present support.
+// The distance of the DCM inside the hull of the soles that stand now and of those that land next,
+// in the plane of the present support.
 double dcm_margin(const RobotModel& model, const CommandSample& now, const CommandSample* next,
                   const SupportPlane& plane, const Vector3d& cog, const Vector3d& dcog) {
   std::vector<Eigen::Vector2d> corners;

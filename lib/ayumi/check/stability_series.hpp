@@ -9,28 +9,30 @@
 
 namespace ayumi {
 
-/// One value per stretch, the first from t = 0 on; NaN where the quantity does not exist, as the
-/// ZMP in flight and beside its edges.
+/// One value for each stretch; the first stretch begins at t = 0. A value is NaN if the quantity
+/// does not exist, such as the ZMP in flight and near the beginning and end of a flight.
 struct StabilitySeries {
   double dt = 0.01;                ///< length of a stretch [s]
-  std::vector<double> zmp_margin;  ///< of the motion's ZMP inside the support, least [m]
-  /// Of the DCM inside the support that the robot has or gets next, least [m]: the hull of the
-  /// soles on the ground and of those that land in the next phase. The DCM is p_G + dp_G/omega with
-  /// omega = sqrt(g/z), z the height of the COG over the ground.
+  std::vector<double> zmp_margin;  ///< smallest distance of the motion's ZMP inside the support [m]
+  /// The smallest distance of the DCM inside the support that the robot has now or gets next [m].
+  /// This support is the hull of the soles on the ground and of those that land in the next phase.
+  /// The DCM is p_G + dp_G/omega with omega = sqrt(g/z), where z is the height of the COG over the
+  /// ground.
   std::vector<double> dcm_margin;
-  std::vector<double> normal_force;        ///< of the ground, least [N]
-  std::vector<double> friction;            ///< share of the friction cone, largest [1]
-  std::vector<double> speed, torque;       ///< joint with the largest share of its limit [1]
-  std::vector<int> speed_dof, torque_dof;  ///< that joint; -1: no joint has a limit
+  std::vector<double> normal_force;  ///< smallest normal force of the ground [N]
+  std::vector<double> friction;      ///< largest share of the friction cone [1]
+  /// Value of the joint with the largest share of its limit [1].
+  std::vector<double> speed, torque;
+  std::vector<int> speed_dof, torque_dof;  ///< index of this joint; -1: no joint has a limit
 };
 
-/// For `size` stretches of `dt` [s], without a value yet.
+/// A series with `size` stretches of `dt` [s], still without values.
 StabilitySeries empty_stability(size_t size, double dt);
 
-// Of several samples of a stretch the worst; NaN: none yet.
+// Keeps the worse of two values of a stretch; NaN means that there is no value yet.
 void keep_least(double& kept, double value);
 void keep_largest(double& kept, double value);
-/// The joint with the largest share of its limit; joints without a limit do not count.
+/// Keeps the joint with the largest share of its limit; joints without a limit do not count.
 void keep_worst(double& kept, int& dof, const Eigen::VectorXd& value, const Eigen::VectorXd& limit);
 
 /// Throws as check_consistency().

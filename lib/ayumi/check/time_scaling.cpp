@@ -8,14 +8,15 @@ namespace ayumi {
 
 namespace {
 
-// Pace down to which a slower motion is looked for. Chosen: slower than a twentieth no motion is
-// called too fast. No measured case changes from half to twice (constants.md).
+// Slowest pace that is tried. Chosen: a motion that would need less than a twentieth of its pace is
+// not called too fast. No measured case changes between half and twice the value (constants.md).
 constexpr double kSlowestPace = 0.05;
-// From pace to pace. Chosen: commands of ZMP and f_z agree with the motion within their tolerances
-// in a band of paces 6 % wide, so that steps of 3 % cannot miss it. No measured case changes from
-// half to twice (constants.md).
+// Ratio of each pace to the one before. Chosen: commands of ZMP and f_z agree with the motion
+// within their tolerances in a band of paces 6 % wide, so that steps of 3 % cannot miss it. No
+// measured case changes between half and twice the value (constants.md).
 constexpr double kPaceStep = 0.97;
-// The same for a mean over the thermal window, which no command bounds from below.
+// The same ratio for a mean over the thermal window. Chosen: there, no command bounds the pace from
+// below, so that larger steps cannot miss anything.
 constexpr double kCoarsePaceStep = 0.85;
 
 bool holds_at(JudgedMotion& motion, const Violation& v, double pace) {

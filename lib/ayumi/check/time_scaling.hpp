@@ -1,6 +1,6 @@
 #pragma once
-// Time scaling: is a motion too fast where it violates its limits? The same path is played slower:
-// rates times a pace, accelerations times its square.
+// Time scaling answers whether a motion is too fast where it violates its limits. The same path is
+// played slower: rates are multiplied by a pace, accelerations by the square of the pace.
 
 #include "ayumi/limits/judged_motion.hpp"
 
@@ -10,8 +10,8 @@ namespace ayumi {
 /// help.
 bool broken_by_jump(const JudgedMotion& motion, int sample);
 
-/// Whether one pace removes both violations. Where a jump spoils the demand, no pace removes it:
-/// then the violation is attributed to the speed, unless it is that jump itself.
+/// Whether one pace removes both violations. If a jump spoils the demand, no pace removes them. In
+/// this case the violation is attributed to the speed, unless it is that jump itself.
 bool slower_pace_removes(JudgedMotion& motion, const Violation& cause, const Violation& effect);
 
 }  // namespace ayumi

@@ -19,8 +19,8 @@ namespace ayumi {
 
 namespace {
 
-// A number that differs by less than this is the same, in any unit. Definition: what the
-// conversion of degrees and rounded limits leave.
+// Two numbers that differ by less than this are the same, in any unit. Definition: what the
+// conversion of degrees and of rounded limits leaves.
 constexpr double kSame = 1e-6;
 
 using In = std::function<double&(Pattern&)>;
@@ -31,12 +31,12 @@ struct TrackNumber {
   In in;
 };
 
-/// Numbers of one track in order of time.
+/// The numbers of one track in order of time.
 struct NumberTrack {
   std::string words;
   Quantity quantity = Quantity::length;
-  double start = 0;                 ///< what holds before the first of them
-  std::optional<double> rest = {};  ///< what holds after the last of them, where it is known
+  double start = 0;                 ///< value of the track before the first of them
+  std::optional<double> rest = {};  ///< value of the track after the last of them, if it is known
   bool across = false;
   std::vector<TrackNumber> numbers = {};
 };
@@ -47,7 +47,7 @@ class Reader {
       : model_(model), pattern_(pattern), copy_(pattern) {
     try {
       if (model.has_soles()) feet_.emplace(model, pattern);
-    } catch (const Error&) {  // the phases themselves are wrong, which is not a matter of numbers
+    } catch (const Error&) {  // the phases are wrong; their own message names the reason
     }
   }
 
@@ -76,7 +76,7 @@ class Reader {
 
   double value(const TrackNumber& number) { return number.in(copy_); }
 
-  // The numbers `members` of a track as one value, `first` to `last` of its time.
+  // Adds the numbers `members` of a track as one value.
   void add(const NumberTrack& track, const std::vector<size_t>& members) {
     WrittenValue made{.place = track.numbers[members.front()].place,
                       .words = track.words,
@@ -111,9 +111,10 @@ class Reader {
     found_.push_back(std::move(made));
   }
 
-  // Runs of equal numbers, and all that are equal, where these are more. A first run that holds
-  // what was there before is no value of the author's: it only says when the next one begins. The
-  // set of all values equal to it is no value of the author's either.
+  // Adds each run of equal numbers as a value and, if equal numbers also occur elsewhere, all of
+  // them together as a value. A first run that holds the starting value of the track is not a value
+  // of the author: it only states when the next value begins. For the same reason, the set of all
+  // numbers that are equal to the starting value is left out.
   void add(const NumberTrack& track) {
     const auto is_start = [&](double held) { return std::abs(held - track.start) < kSame; };
     std::map<double, std::vector<size_t>> equal;
@@ -225,7 +226,7 @@ class Reader {
             .quantity = turn ? Quantity::angle : Quantity::length,
             .start = turn ? 0 : from[axis],
             .across = axis == 1};
-        if (axis == 2) track.rest = from[axis];  // it comes back to the ground
+        if (axis == 2) track.rest = from[axis];  // the foot comes back to the ground
         each_key([&](size_t i, const Keyframe& key) {
           if (key.feet[s])
             track.numbers.push_back({key.t, key_place(i), [i, s, axis](Pattern& p) -> double& {
@@ -297,7 +298,7 @@ class Reader {
     Eigen::VectorXd usual = model_.rest_state().theta;
     try {
       usual = default_posture(model_, pattern_);
-    } catch (const Error&) {  // the posture is unknown, which its own message says
+    } catch (const Error&) {  // the posture is unknown; its own message names the reason
     }
     std::map<std::string, NumberTrack> tracks;
     each_key([&](size_t i, const Keyframe& key) {

@@ -1,7 +1,7 @@
 #pragma once
-// The numbers that an author wrote into a pattern, each with its place in the file, and with the
-// value that its track would have without it. A pattern in which one number is replaced says what
-// that number has brought about.
+// The numbers that an author wrote into a pattern, each with its place in the file and with the
+// value that its track would have without it. If one number is replaced, the changed pattern shows
+// what that number has caused.
 
 #include <functional>
 #include <string>
@@ -18,35 +18,36 @@ enum class Quantity { length, angle, force, ratio };
 struct WrittenNumber {
   std::function<double&(Pattern&)> in;
   double value = 0;    ///< [m, rad, N, 1]
-  double neutral = 0;  ///< what would be there without it, in the same unit
+  double neutral = 0;  ///< the value of the track without this number, in the same unit
 };
 
-/// One value of the author: a number, or a number that is repeated. Keys that hold a value name it
-/// twice.
+/// One value of the author: a number, or a number that is repeated. Keys that hold a value contain
+/// it twice.
 struct WrittenValue {
-  std::string place;  ///< JSON pointer of the phase or keyframe where it is first, or of itself
-  std::string words;  ///< "the COG height"
+  std::string place;  ///< JSON pointer of the first phase or keyframe with the value, or of the
+                      ///< value itself
+  std::string words;  ///< name of the value: "the COG height"
   Quantity quantity = Quantity::length;
   bool across = false;        ///< a coordinate whose sign tells left from right
   double begin = 0, end = 0;  ///< the motion depends on it at least between these times [s]
   std::vector<WrittenNumber> numbers = {};  ///< at least one
 
-  /// A large value of its quantity: the length of a leg, a radian, the weight, 1.
+  /// A large value of this quantity: the length of a leg, a radian, the weight, or 1.
   double unit(const RobotModel& model) const;
-  /// How far it is from what would be there without it, in such units.
+  /// Distance of the value from what would be there without it, in such units.
   double suspicion(const RobotModel& model) const;
   /// Whether the same value with the other sign could have been meant.
   bool has_sign() const;
   /// "0.9 m", "30 deg": `value` as the author of this pattern writes it.
   std::string text(const Pattern& pattern, double value) const;
-  /// Multiplies all its numbers.
+  /// Multiplies all numbers of the value.
   void scale(Pattern& pattern, double factor) const;
-  /// Puts all its numbers at this share of the way from what would be there without them.
+  /// Moves all numbers of the value to this share of the way from what would be there without them.
   void pull(Pattern& pattern, double share) const;
 };
 
-/// All numbers of phases, keyframes, postures, start and ground that are not times. A pattern whose
-/// feet cannot be planned has none of feet and COG.
+/// All numbers of phases, keyframes, postures, start and ground, except times. If the feet of a
+/// pattern cannot be planned, its numbers of feet and COG are left out.
 std::vector<WrittenValue> written_values(const RobotModel& model, const Pattern& pattern);
 
 }  // namespace ayumi

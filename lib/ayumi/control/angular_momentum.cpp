@@ -21,10 +21,10 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Rate at which the turn of the trunk returns to zero, critically damped, times omega. Chosen:
-// slower than the DCM, so that the return does not undo the effect of the turn. Largest pushes of
-// the walk of HOAP-1, worst and mean of 32, in multiples of B: 1.14 and 1.52; with 0.7 one of them
-// is 1.02 instead of 1.44.
+// Rate at which the turn of the trunk returns to zero with critical damping, as a multiple of
+// omega. Chosen: slower than the DCM, so that the return does not undo the effect of the turn.
+// Largest pushes of the walk of HOAP-1, worst and mean of 32, in multiples of B: 1.14 and 1.52;
+// with 0.7 one of them is 1.02 instead of 1.44.
 constexpr double kReturnRate = 0.5;
 
 // Largest turn of the trunk [rad]: 24 deg. Chosen: with 0.35 the walk of HOAP-1 with hoap1-strong
@@ -32,14 +32,14 @@ constexpr double kReturnRate = 0.5;
 // its real motors than without any turn.
 constexpr double kTrunkRange = 0.42;
 
-// Largest tilt of the trunk, that of the plan and the turn together [rad]: 37 deg. Derived: 0.8 is
-// a fall (sim/fall_monitor), and the robot tilts by up to 0.15 more than its reference under large
-// pushes that it survives.
+// Largest tilt of the trunk, which is the sum of the plan's tilt and the turn [rad]: 37 deg.
+// Derived: 0.8 is a fall (sim/fall_monitor), and the robot tilts by up to 0.15 more than its
+// reference under large pushes that it survives.
 constexpr double kTrunkTilt = 0.65;
 
-// Shares of the speed and the peak torque of a joint that the turn may use. Chosen: the legs carry
-// the robot with the same motors at the same time. With a quarter of the torque the standing robot
-// survives 1.26 B instead of 1.32 B.
+// Shares of the speed limit and of the peak torque of a joint that the turn may use. Chosen: the
+// legs carry the robot with the same motors at the same time. With a quarter of the torque the
+// standing robot survives 1.26 B instead of 1.32 B.
 constexpr double kSpeedShare = 0.8;
 constexpr double kTorqueShare = 0.5;
 
@@ -47,8 +47,9 @@ constexpr double kTorqueShare = 0.5;
 // encoder count of HOAP-1.
 constexpr double kReturned = 1e-6;
 
-// Damping of A_G W^-1 A_G', as a share of its trace. Chosen: what a single coordinate can do about
-// its own axis changes by less than a thousandth, and axes about which nothing can turn stay still.
+// Damping of A_G W^-1 A_G', as a share of its trace. Chosen: the effect of a single coordinate
+// about its own axis changes by less than a thousandth, and nothing moves for an axis about which
+// no coordinate can turn.
 constexpr double kMomentumDamping = 1e-4;
 
 std::vector<bool> carried_bodies(const RobotModel& model) {
@@ -82,7 +83,7 @@ AngularMomentumTask::AngularMomentumTask(const RobotModel& model, const Actuator
   }
   const auto n = static_cast<Eigen::Index>(joints_.size()) + 2;
   weight_.resize(n), speed_.resize(n), torque_.resize(n), rotor_.setZero(n);
-  for (const Side side : {Side::left, Side::right}) {  // the three joints nearest to the trunk
+  for (const Side side : {Side::left, Side::right}) {  // only the three joints nearest to the trunk
     const std::vector<int>& leg = model.leg(side);
     hips_.insert(hips_.end(), leg.begin(),
                  leg.begin() + std::min<std::ptrdiff_t>(3, std::ssize(leg)));
@@ -186,7 +187,7 @@ void AngularMomentumTask::bound(const VectorXd& commanded, const Vector2d& tilt,
   }
 }
 
-// A coordinate whose acceleration reaches a bound keeps this bound, and the other coordinates
+// A coordinate whose acceleration reaches a bound stays at this bound, and the other coordinates
 // provide the rest.
 void AngularMomentumTask::accelerate(const Vector3d& moment) {
   const Eigen::Index n = weight_.size();

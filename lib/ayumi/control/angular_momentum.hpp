@@ -1,6 +1,7 @@
 #pragma once
-// The angular momentum task of (22): if the ZMP that the law asks for is outside the support, the
-// trunk and the arms supply the missing moment by their acceleration, and return slowly.
+// The angular momentum task of (22): if the ZMP that the law wants is outside the support, the
+// trunk and the arms provide the missing moment by their acceleration. Afterwards they return
+// slowly.
 
 #include <vector>
 
@@ -8,39 +9,40 @@
 
 namespace ayumi {
 
-/// How the upper body turns against its command. Zero: as commanded.
+/// The turn of the upper body relative to its command. Zero means that it moves as commanded.
 struct UpperBodyTurn {
-  Eigen::Vector3d lean = Eigen::Vector3d::Zero();       ///< of the trunk, rotation vector in world
-                                                        ///< axes [rad]
-  Eigen::Vector3d lean_rate = Eigen::Vector3d::Zero();  ///< [rad/s]
-  Eigen::VectorXd joints;                               ///< by dof, zero except for the arms [rad]
-  Eigen::VectorXd joint_rates;                          ///< [rad/s]
+  /// Tilt of the trunk as a rotation vector in world axes [rad].
+  Eigen::Vector3d lean = Eigen::Vector3d::Zero();
+  Eigen::Vector3d lean_rate = Eigen::Vector3d::Zero();  ///< rate of this tilt [rad/s]
+  Eigen::VectorXd joints;       ///< turn of each joint by dof; zero except for the arms [rad]
+  Eigen::VectorXd joint_rates;  ///< rates of these turns [rad/s]
 };
 
 /// The coordinates s are the trunk's tilt about the world's x and y axes and the joints of the arms
 /// (and of the head): all joints that the trunk carries. When the COG is kept in place, the rates
-/// ds have the angular momentum A_G ds about the COG (docs/theory.md, "Angular momentum"). Of all
-/// accelerations with A_G dds = dL, the law takes the ones that are nearest to zero in the norm W,
-/// as in (23), each within the range, the speed and the torque of its joint.
+/// ds have the angular momentum A_G ds about the COG (docs/theory.md, "Angular momentum"). Among
+/// all accelerations with A_G dds = dL, the law chooses the ones that are nearest to zero in the
+/// norm W, as in (23). Each of them respects the range, the speed limit and the torque limit of its
+/// joint.
 class AngularMomentumTask {
  public:
   /// The joints have the robot's own weights.
   AngularMomentumTask(const RobotModel& model, const ActuatorLimits& limits);
 
-  /// W = diag(weight) from now on [dof]. The trunk has the largest weight of the hips, which turn
-  /// it.
+  /// Sets W = diag(weight) from now on [dof]. The trunk has the largest weight of the hip joints,
+  /// which turn it.
   void weigh(const Eigen::VectorXd& weight);
 
-  /// One tick of dt [s]. `moment`: dL about the COG, world axes; its vertical part is not used
-  /// [N m]. `data` holds the positions of the reference, `commanded` the joints of the plan [rad],
-  /// `tilt` the tilt of the plan's trunk about the world's x and y axes [rad];
-  /// omega = sqrt(g / z) [1/s] is the unit of the rate at which the turn is given back.
+  /// One tick of dt [s]. `moment` is dL about the COG in world axes [N m]; its vertical part is not
+  /// used. `data` has the positions of the reference, `commanded` has the joints of the plan [rad],
+  /// and `tilt` is the tilt of the plan's trunk about the world's x and y axes [rad]. omega =
+  /// sqrt(g / z) [1/s] is the unit of the rate at which the turn returns.
   const UpperBodyTurn& update(const Eigen::Vector3d& moment, const RobotData& data,
                               const Eigen::VectorXd& commanded, const Eigen::Vector2d& tilt,
                               double omega, double dt);
 
-  /// A_G at these positions: angular momentum about the COG by rate of each coordinate, the trunk's
-  /// two first [N m s].
+  /// A_G at these positions: the angular momentum about the COG for a unit rate of each coordinate;
+  /// the first two are those of the trunk [N m s].
   const Eigen::Matrix3Xd& matrix(const RobotData& data);
 
   /// The dofs of the coordinates from the third on.
@@ -52,16 +54,16 @@ class AngularMomentumTask {
 
   const RobotModel* model_;
   std::vector<int> joints_, hips_;
-  std::vector<bool> carried_;                   // by body: the trunk, or carried by it
-  Eigen::VectorXd weight_;                      // by coordinate
-  Eigen::VectorXd speed_, torque_;              // by coordinate [rad/s], [N m]
-  Eigen::VectorXd rotor_;                       // by coordinate [kg m^2]
-  std::vector<SpatialInertia> subtree_;         // by body, scratch
-  Eigen::Matrix3Xd matrix_;                     // A_G
-  Eigen::VectorXd inertia_;                     // about each coordinate's axis [kg m^2]
+  std::vector<bool> carried_;            // whether a body is the trunk or is carried by it
+  Eigen::VectorXd weight_;               // weight of each coordinate
+  Eigen::VectorXd speed_, torque_;       // limits of each coordinate [rad/s], [N m]
+  Eigen::VectorXd rotor_;                // rotor inertia of each coordinate [kg m^2]
+  std::vector<SpatialInertia> subtree_;  // workspace, by body
+  Eigen::Matrix3Xd matrix_;              // A_G
+  Eigen::VectorXd inertia_;              // inertia about the axis of each coordinate [kg m^2]
   Eigen::VectorXd turn_, rate_, acceleration_;  // s, ds, dds
   Eigen::VectorXd low_, high_;                  // bounds of dds
-  std::vector<bool> held_;                      // by coordinate: its acceleration is at a bound
+  std::vector<bool> held_;  // whether the acceleration of a coordinate is at a bound
   UpperBodyTurn result_;
 };
 

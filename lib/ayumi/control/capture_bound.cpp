@@ -59,8 +59,8 @@ CaptureRegion capture_region(const RobotModel& model, const CommandSeries& serie
     for (size_t i = 0; i < region.normals.size(); ++i)
       region.support[i] += weight * polygon.support(region.normals[i]);
   };
-  // Ticks with the same support are added up together. `begin` is the weight that was left when
-  // this support began.
+  // Ticks with the same support are added together. `begin` is the weight that was left when this
+  // support began.
   double begin = 1;
   for (long j = std::min(k, end - 1) + 1; j < end; ++j) {
     if (same_support(sample_at(series, j - 1), sample_at(series, j))) continue;

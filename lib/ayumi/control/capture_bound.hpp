@@ -1,6 +1,6 @@
 #pragma once
 // The largest push that the planned supports allow: the capture bound of the linear pendulum. The
-// DCM x + dx/omega can be brought back to the plan exactly when it lies in the Minkowski integral
+// DCM x + dx/omega can be brought back to the plan if and only if it lies in the Minkowski integral
 // of the coming supports, int omega exp(-omega s) S(t + s) ds. The bound holds for a point mass. A
 // body has inertia about the edge of its sole and can exceed the bound a little
 // (docs/theory_pushes.md).
@@ -11,14 +11,14 @@ namespace ayumi {
 
 /// The set of capturable DCMs at one moment, by its support function in evenly spread directions.
 struct CaptureRegion {
-  std::vector<Eigen::Vector2d> normals;           ///< unit vectors, the first along +x
-  std::vector<double> support;                    ///< max of n.dcm over the set [m]
-  Eigen::Vector2d dcm = Eigen::Vector2d::Zero();  ///< commanded, world [m]
-  double impulse_per_length = 0;                  ///< m omega [N s/m]
+  std::vector<Eigen::Vector2d> normals;  ///< unit vectors; the first one points along +x
+  std::vector<double> support;           ///< maximum of n.dcm over the set, for each normal n [m]
+  Eigen::Vector2d dcm = Eigen::Vector2d::Zero();  ///< commanded DCM in the world [m]
+  double impulse_per_length = 0;  ///< m omega: impulse for each metre of DCM displacement [N s/m]
 };
 
-/// The set at tick k of the series. The last support is assumed to last for ever. Ticks without
-/// support add the point of the commanded ZMP.
+/// The set at tick k of the series. It is assumed that the last support lasts for ever. A tick
+/// without support contributes the point of the commanded ZMP.
 CaptureRegion capture_region(const RobotModel& model, const CommandSeries& series, long k,
                              int directions = 72);
 
@@ -27,7 +27,7 @@ CaptureRegion capture_region(const RobotModel& model, const CommandSeries& serie
 /// plan itself leaves the region.
 double capture_bound(const CaptureRegion& region, const Eigen::Vector2d& u);
 
-/// m omega times the distance from the commanded ZMP along u to the edge of the present support [N
+/// m omega times the distance along u from the commanded ZMP to the edge of the present support [N
 /// s].
 double edge_bound(const RobotModel& model, const CommandSeries& series, long k,
                   const Eigen::Vector2d& u);

@@ -1,7 +1,7 @@
 #pragma once
-// The command of a pattern relative to the robot's feet: as sampled, or moved over the ground after
-// steps that VIIP placed or by footholds that answer a push. The laws that follow a command take
-// their plan from here.
+// The command of a pattern relative to the robot's feet. It is the sampled command, or the same
+// command moved over the ground after VIIP has placed steps, or with footholds that answer a push.
+// Laws that follow a command take their plan from here.
 
 #include <optional>
 
@@ -12,10 +12,10 @@ namespace ayumi {
 
 class CommandPlan {
  public:
-  /// As sampled, from the first sample on. The series outlives this and its copies.
+  /// Starts with the first sample, as sampled. The series must outlive this object and its copies.
   explicit CommandPlan(const CommandSeries& series);
 
-  double dt() const { return series_->dt; }  ///< [s]
+  double dt() const { return series_->dt; }  ///< time of one tick [s]
   const CommandSeries& series() const { return *series_; }
 
   /// The command of the coming tick.
@@ -24,43 +24,47 @@ class CommandPlan {
   /// Whether measurements change the command.
   bool measures() const { return footholds_.has_value(); }
 
-  /// The command of tick k where the feet are; after the end of the series its last posture, at
-  /// rest.
+  /// The command of tick k at the place where the feet are. After the end of the series, it is the
+  /// last posture at rest.
   CommandSample at(long k) const;
 
-  /// Sample of the series that now() comes from; a moved plan has a clock of its own.
+  /// The index of the sample from which now() comes; a moved plan has its own clock.
   long sample() const;
 
-  /// Whether now() is behind the last sample, where the plan is at rest.
+  /// Whether now() is after the last sample, where the plan is at rest.
   bool at_rest() const { return sample() >= static_cast<long>(series_->samples.size()); }
 
-  /// W of now() [dof]; null: the robot's own.
+  /// W of now() [dof]; null: the robot's own weights.
   const Eigen::VectorXd* joint_weight() const { return series_->joint_weight_at(sample()); }
 
-  /// Continues at tick k after another law: the command is moved and turned to the feet of `from`.
-  /// A foot with a small deviation stays until its next swing; an offset of the COG fades slowly.
+  /// Continues at tick k after another law. The command is moved and turned to the feet of `from`.
+  /// A foot that deviates slightly stays where it is until its next swing; an offset of the COG
+  /// decreases slowly to zero.
   void go_on_from(const CommandSample& from, long k);
 
-  /// From now on footholds answer pushes; only before the first tick.
+  /// From now on, the footholds answer pushes. May only be called before the first tick.
   void move_footholds(const RobotModel& model, const FootholdParams& params);
 
-  /// The command one tick after now(), chosen by what is measured. If a foot has landed early, the
-  /// feet of now() jump to its place. Holds until the next call.
+  /// The command one tick after now(), which depends on the measurements. If a foot has landed
+  /// early, the feet of now() jump to its place. The reference is valid until the next call.
   const CommandSample& look_ahead(const Estimate& estimate);
 
-  /// The result of look_ahead() becomes now(); the reference that it returned is no longer valid.
+  /// Makes the result of look_ahead() the result of now(). The reference that look_ahead() returned
+  /// is then no longer valid.
   void advance();
 
  private:
   /// How the command has been moved after another law.
   struct Placement {
     Eigen::Isometry3d turn = Eigen::Isometry3d::Identity();
-    /// Of each foot, from its turned command to where it stands; it fades when the foot swings.
+    /// For each foot, the motion from its turned command to the place where it stands; it decreases
+    /// to zero while the foot swings.
     std::array<Eigen::Isometry3d, 2> rest = {Eigen::Isometry3d::Identity(),
                                              Eigen::Isometry3d::Identity()};
-    std::array<double, 2> share = {1, 1};           ///< of `rest` that still holds
-    Eigen::Vector3d cog = Eigen::Vector3d::Zero();  ///< of COG and ZMP, taken back slowly [m]
-    long since = 0;                                 ///< tick at which it began
+    std::array<double, 2> share = {1, 1};  ///< share of `rest` that still applies, for each foot
+    /// Offset of COG and ZMP, which is taken back slowly [m].
+    Eigen::Vector3d cog = Eigen::Vector3d::Zero();
+    long since = 0;  ///< tick at which the offset began
     bool moved = false;
   };
   const CommandSample& sampled(long k) const;
@@ -69,9 +73,9 @@ class CommandPlan {
   const CommandSeries* series_;
   Placement placement_;
   std::optional<FootholdShift> footholds_;
-  CommandSample rest_;        // after the end
-  CommandSample now_, next_;  // of a plan that has moved
-  long tick_ = 0;             // of now_
+  CommandSample rest_;        // command after the end
+  CommandSample now_, next_;  // commands of a moved plan
+  long tick_ = 0;             // tick of now_
 };
 
 }  // namespace ayumi

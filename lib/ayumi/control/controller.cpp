@@ -102,7 +102,7 @@ void Controller::start_viip(const ViipSpan& span, long k) {
   if (!jump) set_goal(span, k);
 }
 
-// Phases of steps that follow one another without a gap have one end.
+// Successive phases with steps and without a gap between them have a common end.
 void Controller::set_goal(const ViipSpan& span, long k) {
   long end = span.end;
   for (const ViipSpan& next : series_->viip)

@@ -1,8 +1,8 @@
 #pragma once
 // One interface for all control laws: open loop, DTAD, VIIP's steps and its jump. The law may
 // change from phase to phase of a pattern. The new law continues from the posture, velocity and
-// footholds of the previous one. Where the whole motion is planned ahead, without VIIP goals, the
-// servos receive the torques of the plan in every law (control/torque_feedforward).
+// footholds of the previous one. If the whole motion is planned in advance, without VIIP goals, the
+// servos receive the torques of the plan under every law (control/torque_feedforward).
 
 #include <memory>
 #include <variant>
@@ -17,7 +17,8 @@ namespace ayumi {
 /// Throws Error(usage) for an unknown gain or a gain out of range.
 void check_controller(const RobotModel& model, const ControllerSpec& spec);
 
-/// Gains by name as the controller uses them; none in open loop. Throws as check_controller().
+/// The gains by name as the controller uses them; there are none in open loop. Throws as
+/// check_controller().
 std::vector<std::pair<std::string, double>> gains_in_use(const RobotModel& model,
                                                          const ControllerSpec& spec);
 
@@ -28,12 +29,12 @@ class Controller {
   Controller(const RobotModel& model, const ActuatorLimits& limits, const CommandSeries& series,
              const ControllerSpec& spec);
 
-  /// The plan of the coming tick: the command where the robot's feet are, or VIIP's own.
+  /// The plan of the coming tick: the command relative to the robot's feet, or VIIP's own plan.
   const CommandSample& plan() const {
     return std::visit([](const auto& law) -> const CommandSample& { return law.plan(); }, law_);
   }
 
-  /// Whether the coming tick depends on what is measured.
+  /// Whether the coming tick depends on measurements.
   bool measures() const {
     const auto* open = std::get_if<OpenLoop>(&law_);
     return !open || open->measures();
@@ -63,11 +64,11 @@ class Controller {
   ActuatorLimits limits_;
   const CommandSeries* series_;
   ControllerSpec spec_;
-  long tick_ = 0;  // the coming tick
+  long tick_ = 0;  // index of the coming tick
   RobotState start_;
   Eigen::VectorXd target_;
-  /// Offsets of the servo targets by sample of the series [rad]; a single column holds for all
-  /// samples.
+  /// Offsets of the servo targets for each sample of the series [rad]; a single column applies to
+  /// all samples.
   std::shared_ptr<const Eigen::MatrixXd> torque_lead_;
   Law law_;
   const ViipSpan* span_ = nullptr;  // the span that law_ executes; null: law_ follows the command

@@ -19,22 +19,24 @@ using Eigen::Vector3d;
 namespace {
 
 // Time constant of the load share of each foot [s]. Chosen with the prototype: three ticks, enough
-// against the noise of the cells and short against a double support of 80 ms. Half: hurried walk,
-// touchdowns 5 to 6; twice: slip 5.22 to 6.34 mm.
+// against the noise of the cells and short against a double support of 80 ms. With half of the
+// value, the number of touchdowns of the case "hurried walk" changes from 5 to 6; with twice, the
+// slip of the case "hurried walk" changes from 5.22 to 6.34 mm.
 constexpr double kLoadFilterTime = 0.003;
 
 // Share of f_z that makes a foot the stance foot. Chosen: 40 % of hysteresis, so that the stance
-// does not chatter in a double support; at 0.5 there is none. Half: rough walk, touchdowns 6 to 7;
-// twice: crossing walk falls.
+// does not chatter in a double support; at 0.5 there is none. With half of the value, the number of
+// touchdowns of the case "rough walk" changes from 6 to 7; with twice, the case "crossing walk"
+// falls.
 constexpr double kStanceShare = 0.6;
 
 // Share of the weight below which there is no ZMP: (17) loses its meaning towards flight
 // (docs/notation.md). Chosen: half of the force from which a foot stands (control/swing_foot).
-// Figures change by less than 5 % from half to twice.
+// Between half and twice the value, figures change by less than 5 %.
 constexpr double kContactShare = 0.05;
 
-// Tilt about x and y of a sole that lies flat, per f_z (cop - centre) [rad/(N m)]. Its corners are
-// springs of equal stiffness, as in the plant (sim/plant/contact_points).
+// Tilt about x and y of a sole that lies flat, for each unit of f_z (cop - centre) [rad/(N m)]. The
+// corners of the sole are springs of equal stiffness, as in the plant (sim/plant/contact_points).
 Eigen::Matrix2d tilt_per_moment(const Sole& sole) {
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();
   const double count = static_cast<double>(sole.polygon.size());
@@ -91,8 +93,8 @@ const Estimate& Estimator::update(const Measurement& m, const std::array<Isometr
   const double weight = model_->mass() * kGravity;
   Estimate& e = last_;
 
-  // Everything is first computed in base axes (base at the origin, at rest), in one pass over the
-  // tree.
+  // All quantities are first computed in base axes (with the base at the origin and at rest), in
+  // one pass over the tree.
   RobotState& s = e.state;
   s.base = BasePose{};
   s.base_velocity.setZero();
@@ -101,7 +103,7 @@ const Estimate& Estimator::update(const Measurement& m, const std::array<Isometr
   s.dtheta = m.dtheta;
   update_velocities(*model_, s, data_);
 
-  // Attitude of the base from the IMU, which may be on any link.
+  // The attitude of the base from the IMU, which may be on any link.
   const Link& imu = model_->links()[imu_];
   const Matrix3d imu_in_base = data_.rotation[imu.body] * imu.pose.linear();
   const Matrix3d R = m.attitude.toRotationMatrix() * imu_in_base.transpose();
@@ -117,7 +119,7 @@ const Estimate& Estimator::update(const Measurement& m, const std::array<Isometr
   s.base_angular_velocity = turn * w;
   const Matrix3d attitude = s.base.attitude.toRotationMatrix();
 
-  // The loaded point of the sole is at its planned place, and at rest.
+  // The loaded point of the sole is at its planned place and at rest.
   const Eigen::Vector2d cop = m.feet[stance].fz > kContactShare * weight
                                   ? m.feet[stance].cop
                                   : model_->sole(e.stance).center;
@@ -134,7 +136,7 @@ const Estimate& Estimator::update(const Measurement& m, const std::array<Isometr
   e.dcog = s.base_velocity + rate.cross(offset) + attitude * data_.dcog;
   const Matrix3d tilt = attitude * sole_in_base.linear() * feet[stance].linear().transpose();
   e.foot_tilt = log_rotation(Quaterniond(tilt));
-  Vector3d yielding = Vector3d::Zero();  // tilt of the sole that comes from its load
+  Vector3d yielding = Vector3d::Zero();  // tilt of the sole that its load causes
   yielding.head<2>() = yield_[stance] * (m.feet[stance].fz * (cop - model_->sole(e.stance).center));
   e.foot_tilt -= feet[stance].linear() * yielding;
   e.foot_tilt.z() = 0;

@@ -1,7 +1,8 @@
 #pragma once
-// What a controller can know: encoders, tilt, gyro and foot load cells turned into COG, its rate,
-// ZMP and vertical force, all in the plan frame (the frame in which the stance foot is where the
-// plan says). World drift of the robot therefore never enters the control law.
+// Estimates what a controller can know. The readings of encoders, tilt, gyro and load cells of the
+// feet become COG, its rate, ZMP and vertical force, all in the plan frame (the frame in which the
+// stance foot is where the plan says). So drift of the robot in the world never affects the control
+// law.
 
 #include <array>
 
@@ -10,64 +11,69 @@
 
 namespace ayumi {
 
-/// Load cells of one foot.
+/// The readings of the load cells of one foot.
 struct FootLoad {
   double fz = 0;                                  ///< sum of the cells [N]
-  Eigen::Vector2d cop = Eigen::Vector2d::Zero();  ///< centre of pressure, sole frame [m]
+  Eigen::Vector2d cop = Eigen::Vector2d::Zero();  ///< centre of pressure in the sole frame [m]
 };
 
 /// One frame of sensor data.
 struct Measurement {
-  Eigen::VectorXd theta, dtheta;                                 ///< encoders [rad], [rad/s]
-  Eigen::Quaterniond attitude = Eigen::Quaterniond::Identity();  ///< of the IMU link, world
-  Eigen::Vector3d gyro = Eigen::Vector3d::Zero();                ///< IMU link axes [rad/s]
-  std::array<FootLoad, 2> feet;                                  ///< by Side
+  Eigen::VectorXd theta, dtheta;  ///< readings of the encoders [rad], [rad/s]
+  /// Attitude of the IMU link in the world.
+  Eigen::Quaterniond attitude = Eigen::Quaterniond::Identity();
+  /// Angular velocity in the axes of the IMU link [rad/s].
+  Eigen::Vector3d gyro = Eigen::Vector3d::Zero();
+  std::array<FootLoad, 2> feet;  ///< by Side
 };
 
 struct Estimate {
-  RobotState state;                                     ///< plan frame
-  Eigen::Vector3d cog = Eigen::Vector3d::Zero();        ///< plan frame [m]
-  Eigen::Vector3d dcog = Eigen::Vector3d::Zero();       ///< [m/s]
-  Eigen::Vector3d zmp = Eigen::Vector3d::Zero();        ///< plan frame, held in flight [m]
-  double fz = 0;                                        ///< [N]
-  std::array<double, 2> foot_fz = {0, 0};               ///< of each foot [N]
-  bool contact = true;                                  ///< f_z at least 5 % of the weight
-  Side stance = Side::left;                             ///< foot that carries the robot
-  Eigen::Vector3d foot_tilt = Eigen::Vector3d::Zero();  ///< of the stance foot against the plan, as
-                                                        ///< a rotation vector without yaw [rad];
-                                                        ///< without what its sole yields
-  double stance_inside = 1;  ///< distance of the stance foot's centre of pressure from the nearest
-                             ///< edge of its sole, as a share of the largest: 0 at the edge
+  RobotState state;                                ///< state in the plan frame
+  Eigen::Vector3d cog = Eigen::Vector3d::Zero();   ///< COG in the plan frame [m]
+  Eigen::Vector3d dcog = Eigen::Vector3d::Zero();  ///< rate of the COG [m/s]
+  /// ZMP in the plan frame; keeps its value in flight [m].
+  Eigen::Vector3d zmp = Eigen::Vector3d::Zero();
+  double fz = 0;                           ///< vertical force [N]
+  std::array<double, 2> foot_fz = {0, 0};  ///< vertical force of each foot [N]
+  bool contact = true;                     ///< whether f_z is at least 5 % of the weight
+  Side stance = Side::left;                ///< foot that carries the robot
+  /// Tilt of the stance foot relative to the plan, as a rotation vector without yaw [rad]; the tilt
+  /// that the load of its sole causes is left out.
+  Eigen::Vector3d foot_tilt = Eigen::Vector3d::Zero();
+  /// Distance of the stance foot's centre of pressure from the nearest edge of its sole, as a share
+  /// of the largest possible distance; 0 at the edge.
+  double stance_inside = 1;
 };
 
 class Estimator {
  public:
   Estimator(const RobotModel& model, double dt);
 
-  /// `feet`: planned sole frames. The stance foot is the one that carries more than 60 %; its
-  /// centre of pressure is put at its planned place on the ground and taken as the momentary point
-  /// of support, so a foot that tips on its edge does not disturb the estimate. Holds until the
-  /// next update.
+  /// `feet` are the planned sole frames. The stance foot is the one that carries more than 60 %.
+  /// Its centre of pressure is assumed to be at its planned place on the ground and counts as the
+  /// momentary point of support, so a foot that tips over its edge does not disturb the estimate.
+  /// The result is valid until the next update.
   const Estimate& update(const Measurement& measurement,
                          const std::array<Eigen::Isometry3d, 2>& feet);
 
-  /// In place of update() if the estimate of this tick is not needed: computes only the quantities
-  /// on which later estimates depend, the loads and the ZMP. Later estimates are the same to the
+  /// May be called instead of update() if the estimate of this tick is not needed. Computes only
+  /// the loads and the ZMP, on which later estimates depend. Later estimates are the same to the
   /// last bit.
   void follow_loads(const Measurement& measurement, const std::array<Eigen::Isometry3d, 2>& feet);
 
-  /// Of the last update().
+  /// The result of the last update().
   const Estimate& last() const { return last_; }
 
  private:
   const RobotModel* model_;
   RobotData data_;
   std::array<ConvexPolygon, 2> sole_;
-  std::array<double, 2> widest_;          // distance of the middle of each sole from its edge [m]
-  std::array<Eigen::Matrix2d, 2> yield_;  // tilt of each sole per moment, sole frame [rad/(N m)]
-  int imu_;                               // link
-  double filter_;                         // share of the new load taken per tick
-  std::array<double, 2> load_ = {0, 0};   // low-passed f_z of each foot [N]
+  std::array<double, 2> widest_;  // distance of the middle of each sole from its edge [m]
+  // Tilt of each sole per moment, in the sole frame [rad/(N m)].
+  std::array<Eigen::Matrix2d, 2> yield_;
+  int imu_;                              // index of the IMU's link
+  double filter_;                        // share of the new load that is taken over in each tick
+  std::array<double, 2> load_ = {0, 0};  // f_z of each foot after a low pass [N]
   bool first_ = true;
   Estimate last_;
 };

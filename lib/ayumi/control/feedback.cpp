@@ -20,13 +20,14 @@ namespace {
 
 // f_min of the projection of ref f_z, as a share of the weight. Chosen: twice the 5 % below which
 // there is no ZMP (control/estimator), so that omega^2 of (17) keeps a meaning. No measured case
-// changes from half to twice (constants.md).
+// changes between half and twice the value (constants.md).
 constexpr double kAdmissibleForceShare = 0.1;
 
-// Largest shift of the ZMP by which the rocking of the robot on its soles is damped, times z: 22 mm
-// on HOAP-1. Chosen: enough to end the rocking that a push of 0.3 N s leaves with sensors that are
-// 14 ms late (with 0.06 it goes on), and small compared with the soles. After a hard push, this
-// damping works against the long term: without a bound the walk survives 0.78 B instead of 1.08.
+// Largest shift of the ZMP by which the rocking of the robot on its soles is damped, as a multiple
+// of z: 22 mm on HOAP-1. Chosen: enough to end the rocking that a push of 0.3 N s leaves with
+// sensors that are 14 ms late (with 0.06 the rocking continues), and small compared with the soles.
+// After a hard push, this damping works against the long term: without a bound the walk survives
+// 0.78 B instead of 1.08.
 constexpr double kRockingLimit = 0.09;
 
 }  // namespace

@@ -8,15 +8,16 @@
 
 namespace ayumi {
 
-/// (21): the command minus the measurement.
+/// The error of the COG (21): the command minus the measurement.
 struct CogError {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s]
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< error of the position [m]
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< error of the velocity [m/s]
 };
 CogError cog_error(const CommandSample& command, const Estimate& estimate);
 
-/// (18)(19), long-term absorption: ref ZMP before it is projected into the support region [m]. The
-/// sign of D is corrected (docs/notation.md); K > 1 without unit, D > 0 [s].
+/// (18)(19), long-term absorption: the ref ZMP before it is projected into the support region [m].
+/// The sign of D is corrected (docs/notation.md). K is greater than 1 and has no unit; D is greater
+/// than 0 [s].
 Eigen::Vector2d long_term_zmp(const Eigen::Vector2d& command_zmp, double K, double D,
                               const CogError& error);
 
@@ -27,55 +28,58 @@ inline Eigen::Vector2d regulating_zmp(const Eigen::Vector2d& goal, double q,
   return goal + (1 + q) * (dcm - goal);
 }
 
-/// (20), long-term absorption: ref f_z before it is bounded [N]. K_z [1/s^2], D_z [1/s].
+/// (20), long-term absorption: the ref f_z before it is bounded [N]. The unit of K_z is 1/s^2, that
+/// of D_z is 1/s.
 double long_term_force(double command_fz, double mass, double K_z, double D_z,
                        const CogError& error);
 
-/// The nearest admissible vertical force [N] to `fz` where the feet are to stay on the ground: at
-/// least 10 % of the weight.
+/// The admissible vertical force that is nearest to `fz` [N]. It is at least 10 % of the weight, so
+/// that the feet stay on the ground.
 double admissible_force(double fz, double mass);
 
-/// Short-term absorption, (14)(15) closed on the measured ZMP: `gap` is the measured ZMP less ref
-/// ZMP [m]. The ground gives omega^2 (x - measured), ref ZMP asks for omega^2 (x - ref); the
-/// difference is the acceleration that the reference lacks. Gain 0 plays the reference unchanged; a
-/// large gain tends to (14) [m/s^2].
+/// Short-term absorption: (14)(15) closed by the measured ZMP. `gap` is the measured ZMP minus ref
+/// ZMP [m]. The ground gives omega^2 (x - measured), while ref ZMP requires omega^2 (x - ref); the
+/// difference is the acceleration that the reference lacks. With a gain of 0, the reference is
+/// played unchanged; with a large gain, the result approaches (14) [m/s^2].
 inline Eigen::Vector2d short_term_acceleration(double gain, double omega2,
                                                const Eigen::Vector2d& gap) {
   return gain * omega2 * gap;
 }
 
-/// Damping of the rocking of the robot on its soft soles and servos [m/s^2]: the reference follows
-/// the measured velocity of the COG, which it lacks by `estimate.dcog - reference_dcog` [m/s], at
-/// gain * omega and with a bounded acceleration. z: height of the COG [m]. docs/theory.md, "Late
-/// sensors".
+/// Damping of the rocking of the robot on its soft soles and servos [m/s^2]. The reference follows
+/// the measured velocity of the COG, from which it differs by `estimate.dcog - reference_dcog`
+/// [m/s], with the rate gain * omega and a bounded acceleration. z is the height of the COG [m].
+/// docs/theory.md, "Late sensors".
 Eigen::Vector2d rocking_acceleration(double gain, double omega, double z,
                                      const Eigen::Vector3d& reference_dcog,
                                      const Estimate& estimate);
 
-/// Stiffness and damping of the vertical force: forces per metre, or per unit of mass where the
-/// caller multiplies by the mass.
+/// Stiffness and damping of the vertical force. They are forces per metre, or per metre and unit of
+/// mass if the caller multiplies by the mass.
 struct HeightGains {
   double stiffness = 0;  ///< K_Pz [N/m]
   double damping = 0;    ///< K_Dz [N s/m]
 };
 
-/// (24): ref f_z for a COG at height z [m] with speed dz [m/s] that is to rest at `goal`.
+/// (24): ref f_z for a COG at height z [m] with speed dz [m/s] that should come to rest at `goal`.
 inline double height_force(const HeightGains& gains, double weight, double goal, double z,
                            double dz) {
   return gains.stiffness * (goal - z) - gains.damping * dz + weight;
 }
 
-/// (26): K_Pz / m [1/s^2] of a push from rest at depth z_d [m] that ends in an apex z_H [m].
+/// (26): K_Pz / m [1/s^2] of a push that starts from rest at depth z_d [m] and leads to an apex z_H
+/// [m].
 double push_stiffness(double z_H, double z_d);
 
 /// (27): K_Pz / m [1/s^2] of a landing at `speed` [m/s] that sinks by z_d [m].
 double landing_stiffness(double speed, double z_d);
 
-/// Share of a first-order low pass with time constant tau / omega in one tick of dt [s].
+/// The share of a new value that a first-order low pass with time constant tau / omega takes over
+/// in one tick of dt [s].
 double low_pass_share(double dt, double omega, double tau);
 
-/// The measured ZMP [m] and vertical force [N] after a first-order low pass. They are held while
-/// there is no contact.
+/// The measured ZMP [m] and vertical force [N] after a first-order low pass. They keep their values
+/// while there is no contact.
 class ReactionFilter {
  public:
   ReactionFilter() = default;

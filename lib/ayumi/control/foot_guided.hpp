@@ -10,21 +10,21 @@
 
 namespace ayumi {
 
-/// Ratio of the ZMP's deviation from the plan to the DCM's that brings the DCM back in exactly the
-/// time T with the least integral of the squared deviation of the ZMP: 2 / (1 - exp(-2 omega T)).
-/// It is 2 for an infinite time.
+/// The ratio of the ZMP's deviation from the plan to the DCM's deviation that brings the DCM back
+/// in exactly the time T, with the smallest integral of the squared ZMP deviation: 2 / (1 - exp(-2
+/// omega T)). For an infinite time, it is 2.
 double foot_guided_gain(double omega, double time);
 
 class FootGuided {
  public:
-  /// `least_time`: least time for this, in units of 1/omega.
+  /// `least_time` is the smallest time for this, in units of 1/omega.
   FootGuided(const CommandSeries& series, double least_time);
 
-  /// At sample k of the series.
+  /// The gain at sample k of the series.
   double gain(long k, double omega) const;
 
-  /// From sample k to the next one at which a foot begins to support [s]; infinite when there is
-  /// none.
+  /// The time from sample k to the next sample at which a foot begins to support [s]; infinite if
+  /// there is none.
   double time_to_support(long k) const;
 
  private:

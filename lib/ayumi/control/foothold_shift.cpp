@@ -26,60 +26,70 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Derivation: docs/theory.md, "Moving footholds". What the footholds are worth in 32 walking pushes
-// of HOAP-1: docs/measurements/pushes.md. Lengths are times the COG height z, times are times
-// 1 / omega.
+// Derivation: docs/theory.md, "Moving footholds". The effect of the footholds in 32 walking pushes
+// of HOAP-1: docs/measurements/pushes.md. Lengths are multiples of the COG height z, and times are
+// multiples of 1 / omega.
 
 // Share of each support that is kept in reserve. Chosen: the robot differs from the point mass.
-// Half: hurried walk, slip 5.22 to 8.86 mm; twice: pushed walk, slip 1.45 to 0.875 mm.
+// With half of the value, the slip of the case "hurried walk" changes from 5.22 to 8.86 mm; with
+// twice, the slip of the case "pushed walk" changes from 1.45 to 0.875 mm.
 constexpr double kReserve = 0.2;
 
-// Share of the landing foot's support that is counted on. Chosen: the ZMP gets there only in the
-// course of the double support. Half: hurried walk, touchdowns 5 to 7; twice: pushed walk,
-// touchdowns 4 to 5.
+// Share of the landing foot's support that is taken into account. Chosen: the ZMP only gets there
+// in the course of the double support. With half of the value, the number of touchdowns of the case
+// "hurried walk" changes from 5 to 7; with twice, the number of touchdowns of the case "pushed
+// walk" changes from 4 to 5.
 constexpr double kNextSupportShare = 0.5;
 
 // Largest distance of a foothold from the foothold of the pattern [z]. Chosen: within the reach of
-// the legs with the COG at the height of a walk. Half: thrown walk, touchdowns 6 to 5; twice: slip
-// 2.98 to 2.54 mm.
+// the legs with the COG at the height of a walk. With half of the value, the number of touchdowns
+// of the case "thrown walk" changes from 6 to 5; with twice, the slip of the case "thrown walk"
+// changes from 2.98 to 2.54 mm.
 constexpr double kFootholdReach = 0.36;
 
 // Largest speed of a foot's shift [omega z]. Chosen: the swing itself needs the rest of the joint
-// speed of HOAP-1. Half: thrown walk, touchdowns 6 to 5; twice: hurried walk, touchdowns 5 to 6.
+// speed of HOAP-1. With half of the value, the number of touchdowns of the case "thrown walk"
+// changes from 6 to 5; with twice, the number of touchdowns of the case "hurried walk" changes from
+// 5 to 6.
 constexpr double kFootSpeed = 0.65;
 
-// Smallest error at the landing that a foothold answers [z]: 4 mm on HOAP-1. Chosen: the sole
-// absorbs smaller errors. Half: crossing walk, joint speed 0.738 to 0.958; twice: hurried walk,
-// touchdowns 5 to 8.
+// Smallest error at the landing to which a foothold reacts [z]: 4 mm on HOAP-1. Chosen: the sole
+// absorbs smaller errors. With half of the value, the joint speed of the case "crossing walk"
+// changes from 0.738 to 0.958; with twice, the number of touchdowns of the case "hurried walk"
+// changes from 5 to 8.
 constexpr double kLeastError = 0.02;
 
 // A foothold is chosen from this time before lift-off on [1/omega]. Chosen: before this time, the
-// present support can still remove the error. Half: thrown walk, touchdowns 6 to 5; twice: no
-// change.
+// present support can still remove the error. With half of the value, the number of touchdowns of
+// the case "thrown walk" changes from 6 to 5; with twice, nothing changes.
 constexpr double kLookAhead = 1;
 
 // Cost of moving a foothold by a length, relative to the cost of a remaining error of the same
 // length. Chosen: a foothold moves if this removes at least a third of the distance that it moves.
-// Half: hurried walk, slip 5.22 to 9.26 mm; twice: 4.57 mm.
+// With half of the value, the slip of the case "hurried walk" changes from 5.22 to 9.26 mm; with
+// twice, to 4.57 mm.
 constexpr double kMoveCost = 0.3;
 
 // Cost of the clock's rate 1 [z]. Chosen: small, so that a faster clock is chosen whenever it
-// leaves a smaller error. Of two clocks that leave the same error, the slower one is chosen. Half:
-// hurried walk, slip 5.22 to 4.57 mm; twice: 8.97 mm.
+// leaves a smaller error. Of two clocks that leave the same error, the slower one is chosen. With
+// half of the value, the slip of the case "hurried walk" changes from 5.22 to 4.57 mm; with twice,
+// to 8.97 mm.
 constexpr double kTimeScaleCost = 0.016;
 
-// Step between the rates of the clock that are tried. Chosen: 16 candidates up to 2.5. Half: less
-// than 5 %; twice: hurried walk, touchdowns 5 to 6.
+// Step between the rates of the clock that are tried. Chosen: 16 candidates up to 2.5. With half of
+// the value, figures change by less than 5 %; with twice, the number of touchdowns of the case
+// "hurried walk" changes from 5 to 6.
 constexpr double kTimeScaleStep = 0.1;
 
-// Share of the swing before which a force on the swing foot is not a landing. Chosen: a foot that
-// has just left the ground still drags; a tipped robot's foot may land soon after. Half: thrown
-// walk, touchdowns 6 to 4; twice: no change.
+// A force on the swing foot before this share of the swing is not a landing. Chosen: a foot that
+// has just left the ground still drags; a tipped robot's foot may land soon after. With half of the
+// value, the number of touchdowns of the case "thrown walk" changes from 6 to 4; with twice,
+// nothing changes.
 constexpr double kSwingLandingAfter = 0.3;
 
 // Longest double support over which the shift of the ZMP counts as a ramp [1/omega]. Chosen: the
-// part of a ramp after this time has less than a third of its effect on the DCM. Half: thrown walk,
-// slip 2.98 to 2.39 mm; twice: 2.27 mm.
+// part of a ramp after this time has less than a third of its effect on the DCM. With half of the
+// value, the slip of the case "thrown walk" changes from 2.98 to 2.39 mm; with twice, to 2.27 mm.
 constexpr double kLongestRamp = 1.3;
 
 // Peak speed of a path of least jerk from rest to rest, in units of its mean speed. Derived: 15/8,
@@ -92,8 +102,8 @@ ConvexPolygon about_zmp(const ConvexPolygon& polygon, const Vector2d& center) {
   return ConvexPolygon(points);
 }
 
-/// The part of an error that remains. The error grows for `time`, while the ZMP may be anywhere in
-/// `share` of `polygon` about `zmp`.
+/// The part of an error that remains. The error grows during `time`, while the ZMP may be anywhere
+/// in a part `share` of `polygon` about `zmp`.
 Vector2d error_after(const Vector2d& error, const ConvexPolygon& polygon, const Vector2d& zmp,
                      double omega, double time, double share) {
   if (time <= 0) return error;
@@ -201,8 +211,8 @@ FootholdShift::Step FootholdShift::step_of(const PlannedSwing& swing) const {
   return step;
 }
 
-/// The ZMP makes a shift evenly within `time`. This is the share of the shift that the DCM has made
-/// at the start of this time.
+/// The share of a shift of the ZMP that the DCM has already made. The ZMP makes the shift evenly
+/// within `time`, and the share is that at the start of this time.
 double FootholdShift::ramp_share(double time) const {
   return time > 0 ? (1 - elementary::exp(-omega_ * time)) / (omega_ * time) : 1.0;
 }

@@ -1,6 +1,7 @@
 #pragma once
-// Moves the coming footholds of a pattern and speeds up its time if a push is too large for the
-// present support: the next step answers the rest. docs/theory.md, "Moving footholds".
+// If a push is too large for the present support, moves the coming footholds of a pattern and
+// speeds up its clock, so that the next step answers the rest of the push. docs/theory.md, "Moving
+// footholds".
 
 #include <optional>
 #include <vector>
@@ -14,25 +15,26 @@
 
 namespace ayumi {
 
-/// One swing of a pattern; phases of the pattern count its samples.
+/// One swing of a pattern; its phases are numbers of samples.
 struct PlannedSwing {
   double lift = 0, land = 0;  ///< begin and end of the single support
   double rest = 0;            ///< end of the double support after it
-  Side foot = Side::right;    ///< in the air
+  Side foot = Side::right;    ///< foot in the air
 };
 
 /// The swings that end in a double support, in time order.
 std::vector<PlannedSwing> swings_of(const CommandSeries& series);
 
-/// The command at a phase between samples; after the end the last posture, at rest.
+/// The command at a phase between two samples. After the end, it is the last posture at rest.
 CommandSample command_between(const CommandSeries& series, double phase);
 void command_between(const CommandSeries& series, double phase, CommandSample& command);
 
 struct FootholdParams {
-  double share = 0;               ///< of the DCM error that the supports leave over; 0: off
+  /// Share of the DCM error that the supports cannot remove and footholds remove; 0: off.
+  double share = 0;
   double time_scale_limit = 2.5;  ///< fastest clock of the pattern, at least 1
-  /// Footholds and clock by the program of control/step_program, which answers every error, in
-  /// place of a search that answers only the part that the supports leave.
+  /// Footholds and clock are chosen by the program of control/step_program, which answers every
+  /// error. Without it, a search answers only the part of an error that the supports cannot remove.
   std::optional<StepWeights> program = {};
 };
 
@@ -41,31 +43,34 @@ struct FootholdParams {
 /// shifted over the ground.
 class FootholdShift {
  public:
-  /// Model and series outlive it.
+  /// The model and the series must outlive this object.
   FootholdShift(const RobotModel& model, const CommandSeries& series, const FootholdParams& params);
 
-  /// Of the coming tick.
+  /// The plan of the coming tick.
   const CommandSample& plan() const { return plan_; }
 
-  /// The tick of plan() has been measured: the next foothold is chosen and the clock goes on. True
-  /// if a foot has landed early: the foot stays in its place, and the foot of the plan jumps there.
+  /// Called after the tick of plan() has been measured: chooses the next foothold and advances the
+  /// clock. Returns true if a foot has landed early. Then the foot stays in its place, and the foot
+  /// of the plan jumps there.
   bool advance(const Estimate& estimate);
 
-  double time_scale() const { return time_scale_; }  ///< of the pattern's clock, 1: its own pace
-  double phase() const { return phase_; }            ///< of plan() in the pattern [samples]
+  /// Rate of the pattern's clock; 1: its own pace.
+  double time_scale() const { return time_scale_; }
+  double phase() const { return phase_; }  ///< phase of plan() in the pattern [samples]
   /// Offset of a foot from the pattern [m].
   const Eigen::Vector2d& shift(Side side) const { return foot_[static_cast<int>(side)]; }
 
  private:
-  /// A swing with what the pattern has planned for it, world axes.
+  /// A swing with the values that the pattern has planned for it, in world axes.
   struct Step {
     PlannedSwing swing;
-    Eigen::Vector2d zmp;         // in its single support [m]
-    Eigen::Vector2d dcm;         // at the landing [m]
-    ConvexPolygon before;        // support before lift-off
-    ConvexPolygon single, next;  // this one and that of the landing foot, about the ZMP [m]
-    GroundPose stance, landing;  // of the feet at the landing
-    double share = 1;            // of a foothold's shift that the DCM makes by the landing
+    Eigen::Vector2d zmp;   // ZMP in its single support [m]
+    Eigen::Vector2d dcm;   // DCM at the landing [m]
+    ConvexPolygon before;  // support before lift-off
+    // This support and that of the landing foot, relative to the ZMP [m].
+    ConvexPolygon single, next;
+    GroundPose stance, landing;  // places of the feet at the landing
+    double share = 1;            // share of a foothold's shift that the DCM makes by the landing
   };
   Step step_of(const PlannedSwing& swing) const;
   double seconds_to(double phase) const { return (phase - phase_) * series_->dt; }
@@ -91,19 +96,19 @@ class FootholdShift {
   FootholdParams params_;
   double omega_, height_, half_width_;
   std::vector<Step> steps_;
-  size_t coming_ = 0;      // index in steps_ of the next to land
-  double phase_ = 0;       // of plan_ in the pattern [samples]
+  size_t coming_ = 0;      // index in steps_ of the next step to land
+  double phase_ = 0;       // phase of plan_ in the pattern [samples]
   double time_scale_ = 1;  // samples of the pattern per tick
   bool moved_ = false;
   // Offsets from the pattern [m]: of each foot, of the ZMP before and after a double support, of
-  // the coming foothold, of the COG.
+  // the coming foothold, and of the COG.
   std::array<Eigen::Vector2d, 2> foot_;
   Eigen::Vector2d before_, after_;
   Eigen::Vector2d target_;
   Eigen::Vector2d cog_;
-  SwingReplan<2> swing_;      // of the foot in the air
+  SwingReplan<2> swing_;      // path of the foot in the air
   CommandSample now_, plan_;  // the pattern's command and the shifted one
-  CommandSample work_;        // room to work in
+  CommandSample work_;        // workspace
   RobotData data_;
 };
 

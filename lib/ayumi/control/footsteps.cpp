@@ -16,13 +16,13 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Number of footholds ahead that b takes into account. Derived: the effect of one falls by E =
-// exp(2.1) = 8 per step, so that of the seventh is below 1e-5 of a step.
+// Number of coming footholds that b takes into account. Derived: the effect of a foothold decreases
+// by E = exp(2.1) = 8 with each step, so that the effect of the seventh is below 1e-5 of a step.
 constexpr int kPreview = 6;
 
-// Largest error of position that the steps correct, times the distance of the feet. Chosen: with a
-// larger error, the path is moved to the feet, so that a push does not make the robot hurry back.
-// No measured case changes from half to twice (constants.md).
+// Largest error of position that the steps correct, as a multiple of the distance of the feet.
+// Chosen: with a larger error, the path is moved to the feet, so that a push does not make the
+// robot hurry back. No measured case changes between half and twice the value (constants.md).
 constexpr double kLargestError = 0.35;
 
 Vector2d turned_by(const Vector2d& v, double yaw) { return Eigen::Rotation2Dd(yaw) * v; }
@@ -101,7 +101,8 @@ PlannedStep Footsteps::step(const StepGoal& goal, Side stance, const GroundPose&
   const Vector2d after = count == left
                              ? Vector2d(center.position + error + turned_by(rest, center.yaw))
                              : zmp_on(side, beside(moved(center, goal, side, left - count), side));
-  // At the end the DCM stays where the robot is to stand. Otherwise, one more step is assumed.
+  // At the end, the DCM stays where the robot should stand. If more steps follow, one more step is
+  // assumed.
   const double share = count == left ? 1 : 1 / (growth_ + 1);
   result.offset = zmps.front() - result.landing.position +
                   landing_offsets(zmps, growth_, share * (after - zmps.back())).front();

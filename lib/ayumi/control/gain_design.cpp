@@ -29,7 +29,8 @@ MatrixXd tick_matrix(const LoopModel& loop, const DtadParams& p) {
   const int delay = static_cast<int>(std::lround(loop.delay / dt));
   const auto body = static_cast<int>(loop.body.rows());
   const int xr = body, dxr = body + 1, filtered = body + 2, offset = body + 3;
-  const int fixed = body + 4, n = fixed + 3 * delay;  // and delayed (x, dx, zZ), newest first
+  // Delayed (x, dx, zZ) follow, the newest first.
+  const int fixed = body + 4, n = fixed + 3 * delay;
   const auto unit = [&](int i) { return RowVectorXd(RowVectorXd::Unit(n, i)); };
   const auto of_body = [&](const RowVectorXd& row) {
     RowVectorXd all = RowVectorXd::Zero(n);
@@ -161,12 +162,14 @@ double largest_stable_ka(const std::vector<LoopModel>& loops, DtadParams params,
 
 namespace {
 
-// Time constant, times omega, of the slowest mode with which a loop is accepted. Chosen: three
-// times that of the default gains' slowest mode on stiff servos, which forgets offsets (washout,
-// 6.6). At half of it, the gains of soft servos change more; at twice, slower modes are left.
+// Largest time constant of the slowest mode with which a loop is accepted, as a multiple of
+// 1/omega. Chosen: three times the time constant of the default gains' slowest mode on stiff
+// servos, in which offsets decay (washout, 6.6). With half of it, the gains of soft servos change
+// more; with twice, slower modes are accepted.
 constexpr double kSlowestDecay = 20;
-// Changes of the gains together. Chosen: the three largest ones of a gain, or one step of three
-// gains; 33 choices, of which each unstable one costs one loop.
+// Largest number of changes of the gains together. Chosen: it allows the three largest changes of
+// one gain, or one step of three gains; there are 33 choices, and each unstable one costs the
+// analysis of one loop.
 constexpr size_t kMostSteps = 3;
 
 struct LoopGain {
@@ -174,8 +177,9 @@ struct LoopGain {
   std::vector<double> factors;  ///< factors on the gain, the one nearest to 1 first
 };
 
-// Chosen: each step multiplies the pull, which helps most on soft servos, by 4/3; the other gains
-// change by factors of 2, the filter by about 3.
+// The gains that are changed, with their factors. Chosen: each step multiplies the pull, which
+// helps most on soft servos, by 4/3; the other gains change by factors of 2, and the filter by
+// about 3.
 const std::vector<LoopGain>& loop_gains() {
   static const std::vector<LoopGain> gains = {
       {{{"ks", &DtadParams::pull_rate}, {"kd", &DtadParams::pull_damping}},
@@ -186,8 +190,8 @@ const std::vector<LoopGain>& loop_gains() {
   return gains;
 }
 
-// Combinations of places in the lists of factors with at most kMostSteps steps in total, ordered by
-// this number.
+// Combinations of indices into the lists of factors with at most kMostSteps steps in total, ordered
+// by the number of steps.
 std::vector<std::vector<size_t>> nearest_choices() {
   std::vector<std::vector<size_t>> all = {{}};
   for (const LoopGain& gain : loop_gains()) {
@@ -264,7 +268,7 @@ std::string remedy(const std::vector<LoopModel>& loops, const DtadParams& params
          "because the servos are too soft for this robot: use stiffer servos";
 }
 
-/// Empty if the loop is stable.
+/// The growth of the loop's errors in words; empty if the loop is stable.
 std::string growth(const std::vector<LoopModel>& loops, const DtadParams& params) {
   const WeakestLoop weakest = weakest_loop(loops, params);
   if (weakest.analysis.stable) return {};

@@ -11,32 +11,32 @@
 
 namespace ayumi {
 
-/// What a law asks of the body: the reference of (14)-(21) and (24).
+/// What a law requires of the body: the reference of (14)-(21) and (24).
 struct CogReference {
-  Eigen::Vector3d zmp = Eigen::Vector3d::Zero();    ///< ref p_Z, plan frame [m]
+  Eigen::Vector3d zmp = Eigen::Vector3d::Zero();    ///< ref p_Z in the plan frame [m]
   double fz = 0;                                    ///< ref f_z [N]
   Eigen::Vector3d ddcog = Eigen::Vector3d::Zero();  ///< ref acceleration [m/s^2]
-  Eigen::Vector3d dcog = Eigen::Vector3d::Zero();   ///< its integral [m/s]
+  Eigen::Vector3d dcog = Eigen::Vector3d::Zero();   ///< integral of this acceleration [m/s]
 };
 
 struct ControlOutput {
-  Eigen::VectorXd target;  ///< what the servos receive [rad]
-  RobotState reference;    ///< reference posture, plan frame
+  Eigen::VectorXd target;  ///< servo targets [rad]
+  RobotState reference;    ///< reference posture in the plan frame
   CogReference cog_reference;
-  Eigen::Vector3d cog = Eigen::Vector3d::Zero();  ///< of the reference posture [m]
+  Eigen::Vector3d cog = Eigen::Vector3d::Zero();  ///< COG of the reference posture [m]
   LawTerms terms;
   TaskResiduals residuals;
-  Eigen::VectorXd weight;          ///< W of (22) and (28), by dof; empty: nothing was resolved
-  std::vector<std::string> notes;  ///< reduced in this tick: saturated joints, held limits
+  Eigen::VectorXd weight;          ///< W of (22) and (28) by dof; empty if nothing was resolved
+  std::vector<std::string> notes;  ///< what was reduced in this tick: saturated joints, held limits
 };
 
 /// What one law passes on to the next.
 struct Handover {
-  RobotState reference;                            ///< plan frame
-  Eigen::Vector3d dcog = Eigen::Vector3d::Zero();  ///< of the reference [m/s]
+  RobotState reference;                            ///< reference posture in the plan frame
+  Eigen::Vector3d dcog = Eigen::Vector3d::Zero();  ///< COG velocity of the reference [m/s]
   Eigen::VectorXd target;                          ///< last servo targets [rad]
-  CommandSample plan;                              ///< of the coming tick: feet and support
-  CommandPlan command;                             ///< the pattern, where the last law has left it
+  CommandSample plan;   ///< plan of the coming tick, with feet and support
+  CommandPlan command;  ///< the pattern in the place to which the last law has moved it
 };
 
 }  // namespace ayumi

@@ -1,8 +1,8 @@
 #pragma once
-// ZMP preview control, one of the baselines of DTAD: the jerk of the COG is chosen by its state,
-// the ZMP so far and the planned ZMP to come, and the ZMP by the measured state with the same
-// gains. After Kajita and others, "Biped walking pattern generation by using preview control of
-// zero-moment point" (2003). docs/theory_baselines.md, "Preview control".
+// ZMP preview control, one of the baselines of DTAD: the jerk of the COG follows from its state,
+// the previous ZMP and the coming planned ZMP, and the ZMP follows from the measured state with the
+// same gains. After Kajita and others, "Biped walking pattern generation by using preview control
+// of zero-moment point" (2003). docs/theory_baselines.md, "Preview control".
 
 #include <Eigen/Core>
 #include <memory>
@@ -19,54 +19,55 @@ namespace ayumi {
 struct PreviewGains {
   double integral = 0;
   Eigen::RowVector3d state = Eigen::RowVector3d::Zero();
-  /// K and D omega by which the ZMP answers the COG and its speed, after the jerk has followed: the
-  /// slower two poles of the closed loop are those of x'' = x - K x - D x'.
+  /// K and D omega with which the ZMP reacts to the COG and its speed after the jerk has followed:
+  /// the slower two poles of the closed loop are those of x'' = x - K x - D x'.
   Eigen::Vector2d zmp = Eigen::Vector2d::Zero();
-  Eigen::VectorXd preview;  ///< of j = 1, 2, ...; what lies beyond the last counts as the last
-  /// The Riccati equation that they solve, for (e, change of the state): A, B, Q, R, P.
+  Eigen::VectorXd preview;  ///< gains of j = 1, 2, ...; all later ticks have the last gain
+  /// The matrices of the Riccati equation that the gains solve, for (e, change of the state): A, B,
+  /// Q, R, P.
   Eigen::Matrix4d A, Q, P;
   Eigen::Vector4d B;
   double R = 0;
 };
 
-/// `tick`, `horizon`: in units of 1/omega.
+/// `tick` and `horizon` are in units of 1/omega.
 PreviewGains preview_gains(double tick, double effort, double horizon);
 
-/// Horizontal motion of the COG.
+/// The horizontal motion of the COG.
 struct CogMotion {
-  Eigen::Vector2d cog = Eigen::Vector2d::Zero();    ///< [m]
-  Eigen::Vector2d dcog = Eigen::Vector2d::Zero();   ///< [m/s]
-  Eigen::Vector2d ddcog = Eigen::Vector2d::Zero();  ///< [m/s^2]
+  Eigen::Vector2d cog = Eigen::Vector2d::Zero();    ///< place [m]
+  Eigen::Vector2d dcog = Eigen::Vector2d::Zero();   ///< velocity [m/s]
+  Eigen::Vector2d ddcog = Eigen::Vector2d::Zero();  ///< acceleration [m/s^2]
 };
 
 /// The COG that preview control plans, and the ZMP that brings the measured one back to it.
 class PreviewControl {
  public:
-  /// Previews the ZMP of `plan`. effort, horizon: as preview_gains(); feedback: share of its state
-  /// feedback that acts on the measured state.
+  /// Previews the ZMP of `plan`. effort and horizon are those of preview_gains(); feedback is the
+  /// share of its state feedback that acts on the measured state.
   PreviewControl(const CommandPlan& plan, double effort, double horizon, double feedback);
 
   /// PreviewGains::zmp times `feedback`.
   Eigen::Vector2d measured_gains() const { return feedback_ * preview_->gains.zmp; }
 
-  /// The ZMP wanted in this tick [m], whose command is `planned`.
+  /// The wanted ZMP of this tick, for the command `planned` [m].
   Eigen::Vector2d wanted_zmp(const CommandSample& planned, const Estimate& estimate, double omega);
 
-  /// Goes on from tick k of the plan. Returns the motion of the COG in this tick.
+  /// Continues from tick k of the plan. Returns the motion of the COG in this tick.
   CogMotion go_on(long k, double omega);
 
-  /// The robot has left the ground: starts again from the plan.
+  /// Called when the robot has left the ground: the preview starts again from the plan.
   void restart() { started_ = false; }
 
  private:
   struct Preview {
     PreviewGains gains;
-    Eigen::MatrixXd zmp;  // planned, ticks x 2 [m]
+    Eigen::MatrixXd zmp;  // planned ZMP, ticks x 2 [m]
   };
   std::shared_ptr<const Preview> preview_;
   double tick_, feedback_;  // tick [1/omega]
   bool started_ = false;
-  // Of the COG: place, rate / omega, acceleration / omega^2; sum of e [m].
+  // State of the COG: place, rate / omega, acceleration / omega^2, and the sum of e [m].
   Eigen::Vector2d x_ = Eigen::Vector2d::Zero(), dx_ = Eigen::Vector2d::Zero(),
                   ddx_ = Eigen::Vector2d::Zero(), sum_ = Eigen::Vector2d::Zero();
 };

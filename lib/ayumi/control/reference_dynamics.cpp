@@ -1,8 +1,8 @@
-// The acceleration is the difference of two ticks, filtered: it holds what the law answered to
-// measurements. Inverse dynamics give the wrench of the ground about the base. Two feet share it as
-// the ZMP lies between the places of their soles, so the shares change steadily when the ZMP goes
-// from foot to foot; each place of pressure lies off its sole's place as the ZMP lies off the line
-// between both.
+// The acceleration is the difference of two ticks after a filter, because it contains the law's
+// answers to measurements. Inverse dynamics give the wrench of the ground about the base. Two feet
+// share it in the ratio in which the ZMP lies between the places of their soles, so the shares
+// change continuously while the ZMP moves from foot to foot. The distance of each centre of
+// pressure from the place of its sole is the distance of the ZMP from the line between both places.
 #include "ayumi/control/reference_dynamics.hpp"
 
 #include <algorithm>
@@ -21,7 +21,8 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Low pass of the acceleration [s]. Chosen: a few ticks, enough against the noise of a difference.
+// Time constant of the low pass of the acceleration [s]. Chosen: a few ticks, enough against the
+// noise of a difference.
 constexpr double kAccelerationFilter = 0.005;
 
 }  // namespace

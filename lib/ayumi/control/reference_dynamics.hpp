@@ -1,7 +1,7 @@
 #pragma once
-// The forces that the motion of a law's reference body needs, for laws whose motion is not planned
-// ahead: the rate of its angular momentum, which moves the ZMP, and the torques that hold it.
-// docs/theory.md, "VIIP".
+// The forces that the motion of a law's reference body requires, for laws whose motion is not
+// planned in advance: the rate of its angular momentum, which moves the ZMP, and the torques that
+// hold it. docs/theory.md, "VIIP".
 
 #include "ayumi/demand/ground_demand.hpp"
 #include "ayumi/dynamics/robot_data.hpp"
@@ -19,11 +19,11 @@ class ReferenceDynamics {
   void update(const RobotState& state, Side anchor, const Eigen::VectorXd& dtheta,
               const CommandSample& plan, const std::array<Eigen::Vector2d, 2>& places);
 
-  /// Rate of the angular momentum about the COG [N m], filtered.
+  /// The rate of the angular momentum about the COG after a filter [N m].
   const Eigen::Vector3d& momentum_rate() const { return momentum_rate_; }
 
-  /// tau / kp by dof [rad]: if the servo target is ahead of the posture by this angle, the joint
-  /// does not sag. Zero before the first two ticks.
+  /// tau / kp by dof [rad]. If the servo target is ahead of the posture by this angle, the joint
+  /// does not sag. Zero in the first two ticks.
   const Eigen::VectorXd& lead() const { return lead_; }
 
  private:

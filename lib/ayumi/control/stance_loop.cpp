@@ -28,20 +28,20 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Step of the differences [m, rad]. Chosen: the root of the rounding error of a double, times 10.
+// Step of the differences [m, rad]. Chosen: ten times the root of the rounding error of a double.
 constexpr double kStep = 1e-6;
 
-// Inverse weight of the base relative to that of a joint. The base follows freely. Definition:
-// large.
+// Inverse weight of the base relative to that of a joint, with which the base follows freely.
+// Definition: large.
 constexpr double kFreeBase = 1e3;
 
-// Time for which a walking robot stands on one foot, times omega. Chosen: that of a step of VIIP.
-// An error that grows by less than a factor e meanwhile is put right on both feet: on soft soles a
-// robot can walk although it could not stay on one foot.
+// Time for which a walking robot stands on one foot, as a multiple of 1/omega. Chosen: the time of
+// a step of VIIP. An error that grows by less than a factor e during this time is corrected on both
+// feet: on soft soles, a robot can walk although it could not stand on one foot for long.
 constexpr double kStepTime = 2.1;
 
-// Regularisation of the solution for P, in parts of the trace. Chosen: rows that repeat each other
-// (both feet on the ground) do not disturb it.
+// Regularisation of the solution for P, as a share of the trace. Chosen: rows that repeat each
+// other (both feet on the ground) do not disturb it.
 constexpr double kRidge = 1e-12;
 
 struct Spring {
@@ -196,7 +196,7 @@ LoopModel stance_loop(Stance& stance, int axis, const LoopModel& like) {
   input.bottomRows(n) = solve_symmetric(M, MatrixXd(torque));
   discretize(motion, input, loop);
 
-  // The estimator puts the middle of the loaded sole where the plan has it.
+  // The estimator places the middle of the loaded sole where the plan has it.
   const Sole& sole = model.sole(Side::left);
   const Vector3d middle =
       stance.data.pose(sole.body) * (sole.frame * Vector3d(sole.center.x(), sole.center.y(), 0));

@@ -1,6 +1,7 @@
 #pragma once
-// A robot that stands, as a linear system: what the control loop works on. Feet flat, the ZMP away
-// from the edge, small deviations from the home posture. docs/theory_gains.md, "Gain design".
+// A standing robot as a linear system, on which the control loop works. The feet are flat, the ZMP
+// is away from the edge, and deviations from the home posture are small. docs/theory_gains.md,
+// "Gain design".
 
 #include <Eigen/Dense>
 #include <string>
@@ -10,27 +11,33 @@
 
 namespace ayumi {
 
-/// Deviations along one horizontal axis, from tick to tick. The state of the body is whatever the
-/// model has; ref COG and its velocity hold for a tick.
+/// Deviations along one horizontal axis from tick to tick. The state of the body depends on the
+/// model; ref COG and its velocity are constant during a tick.
 struct LoopModel {
-  std::string name = {};            ///< such as "both feet, sideways"
-  double height = 0;                ///< of the COG above the ground [m]
-  double tick = 0.001;              ///< of the controller [s]
-  double delay = 0;                 ///< of the sensors and of the servos' targets [s]
-  double tolerated_growth = 0;      ///< of an error, with which the loop counts as stable [1/s]
-  Eigen::MatrixXd body = {};        ///< state per state of the tick before
-  Eigen::MatrixX2d reference = {};  ///< state per ref COG [m] and its velocity [m/s]
-  Eigen::RowVectorXd cog = {}, dcog = {}, zmp = {};  ///< measured, per state [m, m/s, m]
-  Eigen::RowVector2d zmp_reference{0, 0};            ///< measured ZMP per ref COG and its velocity
+  std::string name = {};  ///< name, such as "both feet, sideways"
+  double height = 0;      ///< height of the COG above the ground [m]
+  double tick = 0.001;    ///< tick of the controller [s]
+  double delay = 0;       ///< delay of the sensors and of the servos' targets [s]
+  /// Growth of an error with which the loop still counts as stable [1/s].
+  double tolerated_growth = 0;
+  Eigen::MatrixXd body = {};  ///< state for each unit of the previous state
+  /// State for each unit of ref COG [m] and of its velocity [m/s].
+  Eigen::MatrixX2d reference = {};
+  /// Measured values for each unit of the state [m, m/s, m].
+  Eigen::RowVectorXd cog = {}, dcog = {}, zmp = {};
+  /// Measured ZMP for each unit of ref COG and of its velocity.
+  Eigen::RowVector2d zmp_reference{0, 0};
 };
 
-/// A point mass on an ankle of finite stiffness [N m/rad] and damping [N m s/rad]: the closed form.
+/// The closed form for a point mass on an ankle of finite stiffness [N m/rad] and damping [N m
+/// s/rad].
 LoopModel pendulum_on_ankle(double mass, double height, double stiffness, double damping,
                             double tick, double delay);
 
-/// The whole robot on both feet and on the left one, forward and sideways: masses, rotors, servos
-/// and soles as in the plant. `height` of the COG [m]. The delay is that of the sidecar's sensors
-/// and the longest of the legs' servos. Throws Error(bad_model) for a leg without servos.
+/// The whole robot on both feet and on the left foot, forward and sideways; masses, rotors, servos
+/// and soles are those of the plant. `height` is that of the COG [m]. The delay is that of the
+/// sidecar's sensors plus the longest delay of the legs' servos. Throws Error(bad_model) for a leg
+/// without servos.
 std::vector<LoopModel> stance_loops(const RobotModel& model, const ActuatorLimits& actuators,
                                     double height, double tick);
 

@@ -10,19 +10,21 @@
 
 namespace ayumi {
 
-/// Convex hull of the soles that support, seen from above, world axes [m].
+/// The convex hull of the supporting soles seen from above, in world axes [m].
 ConvexPolygon support_polygon(const RobotModel& model, const std::array<Eigen::Isometry3d, 2>& feet,
                               Support support);
 
-/// Height of the ground under two feet [m]: that of the lower one, since the other may be lifted.
+/// The height of the ground under two feet [m]: that of the lower foot, because the other one may
+/// be lifted.
 inline double ground_of(const std::array<Eigen::Isometry3d, 2>& feet) {
   return std::min(feet[0].translation().z(), feet[1].translation().z());
 }
 
-/// The support polygon reduced by a margin, computed again only if feet or support have changed.
+/// The support polygon reduced by a margin. It is only computed again if the feet or the support
+/// have changed.
 class SupportRegion {
  public:
-  /// Holds until the next call; allocates nothing once it has met its largest polygon.
+  /// The result is valid until the next call. Allocates nothing after its largest polygon.
   const ConvexPolygon& update(const RobotModel& model, const std::array<Eigen::Isometry3d, 2>& feet,
                               Support support, double margin);
 

@@ -6,9 +6,10 @@ namespace ayumi {
 
 namespace {
 
-// Share of the weight from which a foot stands on the ground. Chosen: twice the 5 % below which
-// there is no ZMP (control/estimator), above the noise of the load cells. Half: less than 5 %;
-// twice: pushed steps, torque 0.499 to 0.454.
+// Share of the weight from which on a foot counts as standing on the ground. Chosen: twice the 5 %
+// below which there is no ZMP (control/estimator), above the noise of the load cells. With half of
+// the value, figures change by less than 5 %; with twice, the torque of the case "pushed steps"
+// changes from 0.499 to 0.454.
 constexpr double kBearingShare = 0.1;
 
 }  // namespace

@@ -1,6 +1,6 @@
 #pragma once
 // The foot in the air, for every law that places feet: its path to a foothold that may move until
-// the landing, how high it is lifted, when it has landed, and how near it may come to the other
+// the landing, its height, the detection of its landing, and its smallest distance from the other
 // foot.
 
 #include <Eigen/Dense>
@@ -12,35 +12,39 @@
 
 namespace ayumi {
 
-/// Least distance between the inner sides of two soles beside each other [m]. Chosen: a few times
-/// the error with which a foot lands, 1.5 mm on HOAP-1. Half:
-/// crossing walk, tilt 0.2 to 0.216 rad; twice: pushed steps, ZMP error 9.6 to 10.5 mm.
+/// Smallest distance between the inner sides of two soles beside each other [m]. Chosen: a few
+/// times the error with which a foot lands, 1.5 mm on HOAP-1. With half of the value, the tilt of
+/// the case "crossing walk" changes from 0.2 to 0.216 rad; with twice, the ZMP error of the case
+/// "pushed steps" changes from 9.6 to 10.5 mm.
 inline constexpr double kSoleClearance = 0.008;
 
 /// Half the distance between a sole's sides [m].
 double sole_half_width(const RobotModel& model);
 
-/// Whether the load cells of the foot read 10 % of the weight or more: it stands on the ground.
+/// Whether the load cells of the foot measure 10 % of the weight or more. Then the foot stands on
+/// the ground.
 bool bears(const RobotModel& model, const Estimate& estimate, Side side);
 
-/// Height of a swing foot as a share of the lift, `share` of the swing after its lift-off (0 to 1):
-/// 64 (s (1 - s))^3, with rate and acceleration zero at both ends.
+/// The height of a swing foot as a share of the lift, where `share` is the share of the swing that
+/// has passed since lift-off (0 to 1): 64 (s (1 - s))^3, with zero rate and acceleration at both
+/// ends.
 inline double swing_height(double share) { return elementary::power<3>(4 * share * (1 - share)); }
 
-/// The path of least jerk from where something is, with its rate and acceleration, to rest at a
-/// target in a given time, planned anew in every tick, so that the target may move.
+/// The path of smallest jerk from the present place, with its rate and acceleration, to rest at a
+/// target in a given time. It is planned again in every tick, so the target may move.
 template <int N>
 class SwingReplan {
  public:
   using Vector = Eigen::Matrix<double, N, 1>;
 
-  /// At rest from now on.
+  /// The path is at rest from now on.
   void stop() {
     rate_.setZero();
     acceleration_.setZero();
   }
 
-  /// One tick of dt [s]: the distance made when `remaining` is left to go in `time` [s].
+  /// Advances by one tick of dt [s]. Returns the distance that is covered if `remaining` is left
+  /// for the remaining `time` [s].
   Vector step(const Vector& remaining, double time, double dt) {
     const double t = std::max(time, kLeastTime);
     const Vector jerk = 60 / (t * t * t) * remaining - 36 / (t * t) * rate_ - 9 / t * acceleration_;
@@ -50,9 +54,11 @@ class SwingReplan {
   }
 
  private:
-  // A path is never planned for less than this [s]: jerks grow with 1 / t^3. Chosen: 30 ticks of
-  // 1 ms; at half of it a target that moves in the last ticks asks for eight times the jerk. Half:
-  // pushed viip walk, touchdowns 5 to 4; twice: hurried walk, slip 5.22 to 4.03 mm.
+  // A path is never planned for a shorter time than this [s], because jerks grow with 1 / t^3.
+  // Chosen: 30 ticks of 1 ms; with half of it, a target that moves in the last ticks requires eight
+  // times the jerk. With half of the value, the number of touchdowns of the case "pushed viip walk"
+  // changes from 5 to 4; with twice, the slip of the case "hurried walk" changes from 5.22 to 4.03
+  // mm.
   static constexpr double kLeastTime = 0.03;
 
   Vector rate_ = Vector::Zero(), acceleration_ = Vector::Zero();

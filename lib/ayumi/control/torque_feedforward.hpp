@@ -1,8 +1,8 @@
 #pragma once
 // The torque part of the servo targets, which is known before anything is measured. It is added to
-// the velocity feedforward of motion/servo_feedforward. A position servo gives torque only if it is
-// off its target, kp (target - theta) + kd (dtarget - dtheta) = tau at best, so that a posture that
-// is sent as it is sags under the weight by tau / kp.
+// the velocity feedforward of motion/servo_feedforward. A position servo only gives torque if the
+// joint is off its target: kp (target - theta) + kd (dtarget - dtheta) = tau at best. So a posture
+// that is sent unchanged sags under the weight by tau / kp.
 
 #include <algorithm>
 
@@ -11,10 +11,10 @@
 
 namespace ayumi {
 
-/// dof x (samples + 1) [rad]: tau / kp, by which a target must lie beyond the posture so that the
-/// joint does not sag, with tau of the planned motion on its planned contacts (the torque that the
-/// check judges), at most what the motor gives at `limits`. The last column is that of the last
-/// posture at rest. Zero for joints without a motor.
+/// A matrix of dof x (samples + 1) [rad]: tau / kp, the angle by which a target must be ahead of
+/// the posture so that the joint does not sag. tau is the torque of the planned motion on its
+/// planned contacts (the torque that the check judges), at most what the motor gives at `limits`.
+/// The last column is for the last posture at rest. Zero for joints without a motor.
 Eigen::MatrixXd torque_feedforward(const RobotModel& model, const ActuatorLimits& limits,
                                    const CommandSeries& series);
 

@@ -28,37 +28,41 @@ using Eigen::Vector3d;
 namespace {
 
 // A goal counts as reached if the COG is within this distance [m]. Chosen: half of the 2 mm to
-// which a displacement is to settle. Half: low goal, possible -66.4 to -65.8 mm; twice: -67.6 mm.
+// which a displacement is to settle. With half of the value, the possible goal of the case "low
+// goal" changes from -66.4 to -65.8 mm; with twice, to -67.6 mm.
 constexpr double kGoalReached = 0.001;
 
 // Length of the ticks in which the reference is moved to a goal [s], and their largest number.
-// Chosen: 6 s, several times what the slowest displacement takes. No measured case changes from
-// half to twice (constants.md).
+// Chosen: together 6 s, several times the duration of the slowest displacement. No measured case
+// changes between half and twice the value (constants.md).
 constexpr double kLeadTick = 0.004;
-// No measured case changes from half to twice (constants.md).
+// No measured case changes between half and twice the value (constants.md).
 constexpr int kLeadTicks = 1500;
 
 // Time in which the reference moves the remaining distance [s], and its largest speed [m/s].
-// Chosen: so slow that only position limits count. Half: low goal, possible -66.4 to -66.6 mm;
-// twice: no change.
+// Chosen: so slow that only position limits count. With half of the value, the possible goal of the
+// case "low goal" changes from -66.4 to -66.6 mm; with twice, nothing changes.
 constexpr double kLeadTime = 0.1;
-// No measured case changes from half to twice (constants.md).
+// No measured case changes between half and twice the value (constants.md).
 constexpr double kLeadSpeed = 0.1;
 
-// Lowest COG that is tried, as a share of the height held. Chosen: below it no leg of a humanoid
-// folds. Figures change by less than 5 % from half to twice.
+// Lowest COG that is tried, as a share of the height that the pattern holds. Chosen: below it no
+// leg of a humanoid folds. Between half and twice the value, figures change by less than 5 %.
 constexpr double kLowestShare = 0.3;
 
-// Bisections of the search for what is possible. Chosen: the answer is good to a thousandth of the
-// goal. Half: far goal, possible 46.5 to 45.0 mm; twice: low goal, possible -66.4 to -66.6 mm.
+// Number of bisections in the search for the possible part of a goal. Chosen: the result is
+// accurate to a thousandth of the goal. With half of the value, the possible goal of the case "far
+// goal" changes from 46.5 to 45.0 mm; with twice, the possible goal of the case "low goal" changes
+// from -66.4 to -66.6 mm.
 constexpr int kHalvings = 10;
 
 // Number of steps of the keyed walk that is judged in place of a goal. Chosen: a longer walk
-// repeats itself. No measured case changes from half to twice (constants.md).
+// repeats itself. No measured case changes between half and twice the value (constants.md).
 constexpr int kMostKeyedSteps = 6;
 
-// Largest turn in one step [rad]: 20 deg. Chosen: soles beside each other must not meet. Half:
-// turning goal, possible 20.1 to 10.0 deg; twice: the turning goal is accepted.
+// Largest turn in one step [rad]: 20 deg. Chosen: soles beside each other must not meet. With half
+// of the value, the possible goal of the case "turning goal" changes from 20.1 to 10.0 deg; with
+// twice, the turning goal is accepted.
 constexpr double kStepTurnLimit = 0.35;
 
 const CommandSample& held_in(const CommandSeries& series, const ViipSpan& span) {
@@ -95,9 +99,9 @@ std::string in_millimetres(const Vector3d& d) {
          text::fixed(1e3 * d.z(), 1) + " mm";
 }
 
-/// The distance of the resolution from a COG, and the joint that stops it.
+/// How near the resolution comes to a COG, and the joint that stops it.
 struct Attempt {
-  double miss = 0;  ///< distance from the wanted COG [m]
+  double miss = 0;  ///< remaining distance from the wanted COG [m]
   std::string joint;
 };
 
@@ -284,7 +288,7 @@ std::vector<KeyedGoal> keyed_goals(const RobotModel& model, const CommandSeries&
         if (cog->displacement.norm() == 0) continue;
         keyed.place = "VIIP displacement" + at;
         require_reachable(model, held, params, "", *cog);
-        continue;  // slow and from rest to rest: only the posture at its end counts
+        continue;  // slow and from rest to rest: only the posture at the end counts
       } else if (std::holds_alternative<CogVelocityGoal>(span.goal)) {
         keyed.place = "VIIP velocity" + at;
         require_reachable(model, held, params, "", cog_path(series, span));

@@ -30,55 +30,56 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Factor on the rows of a task that gives way. Chosen: its square, 1e-5, is the damping's share of
-// the trace, so such rows have no more weight than the damping. Half: hurried walk, touchdowns 5 to
-// 8; twice: 6.
+// Factor on the rows of a task that is reduced. Chosen: its square, 1e-5, is the damping's share of
+// the trace, so such rows have no more weight than the damping. With half of the value, the number
+// of touchdowns of the case "hurried walk" changes from 5 to 8; with twice, to 6.
 constexpr double kSoftness = 0.003;
 
-// Largest residual of a task that counts as done [m/s]: 2 um per tick of 1 ms. Chosen: with bent
-// knees, the residual that the damping leaves is smaller. No measured case changes from half to
-// twice (constants.md).
+// Largest residual of a task that counts as fulfilled [m/s]: 2 um in each tick of 1 ms. Chosen:
+// with bent knees, the residual that the damping leaves is smaller. No measured case changes
+// between half and twice the value (constants.md).
 constexpr double kDone = 0.002;
 
-// How often joints that reach a position limit are fixed and the rest solved again. Chosen: both
-// knees and both ankles may reach their limits one after the other. No measured case changes from
-// half to twice (constants.md).
+// How often joints that reach a position limit are fixed and the rest is solved again. Chosen: both
+// knees and both ankles may reach their limits one after the other. No measured case changes
+// between half and twice the value (constants.md).
 constexpr int kLimitPasses = 4;
 
-// Speed limit of the reference COG, times omega z: 1.2 m/s on HOAP-1. Chosen: at this speed the DCM
-// is outside every support; without a limit an integrator could run away. No measured case changes
-// from half to twice (constants.md).
+// Speed limit of the reference COG, as a multiple of omega z: 1.2 m/s on HOAP-1. Chosen: at this
+// speed the DCM is outside every support; without a limit an integrator could run away. No measured
+// case changes between half and twice the value (constants.md).
 constexpr double kCogSpeedLimit = 0.8;
 
-// Acceleration limit of the reference COG, times g. Chosen: the force of a leg in its strongest
-// motion, a landing; only a law that runs away asks for more. No measured case changes from half to
-// twice (constants.md).
+// Acceleration limit of the reference COG, as a multiple of g. Chosen: the force of a leg in its
+// strongest motion, a landing; only an unstable law asks for more. No measured case changes between
+// half and twice the value (constants.md).
 constexpr double kCogAccelerationLimit = 4;
 
 // Distance of the centre of pressure from the nearest edge of the sole, as a share of the most
 // there is, from which a tilted foot lies on the ground instead of tipping over an edge. Chosen: 5
-// mm on HOAP-1, twice the noise of its load cells; docs/theory.md, "A foot on a bump". Figures
-// change by less than 5 % from half to twice.
+// mm on HOAP-1, twice the noise of its load cells; docs/theory.md, "A foot on a bump". Between half
+// and twice the value, figures change by less than 5 %.
 constexpr double kInsideSole = 0.15;
 
-// Low pass of the tilt that the ankles turn back [s]. Chosen: stiff servos would otherwise follow
-// the noise of the IMU. In the walk of HOAP-1 with its sensors' noise the rms of ZMP - ref ZMP
-// is 20.6 mm without it, 8.4 mm with 0.01 s, 6.9 mm with 0.05 s and 7.0 mm with 0.1 s; the answer
-// to late sensors does not change. With 0.05 s the ankles yield less to a plate under half a sole
-// than with 0.1 s.
+// Time constant of the low pass of the tilt that the ankles compensate [s]. Chosen: stiff servos
+// would otherwise follow the noise of the IMU. In the walk of HOAP-1 with its sensors' noise the
+// rms of ZMP - ref ZMP is 20.6 mm without it, 8.4 mm with 0.01 s, 6.9 mm with 0.05 s and 7.0 mm
+// with 0.1 s; the answer to late sensors does not change. With 0.05 s the ankles yield less to a
+// plate under half a sole than with 0.1 s.
 constexpr double kTiltFilter = 0.1;
 
-// Rate at which the joints return to their command off the ground [1/s]. Chosen: the legs of a jump
-// of 0.03 m come back by four fifths before they land, and soft enough: in jumps of HOAP-1 the
-// largest force of the landing is 188 to 256 N with 10, 200 to 353 N with 20 and 256 to 403 N with
-// 40; open loop has 295 to 562 N.
+// Rate at which the joints return to their command when the robot is off the ground [1/s]. Chosen:
+// in a jump of 0.03 m, the legs return by four fifths before they land, and they are soft enough:
+// in jumps of HOAP-1 the largest force of the landing is 188 to 256 N with 10, 200 to 353 N with 20
+// and 256 to 403 N with 40; open loop has 295 to 562 N.
 constexpr double kFlightRate = 10;
 
 // Damping of the turn that the joints of a hip make together [1]. Chosen: joints whose axes have
 // come into one plane then turn by no more than a few times the tilt.
 constexpr double kHipDamping = 1e-3;
 
-constexpr char kTooFast = 1, kTooFar = 2;  // Definition: what a servo target was held to, as bits
+// Definition: bits for the limits by which a servo target was bounded.
+constexpr char kTooFast = 1, kTooFar = 2;
 
 Vector3d turn_between(const Matrix3d& from, const Matrix3d& to) {
   return log_rotation(Eigen::Quaterniond(Matrix3d(to * from.transpose())));
@@ -152,7 +153,7 @@ void soften(StackedTask& task, int first, int count) {
   task.u.segment(first, count) *= kSoftness;
 }
 
-/// Residual of the task. The rows of a task that gives way count only with their reduced weight.
+/// The residual of the task. Rows of a reduced task only count with their reduced weight.
 StackedTask::Vector left_of(const StackedTask& task, const VectorXd& dtheta) {
   StackedTask::Vector done = StackedTask::Vector::Zero();
   kernels::best_kernels().multiply_add(task.J.data(), StackedTask::kRows,
@@ -177,10 +178,11 @@ void solve_stacked_task(const StackedTask& task, const VectorXd& w, const Vector
     kernels.gram(weighted.data() + j, kRows, task.J.data() + j, kRows, n, kRows - j, 4,
                  A.data() + j * kRows + j, kRows);
   if (damping > 0) A.diagonal().array() += damping * A.trace() / kRows;
-  StackedTask::Vector y = -task.u;  // -v of (23)
+  StackedTask::Vector y = -task.u;  // this is -v of (23)
   kernels.multiply_add(task.J.data(), kRows, n, kRows, bias.data(), y.data());
   if (!kernels.solve_positive(A.data(), kRows, kRows, y.data())) {
-    x = weighted_least_norm(task.J, task.u, w, bias, damping);  // rows that contradict each other
+    // For rows that contradict each other.
+    x = weighted_least_norm(task.J, task.u, w, bias, damping);
     return;
   }
   x = bias;
@@ -206,7 +208,7 @@ void resolve(const RobotModel& model, const ActuatorLimits& limits, const RobotS
   };
 
   // COG: J_G of (13) and ref dp_G. All rows are relative to the anchored sole, so the joints of its
-  // own leg count with the opposite sign.
+  // leg count with the opposite sign.
   StackedTask& task = work.task;
   StackedTask::Vector& u = task.u;
   cog_jacobian(model, data, anchor, work.cog);
@@ -215,7 +217,7 @@ void resolve(const RobotModel& model, const ActuatorLimits& limits, const RobotS
   task.J.bottomRows<9>().setZero();
   u.head<3>() = cog_velocity - carried(data.cog);
 
-  // Rows of the other foot.
+  // The rows of the other foot.
   const Isometry3d foot = sole_pose(model, data, free);
   const double length = options.angular_length;
   const Vector3d foot_point = foot.translation() - data.base_position;
@@ -229,7 +231,7 @@ void resolve(const RobotModel& model, const ActuatorLimits& limits, const RobotS
       (turn_between(command.feet[f].linear(), next.feet[f].linear()) / dt +
        options.foot_rate * turn_between(foot.linear(), command.feet[f].linear()) - anchor_rate);
 
-  // Trunk: attitude and angular velocity of the commanded posture.
+  // The rows of the trunk: the attitude and angular velocity of the commanded posture.
   const int trunk = model.trunk_body();
   add_chain(model, data, trunk, data.position[trunk], 1, -1, 9, length, task);
   add_chain(model, data, stance, data.position[trunk], -1, -1, 9, length, task);
@@ -261,7 +263,7 @@ void resolve(const RobotModel& model, const ActuatorLimits& limits, const RobotS
     if (yielding.trunk) soften(work.softened, 9, 3);
     Resolution& attempt = work.attempt;
     within_limits(model, limits, reference, asked, weight, dt, options, work, attempt);
-    if (yielding.height) {  // keep the joints that made the task give way
+    if (yielding.height) {  // the joints that made the task give way stay recorded
       attempt.held.insert(attempt.held.end(), result.held.begin(), result.held.end());
       std::sort(attempt.held.begin(), attempt.held.end());
       attempt.held.erase(std::unique(attempt.held.begin(), attempt.held.end()), attempt.held.end());
@@ -339,9 +341,9 @@ void ReferenceBody::anchor(Side side, const Eigen::Isometry3d& sole) {
 
 // A foot that has tipped is turned back flat. A tilt that lasts belongs to the ground (or to the
 // sensor) and is accepted like a lasting offset of the ZMP: levelling a foot that lies flat on a
-// slope would lean the body downhill. A foot that tips bears on an edge of its sole; one that bears
-// inside its sole lies on a bump or a stone, and its tilt is soon taken for the ground's. The body
-// above need not lean with one foot: the ankle gives in.
+// slope would lean the body downhill. A tipping foot carries its load on an edge of its sole. A
+// foot that carries it inside its sole lies on a bump or a stone, and its tilt soon counts as that
+// of the ground. The body above need not lean with one foot: the ankle yields.
 const VectorXd& ReferenceBody::ankle_offsets(const Estimate& estimate, const AnkleLaw& law) {
   const bool lies = law.contact_tilt_time > 0 && estimate.stance_inside > kInsideSole;
   const auto share_of = [&](double time) { return time > 0 ? std::min(1.0, dt_ / time) : 0.0; };
@@ -437,7 +439,7 @@ void ReferenceBody::send(const VectorXd& dtheta, const CommandSample& command,
   bound_target(command, next, out);
 }
 
-// The feedforward and the ankles may ask for more than the resolution did. The targets of the plan
+// The feedforward and the ankles may require more than the resolution did. The targets of the plan
 // with its velocity feedforward may move faster than the joint, as where a leg lands; the law
 // changes them by no more than the joint's speed limit. Each joint is noted once.
 void ReferenceBody::bound_target(const CommandSample& command, const CommandSample& next,

@@ -18,7 +18,7 @@ namespace ayumi {
 /// Rows 0-2: COG velocity, J_G and ref dp_G; 3-5 and 6-8: linear and angular velocity of the other
 /// foot; 9-11: angular velocity of the trunk. Together 3-11 are J_C and c.
 struct StackedTask {
-  static constexpr int kRows = 12;  ///< Definition
+  static constexpr int kRows = 12;  ///< Definition: number of rows
   using Vector = Eigen::Matrix<double, kRows, 1>;
   using Rows = Eigen::Matrix<double, kRows, Eigen::Dynamic>;
   Rows J;    ///< J_U
@@ -36,27 +36,30 @@ void solve_stacked_task(const StackedTask& task, const Eigen::VectorXd& w,
                         Eigen::VectorXd& x);
 
 struct ResolverOptions {
-  double posture_rate = 2.0;    ///< pull of the joints towards the commanded posture [1/s]
-  double foot_rate = 20.0;      ///< correction of the free foot [1/s]
-  double trunk_rate = 10.0;     ///< correction of the trunk attitude [1/s]
-  double damping = 1e-5;        ///< of J_U W^-1 J_U', times trace / rows
-  double angular_length = 0.2;  ///< makes angular rows comparable with linear ones [m]
-  double speed_share = 0.98;    ///< of a joint's speed limit that may be used
-  UpperBodyTurn turn = {};      ///< of the trunk and the arms against their command
-  bool in_order = true;         ///< tasks give way one after the other; false: all of them together
+  /// Rate of the pull of the joints towards the commanded posture [1/s].
+  double posture_rate = 2.0;
+  double foot_rate = 20.0;      ///< rate of the correction of the free foot [1/s]
+  double trunk_rate = 10.0;     ///< rate of the correction of the trunk's attitude [1/s]
+  double damping = 1e-5;        ///< damping of J_U W^-1 J_U', as a multiple of trace / rows
+  double angular_length = 0.2;  ///< length that makes angular rows comparable with linear ones [m]
+  double speed_share = 0.98;    ///< share of a joint's speed limit that may be used
+  UpperBodyTurn turn = {};      ///< turn of the trunk and the arms relative to their command
+  /// true: tasks are reduced one after the other; false: all of them together.
+  bool in_order = true;
 };
 
 /// Tasks that may be reduced because of the limit of a joint, in this order.
 struct YieldingTasks {
-  bool height = false;  ///< of the COG
-  bool trunk = false;   ///< attitude
+  bool height = false;  ///< COG height
+  bool trunk = false;   ///< attitude of the trunk
 };
 
 struct Resolution {
-  Eigen::VectorXd dtheta;  ///< ref joint rates [rad/s]
-  double scale = 1;        ///< below 1 where a speed limit made the whole motion slower
-  int limiting_dof = -1;   ///< the joint whose speed limit made tasks give way, or the motion slow
-  std::vector<int> held;   ///< joints held at a position limit
+  Eigen::VectorXd dtheta;  ///< reference rates of the joints [rad/s]
+  double scale = 1;        ///< below 1 if a speed limit made the whole motion slower
+  /// Joint whose speed limit made the law reduce tasks or slow the motion down.
+  int limiting_dof = -1;
+  std::vector<int> held;   ///< joints at a position limit
   YieldingTasks yielding;  ///< the tasks that were reduced
   TaskResiduals residuals;
 };
@@ -66,52 +69,56 @@ std::vector<std::string> limit_notes(const RobotModel& model, const Resolution& 
 
 /// Memory that resolve() uses again in each call.
 struct ResolverWork {
-  StackedTask task, softened, moving;  ///< as it is; some rows yielding; without the joints held
+  /// The task as it is; with reduced rows; without the fixed joints.
+  StackedTask task, softened, moving;
   StackedTask::Rows weighted;
-  StackedTask::Vector left;  // of the task by the rates
+  StackedTask::Vector left;  // residual of the task
   Eigen::MatrixXd cog;
   Eigen::VectorXd bias, start;
-  std::optional<RobotData> planned;  ///< where the trunk is not the root
+  std::optional<RobotData> planned;  ///< positions of the plan, if the trunk is not the root
   Resolution attempt;
 };
 
-/// (22), and (28) for a plan without joint rates. `reference`: the reference posture anchored on
-/// the planned sole of `anchor`; `data` holds its positions. `next` is the plan one tick later: the
-/// motion of its feet is followed.
+/// (22), and (28) for a plan without joint rates. `reference` is the reference posture anchored on
+/// the planned sole of `anchor`, and `data` has its positions. `next` is the plan one tick later;
+/// the motion of its feet is followed.
 Resolution resolve(const RobotModel& model, const ActuatorLimits& limits,
                    const RobotState& reference, RobotData& data, Side anchor,
                    const Eigen::Vector3d& cog_velocity, const CommandSample& command,
                    const CommandSample& next, double dt, const Eigen::VectorXd& weight,
                    const ResolverOptions& options = {});
 
-/// The same into `result`; allocates nothing when it is called again and no joint is at a limit.
+/// Writes the same into `result`. Allocates nothing when it is called again and no joint is at a
+/// limit.
 void resolve(const RobotModel& model, const ActuatorLimits& limits, const RobotState& reference,
              RobotData& data, Side anchor, const Eigen::Vector3d& cog_velocity,
              const CommandSample& command, const CommandSample& next, double dt,
              const Eigen::VectorXd& weight, const ResolverOptions& options, ResolverWork& work,
              Resolution& result);
 
-/// How the ankles answer a tilt of the soles.
+/// The reaction of the ankles to a tilt of the soles.
 struct AnkleLaw {
-  double share = 0;       ///< of the stance foot's tilt against its ground that is turned back
-  double compliance = 0;  ///< share of one foot's ground slope against the ground at large that its
-                          ///< ankle gives in to
-  double slope_time = 0;  ///< after which a lasting tilt counts as the ground's [s]; 0: never
-  double contact_tilt_time = 0;  ///< the same for a foot whose centre of pressure is inside its
-                                 ///< sole [s]; 0: as slope_time
+  double share = 0;  ///< share of the stance foot's tilt relative to its ground that is compensated
+  /// Share of the difference between one foot's ground slope and the general slope to which its
+  /// ankle yields.
+  double compliance = 0;
+  /// Time after which a lasting tilt counts as that of the ground [s]; 0: never.
+  double slope_time = 0;
+  /// The same time for a foot whose centre of pressure is inside its sole [s]; 0: slope_time.
+  double contact_tilt_time = 0;
 };
 
 class ReferenceBody {
  public:
-  /// At rest in the posture `start`, which the servos hold with `target` [rad].
+  /// Starts at rest in the posture `start`, which the servos hold with `target` [rad].
   ReferenceBody(const RobotModel& model, const ActuatorLimits& limits, double dt,
                 const RobotState& start, const Eigen::VectorXd& target,
                 const ResolverOptions& options = {});
 
-  /// Goes on from what another law left.
+  /// Continues from the state that another law has left.
   void take_over(const Handover& handover);
 
-  /// Puts the sole of `side` where the plan has it and works out positions and COG.
+  /// Puts the sole of `side` where the plan has it, and computes positions and COG.
   void anchor(Side side, const Eigen::Isometry3d& sole);
 
   const RobotState& state() const { return reference_; }
@@ -120,27 +127,29 @@ class ReferenceBody {
   const Eigen::Vector3d& dcog() const { return dcog_; }
   const Eigen::VectorXd& target() const { return previous_target_; }
 
-  /// Turns of the two joints nearest to each foot [rad], by dof. Holds until the next call.
+  /// The turns of the two joints nearest to each foot [rad], by dof. The result is valid until the
+  /// next call.
   const Eigen::VectorXd& ankle_offsets(const Estimate& estimate, const AnkleLaw& law);
 
-  /// Off the ground: puts the base where the plan has it and works out positions and COG.
+  /// For a robot off the ground: puts the base where the plan has it, and computes positions and
+  /// COG.
   void release(const CommandSample& command);
 
-  /// One tick off the ground, in the place of advance(): the joints return to their command, and
-  /// the legs turn at the hips against `tilt`, by which the trunk is turned from its plan [rad].
+  /// One tick off the ground, instead of advance(). The joints return to their command, and the
+  /// legs turn at the hips against `tilt`, the turn of the trunk relative to its plan [rad].
   /// Nothing is integrated: the COG moves as planned.
   void fly(const Eigen::Vector3d& tilt, const CommandSample& command, const CommandSample& next,
            const Eigen::VectorXd& offsets, ControlOutput& out);
 
-  /// The trunk and the arms turn against their command from now on.
+  /// Sets the turn of the trunk and the arms relative to their command from now on.
   void turn(const UpperBodyTurn& turn) { options_.turn = turn; }
 
-  /// W = diag(weight) from now on [dof].
+  /// Sets W = diag(weight) from now on [dof].
   void weigh(const Eigen::VectorXd& weight) { weight_ = weight; }
 
-  /// Integrates ref.ddcog (both bounded; the bounds scale with the COG height z [m]), moves the
-  /// posture by (22)(23) and fills everything of `out` but the COG. `offsets` are added to the
-  /// servo targets [rad].
+  /// Integrates ref.ddcog, with bounds on acceleration and speed that scale with the COG height z
+  /// [m]. Moves the posture by (22)(23) and fills all of `out` except the COG. `offsets` are added
+  /// to the servo targets [rad].
   void advance(const CogReference& ref, double z, const CommandSample& command,
                const CommandSample& next, const Eigen::VectorXd& offsets, ControlOutput& out);
 
@@ -155,16 +164,17 @@ class ReferenceBody {
   double dt_;
   RobotData data_;
   Eigen::VectorXd weight_, lead_, previous_target_, offsets_;
-  std::vector<char> noted_;  // by dof: limits that its servo target was held to
+  std::vector<char> noted_;  // by dof: limits by which its servo target was bounded
   ResolverWork work_;
   Resolution resolution_;
   RobotState reference_;
   Side anchor_ = Side::left;
   Eigen::Vector3d dcog_ = Eigen::Vector3d::Zero();  // ref COG velocity [m/s]
-  // Tilt of the ground under each foot, and at large [rad].
+  // Tilt of the ground under each foot, and of the ground in general [rad].
   std::array<Eigen::Vector3d, 2> slope_ = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   Eigen::Vector3d ground_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d tipped_ = Eigen::Vector3d::Zero();  // of the stance foot, filtered [rad]
+  // Tilt of the stance foot after a filter [rad].
+  Eigen::Vector3d tipped_ = Eigen::Vector3d::Zero();
 };
 
 }  // namespace ayumi

@@ -38,12 +38,12 @@ PlacedCore placed(const CollisionModel& collisions, int body, int shape, const R
   return {&p.collider, pose, p.collider.core_pose(pose)};
 }
 
-// The ends of a shape: points, or discs of a cylinder's radius, in the frame of its core.
+// The ends of a shape in the frame of its core: points, or discs with a cylinder's radius.
 std::vector<Vector3d> ends(const ConvexCore& core) {
   std::vector<Vector3d> result;
   if (!core.points.empty()) return result;
   for (int i = 0; i < 8; ++i) {
-    bool twin = false;  // the same as an earlier corner, along an axis without length
+    bool twin = false;  // true: equal to an earlier corner, because an axis has no length
     for (int axis = 0; axis < 3; ++axis)
       twin = twin || (core.half[axis] == 0 && (i >> axis & 1) != 0);
     if (!twin) result.push_back(box_corner(core.half, i));
@@ -56,7 +56,7 @@ bool is_box(const ConvexCore& core) {
   return core.points.empty() && core.disc == 0 && core.half.minCoeff() > 0;
 }
 
-// Distance of an end of one shape from the other shape. `on_a` is on the other shape.
+// The distance of an end of one shape from the other shape; `on_a` is on the other shape.
 Closest end_from(const PlacedCore& other, const PlacedCore& own, const Vector3d& end) {
   Closest c;
   if (own.set().disc == 0 && is_box(other.set())) {
@@ -74,7 +74,7 @@ Closest end_from(const PlacedCore& other, const PlacedCore& own, const Vector3d&
   return c;
 }
 
-// Rate of normal . point for a point that is fixed in the body.
+// The rate of normal . point for a point that is fixed in the body.
 Eigen::RowVectorXd rate_along(const MatrixXd& jacobian, const Vector3d& origin,
                               const Vector3d& point, const Vector3d& normal) {
   return normal.transpose() * jacobian.topRows<3>() +

@@ -1,11 +1,11 @@
 #pragma once
-// The clearance of two shapes as distances with continuous derivatives. The nearest points of two
-// shapes jump from corner to corner while faces pass each other, and the derivative of the distance
-// jumps with them: a solver that sees that distance alternates between the corners. The distances
-// are therefore those of the ends of each shape, which are corners (box), end points (capsule) or
-// end discs (cylinder), from the other shape. None of them is less than the clearance, and outside
-// the other shape each has a continuous derivative. The clearance itself is added where two edges
-// meet, which no end shows, and for shapes without ends (spheres, hulls).
+// The clearance of two shapes as distances with continuous derivatives. While faces pass each
+// other, the nearest points of two shapes jump from corner to corner, and the derivative of the
+// distance jumps with them: a solver that uses this distance alternates between the corners. So the
+// distances here are those of the ends of each shape from the other shape; ends are corners (box),
+// end points (capsule) or end discs (cylinder). None of these distances is less than the clearance,
+// and outside the other shape each has a continuous derivative. The clearance itself is added if
+// two edges meet, which no end shows, and for shapes without ends (spheres, hulls).
 
 #include <Eigen/Core>
 #include <vector>
@@ -19,13 +19,13 @@ namespace ayumi {
 struct ShapePair {
   int pair = 0;        ///< index of the pair of bodies
   int a = 0, b = 0;    ///< index of the shape of the first and of the second body
-  bool edges = false;  ///< whether the clearance itself is a row too
+  bool edges = false;  ///< whether the clearance itself is a row, too
 };
 
 /// The shapes of a pair of bodies.
 std::vector<ShapePair> shape_pairs(const CollisionModel& collisions, int pair);
 
-/// Number of clearance_points(): 1 for two spheres; 16 for two boxes, 17 with their edges.
+/// The number of clearance_points(): 1 for two spheres; 16 for two boxes, or 17 with their edges.
 int clearance_point_count(const CollisionModel& collisions, const ShapePair& shapes);
 
 /// Whether two edges are nearer than any end, by more than `same_distance` [m]; needs
@@ -33,22 +33,23 @@ int clearance_point_count(const CollisionModel& collisions, const ShapePair& sha
 bool edges_meet(const CollisionModel& collisions, const ShapePair& shapes, const RobotData& data,
                 double same_distance);
 
-/// Clearance of the two shapes; needs update_positions(). Where the bounding spheres are farther
-/// apart than `skip`, that bound is returned instead [m].
+/// The clearance of the two shapes; needs update_positions(). If the bounding spheres are farther
+/// apart than `skip`, their distance is returned instead [m].
 double shape_clearance(const CollisionModel& collisions, const ShapePair& shapes,
                        const RobotData& data, double skip);
 
-/// The clearance itself first where it is a row, then the ends of b from a, then the ends of a from
-/// b [m]; needs update_positions().
+/// First the clearance itself if it is a row, then the distances of the ends of b from a, then
+/// those of the ends of a from b [m]; needs update_positions().
 std::vector<Closest> clearance_points(const CollisionModel& collisions, const ShapePair& shapes,
                                       const RobotData& data);
 
-/// Signed distance of a point from a box of half sides `half` at `pose`: `on_a` on the box, `on_b`
-/// the point, `normal` away from the box [m].
+/// The signed distance of a point from a box with half sides `half` at `pose` [m]: `on_a` is on the
+/// box, `on_b` is the point, and `normal` points away from the box.
 Closest point_from_box(const Eigen::Vector3d& point, const Eigen::Isometry3d& pose,
                        const Eigen::Vector3d& half);
 
-/// Derivatives of clearance_points() by the tangent of the configuration (world), points x (6+dof).
+/// The derivatives of clearance_points() by the tangent of the configuration (world), points x
+/// (6+dof).
 Eigen::MatrixXd clearance_gradient(const RobotModel& model, const CollisionModel& collisions,
                                    const ShapePair& shapes, const RobotData& data);
 

@@ -11,9 +11,10 @@ namespace ayumi {
 
 namespace {
 
-// Period at which the distance of every pair of bodies is computed [s]. Chosen: in that time bodies
-// that approach each other at 0.5 m/s come 10 mm nearer, which is what limits/clearance.cpp adds to
-// its tolerance. Half: less than 5 %; twice: grip, clearance 12.2 to 13.5 mm.
+// Period at which the distance of every pair of bodies is computed [s]. Chosen: in this time,
+// bodies that approach each other at 0.5 m/s come 10 mm nearer, and limits/clearance.cpp adds this
+// distance to its tolerance. With half of the value, figures change by less than 5 %; with twice,
+// the clearance of the case "grip" changes from 12.2 to 13.5 mm.
 constexpr double kCoarsePeriod = 0.020;
 
 std::vector<int> coarse_samples(const CommandSeries& series) {
@@ -46,8 +47,8 @@ std::vector<BodySphere> body_spheres(const RobotModel& model, const CollisionMod
   return spheres;
 }
 
-/// The scan of one motion. A pair comes nearer by no more than its bodies move relative to each
-/// other, so most pairs need not be measured at most samples.
+/// The scan of one motion. The distance of a pair decreases by no more than its bodies move
+/// relative to each other, so most pairs need not be measured at most samples.
 class ClearanceScan {
  public:
   ClearanceScan(const RobotModel& model, const CommandSeries& series,
@@ -108,15 +109,15 @@ class ClearanceScan {
     const Eigen::Isometry3d after =
         poses_[c + 1][bodies.a].inverse(Eigen::Isometry) * poses_[c + 1][bodies.b];
     const BodySphere& sphere = spheres_[bodies.b];
-    // A turn by an angle moves a point by less than the angle times its distance; the chord of the
-    // rotation matrices is sqrt(8) sin(angle/2), and angle/2 at most pi/2 times its sine.
+    // A turn by an angle moves a point by less than the angle times its distance. The chord of the
+    // rotation matrices is sqrt(8) sin(angle/2), and angle/2 is at most pi/2 times its sine.
     const double angle =
         std::numbers::pi * (after.linear() - before.linear()).norm() / std::sqrt(8.0);
     return (after * sphere.center - before * sphere.center).norm() + angle * sphere.radius;
   }
 
-  // Movement between two samples beside a coarse sample. The movement of its neighbours counts too,
-  // because a body may turn back in between.
+  // The movement between two samples next to a coarse sample. The movement of the neighbouring
+  // samples counts, too, because a body may turn back in between.
   double way_around(int c, int pair) const {
     const int first = std::max(c - 1, 0),
               last = std::min<int>(c + 1, static_cast<int>(way_.rows()) - 1);
@@ -193,7 +194,8 @@ class ClearanceScan {
   std::vector<std::vector<Eigen::Isometry3d>> poses_;  // poses by coarse sample and body
   Eigen::MatrixXd way_, clearance_;                    // by coarse sample and pair [m]
   double least_ = std::numeric_limits<double>::infinity();
-  std::vector<std::vector<std::pair<int, double>>> fine_;  // by pair: sample and clearance
+  // For each pair, samples with their clearances.
+  std::vector<std::vector<std::pair<int, double>>> fine_;
 };
 
 }  // namespace

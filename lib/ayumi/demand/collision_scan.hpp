@@ -1,5 +1,5 @@
 #pragma once
-// Self-clearance along a motion.
+// The clearance between the robot's own bodies along a motion.
 
 #include <functional>
 
@@ -9,9 +9,9 @@
 namespace ayumi {
 
 /// Calls note(pair, sample, clearance) for every pair of `collisions`, in order of time within a
-/// pair: every 20 ms, and at every sample around the places where a pair has a least clearance
-/// below `near` [m], or begins or ends to overlap. Clearances that are neither below `exact` [m]
-/// nor the least of all pairs are lower bounds.
+/// pair: every 20 ms, and at every sample around the times at which a pair has its smallest
+/// clearance below `near` [m], or begins or ends to overlap. Clearances that are neither below
+/// `exact` [m] nor the smallest of all pairs are lower bounds.
 void scan_clearance(const RobotModel& model, const CommandSeries& series,
                     const CollisionModel& collisions, double near, double exact,
                     const std::function<void(int pair, int sample, double clearance)>& note);

@@ -50,13 +50,13 @@ ContactPlan contact_plan(const CommandSeries& series) {
 
 RunOn swing_run_on(const RobotModel& model, const CommandSeries& series, Side side,
                    const ContactInterval& contact, bool lands) {
-  // Share of the height at the edge below which the sole counts as being in its place. Chosen: a
-  // swing that ends as (1 - s)^3 has a quarter of its remaining time left there. No measured case
-  // changes from half to twice (constants.md).
+  // Share of the height at the beginning or end of the contact below which the sole counts as being
+  // in its place. Chosen: a swing that ends as (1 - s)^3 has a quarter of its remaining time left
+  // there. No measured case changes between half and twice the value (constants.md).
   constexpr double kArrived = 0.02;
-  // Share of the height at the edge by which the sole comes down without a halt when it is on its
-  // way. Chosen: a sole that hangs still and then lowers a little is floating, which is judged by
-  // height. Figures change by less than 5 % from half to twice.
+  // Share of this height by which a sole that is still swinging comes down without a halt. Chosen:
+  // a sole that hangs still and then comes down a little is floating, which is judged by its
+  // height. Between half and twice the value, figures change by less than 5 %.
   constexpr double kRunOnFall = 0.8;
   const int edge = lands ? contact.first : contact.last, step = lands ? 1 : -1;
   const Eigen::Isometry3d inverse = contact.sole.inverse();
@@ -83,7 +83,7 @@ RunOn swing_run_on(const RobotModel& model, const CommandSeries& series, Side si
 
 double samples_after_contact(const RobotModel& model, const CommandSeries& series, Side side,
                              const ContactInterval& contact, const ContactInterval& swing) {
-  // Distance from its place at which a sole is leaving it [m]. Source: docs/attribution.md
+  // Distance from its place at which a sole counts as leaving it [m]. Source: docs/attribution.md
   // ("Contacts that end too early"); planned contacts are met to 1e-12 m.
   constexpr double kOff = 1e-5;
   RobotData data(model);
@@ -99,7 +99,8 @@ double samples_after_contact(const RobotModel& model, const CommandSeries& serie
 }
 
 bool at_flight_edge(const CommandSeries& series, int k) {
-  // Samples to either side. Derived: those that fill_rates() of motion/differentiate.hpp uses.
+  // Number of samples on either side. Derived: the number that fill_rates() of
+  // motion/differentiate.hpp uses.
   constexpr int kReach = 2;
   const int last = static_cast<int>(series.samples.size()) - 1;
   const auto flies = [&](int i) { return series.samples[i].support == Support::none; };

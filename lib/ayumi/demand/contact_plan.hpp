@@ -1,7 +1,7 @@
 #pragma once
-// Contact intervals of a planned motion. A foot in contact does not move, so one pose stands for
-// the whole interval: the planned sole pose at its middle, where neither lift-off nor landing blurs
-// it.
+// The contact intervals of a planned motion. A foot in contact does not move, so one pose
+// represents the whole interval: the planned sole pose at its middle, where neither lift-off nor
+// landing disturbs it.
 
 #include <Eigen/Geometry>
 #include <array>
@@ -11,21 +11,23 @@
 
 namespace ayumi {
 
-/// Samples first..last (inclusive) during which one foot is planned on, or off, the ground.
+/// The samples first..last (inclusive) during which one foot is planned to be on the ground, or off
+/// the ground.
 struct ContactInterval {
   int first = 0, last = 0;
   bool contact = false;
   Eigen::Isometry3d sole =
-      Eigen::Isometry3d::Identity();  ///< pose at which the foot stands while in contact, world
+      /// Pose at which the foot stands while in contact, in the world.
+      Eigen::Isometry3d::Identity();
 };
 
 /// The whole series cut into alternating intervals, in order of time.
 std::vector<ContactInterval> contact_intervals(const CommandSeries& series, Side side);
 
-/// By sample: index of its interval in contact_intervals().
+/// For each sample, the index of its interval in contact_intervals().
 std::vector<int> interval_index(const std::vector<ContactInterval>& intervals);
 
-/// Contact intervals of both feet of a series, by sample.
+/// The contact intervals of both feet of a series, and the interval of each sample.
 struct ContactPlan {
   std::array<std::vector<ContactInterval>, 2> intervals;  ///< by Side
   std::array<std::vector<int>, 2> index;                  ///< by Side, then sample
@@ -39,32 +41,33 @@ struct ContactPlan {
 };
 ContactPlan contact_plan(const CommandSeries& series);
 
-/// How the swing goes on beyond the edge of a contact: a foot that lands later, or lifts off
-/// earlier, than the phases say.
+/// The continuation of a swing beyond the beginning or end of a contact: a foot that lands later,
+/// or lifts off earlier, than the phases say.
 struct RunOn {
-  double height = 0;  ///< of the sole's centre over its place at the edge, if it is on its way [m]
-  int samples = 0;    ///< from the edge until it has as good as come to its place
+  /// Height of the sole's centre over its place at that time, if it is still moving [m].
+  double height = 0;
+  int samples = 0;  ///< number of samples until it has practically come to its place
 };
-/// At the first sample of a contact (`lands`) or at its last one. Zero height: the sole is in its
-/// place, or hangs still (which is floating, not a swing).
+/// The continuation at the first sample of a contact (`lands`) or at its last one. The height is
+/// zero if the sole is in its place, or if it hangs still (then it is floating and not swinging).
 RunOn swing_run_on(const RobotModel& model, const CommandSeries& series, Side side,
                    const ContactInterval& contact, bool lands);
 
-/// What a swing may run on, as a share of the height by which a supporting sole may float. Chosen:
-/// a fifth finds 60 ms of a slow swing (0.06 mm), and generated walks have 1e-12 m
-/// (docs/attribution.md, "Contacts that begin in the air"). No measured case changes from half to
-/// twice (constants.md).
+/// Height at which a swing may continue, as a share of the height by which a supporting sole may
+/// float. Chosen: a fifth finds 60 ms of a slow swing (0.06 mm), and generated walks have 1e-12 m
+/// (docs/attribution.md, "Contacts that begin in the air"). No measured case changes between half
+/// and twice the value (constants.md).
 inline constexpr double kRunOnShare = 0.2;
 
-/// How long a foot stays in the place of `contact` after that is said to end [samples], when the
-/// swing that follows does begin: by the instants when the sole is 0.01 and 0.08 mm off its place,
-/// as if it left it with the cube of time. Slower starts give more, quicker ones less, even below
-/// 0.
+/// How long a foot stays in the place of `contact` after the planned end of the contact [samples],
+/// if the following swing begins at all. It is computed from the times at which the sole is 0.01
+/// and 0.08 mm off its place, as if its distance grew with the cube of time. Slower starts give a
+/// larger number, and quicker ones a smaller one, even below 0.
 double samples_after_contact(const RobotModel& model, const CommandSeries& series, Side side,
                              const ContactInterval& contact, const ContactInterval& swing);
 
-/// Whether the differences that make the rates of sample k mix support and flight: acceleration
-/// jumps there, and what it needs of the ground is not known.
+/// Whether the differences that give the rates of sample k mix support and flight. There, the
+/// acceleration jumps, and the demand on the ground is unknown.
 bool at_flight_edge(const CommandSeries& series, int k);
 
 }  // namespace ayumi

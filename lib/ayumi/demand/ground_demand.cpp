@@ -139,13 +139,14 @@ double torsional_friction_arm(const ConvexPolygon& polygon, const Vector2d& zmp)
 
 namespace {
 
-// Share of the left foot and the two centres of pressure, in the plane.
+// The share of the left foot and the two centres of pressure, in the plane.
 struct Shares {
   double left = 0.5;
   std::array<Vector2d, 2> pressure;
 };
 
-// The part of a that a line through `zmp` joins with b: a in the shadow b throws through the ZMP.
+// The part of a that lines through `zmp` connect with b: the part of a in the shadow of b, with the
+// ZMP as the light.
 std::vector<Vector2d> shadow(const ConvexPolygon& a, const ConvexPolygon& b, const Vector2d& zmp) {
   Vector2d right = zmp - b.vertices()[0], left = right;
   for (const Vector2d& v : b.vertices()) {
@@ -159,7 +160,7 @@ std::vector<Vector2d> shadow(const ConvexPolygon& a, const ConvexPolygon& b, con
   return part;
 }
 
-// Middle of the part of b on the ray from `point` through `zmp`.
+// The middle of the part of b on the ray from `point` through `zmp`.
 Vector2d behind(const ConvexPolygon& b, const Vector2d& point, const Vector2d& zmp) {
   const Vector2d ray = zmp - point;
   double low = 0, high = 1e9;
@@ -173,11 +174,12 @@ Vector2d behind(const ConvexPolygon& b, const Vector2d& point, const Vector2d& z
   return point + 0.5 * (low + high) * ray;
 }
 
-// 0 below 0, 1 above 1, `u` between; rounded at both so that its slope has no jump, for the ZMP of
-// a walk rests just there and the repair differentiates this.
+// Is 0 below 0, 1 above 1, and `u` between them. It is rounded at both ends so that its slope has
+// no jump, because the ZMP of a walk rests exactly there and the repair differentiates this
+// function.
 double rounded_clamp(double u) {
-  // Share at each end. Chosen: a tenth of the way between the feet. Figures change by less than 5 %
-  // from half to twice.
+  // Rounded share at each end. Chosen: a tenth of the way between the feet. Between half and twice
+  // the value, figures change by less than 5 %.
   constexpr double kRound = 0.1;
   if (u > 0.5) return 1 - rounded_clamp(1 - u);
   if (u >= kRound) return u;
@@ -185,9 +187,9 @@ double rounded_clamp(double u) {
 }
 
 // Along the line between the sole centres the share follows the ZMP, and across it both centres of
-// pressure shift alike: one foot takes all when the ZMP is past its centre. Where a centre of
-// pressure would leave its sole so, the ZMP lies near a corner of the hull: then one foot presses
-// in the middle of what it may, the other behind the ZMP.
+// pressure shift alike: one foot takes all when the ZMP is past its centre. If a centre of pressure
+// would leave its sole in this way, the ZMP lies near a corner of the hull. Then one foot presses
+// in the middle of its possible places, and the other one on the other side of the ZMP.
 Shares share_zmp(const std::array<ConvexPolygon, 2>& soles, const Vector2d& zmp) {
   const Vector2d left = soles[0].centroid(), right = soles[1].centroid();
   const Vector2d line = left - right;

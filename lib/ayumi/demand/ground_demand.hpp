@@ -1,7 +1,7 @@
 #pragma once
-// What a planned motion needs from the ground, the motors and the feet, and how far that is from
-// what was commanded. Each quantity is computed here once: the report evaluates it, the nonlinear
-// program constrains it.
+// The demands of a planned motion on the ground, the motors and the feet, and their distance from
+// what was commanded. Each quantity is only computed here: the report evaluates it, and the
+// nonlinear program constrains it.
 
 #include <Eigen/Dense>
 #include <array>
@@ -14,8 +14,9 @@ namespace ayumi {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
-/// Where the robot stands: the plane of the supporting soles (mean origin, mean normal; for feet at
-/// different heights a plane between them) and the convex hull of the soles in it.
+/// The place where the robot stands: the plane of the supporting soles (with their mean origin and
+/// mean normal; for feet at different heights, a plane between them) and the convex hull of the
+/// soles in this plane.
 struct SupportPlane {
   Eigen::Isometry3d frame = Eigen::Isometry3d::Identity();  ///< z is the normal
   ConvexPolygon polygon;                                    ///< in its x y plane [m]
@@ -23,71 +24,73 @@ struct SupportPlane {
   bool empty() const { return polygon.empty(); }
 };
 
-/// From the sole poses (by Side); empty when no foot supports.
+/// The plane for the sole poses (by Side); empty if no foot supports.
 SupportPlane support_plane(const RobotModel& model, Support support,
                            const std::array<Eigen::Isometry3d, 2>& soles);
 
-/// The base wrench of inverse_dynamics (moment about `base_position`) about the origin and in the
-/// axes of the plane.
+/// The base wrench of inverse_dynamics (with the moment about `base_position`), converted to the
+/// origin and the axes of the plane.
 Vector6d plane_wrench(const SupportPlane& plane, const Eigen::Vector3d& base_position,
                       const Vector6d& base_wrench);
 
-/// edges x 6: rows . plane_wrench = f_n (distance of the ZMP inside each edge) [N m].
+/// A matrix of edges x 6: its product with plane_wrench is f_n (distance of the ZMP inside each
+/// edge) [N m].
 Eigen::Matrix<double, Eigen::Dynamic, 6> support_rows(const SupportPlane& plane);
 
-/// Share of the weight above which the ground force has a ZMP with a meaning. Chosen: below it the
-/// moment that places the ZMP is rounding. Motions in contact rest on far more (normal_force.cpp
-/// warns at 5 %), so that only samples beside flights come near it. The estimator of a controller
-/// and the commands of an imported motion take 5 % instead: load cells and differences are noisier.
-/// No measured case changes from half to twice (constants.md).
+/// Share of the weight above which the ZMP of the ground force has a meaning. Chosen: below it, the
+/// moment that determines the ZMP is rounding. Motions in contact rest on far more
+/// (normal_force.cpp warns at 5 %), so that only samples beside flights come near it. The estimator
+/// of a controller and the commands of an imported motion take 5 % instead: load cells and
+/// differences are noisier. No measured case changes between half and twice the value
+/// (constants.md).
 inline constexpr double kContactThreshold = 0.02;
 
-/// The normal force above which the ground force of a robot has a ZMP with a meaning [N].
+/// The normal force of a robot above which the ZMP of the ground force has a meaning [N].
 double contact_threshold(const RobotModel& model);
 
-/// Ground force in the axes of the plane, and the ZMP where it has a meaning (f_n > min_force).
+/// The ground force in the axes of the plane, and the ZMP if it has a meaning (f_n > min_force).
 struct GroundDemand {
   double normal_force = 0;      ///< [N]
   double tangential_force = 0;  ///< [N]
   bool has_zmp = false;
-  Eigen::Vector2d zmp = Eigen::Vector2d::Zero();        ///< in the plane [m]
-  Eigen::Vector3d zmp_world = Eigen::Vector3d::Zero();  ///< [m]
-  double margin = 0;                                    ///< inside the polygon [m]
-  double yaw_moment = 0;                                ///< about the normal through the ZMP
+  Eigen::Vector2d zmp = Eigen::Vector2d::Zero();        ///< ZMP in the plane [m]
+  Eigen::Vector3d zmp_world = Eigen::Vector3d::Zero();  ///< ZMP in the world [m]
+  double margin = 0;      ///< distance of the ZMP inside the polygon [m]
+  double yaw_moment = 0;  ///< moment about the normal through the ZMP [N m]
 };
 GroundDemand ground_demand(const SupportPlane& plane, const Vector6d& plane_wrench,
                            double min_force);
 
-/// Lever of the yaw moment that friction can resist without moving the ZMP [m]: mean distance from
-/// the ZMP over the largest part of the polygon that is symmetric about it, evenly pressed. A lower
-/// bound of what is possible; 0 outside.
+/// The lever of the yaw moment that friction can resist without moving the ZMP [m]. It is the mean
+/// distance from the ZMP over the largest part of the polygon that is symmetric about it, with an
+/// even pressure. It is a lower bound of what is possible, and 0 outside the polygon.
 double torsional_friction_arm(const ConvexPolygon& polygon, const Eigen::Vector2d& zmp);
 
 /// The ground wrench shared between the feet, each about the base origin (force, moment), by Side.
-/// One foot takes all. Two feet share so that each centre of pressure stays in its own sole if the
-/// ZMP is in their hull; the shares sum to the whole exactly.
+/// One supporting foot takes all of it. Two feet share it so that each centre of pressure stays in
+/// its own sole if the ZMP is in their hull; the sum of the shares is exactly the whole.
 std::array<Vector6d, 2> foot_wrenches(const RobotModel& model, Support support,
                                       const std::array<Eigen::Isometry3d, 2>& soles,
                                       const SupportPlane& plane, const GroundDemand& use,
                                       const Eigen::Vector3d& base_position,
                                       const Vector6d& base_wrench);
 
-/// Dry friction turns its sign over twice this joint rate [rad/s]. Chosen: far below the rates of a
-/// motion (0.1 rad/s and more) and above the rounding of differences, so that its torque has no
-/// jump. No measured case changes from half to twice (constants.md).
+/// The sign of dry friction changes gradually over twice this joint rate [rad/s]. Chosen: far below
+/// the rates of a motion (0.1 rad/s and more) and above the rounding of differences, so that its
+/// torque has no jump. No measured case changes between half and twice the value (constants.md).
 inline constexpr double kCoulombRate = 0.01;
 
-/// Motor torques [dof]: `force` of inverse_dynamics without what the ground gives at the feet, plus
-/// rotor inertia, viscous and Coulomb friction of the servo. `data` is as inverse_dynamics() left
-/// it.
+/// The motor torques [dof]: `force` of inverse_dynamics without the contribution of the ground at
+/// the feet, plus rotor inertia, viscous and Coulomb friction of the servo. `data` is in the state
+/// in which inverse_dynamics() left it.
 Eigen::VectorXd motor_torques(const RobotModel& model, const ActuatorLimits& actuators,
                               const RobotState& state, const Eigen::VectorXd& acceleration,
                               const Eigen::VectorXd& force,
                               const std::array<Vector6d, 2>& foot_wrench, const RobotData& data);
 
-/// A sole against the pose it should keep.
+/// The deviation of a sole from the pose that it should keep.
 struct SoleError {
-  double slip = 0;         ///< largest horizontal way of a corner, in the plane of `planned` [m]
+  double slip = 0;  ///< largest horizontal displacement of a corner, in the plane of `planned` [m]
   double penetration = 0;  ///< deepest corner below that plane [m]
   double gap = 0;          ///< highest corner above it [m]
   double lowest = 0;       ///< lowest corner above it (negative below) [m]

@@ -12,7 +12,7 @@ MotionDynamics::MotionDynamics(const RobotModel& model, const ActuatorLimits& ac
                                const CommandSeries& series, const ContactPlan& plan)
     : model_(model), actuators_(actuators), series_(series), plan_(plan), data_(model) {}
 
-// The support changes only where a contact interval does.
+// The support only changes at the ends of contact intervals.
 void MotionDynamics::update_plane(int k) {
   const std::array<int, 2> now = {plan_.index[0][k], plan_.index[1][k]};
   if (now == plane_of_) return;
@@ -37,7 +37,7 @@ const SampleDynamics& MotionDynamics::at(int k, double pace) {
   return now_;
 }
 
-// The wrench is linear in the base's acceleration.
+// The wrench is linear in the acceleration of the base.
 const SampleDynamics& MotionDynamics::free_flight(int k) {
   const Vector6d wrench = at(k).wrench;
   Eigen::Matrix<double, 6, 6> inertia;

@@ -1,6 +1,6 @@
 #pragma once
-// What a planned motion needs at one sample, as the check looks at it: played as planned, or more
-// slowly to ask whether haste is what is wrong.
+// The demand of a planned motion at one sample, as the check examines it: played as planned, or
+// more slowly to find out whether the speed is the cause of an error.
 
 #include "ayumi/demand/contact_plan.hpp"
 #include "ayumi/demand/ground_demand.hpp"
@@ -8,26 +8,27 @@
 namespace ayumi {
 
 struct SampleDynamics {
-  Vector6d wrench = Vector6d::Zero();                ///< of the ground, about the base origin
-  Eigen::Vector3d ddcog = Eigen::Vector3d::Zero();   ///< [m/s^2]
-  Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< of the wrench about the COG [N m]
-  GroundDemand use;                                  ///< where a foot supports
-  Eigen::VectorXd torque;                            ///< of the motors [dof]
+  Vector6d wrench = Vector6d::Zero();                ///< wrench of the ground about the base origin
+  Eigen::Vector3d ddcog = Eigen::Vector3d::Zero();   ///< acceleration of the COG [m/s^2]
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< moment of the wrench about the COG [N m]
+  GroundDemand use;                                  ///< demand on the ground, if a foot supports
+  Eigen::VectorXd torque;                            ///< torques of the motors [dof]
 };
 
-/// Looks at one sample after the other; the results stay until the next call of at().
+/// Examines one sample after the other. The results are valid until the next call of at().
 class MotionDynamics {
  public:
-  /// The arguments must outlive this.
+  /// The arguments must outlive this object.
   MotionDynamics(const RobotModel& model, const ActuatorLimits& actuators,
                  const CommandSeries& series, const ContactPlan& plan);
 
-  /// Inverse dynamics of sample k with its rates times `pace` and accelerations times its square:
-  /// the same path, that much slower.
+  /// Inverse dynamics of sample k with its rates times `pace` and its accelerations times the
+  /// square of `pace`: the same path, played more slowly.
   const SampleDynamics& at(int k, double pace = 1);
 
-  /// Sample k of a flight with the base accelerated so that it needs no wrench from outside: what
-  /// is left of the motors' torques without the force and moment that no ground gives.
+  /// Sample k of a flight with an acceleration of the base for which it needs no wrench from
+  /// outside. The motors' torques are then those without the force and moment that no ground can
+  /// give.
   const SampleDynamics& free_flight(int k);
 
   const RobotData& data() const { return data_; }       ///< positions and rates of that sample

@@ -5,9 +5,9 @@
 // between base and foot
 //   -J_F + [(p_G - p_F) x] J_wF = -s_j x (p_F - p_j) - s_j x (p_G - p_F) = -s_j x (p_G - p_j),
 // the velocity of the COG as a point of the foot, backwards. The other columns stay as they are.
-// A prismatic joint has s_j in place of every product s_j x r.
-// In matrices (13) is J_G = J_cq - J_cb J_Fb^-1 J_Fq with the floating Jacobians of COG and foot:
-// that product is the second route of the tests.
+// For a prismatic joint, s_j replaces every product s_j x r. In matrices (13) is J_G = J_cq - J_cb
+// J_Fb^-1 J_Fq with the floating Jacobians of COG and foot: that product is the second route of the
+// tests.
 #include "ayumi/dynamics/cog_jacobian.hpp"
 
 #include "ayumi/dynamics/inverse_dynamics.hpp"
@@ -22,12 +22,12 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Makes the turns of a sole comparable with its shifts [m]. Chosen: about the length of a foot; for
-// joint rates that keep both soles at rest it has no influence.
+// Length by which the turns of a sole are multiplied, to compare them with its shifts [m]. Chosen:
+// about the length of a foot; for joint rates that keep both soles at rest it has no influence.
 constexpr double kSoleTurnLength = 0.2;
 
-/// The velocity per unit rate of joint i of the point p (from the base origin) on what the joint
-/// moves, and its turn.
+/// The velocity, per unit rate of joint i, of the point p (from the base origin) fixed to what the
+/// joint moves, and the turn of that part.
 struct PointRate {
   Vector3d linear, angular;
 };
@@ -44,10 +44,10 @@ MatrixXd with_joints(const MatrixXd& base) {
   return map;
 }
 
-/// Adds (6)(7) to the three rows of J, joint 0 in column `first`.
+/// Adds (6)(7) to the three rows of J; joint 0 has the column `first`.
 void add_held_base_columns(const RobotModel& model, RobotData& data, int first, MatrixXd& J) {
   const std::vector<Body>& bodies = model.bodies();
-  // The first moment of each subtree, leaves first.
+  // The first moment of each subtree is summed from the leaves to the root.
   for (size_t i = 0; i < bodies.size(); ++i)
     data.composite[i].moment = bodies[i].inertia.mass * data.com[i];
   const double per_mass = 1 / model.mass();
@@ -107,7 +107,8 @@ MatrixXd anchored_velocity_map(const RobotModel& model, const RobotData& data, S
   return with_joints(base);
 }
 
-// The normal equations of min sum over the feet |v + w x p + linear|^2 + L^2 |w + angular|^2.
+// The normal equations of the minimum of the sum over the feet of |v + w x p + linear|^2 + L^2 |w +
+// angular|^2.
 MatrixXd both_feet_velocity_map(const RobotModel& model, const RobotData& data) {
   constexpr double kSquare = kSoleTurnLength * kSoleTurnLength;
   Eigen::Matrix<double, 6, 6> A = Eigen::Matrix<double, 6, 6>::Zero();

@@ -1,30 +1,33 @@
 #pragma once
-// Rigid-body dynamics of the floating tree. Generalised velocity [v_WB; w_WB; dtheta], acceleration
-// its time derivative (v_WB differentiated in the world: classical, not spatial), generalised force
-// [force; moment about the base origin; joint torques], all world axes. Gravity is kGravity along
-// -z. Rotor inertia and joint friction are not part of these functions.
+// Rigid-body dynamics of the floating tree. The generalised velocity is [v_WB; w_WB; dtheta]. The
+// acceleration is its time derivative (v_WB is differentiated in the world, which gives the
+// classical acceleration, not the spatial one). The generalised force is [force; moment about the
+// base origin; joint torques]. All are in world axes. Gravity is kGravity along -z. Rotor inertia
+// and joint friction are not part of these functions.
 
 #include "ayumi/dynamics/robot_data.hpp"
 
 namespace ayumi {
 
-/// Generalised force that gives `acceleration` (6+dof) in `state`: RNEA. The first six entries are
-/// the wrench the surroundings must supply. Fills positions and velocities of `data`.
+/// The generalised force that gives `acceleration` (6+dof) in `state`, by recursive Newton-Euler.
+/// The first six entries are the wrench that the surroundings must supply. Fills positions and
+/// velocities of `data`.
 Eigen::VectorXd inverse_dynamics(const RobotModel& model, const RobotState& state,
                                  const Eigen::VectorXd& acceleration, RobotData& data);
 
-/// The same into `force` where `data` already holds the velocities of `state`; allocates nothing
-/// when `force` has its size.
+/// Writes the same into `force` if `data` already holds the velocities of `state`. It allocates
+/// nothing if `force` has its size.
 void newton_euler(const RobotModel& model, const RobotState& state,
                   const Eigen::VectorXd& acceleration, RobotData& data, Eigen::VectorXd& force);
 
-/// Coriolis, centrifugal and gravity forces: inverse_dynamics at zero acceleration.
+/// Coriolis, centrifugal and gravity forces: the result of inverse_dynamics() at zero acceleration.
 Eigen::VectorXd bias_force(const RobotModel& model, const RobotState& state, RobotData& data);
 
-/// (6+dof) square, symmetric: composite rigid bodies. Needs update_positions().
+/// The mass matrix, (6+dof) square and symmetric, by composite rigid bodies. Needs
+/// update_positions().
 void mass_matrix(const RobotModel& model, RobotData& data, Eigen::MatrixXd& M);
 
-/// Acceleration under a generalised force: M^-1 (force - bias).
+/// The acceleration under a generalised force: M^-1 (force - bias).
 Eigen::VectorXd forward_dynamics(const RobotModel& model, const RobotState& state,
                                  const Eigen::VectorXd& force, RobotData& data);
 

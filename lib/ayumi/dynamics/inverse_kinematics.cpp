@@ -28,41 +28,44 @@ constexpr std::array<Side, 2> kSides = {Side::left, Side::right};
 // small enough for accelerations, which are differences at 1 kHz.
 constexpr double kNewtonTolerance = 1e-13;
 
-// Step after which Newton stops without looking at the residual [m, rad]. Derived: a step of s
-// leaves at most (6 s)^2 / 2 times the length of a leg in metres, below kNewtonTolerance for legs
-// up to 50 m.
+// Length of a step after which Newton stops without looking at the residual [m, rad]. Derived: a
+// step of s leaves at most (6 s)^2 / 2 times the length of a leg in metres, which is below
+// kNewtonTolerance for legs up to 50 m.
 constexpr double kLastNewtonStep = 1e-8;
 
-// Residual that is accepted when rounding keeps it above kNewtonTolerance [m, rad]. Chosen: far
-// below the tolerances of the check.
+// Residual that is accepted if rounding keeps it above kNewtonTolerance [m, rad]. Chosen: far below
+// the tolerances of the check.
 constexpr double kAcceptedResidual = 1e-10;
 
-// Largest number of Newton steps. Chosen: a few suffice near a solution, and damped steps follow.
+// Largest number of Newton steps. Chosen: a few suffice near a solution; damped steps follow if
+// Newton fails.
 constexpr int kMostNewtonSteps = 25;
 
-// Largest step of a joint in one iteration [rad]. Chosen: Newton stays on its side of a straight
-// knee.
+// Largest step of a joint in one iteration [rad]. Chosen: small enough that Newton stays on its
+// side of a straight knee.
 constexpr double kLargestJointStep = 0.3;
 
 // Weight of the COG against the feet in the damped solve. Chosen: large, so that the feet miss a
-// target that is out of reach, and not the COG.
+// target that is out of reach and the COG does not.
 constexpr double kCogWeight = 100;
 
-// Weights of the trunk's attitude against the feet where legs lack joints: of the roll of legs
-// without coupled joints, which carries the COG aside, and of all else. Chosen: a roll of 0.1 rad
-// then moves the soles by less than 0.01 mm. Feet that miss their places hold pitch and yaw so
-// weakly that a smaller weight lets them wander.
+// Weights of the trunk's attitude against the feet where legs lack joints. The first is for the
+// roll of legs without coupled joints, which carries the COG to the side; the second is for
+// everything else. Chosen: a roll of 0.1 rad then moves the soles by less than 0.01 mm. Feet that
+// miss their places hold pitch and yaw so weakly that a smaller weight lets them wander.
 constexpr double kRollWeight = 1e-3, kTrunkWeight = 3e-2;
 
 // Weight of a sole in the middle of its swing, relative to a sole that carries, where legs lack
-// joints. Chosen: the sole that carries then takes a hundredth of what both miss together.
+// joints. Chosen: the sole that carries then takes a hundredth of the distance by which the two
+// together miss their places.
 constexpr double kSwingingWeight = 0.1;
 
-// Step of a joint at which the search ends if a residual remains [rad]. Chosen: angles are then
-// continuous in time to what rates at 1 kHz need.
+// Step of a joint at which the search ends although a residual remains [rad]. Chosen: angles are
+// then as continuous in time as rates at 1 kHz need.
 constexpr double kLastStep = 1e-10;
 
-// Share of an axis that lies across the trunk. Chosen: within 45 degrees.
+// Smallest share of an axis that makes it lie across the trunk. Chosen: the axis is within 45
+// degrees.
 constexpr double kAcross = 0.7;
 
 // Range that a knee needs on its human side [rad]. Chosen: half of kStartBend; a knee with less
@@ -70,8 +73,8 @@ constexpr double kAcross = 0.7;
 constexpr double kStartBend = 0.3, kKneeRoom = 0.15;
 
 // Bend of a knee that a walk with bent legs needs [rad]. Chosen: 50 degrees for standing and 20 for
-// the foot that is lifted. Half: Open Duck Mini stands with its hips at their limits and cannot
-// lift a foot; twice: only placeholders of limits leave so much room.
+// the foot that is lifted. With half of the value, Open Duck Mini stands with its hips at their
+// limits and cannot lift a foot; with twice, only limits that are placeholders leave so much room.
 constexpr double kCrouchBend = 1.2;
 
 // Sine of the knee's angle up to which a leg counts as straight. Chosen: 1 degree.
@@ -81,7 +84,7 @@ bool contains(const std::vector<int>& list, int value) {
   return std::find(list.begin(), list.end(), value) != list.end();
 }
 
-// The joints of both legs that move each leg by a body of its own; a waist moves both by one body.
+// The joints of both legs that move each leg by a separate body; a waist moves both by one body.
 std::vector<int> coupled_joints(const RobotModel& model) {
   const auto bodies = [&](Side side) {
     std::vector<int> chain;
@@ -100,8 +103,8 @@ std::vector<int> coupled_joints(const RobotModel& model) {
   return coupled;
 }
 
-// Gauss' elimination with row pivots of [A, B], A square, in place: B becomes A^-1 B. Returns the
-// determinant of A; B has no meaning where it is 0.
+// Gauss' elimination with row pivots on [A, B], in place, for a square A: B becomes A^-1 B. Returns
+// the determinant of A; if it is 0, B has no meaning.
 template <class Rows>
 double eliminate(Rows& rows) {
   constexpr int n = Rows::RowsAtCompileTime, all = Rows::ColsAtCompileTime;
@@ -170,10 +173,10 @@ void InverseKinematics::find_leg_bodies(Side side) {
     if (moved[i])
       leg_bodies_[static_cast<int>(side)].push_back(
           {static_cast<int>(i), column[i], static_cast<bool>(carries[i])});
-  // A column of A is at most c = ratio sqrt(1 + r^2) long, r the distance from its joint to the
-  // sole, and changes by at most c per radian of each joint. So the determinant changes by at most
-  // 6 * 6 c^6 per radian of all joints, by Hadamard's inequality; the last 3 % are for squares of
-  // the step.
+  // A column of A is at most c = ratio sqrt(1 + r^2) long, where r is the distance from its joint
+  // to the sole, and changes by at most c per radian of each joint. So the determinant changes by
+  // at most 6 * 6 c^6 per radian of all joints, by Hadamard's inequality. The last 3 % are for the
+  // squares of the step.
   double reach = model_->sole(side).frame.translation().norm(), ratio = 1;
   for (int i = model_->sole(side).body; i > 0; i = bodies[i].parent) {
     if (!moved[i]) continue;
@@ -203,14 +206,15 @@ void InverseKinematics::find_knees(RobotData& data) {
     knee_hips_[s] = model_->dofs()[found[0]].body;
     knee_feet_[s] = model_->dofs()[found[2]].body;
     const Body& shank = model_->bodies()[model_->dofs()[found[1]].body];
-    // A shank turned about the axis to the left goes back, and the knee comes forward.
+    // If a shank turns about the axis that points to the left, its lower end goes back and the knee
+    // comes forward.
     forward_[s] =
         std::copysign(1.0, shank.ratio * data.axis[model_->dofs()[found[1]].body].dot(across));
   }
 }
 
 // Sine of the angle between thigh and shank, positive if the knee is in front of the line from hip
-// to ankle. It is 0 without a knee.
+// to ankle. It is 0 for a leg without a knee.
 double InverseKinematics::knee_bend(const RobotData& data, Side side) const {
   const int s = static_cast<int>(side);
   if (knees_[s] < 0) return 0;
@@ -241,7 +245,7 @@ void InverseKinematics::bend_straight_legs(RobotData& data) {
       const Dof& moved = model_->dofs()[joint];
       return w > 0 ? moved.upper - start_[joint] : start_[joint] - moved.lower;
     };
-    // The hip and the ankle turn back by half the bend of the knee each.
+    // The hip and the ankle each turn back by half the bend of the knee.
     const Vector3d across = data.rotation[model_->trunk_body()].col(1);
     const auto room = [&](double w) {
       double least = room_of(knee, w);
@@ -286,8 +290,8 @@ InverseKinematics::Residual InverseKinematics::residual(const PostureTarget& tar
   return e;
 }
 
-// The twist of the sole, 6 x joints, computed faster than by body_jacobian(), which has all
-// columns.
+// The Jacobian of the sole's twist, 6 x joints. It is computed faster than by body_jacobian(),
+// which has all columns.
 MatrixXd InverseKinematics::leg_jacobian(const RobotData& data, Side side,
                                          const std::vector<int>& leg) const {
   const Sole& sole = model_->sole(side);
@@ -309,7 +313,7 @@ MatrixXd InverseKinematics::leg_jacobian(const RobotData& data, Side side,
   return J;
 }
 
-// The same twist of a leg of six joints, written into the first columns of `rows`.
+// The same Jacobian for a leg of six joints, written into the first columns of `rows`.
 void InverseKinematics::square_jacobian(const RobotData& data, Side side, SixRows& rows) const {
   const Sole& sole = model_->sole(side);
   const Vector3d p = data.position[sole.body] + data.rotation[sole.body] * sole.frame.translation();
@@ -375,7 +379,7 @@ void InverseKinematics::set_attitude(const PostureTarget& target, RobotState& st
   state.base.attitude = Eigen::Quaterniond(target.trunk * trunk_in_root.transpose()).normalized();
 }
 
-// Fills the error of the solution and the bend of its legs. Returns whether it is reached.
+// Fills the error of the solution and the bend of its legs. Returns whether the target is reached.
 bool InverseKinematics::newton(const PostureTarget& target, RobotState& state, RobotData& data,
                                double& error, std::array<double, 2>& legs_bend) const {
   double before = INFINITY, longest = INFINITY;
@@ -395,7 +399,7 @@ bool InverseKinematics::newton(const PostureTarget& target, RobotState& state, R
     }
     if (iteration == kMostNewtonSteps) return false;
     before = iteration > 1 ? error : INFINITY;
-    SixRows solved[2];  // A^-1 [E, e]
+    SixRows solved[2];  // A^-1 [E, e] of each leg
     Eigen::Matrix3d S = Eigen::Matrix3d::Identity();
     Vector3d right = e.cog;
     for (int s = 0; s < 2; ++s) {
@@ -431,10 +435,10 @@ bool InverseKinematics::newton(const PostureTarget& target, RobotState& state, R
   return true;
 }
 
-// Levenberg-Marquardt on all residuals, the COG weighted, inside the position limits: a joint at
-// its limit stays there while the step would take it beyond. Where legs lack joints, the attitude
-// of the base is solved too, with a small weight on the trunk's, and a sole that swings has a
-// smaller weight than one that carries.
+// Levenberg-Marquardt on all residuals, with a weight on the COG, inside the position limits: a
+// joint at its limit stays there while the step would take it beyond. Where legs lack joints, the
+// attitude of the base is solved too, with a small weight on the trunk's attitude, and a sole that
+// swings has a smaller weight than one that carries.
 void InverseKinematics::damped(const PostureTarget& target, RobotState& state,
                                RobotData& data) const {
   std::vector<int> joints = legs_[0];
@@ -530,7 +534,7 @@ PostureSolution InverseKinematics::solve(const PostureTarget& target, RobotState
   const auto tolerance = [&](double hold) {
     return lacking_ ? lacking_tolerance(hold) : kAcceptedResidual;
   };
-  // A leaning trunk is kept as the initial guess.
+  // The trunk still leans; this posture is kept as the initial guess.
   if (!lacking_ || residual(target, state, data).trunk.norm() > kLargestJointStep)
     set_attitude(target, state, data);
   std::array<double, 2> now;
@@ -556,7 +560,8 @@ PostureSolution InverseKinematics::solve(const PostureTarget& target, RobotState
       share[s] = solution.miss[s] / allowed;
       turned[s] = e.foot[s].tail<3>().norm();
     }
-    if (!solution.reached && std::max(share[0], share[1]) <= 1)  // the soles are at their places
+    // The soles are at their places in this case.
+    if (!solution.reached && std::max(share[0], share[1]) <= 1)
       for (int s = 0; s < 2; ++s) share[s] = turned[s] / tolerance(target.hold[s]);
     solution.foot = share[0] >= share[1] ? Side::left : Side::right;
     const auto foot = static_cast<size_t>(solution.foot);

@@ -1,5 +1,6 @@
 #pragma once
-// Legs and base from what they must reach: both sole poses, the trunk's attitude and the COG.
+// Finds base and leg joints from what they must reach: both sole poses, the trunk's attitude and
+// the COG.
 
 #include <array>
 #include <string>
@@ -11,39 +12,44 @@ namespace ayumi {
 
 struct PostureTarget {
   std::array<Eigen::Isometry3d, 2> feet = {Eigen::Isometry3d::Identity(),
-                                           Eigen::Isometry3d::Identity()};  ///< soles, by Side
-  Eigen::Vector3d cog = Eigen::Vector3d::Zero();                            ///< world [m]
-  Eigen::Matrix3d trunk = Eigen::Matrix3d::Identity();                      ///< attitude, world
-  /// How firmly each sole keeps its place, by Side: 1 where it carries, down to 0 in the middle of
-  /// a swing. Counts only where legs have fewer than six joints.
+                                           /// Poses of the soles, by Side.
+                                           Eigen::Isometry3d::Identity()};
+  Eigen::Vector3d cog = Eigen::Vector3d::Zero();        ///< world position of the COG [m]
+  Eigen::Matrix3d trunk = Eigen::Matrix3d::Identity();  ///< attitude of the trunk in the world
+  /// How firmly each sole keeps its place, by Side: 1 for a sole that carries, down to 0 in the
+  /// middle of a swing. It only counts where legs have fewer than six joints.
   std::array<double, 2> hold = {1, 1};
 };
 
 struct PostureSolution {
   bool reached = false;
-  double error = 0;        ///< largest residual component of the soles and the COG [m, rad]; 0
-                           ///< where rounding is all that is left
-  double lean = 0;         ///< of the trunk from its target; 0 unless legs lack joints [rad]
-  Side foot = Side::left;  ///< that is out of reach when not reached, else the farthest off
-  double missing = 0;      ///< of that foot, COG held [m]
-  double turned = 0;       ///< angle of that foot from its planned attitude [rad]; 0 when reached
-  std::array<double, 2> miss = {0, 0};  ///< of each sole, by Side [m]
-  int at_limit = -1;          ///< joint of that leg that is at its position limit; -1: none
-  bool knee_flipped = false;  ///< reached, but with a leg bent the other way
+  double error = 0;  ///< largest residual component of the soles and the COG [m, rad]; 0
+                     ///< where rounding is all that is left
+  double lean = 0;   ///< angle of the trunk from its target; 0 unless legs lack joints [rad]
+  /// The foot that is out of reach if the target is not reached; otherwise the foot that is
+  /// farthest from its place.
+  Side foot = Side::left;
+  double missing = 0;  ///< distance of that foot from its place while the COG is held [m]
+  double turned = 0;   ///< angle of that foot from its planned attitude [rad]; 0 when reached
+  std::array<double, 2> miss = {0, 0};  ///< distance of each sole from its place, by Side [m]
+  int at_limit = -1;  ///< joint of that leg that is at its position limit; -1 if there is none
+  bool knee_flipped = false;  ///< the target is reached, but a leg is bent the other way
 };
 
 /// Distance by which soles may miss their places, and the same number of radians, where legs have
 /// fewer than six joints [m, rad]. Chosen: three quarters of the slip that the check allows
-/// (limits/stance). Half: narrower shuffles; twice: the check finds slipping soles.
+/// (limits/stance). With half of the value, shuffles become narrower; with twice, the check finds
+/// slipping soles.
 inline constexpr double kLackingTolerance = 1.5e-3;
 
 /// The same for a sole in the middle of its swing, which carries nothing. Between lift-off and the
 /// middle of the swing, both are blended as PostureTarget::hold says. Chosen: a third of the lift
-/// of the smallest robots, so that the sole stays clear of the ground. Half: steps of Open Duck
-/// Mini in 0.25 s are refused (2.7 mm); twice: not measured.
+/// of the smallest robots, so that the sole stays clear of the ground. With half of the value,
+/// steps of Open Duck Mini in 0.25 s are refused (they miss by 2.7 mm); twice the value was not
+/// measured.
 inline constexpr double kSwingingTolerance = 5e-3;
 
-/// Distance by which a sole that is held so firmly may miss its place [m, rad].
+/// Distance by which a sole that is held with this firmness may miss its place [m, rad].
 inline double lacking_tolerance(double hold) {
   return kLackingTolerance + (1 - hold) * (kSwingingTolerance - kLackingTolerance);
 }
@@ -51,39 +57,44 @@ inline double lacking_tolerance(double hold) {
 class InverseKinematics {
  public:
   /// `reference` is a posture whose legs bend the right way. The knee of a straight leg bends as a
-  /// human knee does, so that it comes forward, where the limits of the leg leave room for it; else
-  /// it bends the other way. Throws Error(bad_model) for a robot without soles or with a foot as
-  /// root.
+  /// human knee does, so that it comes forward, if the limits of the leg leave room for it;
+  /// otherwise it bends the other way. Throws Error(bad_model) for a robot without soles or with a
+  /// foot as root.
   InverseKinematics(const RobotModel& model, const Eigen::VectorXd& reference);
 
-  /// Joints that are solved: those of one leg only. A waist above which both legs hang is not.
+  /// The joints that are solved are those of one leg only. A waist above both legs is not solved.
   const std::vector<int>& leg(Side side) const { return legs_[static_cast<int>(side)]; }
-  /// A leg has fewer than six joints of its own. Then the trunk leans where the soles and the COG
-  /// need it, and joints that are coupled across both legs are solved too.
+  /// Whether a leg has fewer than six joints of its own. Then the trunk leans as far as the soles
+  /// and the COG need it, and joints that are coupled across both legs are solved too.
   bool lacks_joints() const { return lacking_; }
-  /// Joints that move both legs at once, as coupled hips do; only where legs lack joints.
+  /// Joints that move both legs at once, as coupled hips do. The list is only filled where legs
+  /// lack joints.
   const std::vector<int>& coupled() const { return coupled_; }
-  /// Joint whose body is the shank; -1: the leg has no three parallel joints across.
+  /// Joint whose body is the shank; -1 if the leg does not have three parallel joints across the
+  /// trunk.
   int knee(Side side) const { return knees_[static_cast<int>(side)]; }
-  /// Whether angles above the straight leg bring the knee forward. Only with a knee.
+  /// Whether angles above that of the straight leg bring the knee forward. It is only defined for a
+  /// leg with a knee.
   bool positive_bends_forward(Side side) const { return forward_[static_cast<int>(side)] > 0; }
   bool solves(int dof) const { return solved_[dof]; }
 
-  /// Legs bent the right way, other joints of the reference.
+  /// A posture with legs bent the right way and the other joints as in the reference.
   const Eigen::VectorXd& start() const { return start_; }
 
-  /// Newton on base position and leg joints, warm from `state`; other joints are read from it, the
-  /// base attitude follows from `target.trunk`. Six-joint legs meet the target to 1e-13. Others are
-  /// solved as damped least squares inside the position limits: legs with more joints meet the
-  /// target, legs with fewer joints come within lacking_tolerance(). `state` is only meaningful
-  /// when the solution says reached; `data` is a workspace.
+  /// Newton's method on base position and leg joints, which starts from `state`. Other joints are
+  /// read from `state`, and the base attitude follows from `target.trunk`. Legs of six joints meet
+  /// the target to 1e-13. Others are solved as damped least squares inside the position limits:
+  /// legs with more joints meet the target, legs with fewer joints come within lacking_tolerance().
+  /// `state` is only meaningful if the solution says that the target is reached; `data` is a
+  /// workspace.
   PostureSolution solve(const PostureTarget& target, RobotState& state, RobotData& data) const;
 
  private:
   struct Residual {
     Eigen::Matrix<double, 6, 1> foot[2];
     Eigen::Vector3d cog;
-    Eigen::Vector3d trunk = Eigen::Vector3d::Zero();  ///< only where legs lack joints
+    /// Error of the trunk's attitude, only where legs lack joints.
+    Eigen::Vector3d trunk = Eigen::Vector3d::Zero();
     double largest() const;
   };
   /// The Jacobian of a leg of six joints and four right sides.
@@ -91,8 +102,8 @@ class InverseKinematics {
   /// A body that the joints of a leg move.
   struct LegBody {
     int body = -1;
-    int column = -1;       ///< of its joint among the leg's; -1: not one of them
-    bool carries = false;  ///< the sole
+    int column = -1;  ///< column of its joint among those of the leg; -1 if it is not one of them
+    bool carries = false;  ///< this body carries the sole
   };
   Residual residual(const PostureTarget& target, const RobotState& state, RobotData& data) const;
   bool newton(const PostureTarget& target, RobotState& state, RobotData& data, double& error,
@@ -110,18 +121,20 @@ class InverseKinematics {
 
   const RobotModel* model_;
   std::array<std::vector<int>, 2> legs_;
-  std::array<std::vector<LegBody>, 2> leg_bodies_;  ///< leaves first
+  std::array<std::vector<LegBody>, 2> leg_bodies_;  ///< bodies of each leg, leaves first
   std::vector<int> coupled_;
   std::vector<bool> solved_;
   bool square_ = false;   ///< both legs have six joints
-  bool lacking_ = false;  ///< a leg has fewer
+  bool lacking_ = false;  ///< a leg has fewer than six joints
   std::array<int, 2> knees_ = {-1, -1};
-  std::array<int, 2> knee_feet_ = {-1, -1};  ///< bodies of the joints across below the knees
-  std::array<int, 2> knee_hips_ = {-1, -1};  ///< and above them
+  /// Bodies of the joints across the trunk below the knees.
+  std::array<int, 2> knee_feet_ = {-1, -1};
+  std::array<int, 2> knee_hips_ = {-1, -1};  ///< bodies of those above the knees
   std::array<double, 2> forward_ = {0, 0};
   Eigen::VectorXd start_;
-  double largest_bend_rate_ = 0;         ///< change of those determinants per radian
-  std::array<double, 2> bend_ = {0, 0};  ///< sign of the leg Jacobian's determinant, of the knee
+  double largest_bend_rate_ = 0;  ///< largest change of the determinants below per radian
+  /// Sign of the leg Jacobian's determinant on the right side of the knee.
+  std::array<double, 2> bend_ = {0, 0};
 };
 
 }  // namespace ayumi

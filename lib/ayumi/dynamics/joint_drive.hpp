@@ -8,21 +8,22 @@
 namespace ayumi {
 
 struct JointDrive {
-  Eigen::VectorXd rotor_inertia;  ///< reflected through the gear [kg m^2]
-  Eigen::VectorXd viscous;        ///< [N m s/rad]
+  Eigen::VectorXd rotor_inertia;  ///< rotor inertia, reflected through the gear [kg m^2]
+  Eigen::VectorXd viscous;        ///< viscous friction [N m s/rad]
   Eigen::VectorXd coulomb;        ///< dry friction [N m]
   double stick_rate = 1e-3;       ///< joint rate below which dry friction falls to zero [rad/s]
 };
 
-/// Of these servos.
+/// The drives of these servos.
 JointDrive joint_drive(const ActuatorLimits& actuators);
 
-/// Torque that friction takes from each dof and its derivative by the rate:
-/// viscous dq + coulomb clamp(dq / stick_rate, -1, 1).
+/// The torque that friction takes from each dof, and its derivative by the rate: viscous dq +
+/// coulomb clamp(dq / stick_rate, -1, 1).
 double friction_torque(const JointDrive& drive, int dof, double rate);
 double friction_slope(const JointDrive& drive, int dof, double rate);
 
-/// What the motors must give beyond the tree's force: rotor ddq + friction [N m], by dof.
+/// The torque that the motors must give beyond the tree's force, by dof: rotor ddq + friction [N
+/// m].
 Eigen::VectorXd drive_torque(const JointDrive& drive, const Eigen::VectorXd& dtheta,
                              const Eigen::VectorXd& ddtheta);
 

@@ -88,10 +88,12 @@ MatrixXd body_jacobian(const RobotModel& model, const RobotData& data, int body,
 
 namespace {
 
-/// Joints whose angles go through the kernel at once. Definition: a workspace, no limit.
+/// Largest number of joints whose angles go through the kernel at once. Definition: the size of a
+/// workspace, which limits nothing.
 constexpr size_t kJointsAtOnce = 8;
 
-/// The attitude (in link axes) and origin of a body in the base frame, by its own chain alone.
+/// The attitude (in link axes) and origin of a body in the base frame, from its own chain of joints
+/// alone.
 void carry_to(const RobotState& state, const RobotData& data, int body, Matrix3d& R, Vector3d& p) {
   std::array<int, kJointsAtOnce> chain;  // the last joints, from the body inwards
   std::array<double, kJointsAtOnce> q, s, c;
@@ -137,7 +139,7 @@ void anchor_base(const RobotModel& model, Side support, const Isometry3d& sole, 
   const kernels::Link& link = data.links[static_cast<size_t>(own.body)];
   if (link.skewed)
     R = (R * Eigen::Map<const Matrix3d>(link.C))
-            .eval();  // transposed, because it is stored by rows
+            .eval();  // the matrix is transposed, because it is stored by rows
   body.linear() = R;
   body.translation() = p;
   const Isometry3d base = sole * (body * own.frame).inverse();

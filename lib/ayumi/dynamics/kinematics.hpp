@@ -6,27 +6,28 @@
 
 namespace ayumi {
 
-/// Fills the position part of `data` from base pose and theta.
+/// Fills the position part of `data` from the base pose and theta.
 void update_positions(const RobotModel& model, const RobotState& state, RobotData& data);
 
-/// Positions, then the velocity part: (1)(2) carried out along the tree.
+/// Fills the positions and then the velocity part: (1)(2), carried out along the tree.
 void update_velocities(const RobotModel& model, const RobotState& state, RobotData& data);
 
-/// The velocity part alone; needs update_positions().
+/// Fills the velocity part alone. Needs update_positions().
 void carry_velocities(const RobotModel& model, const RobotState& state, RobotData& data);
 
-/// What changes in `data` when only the base pose of the state does; needs update_positions().
+/// Changes what depends on the base pose in `data`, when only the base pose of the state has
+/// changed. Needs update_positions().
 void move_base(const BasePose& base, RobotData& data);
 
-/// Pose of a link or of a sole frame in the world; needs update_positions().
+/// The pose of a link or of a sole frame in the world. Needs update_positions().
 Eigen::Isometry3d link_pose(const RobotModel& model, const RobotData& data, int link);
 Eigen::Isometry3d sole_pose(const RobotModel& model, const RobotData& data, Side side);
 
-/// Velocity of a world point fixed to a body; needs update_velocities().
+/// The velocity of a world point fixed to a body. Needs update_velocities().
 Eigen::Vector3d point_velocity(const RobotData& data, int body, const Eigen::Vector3d& point);
 
-/// (3)(4), 6 x (6+dof): linear velocity of the world point `point` fixed to `body` (rows 0-2) and
-/// angular velocity of the body (rows 3-5) per generalised velocity, world axes; needs
+/// (3)(4), 6 x (6+dof): the linear velocity of the world point `point` fixed to `body` (rows 0-2)
+/// and the angular velocity of the body (rows 3-5) per generalised velocity, in world axes. Needs
 /// update_positions().
 Eigen::MatrixXd body_jacobian(const RobotModel& model, const RobotData& data, int body,
                               const Eigen::Vector3d& point);

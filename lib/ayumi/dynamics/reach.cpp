@@ -15,13 +15,13 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-// Largest number of iterations. Chosen: a quadratic iteration needs ten; beside limits and
-// stretched arms it takes more.
+// Largest number of iterations. Chosen: an iteration that converges quadratically needs ten; near
+// limits and with stretched arms it takes more.
 constexpr int kRounds = 200;
 // A point has reached its place if it is this near [m]. Chosen: a hundredth of a millimetre; no
 // hand is more accurate.
 constexpr double kThere = 1e-5;
-// Largest change of a joint in a round [rad, m]. Chosen: so that the linear model holds.
+// Largest change of a joint in a round [rad, m]. Chosen: small enough for the linear model to hold.
 constexpr double kLongestStep = 0.2;
 
 // If the parts on a body reach less than this share of its limb's length, they belong to the end of
@@ -33,14 +33,16 @@ constexpr double kPartOfLimb = 0.5;
 std::vector<int> limb_ends(const RobotModel& model) {
   const auto& bodies = model.bodies();
   std::vector<int> children(bodies.size(), 0);
-  std::vector<double> carried(bodies.size(), 0);  // to the farthest joint that hangs on it [m]
+  // Distance to the farthest joint that hangs on it [m].
+  std::vector<double> carried(bodies.size(), 0);
   for (size_t b = bodies.size(); b-- > 1;) {
     const auto parent = static_cast<size_t>(bodies[b].parent);
     ++children[parent];
     carried[parent] =
         std::max(carried[parent], carried[b] + bodies[b].placement.translation().norm());
   }
-  std::vector<double> limb(bodies.size(), 0);  // length from the place where it branches off [m]
+  // Length from the place where the limb branches off [m].
+  std::vector<double> limb(bodies.size(), 0);
   std::vector<bool> beyond(bodies.size(), false);
   std::vector<int> ends;
   for (size_t b = 1; b < bodies.size(); ++b) {
@@ -74,11 +76,11 @@ std::vector<int> limb_dofs(const RobotModel& model, int body) {
 
 namespace {
 
-// A limb whose end is at rest this near to the middle plane is not an arm [m]. Chosen: necks are in
-// it.
+// A limb whose end is at rest this near to the middle plane is not an arm [m]. Chosen: necks lie
+// within it.
 constexpr double kMiddle = 0.02;
 
-// Ends of limbs that are not feet, and the y of their joints at rest [m].
+// The ends of limbs that are not feet, and the positions of their joints at rest [m].
 std::vector<std::pair<int, Vector3d>> free_ends(const RobotModel& model) {
   RobotData data(model);
   update_positions(model, model.rest_state(), data);
@@ -155,7 +157,7 @@ ReachSolution reach(const RobotModel& model, const RobotState& state, int body,
   };
   Vector3d at = there();
   ReachSolution best = {now.theta, (place - at).norm()};
-  double damping = 1e-4;  // of the normal equations [m^2]
+  double damping = 1e-4;  // damping of the normal equations [m^2]
   std::vector<bool> held(dofs.size(), false);
   for (int round = 0; round < kRounds && best.missing > kThere; ++round) {
     const MatrixXd whole = body_jacobian(model, data, body, at).topRows<3>();
@@ -184,7 +186,7 @@ ReachSolution reach(const RobotModel& model, const RobotState& state, int body,
       damping = std::max(1e-9, damping / 4);
       if (!blocked) std::fill(held.begin(), held.end(), false);
     } else if (!blocked) {
-      if (damping > 1) break;  // no step brings the point nearer
+      if (damping > 1) break;  // no step brings the point nearer any more
       damping *= 8;
       now.theta = best.theta;
       at = there();

@@ -10,9 +10,9 @@ namespace ayumi {
 
 namespace {
 
-// Bodies up to so many joints apart that are nearer than this in the home posture [m] are housings
-// of one compound joint, made to pass each other. Chosen: a hip or an ankle has up to three axes,
-// whose housings nearly touch.
+// Distance in the home posture below which bodies that are only a few joints apart [m] are taken
+// for housings of one compound joint, made to pass each other. Chosen: a hip or an ankle has up to
+// three axes, whose housings nearly touch.
 constexpr double kHousingGap = 0.005;
 constexpr int kHousingJoints = 3;
 
@@ -22,7 +22,8 @@ constexpr double kTouchingOverlap = 1e-6;
 
 int joints_between(const RobotModel& model, int a, int b) {
   int steps = 0;
-  // Bodies are sorted parents first: climbing from the larger index meets at the common ancestor.
+  // Bodies are sorted with parents first: if one always climbs from the larger index, the two paths
+  // meet at the common ancestor.
   while (a != b) {
     if (a > b)
       a = model.bodies()[a].parent;

@@ -9,8 +9,9 @@ using Eigen::VectorXd;
 
 namespace {
 
-// The bodies but the root, those with fewer joints to it first: limbs then take turns, and what one
-// of them waits for is computed for the others.
+// All bodies but the root, where those with fewer joints between them and the root come first.
+// Limbs then take turns, and while a step of one limb waits for a result, steps of the others are
+// computed.
 std::vector<size_t> outwards(const std::vector<Body>& bodies) {
   std::vector<int> joints(bodies.size(), 0);
   std::vector<size_t> order;
@@ -83,8 +84,8 @@ bool TreeCholesky::factor_rows() {
   return kernels_->factor(paths(), rows_.data(), inverse_.data());
 }
 
-// What came last is at the end of the path, so that sums over it begin with what is known long
-// since.
+// The entries that were computed last are at the end of the path, so that sums over it begin with
+// entries that have been known for long.
 void TreeCholesky::multiply(const std::vector<double>& rows, const VectorXd& x, VectorXd& y) const {
   y.setZero(x.size());
   for (int k = 0; k < static_cast<int>(column_.size()); ++k) {

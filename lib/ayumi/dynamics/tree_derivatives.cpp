@@ -25,7 +25,8 @@ using Eigen::VectorXd;
 
 namespace {
 
-// About the base origin, of a body with attitude R and centre of mass `com` from there.
+// The inertia about the base origin of a body with attitude R, whose centre of mass is at `com`
+// from there.
 SpatialInertia inertia_about_origin(const Body& body, const Matrix3d& R, const Vector3d& com) {
   SpatialInertia result;
   result.mass = body.inertia.mass;
@@ -60,7 +61,7 @@ void solve_rows(const TreeCholesky& L, MatrixXd& X) {
 
 }  // namespace
 
-// Twists, accelerations and joint terms of body i > 0 from its parent's.
+// Computes the twists, accelerations and joint terms of body i > 0 from those of its parent.
 void TreeDynamics::carry_outwards(const Body& body, size_t i, double rate, double acceleration) {
   const Rates& p = rates_[static_cast<size_t>(body.parent)];
   Rates& t = rates_[i];
@@ -84,7 +85,7 @@ void TreeDynamics::carry_outwards(const Body& body, size_t i, double rate, doubl
   t.alpha = p.alpha + acceleration * sw + rate * t.psi1_angular;
 }
 
-// Inertia, momentum, its flow G and the force of one body.
+// Computes the inertia, the momentum, its flow G and the force of one body.
 void TreeDynamics::start_subtree(size_t i) {
   Rates& t = rates_[i];
   SpatialInertia& I = data_.composite[i];
@@ -93,13 +94,13 @@ void TreeDynamics::start_subtree(size_t i) {
   const Vector3d angular = I.inertia * t.w + I.moment.cross(t.v);
   t.force = I.mass * t.a + t.alpha.cross(I.moment) + t.w.cross(t.momentum);
   t.moment = I.inertia * t.alpha + I.moment.cross(t.a) + t.w.cross(angular) + t.v.cross(t.momentum);
-  Matrix3d second = -I.inertia;  // sum m c c'
+  Matrix3d second = -I.inertia;  // the sum of m c c'
   second.diagonal().array() += 0.5 * I.inertia.trace();
   for (int k = 0; k < 3; ++k)
     t.flow.col(k) = I.moment[k] * t.v + t.w.cross(Vector3d(second.col(k)));
 }
 
-// Row and column of joint i against itself and everything above it.
+// Fills the row and the column of joint i against itself and everything above it.
 void TreeDynamics::add_columns(size_t i, const Vector3d& w0, InverseDynamicsDerivatives& d) const {
   const std::vector<Body>& bodies = model_->bodies();
   const Rates& t = rates_[i];
@@ -108,7 +109,7 @@ void TreeDynamics::add_columns(size_t i, const Vector3d& w0, InverseDynamicsDeri
   const Vector3d &sl = t.screw_linear, &sw = t.screw_angular;
   Matrix3d D = -2.0 * t.flow;
   D.diagonal().array() += 2.0 * t.flow.trace();
-  // Wrench of the subtree per ddq_i, q_i and dq_i: what every body above feels.
+  // The wrench of the subtree per ddq_i, q_i and dq_i, which every body above feels.
   const Vector3d m_force = I.mass * sl + sw.cross(I.moment);
   const Vector3d m_moment = I.inertia * sw + I.moment.cross(sl);
   const Vector3d q_force = 2.0 * t.psi1_angular.cross(t.momentum) + I.mass * t.psi2_linear +
@@ -119,7 +120,7 @@ void TreeDynamics::add_columns(size_t i, const Vector3d& w0, InverseDynamicsDeri
       2.0 * (sw.cross(t.momentum) + I.mass * t.psi1_linear + t.psi1_angular.cross(I.moment));
   const Vector3d v_moment =
       D * sw + 2.0 * (I.inertia * t.psi1_angular + I.moment.cross(t.psi1_linear));
-  const Vector3d left = 2.0 * t.momentum.cross(sl) + D.transpose() * sw;  // 2B' S, angular part
+  const Vector3d left = 2.0 * t.momentum.cross(sl) + D.transpose() * sw;  // angular part of 2B' S
   MatrixXd &dq = d.configuration, &dv = d.velocity, &M = d.acceleration;
   dq.col(row).head<3>() += q_force;
   dq.col(row).segment<3>(3) += q_moment;
@@ -217,7 +218,7 @@ void TreeDynamics::forward_derivatives(const RobotState& state, const VectorXd& 
   inverse_derivatives(state, derivatives.acceleration, inverse);
   mass_ = inverse.acceleration;
   factor(drive);
-  rows_.resize(3 * n, n);  // transposed: X M^-1 for symmetric M
+  rows_.resize(3 * n, n);  // the rows are transposed: X M^-1 for a symmetric M
   rows_.topRows(n) = -inverse.configuration.transpose();
   rows_.middleRows(n, n) = -inverse.velocity.transpose();
   rows_.bottomRows(n).setIdentity();

@@ -84,7 +84,7 @@ void TreeDynamics::forward(const RobotState& state, const VectorXd& force, Vecto
        acceleration.data(), scratch_[0].number});
 }
 
-// Adds the rotors to mass_ and factors it.
+// Adds the rotors to mass_ and factorises it.
 void TreeDynamics::factor(const JointDrive* drive) {
   if (drive) mass_.diagonal().tail(model_->dof_count()) += drive->rotor_inertia;
   if (!factor_.factor(mass_))
@@ -108,7 +108,8 @@ void TreeDynamics::mass_matrix(const RobotState& state, MatrixXd& M) {
   ayumi::mass_matrix(*model_, data_, M);
 }
 
-// State and input of number k: state_of(k) and 6+dof numbers from input_of(k).
+// Works through states and inputs in groups: state_of(k) gives state number k, and input_of(k) its
+// 6+dof input numbers.
 template <class StateOf, class InputOf>
 void TreeDynamics::batch(int count, const StateOf& state_of, const InputOf& input_of,
                          MatrixXd& output, const JointDrive* drive, bool forward) {

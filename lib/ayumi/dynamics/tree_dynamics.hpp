@@ -1,8 +1,8 @@
 #pragma once
-// Inverse and forward dynamics alone, as fast as they go: recursions in link axes, one state per
-// call or many states side by side in the processor's vector registers. Conventions and results
-// are those of dynamics/inverse_dynamics.hpp, to rounding; nothing else is computed. The same bits
-// come out for every instruction set, and for a state alone or in any batch.
+// Inverse and forward dynamics alone, made as fast as possible: recursions in link axes, with one
+// state per call or with many states side by side in the processor's vector registers. Conventions
+// and results are those of dynamics/inverse_dynamics.hpp, up to rounding; nothing else is computed.
+// Results are equal to the bit for every instruction set, and for a state alone or in any batch.
 
 #include <span>
 #include <vector>
@@ -23,72 +23,76 @@ struct InverseDynamicsDerivatives {
   Eigen::MatrixXd configuration, velocity, acceleration;
 };
 
-/// Each (6+dof) square: derivative of the acceleration by configuration (base translation, base
-/// rotation vector in world axes, left-multiplied, theta), velocity and generalised force. The
-/// last is the inverse of the mass matrix, rotors included.
+/// Three matrices, each (6+dof) square: the derivatives of the acceleration by configuration (base
+/// translation, base rotation vector in world axes, left-multiplied, theta), by velocity and by
+/// generalised force. The last is the inverse of the mass matrix, rotors included.
 struct ForwardDynamicsDerivatives {
-  Eigen::VectorXd acceleration;  ///< itself
+  Eigen::VectorXd acceleration;  ///< the acceleration itself
   Eigen::MatrixXd configuration, velocity, force;
-  InverseDynamicsDerivatives inverse;  ///< of the tree, at that acceleration
+  /// Derivatives of the tree's inverse dynamics at that acceleration.
+  InverseDynamicsDerivatives inverse;
 };
 
 class TreeDynamics {
  public:
-  /// `model` must outlive this. Throws Error(usage) when the processor lacks the set asked for.
+  /// `model` must outlive this object. Throws Error(usage) if the processor lacks the instruction
+  /// set asked for.
   explicit TreeDynamics(const RobotModel& model, InstructionSet set = InstructionSet::best);
 
   const char* instruction_set() const { return kernels_->name; }
-  int width() const { return kernels_->width; }  ///< states worked on at once in a batch
+  int width() const { return kernels_->width; }  ///< number of states worked on at once in a batch
 
-  /// Generalised force that gives `acceleration` (6+dof): RNEA. No allocation when `force` has its
-  /// size.
+  /// The generalised force that gives `acceleration` (6+dof), by recursive Newton-Euler. It
+  /// allocates nothing if `force` has its size.
   void inverse(const RobotState& state, const Eigen::VectorXd& acceleration,
                Eigen::VectorXd& force);
 
-  /// Acceleration under `force` (6+dof): articulated bodies; through the mass matrix where mimic
-  /// joints tie branches together. Without `drive` the joints have neither rotors nor friction.
+  /// The acceleration under `force` (6+dof), by articulated bodies; if mimic joints tie branches
+  /// together, it is computed through the mass matrix. Without `drive` the joints have neither
+  /// rotors nor friction.
   void forward(const RobotState& state, const Eigen::VectorXd& force, Eigen::VectorXd& acceleration,
                const JointDrive* drive = nullptr);
 
-  /// (6+dof) square, of the positions of `state`.
+  /// The mass matrix, (6+dof) square, for the positions of `state`.
   void mass_matrix(const RobotState& state, Eigen::MatrixXd& M);
 
-  /// Analytic, by twelve numbers per subtree; allocates nothing after the first call.
+  /// Analytic derivatives, by twelve numbers per subtree. The function allocates nothing after the
+  /// first call.
   void inverse_derivatives(const RobotState& state, const Eigen::VectorXd& acceleration,
                            InverseDynamicsDerivatives& derivatives);
 
-  /// From M a + b(q, v) = f: da/dx = -M^-1 d(inverse dynamics)/dx at a, by the sparse factor of M.
-  /// Allocates nothing after the first call.
+  /// From M a + b(q, v) = f follows da/dx = -M^-1 d(inverse dynamics)/dx at a, which is computed by
+  /// the sparse factor of M. The function allocates nothing after the first call.
   void forward_derivatives(const RobotState& state, const Eigen::VectorXd& force,
                            ForwardDynamicsDerivatives& derivatives,
                            const JointDrive* drive = nullptr);
 
-  /// inverse() and forward() for many states; one column of the matrices per state.
+  /// inverse() and forward() for many states, with one column of the matrices per state.
   void inverse(std::span<const RobotState> states, const Eigen::MatrixXd& acceleration,
                Eigen::MatrixXd& force);
   void forward(std::span<const RobotState> states, const Eigen::MatrixXd& force,
                Eigen::MatrixXd& acceleration, const JointDrive* drive = nullptr);
 
-  /// A state and an acceleration (6+dof) that lie elsewhere.
+  /// A state and an acceleration (6+dof) that are stored elsewhere.
   struct Motion {
     const RobotState* state;
     const Eigen::VectorXd* acceleration;
   };
-  /// inverse() for many of them.
+  /// inverse() for many such motions.
   void inverse(std::span<const Motion> motions, Eigen::MatrixXd& force);
 
  private:
   struct alignas(64) Line {
     double number[8];
   };
-  /// Of one body in inverse_derivatives(), about the base origin; force, moment, momentum and flow
-  /// become those of its subtree.
+  /// Quantities of one body in inverse_derivatives(), about the base origin; force, moment,
+  /// momentum and flow become those of its subtree.
   struct Rates {
-    Eigen::Vector3d screw_linear, screw_angular;  // S
+    Eigen::Vector3d screw_linear, screw_angular;  // joint screw S
     Eigen::Vector3d v, w, a, alpha;               // twist and spatial acceleration of the body
     Eigen::Vector3d psi1_linear, psi1_angular, psi2_linear, psi2_angular;
     Eigen::Vector3d force, moment, momentum;
-    Eigen::Matrix3d flow;  // sum of m u c' over its particles
+    Eigen::Matrix3d flow;  // sum of m u c' over the body's particles
   };
   void carry_outwards(const Body& body, size_t i, double rate, double acceleration);
   void start_subtree(size_t i);

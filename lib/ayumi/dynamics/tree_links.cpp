@@ -1,6 +1,6 @@
 // A body's axes are turned by a constant C so that its joint axis is x, y or z: with R = E P(q) the
-// body's attitude in its parent, C_p' R C = (C_p' E C) P'(q). Axes along -x and so on count q
-// backwards instead.
+// body's attitude in its parent, C_p' R C = (C_p' E C) P'(q). For axes along -x, -y or -z, q is
+// counted backwards instead.
 #include "ayumi/dynamics/tree_links.hpp"
 
 #include <cmath>
@@ -22,7 +22,7 @@ void put_six(const Matrix3d& m, double* six) {
     for (int j = i; j < 3; ++j) *six++ = m(i, j);
 }
 
-// Fills axis and direction; returns C.
+// Fills the axis and the direction, and returns C.
 Matrix3d align(const Body& body, kernels::Link& link) {
   link.ratio = body.ratio;
   link.offset = body.offset;

@@ -1,5 +1,5 @@
 #pragma once
-// A model's bodies as the kernels take them.
+// The bodies of a model in the form that the kernels take.
 
 #include <vector>
 
@@ -8,7 +8,7 @@
 
 namespace ayumi {
 
-/// One per body, parents first.
+/// One link per body, parents first.
 std::vector<kernels::Link> tree_links(const RobotModel& model);
 
 }  // namespace ayumi

@@ -7,13 +7,13 @@ namespace ayumi {
 
 /// The ground wrench that a motion needs, given as ZMP, force and yaw moment.
 struct GroundReaction {
-  Eigen::Vector3d zmp = Eigen::Vector3d::Zero();    ///< world, on the plane z = height [m]
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< on the robot [N]
-  double yaw_moment = 0;                            ///< about the vertical through the ZMP [N m]
+  Eigen::Vector3d zmp = Eigen::Vector3d::Zero();    ///< world position on the plane z = height [m]
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< force on the robot [N]
+  double yaw_moment = 0;  ///< moment about the vertical through the ZMP [N m]
 };
 
-/// From the base wrench of inverse_dynamics (force, moment about `base_position`). Where the
-/// vertical force is below `min_force` the ZMP has no meaning and stays under the base.
+/// From the base wrench of inverse_dynamics (force, moment about `base_position`). If the vertical
+/// force is below `min_force`, the ZMP has no meaning and stays under the base.
 GroundReaction ground_reaction(const Eigen::Vector3d& base_position,
                                const Eigen::Matrix<double, 6, 1>& wrench, double height,
                                double min_force = 1e-9);
@@ -30,7 +30,7 @@ inline Eigen::Vector2d horizontal_acceleration(double omega2, const Eigen::Vecto
 /// (16): vertical COG acceleration [m/s^2].
 double vertical_acceleration(double fz, double mass);
 
-/// (14)-(16) with (17).
+/// The COG acceleration of (14)-(16) with (17).
 Eigen::Vector3d pendulum_acceleration(const Eigen::Vector3d& cog, const Eigen::Vector3d& zmp,
                                       double fz, double mass);
 
@@ -40,7 +40,7 @@ inline Eigen::Vector3d divergent_component(const Eigen::Vector3d& cog, const Eig
   return cog + dcog / omega;
 }
 
-/// (14)(15) solved for the ZMP, at the height of `ground`.
+/// The ZMP from (14)(15), at the height of `ground`.
 Eigen::Vector3d pendulum_zmp(const Eigen::Vector3d& cog, const Eigen::Vector3d& ddcog,
                              double ground);
 

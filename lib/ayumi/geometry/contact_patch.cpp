@@ -1,9 +1,9 @@
-// The distance gives the line of contact. The face of one shape that is square to this line is the
-// reference face, and the other shape touches it with its nearest face, edge or corner. Projected
-// along the reference face's normal, both overlap in a convex polygon, whose corners are corners of
-// either shape or crossings of edges. The ids of the points come from these corners and edges, so
-// that a solver recognises a point in the next step. Of two points closer than kSame the first one
-// is kept.
+// The distance gives the line of contact. The face of one shape that is perpendicular to this line
+// is the reference face, and the other shape touches it with its nearest face, edge or corner.
+// Projected along the reference face's normal, both overlap in a convex polygon, whose corners are
+// corners of either shape or crossings of edges. The ids of the points come from these corners and
+// edges, so that a solver recognises a point in the next step. Of two points closer than kSame the
+// first one is kept.
 #include "ayumi/geometry/contact_patch.hpp"
 
 #include <algorithm>
@@ -19,11 +19,11 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// Up to this angle, as 1 - cosine, a face is square to the line of contact. Chosen: 0.26 deg, so
-/// that a body that rests on a face with rounding and compliance keeps its patch.
+/// A face is perpendicular to the line of contact up to this angle, stated as 1 - cosine. Chosen:
+/// 0.26 deg, so that a body that rests on a face with rounding and compliance keeps its patch.
 constexpr double kSquare = 1e-5;
-/// Two corners nearer than this are one [m]. Chosen: 1 um, far below any edge and far above
-/// rounding.
+/// Two corners that are nearer to each other than this are one [m]. Chosen: 1 um, far below any
+/// edge and far above rounding.
 constexpr double kSame = 1e-6;
 // Definition: parts of the ids of points.
 constexpr int kOther = 100, kCrossing = 200, kNearest = 1000, kSwapped = 2000;
@@ -33,7 +33,7 @@ constexpr int kOther = 100, kCrossing = 200, kNearest = 1000, kSwapped = 2000;
 struct Feature {
   int count = 0;
   std::array<Vector3d, 16> corner;
-  Vector3d normal = Vector3d::Zero();  ///< of a face
+  Vector3d normal = Vector3d::Zero();  ///< normal of a face
 
   void add(const Vector3d& p) { corner[static_cast<size_t>(count++)] = p; }
   bool face() const { return count > 2; }
@@ -91,7 +91,8 @@ Feature of_box(const Vector3d& half, const Vector3d& direction) {
   return f;
 }
 
-/// The face whose normal is nearest to the direction, within 45 deg; else the corner farthest out.
+/// The face whose normal is nearest to the direction, within 45 deg; otherwise the corner that is
+/// farthest out.
 Feature of_hull(const Collider& hull, const Vector3d& direction) {
   Feature f;
   const HullFace* best = nullptr;
@@ -124,7 +125,7 @@ Feature feature(const Collider& collider, const Isometry3d& core_pose, const Vec
 
 double cross_seen(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// The corners in the plane of the reference face, anticlockwise seen from outside.
+/// The corners in the plane of the reference face, anticlockwise as seen from outside.
 struct Outline {
   int count = 0;
   std::array<Vector2d, 16> corner;
@@ -140,7 +141,7 @@ struct Outline {
   }
 };
 
-/// Collects the points of the patch on a reference face.
+/// Collects the points of the patch over a reference face.
 class Over {
  public:
   Over(const Feature& reference, const Feature& other)
@@ -151,7 +152,8 @@ class Over {
     above_ = seen(other, other.face());
   }
 
-  /// Fills the patch, whose normal is set; `apart` is the sum of both roundings.
+  /// Fills the patch, whose normal is already set. `apart` is the sum of the rounding radii of both
+  /// shapes.
   void fill(double apart, double reach, bool swapped, ContactPatch& patch) {
     reach_ = reach, apart_ = apart, swapped_ = swapped, patch_ = &patch;
     for (int i = 0; i < above_.count; ++i)

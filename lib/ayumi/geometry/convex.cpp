@@ -25,10 +25,10 @@ namespace {
 /// Below this distance the sets overlap [m]. Chosen: above the rounding of double precision at
 /// lengths of 1 m (2e-16 m), below every tolerance of a length.
 constexpr double kTouch = 1e-10;
-/// Relative error of the squared distance at which GJK ends. Chosen: above the rounding of its
-/// sums.
+/// Relative error of the squared distance at which the GJK algorithm ends. Chosen: above the
+/// rounding of its sums.
 constexpr double kGjkTolerance = 1e-12;
-/// Most steps of GJK. Chosen: reached only where rounding stops the progress.
+/// Largest number of steps of GJK. Chosen: it is only reached if rounding stops the progress.
 constexpr int kGjkSteps = 200;
 
 double sign(double x) { return x < 0 ? -1 : 1; }
@@ -99,8 +99,8 @@ struct Simplex {
   }
 };
 
-// The point of the plane, line or point through n vertices that is nearest to the origin; false
-// when it is not between the vertices.
+// The point nearest to the origin of the plane, line or point through n vertices. Returns false if
+// it is not between the vertices.
 template <int n>
 bool nearest_inside(const Few<Vertex>& v, const std::array<int, 4>& pick, Few<double>& weights) {
   weights.assign(n, 1);
@@ -147,7 +147,7 @@ void reduce(Simplex& simplex) {
 
 struct Face {
   std::array<int, 3> v = {};
-  Vector3d normal = Vector3d::Zero();  // outwards
+  Vector3d normal = Vector3d::Zero();  // normal that points outwards
   double distance = std::numeric_limits<double>::infinity();
   bool dead = false;
 };
@@ -192,7 +192,8 @@ class Polytope {
  private:
   void add(const Vector3d& direction) { vertices_.push_back(sets_.vertex(direction)); }
 
-  // Adds a vertex off the line or plane of the present ones: the farthest along +-one and +-other.
+  // Adds a vertex off the line or plane of the present ones: the farthest one along +-`one` and
+  // +-`other`.
   void add_farther(const Vector3d& one, const Vector3d& other) {
     double most = kTouch;
     Vertex best;
@@ -210,7 +211,8 @@ class Polytope {
     Face face;
     face.v = {a, b, c};
     const Vector3d n = (vertices_[b].d - vertices_[a].d).cross(vertices_[c].d - vertices_[a].d);
-    if (n.norm() < 1e-18) return face;  // degenerate: infinite distance, never nearest
+    // Degenerate face: its distance is infinite, so it is never the nearest.
+    if (n.norm() < 1e-18) return face;
     face.normal = n.normalized();
     face.distance = face.normal.dot(vertices_[a].d);
     return face;
@@ -227,10 +229,10 @@ class Polytope {
     return best;
   }
 
-  // Replaces the faces that the vertex sees by those between it and their rim. Where rounding makes
-  // faces of one plane visible here and hidden there, the rim is no simple loop, and the faces
-  // would multiply: then only those count that are seen from farther away. False: there is no such
-  // rim.
+  // Replaces the faces that the vertex sees by faces between the vertex and their rim. If rounding
+  // makes some faces of one plane visible and others hidden, the rim is not a simple loop, and the
+  // number of faces would grow without limit. In this case, only faces count that are seen from a
+  // larger distance. Returns false if there is no simple rim.
   bool replace_visible(int top) {
     for (const double seen_from : {1e-13, 1e-11, 1e-9}) {  // [m]
       const auto rim = rim_of_visible(top, seen_from);
@@ -246,7 +248,7 @@ class Polytope {
     return face.normal.dot(vertices_[top].d - vertices_[face.v[0]].d) > from;
   }
 
-  // The edges that the visible faces share with no other visible one.
+  // The edges that the visible faces do not share with another visible face.
   std::vector<std::pair<int, int>> rim_of_visible(int top, double from) const {
     std::vector<std::pair<int, int>> rim;
     for (const Face& face : faces_) {
@@ -263,7 +265,7 @@ class Polytope {
     return rim;
   }
 
-  // Each vertex of the rim begins one edge, so that there are at most as many edges as vertices.
+  // Each vertex of the rim begins one edge, so there are at most as many edges as vertices.
   bool is_simple(const std::vector<std::pair<int, int>>& rim) const {
     std::vector<char> begins(vertices_.size(), 0);
     for (const auto& edge : rim)
@@ -315,7 +317,7 @@ ConvexPair convex_pair(const ConvexCore& a, const Isometry3d& pose_a, const Conv
     grown.vertices.push_back(w);
     reduce(grown);
     const Vector3d next = grown.sum(&Vertex::d);
-    if (!(next.squaredNorm() < square)) break;  // no progress because of rounding
+    if (!(next.squaredNorm() < square)) break;  // rounding prevents further progress
     simplex = std::move(grown);
     nearest = next;
     if (simplex.vertices.size() == 4) nearest.setZero();  // the origin is inside

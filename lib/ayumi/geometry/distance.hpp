@@ -13,12 +13,12 @@
 
 namespace ayumi {
 
-/// The nearest points of two shapes, or those of the deepest overlap.
+/// The nearest points of two shapes, or the points of the deepest overlap.
 struct Closest {
-  double clearance = 0;                               ///< as clearance() [m]
-  Eigen::Vector3d on_a = Eigen::Vector3d::Zero();     ///< world [m]
-  Eigen::Vector3d on_b = Eigen::Vector3d::Zero();     ///< world [m]
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< from a to b
+  double clearance = 0;                               ///< the same as clearance() [m]
+  Eigen::Vector3d on_a = Eigen::Vector3d::Zero();     ///< point in the world [m]
+  Eigen::Vector3d on_b = Eigen::Vector3d::Zero();     ///< point in the world [m]
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit vector from a to b
 };
 
 enum class MeshAs { box, hull };
@@ -28,15 +28,17 @@ class Collider {
  public:
   explicit Collider(const Shape& shape, MeshAs mesh_as = MeshAs::box);
 
-  /// Bounding sphere, shape frame [m]. Its centre is the origin of the core's frame.
+  /// The bounding sphere in the shape's frame [m]. Its centre is the origin of the core's frame.
   const Eigen::Vector3d& center() const { return center_; }
   double radius() const { return radius_; }
 
   const ConvexCore& core() const { return core_; }
-  const std::vector<HullFace>& faces() const { return faces_; }  ///< faces of a hull, core frame
-  double rounding() const { return rounding_; }                  ///< [m]
-  bool swept() const { return swept_; }  ///< sphere or capsule: a point or segment along z
-  /// The core's frame for a shape at `pose`.
+  /// Faces of a hull, in the frame of the core.
+  const std::vector<HullFace>& faces() const { return faces_; }
+  double rounding() const { return rounding_; }  ///< radius of the rounding [m]
+  /// Whether it is a sphere or capsule: a point or a segment along z.
+  bool swept() const { return swept_; }
+  /// The frame of the core for a shape at `pose`.
   Eigen::Isometry3d core_pose(const Eigen::Isometry3d& pose) const {
     return pose * Eigen::Translation3d(center_);
   }
@@ -51,7 +53,7 @@ class Collider {
   Eigen::Vector3d center_ = Eigen::Vector3d::Zero();
 };
 
-/// Free distance between two placed shapes; minus the depth of their overlap when they meet [m].
+/// The free distance between two placed shapes, or minus the depth of their overlap [m].
 double clearance(const Collider& a, const Eigen::Isometry3d& pose_a, const Collider& b,
                  const Eigen::Isometry3d& pose_b);
 
@@ -59,17 +61,17 @@ double clearance(const Collider& a, const Eigen::Isometry3d& pose_a, const Colli
 Closest closest(const Collider& a, const Eigen::Isometry3d& pose_a, const Collider& b,
                 const Eigen::Isometry3d& pose_b);
 
-/// A lower bound of clearance() from the bounding spheres alone [m].
+/// A lower bound of clearance() that only uses the bounding spheres [m].
 double clearance_bound(const Collider& a, const Eigen::Isometry3d& pose_a, const Collider& b,
                        const Eigen::Isometry3d& pose_b);
 
-/// The gap of the two shapes along a unit vector (world) from a to b: a lower bound of clearance(),
-/// and clearance() itself along the normal of closest() [m].
+/// The gap of the two shapes along a unit vector (world) from a to b [m]. It is a lower bound of
+/// clearance(), and equal to clearance() along the normal of closest().
 double clearance_along(const Eigen::Vector3d& direction, const Collider& a,
                        const Eigen::Isometry3d& pose_a, const Collider& b,
                        const Eigen::Isometry3d& pose_b);
 
-/// Distance between the segments a0-a1 and b0-b1 [m].
+/// The distance between the segments a0-a1 and b0-b1 [m].
 double segment_distance(const Eigen::Vector3d& a0, const Eigen::Vector3d& a1,
                         const Eigen::Vector3d& b0, const Eigen::Vector3d& b1);
 

@@ -11,22 +11,22 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// A mesh with at most this many vertices uses all of them. Chosen: hull_faces() takes the cube of
-/// the number of points.
+/// A mesh with at most this many vertices uses all of them. Chosen: the time of hull_faces() grows
+/// with the cube of the number of points.
 constexpr size_t kMeshPoints = 32;
-/// Number of vertices beyond which duplicates are not removed first. Chosen: sorting more of them
-/// costs more than it saves; the hull is the same.
+/// If a mesh has more vertices than this, duplicates are not removed first. Chosen: sorting more of
+/// them takes more time than it saves; the hull is the same.
 constexpr size_t kManyVertices = 4096;
-/// Directions in which the vertices of a larger mesh are chosen. Chosen: about 21 deg apart, so
-/// that the hull is at most 4 % of its radius inside a sphere (1 - cos 16 deg).
+/// Number of directions in which the vertices of a larger mesh are chosen. Chosen: they are about
+/// 21 deg apart, so that the hull is at most 4 % of its radius inside a sphere (1 - cos 16 deg).
 constexpr int kDirections = 90;
-/// Distance of points from a plane below which they are in it, relative to the points' extent.
+/// Distance from a plane below which points count as being in it, relative to the points' extent.
 /// Chosen: above the rounding of single precision, in which mesh files store vertices.
 constexpr double kCoplanar = 1e-6;
-/// Largest number of corners of a face. Definition: what contact_patch() handles.
+/// Largest number of corners of a face. Definition: the number that contact_patch() can handle.
 constexpr size_t kFaceCorners = 16;
 
-/// Corners of the convex polygon of points in a plane, anticlockwise about the normal.
+/// The corners of the convex polygon of points in a plane, anticlockwise about the normal.
 std::vector<Vector3d> outline(const std::vector<Vector3d>& points, const Vector3d& normal) {
   const Vector3d x = normal.unitOrthogonal(), y = normal.cross(x);
   std::vector<Eigen::Vector2d> flat;
@@ -36,7 +36,7 @@ std::vector<Vector3d> outline(const std::vector<Vector3d>& points, const Vector3
   std::sort(order.begin(), order.end(), [&](size_t a, size_t b) {
     return std::pair(flat[a].x(), flat[a].y()) < std::pair(flat[b].x(), flat[b].y());
   });
-  const auto chain = [&](size_t keep, size_t p) {  // Andrew's monotone chain
+  const auto chain = [&](size_t keep, size_t p) {  // Andrew's monotone chain algorithm
     while (corners.size() >= keep + 2) {
       const Eigen::Vector2d &a = flat[corners[corners.size() - 2]], &b = flat[corners.back()];
       const Eigen::Vector2d u = b - a, v = flat[p] - b;
@@ -87,7 +87,7 @@ std::vector<HullFace> hull_faces(const std::vector<Vector3d>& points) {
   double extent = 0;
   for (const Vector3d& p : points) extent = std::max(extent, (p - points[0]).norm());
   const double flat = kCoplanar * extent;
-  // The plane of three points contains a face when no point is on its outer side.
+  // The plane of three points contains a face if no point is on its outer side.
   const auto take = [&](const Vector3d& origin, const Vector3d& normal) {
     for (const HullFace& face : faces)
       if ((face.normal - normal).squaredNorm() < 1e-8 &&

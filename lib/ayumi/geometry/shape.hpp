@@ -19,32 +19,32 @@ struct Sphere {
 };
 struct Cylinder {
   double radius = 0;  ///< [m]
-  double length = 0;  ///< along z, end to end [m]
+  double length = 0;  ///< length along z from end to end [m]
 };
 struct Capsule {
   double radius = 0;  ///< [m]
-  double length = 0;  ///< along z, between the centres of the two caps [m]
+  double length = 0;  ///< length along z between the centres of the two caps [m]
 };
 
 /// A piece of a mesh with one material.
 struct MeshPart {
-  std::vector<Eigen::Vector3f> vertices;  ///< [m], scale and node transforms applied
-  std::vector<Eigen::Vector3f> normals;   ///< unit, one per vertex
-  std::vector<Eigen::Vector2f> uvs;       ///< empty or one per vertex
+  std::vector<Eigen::Vector3f> vertices;  ///< vertices with scale and node transforms applied [m]
+  std::vector<Eigen::Vector3f> normals;   ///< unit normals, one for each vertex
+  std::vector<Eigen::Vector2f> uvs;       ///< empty, or one for each vertex
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  Eigen::Vector4f color = {0.8f, 0.8f, 0.8f, 1.0f};  ///< sRGB, alpha last
-  bool has_color = false;                            ///< the mesh file has a colour
-  std::string texture_file;                          ///< empty when untextured
+  Eigen::Vector4f color = {0.8f, 0.8f, 0.8f, 1.0f};  ///< sRGB, with alpha last
+  bool has_color = false;                            ///< whether the mesh file has a colour
+  std::string texture_file;                          ///< empty if there is no texture
 };
 
 struct TriangleMesh {
   std::vector<MeshPart> parts;
 };
 
-/// A mesh by file. `mesh` is filled only when the robot was loaded with its meshes.
+/// A mesh from a file. `mesh` is only filled if the robot was loaded with its meshes.
 struct MeshShape {
-  std::string file;                                 ///< resolved path
-  Eigen::Vector3d scale = Eigen::Vector3d::Ones();  ///< applied on loading
+  std::string file;                                 ///< path of the file that was found
+  Eigen::Vector3d scale = Eigen::Vector3d::Ones();  ///< scale that is applied on loading
   TriangleMesh mesh;
 };
 
@@ -54,9 +54,9 @@ using Shape = std::variant<Box, Sphere, Cylinder, Capsule, MeshShape>;
 struct PlacedShape {
   std::string name;
   Shape shape;
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< shape frame in the link frame
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< frame of the shape in the link frame
   Eigen::Vector4f color = {0.8f, 0.8f, 0.8f, 1.0f};        ///< sRGB
-  bool has_color = false;                                  ///< `color` replaces the mesh's own
+  bool has_color = false;  ///< whether `color` replaces the mesh's own colour
 };
 
 }  // namespace ayumi

@@ -24,15 +24,15 @@ namespace {
 // Longest shift that the search allows [s]. Chosen: recorders are started by hand.
 constexpr double kReach = 10;
 
-// Loads and accelerations are smoothed to this frequency before they are compared [Hz], both alike.
-// Chosen: weight goes from foot to foot in 0.1 s or more.
+// Frequency to which loads and accelerations are smoothed before they are compared [Hz]; both are
+// smoothed alike. Chosen: weight goes from foot to foot in 0.1 s or more.
 constexpr double kLoadBand = 15;
 
-// Share of the load at which a foot has landed, and below which it was in the air, for at least
-// this time [s]. Chosen: beyond the noise of load cells.
+// Share of the load at which a foot has landed, the share below which it was in the air, and the
+// shortest time for which it must have been in the air [s]. Chosen: beyond the noise of load cells.
 constexpr double kLanded = 0.15, kInAir = 0.05, kAirTime = 0.05;
 
-// Landings further apart than this are not the same [s]. Chosen: a third of a quick step.
+// Largest distance of landings that count as the same [s]. Chosen: a third of a quick step.
 constexpr double kSameLanding = 0.15;
 
 double interpolated(const Eigen::Ref<const VectorXd>& values, double dt, double t) {
@@ -114,7 +114,7 @@ ComparedCurve curve_of(const std::string& name, const std::string& unit, const V
   return curve;
 }
 
-// Times at which a foot takes up load after it was in the air.
+// The times at which a foot takes up load after it was in the air.
 std::vector<double> landings_of(const VectorXd& share, double dt) {
   std::vector<double> found;
   double air = 0;

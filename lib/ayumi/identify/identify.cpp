@@ -21,20 +21,21 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Uncertainty of the torque that loads a joint, and of the law of its servo, in parts of a value.
+// Uncertainty of the torque that loads a joint, and of the law of its servo, as a part of a value.
 // Chosen: masses and lengths of a robot are known to about a percent, and intervals cover this.
 constexpr double kModelShare = 0.01;
 
-// Share of the load on the own foot above which a leg counts as loaded; as unloaded below the rest.
-// Chosen: single support with noisy load cells.
+// Share of the load on the own foot above which a leg counts as loaded; it counts as unloaded below
+// 1 minus this share. Chosen: single support with noisy load cells.
 constexpr double kLoaded = 0.9;
 
-// Correlation of two estimates above which the recording does not tell them apart. Chosen: the
-// intervals are then more than twice as wide as they would be if the other one were known.
+// Correlation of two estimates above which the recording does not distinguish them. Chosen: the
+// intervals are then more than twice as wide as they would be if the other estimate were known.
 constexpr double kConfounded = 0.9;
 
-// Half width of an interval in values above which a value counts as not determined. Chosen: a
-// value and its double are then apart. It changes the words of a result, and not its numbers.
+// Half width of an interval, as a part of the value, above which the value counts as not
+// determined. Chosen: below it, a value and its double can be distinguished. It changes the words
+// of a result, and not its numbers.
 constexpr double kKnown = 0.5;
 
 // Smallest change of the residual that a constant must cause, relative to the part of the residual
@@ -43,57 +44,60 @@ constexpr double kKnown = 0.5;
 // recordings with a chirp give 3.4 or more.
 constexpr double kBeyondErrors = 2;
 
-// Uncertainty of the torque that loads a joint, in addition to that share [N m]. Chosen: cables and
-// bearings of a small joint. A joint that carries much less of a changing load does not show its
-// stiffness.
+// Uncertainty of the torque that loads a joint, in addition to that share [N m]. Chosen: that of
+// cables and bearings of a small joint. A joint that carries much less of a changing load does not
+// show its stiffness.
 constexpr double kLoadError = 0.01;
 
-// Uncertainty of a rotor's inertia, in parts of it. Chosen: it is calculated from data sheets, and
-// gears add to it. The stiffness of a joint that carries little is seen only beside its inertia.
+// Uncertainty of a rotor's inertia, as a part of it. Chosen: it is calculated from data sheets, and
+// gears add to it. The stiffness of a joint that carries little can only be seen together with its
+// inertia.
 constexpr double kRotorShare = 0.25;
 
-// Compliance below which a joint does not show any [rad/(N m)]. Chosen: far stiffer than the servos
-// of small humanoids, which have 1e-4 or more.
+// Compliance below which a joint does not show any compliance [rad/(N m)]. Chosen: far stiffer than
+// the servos of small humanoids, which have 1e-4 or more.
 constexpr double kLeastCompliance = 1e-6;
 
-// Lag of an answer that no servo has [s], and in lags of the servo that the robot's file states:
-// the larger of both holds. Chosen: soft servos of small humanoids have up to 20 ms. A recording
-// that is shifted by more than this is refused; half as much would refuse soft servos.
+// Lag of an answer that no servo has: a time [s], and a multiple of the lag that the robot's file
+// states; the larger of the two is used. Chosen: soft servos of small humanoids have up to 20 ms. A
+// recording that is shifted by more than this is refused; half as much would refuse soft servos.
 constexpr double kSlowServo = 0.03, kSlowerThanStated = 2;
 
-// If the lag is larger than that of the robot's file by this time, the recording is probably
-// shifted [s]. Chosen: loads and friction change the lag of a servo by a few milliseconds.
+// Time by which the lag must exceed that of the robot's file before the recording counts as
+// probably shifted [s]. Chosen: loads and friction change the lag of a servo by a few milliseconds.
 constexpr double kLikelyShift = 0.007;
 
-// Shortest time with a known load of a joint with which its stiffness is computed [s]. Chosen: the
+// Shortest time with a known load of a joint from which its stiffness is computed [s]. Chosen: the
 // single supports of two steps.
 constexpr double kLeastKnown = 1;
 
-// Place of the centre of gravity of a robot that its file may be wrong by [m]. Chosen: cables and
-// batteries. The torques of a standing leg are wrong by the weight at this lever.
+// Distance by which the robot's file may be wrong about the place of the centre of gravity [m].
+// Chosen: that of cables and batteries. The torques of a standing leg are wrong by the weight times
+// this lever.
 constexpr double kCogError = 0.002;
 
-// Torque that puts a gear on one of its flanks [N m]. Chosen: the friction of a small gear.
+// Torque that presses a gear onto one of its flanks [N m]. Chosen: the friction of a small gear.
 constexpr double kFlankTorque = 0.05;
 
-// Twice the logarithm of the likelihood ratio of two laws of a servo above which the recording
+// Twice the logarithm of the likelihood ratio of two laws of a servo, above which the recording
 // shows which of them holds. Chosen: five standard deviations, squared.
 constexpr double kLawSeen = 25;
 
 // Share of the residual of a law below which the answers of two laws count as equal. Chosen: the
-// steps in which an answer is integrated change it by up to a tenth. Synthetic servos of which the
+// steps in which an answer is integrated change it by up to a tenth. Synthetic servos for which the
 // wrong law was chosen before had 0.005 to 0.12, others 0.25 or more.
 constexpr double kSameAnswer = 0.15;
 
 struct TypeFit {
   ServoFit fit;
-  bool delay_takes_damping = false;  // the recording does not tell delay and damping apart
+  bool delay_takes_damping = false;  // the recording does not distinguish delay and damping
   bool has_backlash = false;
-  /// The amount by which the delay is smaller, and its uncertainty, because of the servo's
-  /// behaviour between two commands [s].
+  /// The amount by which the delay is smaller because of the servo's behaviour between two
+  /// commands, and at the same time its uncertainty [s].
   double hold = 0;
-  double step = 0;  ///< as much for the damping: the simulator's step was neither seen nor excluded
-  ServoConstants heavier;       ///< with a rotor inertia that is larger by its uncertainty
+  /// The same for the damping: the simulator's step was neither seen nor excluded.
+  double step = 0;
+  ServoConstants heavier;  ///< constants with a rotor inertia that is larger by its uncertainty
   StandingCompliance standing;  ///< used if it shows the stiffness better than the motion does
 };
 
@@ -118,7 +122,7 @@ bool is_seen(const ServoFit& with, const ServoFit& without, double value, Consta
          value > with.t_factor * deviation(with, which);
 }
 
-// Standard deviation of the torque that loads a joint, without its own inertia [N m].
+// The standard deviation of the torque that loads a joint, without its own inertia [N m].
 double load_change(const JointRecording& recording) {
   const VectorXd load =
       (recording.torque.array() - recording.link_inertia.array() * recording.acceleration.array())
@@ -126,12 +130,12 @@ double load_change(const JointRecording& recording) {
   return std::sqrt((load.array() - load.mean()).square().mean());
 }
 
-// Uncertainty of the torque of a joint, in parts of the changes of its load.
+// The uncertainty of the torque of a joint, as a part of the changes of its load.
 double load_share_error(const JointRecording& recording) {
   return kModelShare + kLoadError / std::max(load_change(recording), 1e-6);
 }
 
-// Half width of the interval of the compliance of a joint [rad/(N m)].
+// Half the width of the interval of the compliance of a joint [rad/(N m)].
 double compliance_half_width(const TypeFit& type, const JointRecording& recording) {
   if (type.standing.found) return type.standing.half_width + kModelShare * type.standing.value;
   const double s = type.fit.constants[0].compliance,
@@ -151,7 +155,7 @@ bool load_changes_sign(const std::vector<JointRecording>& joints) {
   });
 }
 
-// Whether the recording shows that `a` holds, and not `b`.
+// Whether the recording shows that `a` holds and `b` does not.
 bool fits_better(const ServoFit& a, const ServoFit& b) {
   return 2 * a.independent * elementary::log(b.rms / a.rms) > kLawSeen;
 }
@@ -173,15 +177,15 @@ void set_law(std::vector<JointRecording>& joints, CommandLaw law, bool at_once) 
   for (JointRecording& joint : joints) joint.law = law, joint.at_once = at_once;
 }
 
-// Time by which a servo of this law is behind a servo that moves gradually from one command to the
-// next.
+// The time by which a servo of this law is behind a servo that moves gradually from one command to
+// the next.
 double behind(CommandLaw law, const JointRecording& joint) {
   if (law == CommandLaw::linear) return 0;
   return 0.5 * joint.command_dt + (law == CommandLaw::stepped ? 0.5 * joint.dt : 0.0);
 }
 
-// The servo with inertia and damping that comes nearest, by the law of `joints`. The error has many
-// minima over its constants, so the best of a grid is the start.
+// The servo with inertia and damping that comes nearest to the recording, by the law of `joints`.
+// The error has many minima over its constants, so that the best point of a grid is the start.
 ServoFit damped_fit(const std::vector<JointRecording>& joints, const ServoFit& simple,
                     const std::vector<ServoConstants>& guess, double longest_delay) {
   const double lag = std::max(0.0, simple.constants[0].delay - behind(joints[0].law, joints[0]));
@@ -223,9 +227,9 @@ void take_standing_stiffness(const std::vector<JointRecording>& joints, double l
   type.standing = standing;
 }
 
-// A servo may hold each command until the next one, or go from one to the other. Where the
-// recording shows the difference, the better is taken. Where it does not, the delay of a servo that
-// holds would be half an interval shorter: the delay is given in the middle of both.
+// A servo may hold each command until the next one, or move from one to the other. If the recording
+// shows the difference, the better law is taken. If it does not, the delay of a servo that holds
+// would be half an interval shorter, and the delay is given in the middle of both.
 TypeFit fit_type(std::vector<JointRecording> joints, double longest_delay, double weight) {
   const std::vector<ServoConstants> guess = first_guess(joints, longest_delay);
   std::vector<ServoConstants> start = guess;
@@ -292,8 +296,8 @@ ServoEstimate estimate(double value, double half_width, double least = -HUGE_VAL
           half_width <= kKnown * std::abs(value)};
 }
 
-// The estimate of a ratio a/s from the covariance of a and s. Its half width grows by
-// `share` of the value and by `more`.
+// The estimate of a ratio a/s from the covariance of a and s. Half its width grows by `share` of
+// the value and by `more`.
 ServoEstimate ratio(double a, double s, double var_a, double var_s, double cov, double factor,
                     double share, double more) {
   if (s <= 0) return {};
@@ -350,14 +354,14 @@ class Advice {
   const ServoFit& fit_;
 };
 
-// Rows where the share of the load on the own foot has been above kLoaded, or below the rest, and
-// stays there: in the middle of a stretch of kSettle. The load of a leg is then not a matter of how
-// the feet share the weight.
+// Rows in which the share of the load on the own foot has been above kLoaded, or below 1 minus
+// kLoaded, and stays there: they are in the middle of a stretch of kSettle. The load of a leg then
+// does not depend on how the feet share the weight.
 std::vector<Index> settled_rows(const VectorXd& own, double dt) {
   const auto half = static_cast<Index>(std::ceil(0.5 * kSettle / dt));
   const auto kind = [&](Index k) { return own[k] > kLoaded ? 1 : own[k] < 1 - kLoaded ? -1 : 0; };
   std::vector<Index> rows;
-  Index since = 0;  // first row of the kind of the last row
+  Index since = 0;  // first row of the same kind as the last row
   for (Index k = 0; k < own.size(); ++k) {
     if (k > 0 && kind(k) != kind(k - 1)) since = k;
     if (kind(k) != 0 && k - since >= 2 * half) rows.push_back(k - half);
@@ -365,8 +369,8 @@ std::vector<Index> settled_rows(const VectorXd& own, double dt) {
   return rows;
 }
 
-// The share of the load on the foot of the leg to which this joint belongs. Empty if it belongs to
-// no leg.
+// The share of the load on the foot of the leg to which this joint belongs. It is empty if the
+// joint belongs to no leg.
 VectorXd own_share(const RobotModel& model, const JointLoads& loads, int dof) {
   if (loads.left_share.size() == 0) return {};
   for (const Side side : {Side::left, Side::right}) {
@@ -377,9 +381,9 @@ VectorXd own_share(const RobotModel& model, const JointLoads& loads, int dof) {
   return {};
 }
 
-// How the measured angle changes from the unloaded to the loaded foot: least squares of its
-// distance from the late command by the share of the load on the own foot, in the rows where one
-// foot carries the robot. It needs no stiffness.
+// The change of the measured angle from the unloaded to the loaded foot, by least squares of its
+// distance from the late command over the share of the load on the own foot, in the rows in which
+// one foot carries the robot. It needs no stiffness.
 void find_sag(const JointRecording& recording, IdentifiedJoint& joint) {
   double x = 0, y = 0, xx = 0, xy = 0, n = 0, least = 1, most = 0;
   for (const Index k : recording.settled) {
@@ -473,10 +477,10 @@ double longest_lag(const RobotModel& model) {
   return longest;
 }
 
-// The text about an answer that is rather late, with the joint in the middle. Empty if there is
-// none.
+// The text about an answer that is rather late, with the joint in the middle. It is empty if there
+// is no such answer.
 std::string late_answer(const RobotModel& model, const std::vector<IdentifiedJoint>& joints) {
-  std::vector<std::pair<double, double>> lags;  // beyond the stated one, whole
+  std::vector<std::pair<double, double>> lags;  // lag beyond the stated one, and whole lag
   for (const IdentifiedJoint& joint : joints) {
     if (!joint.moved) continue;
     const auto dof = static_cast<size_t>(model.find_dof(joint.joint));
@@ -532,7 +536,7 @@ Identification identify(const RobotModel& model, const RecordedMotion& motion,
     recordings.push_back(recording);
     dofs.push_back(j);
   }
-  // One group of joints for each set of constants.
+  // There is one group of joints for each set of constants.
   std::map<std::string, std::vector<size_t>> groups;
   for (size_t i = 0; i < result.joints.size(); ++i) {
     IdentifiedJoint& joint = result.joints[i];

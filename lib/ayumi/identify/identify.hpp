@@ -1,7 +1,8 @@
 #pragma once
 // Servo constants from a recording: the command of each joint, the angle that it measured and the
-// torque that it carried. The output-error method: the constants with which the simulated servo
-// (identify/servo_response.hpp) comes nearest to the measured angle, by least squares.
+// torque that it carried. By the output-error method, the constants are those with which the
+// simulated servo (identify/servo_response.hpp) comes nearest to the measured angle, by least
+// squares.
 
 #include <string>
 #include <vector>
@@ -15,9 +16,9 @@ namespace ayumi {
 struct IdentifyOptions {
   bool per_type = false;  ///< one set of constants for all joints of one motor type
   RobotStand stand = RobotStand::feet;
-  double longest_lag = 0;  ///< largest lag of a servo [s]; 0: the value of longest_lag()
-  int threads = 0;         ///< 0: all cores
-  std::string loads_place = "load cells";  ///< of their file, for messages
+  double longest_lag = 0;  ///< largest lag of a servo [s]; with 0, the value of longest_lag()
+  int threads = 0;         ///< number of threads; 0 for all cores
+  std::string loads_place = "load cells";  ///< place of the loads in their file, for messages
 };
 
 /// A value with its 95 % interval.
@@ -29,20 +30,21 @@ struct ServoEstimate {
 /// The results for one joint.
 struct IdentifiedJoint {
   std::string joint, type;
-  bool moved = false;         ///< false: only the mean difference from the command was found
+  bool moved = false;         ///< if false, only the mean difference from the command was found
   bool delay_is_lag = false;  ///< the recording shows no damping: `delay` is the whole lag
-  ServoEstimate delay;        ///< [s]
-  ServoEstimate kp;           ///< [N m/rad]
-  ServoEstimate damping;      ///< kd + viscous [N m s/rad]
+  ServoEstimate delay;        ///< delay [s]
+  ServoEstimate kp;           ///< stiffness [N m/rad]
+  ServoEstimate damping;      ///< kd + viscous friction [N m s/rad]
   ServoEstimate viscous;      ///< damping minus the robot's kd [N m s/rad]
-  ServoEstimate coulomb;      ///< [N m]
-  ServoEstimate backlash;     ///< [rad]
+  ServoEstimate coulomb;      ///< dry friction [N m]
+  ServoEstimate backlash;     ///< play of the gear [rad]
   ServoEstimate offset;       ///< mean distance of the unloaded joint from its command [rad]
   double lag = 0;             ///< time by which the angle is behind a slow command [s]
   double sag = 0;             ///< change of the angle from the unloaded to the loaded foot [rad]
   bool has_sag = false;
-  double mean_error = 0, largest_error = 0, largest_at = 0;  ///< measured - simulated [rad], [s]
-  double command_error = 0;                                  ///< mean |measured - command| [rad]
+  /// Difference of the measured and the simulated angle [rad], and the time of the largest [s].
+  double mean_error = 0, largest_error = 0, largest_at = 0;
+  double command_error = 0;             ///< mean of |measured - command| [rad]
   std::vector<std::string> confounded;  ///< constants that could not be distinguished, and a motion
                                         ///< that would distinguish them
 };
@@ -50,19 +52,22 @@ struct IdentifiedJoint {
 struct Identification {
   std::vector<IdentifiedJoint> joints;  ///< the joints that the recording has, in the robot's order
   double seconds = 0;                   ///< length of the recording [s]
-  std::string caution;  ///< a note that the recording may be shifted; empty: it is not
+  std::string caution;  ///< a note that the recording may be shifted; empty if it is not
 };
 
-/// Throws Error(bad_file) "`place`: what" for a recording that cannot be of this command: a joint
-/// that does not follow, counters that wrap, all zeros, an answer that comes too late or too early.
+/// Throws Error(bad_file) "`place`: what" for a recording that cannot be that of this command: a
+/// joint does not follow, counters wrap, all values are zero, or an answer comes too late or too
+/// early.
 Identification identify(const RobotModel& model, const RecordedMotion& motion,
                         const IdentifyOptions& options, const std::string& place,
                         const Progress& progress = {});
 
-/// By how much an answer may be behind its command [s]: what comes later is a shifted recording.
+/// The time by which an answer may be behind its command [s]. If it comes later, the recording is
+/// shifted.
 double longest_lag(const RobotModel& model);
 
-/// Motor types: joints with the same limits and servo, by dof. Named by their first joint.
+/// Motor types, by dof: joints with the same limits and servo have the same type. A type has the
+/// name of its first joint.
 std::vector<std::string> motor_types(const RobotModel& model);
 
 }  // namespace ayumi

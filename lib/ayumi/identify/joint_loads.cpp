@@ -21,26 +21,26 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Angles are smoothed to this frequency before they are differentiated twice [Hz]. Chosen: a small
+// Frequency to which angles are smoothed before they are differentiated twice [Hz]. Chosen: a small
 // humanoid moves its joints at less than 10 Hz, and counts of 0.005 degrees then disturb the torque
 // of a leg by less than 0.05 N m.
 constexpr double kLoadCutoff = 50;
 
-// The difference between a joint and its delayed command changes more slowly than this [Hz].
-// Chosen: weight and friction change it, and the noise of an encoder beyond this frequency does not
-// become a torque.
+// Frequency below which the difference between a joint and its delayed command changes [Hz].
+// Chosen: weight and friction change it more slowly, and the noise of an encoder beyond this
+// frequency does not become a torque.
 constexpr double kSagCutoff = 15;
 
-// Share of the quick load of a standing leg in the largest load of the joint, above which it is not
-// known well. Chosen: at a tenth, the delays of a simulated robot are 0.5 ms wrong.
+// Share of the quick load of a standing leg in the largest load of the joint above which the load
+// is not known well. Chosen: at a tenth, the delays of a simulated robot are wrong by 0.5 ms.
 constexpr double kQuickShare = 0.05;
 
-// Load cells are smoothed to this frequency [Hz]. Chosen: the weight goes from foot to foot in 0.1
+// Frequency to which load cells are smoothed [Hz]. Chosen: the weight goes from foot to foot in 0.1
 // s or more.
 constexpr double kShareCutoff = 15;
 
 // Sum of the loads of both feet, as a part of its mean in the recording, below which no share is
-// computed. Chosen: a tenth is far above noise.
+// computed. Chosen: a tenth, which is far above noise.
 constexpr double kLeastLoad = 0.1;
 
 std::vector<CommandSample> samples_of(const MatrixXd& theta) {
@@ -50,7 +50,7 @@ std::vector<CommandSample> samples_of(const MatrixXd& theta) {
   return samples;
 }
 
-// The motion with this sole at the origin, level.
+// The motion with this sole at the origin and level.
 std::vector<CommandSample> anchored(const RobotModel& model, const MatrixXd& theta, double dt,
                                     Side side) {
   std::vector<CommandSample> samples = samples_of(theta);
@@ -61,8 +61,9 @@ std::vector<CommandSample> anchored(const RobotModel& model, const MatrixXd& the
   return samples;
 }
 
-// The ground wrench of the whole robot on the left foot: its share of the force, with the centre of
-// pressure as far from the centre of its sole as that of the other foot from its own.
+// The ground wrench of the whole robot on the left foot: its share of the force, where the centre
+// of pressure is as far from the centre of its sole as that of the other foot from the centre of
+// the other sole.
 Vector6d left_wrench(const RobotModel& model, const std::array<Eigen::Isometry3d, 2>& soles,
                      const SupportPlane& plane, const GroundDemand& use, double share,
                      const Vector3d& base, const Vector6d& whole) {
@@ -109,7 +110,8 @@ class LoadsOnFeet {
     supports_ = detect_supports(model, motion);
   }
 
-  // Torques of row k; `share` of the left foot: below 0 when it is not known, then what was used.
+  // The torques of row k. `share` is the load share of the left foot; if it is below 0 it is not
+  // known, and the share that was used is written into it.
   VectorXd torque(size_t k, double& share) {
     const Support support = supports_[k];
     const bool right_carries =
@@ -154,8 +156,8 @@ class LoadsOnFeet {
 };
 
 // The motion of a joint that has a command: the command with the mean delay of the answer, plus the
-// smoothed difference of the answer from it. So two differentiations do not amplify the noise of an
-// encoder much.
+// smoothed difference of the answer from it. In this way, two differentiations do not amplify the
+// noise of an encoder much.
 VectorXd smooth_motion(const RecordedMotion& motion, Index dof) {
   const AngleTable &measured = motion.measured, &command = motion.command;
   const VectorXd answer = measured.theta.col(dof);

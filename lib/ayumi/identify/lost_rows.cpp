@@ -16,58 +16,60 @@ using Eigen::VectorXd;
 namespace {
 
 // Number of rows on each side of a place that are used to find a step. Chosen: noise of an encoder
-// of half a count then hides one lost row only where all joints move by less than a fifth of a
-// count per row.
+// of half a count then only hides one lost row if all joints move by less than a fifth of a count
+// per row.
 constexpr Index kStepRows = 5;
 
-// Rows on each side in which lost rows have to explain what is left, and the part of it that may
-// stay. Chosen: a servo settles after a sudden move within these rows. One row taken from a
-// recorded walk leaves at most 0.69, quick moves of a simulated robot without a lost row leave 0.83
-// and more.
+// Number of rows on each side in which lost rows must explain the remaining differences, and the
+// part of these differences that may stay. Chosen: a servo settles after a sudden move within these
+// rows. One row that is removed from a recorded walk leaves at most 0.69; quick moves of a
+// simulated robot without a lost row leave 0.83 and more.
 constexpr Index kSurroundingRows = 50;
 constexpr double kMostLeft = 0.75;
 
-// A step must be at least this many of its standard deviations. Chosen: in a recorded walk of 17902
-// rows without a lost row, steps that are near a whole number of rows reach less than half of it.
+// Smallest size of a step, in its standard deviations. Chosen: in a recorded walk of 17902 rows
+// without a lost row, steps that are near a whole number of rows reach less than half of it.
 constexpr double kClearStep = 5;
 
-// What follows a lost row stays earlier. Time on both sides of a step in which the delays are
-// compared [s], the least of it, the least lasting change in rows, and how far it may be from the
-// step, in rows and in parts of the step. Chosen: recorders take some rows up to 0.45 rows late and
-// the next ones in time again, and joints begin to slide within a row, which does not last.
+// The rows after a lost row stay earlier. The constants are: the time on both sides of a step in
+// which the delays are compared [s], the shortest such time, the smallest lasting change in rows,
+// and its largest difference from the step, in rows and as a part of the step. Chosen: recorders
+// take some rows up to 0.45 rows late and the next ones in time again, and joints begin to slide
+// within a row, which does not last.
 constexpr double kLastingTime = 0.75, kLeastLastingTime = 0.3;
 constexpr double kLeastStep = 0.6, kStepMargin = 0.35, kStepShare = 0.25;
 
-// Number of the clearest steps that are examined. Chosen: each belongs to about ten rows.
+// Number of the clearest steps that are examined. Chosen: about ten rows belong to each.
 constexpr size_t kMostSteps = 60;
 
-// Smallest noise of a joint, in steps of its encoder, or without any in [rad, m]. Derived: rounding
-// alone has a standard deviation of 0.29 steps.
+// Smallest noise of a joint in steps of its encoder, and for values that are not rounded in [rad,
+// m]. Derived: rounding alone has a standard deviation of 0.29 steps.
 constexpr double kLeastNoise = 0.29, kLeastNoiseAngle = 1e-7;
 
-// Windows over which the delay of the answer is followed [s], and a change of it that only missing
-// or repeated rows explain [s]. Chosen: a motion has all its rates within a window, and a change
-// that is far beyond what friction and load do to the mean of several windows.
+// Length of the windows in which the delay of the answer is followed [s], and a change of the delay
+// that only missing or repeated rows explain [s]. Chosen: a motion has all its rates within a
+// window, and the change is far beyond the effect of friction and load on the mean of several
+// windows.
 constexpr double kDelayWindow = 1.5, kDelayJump = 0.003;
 
-// Windows that are compared have at least this part of the information of the best one, there are
-// at least so many on each side, and the delays of both sides together may spread by this part of
-// the change. Chosen: a delay needs motion, a spread needs two values, and a change that is four
-// times the spread is no drift.
+// Least information of windows that are compared, as a part of that of the best window, and largest
+// spread of the delays of both sides together, as a part of the change. There is also a smallest
+// number of windows on each side. Chosen: a delay needs motion, a spread needs two values, and a
+// change that is four times the spread is no drift.
 constexpr double kLeastInformation = 0.1, kMostSpread = 0.25;
 constexpr int kLeastWindows = 2;
 
-// A change of delay around a rest is lost rows from this part of a row on. Chosen: between a whole
-// row and the delays of a recorded walk, which differ by 0.1 ms between windows.
+// Part of a row from which on a change of delay around a rest counts as lost rows. Chosen: between
+// a whole row and the delays of a recorded walk, which differ by 0.1 ms between windows.
 constexpr double kRestJump = 0.75;
 
-// Least information of a change of delay, as a part of what each side has. Derived: joints that
-// move alike on both sides have half; joints that only sway with the motion of others have
-// hundredths.
+// Least information of a change of delay, as a part of the information on each side. Derived:
+// joints that move alike on both sides have half; joints that only sway with the motion of others
+// have hundredths.
 constexpr double kLeastCommon = 0.1;
 
-// Time without motion that is a rest [s], and the part of the mean information below which nothing
-// moves. Chosen: a step of the method above cannot be seen in it.
+// Time without motion that counts as a rest [s], and the part of the mean information below which
+// nothing moves. Chosen: a step of the method above cannot be seen in such a time.
 constexpr double kRestTime = 0.05, kRestShare = 0.02;
 
 double middle_of(std::vector<double> values) {
@@ -77,16 +79,16 @@ double middle_of(std::vector<double> values) {
   return *at;
 }
 
-// Standard deviation of values that are normal except for a few.
+// The standard deviation of values that are normal except for a few.
 double robust_deviation(std::vector<double> values) {
   for (double& value : values) value = std::abs(value);
   return 1.4826 * middle_of(std::move(values));
 }
 
-// The difference between a joint and its delayed command, by row of the recording, and its change;
-// both as a part of the noise.
+// The difference between a joint and its delayed command, by row of the recording, and the change
+// of that difference; both are multiples of the noise.
 struct FollowingJoint {
-  VectorXd error, per_row;  // difference, and change of it by one lost row
+  VectorXd error, per_row;  // the difference, and its change by one lost row
 };
 FollowingJoint following(const AngleTable& command, const AngleTable& measured, Index dof,
                          double delay) {
@@ -108,10 +110,10 @@ FollowingJoint following(const AngleTable& command, const AngleTable& measured, 
   return joint;
 }
 
-// Lost rows before row k by least squares, beside a constant and a slope of each joint and a delay
-// that they have in common, and what its standard deviation is for noise alone. A joint and
-// its twin of the other side may slip, so the others have to agree: `without_clearest` leaves out
-// the two joints that show most.
+// The number of lost rows before row k by least squares, together with a constant and a slope of
+// each joint and a delay that they have in common, and the standard deviation of that number for
+// noise alone. A joint and its twin of the other side may slip, so that the other joints have to
+// agree: `without_clearest` leaves out the two joints that show most.
 struct RowStep {
   double rows = 0, deviation = HUGE_VAL;
 };
@@ -141,16 +143,18 @@ RowStep row_step(const std::vector<FollowingJoint>& joints, Index k,
   }
   if (without_clearest) sums -= clearest + second;
   const double b = sums[1], c = sums[2], x = sums[3], y = sums[4];
-  // At a constant speed, a delay shows nothing: it is then as unlikely as a thousandth of a step.
+  // At a constant speed, the data do not show a delay. It is then taken to be as unlikely as a
+  // thousandth of a step.
   const double a = sums[0] + 1e-3 * c;
   const double determinant = a * c - b * b;
   if (!(c > 0) || !(determinant > 0)) return {};
   return {(a * y - b * x) / determinant, std::sqrt(a / determinant)};
 }
 
-// What lost rows leave of what a constant, a slope and a delay of each joint leave around row k,
-// both beyond the noise, as a part of it. Lost rows leave most of how servos answer a sudden move,
-// which looks like a step for a few rows, and alike for all joints that make the move.
+// The part that remains, around row k, when lost rows explain what a constant, a slope and a delay
+// of each joint leave; both are counted beyond the noise. Lost rows leave most of the answer of
+// servos to a sudden move. Such an answer looks like a step for a few rows, and alike for all
+// joints that make the move.
 double left_around(const std::vector<FollowingJoint>& joints, Index k, double lost) {
   double without = 0, with = 0;
   for (const FollowingJoint& joint : joints) {
@@ -174,9 +178,9 @@ double left_around(const std::vector<FollowingJoint>& joints, Index k, double lo
   return without > 0 ? with / without : HUGE_VAL;
 }
 
-// Time by which one joint is behind its command from row `begin` on, by least squares with its
-// position, the direction of its rate and a constant, which load and friction change. `weight` is
-// the information that the window has.
+// The time by which one joint is behind its command from row `begin` on. It follows by least
+// squares with the joint's position, the direction of its rate and a constant, which load and
+// friction change. `weight` is the information that the window has.
 double delay_in_window(const AngleTable& command, const AngleTable& measured, Index dof,
                        Index begin, Index rows, double& weight) {
   Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
@@ -198,7 +202,7 @@ double delay_in_window(const AngleTable& command, const AngleTable& measured, In
   return (inverse * right)[0];
 }
 
-// Delay of one joint in some rows [s], and the information that they have about it.
+// The delay of one joint in some rows [s], and the information about it in these rows.
 struct Delay {
   double value = 0, weight = 0;
 };
@@ -213,15 +217,15 @@ std::vector<Delay> delays_of_rows(const AngleTable& command, const AngleTable& m
   return delays;
 }
 
-// By how much the delays are greater afterwards [s]. Each joint is compared with itself, since
-// joints with different servos move one after the other in many motions. None where those that move
-// on both sides have little of the information.
+// The difference by which the delays are greater afterwards [s]. Each joint is compared with
+// itself, since joints with different servos move one after the other in many motions. Returns
+// nothing if the joints that move on both sides have little of the information.
 std::optional<double> change_of(const std::vector<Delay>& before, const std::vector<Delay>& after) {
   double sum = 0, total = 0, all_before = 0, all_after = 0;
   for (size_t j = 0; j < before.size(); ++j) {
     all_before += before[j].weight, all_after += after[j].weight;
     if (!(before[j].weight > 0) || !(after[j].weight > 0)) continue;
-    // The variance of a difference is the sum of both.
+    // The variance of a difference is the sum of both variances.
     const double weight = 1 / (1 / before[j].weight + 1 / after[j].weight);
     sum += weight * (after[j].value - before[j].value), total += weight;
   }
@@ -229,7 +233,7 @@ std::optional<double> change_of(const std::vector<Delay>& before, const std::vec
   return sum / total;
 }
 
-// Rows by which the recording is earlier after row k than before it.
+// The number of rows by which the recording is earlier after row k than before it.
 std::optional<double> lasting_step(const AngleTable& command, const AngleTable& measured,
                                    const std::vector<Index>& dofs, Index k) {
   const auto rows_of = [&](double time) {
@@ -257,7 +261,7 @@ LostRows step_in_motion(const AngleTable& command, const AngleTable& measured,
     steps[static_cast<size_t>(k)] = step;
     if (std::isfinite(step.deviation)) ratios.push_back(step.rows / step.deviation);
   }
-  // What a servo does beside its delay is no white noise.
+  // The behaviour of a servo beside its delay is no white noise.
   const double more = std::max(1.0, robust_deviation(ratios));
   std::vector<size_t> clear;
   const auto ratio = [&](size_t k) { return std::abs(steps[k].rows) / steps[k].deviation; };
@@ -311,7 +315,7 @@ LostRows change_of_delay(const AngleTable& command, const AngleTable& measured,
                          const std::vector<Index>& dofs) {
   const auto rows = static_cast<Index>(std::lround(kDelayWindow / measured.dt));
   struct Window {
-    std::vector<Delay> delays;  // of the joints
+    std::vector<Delay> delays;  // delays of the joints
     double weight = 0, time = 0;
   };
   std::vector<Window> windows;
@@ -359,7 +363,7 @@ LostRows change_of_delay(const AngleTable& command, const AngleTable& measured,
   LostRows lost;
   double least = HUGE_VAL;
   for (size_t split = 2; split + 2 <= windows.size(); ++split) {
-    // The window of the jump belongs to neither side.
+    // The window with the jump belongs to neither side.
     const auto before = side(0, split - 1), after = side(split, windows.size());
     if (!before || !after) continue;
     const auto change = change_of(before->delays, after->delays);
@@ -416,7 +420,7 @@ std::string loads_rows_complaint(const SensorTable& loads, const AngleTable& mea
   if (loads.timed || rows == 0) return "";
   const double lasts = loads.dt * static_cast<double>(rows - 1), asked = measured.duration(),
                row = std::max(loads.dt, measured.dt),
-               // Two recorders of different rates end up to a row apart.
+               // Two recorders of different rates may end up to a row apart.
       allowed = std::abs(loads.dt - measured.dt) < 1e-9 ? 0.5 * row : 1.5 * row;
   if (std::abs(lasts - asked) <= allowed) return "";
   const long missing = std::max(1L, std::lround(std::abs(lasts - asked) / loads.dt));

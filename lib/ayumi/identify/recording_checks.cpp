@@ -23,20 +23,20 @@ constexpr double kDegree = M_PI / 180;
 // small servo.
 constexpr double kMoves = 0.5 * kDegree;
 
-// A recording may be longer than its command by this part of it and by this time [s]: recorders are
-// stopped by hand. It may not be shorter by more than the second time [s]. Chosen: the longest
-// delay of a servo; what is shorter has lost rows or its end.
+// Share and time [s] by which a recording may be longer than its command, because recorders are
+// stopped by hand, and the time by which it may be shorter [s]. Chosen: the longest delay of a
+// servo; a recording that is shorter has lost rows or its end.
 constexpr double kLengthShare = 0.02, kLengthTime = 0.25, kShorter = 0.05;
 
-// Share of the weight on the standing foot, in the mean of all single supports, below which load
-// cells are not of this motion. Chosen: cells that are 0.3 s late, or of the other side, have less.
+// Mean share of the weight on the standing foot in all single supports, below which load cells are
+// not of this motion. Chosen: cells that are 0.3 s late, or of the other side, have less.
 constexpr double kStandingShare = 0.8;
 
-// Squared correlation with the command: from the first on, slope and sign have a meaning; below the
+// Squared correlations with the command: above the first, slope and sign have a meaning; below the
 // second, the joint does not follow. Chosen.
 constexpr double kFollows = 0.8, kUnrelated = 0.5;
 
-// A joint may move by this factor more or less than its command. Chosen: a soft servo in a quick
+// Factor by which a joint may move more or less than its command. Chosen: a soft servo in a quick
 // motion moves less.
 constexpr double kScale = 1.5;
 
@@ -44,24 +44,24 @@ constexpr double kScale = 1.5;
 // tooth of a servo's horn.
 constexpr double kAway = 8 * kDegree;
 
-// Counts after which a counter of 16 bits begins again. Definition.
+// Number of counts after which a counter of 16 bits begins again. Definition.
 constexpr double kCounterRange = 65536;
 
-// Steps of the search for a time shift [s], and how much better a shift has to fit before it is
-// believed. Chosen: a wrong shift fits many times worse.
+// Step of the search for a time shift [s], and the factor by which the distance must become smaller
+// before a shift is believed. Chosen: a wrong shift fits many times worse.
 constexpr double kShiftStep = 0.01, kShiftGain = 0.25;
 
-// Time that a recording and its command must share, in parts of the shorter. Chosen: a
-// short end without motion fits anywhere.
+// Time that a recording and its command must share, as a part of the shorter one. Chosen: a short
+// end without motion fits anywhere.
 constexpr double kLeastOverlap = 0.5;
 
 double range(const AngleTable& table, Index dof) {
   return table.theta.col(dof).maxCoeff() - table.theta.col(dof).minCoeff();
 }
 
-// Distance of the joints' movements when `measured` is `shift` behind, in parts of these movements;
-// means are taken off, since zero offsets are no matter here. Infinite where both have too little
-// time in common.
+// The distance between the joints' movements if `measured` is `shift` behind, as a part of these
+// movements. Means are subtracted, since zero offsets do not matter here. It is infinite if the two
+// have too little time in common.
 double distance(const AngleTable& command, const AngleTable& measured,
                 const std::vector<Index>& dofs, double shift, double step) {
   const double begin = std::max(0.0, shift),
@@ -142,7 +142,7 @@ double time_shift(const RobotModel&, const AngleTable& command, const AngleTable
 
 namespace {
 
-// What is wrong with sign or unit of a joint that follows; empty: nothing.
+// The complaint about the sign or the unit of a joint that follows; empty if there is none.
 std::string wrong_sign_or_unit(const Relation& r) {
   if (r.square < kFollows) return "";
   const double factor = std::abs(r.slope);
@@ -207,7 +207,7 @@ void require_answer(const RobotModel& model, const AngleTable& command, const An
   }
   const double reach = std::min(5.0, 0.3 * asked);
   const double shift = time_shift(model, command, measured, reach);
-  // One row earlier than its command is how recorders count.
+  // Recorders may count so that the recording is one row earlier than its command.
   if (shift > longest_lag || shift < -2 * measured.dt) {
     std::vector<Index> few = dofs;
     if (few.size() > 4) few.resize(4);
@@ -225,7 +225,7 @@ void require_answer(const RobotModel& model, const AngleTable& command, const An
   const double behind = std::clamp(shift, 0.0, longest_lag);
   if (const LostRows lost = lost_rows(command, measured, dofs, behind); lost.found)
     complain(lost_rows_words(lost, measured));
-  // What is missing where nothing moves shows at the end only.
+  // If rows are missing where nothing moves, this is only seen at the end.
   const double least = std::abs(measured.dt - command.dt) < 1e-9
                            ? 0.5 * command.dt
                            : 1.5 * std::max(measured.dt, command.dt);

@@ -1,5 +1,5 @@
 #pragma once
-// Whether a recording can be the answer to a command.
+// Checks whether a recording can be the answer to a command.
 
 #include <string>
 #include <vector>
@@ -12,29 +12,30 @@ namespace ayumi {
 /// Range of a command below which its joint stands still [rad, m].
 double least_motion();
 
-/// Joints of both tables whose command moves, the liveliest first.
+/// The joints of both tables whose command moves; those that move most come first.
 std::vector<Eigen::Index> moving_joints(const AngleTable& command, const AngleTable& measured);
 
-/// Time by which `measured` is behind `command` [s], from the joints that move most, within
+/// The time by which `measured` is behind `command` [s], from the joints that move most, within
 /// -`reach`..`reach`, in steps of the slower of both.
 double time_shift(const RobotModel& model, const AngleTable& command, const AngleTable& measured,
                   double reach);
 
-/// What is wrong with the joints of `measured`, which is `shift` [s] behind, from `begin` to `end`
-/// of the command's time: another sign or unit, or a joint that does not follow. One line each.
+/// Complaints about the joints of `measured`, which is `shift` [s] behind, from `begin` to `end` of
+/// the command's time: another sign or unit, or a joint that does not follow. Each complaint is one
+/// line.
 std::vector<std::string> motion_complaints(const RobotModel& model, const AngleTable& command,
                                            const AngleTable& measured, double shift, double begin,
                                            double end);
 
-/// Throws Error(bad_file) "`file`: what" for the first of these, and where `measured` is of another
-/// length than the command, comes earlier or later than `longest_lag` [s], lost or repeated rows
-/// (lost_rows()), or has no joint that moves.
+/// Throws Error(bad_file) "`file`: what" for the first of these complaints. It also throws if the
+/// length of `measured` is not that of the command, or if `measured` comes earlier or later than
+/// `longest_lag` [s], has lost or repeated rows (lost_rows()), or has no joint that moves.
 void require_answer(const RobotModel& model, const AngleTable& command, const AngleTable& measured,
                     double longest_lag, const std::string& file);
 
-/// Throws Error(bad_file) "`file`: what" for load cells that were not recorded with `measured`:
-/// another number of rows, or a standing foot, as the angles show it, that does not carry the
-/// robot. `agreement` is that of JointLoads.
+/// Throws Error(bad_file) "`file`: what" for load cells that were not recorded with `measured`: the
+/// number of rows is different, or a foot that stands by the angles does not carry the robot.
+/// `agreement` is that of JointLoads.
 void require_loads(const SensorTable& loads, const AngleTable& measured, double agreement,
                    const std::string& file);
 

@@ -18,24 +18,23 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Rate of the command below which a joint rests [rad/s], and half of the time over which it is
-// taken [s]. Chosen: far below the rates of a motion, and above a step of one count.
+// Rate of the command below which a joint rests [rad/s], and half of the time over which the rate
+// is computed [s]. Chosen: far below the rates of a motion, and above a step of one count.
 constexpr double kRestRate = 0.01, kRateTime = 0.01;
 
-// Units of the constants in a fit, so that numbers near 1 are searched: ms, 0.1 mrad/(N m), ms,
-// 0.1 mrad.
+// Units of the constants in a fit, so that the numbers of the search are near 1: ms, 0.1 mrad/(N
+// m), ms, 0.1 mrad.
 constexpr std::array<double, kConstants + 1> kUnit = {1e-3, 1e-4, 1e-3, 1e-4, 1e-4, 1e-4};
 
-// Difference for the derivatives, in these units. Chosen: it changes the angle by a thousandth of a
-// count.
+// Size of the differences for the derivatives, in these units. Chosen: it changes the angle by a
+// thousandth of a count.
 constexpr double kStep = 0.005;
 
-// Residuals this far apart [s] are free of the noise of single readings. Chosen: five rows of a
+// Distance of residuals [s] that are free of the noise of single readings. Chosen: five rows of a
 // HOAP.
 constexpr double kNoiseTime = 0.005;
 
-// Residuals count as independent where their correlation is below this. Chosen: usual for block
-// sums.
+// Correlation below which residuals count as independent. Chosen: the usual value for block sums.
 constexpr double kIndependent = 0.1;
 
 ServoConstants constants_of(const double* shared, double offset) {
@@ -43,8 +42,8 @@ ServoConstants constants_of(const double* shared, double offset) {
           shared[3] * kUnit[3], shared[4] * kUnit[4], offset * kUnit[5]};
 }
 
-// Measured less simulated angle of one joint, in the unit of offsets. Derivatives by constants that
-// are held are zero.
+// The measured minus the simulated angle of one joint, in the unit of offsets. Derivatives by
+// constants that are held are zero.
 class JointError final : public ceres::CostFunction {
  public:
   JointError(const JointRecording& joint, const std::array<bool, kConstants>& held)
@@ -93,7 +92,7 @@ class JointError final : public ceres::CostFunction {
   const std::array<bool, kConstants> held_;
 };
 
-// Rows after which the residuals are independent.
+// The number of rows after which the residuals are independent.
 Index correlation_length(const std::vector<VectorXd>& residuals) {
   Index longest = 1;
   for (const VectorXd& r : residuals) {
@@ -108,7 +107,7 @@ Index correlation_length(const std::vector<VectorXd>& residuals) {
   return longest;
 }
 
-// Covariance of the scores, summed over blocks.
+// The covariance of the scores, summed over blocks.
 struct ScoreCovariance {
   MatrixXd value;
   Index blocks = 0;
@@ -140,7 +139,7 @@ double model_error(const std::vector<JointRecording>& joints,
     count += static_cast<double>(r.size());
   }
   if (count == 0) return 0;
-  // What uncorrelated residuals give by chance is taken off.
+  // The value that uncorrelated residuals give by chance is subtracted.
   return std::sqrt(std::max(0.0, sum / count - 2 * variance / count / std::sqrt(count)));
 }
 
@@ -168,13 +167,13 @@ MatrixXd covariance_of(const MatrixXd& jacobian, const std::vector<VectorXd>& re
   const ScoreCovariance sum = block_sums(scores, sizes, block);
   const double count = static_cast<double>(sum.blocks), free = std::max(2.0, count - p);
   const MatrixXd robust = count / free * (inverse * sum.value * inverse);
-  // The larger of both: scaling keeps the correlations of the parameters.
+  // The larger of both variances is taken; scaling keeps the correlations of the parameters.
   VectorXd scale(p);
   for (Index i = 0; i < p; ++i)
     scale[i] =
         covariance(i, i) > 0 ? std::sqrt(std::max(1.0, robust(i, i) / covariance(i, i))) : 1.0;
   covariance = scale.asDiagonal() * covariance * scale.asDiagonal();
-  // Student's t for 95 % to better than 1 % from 5 degrees of freedom on.
+  // An approximation of Student's t for 95 %, to better than 1 % from 5 degrees of freedom on.
   factor = 1.96 + 2.4 / free + 3.0 / (free * free);
   return covariance;
 }
@@ -189,7 +188,7 @@ std::vector<Index> telling_rows(const JointRecording& joint, const std::vector<c
     const double t = joint.dt * static_cast<double>(k);
     const double change = command_at(joint, t + kRateTime) - command_at(joint, t - kRateTime);
     rested = std::abs(change) > 2 * kRateTime * kRestRate ? 0 : rested + 1;
-    // The end of the recording is no change of the load.
+    // The end of the recording does not count as a change of the load.
     bool holds = held > wait;
     for (Index ahead = k + 1; holds && ahead < std::min(rows, k + wait); ++ahead)
       holds = known[static_cast<size_t>(ahead)];
@@ -200,7 +199,7 @@ std::vector<Index> telling_rows(const JointRecording& joint, const std::vector<c
 
 namespace {
 
-/// Sum of the squared errors of one joint with each of these servos [rad^2].
+/// The sum of the squared errors of one joint with each of these servos [rad^2].
 VectorXd squared_errors(const JointRecording& joint, const std::vector<ServoConstants>& servos) {
   MatrixXd theta;
   servo_responses(joint, servos, theta);
@@ -247,8 +246,8 @@ ServoFit fit_servo(const std::vector<JointRecording>& joints,
   options.parameter_tolerance = 1e-7;
   options.logging_type = ceres::SILENT;
   options.num_threads = 1;
-  // Where the joint comes to rest changes with a jump as its friction does, so that the error has
-  // more than one minimum over the friction: others are looked for.
+  // The place where the joint comes to rest jumps when its friction changes, so that the error has
+  // more than one minimum over the friction. Therefore others are looked for.
   constexpr int kDry = static_cast<int>(Constant::dry);
   constexpr std::array<double, 9> kOtherFriction = {0.3, 0.5, 0.7, 0.85, 1.15, 1.4, 1.8, 2.5, 4};
   constexpr int kRounds = 4;
@@ -269,7 +268,7 @@ ServoFit fit_servo(const std::vector<JointRecording>& joints,
       }
       squares += squared_errors(joints[j], servos);
     }
-    Index best = 0;  // the first of equals
+    Index best = 0;  // the first of equal values
     squares.minCoeff(&best);
     shared[kDry] = tried[static_cast<size_t>(best)];
     if (best == 0) break;
@@ -328,14 +327,14 @@ ServoFit fit_servo(const std::vector<JointRecording>& joints,
 
 std::vector<ServoConstants> first_guess(const std::vector<JointRecording>& joints,
                                         double longest_delay) {
-  // Every delay is tried in steps of half a millisecond, up to that of the best.
+  // Every delay is tried in steps of half a millisecond, up to the longest one.
   constexpr double kDelayStep = 0.0005;
   const auto joint_count = static_cast<Index>(joints.size());
   double best = std::numeric_limits<double>::infinity();
   std::vector<ServoConstants> found(joints.size());
   for (double delay = 0; delay <= longest_delay + 1e-9; delay += kDelayStep) {
-    // Unknowns: compliance, dry friction, an offset for each joint. Damping starts small, since a
-    // delay does nearly the same.
+    // The unknowns are compliance, dry friction, and an offset for each joint. Damping starts
+    // small, since a delay has nearly the same effect.
     MatrixXd normal = MatrixXd::Zero(2 + joint_count, 2 + joint_count);
     VectorXd right = VectorXd::Zero(2 + joint_count);
     double square = 0;

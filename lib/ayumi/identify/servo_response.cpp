@@ -14,7 +14,7 @@ namespace {
 constexpr double kResponseStep = 0.0005;
 
 // Torque at which the teeth of a gear lie firmly on a flank [N m]. Chosen: the friction of a small
-// gear; within it the play is crossed linearly.
+// gear. With a smaller torque, the play is crossed linearly.
 constexpr double kMeshTorque = 0.05;
 
 }  // namespace
@@ -32,8 +32,8 @@ double command_at(const JointRecording& recording, double t) {
 
 namespace {
 
-// Mean of the command over a step that is not longer than its interval. A held command so changes
-// smoothly with the delay.
+// The mean of the command over a step that is not longer than its interval. In this way, even a
+// command that is held changes smoothly with the delay.
 double mean_command(const JointRecording& recording, double begin, double end) {
   if (recording.law == CommandLaw::linear) return command_at(recording, 0.5 * (begin + end));
   const double edge = std::floor(end / recording.command_dt) * recording.command_dt;
@@ -53,10 +53,10 @@ double sag(const ServoConstants& constants, double tau) {
 namespace {
 
 struct Stretch {
-  Index begin = 0, end = 0;  // rows; `end` is the last
+  Index begin = 0, end = 0;  // first and last row
 };
 
-// The rows to simulate: from the time that a joint needs to settle before a compared row.
+// The rows to simulate. They begin before a compared row, by the time that a joint needs to settle.
 std::vector<Stretch> stretches(const JointRecording& recording) {
   const auto wait = static_cast<Index>(std::ceil(kSettle / recording.dt));
   std::vector<Stretch> found;
@@ -68,12 +68,12 @@ std::vector<Stretch> stretches(const JointRecording& recording) {
   return found;
 }
 
-// Servos of one joint that are simulated side by side. Each step of a servo waits for the one
-// before it, so that a processor does the steps of several servos in the time of one. Chosen: that
-// many keep it busy.
+// Number of servos of one joint that are simulated side by side. Each step of a servo waits for the
+// step before it, so that a processor computes the steps of several servos in the time of one.
+// Chosen: this number keeps the processor busy.
 constexpr Index kLanes = 4;
 
-/// Columns `first` to `first` + lanes - 1 of `theta`.
+/// Fills the columns `first` to `first` + lanes - 1 of `theta`.
 template <size_t lanes>
 void respond(const JointRecording& recording, const ServoConstants* c, Eigen::MatrixXd& theta,
              Index first_column) {
@@ -87,7 +87,7 @@ void respond(const JointRecording& recording, const ServoConstants* c, Eigen::Ma
   const bool stepped = recording.law == CommandLaw::stepped;
   const int steps =
       stepped ? 1 : std::max(1, static_cast<int>(std::ceil(recording.dt / kResponseStep - 1e-9)));
-  // The middle of a step, or its end.
+  // The place is the middle of a step, or its end.
   const double place = stepped ? 1 : 0.5;
   const double h = recording.dt / steps;
   for (const Stretch& stretch : stretches(recording)) {
@@ -114,7 +114,7 @@ void respond(const JointRecording& recording, const ServoConstants* c, Eigen::Ma
       set(l, first, phi[l]);
     }
     for (Index k = first; k < stretch.end; ++k) {
-      // What loads the joint beside its own inertia, which the simulation moves itself.
+      // The load of the joint without its own inertia, which the simulation itself moves.
       const double load0 =
           recording.torque[k] - recording.link_inertia[k] * recording.acceleration[k];
       const double load1 =
@@ -140,7 +140,7 @@ void respond(const JointRecording& recording, const ServoConstants* c, Eigen::Ma
         for (size_t l = 0; l < lanes; ++l) {
           const double momentum =
               kept[l] * rate[l] + h * (target[l] - phi[l] - c[l].compliance * load);
-          // Dry friction takes momentum until the joint rests.
+          // Dry friction takes momentum from the joint until it rests.
           const double friction = h * c[l].dry, taken = std::clamp(momentum, -friction, friction);
           const double next = (momentum - taken) / whole[l];
           phi[l] += h * ((1 - place) * rate[l] + place * next);

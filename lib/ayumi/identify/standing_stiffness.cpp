@@ -15,7 +15,8 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Time for which a leg has to stand, and to swing [s]. Chosen: two steps of a small humanoid.
+// Shortest time for which a leg has to stand, and to swing [s]. Chosen: two steps of a small
+// humanoid.
 constexpr double kLeastStanding = 0.5;
 
 // Rate of the command below which friction has no direction [rad/s]. Chosen: a count of a small
@@ -34,7 +35,8 @@ bool stands_and_swings(const JointRecording& joint) {
   return standing > kLeastStanding && swinging > kLeastStanding;
 }
 
-// What the distance of a joint from its late command consists of, by row: torque, friction, rate.
+// The parts of which the distance of a joint from its late command consists, by row: torque,
+// friction, rate.
 struct SlowParts {
   VectorXd distance;
   MatrixXd causes;
@@ -67,10 +69,10 @@ StandingCompliance standing_compliance(const std::vector<JointRecording>& joints
     if (!stands_and_swings(joint)) return {};
     rows += static_cast<Index>(joint.settled.size());
   }
-  // The causes, then an offset for each joint.
+  // The first columns are the causes; then there is one for the offset of each joint.
   MatrixXd jacobian = MatrixXd::Zero(rows, 3 + count);
   VectorXd distance(rows);
-  double change = 0;  // of the load, the largest [N m]
+  double change = 0;  // largest change of the load [N m]
   Index at = 0;
   for (Index j = 0; j < count; ++j) {
     const SlowParts parts = slow_parts(joints[static_cast<size_t>(j)], lag);
@@ -95,8 +97,8 @@ StandingCompliance standing_compliance(const std::vector<JointRecording>& joints
   double factor = 0;
   const MatrixXd covariance = covariance_of(jacobian, residuals, factor);
   StandingCompliance result{true, x[0] / size[0], 0};
-  // A torque that is wrong while the leg stands, and right while it swings: its loads are then
-  // apart by twice their standard deviation.
+  // The torque may be wrong while the leg stands, and right while it swings: its loads then differ
+  // by twice their standard deviation.
   const double share = load_error / std::max(2 * change, 1e-9);
   result.half_width =
       factor * std::sqrt(covariance(0, 0)) / size[0] + share * std::abs(result.value);

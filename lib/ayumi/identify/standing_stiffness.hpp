@@ -12,11 +12,11 @@ namespace ayumi {
 
 struct StandingCompliance {
   bool found = false;
-  double value = 0, half_width = 0;  ///< with its 95 % interval [rad/(N m)]
+  double value = 0, half_width = 0;  ///< the value with half its 95 % interval [rad/(N m)]
 };
 
-/// Of joints that share their constants, whose answers are `lag` [s] behind, at their settled rows.
-/// `load_error` is the uncertainty of the torque of a standing leg [N m].
+/// The compliance of joints that share their constants, whose answers are `lag` [s] behind, from
+/// their settled rows. `load_error` is the uncertainty of the torque of a standing leg [N m].
 StandingCompliance standing_compliance(const std::vector<JointRecording>& joints, double lag,
                                        double load_error);
 

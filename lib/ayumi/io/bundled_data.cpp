@@ -6,7 +6,8 @@ namespace fs = std::filesystem;
 
 fs::path bundled_data(const fs::path& binary, const std::string& name) {
   std::error_code ignored;
-  // bin/ayumi is one folder below the installation, lib/python3/dist-packages/ayumi/... are four.
+  // Largest number of folders above the program or module that are searched. bin/ayumi is one
+  // folder below the installation, lib/python3/dist-packages/ayumi/... is four folders below it.
   constexpr int kDeepest = 5;
   fs::path above = binary.parent_path();
   for (int i = 0; i < kDeepest && above.has_relative_path(); ++i) {

@@ -11,8 +11,8 @@ namespace ayumi {
 
 namespace {
 
-// Chosen: at 1 a log of the bundled walk is 1 % larger and is written as fast; at 6 and 9 it is 1 %
-// smaller and takes twice as long.
+// Chosen: at level 1, a log of the bundled walk is 1 % larger and is written as fast; at 6 and 9,
+// it is 1 % smaller and takes twice as long.
 constexpr int kLevel = 3;
 
 }  // namespace

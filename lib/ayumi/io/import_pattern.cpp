@@ -32,7 +32,7 @@ void add_ramps(double seconds, const RobotModel& model, ImportedMotion& imported
     imported.filled.push_back(
         "the ZMP and the vertical force of the file are left out, because a ramp changes them");
   imported.motion = with_ramps(model, std::move(imported.motion), seconds);
-  imported.sequence.clear();  // its rows are no longer those of the motion
+  imported.sequence.clear();  // its rows are no longer the rows of the motion
   imported.filled.push_back(
       "the motion " + ends + " slowly: with --ramp, " + text::brief(seconds) +
       " s pass between rest and the recorded speed, and the path stays as recorded");

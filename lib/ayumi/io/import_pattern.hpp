@@ -14,8 +14,8 @@
 
 namespace ayumi {
 
-/// Bytes of a motion file. Chosen: an hour of 50 joints at 30 rows per second; a file and its copy
-/// stay within 200 MB.
+/// Largest number of bytes of a motion file. Chosen: an hour of 50 joints at 30 rows per second; a
+/// file and its copy stay within 200 MB.
 inline constexpr size_t kLargestMotionFile = 64'000'000;
 
 struct PatternImport {
@@ -40,7 +40,7 @@ ImportedPattern import_pattern(const std::string& bytes, const std::string& file
                                const RobotModel& model, const PatternImport& options = {});
 
 /// The bytes of the file of `format` from which the table was imported, if the table still has the
-/// angles of this import. Nothing for another format. Throws as kept_sequence().
+/// angles of this import. Returns nothing for another format. Throws as kept_sequence().
 std::optional<std::string> kept_file(const DenseTable& table, const std::string& format);
 
 /// The place where write_imported() keeps the copy of a file of this format.
@@ -49,8 +49,8 @@ std::filesystem::path copy_beside(const std::filesystem::path& path, const std::
 /// The files that write_imported() may write.
 std::vector<std::filesystem::path> files_of_import(const std::filesystem::path& path);
 
-/// Writes the pattern, its table beside it, and the copy that is kept of the file; all of them or
-/// none. Adds the place of the copy to `filled`.
+/// Writes the pattern, its table beside it, and the kept copy of the file. Either all of them are
+/// written or none. Adds the place of the copy to `filled`.
 void write_imported(const std::filesystem::path& path, ImportedPattern& imported);
 
 }  // namespace ayumi

@@ -1,6 +1,7 @@
 #pragma once
-// A pattern that was imported from a sequence and still moves as it: `export` then writes the
-// original rows of the sequence, and not rows that are computed from the motion.
+// A pattern that was imported from a sequence and still moves like this sequence. For such a
+// pattern, `export` writes the original rows of the sequence, and not rows that are computed from
+// the motion.
 
 #include <optional>
 #include <string>
@@ -16,14 +17,14 @@ struct KeptRows {
   ReferenceTrajectory targets;  ///< targets that the servos receive
 };
 
-/// The rows of the sequence from which the pattern was imported. Nothing if there was no sequence
-/// or if the motion was changed. Throws Error(bad_file) if the kept sequence is missing or was
-/// changed.
+/// The rows of the sequence from which the pattern was imported. Returns nothing if there was no
+/// sequence or if the motion was changed. Throws Error(bad_file) if the kept sequence is missing or
+/// was changed.
 std::optional<KeptRows> kept_rows(const Task& task);
 
 /// The unchanged rows of the pattern's table, if the pattern still moves as its table does. Values
-/// of COG, ZMP, force and contacts that the table does not have come from `planned`. Nothing if the
-/// pattern has no table or was changed.
+/// of COG, ZMP, force and contacts that the table does not have come from `planned`. Returns
+/// nothing if the pattern has no table or was changed.
 std::optional<ReferenceTrajectory> rows_of_table(const Task& task,
                                                  const ReferenceTrajectory& planned);
 

@@ -12,18 +12,18 @@ namespace ayumi {
 
 struct TaskOptions {
   std::map<std::string, double> set = {};  ///< values of parameters that the pattern declares
-  std::string profile = {};                ///< actuator profile; "" = that of the pattern
-  std::string robot = {};                  ///< in place of the robot that the pattern names
-  RobotSearch robots = {};                 ///< folders in which robots are looked for by name
-  bool meshes = false;                     ///< load what only pictures need
-  int threads = 0;                         ///< of sampling and of the check; 0: all cores
+  std::string profile = {};                ///< actuator profile; "": that of the pattern
+  std::string robot = {};                  ///< replaces the robot that the pattern names
+  RobotSearch robots = {};                 ///< folders in which robots are searched by name
+  bool meshes = false;                     ///< whether to load what only pictures need
+  int threads = 0;  ///< number of threads for sampling and the check; 0: all cores
 };
 
 /// Throws as read_pattern(), load_robot() and make_task().
 Task load_task(const std::filesystem::path& pattern, const TaskOptions& options = {},
                const Progress& progress = {});
 
-/// The same with a pattern that has been read.
+/// The same for a pattern that has been read already.
 Task load_task(Pattern pattern, const TaskOptions& options = {}, const Progress& progress = {});
 
 /// A robot with the name by which it was loaded.
@@ -32,7 +32,7 @@ struct NamedRobot {
   std::string name;
 };
 
-/// The same with a robot that has been loaded, whatever robot the pattern names.
+/// The same for a robot that has been loaded already, whatever robot the pattern names.
 Task load_task(Pattern pattern, NamedRobot robot, const std::string& profile,
                const Progress& progress = {}, int threads = 0);
 

@@ -1,6 +1,6 @@
 #pragma once
-// A finding's place, value and limit in words: lengths in mm, angles and their rates in the unit of
-// the pattern's angles.
+// The place, the value and the limit of a finding in words: lengths are in mm, angles and their
+// rates in the unit of the pattern's angles.
 
 #include <Eigen/Core>
 #include <string>
@@ -16,13 +16,14 @@ struct ShownUnit {
   std::string name;
 };
 
-/// "rad/s" as "deg/s" where angles are in degrees; other units as they are.
+/// Shows "rad/s" as "deg/s" if angles are in degrees; other units are not changed.
 inline ShownUnit shown_unit(const std::string& unit, bool degrees) {
   if (degrees && unit.starts_with("rad")) return {180 / EIGEN_PI, "deg" + unit.substr(3)};
   return {1, unit};
 }
 
-/// "300 deg, limit 1 deg", with as many digits as show that the two differ.
+/// The value and the limit, such as "300 deg, limit 1 deg", with as many digits as are needed to
+/// see the difference.
 inline std::string amount_text(const Finding& finding) {
   const ShownUnit shown = shown_unit(finding.unit, finding.in_degrees);
   const auto quantity = [&](double value, int more_digits) -> std::string {
@@ -30,7 +31,8 @@ inline std::string amount_text(const Finding& finding) {
     if (finding.unit == "1") return text::fixed(value, 2 + more_digits);
     return text::brief(value * shown.scale, 4 + more_digits) + " " + shown.name;
   };
-  // Digits beyond the usual ones. Chosen: a smaller difference is rounding of the computation.
+  // Largest number of additional digits. Chosen: a smaller difference is rounding of the
+  // computation.
   constexpr int kMostMoreDigits = 6;
   int more = 0;
   while (more < kMostMoreDigits && quantity(finding.worst, more) == quantity(finding.limit, more))
@@ -38,12 +40,12 @@ inline std::string amount_text(const Finding& finding) {
   return quantity(finding.worst, more) + ", limit " + quantity(finding.limit, more);
 }
 
-/// "joint_speed of l_knee", "friction of the left foot"
+/// The kind and the place, such as "joint_speed of l_knee" or "friction of the left foot".
 inline std::string kind_and_place(FindingKind kind, const std::string& where) {
   return name_of(kind) + (where.empty() ? "" : " of " + place_words(where, true));
 }
 
-/// "joint_speed of l_knee at 1.860 s"
+/// The kind, the place and the time, such as "joint_speed of l_knee at 1.860 s".
 inline std::string kind_place_and_time(const Finding& finding) {
   return kind_and_place(finding.kind, finding.where) + " at " + text::fixed(finding.at, 3) + " s";
 }

@@ -1,7 +1,7 @@
 // In flight no moment acts, so the angular momentum L about the COG is constant: dL/dt = 0, where
 // dL/dt is the moment of the demanded ground wrench about the COG. The rate of a single sample
-// holds the rounding of differences, so the mean over five samples is judged. A repair keeps it
-// with the force, in the rows of free_fall.cpp.
+// contains the rounding of differences, so the mean over five samples is judged. A repair keeps
+// this limit together with the force, in the rows of free_fall.cpp.
 #include <algorithm>
 
 #include "ayumi/limits/flight_moment.hpp"
@@ -18,11 +18,11 @@ namespace {
 // 1000 rad/s^2 leave 0.1 N m of rounding in single samples of a robot of 6 kg.
 constexpr double kMomentTolerance = 0.1;
 
-// The same as a share of weight times COG height, for larger robots. Source: docs/attribution.md;
-// it is 0.1 N m for a robot of 6 kg whose COG is 0.26 m high.
+// The same limit as a share of weight times COG height, for larger robots. Source:
+// docs/attribution.md; it is 0.1 N m for a robot of 6 kg whose COG is 0.26 m high.
 constexpr double kMomentShare = 0.0065;
 
-// Samples to either side of the mean. Derived: the reach of fill_rates().
+// Number of samples on either side of the mean. Derived: the reach of fill_rates().
 constexpr int kMeanReach = 2;
 
 }  // namespace

@@ -1,6 +1,6 @@
-// Bodies of the robot do not overlap: the distance of every pair of their collision shapes,
-// negative where they overlap (geometry/distance.hpp), stays above a margin. Every 20 ms all pairs
-// are looked at, then every sample around the places where a pair is near
+// Bodies of the robot do not overlap: the distance of every pair of their collision shapes, which
+// is negative if they overlap (geometry/distance.hpp), stays above a margin. All pairs are examined
+// every 20 ms, and then every sample around the times at which a pair is near
 // (demand/collision_scan.hpp).
 #include <algorithm>
 
@@ -13,14 +13,16 @@ namespace ayumi {
 
 namespace {
 
-// Clearance below which bodies that do not overlap are a warning [m]. Chosen: what servos sag under
-// load moves links by about this much. Half or twice of it changes no verdict. Half: fast,
-// clearance 12.1 to 11.1 mm; twice: grip, clearance 12.2 to 14.6 mm.
+// Clearance below which bodies that do not overlap are a warning [m]. Chosen: the sag of servos
+// under load moves links by about this distance. Half or twice of it changes no verdict. With half
+// of the value, the clearance of the case "fast" changes from 12.1 to 11.1 mm; with twice, the
+// clearance of the case "grip" changes from 12.2 to 14.6 mm.
 constexpr double kClearanceTolerance = 0.002;
 
-// Clearance above the tolerance from which every sample is looked at [m]. Chosen: in 20 ms bodies
-// approach each other by this much at 0.5 m/s. Half: slip, clearance 15 to 7.11 mm; twice: walk,
-// clearance 12.1 to 15 mm.
+// Below this clearance above the tolerance, every sample is examined [m]. Chosen: in 20 ms, bodies
+// approach each other by this distance at 0.5 m/s. With half of the value, the clearance of the
+// case "slip" changes from 15 to 7.11 mm; with twice, the clearance of the case "walk" changes from
+// 12.1 to 15 mm.
 constexpr double kRefineBelow = 0.010;
 
 void note_clearance(JudgedMotion& motion, int pair, int k, double clearance) {
@@ -48,7 +50,7 @@ const RowKind kClearanceRows = {
     .name = "clearance", .unit = &RowPrices::length, .beyond_check = true, .order = {6, 0}};
 
 // The distance that the repair keeps: the wanted one, or the distance in the given motion if it is
-// smaller and the bodies do not touch. `own`: the distance in the given motion [m].
+// smaller and the bodies do not touch. `own` is the distance in the given motion [m].
 void add_clearance(RowSite& site, int point, const ShapePair& shapes, double own) {
   const RowSettings& settings = site.settings;
   const double kept = settings.clearance.kept;

@@ -18,28 +18,30 @@ using Eigen::Vector3d;
 
 namespace {
 
-// [m] Chosen: a hundredth of the COG's height of small humanoids (0.2 to 0.3 m). No measured case
-// changes from half to twice (constants.md).
+// Tolerance of the COG [m]. Chosen: a hundredth of the COG's height of small humanoids (0.2 to 0.3
+// m). No measured case changes between half and twice the value (constants.md).
 constexpr double kCogTolerance = 0.002;
-// [m] Chosen: a tenth of the width of small soles (5 cm), so that a ZMP planned with a safe margin
-// stays inside the support. No measured case changes from half to twice (constants.md).
+// Tolerance of the ZMP [m]. Chosen: a tenth of the width of small soles (5 cm), so that a ZMP
+// planned with a safe margin stays inside the support. No measured case changes between half and
+// twice the value (constants.md).
 constexpr double kZmpTolerance = 0.005;
-// Share of the weight. Chosen: the vertical acceleration of the COG is met to 5 % of g. No measured
-// case changes from half to twice (constants.md).
+// Tolerance of f_z as a share of the weight. Chosen: the vertical acceleration of the COG is met to
+// 5 % of g. No measured case changes between half and twice the value (constants.md).
 constexpr double kForceTolerance = 0.05;
-// [m] Chosen: for information only, no verdict depends on it. Half: knee finds 3 info
-// point_mass_gap, not 2 info point_mass_gap; twice: knee does not find 2 info point_mass_gap.
+// Gap above which there is a note [m]. Chosen: it is only for information, and no verdict depends
+// on it. With half of the value, the check of the case "knee" finds 3 notes of point_mass_gap
+// instead of 2; with twice, it finds none.
 constexpr double kPointMassTolerance = 0.02;
 
-// Share of the weight below which a ZMP error may be larger, in inverse proportion to the force:
-// what counts is its moment. Source: docs/attribution.md: legs that swing at 1000 rad/s^2 leave 0.1
+// Share of the weight below which a ZMP error may be larger, in inverse proportion to the force,
+// because its moment counts. Source: docs/attribution.md: legs that swing at 1000 rad/s^2 leave 0.1
 // N m of rounding in single samples.
 constexpr double kLightShare = 0.25;
 constexpr double kLeastForceShare = 1e-3;  // share of the weight that prevents a division by zero
 
 // A ZMP error that lasts less than 5 ms and is at most three times its limit is a warning. Source:
-// docs/attribution.md: where the acceleration has a kink, as beside flights, single samples of the
-// ZMP are outliers, and a moment of that size turns nothing in that time. The judge applies this to
+// docs/attribution.md: where the acceleration has a kink, as near flights, single samples of the
+// ZMP are outliers, and a moment of this size turns nothing in this time. The judge applies this to
 // whole windows.
 
 void judge_vertical_force(JudgedMotion& motion, const JudgedSample& s) {

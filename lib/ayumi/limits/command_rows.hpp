@@ -1,11 +1,12 @@
 #pragma once
-// Rows of the commanded ZMP, which a repair also needs where it holds the planned DCM.
+// Rows of the commanded ZMP. A repair also needs them to keep the planned DCM.
 
 #include "ayumi/limits/row_site.hpp"
 
 namespace ayumi {
 
-/// f_n times the offset of the ZMP from the commanded ZMP, divided by the weight [m]: two rows.
+/// f_n times the offset of the ZMP from the commanded ZMP, divided by the weight [m]; there are two
+/// rows.
 WrenchRows commanded_zmp_rows(const RowSite& site, int point);
 
 }  // namespace ayumi

@@ -1,8 +1,8 @@
-// A contact ends when its foot leaves the ground. A foot that still stands after that violates no
-// law of mechanics if the ZMP is over the other foot, but the phases are then not those of the
-// motion. From the times t1 and t2 at which its sole is 0.01 and 0.08 mm off its place, it began to
-// leave at 2 t1 - t2, if its height grows with the cube of time (demand/contact_plan.hpp,
-// samples_after_contact()).
+// A contact ends when its foot leaves the ground. A foot that stands longer violates no law of
+// mechanics if the ZMP is over the other foot, but then the phases are not those of the motion. The
+// time at which the foot began to leave follows from the times t1 and t2 at which its sole is 0.01
+// and 0.08 mm off its place: it is 2 t1 - t2 if the height grows with the cube of time
+// (demand/contact_plan.hpp, samples_after_contact()).
 #include "ayumi/base/text.hpp"
 #include "ayumi/limits/judged_motion.hpp"
 
@@ -12,8 +12,9 @@ namespace {
 
 // Time for which a foot may still stand after its contact [s]. Source: docs/attribution.md
 // ("Contacts that end too early"): generated walks have -8 to 1 ms, a jump 3 ms. Chosen: ten times
-// the largest of these. Half: no change; twice: leaving finds 1 error support_margin, not 1 error
-// contact_ends_early, 1 warning support_margin.
+// the largest of these. With half of the value, nothing changes; with twice, the check of the case
+// "leaving" finds 1 error of support_margin instead of 1 error of contact_ends_early and 1 warning
+// of support_margin.
 constexpr double kLateTolerance = 0.030;
 
 void judge_contact_ends(JudgedMotion& motion) {

@@ -1,11 +1,12 @@
-// What a robot receives is a table of servo targets, theta + L dtheta with the lag L of the servo
-// (motion/servo_feedforward), one row per sample, in whole encoder counts where the joint has an
-// encoder; or the rows of an imported sequence that is unchanged. `export` refuses a table whose
-// targets step too far from row to row, leave the soft limits of the joint, or do not begin and end
-// at rest. This limit lays the same ramp and hold around the same table and asks the same function
-// (limits/table_safety), so that a motion without a finding is one whose table is accepted. For
-// another profile than the robot's own it only warns: such a profile is for studies. A motion with
-// goals of VIIP has no table before it is simulated.
+// A robot receives a table of servo targets, theta + L dtheta with the lag L of the servo
+// (motion/servo_feedforward). It has one row for each sample, in whole encoder counts if the joint
+// has an encoder. If the motion is an unchanged imported sequence, the robot receives the rows of
+// this sequence. `export` refuses a table whose targets step too far from row to row, leave the
+// soft limits of the joint, or do not begin and end at rest. This limit adds the same ramp and hold
+// to the same table and calls the same function (limits/table_safety), so that the table of a
+// motion without a finding is accepted. For another profile than the robot's own, it only warns,
+// because such a profile is for studies. A motion with goals of VIIP has no table before it is
+// simulated.
 //
 // The rows of a repair keep, at every point,
 //   |dtheta + L ddtheta| <= largest step / dt   and   lower + m <= theta + L dtheta <= upper - m.
@@ -25,7 +26,7 @@ namespace {
 // Definition: the tolerances are those of `export`, so that a larger one has no effect.
 const SafetyOptions kExport;
 
-// Definition: details of a violation, which give the unit of its value.
+// Definition: details of a violation, which determine the unit of its value.
 constexpr int kInCounts = 1, kInJointUnit = 0;
 
 FindingKind kind_of(const SafetyViolation& violation) {
@@ -143,7 +144,8 @@ const char* rest_unit(const JudgedMotion& motion, const Violation& v) {
   return joint_unit(motion, v, "rad/s", "m/s");
 }
 
-/// "`export` refuses the table, because the servo target of l_knee, which leads the posture by ..."
+/// The text of a refusal, such as "`export` refuses the table, because the servo target of l_knee,
+/// which leads the posture by ...".
 std::string refused_text(const JudgedMotion& motion, const Violation& v) {
   const double lag = velocity_lead(motion.limits)[v.item];
   return "`export` refuses the table, because the servo target of " +

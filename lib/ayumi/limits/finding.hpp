@@ -18,7 +18,7 @@ namespace ayumi {
 enum class Severity { error, warning, info };
 const char* name_of(Severity severity);
 
-/// In the order of limit_table.hpp.
+/// The kinds are in the order of limit_table.hpp.
 enum class FindingKind {
 #define AYUMI_ENUMERATOR(kind, limit) kind,
   AYUMI_FINDING_KINDS(AYUMI_ENUMERATOR)
@@ -30,12 +30,12 @@ inline constexpr int kFindingKindCount = AYUMI_FINDING_KINDS(AYUMI_COUNT);
 
 /// The name in JSON files, option values and texts.
 const char* name_of(FindingKind kind);
-/// The kind of that name, or nothing.
+/// The kind with this name, or nothing.
 std::optional<FindingKind> finding_kind(std::string_view name);
 /// All names, in the order of the enum.
 const std::vector<std::string>& finding_kind_names();
 
-/// One value for every kind of finding.
+/// A table with one value for every kind of finding.
 template <typename Value>
 class ByFindingKind {
  public:
@@ -50,7 +50,7 @@ class ByFindingKind {
   std::array<Value, kFindingKindCount> values_ = {};
 };
 
-/// Where in the robot a finding occurs.
+/// The place in the robot where a finding occurs.
 struct JointPlace {
   int dof = 0;
 };
@@ -66,30 +66,32 @@ struct SupportPlace {
 struct BodyPairPlace {
   int a = 0, b = 0;  ///< indices into RobotModel::bodies()
 };
-/// std::monostate: not known, as in a finding that was read from a file.
+/// std::monostate means that the place is unknown, as in a finding that was read from a file.
 using Place =
     std::variant<std::monostate, JointPlace, FootPlace, AxisPlace, SupportPlace, BodyPairPlace>;
 
 struct Finding {
   FindingKind kind = FindingKind::cog_residual;
   Severity severity = Severity::error;
-  double begin = 0, end = 0, at = 0;  ///< window and worst sample [s]
+  double begin = 0, end = 0, at = 0;  ///< window of the finding, and time of its worst sample [s]
   double worst = 0, limit = 0;        ///< in `unit`
   std::string unit;                   ///< "m", "N", "rad", "rad/s", "N m", "s", "1", ...
-  std::string where;                  ///< `place` in words: joint, foot, axis, support, bodies
-  std::string hint;                   ///< what to do about it
-  std::string follows_from = {};      ///< the error that causes this one; "" when it stands alone
-  int cause = -1;           ///< index of that error in the report; -1: none, or read from a file
+  std::string where;                  ///< `place` in words: a joint, foot, axis, support or bodies
+  std::string hint;                   ///< advice about what to do
+  std::string follows_from = {};      ///< the error that causes this one; "" if it has no cause
+  /// Index of this error in the report; -1: none, or the finding was read from a file.
+  int cause = -1;
   std::string remedy = {};  ///< the hint without the advice to use `repair`
   Place place = {};
-  bool in_degrees = true;  ///< texts for people have angles in degrees, not in rad
+  bool in_degrees = true;  ///< whether texts for people have angles in degrees and not in rad
 };
 
-/// The dof of a finding at a joint, -1 of any other.
+/// The dof of a finding at a joint; -1 for any other finding.
 int dof_of(const Finding& finding);
 
-/// Finding::where for people: "left" as "left foot", "x" as "x axis", and what follows the name of
-/// the place as it is. Joints and bodies keep their names. `with_article`: "the left foot".
+/// Finding::where in words for people: "left" becomes "left foot", and "x" becomes "x axis"; text
+/// after the name of the place is not changed. Joints and bodies keep their names. With
+/// `with_article`, it is "the left foot".
 std::string place_words(const std::string& where, bool with_article = false);
 
 }  // namespace ayumi

@@ -7,12 +7,12 @@
 
 namespace ayumi {
 
-/// Whether a sample is in flight and so far from its edges that its rates do not mix flight and
-/// support. False outside the series.
+/// Whether a sample is in flight and so far from its beginning and end that its rates do not mix
+/// flight and support. False outside the series.
 bool flies_freely(const CommandSeries& series, int sample);
 
-/// Mean of the moments of the samples around one sample [N m], counting those that are in free
-/// flight; 0 if there are none. `moment` gives the moment of one sample.
+/// The mean of the moments of the samples around one sample that are in free flight [N m]; 0 if
+/// there are none. `moment` returns the moment of one sample.
 Eigen::Vector3d mean_flight_moment(const CommandSeries& series, int sample,
                                    const std::function<Eigen::Vector3d(int sample)>& moment);
 

@@ -1,8 +1,8 @@
 // In flight nothing pushes, so the COG of the motion falls freely, ddcog = (0, 0, -g), and so does
 // the commanded COG, whose acceleration is the fourth-order second difference
 //   (16 (c_-1 + c_1) - (c_-2 + c_2) - 30 c_0) / (12 dt^2)   (central differences, Taylor).
-// Speed may change where a flight begins or ends, position may not: the step of the COG between the
-// two samples beside the edge is the mean of the steps before and after it.
+// At the beginning and end of a flight, the speed may change, but the position may not: the step of
+// the COG between the two samples there is the mean of the steps before and after it.
 #include "ayumi/base/text.hpp"
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/limits/judged_motion.hpp"
@@ -15,12 +15,13 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Acceleration of the COG from free fall [m/s^2]. Chosen: 5 % of g, as the tolerance of f_z. No
-// measured case changes from half to twice (constants.md).
+// Largest deviation of the COG's acceleration from free fall [m/s^2]. Chosen: 5 % of g, the same as
+// the tolerance of f_z. No measured case changes between half and twice the value (constants.md).
 constexpr double kFallTolerance = 0.5;
 
-// Leap of the COG at the edge of a flight [m]. Source: docs/attribution.md ("Leaps"): a force of
-// ten times the weight bends the path by 0.04 mm at 1 kHz, so 1 mm is no force.
+// Smallest leap of the COG at the beginning or end of a flight [m]. Source: docs/attribution.md
+// ("Leaps"): a force of ten times the weight bends the path by 0.04 mm at 1 kHz, so 1 mm cannot
+// come from a force.
 constexpr double kLeap = 1e-3;
 
 // Whether all five samples are in the same flight.
@@ -54,8 +55,8 @@ void judge_leaps(JudgedMotion& motion) {
   }
 }
 
-// Force and moment that the given motion needs in flight, about its planned COG, divided by the
-// weight.
+// The force and the moment that the given motion needs in flight, about its planned COG, divided by
+// the weight.
 Vector6d own_flight_wrench(const RowSite& site, int sample) {
   const CommandSample& s = site.series.samples[sample];
   SupportPlane plane;
@@ -71,9 +72,8 @@ Vector6d own_flight_wrench(const RowSite& site, int sample) {
 const RowKind kFlightRows = {
     .name = "flight", .unit = &RowPrices::length, .relaxed = &RowPrices::foot, .order = {4, 0}};
 
-// The band is a share of what the check allows, shared among three axes, or what the motion does by
-// itself where that passes. A deviation of one sample from the mean moment is rounding and is left
-// alone.
+// The band is a share of what the check allows, divided among three axes, or the motion's own value
+// if this passes. The deviation of one sample from the mean moment is rounding and is not changed.
 void place_flight_rows(RowSite& site) {
   const auto& settings = site.settings.flight;
   const double weight = site.weight();

@@ -1,8 +1,8 @@
 // Coulomb: a sole does not slide while the force along the ground stays inside the round cone,
 //   f_t = |(f_x, f_y)| <= mu f_n,
-// with (f_x, f_y, f_n) the demanded ground force in the axes of the support plane. The ratio
-// f_t / (mu f_n) is the share of the cone that the motion uses; mu times it is the coefficient
-// needed.
+// with (f_x, f_y, f_n) the demanded ground force in the axes of the support plane. The ratio f_t /
+// (mu f_n) is the share of the cone that the motion uses; mu times this ratio is the friction
+// coefficient that it needs.
 #include "ayumi/limits/friction.hpp"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Share of the cone. Definition: at 1 the sole slides.
+// Largest share of the cone. Definition: at 1 the sole slides.
 constexpr double kWholeCone = 1;
 
 void judge_friction(JudgedMotion& motion, const JudgedSample& s) {
@@ -37,7 +37,7 @@ void judge_friction(JudgedMotion& motion, const JudgedSample& s) {
 struct ConeRow {
   double mu = 0;
   double scale = 0;     // 1 / (m g)
-  double rounding = 0;  // tangential force over the weight
+  double rounding = 0;  // tangential force as a share of the weight at which the tip is rounded
 
   double tangential(const Vector6d& w) const {
     return std::sqrt(w.head<2>().squaredNorm() + elementary::power<2>(rounding / scale));

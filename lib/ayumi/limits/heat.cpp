@@ -1,5 +1,5 @@
-// A motor is heated by the square of its torque. In its thermal window T the root mean square stays
-// within the continuous torque of the actuator profile:
+// A motor is heated by the square of its torque. Within its thermal window T, the root mean square
+// of the torque must not exceed the continuous torque of the actuator profile:
 //   sqrt(1/T sum tau^2 dt) <= continuous torque,
 // where a motor gives no more than its peak torque, so that no more than that heats it. A motion
 // that is shorter than T may be followed by rest: then it is a warning.
@@ -12,12 +12,12 @@ namespace ayumi {
 
 namespace {
 
-// Share of the continuous torque. Definition: the data sheet's figure is the largest one.
+// Largest share of the continuous torque. Definition: the data sheet states the largest value.
 constexpr double kWholeContinuousTorque = 1;
 
-// Samples of the window at which torques are evaluated at another pace. Chosen: attribution only
-// asks whether the mean holds, and each sample costs one inverse dynamics. No measured case changes
-// from half to twice (constants.md).
+// Number of samples of the window at which torques are evaluated at another pace. Chosen:
+// attribution only needs to know whether the mean keeps its limit, and each sample costs one
+// inverse dynamics. No measured case changes between half and twice the value (constants.md).
 constexpr int kThermalLooks = 100;
 
 int thermal_samples(const JudgedMotion& motion) {
@@ -30,8 +30,8 @@ void judge_heat_at(JudgedMotion& motion, const JudgedSample& s) {
   const int window = std::clamp(whole, 1, motion.count());
   const Severity severity = motion.count() >= whole ? Severity::error : Severity::warning;
   const double most = motion.tolerance(FindingKind::continuous_torque);
-  // Sums of the samples before this one, of all samples with this one, and of those before the
-  // window: columns of a ring.
+  // Sums for the samples before this one, for all samples including this one, and for those before
+  // the window: they are columns of a ring.
   const int columns = window + 1, end = s.k + 1;
   Heat& heat = motion.heat;
   if (heat.square_sum.size() == 0) {

@@ -1,6 +1,6 @@
-// A joint that accelerates very fast moves roughly: differences over a jump between two samples
-// give accelerations of jump / dt^2, far above those of a planned motion. It is a warning, since
-// motors have a limit of torque (joint_torque.cpp), not of roughness.
+// A joint that accelerates very fast makes the motion rough. Differences across a jump between two
+// samples give accelerations of jump / dt^2, far above those of a planned motion. This is only a
+// warning, because motors have a limit of torque (joint_torque.cpp), but none of roughness.
 #include <algorithm>
 
 #include "ayumi/limits/judged_motion.hpp"
@@ -10,10 +10,11 @@ namespace ayumi {
 
 namespace {
 
-// [rad/s^2] or [m/s^2] Chosen: a jump of 0.03 degrees between two samples at 1 kHz. It is a
-// warning, but attribution takes samples beyond it for broken by a jump. Half: arm finds 1 warning
-// joint_acceleration; twice: flight finds 8 warning joint_acceleration, not 13 warning
-// joint_acceleration.
+// Largest acceleration without a warning [rad/s^2] or [m/s^2]. Chosen: a jump of 0.03 degrees
+// between two samples at 1 kHz. It is only a warning, but attribution treats samples above it as
+// spoilt by a jump. With half of the value, the check of the case "arm" finds 1 warning of
+// joint_acceleration; with twice, the check of the case "flight" finds 8 warnings of
+// joint_acceleration instead of 13.
 constexpr double kRoughAcceleration = 500;
 
 void judge_joint_accelerations(JudgedMotion& motion, const JudgedSample& s) {

@@ -1,5 +1,5 @@
-// A motor has a largest speed: |dtheta| <= speed limit of the actuator profile, which the voltage
-// of the motor and its gear set (data sheet of the robot, robot.json).
+// A motor has a largest speed: |dtheta| <= speed limit of the actuator profile. The voltage of the
+// motor and its gear determine it (data sheet of the robot, robot.json).
 #include "ayumi/limits/judged_motion.hpp"
 #include "ayumi/limits/row_site.hpp"
 
@@ -7,7 +7,7 @@ namespace ayumi {
 
 namespace {
 
-// Share of the speed limit. Definition: the data sheet's figure is the largest speed.
+// Largest share of the speed limit. Definition: the data sheet states the largest speed.
 constexpr double kWholeSpeed = 1;
 
 void judge_joint_speeds(JudgedMotion& motion, const JudgedSample& s) {

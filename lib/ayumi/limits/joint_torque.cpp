@@ -1,8 +1,9 @@
 // A motor has a peak torque: |tau| <= peak torque of the actuator profile, with tau from inverse
 // dynamics and the ground wrench shared between the feet, plus the rotor's inertia, viscous and
-// Coulomb friction of the servo (demand/ground_demand.hpp, motor_torques()). Not part of it
-// are Stribeck and load-dependent friction, and the torque that is lost with speed at a voltage.
-// Beside a flight's edges accelerations have no meaning, so torques are not judged there.
+// Coulomb friction of the servo (demand/ground_demand.hpp, motor_torques()). Stribeck and
+// load-dependent friction are not included, nor the torque that is lost with speed at a voltage.
+// Near the beginning and end of a flight, accelerations have no meaning, so torques are not judged
+// there.
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/limits/judged_motion.hpp"
 #include "ayumi/limits/row_site.hpp"
@@ -11,7 +12,7 @@ namespace ayumi {
 
 namespace {
 
-// Share of the peak torque. Definition: the data sheet's figure is the largest torque.
+// Largest share of the peak torque. Definition: the data sheet states the largest torque.
 constexpr double kWholeTorque = 1;
 
 void judge_joint_torques(JudgedMotion& motion, const JudgedSample& s) {
@@ -26,7 +27,7 @@ void judge_joint_torques(JudgedMotion& motion, const JudgedSample& s) {
   }
 }
 
-// By dof: the largest absolute torque over the watched samples.
+// For each dof, the largest absolute torque over the watched samples.
 Eigen::VectorXd watched_torques(const RowSite& site, int point) {
   Eigen::VectorXd most = Eigen::VectorXd::Zero(site.model.dof_count());
   RobotData data(site.model);

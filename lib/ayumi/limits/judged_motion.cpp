@@ -49,8 +49,8 @@ void judge_difference(JudgedMotion& motion, FindingKind kind, int sample,
 }
 
 bool flight_is_free(JudgedMotion& motion, int sample, double pace, double limit) {
-  // At other samples. Chosen: both ends and three between. No measured case changes from half to
-  // twice (constants.md).
+  // Number of samples that are tested in addition. Chosen: both ends and three between them. No
+  // measured case changes between half and twice the value (constants.md).
   constexpr int kLooks = 5;
   int first = sample, last = sample;
   while (motion.flies_freely(first - 1)) --first;

@@ -1,5 +1,5 @@
 #pragma once
-// A motion that is judged: its demands, its limits, and the violations that are found.
+// The motion that is judged, with its demands, its limits, and the violations that are found.
 
 #include <cmath>
 #include <optional>
@@ -13,15 +13,16 @@
 
 namespace ayumi {
 
-/// Lengths that are met exactly differ by rounding of at most this [m]. Chosen: a thousandth of the
+/// Rounding changes a length that is met exactly by at most this [m]. Chosen: a thousandth of the
 /// smallest tolerance of a length, and far above the rounding of coordinates of metres (1e-15). No
-/// measured case changes from half to twice (constants.md).
+/// measured case changes between half and twice the value (constants.md).
 inline constexpr double kRounding = 1e-7;
 
-/// Violations of one kind and item nearer than this are one finding [s]. Chosen: 20 samples at 1
-/// kHz, so that a figure which swings about its limit is one finding, and two steps are two. Half:
-/// jolt finds 3 warning yaw_moment, not 2 warning yaw_moment; twice: arm finds 1 error joint_speed,
-/// not 2 error joint_speed.
+/// Violations of one kind and item that are nearer to each other than this are one finding [s].
+/// Chosen: 20 samples at 1 kHz, so that a figure that oscillates about its limit is one finding,
+/// and two steps are two. With half of the value, the check of the case "jolt" finds 3 warnings of
+/// yaw_moment instead of 2; with twice, the check of the case "arm" finds 1 error of joint_speed
+/// instead of 2.
 inline constexpr double kWindowGap = 0.020;
 
 /// The values that the limit of motor heat keeps from sample to sample.
@@ -30,7 +31,7 @@ struct Heat {
     double share = 0;  ///< largest share of the limit
     int sample = -1;   ///< sample of this value; -1: none yet
   };
-  /// Sums of squares of the torques before a sample, a ring as long as the thermal window, by dof.
+  /// Sums of the squared torques before a sample, by dof, in a ring as long as the thermal window.
   Eigen::MatrixXd square_sum = {};
   std::vector<Largest> largest = {};  ///< by dof
 };
@@ -45,18 +46,18 @@ struct JudgedMotion {
   bool flies(int k) const {
     return k >= 0 && k < count() && series.samples[k].support == Support::none;
   }
-  /// Whether the sample is in flight and so far from the edges that its rates do not mix flight and
-  /// support.
+  /// Whether the sample is in flight and so far from its beginning and end that its rates do not
+  /// mix flight and support.
   bool flies_freely(int k) const { return ayumi::flies_freely(series, k); }
   /// See at_flight_edge() of demand/contact_plan.hpp.
   bool at_flight_edge(int k) const { return ayumi::at_flight_edge(series, k); }
 
-  /// Notes a violation. `size` orders the samples of a finding, and `detail` is stored with it.
+  /// Records a violation. `size` orders the samples of a finding, and `detail` is stored with it.
   void add(FindingKind kind, int item, int sample, double value, double limit, double size,
            int detail = 0, Severity severity = Severity::error) {
     windows.add({kind, item, sample, severity, value, limit, size, detail});
   }
-  /// Notes a value of a figure of the summary: the largest, or the least, stays. `item` and
+  /// Records a value of a figure of the summary; only the largest (or smallest) is kept. `item` and
   /// `detail` are those of a violation there.
   void raise(FindingKind kind, double value, int sample, int item = 0, int detail = 0) {
     if (value > summary[kind]) note(kind, value, sample, item, detail);
@@ -64,14 +65,14 @@ struct JudgedMotion {
   void lower(FindingKind kind, double value, int sample, int item = 0, int detail = 0) {
     if (value < summary[kind]) note(kind, value, sample, item, detail);
   }
-  /// Place of the figure's value. Its sample is -1 if no value was noted.
+  /// The place of the figure's value. Its sample is -1 if no value was recorded.
   const Violation& extreme(FindingKind kind) const { return extremes_[kind]; }
 
   const RobotModel& model;
   const CommandSeries& series;
   const Tolerances tolerance_of;
   const double friction;  ///< coefficient of friction
-  const bool degrees;     ///< unit of angles in texts
+  const bool degrees;     ///< whether texts have angles in degrees
   const ActuatorLimits& limits;
   const ContactPlan plan;
   const CollisionModel collisions;
@@ -82,19 +83,22 @@ struct JudgedMotion {
   FindingWindows table;  ///< violations of the table that a robot would receive
   CheckSummary summary;
 
-  // Demands of the samples, as far as limits of the whole motion and attribution need them.
+  // Demands of the samples, if limits of the whole motion or attribution need them.
   Heat heat;
-  std::vector<Eigen::Vector3d> flight_moment;   ///< about the COG, by sample; 0 on the ground [N m]
-  std::vector<Eigen::Vector3d> cog;             ///< of the posture, by sample [m]
-  std::vector<double> cog_deviation;            ///< of the posture from the command, by sample [m]
-  std::array<std::vector<SoleError>, 2> soles;  ///< by Side and sample; of a swing the depth only
-  std::vector<char> rough;  ///< a joint accelerates beyond the tolerance, by sample
+  /// Moment about the COG, by sample; 0 on the ground [N m].
+  std::vector<Eigen::Vector3d> flight_moment;
+  std::vector<Eigen::Vector3d> cog;  ///< COG of the posture, by sample [m]
+  /// Distance of the posture's COG from the command, by sample [m].
+  std::vector<double> cog_deviation;
+  /// Errors by Side and sample; a swing only has the depth.
+  std::array<std::vector<SoleError>, 2> soles;
+  std::vector<char> rough;  ///< whether a joint accelerates beyond the tolerance, by sample
 
   // Filled by look_ahead of the limit that uses it.
-  std::optional<SafetyReport> safety;  ///< of the table that a robot would receive
+  std::optional<SafetyReport> safety;  ///< report on the table that a robot would receive
   struct Clearance {
     int pair, sample;
-    double value;  ///< [m]
+    double value;  ///< clearance [m]
   };
   std::vector<Clearance> clearances;
 
@@ -106,15 +110,15 @@ struct JudgedMotion {
   ByFindingKind<Violation> extremes_;
 };
 
-/// One sample of it.
+/// One sample of the motion.
 struct JudgedSample {
   int k = 0;
   const CommandSample& command;
   const SampleDynamics& demand;
-  /// No flight edge beside it: its accelerations are those of support or of flight, not a mixture,
-  /// so that its forces have a meaning.
+  /// False next to the beginning or end of a flight, where accelerations mix support and flight, so
+  /// that forces have no meaning.
   bool known = true;
-  bool flight = false;  ///< no foot supports
+  bool flight = false;  ///< whether no foot supports
 
   bool stands() const { return known && !flight; }
   bool has_zmp() const { return stands() && demand.use.has_zmp; }
@@ -123,32 +127,33 @@ struct JudgedSample {
 /// The axis along which a vector is largest.
 int largest_axis(const Eigen::Vector3d& v);
 
-/// Notes the size of a difference that should vanish as figure, and as violation beyond `allowance`
-/// times the tolerance. Its detail is the largest axis.
+/// Records the size of a difference that should vanish, as a figure and, beyond `allowance` times
+/// the tolerance, as a violation. Its detail is the largest axis.
 void judge_difference(JudgedMotion& motion, FindingKind kind, int sample,
                       const Eigen::Vector3d& difference, Severity severity = Severity::error,
                       int item = 0, double allowance = 1);
 
-/// Whether the whole flight is free within `limit` [m/s^2] when it is played at this pace. A flight
-/// is free at one pace only. So several samples are tested: the acceleration of a single sample can
+/// Whether the whole flight is free within `limit` [m/s^2] if it is played at this pace. A flight
+/// is only free at one pace. So several samples are tested: the acceleration of a single sample can
 /// always be scaled to gravity.
 bool flight_is_free(JudgedMotion& motion, int sample, double pace, double limit);
 
-// Words for places that several limits use.
-Place axis_place(const JudgedMotion&, const Violation&);     ///< axis, by detail
-Place support_place(const JudgedMotion&, const Violation&);  ///< support, by detail
-Place foot_place(const JudgedMotion&, const Violation&);     ///< foot, by item
-Place joint_place(const JudgedMotion&, const Violation&);    ///< joint, by item
+// The names of places that several limits use.
+Place axis_place(const JudgedMotion&, const Violation&);     ///< an axis, by the detail
+Place support_place(const JudgedMotion&, const Violation&);  ///< the support, by the detail
+Place foot_place(const JudgedMotion&, const Violation&);     ///< a foot, by the item
+Place joint_place(const JudgedMotion&, const Violation&);    ///< a joint, by the item
 std::string where_text(const RobotModel& model, const Place& place);
 const char* axis_name(int axis);
-/// `rotary`, or the other unit for a prismatic joint (the item).
+/// The unit `rotary`, or the other unit if the joint (the item) is prismatic.
 const char* joint_unit(const JudgedMotion&, const Violation&, const char* rotary,
                        const char* prismatic);
-std::string in_mm(double metres);  ///< of the size, "12.0 mm"
-/// Of the size, "3.08 deg", or in rad with two digits more.
+std::string in_mm(double metres);  ///< a length without its sign, such as "12.0 mm"
+/// An angle without its sign, such as "3.08 deg"; in rad, it has two more digits.
 std::string angle_size(double radians, bool degrees, int digits = 2);
-std::string ratio_text(double ratio);       ///< rounded up to 0.01, "1.04"
-std::string slow_down_text(double factor);  ///< "stretch this window to 1.04 times its length"
+std::string ratio_text(double ratio);  ///< a ratio rounded up to 0.01, such as "1.04"
+/// Advice such as "stretch this window to 1.04 times its length".
+std::string slow_down_text(double factor);
 inline constexpr const char* kOrRepair = ", or use `ayumi repair`";
 
 }  // namespace ayumi

@@ -45,7 +45,7 @@ const FindingSpec& spec_of(FindingKind kind) { return *finding_specs()[static_ca
 
 namespace {
 
-/// The kinds whose line in the order is not 0, sorted by this line.
+/// The kinds that have a line in this order (not 0), sorted by line.
 template <typename Line>
 std::vector<const FindingSpec*> by_line(const Line& line) {
   std::vector<const FindingSpec*> found;

@@ -1,9 +1,9 @@
 // A motor turns its own rotor first: with the rotor's inertia J, reflected through the gear, the
 // peak torque tau_max and the torque tau_load of everything behind it,
 //   J ddtheta = tau - tau_load,   so that an unloaded joint keeps |ddtheta| <= tau_max / J.
-// The torque of joint_torque contains J ddtheta, but it has no meaning beside the edges of flights,
-// and a load that drives the joint hides it; this limit holds everywhere. Robots whose files state
-// no rotor inertia have no such limit.
+// The torque of joint_torque contains J ddtheta, but it has no meaning near the beginning and end
+// of a flight, and a load that drives the joint hides it. This limit holds everywhere. Robots whose
+// files state no rotor inertia have no such limit.
 #include <limits>
 
 #include "ayumi/limits/judged_motion.hpp"
@@ -13,10 +13,10 @@ namespace ayumi {
 
 namespace {
 
-// Share of tau_max / J. Definition: at 1 the motor accelerates its rotor only.
+// Largest share of tau_max / J. Definition: at 1 the motor only accelerates its rotor.
 constexpr double kWholeMotorAcceleration = 1;
 
-/// tau_max / J of every joint [rad/s^2], [m/s^2]; infinite where J is not stated.
+/// tau_max / J of every joint [rad/s^2], [m/s^2]; infinite if J is not stated.
 Eigen::VectorXd motor_acceleration(const RobotModel& model, const ActuatorLimits& actuators) {
   Eigen::VectorXd most(model.dof_count());
   for (int i = 0; i < model.dof_count(); ++i) {

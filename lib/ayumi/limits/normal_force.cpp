@@ -1,7 +1,7 @@
 // The ground pushes and cannot pull: f_n >= 0 wherever a foot is planned to stand, where f_n is the
-// demanded ground force along the normal of the support plane. A COG that is to fall faster than
-// gravity (ddz < -g) needs f_n < 0: the feet would leave the ground, which only a planned flight
-// may.
+// demanded ground force along the normal of the support plane. To make the COG fall faster than
+// gravity (ddz < -g), f_n < 0 would be necessary: the feet would leave the ground, which is only
+// allowed in a planned flight.
 #include <algorithm>
 
 #include "ayumi/limits/judged_motion.hpp"
@@ -11,10 +11,10 @@ namespace ayumi {
 
 namespace {
 
-// Normal force below which contact is a warning, as a share of the weight. Chosen: where less than
-// a twentieth of the weight rests on the ground, friction and ZMP say little. It is a warning only;
-// half or twice of it changes no verdict. No measured case changes from half to twice
-// (constants.md).
+// Normal force below which contact is a warning, as a share of the weight. Chosen: if less than a
+// twentieth of the weight rests on the ground, friction and ZMP have little meaning. It is only a
+// warning; half or twice of it changes no verdict. No measured case changes between half and twice
+// the value (constants.md).
 constexpr double kLeastNormalShare = 0.05;
 
 void judge_normal_force(JudgedMotion& motion, const JudgedSample& s) {

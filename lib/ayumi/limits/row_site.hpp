@@ -1,7 +1,7 @@
 #pragma once
-// Where limits place their rows: the motion to be repaired, the samples at which the program
-// evaluates rows, the earlier results that decide which limits are near, and how far inside the
-// check's limits rows keep.
+// The data with which limits place their rows: the motion that is repaired, the samples at which
+// the program evaluates rows, the earlier results that decide which limits are near, and the
+// distances that rows keep from the check's limits.
 
 #include <array>
 #include <map>
@@ -20,14 +20,17 @@ namespace ayumi {
 struct CollocationPoint {
   int sample = 0;
   SplineWeights weights;  ///< weights of the four control points that act there
-  bool at_knot = false;   ///< whether the sample is at a knot of the spline; else it is between two
-  bool forces_known = true;                 ///< not at the edge of a flight, where rates jump
-  SupportPlane plane;                       ///< support plane of the planned contacts
-  std::array<bool, 2> contact = {};         ///< by Side
-  std::array<Eigen::Isometry3d, 2> ground;  ///< by Side: where the sole stands, or the ground below
-  std::array<Eigen::Isometry3d, 2> path;    ///< by Side: where the given motion has the sole
-  std::array<Eigen::Isometry3d, 2> place;   ///< by Side: where a swing leaves or lands, the nearer
-  /// Kinds and items that alone have rows here; empty: all have.
+  /// Whether the sample is at a knot of the spline; otherwise it is between two.
+  bool at_knot = false;
+  bool forces_known = true;  ///< false at the beginning and end of a flight, where rates jump
+  SupportPlane plane;        ///< support plane of the planned contacts
+  std::array<bool, 2> contact = {};  ///< planned contacts by Side
+  /// Place of the sole, or of the ground below it, by Side.
+  std::array<Eigen::Isometry3d, 2> ground;
+  std::array<Eigen::Isometry3d, 2> path;  ///< pose of the sole in the given motion, by Side
+  /// Nearer one of the places where a swing begins and ends, by Side.
+  std::array<Eigen::Isometry3d, 2> place;
+  /// The kinds and items that have rows here; empty: all of them.
   std::vector<std::pair<const RowKind*, int>> only;
   bool torques = false;  ///< whether a row depends on motor torques; set when all rows are placed
 
@@ -35,12 +38,11 @@ struct CollocationPoint {
   bool flies() const { return forces_known && plane.empty(); }
 };
 
-/// The ground wrench shared between the feet at a collocation point, about the base origin, by
-/// Side.
+/// The ground wrench on each foot at a collocation point, about the base origin, by Side.
 std::array<Vector6d, 2> shared_load(const RobotModel& model, const CollocationPoint& point,
                                     const Eigen::Vector3d& base, const Vector6d& base_wrench);
 
-/// What a repair requires of the rows. The values, their reasons and their sources are in
+/// The requirements of a repair on the rows. The values, their reasons and their sources are in
 /// repair/policy.hpp.
 struct RowSettings {
   Trust trust = Trust::posture;
@@ -49,32 +51,35 @@ struct RowSettings {
   std::vector<bool> locked;                    ///< locked joints by dof; empty: none
   std::array<bool, 2> locked_feet = {};        ///< feet that keep their paths, by Side
   bool swing_goals =
-      true;  ///< low soles are level and over their places, the others are high enough
-  bool own_roughness = true;  ///< a joint may accelerate as much as in the given motion
+      /// Whether low soles should be level and over their places, and the others high enough.
+      true;
+  bool own_roughness = true;  ///< whether a joint may accelerate as much as in the given motion
   double watched_share =
-      0;  ///< a limit has rows where a watched sample uses a larger share than this
+      0;  ///< share of a limit that a watched sample must exceed for the limit to have rows
   double limit_share = 1;  ///< share of a limit that may be used
-  double active = 0;       ///< RowBlock::active of most rows, a share of the limit or [rad]
+  double active = 0;  ///< value of RowBlock::active for most rows, a share of the limit or [rad]
   double trusted_share =
-      0;  ///< share of the check's tolerance by which a trusted COG or ZMP may be off
+      0;  ///< share of the check's tolerance by which a trusted COG or ZMP may deviate
   double joint_margin = 0;   ///< distance inside the soft limits of a joint [rad]
   double sole_position = 0;  ///< half the band of a sole's position [m]
 
-  // Values for single limits, by the name of their file.
+  // Values for single limits, which are named by their files.
   struct {
     double least = 0, safe = 0;  ///< margins inside the support [m]
-    double mended = 0;           ///< wanted around a margin below `least`; at least that [m]
-    double safe_around = 0;      ///< time around too small a margin in which `safe` is wanted [s]
-    double own_share = 0;        ///< share of its own margin that a motion keeps elsewhere
+    /// Margin that is wanted near a margin below `least`; not less than `safe` [m].
+    double mended = 0;
+    double safe_around = 0;  ///< time around a small margin in which `safe` is wanted [s]
+    double own_share = 0;    ///< share of its own margin that a motion keeps elsewhere
   } support;
   struct {
-    double least = 0;  ///< normal force over the weight
-    double light = 0;  ///< normal force over the weight: rows where the motion presses with less
+    double least = 0;  ///< smallest normal force as a share of the weight
+    double light = 0;  ///< share of the weight below which the normal force has rows
   } normal_force;
   struct {
     double cone_share = 1;  ///< a further factor on the friction that may be used
-    double rounding = 0;    ///< tangential force over the weight at which the cone's tip is rounded
-    double active = 0;      ///< RowBlock::active, a share of the friction available
+    /// Tangential force as a share of the weight at which the tip of the cone is rounded.
+    double rounding = 0;
+    double active = 0;  ///< RowBlock::active, as a share of the available friction
   } friction;
   struct {
     double own_share =
@@ -84,36 +89,40 @@ struct RowSettings {
   struct {
     double angle = 0;            ///< half the band of a sole's attitude [rad]
     double share_at_knots = 0;   ///< share of the band at knots
-    double tolerance_share = 0;  ///< share of the check's tolerances that the band may have
+    double tolerance_share = 0;  ///< share of the check's tolerances that the band may use
     double corner_share =
-        0;                 ///< share of them by which a corner may rise or sink when the sole turns
-    double soft_time = 0;  ///< time beside landing and lift-off [s]
-    double soft_share = 0;  ///< share of the check's tolerance by which the motion may be off then
-    double soft_upwards = 0;  ///< share of the band upwards then
+        0;  ///< share of the tolerances by which a corner may rise or sink when the sole turns
+    /// Time after landing and before lift-off in which a sole may deviate [s].
+    double soft_time = 0;
+    /// Share of the check's tolerance by which the motion may deviate in this time.
+    double soft_share = 0;
+    double soft_upwards = 0;  ///< share of the band upwards in this time
   } stance;
   struct {
-    double near_place = 0;            ///< time beside landing and lift-off [s]
-    double place_slack = 0;           ///< offset that a low sole may always have [m]
+    /// Time before landing and after lift-off in which a sole should be near its place [s].
+    double near_place = 0;
+    double place_slack = 0;           ///< offset that is always allowed for a low sole [m]
     double least_landing_height = 0;  ///< height as a share of the COG height
     double own_landing_factor = 0;    ///< factor on the median of the motion's own swings
-    double lowest_measured = 0;       ///< height of a sole in that median [m]
-    double landing_period = 0, height_period = 0;  ///< period of measuring the swings [s]
+    double lowest_measured = 0;       ///< smallest height of a sole that counts in this median [m]
+    double landing_period = 0, height_period = 0;  ///< periods at which the swings are measured [s]
     double height_share = 0;                       ///< share of the swings' median height
-    double watched_height = 0;  ///< height below which a sole has rows against the ground [m]
+    double watched_height = 0;  ///< height below which a sole has rows for the ground [m]
   } swing;
   struct {
-    double touch = 0;           ///< clearances of the given motion below this are enlarged [m]
+    double touch = 0;           ///< smaller clearances of the given motion are enlarged [m]
     double kept = 0;            ///< distance that bodies keep [m]
-    double watched_bodies = 0;  ///< distance of a pair of bodies that has rows [m]
-    double watched_shapes = 0;  ///< distance of shapes of such a pair [m]
-    double edge_allowance = 0;  ///< distance of a row of edges below the rows of corners [m]
-    double same_distance = 0;   ///< see edges_meet() [m]
+    double watched_bodies = 0;  ///< largest distance of a pair of bodies that has rows [m]
+    double watched_shapes = 0;  ///< largest distance of shapes of such a pair that have rows [m]
+    /// Distance by which a row of edges may be below the rows of corners [m].
+    double edge_allowance = 0;
+    double same_distance = 0;  ///< see edges_meet() [m]
   } clearance;
 };
 
 struct RowSite {
   const RobotModel& model;
-  const CommandSeries& series;  ///< the motion as given
+  const CommandSeries& series;  ///< the given motion
   const ContactPlan& plan;
   const std::vector<CollocationPoint>& points;
   const std::vector<const CommandSeries*>& seen;  ///< earlier results, the latest one last
@@ -130,9 +139,9 @@ struct RowSite {
   bool is_locked(int dof) const { return !settings.locked.empty() && settings.locked[dof]; }
   const CommandSample& given(int point) const { return series.samples[points[point].sample]; }
 
-  /// The samples that decide whether a limit is near: of the motion as given, which is the first,
-  /// and of every earlier result. With the last result alone, a limit that its rows have mended
-  /// would lose them and be violated again.
+  /// The samples that decide whether a limit is near: first those of the given motion, and then
+  /// those of every earlier result. If only the last result counted, a limit that its rows have
+  /// corrected would lose these rows and be violated again.
   std::vector<const CommandSample*> watched(int point) const;
   /// The demands on the ground at a point with support.
   const std::vector<GroundDemand>& watched_demand(int point);
@@ -144,8 +153,8 @@ struct RowSite {
                 const Eigen::VectorXd& lower, const Eigen::VectorXd& upper);
   RowBlock& add(const RowKind& kind, int point, int item, RowRule rule, int rows, double lower,
                 double upper);
-  /// Adds a row for a quantity of a joint that may reach `share` of `largest` in both directions.
-  /// The row is added only if the watched samples reach `watched` and this is near enough.
+  /// Adds a row for a quantity of a joint whose absolute value may reach `share` of `largest`. The
+  /// row is only added if the watched samples reach `watched` and this is near enough to the limit.
   void add_largest(const RowKind& kind, int point, JointQuantity of, int dof, double watched,
                    double largest, double share, double active = 0);
 };

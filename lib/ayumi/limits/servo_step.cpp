@@ -1,7 +1,7 @@
 // A servo receives one target in each of its periods T, and its motor follows no step that is
-// larger than the speed limit allows: |theta(k) - theta(k - T)| <= speed limit T. Where the joint's
-// planned speed is too large itself, that is joint_speed; a step beyond it is a jump between
-// samples. The target, which leads the posture, is judged by exported_table.
+// larger than the speed limit allows: |theta(k) - theta(k - T)| <= speed limit T. If the joint's
+// planned speed itself is too large, this is a finding of joint_speed; a larger step is a jump
+// between samples. exported_table judges the target, which leads the posture.
 #include <algorithm>
 
 #include "ayumi/base/text.hpp"
@@ -11,12 +11,13 @@ namespace ayumi {
 
 namespace {
 
-// Share of the step that the speed limit allows. Definition: at 1 the step is the largest one.
+// Largest share of the step that the speed limit allows. Definition: at 1 the step is the largest
+// one.
 constexpr double kWholeStep = 1;
 
-// The mean speed of a period differs a little from the speeds at its ends. Chosen: half a percent,
-// so that a motion planned at its speed limit has no step above it. No measured case changes from
-// half to twice (constants.md).
+// Factor on the limit, because the mean speed of a period differs a little from the speeds at its
+// ends. Chosen: half a percent, so that a motion planned at its speed limit has no step above it.
+// No measured case changes between half and twice the value (constants.md).
 constexpr double kMeanSpeedSpare = 1.005;
 
 int servo_ticks(const JudgedMotion& motion) {

@@ -5,18 +5,18 @@
 
 namespace ayumi {
 
-/// Deviation of a sole from its place: position [m] and rotation [rad], world axes.
+/// The deviation of a sole from its place: position [m] and rotation [rad] in world axes.
 Vector6d sole_deviation(const Eigen::Isometry3d& actual, const Eigen::Isometry3d& planned);
 
-/// Derivatives of sole_deviation(): rows of SoleRows::rate.
+/// The derivatives of sole_deviation(), for SoleRows::rate.
 Eigen::MatrixXd deviation_rates(const Eigen::Isometry3d& sole, const Eigen::Isometry3d& planned,
                                 const Eigen::MatrixXd& motion);
 
-/// Curvature K of a rotation error  d . vee(E - E')/2,  E = R R_planned'.
+/// The curvature K of a rotation error d . vee(E - E')/2, E = R R_planned'.
 Eigen::Matrix3d turn_curvature(const Eigen::Vector3d& d, const Eigen::Isometry3d& sole,
                                const Eigen::Isometry3d& planned);
 
-/// Six rows: the deviation of a sole from a pose.
+/// Six rows with the deviation of a sole from a pose.
 SoleRows deviation_rows(Side side, const Eigen::Isometry3d& planned);
 
 /// Heights of the corners of a sole over the plane of a pose [m].

@@ -4,8 +4,8 @@
 //   slip = max |x_i - v_i| along the ground,  penetration = max(0, -min z_i),  float = max(0, max
 //   z_i).
 // A swinging sole must not sink below the lower of the places that it leaves and comes to. A foot
-// in the air does not slip, it floats; but one that leaves its place and comes back to it within
-// one contact is displaced, whatever its height meanwhile.
+// in the air floats and does not slip. But a foot that leaves its place and comes back to it within
+// one contact counts as displaced, whatever its height is in between.
 #include <algorithm>
 #include <limits>
 
@@ -19,18 +19,22 @@ namespace ayumi {
 
 namespace {
 
-// [m] Chosen: angles that are rounded to 0.1 degrees move the foot of a leg of 0.3 m by 0.5 mm for
-// each joint, and that is no slip. Half: slip, missing safety 0 to 0.15; twice: 0.00881.
+// Tolerance of slip [m]. Chosen: angles that are rounded to 0.1 degrees move the foot of a leg of
+// 0.3 m by 0.5 mm for each joint, and this is not a slip. With half of the value, the missing
+// safety of the case "slip" changes from 0 to 0.15; with twice, to 0.00881.
 constexpr double kSlipTolerance = 0.002;
-// [m] Chosen: half of the slip that is allowed, since the ground resists depth with its stiffness.
-// No measured case changes from half to twice (constants.md).
+// Tolerance of penetration [m]. Chosen: half of the slip that is allowed, because the stiffness of
+// the ground resists penetration. No measured case changes between half and twice the value
+// (constants.md).
 constexpr double kDepthTolerance = 0.001;
-// [m] Chosen: far above the rounding of planned contacts (1e-12 m in generated walks), far below
-// what a sole hangs 60 ms before the end of a swing of usual height. Half: early, change 0.0359 to
-// 0.0652; twice: 0.00515.
+// Tolerance of floating [m]. Chosen: far above the rounding of planned contacts (1e-12 m in
+// generated walks), and far below the height of a sole 60 ms before the end of a usual swing. With
+// half of the value, the change of the case "early" changes from 0.0359 to 0.0652; with twice, to
+// 0.00515.
 constexpr double kFloatTolerance = 0.0003;
 
-// The ground below a swinging foot: the lower of where it stood and where it will stand.
+// The depth of a sole below the ground of a swing, which is the lower of the places where the foot
+// stood and where it will stand.
 double swing_depth(const JudgedMotion& motion, Side side, int k, const Eigen::Isometry3d& sole) {
   const int s = static_cast<int>(side);
   const int i = motion.plan.index[s][k];
@@ -61,9 +65,10 @@ bool in_place(const JudgedMotion& motion, int foot, int k) {
          e.slip <= motion.tolerance(FindingKind::foot_slip);
 }
 
-// A foot whose contact has begun but which still comes down to its place, or which rises before its
-// contact ends: the swing lasts longer than the phases say. In a slow swing, the height of the sole
-// is below the tolerance of foot_float, so the motion of the sole is tested and not its height.
+// Judges a foot whose contact has begun but which still comes down to its place, or which rises
+// before its contact ends: then the swing lasts longer than the phases say. In a slow swing, the
+// height of the sole is below the tolerance of foot_float, so the motion of the sole is tested and
+// not its height.
 void judge_contact_edge(JudgedMotion& motion, Side side, const ContactInterval& contact,
                         bool lands) {
   const int k = lands ? contact.first : contact.last;
@@ -117,8 +122,8 @@ void judge_stance(JudgedMotion& motion) {
   }
 }
 
-// Angle by which a sole may turn in its place. A long sole may turn less, because its corners rise
-// and sink.
+// The angle by which a sole may turn in its place. A long sole may turn less, because its corners
+// rise and sink more.
 double angle_band(const RowSite& site, Side side) {
   double reach = 0;
   for (const Eigen::Vector2d& v : site.model.sole(side).polygon)
@@ -136,7 +141,7 @@ double position_band(const RowSite& site) {
                    share * site.tolerance(FindingKind::foot_float)});
 }
 
-// Time from landing to a sample, or from there to lift-off, where a foot lands or lifts off [s].
+// The time from a landing to a sample, or from a sample to a lift-off [s].
 double time_to_edge(const RowSite& site, int sample, const ContactInterval& contact) {
   const int last = static_cast<int>(site.series.samples.size()) - 1;
   const double landed = contact.first == 0 ? kUnbounded : (sample - contact.first) * site.series.dt;

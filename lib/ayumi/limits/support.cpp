@@ -1,7 +1,8 @@
 // The ground only pushes, so its resultant passes through the convex hull of the supporting soles:
 // with f_n > 0 and the inward unit normal a of each edge (a . x >= b inside),
 //   margin = min over the edges of (a . ZMP - b) >= 0.
-// The margin is positive inside. Outside no contact forces produce the motion: the robot tips.
+// The margin is positive inside. Outside, no contact forces can produce the motion, and the robot
+// tips over.
 #include <algorithm>
 
 #include "ayumi/dynamics/inverse_dynamics.hpp"
@@ -12,10 +13,11 @@ namespace ayumi {
 
 namespace {
 
-// Margin below which a ZMP inside the support is a warning [m], and the least margin of a repaired
-// motion. Chosen: a few hundredths of the width of small soles (5 cm). Half or twice of it changes
-// no verdict of a check. Half: fast, max yaw ratio 0.375 to 0.423; twice: fast finds 3 warning
-// support_margin, not 4 warning support_margin.
+// Margin below which a ZMP inside the support gets a warning, and smallest margin of a repaired
+// motion [m]. Chosen: a few hundredths of the width of small soles (5 cm). Half or twice of it
+// changes no verdict of a check. With half of the value, the largest yaw ratio of the case "fast"
+// changes from 0.375 to 0.423; with twice, the check of this case finds 3 warnings of
+// support_margin instead of 4.
 constexpr double kLeastMargin = 0.002;
 
 void judge_margin(JudgedMotion& motion, const JudgedSample& s, ZmpOf whose, double margin) {
@@ -35,13 +37,13 @@ void judge_support(JudgedMotion& motion, const JudgedSample& s) {
   judge_margin(motion, s, kMotionZmp, use.margin);
   const Eigen::Vector3d command = plane.frame.inverse() * s.command.zmp;
   const double command_margin = plane.polygon.margin(command.head<2>());
-  // The commanded ZMP is judged only where it differs from the ZMP of the motion.
+  // The commanded ZMP is only judged if it differs from the ZMP of the motion.
   if ((use.zmp_world - s.command.zmp).norm() > motion.tolerance(FindingKind::zmp_residual) &&
       command_margin < -kRounding)
     judge_margin(motion, s, kCommandZmp, command_margin);
 }
 
-// Margin of the motion as given. It is unbounded where the ZMP has no meaning, and 0 where the
+// The margin of the given motion. It is unbounded where the ZMP has no meaning, and 0 where the
 // ground would have to pull.
 std::vector<double> own_margins(const RowSite& site) {
   RobotData data(site.model);
@@ -86,7 +88,7 @@ std::vector<double> wanted_margins(const RowSite& site) {
 }
 
 // f_n (distance of the ZMP inside each edge - wanted margin) / (m g) >= 0, linear in the wrench.
-// The wanted margin is a soft goal, violated at most down to the least margin.
+// The wanted margin is a soft goal, which may only be violated down to the smallest margin.
 const RowKind kMarginRows = {.name = "support",
                              .unit = &RowPrices::length,
                              .soft_goal = &RowPrices::zmp_margin,

@@ -3,8 +3,8 @@
 // already stands still.
 //
 // A repair keeps a swinging sole over the ground, as the check does (stance.cpp), and has two soft
-// goals for it. Played open loop the servos sag, and a sole that comes in low or tilted touches
-// down while it still moves. So a sole of height h over its place is wanted near it,
+// goals for it. In open loop, the servos sag, and a sole that arrives low or tilted touches down
+// while it still moves. So a sole at height h over its place should be near this place,
 //   |offset| <= slack + k h^2,   with k from the motion's own swings,
 // and in the middle half of a swing at a share of the height that the motion's own swings have.
 #include "ayumi/limits/swing_foot.hpp"
@@ -26,8 +26,9 @@ using Eigen::VectorXd;
 
 namespace {
 
-// [m/s] Chosen: a fall from 1 mm reaches 0.14 m/s. It is a warning only; half or twice of it
-// changes no verdict. No measured case changes from half to twice (constants.md).
+// Largest landing speed without a warning [m/s]. Chosen: a fall from 1 mm reaches 0.14 m/s. It is
+// only a warning; half or twice of it changes no verdict. No measured case changes between half and
+// twice the value (constants.md).
 constexpr double kLandingTolerance = 0.15;
 
 double landing_speed(const JudgedMotion& motion, Side side, const ContactInterval& contact) {
@@ -56,10 +57,10 @@ void judge_landings(JudgedMotion& motion) {
   }
 }
 
-// ---- landing on the place
+// ---- landing at the right place
 
-// Maps sole_deviation() to the offset of a sole from its place without the height: along the ground
-// and, times half the sole's size, around three axes [m].
+// Maps sole_deviation() to the offset of a sole from its place without the height: two lengths
+// along the ground, and the rotations about three axes times half the sole's size [m].
 Eigen::Matrix<double, 5, 6> offset_rows(const RobotModel& model, Side side,
                                         const Isometry3d& place) {
   double reach = 0;
@@ -163,7 +164,7 @@ double own_landing_factor(const RowSite& site) {
   return std::max(least, settings.own_landing_factor * median_of(factors));
 }
 
-// Height of the lowest corner in the middle half of a swing, over both of its places.
+// The height of the lowest corner in the middle half of a swing, over both of its places.
 double lowest_height(const RowSite& site, Side side, const std::vector<ContactInterval>& intervals,
                      size_t i) {
   const int every = samples_of(site.settings.swing.height_period, site.series.dt);
@@ -179,7 +180,7 @@ double lowest_height(const RowSite& site, Side side, const std::vector<ContactIn
   return lowest;
 }
 
-// The median over the swings of the motion.
+// The median of this height over the swings of the motion.
 double own_foot_clearance(const RowSite& site) {
   std::vector<double> heights;
   for (Side side : {Side::left, Side::right}) {
@@ -190,7 +191,7 @@ double own_foot_clearance(const RowSite& site) {
   return heights.empty() ? 0 : median_of(heights);
 }
 
-// ---- placement
+// ---- placement of the rows
 
 const RowKind kLandingRows = {.name = "landing",
                               .unit = &RowPrices::length,
@@ -210,7 +211,7 @@ const RowKind kFootClearanceRows = {.name = "foot_clearance",
                                     .beyond_check = true,
                                     .order = {2, 4}};
 
-// Height of the lowest corner over the ground, in the watched samples.
+// The height of the lowest corner over the ground in the watched samples.
 double watched_height(const RowSite& site, int point, Side side) {
   const Isometry3d& ground = site.points[point].ground[static_cast<int>(side)];
   double lowest = kUnbounded;

@@ -5,8 +5,8 @@
 
 namespace ayumi {
 
-/// Offset of a sole from its place without the height: along the ground and, times half the sole's
-/// size, around three axes [m].
+/// The offset of a sole from its place without the height: two lengths along the ground, and the
+/// rotations about three axes times half the sole's size [m].
 Eigen::Matrix<double, 5, 1> landing_offset(const RobotModel& model, Side side,
                                            const Eigen::Isometry3d& actual,
                                            const Eigen::Isometry3d& place);

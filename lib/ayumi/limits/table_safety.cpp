@@ -1,6 +1,6 @@
-// Counts are theta [deg] x counts_per_degree. With a real step s <= cap there is always a choice of
-// neighbours whose whole step is <= cap: upwards floor(x + s) - floor(x) <= cap, downwards by
-// ceilings; so rounding never breaks a limit that the motion keeps.
+// Counts are theta [deg] x counts_per_degree. For a real step s <= cap there is always a choice of
+// neighbours whose whole step is <= cap: upwards floor(x + s) - floor(x) <= cap, and downwards the
+// same with ceilings. So rounding never violates a limit that the motion keeps.
 #include "ayumi/limits/table_safety.hpp"
 
 #include <algorithm>
@@ -18,19 +18,20 @@ namespace ayumi {
 namespace {
 
 constexpr double kDegreesPerRadian = 180 / EIGEN_PI;  // Definition
-// Counts by which a limit may be missed. Chosen: the rounding of degrees and radians in double
-// precision is far smaller, and a servo sees whole counts only. No measured case changes from half
-// to twice (constants.md).
+// Number of counts by which a limit may be exceeded. Chosen: the rounding of degrees and radians in
+// double precision is far smaller, and a servo only gets whole counts. No measured case changes
+// between half and twice the value (constants.md).
 constexpr double kCountSlack = 1e-6;
 // Definition: rounding of a step over its limit.
 constexpr double kStepSlack = 1e-9;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Time over which the speed at both ends of a table of whole counts is judged [s]. Chosen: one
-// count in it is 0.004 rad/s, far below the limit of 0.1 rad/s; from row to row one count is
-// 0.08 rad/s. At half and at twice the value the recorded HOAP-3 motions begin and end at rest too.
+// count in this time is 0.004 rad/s, far below the limit of 0.1 rad/s; from row to row, one count
+// is 0.08 rad/s. With half and with twice the value, the recorded HOAP-3 motions also begin and end
+// at rest.
 constexpr double kRestWindow = 0.02;
-// Longest ramp that is judged and written [s]. Chosen: as long as a motion may be; even a motor of
-// 1 rad/s turns its joint by 960 rad in it. At half, that is 480 rad; at twice, 1920 rad.
+// Longest ramp that is judged and written [s]. Chosen: as long as a motion may be. Even a motor of
+// 1 rad/s turns its joint by 960 rad in this time; with half, it is 480 rad, with twice, 1920 rad.
 constexpr double kLongestRamp = 3600;
 constexpr int kLargestCount = 32767;  // Source: docs/formats.md, signed numbers of 16 bits
 
@@ -54,7 +55,7 @@ TargetRange count_limits(const RobotModel& model, const Dof& dof) {
   return {std::ceil(std::min(a, b) - kCountSlack), std::floor(std::max(a, b) + kCountSlack)};
 }
 
-// Columns of a table with these joints and that many rows, in the robot's joint order.
+// The columns of a table with these joints and this number of rows, in the robot's joint order.
 std::vector<Eigen::Index> columns_of(const RobotModel& model,
                                      const std::vector<std::string>& joints, size_t rows) {
   if (rows == 0) fail(ErrorCode::bad_pattern, "the joint table has no rows");
@@ -74,8 +75,8 @@ std::vector<Eigen::Index> columns_of(const RobotModel& model,
   return columns;
 }
 
-// The whole number nearest to x inside `range` and within `step` of `previous`, among its two
-// neighbours; the nearest when neither will do.
+// The whole number nearest to x that is inside `range` and within `step` of `previous`, among the
+// two neighbours of x; the nearest one if neither is.
 int nearest_count(double x, const TargetRange& range, double previous, double step) {
   const double nearest = std::round(x);
   const double neighbour = nearest > x ? nearest - 1 : nearest + 1;
@@ -86,7 +87,7 @@ int nearest_count(double x, const TargetRange& range, double previous, double st
   return static_cast<int>(std::clamp(nearest, -1e9, 1e9));
 }
 
-// The encoder counts of one joint, row after row.
+// Computes the encoder counts of one joint, row after row.
 class CountRounder {
  public:
   CountRounder(const RobotModel& model, const Dof& dof, double step)
@@ -150,7 +151,7 @@ class JointJudge {
 
   void next(double theta, double t) {
     position(theta, t);
-    // Where the joint has an encoder, its steps are whole counts.
+    // If the joint has an encoder, its steps are whole counts.
     const double target = scale_ > 0 ? rounder_.next(theta) : theta;
     if (scale_ > 0) range(static_cast<int>(target), t);
     if (!first_) step(target - before_, t);
@@ -200,15 +201,15 @@ class JointJudge {
 
   const Dof& dof_;
   TargetRange soft_;
-  double scale_;   // counts per rad, 0 without an encoder
-  double beyond_;  // [rad]
-  double share_;   // of step_
-  double step_;    // per tick, counts or rad
+  double scale_;   // counts per rad; 0 without an encoder
+  double beyond_;  // allowed distance beyond the soft limits [rad]
+  double share_;   // share of the largest step that may be used
+  double step_;    // largest step in a tick, in counts or rad
   CountRounder rounder_;
   Violations violations_;
   bool first_ = true;
-  double before_ = 0;          // the target of the row before, counts or rad
-  double margin_ = kInfinity;  // least so far [rad]
+  double before_ = 0;          // target of the previous row, in counts or rad
+  double margin_ = kInfinity;  // smallest margin so far [rad]
   double ratio_ = 0;           // largest share of step_ so far
   double ratio_at_ = 0;        // its time [s]
 };
@@ -216,13 +217,13 @@ class JointJudge {
 // A motion with a ramp before and a hold after it.
 struct LaidMotion {
   size_t ramp = 0, motion = 0, hold = 0;  // numbers of rows
-  Eigen::VectorXd from, target;           // ends of the ramp, by column of the table
+  Eigen::VectorXd from, target;           // ends of the ramp for each column of the table
   double duration = 0;                    // duration that the ramp needs [s]
 
   size_t count() const { return ramp + motion + hold; }
 };
 
-// The motion between ramp and hold.
+// Judges the two ends of the motion between ramp and hold.
 void judge_ends(const TargetRows& motion, const SafetyOptions& options, SafetyReport& report,
                 Violations& violations) {
   const size_t last = motion.count - 1;
@@ -255,8 +256,8 @@ void judge_ends(const TargetRows& motion, const SafetyOptions& options, SafetyRe
 
 double ramp_share(double s) { return s * s * s * (10 + s * (6 * s - 15)); }
 
-// Long enough that the peak of the minimum jerk, 1.875 distance / duration, stays below half the
-// speed any joint may have [s].
+// A duration for which the peak speed of the minimum jerk curve, 1.875 distance / duration, stays
+// below half the speed that any joint may have [s].
 double ramp_duration(const Eigen::VectorXd& distance, const Eigen::VectorXd& speed,
                      const SafetyOptions& options) {
   if (options.ramp <= 0) return 0;
@@ -270,8 +271,8 @@ bool is_too_long(double ramp, const SafetyOptions& options) {
   return !(ramp <= std::max(options.ramp, kLongestRamp));
 }
 
-// Largest speed of any joint, by column of the table: that of the profile, or the cap of the motor
-// boards.
+// The largest speed of each joint, by column of the table: that of the profile, or the limit of the
+// motor boards.
 Eigen::VectorXd speed_limits(const RobotModel& model, const std::vector<Eigen::Index>& columns,
                              const SafetyOptions& options) {
   Eigen::VectorXd speed(static_cast<Eigen::Index>(columns.size()));
@@ -293,7 +294,7 @@ void add_to_report(SafetyReport& report, const std::vector<SafetyViolation>& vio
   report.safe = report.violations.empty();
 }
 
-// The ramp and the hold that the options ask for. A ramp that is too long is replaced by the
+// The ramp and the hold that the options require. A ramp that is too long is replaced by the
 // shortest one, whose steps are then violations.
 LaidMotion laid(const RobotModel& model, const TargetRows& targets, const SafetyOptions& options) {
   const std::vector<Eigen::Index> columns = columns_of(model, targets.joints, targets.count);
@@ -334,7 +335,7 @@ SafetyReport report_on(const RobotModel& model, const TargetRows& targets, const
   for (size_t k = 0; k < plan.count(); ++k) {
     if (k < plan.ramp)
       theta = ramp_at(plan, k);
-    else if (k < plan.ramp + plan.motion)  // then the last row is held
+    else if (k < plan.ramp + plan.motion)  // after these rows, the last row is held
       targets.row(k - plan.ramp, theta);
     if (!theta.allFinite())
       fail(ErrorCode::bad_pattern, "the joint table contains an angle that is not a finite number");
@@ -453,7 +454,7 @@ SafeTable make_safe(const RobotModel& model, ReferenceTrajectory reference,
   SafeTable result;
   result.first = plan.ramp;
   result.report = report_on(model, targets, plan, options);
-  // The rows of a long motion take much memory, so each row exists only once.
+  // The rows of a long motion take much memory, so each row only exists once.
   std::vector<ReferenceRow> motion = std::move(reference.rows);
   result.table = std::move(reference);
   std::vector<ReferenceRow>& rows = result.table.rows;

@@ -1,4 +1,5 @@
-// Torsional friction: about the normal through the ZMP, evenly pressed soles resist a moment of
+// Torsional friction: about the normal through the ZMP, soles with an even pressure resist a moment
+// of
 //   |n_z| <= mu f_n r,
 // where r is torsional_friction_arm(): the mean distance from the ZMP over the largest part of the
 // support that is symmetric about it, a lower bound of what is possible (demand/ground_demand.hpp).
@@ -15,22 +16,22 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Share of the moment that friction resists. Definition: at 1 the foot turns.
+// Largest share of the moment that friction resists. Definition: at 1 the foot turns.
 constexpr double kWholeMoment = 1;
 
-/// Share of the torsional friction that a motion uses, by the arm r [m].
+/// The share of the torsional friction that a motion uses, for the arm r [m].
 double torsion_ratio(const GroundDemand& demand, double coefficient, double arm) {
   return std::abs(demand.yaw_moment) / (coefficient * demand.normal_force * arm);
 }
 
-// The part of the support over which the arm is a mean contains the disc around the ZMP whose
-// radius is the margin. The mean distance of a disc is 2/3 of its radius, and what lies outside the
-// disc is farther away. [m]
+// A lower bound of the arm [m]. The part of the support over which the arm is a mean contains the
+// disc around the ZMP whose radius is the margin. The mean distance of a disc is 2/3 of its radius,
+// and the points outside the disc are farther away.
 double least_arm(const GroundDemand& demand) { return 2.0 / 3 * demand.margin; }
 
-// If the foot slides, nothing resists a turn, and a ZMP outside the support has no arm. Both are
-// findings of their own. The arm took a sixth of the time of a check, so it is left out where a
-// shorter one already shows that the sample is neither an error nor the worst so far.
+// If the foot slides, nothing resists a turn, and a ZMP outside the support has no arm. Both have
+// findings of their own. The computation of the arm took a sixth of the time of a check, so it is
+// left out if a shorter arm already shows that the sample is neither an error nor the worst so far.
 void judge_torsion(JudgedMotion& motion, const JudgedSample& s) {
   if (!s.has_zmp()) return;
   const GroundDemand& use = s.demand.use;
@@ -50,7 +51,7 @@ void judge_torsion(JudgedMotion& motion, const JudgedSample& s) {
 }
 
 // (arm f_n -+ n_z) / (m g) >= 0, where n_z = w_5 + (w_3 f_x + w_4 f_y) / f_n is the yaw moment
-// about the ZMP and the arm is mu r, held as it is in the latest iterate.
+// about the ZMP and the arm is mu r, kept as it is in the latest iterate.
 struct TurnRows {
   double arm = 0;    // [m]
   double scale = 0;  // 1 / (m g)

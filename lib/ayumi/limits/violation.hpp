@@ -1,6 +1,6 @@
 #pragma once
-// Samples of a motion that violate a limit, gathered into windows: a window is what the user reads
-// as one finding.
+// Samples of a motion that violate a limit, collected into windows. The user reads a window as one
+// finding.
 
 #include <map>
 #include <utility>
@@ -10,7 +10,7 @@
 
 namespace ayumi {
 
-/// One sample that violates one kind of limit at one item (joint, foot, pair of bodies, ...).
+/// One sample that violates a limit of one kind at one item (joint, foot, pair of bodies, ...).
 struct Violation {
   FindingKind kind = FindingKind::cog_residual;
   int item = 0;  ///< its meaning depends on the kind; 0 if there is only one
@@ -25,11 +25,11 @@ struct Violation {
 /// The foot of a violation whose item is a foot.
 inline Side foot_of(const Violation& v) { return static_cast<Side>(v.item); }
 
-/// Item of a support_margin: the ZMP of the motion or of the command.
+/// The item of a support_margin: the ZMP of the motion or of the command.
 enum ZmpOf { kMotionZmp = 0, kCommandZmp = 1 };
 
-/// Item of a ballistic violation: the COG of the motion, that of the command, or that of the motion
-/// where it leaps as the flight begins or ends.
+/// The item of a ballistic violation: the COG of the motion, the COG of the command, or the COG of
+/// the motion if it leaps at the beginning or end of the flight.
 enum Fall { kMotionFalls = 0, kCommandFalls = 1, kMotionLeaps = 2 };
 
 struct FindingWindow {

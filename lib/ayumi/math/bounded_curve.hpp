@@ -6,8 +6,8 @@
 
 namespace ayumi {
 
-/// x'' = w2 (x - z) with x = z at both ends; Numerov's rule (error h^4) and one tridiagonal solve.
-/// z, w2 > 0: one entry per grid point, at least 3.
+/// x'' = w2 (x - z) with x = z at both ends, by Numerov's rule (error h^4) and one tridiagonal
+/// solve. z and w2 > 0 have one entry per grid point, at least 3.
 Eigen::VectorXd bounded_cog(const Eigen::VectorXd& z, const Eigen::VectorXd& w2, double h);
 
 /// Bump of the ZMP near t = 0 that allows a start from rest: (w t)^2 exp(-w t) (1 - t/T)^2.
@@ -15,7 +15,7 @@ double rest_bump(double omega, double t, double duration);
 
 struct RestToRest {
   Eigen::VectorXd x;
-  double begin = 0, end = 0;  ///< factors of the bumps added to z at either end
+  double begin = 0, end = 0;  ///< factors of the bumps that are added to z at the two ends
 };
 
 /// The bounded solution that also has x' = 0 at both ends. A bounded motion anticipates: it moves

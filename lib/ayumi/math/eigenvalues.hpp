@@ -9,7 +9,7 @@ namespace ayumi {
 /// The eigenvalues of a square matrix A, n x n, in the order of its Schur form: n values.
 Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A);
 
-/// The eigenvalues of a symmetric A in rising order (its lower triangle is read).
+/// The eigenvalues of a symmetric A in rising order. Only its lower triangle is read.
 Eigen::Vector3d symmetric_eigenvalues(const Eigen::Matrix3d& A);
 
 }  // namespace ayumi

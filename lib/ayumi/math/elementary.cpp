@@ -22,7 +22,8 @@ using Pair = parts::Pair<double>;
 
 parts::Reduced<double> reduced(double x) {
   constexpr double kLeast = 0.78, kMost = 1e9;
-  if (std::abs(x) < kLeast) return {{x, 0}, 0};  // below pi/4, of which nothing is taken off
+  // Below pi/4, where no multiple of pi/2 is subtracted.
+  if (std::abs(x) < kLeast) return {{x, 0}, 0};
   // Angles this large mean nothing. They are reduced by the double nearest to 2 pi, exactly and
   // everywhere alike.
   if (std::abs(x) > kMost) x = std::fmod(x, 6.283185307179586);

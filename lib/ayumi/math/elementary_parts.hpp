@@ -1,28 +1,31 @@
 #pragma once
 // The series behind the elementary functions, for one number T or for several side by side (a
-// vector of the compiler's): the same operations in the same order, so that both give the same
-// bits. All are inlined into their callers, which may be compiled for wider registers than others.
+// vector type of the compiler): the same operations are done in the same order, so that both give
+// the same bits. All functions are inlined into their callers, which may be compiled for wider
+// registers than others.
 
 #include <bit>
 #include <cstdint>
 
 namespace ayumi::elementary::parts {
 
-// Adding and subtracting it rounds to a whole number: 1.5 * 2^52, whose last bit is worth one.
+// Adding and subtracting this number rounds to a whole number: it is 1.5 * 2^52, whose last bit is
+// worth one.
 constexpr double kRound = 6755399441055744.0;
 
-// A number as the sum of two, the second far smaller.
+// A number as the sum of two numbers, of which the second is far smaller.
 template <typename T>
 struct Pair {
   T high{}, low{};
 };
 template <typename T>
-[[gnu::always_inline]] inline Pair<T> sum(const T& a, const T& b) {  // exact
+[[gnu::always_inline]] inline Pair<T> sum(const T& a, const T& b) {  // the sum is exact
   const T s = a + b, part = s - a;
   return {s, (a - (s - part)) + (b - part)};
 }
 template <typename T>
-[[gnu::always_inline]] inline Pair<T> quick_sum(const T& a, const T& b) {  // exact where |a| >= |b|
+// The sum is exact if |a| >= |b|.
+[[gnu::always_inline]] inline Pair<T> quick_sum(const T& a, const T& b) {
   const T s = a + b;
   return {s, b - (s - a)};
 }
@@ -34,14 +37,14 @@ template <typename T>
 }
 template <typename T, typename U>
 [[gnu::always_inline]] inline Pair<T> product(const T& a,
-                                              const U& b) {  // exact (Dekker)
+                                              const U& b) {  // the product is exact (Dekker)
   const T p = a * b;
   const Pair<T> x = split(a);
   const Pair<U> y = split(b);
   return {p, ((x.high * y.high - p) + x.high * y.low + x.low * y.high) + x.low * y.low};
 }
 
-// x - k pi/2 with |.| <= pi/4, and k mod 4, by the bits of a sum with kRound.
+// x - k pi/2 with a magnitude of at most pi/4, and k mod 4, from the bits of a sum with kRound.
 template <typename T>
 struct Reduced {
   Pair<T> rest;
@@ -62,7 +65,8 @@ template <typename T, typename Bits>
 }
 template <typename T>
 [[gnu::always_inline]] inline Reduced<T> reduced(const T& x) {
-  // pi/2 in three parts; the first two have 33 bits and so multiply k to 2^20 exactly.
+  // pi/2 in three parts. The first two have 33 bits, so that their products with k up to 2^20 are
+  // exact.
   constexpr double kFirst = 0x1.921fb544p0, kSecond = 0x1.0b4611a6p-34,
                    kThird = 0x1.3198a2e037073p-69;
   const T shifted = x * 0.63661977236758134308 + kRound;
@@ -77,7 +81,7 @@ template <typename T>
   return result;
 }
 
-// Taylor's series on |x| <= pi/4, with a small rest of the argument.
+// Taylor's series for |x| <= pi/4, where the argument has a small rest.
 template <typename T>
 [[gnu::always_inline]] inline void sine_of(const Pair<T>& r, T& sine) {
   const T x = r.high, z = x * x;
@@ -114,7 +118,7 @@ template <typename T>
   // log m = 2 atanh(s), s = f / (2 + f), with f = m - 1 exact.
   const T f = m - 1.0, below = 2.0 + f;
   const T s = f / below;
-  // What the division left: f - s (2 + f), of which 2 + f is itself rounded.
+  // The remainder of the division, f - s (2 + f), in which 2 + f is itself rounded.
   const Pair<T> back = product(s, below);
   const T rest = (((f - back.high) - back.low) - s * (f - (below - 2.0))) / below;
   const T z = s * s;

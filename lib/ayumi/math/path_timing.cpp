@@ -13,22 +13,23 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// A row of unit length, or one between parallels, is kept within this tolerance. Chosen: far above
-// the rounding of doubles and far below any limit of a motion.
+// A row of unit length, or one between parallel rows, counts as kept within this tolerance. Chosen:
+// far above the rounding of doubles and far below any limit of a motion.
 constexpr double kKept = 1e-10;
 
-// No s'' is larger. Definition: above any that makes sense, so that only the rows bind.
+// Largest value of s''. Definition: above any value that makes sense, so that only the rows limit
+// s''.
 constexpr double kMostU = 1e9;
 
 struct UnitRow {
-  double u, x, most;  // (u, x) has length 1
+  double u, x, most;  // the vector (u, x) has length 1
 };
 
 struct Interval {
   double least, most;
 };
 
-// Rows of unit length; `impossible` when a row without unknowns is broken.
+// Rows of unit length. `impossible` is set if a row without unknowns is broken.
 struct Rows {
   std::vector<UnitRow> all;
   bool impossible = false;
@@ -46,8 +47,8 @@ struct Rows {
   }
 };
 
-// Least (sign -1) or largest (sign 1) x. The last found row goes to the front, because it binds
-// again at the next point.
+// The least x (sign -1) or the largest x (sign 1). The row that was found last goes to the front,
+// because it binds again at the next point.
 std::optional<double> extreme_x(Rows& rows, double sign, double least, double most) {
   if (rows.impossible || least > most) return std::nullopt;
   double u = 0, x = sign > 0 ? most : least;

@@ -19,19 +19,20 @@ struct TimingRow {
 struct TimingPoint {
   double at = 0;  ///< its place s on the path; places increase
   std::vector<TimingRow> rows;
-  double least = 0, most = 1;  ///< bounds of x, finite
+  double least = 0, most = 1;  ///< finite bounds of x
 };
 
 struct PathTiming {
-  std::vector<double> x;  ///< s'^2 by point; empty when there is no timing
-  int stuck = -1;         ///< the last point from which the end cannot be reached; -1: none
+  std::vector<double> x;  ///< s'^2 by point; empty if there is no timing
+  int stuck = -1;  ///< the last point from which the end cannot be reached; -1 if there is none
 };
 
-/// The largest x at every point at once, so that no timing that keeps the rows is quicker.
+/// The timing that has the largest possible x at every point, so that no timing that keeps the rows
+/// is quicker.
 PathTiming quickest_timing(const std::vector<TimingPoint>& points);
 
-/// Time at every point [s]: 2 d / (s'_i + s'_{i+1}) for each step. At least one of two neighbours
-/// must be above 0.
+/// The time at every point [s], from 2 d / (s'_i + s'_{i+1}) for each step. Of two neighbours, at
+/// least one must be above 0.
 std::vector<double> times_along(const std::vector<TimingPoint>& points,
                                 const std::vector<double>& x);
 

@@ -6,37 +6,38 @@
 
 namespace ayumi {
 
-/// A convex polygon, counter-clockwise; may degenerate to a segment, a point, or nothing.
+/// A convex polygon, counter-clockwise. It may degenerate to a segment, a point, or nothing.
 class ConvexPolygon {
  public:
   ConvexPolygon() = default;
-  /// Convex hull of the points (any order, duplicates allowed).
+  /// The convex hull of the points, which may have any order and duplicates.
   explicit ConvexPolygon(std::vector<Eigen::Vector2d> points);
 
-  /// Becomes the hull of `points`, whose order changes; keeps its memory.
+  /// Makes this the hull of `points`, whose order changes. The polygon keeps its memory.
   void assign(std::vector<Eigen::Vector2d>& points);
 
   const std::vector<Eigen::Vector2d>& vertices() const { return vertices_; }
   bool empty() const { return vertices_.empty(); }
 
-  /// Distance of p to the boundary, positive inside, negative outside [m]. Empty: -infinity.
+  /// Distance of p to the boundary [m], positive inside and negative outside. For an empty polygon
+  /// it is -infinity.
   double margin(const Eigen::Vector2d& p) const;
 
-  /// The nearest point of the polygon; p itself when inside.
+  /// The nearest point of the polygon; p itself if it is inside.
   Eigen::Vector2d project(const Eigen::Vector2d& p) const;
 
-  /// The polygon of the points at least `distance` inside every edge; the centroid alone when there
-  /// are none.
+  /// The polygon of the points at least `distance` inside every edge; the centroid alone if there
+  /// are no such points.
   ConvexPolygon shrunk(double distance) const;
 
-  /// The same into `result`, with two lists as workspace; all keep their memory.
+  /// Writes the same polygon into `result`, with two lists as workspace. All keep their memory.
   void shrink_into(double distance, std::vector<Eigen::Vector2d>& kept,
                    std::vector<Eigen::Vector2d>& next, ConvexPolygon& result) const;
 
-  /// max over the polygon of n.dot(x).
+  /// The largest n.dot(x) of all points x of the polygon.
   double support(const Eigen::Vector2d& n) const;
 
-  /// Centre of area (of the vertices when the area is zero).
+  /// The centre of area, or that of the vertices if the area is zero.
   Eigen::Vector2d centroid() const;
 
  private:

@@ -14,13 +14,14 @@ namespace ayumi {
 
 namespace {
 
-// Steps after which the search ends with a feasible x. Chosen: several times the inequalities; a
-// program of a step takes fewer than twenty, so that half and twice are the same.
+// Largest number of steps; after them the search ends with a feasible x. Chosen: several times the
+// number of inequalities. The program of a tick takes fewer than twenty steps, so that half and
+// twice the value give the same.
 constexpr int kMostSteps = 200;
 
-// Size of a step, relative to that of x, and of a multiplier, relative to the gradient's, that is
-// zero. Chosen: thousands of times the rounding of double precision, and far below what a foot or
-// a clock does; half and twice of it are so too.
+// Size below which a step, relative to that of x, or a multiplier, relative to the gradient, counts
+// as zero. Chosen: thousands of times the rounding of double precision, and far below anything that
+// matters for a foot or a clock; this is also true of half and twice the value.
 constexpr double kZero = 1e-12;
 
 constexpr int kMostRows = 2 * kMostUnknowns;
@@ -72,7 +73,7 @@ ProgramSolution solve_program(const QuadraticProgram& q, const QuadraticProgram:
     }
     s.x += length * p;
     if (met < 0) continue;
-    if (active == n) break;  // x is a corner, to rounding
+    if (active == n) break;  // x is at a corner, to rounding
     working[static_cast<size_t>(active++)] = met;
   }
   return s;

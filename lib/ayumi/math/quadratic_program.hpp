@@ -5,7 +5,7 @@
 
 namespace ayumi {
 
-/// Most unknowns and inequalities of a program.
+/// Largest numbers of unknowns and inequalities of a program.
 inline constexpr int kMostUnknowns = 8;       ///< Definition
 inline constexpr int kMostInequalities = 40;  ///< Definition
 
@@ -25,8 +25,8 @@ struct QuadraticProgram {
 
 struct ProgramSolution {
   QuadraticProgram::Vector x;
-  QuadraticProgram::Bounds multipliers;  ///< multipliers of the inequalities, >= 0
-  bool optimal = false;                  ///< false: x is feasible only
+  QuadraticProgram::Bounds multipliers;  ///< multipliers of the inequalities, all >= 0
+  bool optimal = false;                  ///< false if x is only feasible
 };
 
 /// Solves it by an active set that begins at `start`, which has to keep A x <= b. Allocates

@@ -29,7 +29,7 @@ template <typename Numbers, typename Whole>
   const Whole fraction = (bits & ((1ll << kFraction) - 1)) | (kHalf << kFraction);
   Numbers m;
   __builtin_memcpy(&m, &fraction, sizeof m);
-  const Whole small = m < elementary::parts::kRootHalf;  // -1 where it is true
+  const Whole small = m < elementary::parts::kRootHalf;  // -1 in the lanes in which it is true
   m = small ? 2.0 * m : m;
   exponent += small;
   const Numbers k = __builtin_convertvector(exponent, Numbers);
@@ -49,8 +49,8 @@ template <typename Numbers, typename Whole>
   result = negative ? -value : value;
 }
 
-/// Box-Muller: what is in (0, 1] becomes a normal number, with the angle [rad] of the second list.
-/// `count` is a multiple of the width.
+/// Box-Muller: each number in (0, 1] becomes a normal number, with the angle [rad] from the second
+/// list. `count` is a multiple of the width.
 template <typename Numbers, typename Whole>
 [[gnu::always_inline]] inline void turn_normal(double* first, const double* second, int count) {
   constexpr int kWidth = sizeof(Numbers) / sizeof(double);

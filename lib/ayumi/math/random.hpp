@@ -21,12 +21,13 @@ class Random {
   }
   /// A number in [0, 1).
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1.0p-53; }
-  /// A number with mean 0 and standard deviation 1 (Box-Muller, one of the pair).
+  /// A number with mean 0 and standard deviation 1, by Box-Muller, of which only one number of each
+  /// pair is used.
   double normal() {
     const double radius = std::sqrt(-2.0 * elementary::log(1.0 - uniform()));
     return radius * elementary::cos(2.0 * M_PI * uniform());
   }
-  /// Gives the same numbers as so many calls of normal(), in less time.
+  /// Gives the same numbers as `count` calls of normal(), in less time.
   void normals(double* out, int count);
 
  private:

@@ -12,13 +12,13 @@ using Eigen::MatrixXd;
 
 namespace {
 
-// Doublings after which there is no solution. Chosen: 2^40 steps are longer than any motion, and
-// so are 2^20; the regulators here need about twelve doublings.
+// Largest number of doublings; after them there is no solution. Chosen: 2^40 steps are longer than
+// any motion, and so are 2^20; the regulators here need about twelve doublings.
 constexpr int kMostDoublings = 40;
 
-// Change of the cost in a doubling, relative to it, below which it is the solution. Chosen: a few
-// hundred times the rounding of double precision. Since the change is squared in every doubling,
-// half or twice this makes at most one doubling more or less.
+// Change of the cost in a doubling, relative to the cost, below which the cost is the solution.
+// Chosen: a few hundred times the rounding of double precision. Since the change is squared in
+// every doubling, half or twice the value makes at most one doubling more or less.
 constexpr double kConverged = 1e-13;
 
 }  // namespace

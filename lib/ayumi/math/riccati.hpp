@@ -9,7 +9,7 @@ namespace ayumi {
 /// the least sum of x'Q x + u'R u:
 ///   P = A'PA - A'PB (R + B'PB)^-1 B'PA + Q.
 /// A: n x n, B: n x m, Q: n x n, symmetric and semidefinite, R: m x m, symmetric and definite.
-/// Throws Error(bad_input) where there is none.
+/// Throws Error(bad_input) if there is none.
 Eigen::MatrixXd solve_riccati(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B,
                               const Eigen::MatrixXd& Q, const Eigen::MatrixXd& R);
 

@@ -19,19 +19,19 @@ namespace {
 
 /// Diagonals on either side of the main one. Derived: the order of the differences.
 constexpr int kBand = 3;
-/// Largest number of steps of the interior point method. Chosen: it usually takes 20.
+/// Largest number of steps of the interior point method. Chosen: the method usually takes 20.
 constexpr int kSteps = 60;
 /// Complementarity at which the method ends, relative to its initial value. Chosen: about
 /// the square root of the rounding of double precision.
 constexpr double kEnd = 1e-8;
-/// Fraction of the distance to the boundary that a step goes. Chosen: below 1, so that slacks stay
-/// positive, as usual for such methods.
+/// Fraction of the distance to the boundary that a step covers. Chosen: below 1, so that slacks
+/// stay positive, as usual for such methods.
 constexpr double kToBoundary = 0.99;
 
 using Bands =
     std::array<VectorXd, kBand + 1>;  // diagonals of a symmetric matrix, from the main one
 
-// The matrix D'D of third differences.
+// The matrix D'D, where D takes third differences.
 Bands third_differences(Index n) {
   constexpr std::array<double, 4> d = {-1, 3, -3, 1};
   Bands P;
@@ -52,7 +52,7 @@ VectorXd times(const Bands& P, const VectorXd& x) {
   return y;
 }
 
-// Factorizes into L D L' in place, and then solves; P is positive definite.
+// Factorises P into L D L' in place, and then solves. P is positive definite.
 VectorXd solved(Bands P, VectorXd b) {
   const Index n = b.size();
   for (Index k = 0; k < n; ++k) {
@@ -114,7 +114,8 @@ VectorXd within_one(const VectorXd& x, double weight) {
 }  // namespace
 
 VectorXd smoothed_within(const VectorXd& x, double band, double cutoff) {
-  // [samples] Chosen: 2 kBand + 2; fewer have hardly a third difference.
+  // Smallest number of samples that are smoothed. Chosen: 2 kBand + 2; fewer samples have hardly a
+  // third difference.
   constexpr Index kLeast = 8;
   if (x.size() < kLeast || !(band > 0) || x.maxCoeff() == x.minCoeff()) return x;
   const VectorXd scaled = (x.array() - x[0]) / band;

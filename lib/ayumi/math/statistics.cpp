@@ -11,13 +11,13 @@ namespace ayumi {
 
 namespace {
 
-/// Does not promote to long double, whose rounding depends on the processor.
+/// This policy does not promote to long double, whose rounding depends on the processor.
 using Policy = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
 using Normal = boost::math::normal_distribution<double, Policy>;
 using Beta = boost::math::beta_distribution<double, Policy>;
 using Binomial = boost::math::binomial_distribution<double, Policy>;
 
-/// Ranks count from 1; equal values have the mean of their ranks.
+/// Ranks count from 1; equal values get the mean of their ranks.
 std::vector<double> ranks(const std::vector<double>& values) {
   std::vector<size_t> order(values.size());
   std::iota(order.begin(), order.end(), size_t{0});
@@ -69,7 +69,7 @@ RateInterval paired_difference(long only_first, long only_second, long pairs, do
   return {first.low - second.high, first.high - second.low};
 }
 
-// The r-th smallest value is below the quantile only when r values or more are below it.
+// The r-th smallest value is below the quantile only if r values or more are below it.
 long quantile_bound_rank(long n, double q, double confidence) {
   if (n < 1) return 0;
   const Binomial below(static_cast<double>(n), q);

@@ -26,14 +26,14 @@ double slope(const std::vector<TrackKey>& keys, size_t segment) {
   return (keys[segment + 1].value - keys[segment].value) / (keys[segment + 1].t - keys[segment].t);
 }
 
-// Rate at key i at the end of a run of cubic or spline segments.
+// The rate at key i, which is the end of a run of cubic or spline segments.
 double end_rate(const std::vector<TrackKey>& keys, size_t i, bool neighbour_before) {
   if (neighbour_before ? i == 0 : i + 1 >= keys.size()) return 0;
   const size_t neighbour = neighbour_before ? i - 1 : i;
   return keys[neighbour + 1].interpolation == Interpolation::linear ? slope(keys, neighbour) : 0;
 }
 
-// Rates of the keys first..last of a run of spline segments with given end rates: Thomas'
+// The rates of the keys first..last of a run of spline segments with given end rates, by Thomas'
 // algorithm.
 void solve_spline(const std::vector<TrackKey>& keys, size_t first, size_t last,
                   std::vector<double>& rate) {
@@ -51,7 +51,7 @@ void solve_spline(const std::vector<TrackKey>& keys, size_t first, size_t last,
   for (size_t i = n - 1; i >= 1; --i) rate[first + i] -= upper[i] * rate[first + i + 1];
 }
 
-// Rates at both ends of every cubic or spline segment: [segment][begin, end].
+// The rates at both ends of every cubic or spline segment, as [segment][begin, end].
 std::vector<std::array<double, 2>> curve_rates(const std::vector<TrackKey>& keys) {
   const size_t segments = keys.size() - 1;
   std::vector<std::array<double, 2>> rates(segments, {0.0, 0.0});
@@ -113,8 +113,8 @@ Track::Track(std::vector<TrackKey> keys) : keys_(std::move(keys)) {
   }
 }
 
-// Index of the last key at or before t, which lies between the first and the last key. The key of
-// evenly spaced ones is found at once.
+// The index of the last key at or before t, which lies between the first and the last key. If keys
+// are evenly spaced, it is found at once.
 size_t Track::segment_at(double t) const {
   const double first = keys_.front().t;
   const double share = (t - first) / (keys_.back().t - first);

@@ -18,9 +18,10 @@ namespace ayumi {
 enum class Interpolation { linear, cubic, minimum_jerk, hold, spline };
 
 struct TrackKey {
-  double t = 0;  ///< [s]
+  double t = 0;  ///< time [s]
   double value = 0;
-  Interpolation interpolation = Interpolation::minimum_jerk;  ///< of the segment that ends here
+  /// Interpolation of the segment that ends here.
+  Interpolation interpolation = Interpolation::minimum_jerk;
 };
 
 struct TrackPoint {
@@ -30,10 +31,10 @@ struct TrackPoint {
 class Track {
  public:
   Track() : Track(0.0) {}
-  /// A constant.
+  /// A constant track.
   explicit Track(double value) : keys_{{0, value, Interpolation::hold}} {}
-  /// At least one key, with strictly increasing times and finite values; throws Error(internal)
-  /// otherwise (the caller checks this with file and place).
+  /// A track of at least one key, with strictly increasing times and finite values. Throws
+  /// Error(internal) otherwise; the caller checks this before, with file and place.
   explicit Track(std::vector<TrackKey> keys);
 
   TrackPoint at(double t) const;
@@ -46,8 +47,8 @@ class Track {
   std::vector<std::array<double, 6>> segments_;  ///< coefficients in u = (t - t0)/(t1 - t0)
 };
 
-/// Curve from 0 to 1, at rest at both ends, for u in [0, 1]; constant outside. Derivatives are with
-/// respect to u.
+/// A curve from 0 to 1 for u in [0, 1], at rest at both ends and constant outside. Derivatives are
+/// with respect to u.
 TrackPoint minimum_jerk(double u);
 
 }  // namespace ayumi

@@ -1,6 +1,6 @@
 #pragma once
-// Poses of the bodies for given joint angles with the root at the origin, for the checks of the
-// model itself. Other code uses dynamics/kinematics.hpp.
+// Poses of the bodies for given joint angles, with the root at the origin. The checks of the model
+// itself use them; other code uses dynamics/kinematics.hpp.
 
 #include <Eigen/Geometry>
 #include <vector>

@@ -38,11 +38,12 @@ constexpr double kAsymmetry = 0.02;
 /// Distance up to which a joint is the mirror image of another, as a fraction of the robot's size.
 /// Chosen: below the distance of neighbouring joints, above any asymmetry that a robot has.
 constexpr double kPartner = 0.1;
-/// Share of its shape's size by which a centre of mass lies outside, from which on it is
-/// suspicious. Chosen: a motor behind a plate is less far away; half of the size is asked for.
+/// A centre of mass is suspicious if it lies outside its shape by more than this share of the
+/// shape's size. Chosen: a motor behind a plate is less far away, and half of the size is clearly
+/// too much.
 constexpr double kOutside = 0.25;
-/// Names that a warning lists in full, and how many it lists where there are more. Chosen: a line
-/// of a terminal holds them.
+/// Largest number of names that a warning lists in full, and the number that it lists if there are
+/// more. Chosen: they fit on a line of a terminal.
 constexpr size_t kMostNames = 6, kFewNames = 3;
 
 std::string millimetres(double metres) { return text::fixed(1000 * metres, 1) + " mm"; }
@@ -72,8 +73,9 @@ class Doctor {
   }
 
  private:
-  /// Something suspicious about a link, a joint or a pair of them. `message` is the cause, the same
-  /// for all that have it; `detail` has the figures, and `size` says which are the worst.
+  /// Something suspicious about a link, a joint or a pair of them. `message` is the cause, which is
+  /// the same for all that have it; `detail` has the figures, and `size` shows which of them is the
+  /// worst.
   struct Suspicion {
     std::string kind, message;
     std::vector<std::string> names;
@@ -281,9 +283,9 @@ class Doctor {
     return joints;
   }
 
-  // The joints on the right that are mirror images of those on the left, by their places with every
-  // joint at 0: a pair is of the same kind and as many joints away from the root, and each of the
-  // two is nearest to the mirrored place of the other.
+  // The joints on the right that are mirror images of those on the left, found by their places with
+  // every joint at 0. The two joints of a pair are of the same kind and equally many joints away
+  // from the root, and each of them is the nearest one to the mirrored place of the other.
   std::vector<std::pair<const Dof*, const Dof*>> partners() const {
     const auto place = [&](const Dof& dof) { return zero_[dof.body].translation(); };
     const auto mirrored_distance = [&](const Dof& a, const Dof& b) {
@@ -322,7 +324,7 @@ class Doctor {
       for (const Link& link : model_.links())
         if (link.body == left->body && link.name == model_.bodies()[left->body].name)
           compare_links(link, model_.links()[model_.find_link(model_.bodies()[right->body].name)]);
-      // The message about the joint before it says what that joint is displaced by.
+      // Displacement of the joint before this one: its own message already names it.
       Eigen::Vector3d before = Eigen::Vector3d::Zero();
       for (const auto& [above, other] : pairs)
         if (above->body == model_.bodies()[left->body].parent &&

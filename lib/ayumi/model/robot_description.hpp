@@ -16,14 +16,15 @@ namespace ayumi {
 
 /// Mass properties of one link.
 struct Inertia {
-  double mass = 0;                                      ///< [kg]
-  Eigen::Vector3d com = Eigen::Vector3d::Zero();        ///< in the link frame [m]
-  Eigen::Matrix3d about_com = Eigen::Matrix3d::Zero();  ///< link axes [kg m^2]
+  double mass = 0;                                ///< mass [kg]
+  Eigen::Vector3d com = Eigen::Vector3d::Zero();  ///< centre of mass in the link frame [m]
+  /// Inertia about the centre of mass, in the axes of the link [kg m^2].
+  Eigen::Matrix3d about_com = Eigen::Matrix3d::Zero();
 };
 
 struct LinkDescription {
   std::string name;
-  bool has_inertial = false;  ///< the file has an inertia
+  bool has_inertial = false;  ///< whether the file has an inertia for the link
   Inertia inertia;
   std::vector<PlacedShape> visuals;
   std::vector<PlacedShape> collisions;
@@ -34,16 +35,16 @@ enum class JointType { fixed, revolute, continuous, prismatic, floating };
 struct JointDescription {
   std::string name;
   JointType type = JointType::fixed;
-  std::string parent, child;                                 ///< link names
+  std::string parent, child;                                 ///< names of the two links
   Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();  ///< joint frame in the parent link
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();           ///< in the joint frame
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< axis of the joint in the joint frame
   bool has_limits = false;
-  double lower = 0, upper = 0;  ///< [rad] or [m]
-  double velocity = 0;          ///< [rad/s] or [m/s]; 0: not given
-  double effort = 0;            ///< [N m] or [N]; 0: not given
+  double lower = 0, upper = 0;  ///< position limits [rad] or [m]
+  double velocity = 0;          ///< speed limit [rad/s] or [m/s]; 0: not given
+  double effort = 0;            ///< torque or force limit [N m] or [N]; 0: not given
   double damping = 0;           ///< [N m s/rad]
-  double friction = 0;          ///< Coulomb [N m]
-  std::string mimic;            ///< joint that drives this one
+  double friction = 0;          ///< Coulomb friction [N m]
+  std::string mimic;            ///< the joint that drives this one
   double mimic_multiplier = 1, mimic_offset = 0;
 };
 
@@ -55,9 +56,10 @@ struct JointDescription {
 /// with the factor s of ServoDescription::stribeck_rate and, where t_e and t_m are opposed, by
 ///   s external_quadratic t_e^2 where |t_m| > |t_e|, else s motor_quadratic t_m^2.
 struct LoadFriction {
-  double motor = 0, external = 0;                      ///< [1]
-  double motor_stribeck = 0, external_stribeck = 0;    ///< [1]
-  double motor_quadratic = 0, external_quadratic = 0;  ///< [1/(N m)]
+  double motor = 0, external = 0;  ///< shares of t_m and t_e [1]
+  /// Shares of t_m and t_e in the Stribeck part [1].
+  double motor_stribeck = 0, external_stribeck = 0;
+  double motor_quadratic = 0, external_quadratic = 0;  ///< shares of t_m^2 and t_e^2 [1/(N m)]
   bool operator==(const LoadFriction&) const = default;
 };
 
@@ -71,8 +73,8 @@ struct LoadFriction {
 struct ServoDescription {
   double kp = 0;             ///< [N m/rad]
   double kd = 0;             ///< [N m s/rad]
-  double rotor_inertia = 0;  ///< reflected through the gear [kg m^2]
-  double viscous = 0;        ///< gear and bearing friction [N m s/rad]
+  double rotor_inertia = 0;  ///< inertia of the rotor, reflected through the gear [kg m^2]
+  double viscous = 0;        ///< viscous friction of gear and bearing [N m s/rad]
   double coulomb = 0;        ///< dry friction [N m]
   double delay = 0;          ///< transport delay of the target [s], any number of ticks
   /// Largest speed that the position loop asks the inner speed loop for [rad/s]; 0: no bound.
@@ -80,17 +82,20 @@ struct ServoDescription {
   /// Dry friction at rest beyond `coulomb` [N m]; at the rate v it is s times as large, with
   /// s = exp(-(|v| / stribeck_rate)^stribeck_exponent).
   double stribeck_torque = 0;
-  double stribeck_rate = 0;      ///< [rad/s]; 0: no Stribeck effect
-  double stribeck_exponent = 2;  ///< [1]
+  /// Rate at which the Stribeck part has decayed [rad/s]; 0: no Stribeck effect.
+  double stribeck_rate = 0;
+  double stribeck_exponent = 2;  ///< exponent of the decay [1]
   LoadFriction load = {};
-  double backlash = 0;        ///< whole play of the joint on the motor [rad]
-  double gear_stiffness = 0;  ///< [N m/rad]; 0: stiff, and with backlash kGearStiffness kp
-  double gear_damping = 0;    ///< [N m s/rad]
-  double stall_torque = 0;    ///< torque constant times voltage / resistance [N m]; 0: no bound
-  double back_emf = 0;        ///< loss of torque with speed, constant^2 / resistance [N m s/rad]
-  double dead_band = 0;       ///< half width [rad]
-  bool quantized = false;     ///< target and reading are whole counts of the encoder
-  double offset = 0;          ///< of the encoder's zero of this robot unit [rad]
+  double backlash = 0;  ///< whole play between motor and joint [rad]
+  /// Stiffness of the gear [N m/rad]; 0: stiff, or kGearStiffness kp if there is backlash.
+  double gear_stiffness = 0;
+  double gear_damping = 0;  ///< [N m s/rad]
+  /// Largest torque at rest: torque constant times voltage / resistance [N m]; 0: no bound.
+  double stall_torque = 0;
+  double back_emf = 0;   ///< loss of torque with speed: torque constant^2 / resistance [N m s/rad]
+  double dead_band = 0;  ///< half width of the dead band [rad]
+  bool quantized = false;  ///< whether target and reading are whole counts of the encoder
+  double offset = 0;       ///< offset of the encoder's zero on this individual robot [rad]
   bool operator==(const ServoDescription&) const = default;
 
   /// Time by which a slowly moving joint is behind its target [s].
@@ -101,17 +106,18 @@ struct ServoDescription {
 /// Limits and servos of the joints by name, under a profile name ("hoap1", "hoap1-strong").
 struct ActuatorProfile {
   std::string name;
-  std::map<std::string, double> speed;              ///< [rad/s]
-  std::map<std::string, double> peak_torque;        ///< [N m]
-  std::map<std::string, double> continuous_torque;  ///< RMS over thermal_window [N m]
-  double thermal_window = 10.0;                     ///< [s]
-  std::map<std::string, ServoDescription> servos;   ///< in place of the robot's
+  std::map<std::string, double> speed;        ///< [rad/s]
+  std::map<std::string, double> peak_torque;  ///< [N m]
+  /// Largest RMS torque over thermal_window [N m].
+  std::map<std::string, double> continuous_torque;
+  double thermal_window = 10.0;                    ///< [s]
+  std::map<std::string, ServoDescription> servos;  ///< servos that replace those of the robot
 };
 
 /// A joint on the robot's bus and in its sequence files.
 struct EncoderDescription {
   int device = 0;                ///< device id on the bus, 1-based
-  double counts_per_degree = 0;  ///< signed: the sign of the joint's positive direction
+  double counts_per_degree = 0;  ///< counts with the sign of the joint's positive direction
 };
 
 /// Columns of a file with which the robot's own programs exchange targets or measured angles: one
@@ -121,9 +127,10 @@ struct SequenceLayout {
   /// Columns around those of the motors: "interval" (milliseconds to the next row, first column
   /// only), a fixed text ("2", "60", "R"), or "*" for anything, which can be read only.
   std::vector<std::string> before, after;
-  int motors = 0;                 ///< columns of the motors, in the order of devices from 1
-  bool radians = false;           ///< angles in radians with the signs of the encoders, not counts
-  std::vector<int> intervals_ms;  ///< intervals that the robot takes [ms]; empty: any
+  int motors = 0;  ///< number of motor columns, in the order of the devices from 1 on
+  /// Whether angles are radians with the signs of the encoders, and not counts.
+  bool radians = false;
+  std::vector<int> intervals_ms;  ///< intervals that the robot accepts [ms]; empty: any
 
   bool has_interval() const { return !before.empty() && before.front() == "interval"; }
   size_t columns() const { return before.size() + static_cast<size_t>(motors) + after.size(); }
@@ -131,28 +138,31 @@ struct SequenceLayout {
 
 /// A foot: the polygon of its sole.
 struct SoleDescription {
-  std::string link;  ///< foot link
+  std::string link;  ///< link of the foot
   /// Pose of the sole frame in the foot link: origin under the ankle on the sole plane, x forward,
   /// z up. Footholds of a pattern are poses of this frame.
   Eigen::Isometry3d frame = Eigen::Isometry3d::Identity();
   std::vector<Eigen::Vector2d> polygon;  ///< convex, counter-clockwise, in the sole frame [m]
-  double stiffness = 0;     ///< of the whole sole on the ground [N/m]; 0: derived from the mass
-  double damping_time = 0;  ///< contact damping / stiffness [s]; 0: default
+  /// Stiffness of the whole sole on the ground [N/m]; 0: derived from the mass.
+  double stiffness = 0;
+  double damping_time = 0;  ///< ratio of contact damping to stiffness [s]; 0: default
 };
 
 /// How recorded readings of a robot's load cells become forces. Polynomials begin with the highest
 /// power.
 struct LoadCells {
-  std::vector<int> columns;                ///< of a recording without head row, from 1
-  std::vector<std::vector<double>> cells;  ///< load of each cell by its reading, any unit
-  std::vector<double> force;               ///< force [N] by the sum of the cells' loads
+  std::vector<int> columns;  ///< columns of a recording without a head row, counted from 1
+  /// Polynomials of the load of each cell over its reading, in any unit.
+  std::vector<std::vector<double>> cells;
+  std::vector<double> force;  ///< polynomial of the force over the sum of the loads [N]
 };
 
-/// The same for a sensor with three axes: value = scale (reading - zero).
+/// How recorded readings of a sensor with three axes become values: value = scale (reading - zero).
 struct AxisReadings {
-  std::vector<int> columns;  ///< of x, y, z, from 1; empty: the recording has none
+  /// Columns of x, y and z, counted from 1; empty: the recording has none.
+  std::vector<int> columns;
   Eigen::Vector3d zero = Eigen::Vector3d::Zero();
-  Eigen::Vector3d scale = Eigen::Vector3d::Ones();  ///< [m/s^2, rad/s per reading]
+  Eigen::Vector3d scale = Eigen::Vector3d::Ones();  ///< factor [m/s^2 or rad/s per reading]
 };
 
 /// How the reading of a load cell depends on the force on it, in this order (sim/load_cell).
@@ -165,21 +175,26 @@ struct CellResponse {
 };
 
 struct SensorDescription {
-  std::string imu_link;                                    ///< empty: the root link
-  Eigen::Vector3d imu_position = Eigen::Vector3d::Zero();  ///< in that link [m]
-  double latency = 0;                                      ///< [s]
-  /// In place of `latency`, of the joint angles, of attitude and gyro, of the load cells [s].
+  std::string imu_link;  ///< link that carries the sensor; empty: the root link
+  /// Position of the sensor in this link [m].
+  Eigen::Vector3d imu_position = Eigen::Vector3d::Zero();
+  double latency = 0;  ///< latency of all sensors [s]
+  /// Latencies of the joint angles, of attitude and gyro, and of the load cells, in place of
+  /// `latency` [s].
   std::optional<double> encoder_latency, imu_latency, force_latency;
-  double attitude_noise = 0, attitude_bias = 0;  ///< [rad], standard deviation, bias
-  double gyro_noise = 0;                         ///< [rad/s]
-  double accelerometer_noise = 0;                ///< [m/s^2]
-  double force_noise = 0;                        ///< per load cell [N]
-  double force_resolution = 0;                   ///< per load cell [N]
-  int force_readings = 1;  ///< of a load cell, one in every tick, of which the mean is reported
-  /// "left", "right": by corner of the sole, or one for all corners; empty: exact cells.
+  /// Standard deviation and bias of the attitude [rad].
+  double attitude_noise = 0, attitude_bias = 0;
+  double gyro_noise = 0;           ///< standard deviation of the gyro [rad/s]
+  double accelerometer_noise = 0;  ///< standard deviation of the accelerometer [m/s^2]
+  double force_noise = 0;          ///< standard deviation of a load cell [N]
+  double force_resolution = 0;     ///< resolution of a load cell [N]
+  /// Number of readings of a load cell, one in every tick, whose mean is reported.
+  int force_readings = 1;
+  /// For "left" and "right", a response for each corner of the sole, or one for all corners; empty:
+  /// exact cells.
   std::map<std::string, std::vector<CellResponse>> force_cells;
-  bool encoder_quantisation = false;            ///< round joint angles to counts
-  std::map<std::string, LoadCells> load_cells;  ///< "left", "right"
+  bool encoder_quantisation = false;            ///< whether joint angles are rounded to counts
+  std::map<std::string, LoadCells> load_cells;  ///< for "left" and "right"
   AxisReadings accelerometer, gyro;
 
   /// Age of the oldest quantity that a controller with ticks of this length receives [s]. A mean of
@@ -198,34 +213,37 @@ struct SensorDescription {
 /// Controller defaults of this robot for values that a pattern does not set. Dimensionless as in
 /// docs/theory.md.
 struct ControlDefaults {
-  std::map<std::string, double> joint_weight;  ///< diagonal of W by joint name, default 1
-  std::map<std::string, double> dtad;          ///< gains by name (q, ka, ks, kd, ...)
-  std::map<std::string, double> viip;          ///< gains of VIIP by name
+  std::map<std::string, double> joint_weight;  ///< diagonal of W by joint name; 1 for other joints
+  std::map<std::string, double> dtad;  ///< gains of the DTAD law by name (q, ka, ks, kd, ...)
+  std::map<std::string, double> viip;  ///< gains of VIIP by name
 };
 
 struct RobotDescription {
   std::string name;
-  std::string urdf_file, sidecar_file;  ///< as resolved; sidecar may be empty
-  std::string sha256;                   ///< of the URDF and the sidecar bytes
+  std::string urdf_file, sidecar_file;  ///< the files as they were found; the sidecar may be empty
+  std::string sha256;                   ///< hash of the bytes of the URDF and the sidecar
   std::vector<LinkDescription> links;
   std::vector<JointDescription> joints;
   std::vector<std::string> joint_order;          ///< preferred order of moving joints; may be empty
-  std::map<std::string, std::string> aliases;    ///< joint by the name that motion files give it
-  std::map<std::string, SoleDescription> soles;  ///< "left", "right"
-  std::map<std::string, std::map<std::string, double>> postures;  ///< [rad]; "home" at least
-  std::map<std::string, ServoDescription> servos;                 ///< by joint name
-  bool servos_inferred = false;                                   ///< the files state none
-  std::vector<ActuatorProfile> profiles;                          ///< the first is the default
+  std::map<std::string, std::string> aliases;    ///< joint names by the names that motion files use
+  std::map<std::string, SoleDescription> soles;  ///< soles "left" and "right"
+  /// Angles [rad]; "home" is always there.
+  std::map<std::string, std::map<std::string, double>> postures;
+  std::map<std::string, ServoDescription> servos;  ///< servos by joint name
+  bool servos_inferred = false;  ///< whether the servos were inferred because the files state none
+  std::vector<ActuatorProfile> profiles;  ///< profiles; the first is the default
   std::map<std::string, EncoderDescription> encoders;
-  std::vector<SequenceLayout> layouts;  ///< the first with an interval is the one that is written
+  std::vector<SequenceLayout> layouts;  ///< layouts; the first one with an interval is written
   SensorDescription sensors;
   ControlDefaults control;
-  double soft_limit_margin = 0;  ///< inside the position limits [rad]
+  double soft_limit_margin = 0;  ///< distance that is kept inside the position limits [rad]
   double servo_period = 0.001;   ///< [s]
-  std::string trunk_link;        ///< empty: the root link
-  std::vector<std::pair<std::string, std::string>> collision_ignore;  ///< link pairs never checked
-  std::vector<std::string> missing_meshes;  ///< left out: each mesh file with its link, in words
-  std::vector<std::string> assumptions;     ///< values that were inferred, in words
+  std::string trunk_link;        ///< link of the trunk; empty: the root link
+  /// Pairs of links that are never checked.
+  std::vector<std::pair<std::string, std::string>> collision_ignore;
+  /// Meshes that were left out, each with its link, in words.
+  std::vector<std::string> missing_meshes;
+  std::vector<std::string> assumptions;  ///< values that were inferred, in words
 };
 
 }  // namespace ayumi

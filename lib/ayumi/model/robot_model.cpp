@@ -21,14 +21,15 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Most names of links or postures in one message. Chosen: a message that a person still reads.
+/// Largest number of names of links or postures in one message. Chosen: a person still reads a
+/// message of this length.
 constexpr size_t kMostNamed = 20;
 
-/// Penetration of a sole without a stated stiffness under the whole weight [m]. Chosen: stiff
+/// Depth by which a sole without a stated stiffness sinks under the whole weight [m]. Chosen: stiff
 /// rubber; the sidecar states the measured stiffness.
 constexpr double kSoleSink = 0.0001;
-/// Damping over stiffness of a sole without a stated one [s]. Chosen: four steps of 1 ms, so that a
-/// foot does not bounce.
+/// Ratio of damping to stiffness of a sole without a stated one [s]. Chosen: four steps of 1 ms, so
+/// that a foot does not bounce.
 constexpr double kSoleDampingTime = 0.004;
 
 Inertia moved(const Inertia& inertia, const Eigen::Isometry3d& pose) {
@@ -155,8 +156,8 @@ class TreeBuilder {
   std::vector<Link>* links_ = nullptr;
 };
 
-// A body that moves needs mass, except a frame between two axes of one joint, which has no shape
-// and carries a body with mass.
+// A body that moves needs mass. The exception is a frame between two axes of one joint: it has no
+// shape and carries a body with mass.
 void require_masses(const RobotDescription& robot, const std::vector<Body>& bodies,
                     const std::vector<Link>& links) {
   std::vector<double> beyond(bodies.size(), 0);
@@ -251,7 +252,7 @@ void validate_postures(const RobotDescription& robot, const std::vector<Dof>& do
     }
 }
 
-// The posture nearest to zero within the limits.
+// The posture that is nearest to zero within the limits.
 std::map<std::string, double> neutral_posture(const std::vector<Dof>& dofs) {
   std::map<std::string, double> posture;
   for (const Dof& dof : dofs) posture[dof.name] = std::clamp(0.0, dof.lower, dof.upper);

@@ -17,63 +17,68 @@ enum class Side { left = 0, right = 1 };
 inline const char* name_of(Side side) { return side == Side::left ? "left" : "right"; }
 inline Side other(Side side) { return side == Side::left ? Side::right : Side::left; }
 
-/// A moving body: a link and all links fixed to it. Body frame = frame of the first of them.
+/// A moving body: a link and all links fixed to it. The frame of the body is the frame of the first
+/// of these links.
 struct Body {
-  std::string name;  ///< of its first link
-  int parent = -1;   ///< body index; -1 for the root
+  std::string name;  ///< name of its first link
+  int parent = -1;   ///< index of the parent body; -1 for the root
   bool prismatic = false;
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< unit, joint frame = body frame at 0
-  Eigen::Isometry3d placement = Eigen::Isometry3d::Identity();  ///< in the parent body at theta = 0
+  /// Unit vector of the joint's axis; at angle 0, the joint frame is the body frame.
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
+  /// Pose in the parent body at theta = 0.
+  Eigen::Isometry3d placement = Eigen::Isometry3d::Identity();
   int dof = -1;                  ///< column of theta; -1 for the root
   double ratio = 1, offset = 0;  ///< joint = ratio theta[dof] + offset
-  Inertia inertia;               ///< of all its links, body frame
+  Inertia inertia;               ///< inertia of all links of the body, in the body frame
 };
 
 /// One generalised coordinate of theta.
 struct Dof {
-  std::string name;  ///< joint name
-  int body = -1;     ///< the body it moves (the driving one when others mimic it)
+  std::string name;  ///< name of the joint
+  int body = -1;     ///< the body that it moves (the driving body if other joints mimic this one)
   bool prismatic = false;
-  bool limited = false;         ///< position limits exist (not a continuous joint)
-  double lower = 0, upper = 0;  ///< [rad] or [m]; +-infinity when not limited
-  EncoderDescription encoder;   ///< device 0 when the robot has none
+  bool limited = false;         ///< whether position limits exist (a continuous joint has none)
+  double lower = 0, upper = 0;  ///< position limits [rad] or [m]; +-infinity if there are none
+  EncoderDescription encoder;   ///< encoder of the joint; its device is 0 if the robot has none
 };
 
-/// Motors and servos of one profile over the dofs; limits are infinite where the files give none.
+/// Motors and servos of one profile for all dofs; limits are infinite where the files give none.
 struct ActuatorLimits {
   std::string name;
-  Eigen::VectorXd speed;              ///< [rad/s]
-  Eigen::VectorXd peak_torque;        ///< [N m]
-  Eigen::VectorXd continuous_torque;  ///< [N m]
+  Eigen::VectorXd speed;              ///< largest speed by dof [rad/s]
+  Eigen::VectorXd peak_torque;        ///< largest torque by dof [N m]
+  Eigen::VectorXd continuous_torque;  ///< largest RMS torque by dof over thermal_window [N m]
   double thermal_window = 10.0;       ///< [s]
   std::vector<ServoDescription> servo;
-  std::vector<bool> has_servo;  ///< whether the files give the joint a servo; one with kp 0 is
-                                ///< passive
+  /// Whether the files give the joint a servo; a servo with kp = 0 is passive.
+  std::vector<bool> has_servo;
 };
 
 struct Link {
   std::string name;
   int body = 0;
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< link frame in its body
-  Inertia inertia;                                         ///< link frame
-  std::vector<PlacedShape> visuals, collisions;            ///< link frame
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< frame of the link in its body
+  Inertia inertia;                                         ///< inertia in the link frame
+  std::vector<PlacedShape> visuals, collisions;            ///< shapes in the link frame
 };
 
 struct Sole {
   int body = 0;
-  Eigen::Isometry3d frame = Eigen::Isometry3d::Identity();  ///< sole frame in its body
-  std::vector<Eigen::Vector2d> polygon;                     ///< counter-clockwise, sole frame [m]
-  Eigen::Vector2d center = Eigen::Vector2d::Zero();         ///< centroid of the polygon, sole frame
-  double stiffness = 0;                                     ///< [N/m]
-  double damping_time = 0;                                  ///< [s]
+  Eigen::Isometry3d frame = Eigen::Isometry3d::Identity();  ///< frame of the sole in its body
+  std::vector<Eigen::Vector2d> polygon;  ///< corners, counter-clockwise, in the sole frame [m]
+  /// Centroid of the polygon, in the sole frame [m].
+  Eigen::Vector2d center = Eigen::Vector2d::Zero();
+  double stiffness = 0;     ///< [N/m]
+  double damping_time = 0;  ///< [s]
 };
 
 class RobotModel {
  public:
-  /// Throws Error(bad_model) that names link or joint and remedy: no or several roots, a loop,
-  /// an unknown link, two links of one name, a moving body without mass, negative mass or an
-  /// inertia that no body can have, non-finite numbers, axis of length zero, limits reversed, an
-  /// unknown mimic, sole or posture joint, a posture outside the limits.
+  /// Throws Error(bad_model) that names the link or joint and the remedy. Refused are: no root or
+  /// several roots, a loop, an unknown link, two links of one name, a moving body without mass, a
+  /// negative mass, an inertia that no body can have, numbers that are not finite, an axis of
+  /// length zero, limits in the wrong order, an unknown mimic, sole or posture joint, and a posture
+  /// outside the limits.
   explicit RobotModel(RobotDescription description);
 
   const RobotDescription& description() const { return description_; }
@@ -87,28 +92,29 @@ class RobotModel {
   int velocity_count() const { return 6 + dof_count(); }
   std::vector<std::string> dof_names() const;
 
-  /// Index by name; -1 when there is none.
+  /// The index that belongs to the name; -1 if there is none.
   int find_dof(const std::string& joint_name) const;
   int find_link(const std::string& link_name) const;
 
   bool has_soles() const { return soles_.size() == 2; }
-  const Sole& sole(Side side) const;  ///< throws Error(bad_model) when the robot has no soles
-  /// Dofs between the root and this foot, from the root outwards.
+  const Sole& sole(Side side) const;  ///< throws Error(bad_model) if the robot has no soles
+  /// The dofs between the root and this foot, from the root outwards.
   const std::vector<int>& leg(Side side) const;
   int trunk_body() const { return trunk_body_; }
 
-  /// Actuator limits by profile name; the default profile for "". Throws Error(bad_model) that
-  /// names the known profiles.
+  /// Actuator limits by profile name; "" is the default profile. Throws Error(bad_model) that names
+  /// the known profiles.
   const ActuatorLimits& limits(const std::string& profile = "") const;
   std::vector<std::string> profile_names() const;
 
-  /// theta of a named posture [rad]; joints it leaves out are 0. Throws Error(bad_model).
+  /// theta of a named posture [rad]; joints that the posture does not name are 0. Throws
+  /// Error(bad_model).
   Eigen::VectorXd posture(const std::string& posture_name = "home") const;
   bool has_posture(const std::string& posture_name) const;
 
-  Eigen::VectorXd joint_weight() const;  ///< diagonal of W: the sidecar's, else 1
+  Eigen::VectorXd joint_weight() const;  ///< diagonal of W: the sidecar's, otherwise 1
 
-  /// State at rest, base at the origin, joints in `posture_name`.
+  /// The state at rest with the base at the origin and the joints in `posture_name`.
   RobotState rest_state(const std::string& posture_name = "home") const;
 
  private:

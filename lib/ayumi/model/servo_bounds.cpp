@@ -11,18 +11,18 @@ namespace ayumi {
 
 namespace {
 
-// With the robot's mass m and its stretched length L, and gravity g:
-// a rotor as heavy to turn as the whole robot about one end, m L^2, and dry friction that holds the
-// whole robot stretched out, m g L. Chosen: those of HOAP-1 are 1/1000 and 1/100 of this; half or
-// twice the value would accept the same servos.
+// Bounds of the rotor inertia and of the dry friction, with the robot's mass m, its stretched
+// length L and gravity g. They are shares of m L^2, the inertia of the whole robot about one of its
+// ends, and of m g L, the torque that holds the whole robot stretched out. Chosen: HOAP-1 has
+// 1/1000 and 1/100 of these values; half or twice the bounds would accept the same servos.
 constexpr double kInertiaShare = 1, kFrictionShare = 1;
 
-// Stiffness in m g L per radian. Chosen: the whole robot stretched out then bends the joint by 0.1
-// mrad; the measured servos of a HOAP-3 reach 80.
+// Largest stiffness, in m g L per radian. Chosen: with it, the weight of the whole robot stretched
+// out bends the joint by 0.1 mrad; the measured servos of a HOAP-3 reach 80.
 constexpr double kStiffnessShare = 1e4;
 
-// Damping and viscous friction in m g L sqrt(L / g), with which the robot would tilt for seconds.
-// Chosen: those of a HOAP-3 reach 0.7.
+// Largest damping and viscous friction, in m g L sqrt(L / g). Chosen: with it, the robot would tilt
+// for seconds; the servos of a HOAP-3 reach 0.7.
 constexpr double kDampingShare = 100;
 
 struct ServoBound {
@@ -57,7 +57,7 @@ void require_servos_that_fit(const RobotModel& model) {
   for (const std::string& profile : model.profile_names()) {
     const ActuatorLimits& limits = model.limits(profile);
     for (int j = 0; j < model.dof_count(); ++j) {
-      // Of a sliding joint, a metre takes the place of a radian.
+      // For a sliding joint, read metre in place of radian.
       const bool slides = model.dofs()[static_cast<size_t>(j)].prismatic;
       const double lever = slides ? 1 : length;
       const double friction = kFrictionShare * weight * lever,

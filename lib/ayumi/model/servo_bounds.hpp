@@ -1,13 +1,13 @@
 #pragma once
 // Bounds of servo constants that follow from the robot itself. The reader of a robot's file only
-// knows bounds for any robot, which a wrong unit of a small servo may keep. What no motor of a
-// robot of this mass and size can have is refused here.
+// knows bounds that hold for every robot, and a small servo in a wrong unit may be within these.
+// Constants that no motor of a robot of this mass and size can have are refused here.
 
 #include "ayumi/model/robot_model.hpp"
 
 namespace ayumi {
 
-/// Twice the longest way from the root along the joints to a body's centre of mass [m].
+/// Twice the longest path from the root along the joints to a body's centre of mass [m].
 double stretched_length(const RobotModel& model);
 
 /// Throws Error(bad_model) "file: profile, joint: value, limit" for the first constant that is too

@@ -248,9 +248,10 @@ void positive(const RobotDescription& robot, const std::string& what,
           robot, "", what + " of '" + name + "' is " + text::exact(value) + "; it must be above 0");
 }
 
-// Most corners of a sole. Each is a contact of the simulation, whose time grows with the third
-// power of their number. Chosen: on a round sole of 0.1 m, 32 corners leave out 0.5 mm. At half of
-// it, this is 2 mm; at twice, a step of the simulation takes eight times as long.
+// Largest number of corners of a sole. Each corner is a contact of the simulation, whose time grows
+// with the third power of their number. Chosen: on a round sole of 0.1 m, 32 corners leave out 0.5
+// mm. With half of them, it is 2 mm; with twice, a step of the simulation takes eight times as
+// long.
 constexpr size_t kMostSoleCorners = 32;
 
 void validate_sole(const RobotDescription& robot, const std::string& side,

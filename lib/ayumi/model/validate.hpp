@@ -12,9 +12,9 @@ namespace ayumi {
 /// Largest mass [kg] and length [m] of a robot. Chosen: a larger value is in a wrong unit.
 inline constexpr double kLargestMass = 1e6;
 inline constexpr double kLargestLength = 1e4;
-/// Shortest and longest servo period [s]. Chosen: a thousandth of the shortest and a hundred times
-/// the longest that a servo is known to have; another value is in a wrong unit. At this shortest
-/// one, a motion of half a second has the most steps that sampling takes.
+/// Shortest and longest servo period [s]. Chosen: a thousandth of the shortest period and a hundred
+/// times the longest period of known servos; another value is in a wrong unit. With the shortest
+/// period, a motion of half a second has the largest number of steps that sampling accepts.
 inline constexpr double kShortestServoPeriod = 1e-7, kLongestServoPeriod = 10;
 
 /// Throws Error(bad_model) "urdf file: message".

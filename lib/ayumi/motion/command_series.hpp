@@ -15,25 +15,25 @@
 namespace ayumi {
 
 struct CommandSample {
-  RobotState state;                                 ///< planned base and joints
-  Eigen::VectorXd acceleration;                     ///< [a_WB; dw_WB; ddtheta], world
-  Eigen::Vector3d cog = Eigen::Vector3d::Zero();    ///< cmd p_G, world [m]
-  Eigen::Vector3d dcog = Eigen::Vector3d::Zero();   ///< [m/s]
-  Eigen::Vector3d ddcog = Eigen::Vector3d::Zero();  ///< [m/s^2]
-  Eigen::Vector3d zmp = Eigen::Vector3d::Zero();    ///< cmd p_Z, world [m]
-  double fz = 0;                                    ///< cmd f_z [N]
+  RobotState state;                                 ///< planned state of base and joints
+  Eigen::VectorXd acceleration;                     ///< [a_WB; dw_WB; ddtheta], world axes
+  Eigen::Vector3d cog = Eigen::Vector3d::Zero();    ///< commanded COG p_G in the world [m]
+  Eigen::Vector3d dcog = Eigen::Vector3d::Zero();   ///< velocity of the COG [m/s]
+  Eigen::Vector3d ddcog = Eigen::Vector3d::Zero();  ///< acceleration of the COG [m/s^2]
+  Eigen::Vector3d zmp = Eigen::Vector3d::Zero();    ///< commanded ZMP p_Z in the world [m]
+  double fz = 0;                                    ///< commanded vertical force f_z [N]
   Support support = Support::both;
   std::array<Eigen::Isometry3d, 2> feet = {Eigen::Isometry3d::Identity(),
                                            Eigen::Isometry3d::Identity()};  ///< planned sole frames
 };
 
-/// A phase in which VIIP controls the robot; the samples hold the posture in it.
+/// A phase in which VIIP controls the robot. The samples hold the posture during it.
 struct ViipSpan {
-  long begin = 0, end = 0;  ///< ticks, the end not included
+  long begin = 0, end = 0;  ///< ticks from `begin` to before `end`
   ViipGoal goal;
 };
 
-/// W = diag(value), valid from this sample on [dof].
+/// W = diag(value), valid from this sample on, with one entry per dof.
 struct JointWeight {
   long from = 0;
   Eigen::VectorXd value;
@@ -41,21 +41,24 @@ struct JointWeight {
 };
 
 struct CommandSeries {
-  double dt = 0.001;  ///< [s]
+  double dt = 0.001;  ///< time between samples [s]
   std::vector<CommandSample> samples;
-  std::vector<ViipSpan> viip;                 ///< in time order
+  std::vector<ViipSpan> viip;                 ///< VIIP phases in time order
   std::map<std::string, std::string> origin;  ///< source of each track, in words
-  std::vector<JointWeight> joint_weight;      ///< in time order; none: the robot's own
-  /// The joints come from a table of servo targets without their lead; it is replayed unchanged.
+  /// Weights in time order; if there are none, the robot's own are used.
+  std::vector<JointWeight> joint_weight;
+  /// Whether the joints come from a table of servo targets, from which the lead was removed; the
+  /// table is replayed unchanged.
   bool servo_commands = false;
-  /// Servo targets in open loop, in place of the command with its feedforward, dof x samples [rad];
-  /// the last column is held after the end. Empty: the command with its feedforward is used.
+  /// Servo targets for open loop instead of the command with its feedforward, dof x samples [rad];
+  /// the last column is held after the end. If the matrix is empty, the command with its
+  /// feedforward is used.
   Eigen::MatrixXd targets = {};
-  /// The rows of an imported sequence, which a robot receives unchanged; none: the table is
+  /// The rows of an imported sequence, which a robot receives unchanged. Without them, the table is
   /// computed from the samples.
   std::optional<ReferenceTrajectory> kept = {};
 
-  /// W of sample k; null: the robot's own.
+  /// The W of sample k; null if it is the robot's own.
   const Eigen::VectorXd* joint_weight_at(long k) const {
     const Eigen::VectorXd* weight = nullptr;
     for (const JointWeight& w : joint_weight)

@@ -8,16 +8,17 @@
 
 namespace ayumi {
 
-/// The laws.
+/// The control laws.
 enum class ControllerKind {
   none,  ///< open loop: the servos receive the command; VIIP phases hold their posture
-  dtad,  ///< DTAD, section 3 of the paper; VIIP in phases that carry goals
-  viip,  ///< the same laws in the same phases, but the gains given are those of VIIP
-  /// Baselines: published control laws with the body, sensors and servos of DTAD. Only the choice
-  /// of the ZMP differs. VIIP is used in phases with goals.
+  dtad,  ///< DTAD, section 3 of the paper, with VIIP in phases that carry goals
+  viip,  ///< the same laws in the same phases, but the given gains are those of VIIP
+  /// The next three are baselines: published control laws with the body, sensors and servos of
+  /// DTAD. Only the choice of the ZMP differs. VIIP is used in phases with goals.
   preview,      ///< ZMP preview control (control/preview_control)
   foot_guided,  ///< foot-guided control (control/foot_guided)
-  dcm_step,     ///< DCM tracking that chooses step place and durations (control/step_program)
+  dcm_step,     ///< DCM tracking that chooses the place and the durations of steps
+                ///< (control/step_program)
 };
 
 /// Whether the law is a baseline: it chooses the ZMP in another way, and everything else is as in
@@ -27,9 +28,10 @@ bool is_baseline(ControllerKind kind);
 /// Variants that show the effect of one part of a law. They are not meant for a robot.
 enum class Demonstration {
   none,
-  literal,        ///< DTAD: (14) is integrated as printed, only the sign of D is corrected
-  no_feedback,    ///< VIIP without measurements: feet land at planned times; otherwise open loop
-  landings_only,  ///< VIIP: as no_feedback, but the landing of a foot is noticed
+  literal,  ///< DTAD in which (14) is integrated as printed, and only the sign of D is corrected
+  no_feedback,  ///< VIIP without measurements: feet land at planned times; everything else is open
+                ///< loop
+  landings_only,  ///< VIIP as in no_feedback, but the landing of a foot is noticed
 };
 
 struct ControllerType {
@@ -42,13 +44,13 @@ struct ControllerType {
   bool operator==(const ControllerType&) const = default;
 };
 
-/// The name in files and on the command line: "none", "dtad", "dtad-literal", ...
+/// The name of a type in files and on the command line, such as "none", "dtad" or "dtad-literal".
 const std::string& name_of(const ControllerType& type);
 
 /// All names, law by law.
 const std::vector<std::string>& controller_names();
 
-/// The type of that name. Throws Error(usage) with the known names.
+/// The type of that name. Throws Error(usage) that lists the known names.
 ControllerType controller_type(const std::string& name);
 
 /// A controller with its gains; gains that are not given are the robot's defaults.

@@ -1,6 +1,6 @@
 // Attitude exp(r) R: with the left Jacobian J(r) = 1 + a [r] + b [r]^2,
 //   a = (1 - cos f)/f^2, b = (f - sin f)/f^3, f = |r|,
-// w' = J r' + exp(r) w  and  dw' = d(J r')/dt + (J r') x exp(r) w + exp(r) dw.
+// w' = J r' + exp(r) w and dw' = d(J r')/dt + (J r') x exp(r) w + exp(r) dw.
 #include "ayumi/motion/correction.hpp"
 
 #include <algorithm>
@@ -21,17 +21,17 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Changes below this are the rounding of control points that cancel each other; they become zero,
-// so that samples without a change stay bit-identical [m, rad]. Chosen: above the rounding of
+// Changes below this are the rounding of control points that cancel each other; they are set to
+// zero, so that samples without a change stay bit-identical [m, rad]. Chosen: above the rounding of
 // control points of metres and radians (2e-16).
 constexpr double kRounded = 1e-13;
 
 struct JacobianFactors {
-  double a, b, da, db;  // with their derivatives by f^2
+  double a, b, da, db;  // the two factors and their derivatives by f^2
 };
 
 JacobianFactors jacobian_factors(double f2) {
-  if (f2 < 0.01) {  // series to f^6, with an error below 1e-14
+  if (f2 < 0.01) {  // the series to f^6, with an error below 1e-14
     return {0.5 - f2 * (1.0 / 24 - f2 * (1.0 / 720 - f2 / 40320)),
             1.0 / 6 - f2 * (1.0 / 120 - f2 * (1.0 / 5040 - f2 / 362880)),
             -1.0 / 24 + f2 * (1.0 / 360 - f2 / 13440),
@@ -44,7 +44,7 @@ JacobianFactors jacobian_factors(double f2) {
 
 void rotate_base(const Vector3d& r, const Vector3d& dr, const Vector3d& ddr,
                  CommandSample& sample) {
-  if (r.isZero(0) && dr.isZero(0) && ddr.isZero(0)) return;  // keeps every bit
+  if (r.isZero(0) && dr.isZero(0) && ddr.isZero(0)) return;  // every bit of the sample is kept
   const JacobianFactors k = jacobian_factors(r.squaredNorm());
   const double df2 = 2 * r.dot(dr);
   const Vector3d rdr = r.cross(dr), rddr = r.cross(ddr);
@@ -77,7 +77,8 @@ SplineWeights correction_weights(const CorrectionTrack& track, double t) {
   SplineWeights weights;
   const auto last = static_cast<int>(track.coefficients.rows()) - 4;
   const double knots = (t - track.begin) / track.spacing;
-  // [knots] Chosen: above rounding, so that the end of the track belongs to it.
+  // Tolerance by which t may lie outside the track [knots]. Chosen: above rounding, so that the end
+  // of the track belongs to it.
   constexpr double kRounding = 1e-6;
   if (last < 0 || !(knots >= -kRounding) || knots > last + 1 + kRounding) return weights;
   weights.first = std::clamp(static_cast<int>(knots), 0, last);

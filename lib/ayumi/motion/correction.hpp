@@ -7,12 +7,12 @@
 namespace ayumi {
 
 /// Values of the four cubic B-spline basis functions that are not zero at time t, the index of the
-/// first one, and their first and second time derivatives. Zero outside the track.
+/// first one, and their first and second time derivatives. All are zero outside the track.
 struct SplineWeights {
   int first = 0;
   Eigen::Vector4d value = Eigen::Vector4d::Zero();
-  Eigen::Vector4d rate = Eigen::Vector4d::Zero();          ///< [1/s]
-  Eigen::Vector4d acceleration = Eigen::Vector4d::Zero();  ///< [1/s^2]
+  Eigen::Vector4d rate = Eigen::Vector4d::Zero();          ///< first derivatives [1/s]
+  Eigen::Vector4d acceleration = Eigen::Vector4d::Zero();  ///< second derivatives [1/s^2]
 };
 SplineWeights correction_weights(const CorrectionTrack& track, double t);
 

@@ -15,11 +15,11 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Fraction of the weight below which the ZMP has no meaning, as in flight: it is a quotient by the
-/// ground force. Chosen: 5 %, above the force of a foot that only touches.
+/// Fraction of the weight below which the ZMP has no meaning, as in flight, because it is divided
+/// by the ground force. Chosen: 5 %, above the force of a foot that only touches.
 constexpr double kZmpMinLoad = 0.05;
 
-// [position; rotation vector; theta; COG] of sample i from sample k into d.
+// Writes [position; rotation vector; theta; COG] of sample i relative to sample k into d.
 void put_between(const std::vector<CommandSample>& samples, int k, int i, VectorXd& d) {
   const RobotState& from = samples[k].state;
   const RobotState& to = samples[i].state;
@@ -34,7 +34,7 @@ void put_between(const std::vector<CommandSample>& samples, int k, int i, Vector
   d.tail<3>() = samples[i].cog - samples[k].cog;
 }
 
-// The same for a sample i that may lie outside the motion.
+// Writes the same for a sample i that may lie outside the motion.
 void put_extended(const std::vector<CommandSample>& samples, int k, int i, bool rest_ends,
                   VectorXd& d) {
   const int last = static_cast<int>(samples.size()) - 1;

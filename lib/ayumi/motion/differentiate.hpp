@@ -11,19 +11,20 @@
 namespace ayumi {
 
 /// Fills velocities and accelerations of base, joints and COG by central differences of fourth
-/// order. With `rest_ends` the motion is at rest before its first and after its last sample;
+/// order. With `rest_ends`, the motion is at rest before its first sample and after its last;
 /// otherwise it continues as a cubic.
 void fill_rates(std::vector<CommandSample>& samples, double dt, bool rest_ends);
 
-/// The same for the samples from `first` to before `end`. Threads may fill different samples.
+/// The same for the samples from `first` to before `end`. Different threads may fill different
+/// samples at once.
 void fill_rates(std::vector<CommandSample>& samples, int first, int end, double dt, bool rest_ends);
 
-/// ZMP at the height of `sample.zmp` and ground force that the full model needs. Below 5 % of the
-/// weight, as in flight, the ZMP is the point under the base.
+/// The ZMP at the height of `sample.zmp` and the ground force that the full model needs. If the
+/// force is below 5 % of the weight, as in flight, the ZMP is the point under the base.
 GroundReaction full_model_reaction(const RobotModel& model, const CommandSample& sample,
                                    RobotData& data);
 
-/// The same of many samples, to rounding, and much faster. `dynamics` is that of `model`.
+/// The same for many samples, equal up to rounding and much faster. `dynamics` is that of `model`.
 void full_model_reactions(const RobotModel& model, std::span<const CommandSample> samples,
                           TreeDynamics& dynamics, std::vector<GroundReaction>& reactions);
 

@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// Fraction of a motion's full value at time t.
+/// The fraction of a floor motion's full value that is reached at time t.
 double share_of(const FloorMotion& motion, double t) {
   const double since = t - motion.at;
   if (since < 0) return 0;

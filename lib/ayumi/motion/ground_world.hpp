@@ -8,30 +8,31 @@
 
 namespace ayumi {
 
-/// A part of the ground with its own height, a convex polygon; its friction is the ground's.
+/// A part of the ground with its own height: a convex polygon. Its friction is that of the ground.
 struct GroundBlock {
   enum class Kind { rectangle, disc };
   Kind kind = Kind::rectangle;
-  Eigen::Vector2d low = Eigen::Vector2d::Zero();     ///< least x, y of a rectangle [m]
-  Eigen::Vector2d high = Eigen::Vector2d::Zero();    ///< largest [m]
-  Eigen::Vector2d center = Eigen::Vector2d::Zero();  ///< of a disc [m]
-  double radius = 0;                                 ///< of a disc (an octagon) [m]
-  double height = 0;  ///< of the top over the ground's origin (not over the plane) [m]
+  Eigen::Vector2d low = Eigen::Vector2d::Zero();     ///< least x and y of a rectangle [m]
+  Eigen::Vector2d high = Eigen::Vector2d::Zero();    ///< largest x and y of a rectangle [m]
+  Eigen::Vector2d center = Eigen::Vector2d::Zero();  ///< centre of a disc [m]
+  double radius = 0;                                 ///< radius of a disc, which is an octagon [m]
+  double height = 0;  ///< height of the top over the ground's origin (not over the plane) [m]
 };
 
-/// A rectangle with its own friction; where several overlap, the last one counts.
+/// A rectangle with its own friction. Where several overlap, the last one counts.
 struct FrictionPatch {
-  Eigen::Vector2d low = Eigen::Vector2d::Zero();   ///< least x, y [m]
-  Eigen::Vector2d high = Eigen::Vector2d::Zero();  ///< largest [m]
+  Eigen::Vector2d low = Eigen::Vector2d::Zero();   ///< least x and y [m]
+  Eigen::Vector2d high = Eigen::Vector2d::Zero();  ///< largest x and y [m]
   double friction = 0;                             ///< Coulomb coefficient
 };
 
 /// Heights on a square grid, interpolated bilinearly between the nodes. Outside the grid, the
 /// ground is the plane.
 struct HeightField {
-  Eigen::Vector2d origin = Eigen::Vector2d::Zero();  ///< of node (0, 0) [m]
-  double spacing = 0.01;                             ///< [m]
-  Eigen::MatrixXd heights{};                         ///< (along x, along y), as in a block [m]
+  Eigen::Vector2d origin = Eigen::Vector2d::Zero();  ///< place of node (0, 0) [m]
+  double spacing = 0.01;                             ///< distance between nodes [m]
+  /// Heights by node (along x, along y), measured as those of a block [m].
+  Eigen::MatrixXd heights{};
 };
 
 enum class MotionShape { ramp, half_sine, sine };
@@ -42,14 +43,15 @@ enum class MotionShape { ramp, half_sine, sine };
 ///   sine: sin(2 pi frequency (t - at)) for the duration, then zero.
 struct FloorPath {
   MotionShape shape = MotionShape::ramp;
-  double frequency = 0;                             ///< of a sine [Hz]
-  Eigen::Vector2d tilt = Eigen::Vector2d::Zero();   ///< about the world's x and y axis [rad]
-  Eigen::Vector3d shift = Eigen::Vector3d::Zero();  ///< along the world's axes [m]
+  double frequency = 0;  ///< frequency of a sine [Hz]
+  /// Rotation about the world's x and y axes [rad].
+  Eigen::Vector2d tilt = Eigen::Vector2d::Zero();
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero();  ///< displacement along the world's axes [m]
 };
 
 /// A declared motion of the whole floor; several motions add up.
 struct FloorMotion {
-  double at = 0, duration = 0;  ///< [s]
+  double at = 0, duration = 0;  ///< start and duration [s]
   FloorPath path{};
 };
 
@@ -58,18 +60,19 @@ struct World {
   /// Slope of the ground about the world x and y axis [rad] (rotation vector, plane through the
   /// origin). Gravity stays along -z.
   Eigen::Vector2d slope = Eigen::Vector2d::Zero();
-  double height = 0;  ///< of the plane over the ground's origin, along its normal [m]
+  double height = 0;  ///< height of the plane over the ground's origin, along its normal [m]
   std::vector<GroundBlock> blocks = {};
   std::vector<FrictionPatch> patches = {};
-  std::vector<HeightField> fields = {};  ///< none or one
+  std::vector<HeightField> fields = {};  ///< one height field or none
   std::vector<FloorMotion> motions = {};
 };
 
-/// Corners of a block's top, ground's frame, anticlockwise; returns their number, 4 or 8 (disc).
+/// Writes the corners of a block's top in the ground's frame, anticlockwise. Returns their number:
+/// 4, or 8 for a disc.
 int block_corners(const GroundBlock& block, std::array<Eigen::Vector2d, 8>& corners);
 
-/// The ground's frame in the world at time t [s]: slope and all motions. Before time 0, the frame
-/// is the same as at 0.
+/// The pose of the ground's frame in the world at time t [s], from the slope and all motions.
+/// Before time 0, it is the same as at 0.
 Eigen::Isometry3d floor_pose(const World& world, const std::vector<FloorMotion>& further, double t);
 
 }  // namespace ayumi

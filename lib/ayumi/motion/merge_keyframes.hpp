@@ -1,11 +1,11 @@
 #pragma once
-// Two keyframes at one time as one.
+// Merges two keyframes at the same time into one.
 
 #include "ayumi/motion/pattern.hpp"
 
 namespace ayumi {
 
-/// `key` also sets what `later` sets; where both name the same track, `later` counts.
+/// Sets in `key` also what `later` sets. If both name the same track, `later` counts.
 void merge(Keyframe& key, const Keyframe& later);
 
 }  // namespace ayumi

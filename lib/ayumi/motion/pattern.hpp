@@ -1,6 +1,6 @@
 #pragma once
 // A pattern as its author writes it: keyframes on tracks, contact phases, controller and scenario.
-// Plain data in SI units and radians (the file states its own angle unit). docs/formats.md
+// It is plain data in SI units and radians (the file states its own angle unit). docs/formats.md
 // specifies the file.
 
 #include <Eigen/Geometry>
@@ -36,41 +36,43 @@ inline Support opposite(Support support) {
 
 const char* name_of(Interpolation interpolation);
 
-/// A foothold: pose of the sole frame in the world.
+/// A foothold, which is a pose of the sole frame in the world.
 struct Foothold {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
-  Eigen::Vector3d rpy = Eigen::Vector3d::Zero();       ///< roll, pitch, yaw, R = Rz Ry Rx [rad]
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< position [m]
+  Eigen::Vector3d rpy = Eigen::Vector3d::Zero();  ///< roll, pitch and yaw, with R = Rz Ry Rx [rad]
 };
 
 /// A step as seen from the sole frame of the other foot. If all values are 0, the foot lands beside
 /// the other one, with the distance and the turn that it has at the start.
 struct RelativeStep {
-  double forward = 0, side = 0, up = 0;  ///< ahead, to the left, upwards [m]
-  double turn = 0;                       ///< to the left [rad]
+  double forward = 0, side = 0, up = 0;  ///< distance ahead, to the left and upwards [m]
+  double turn = 0;                       ///< turn to the left [rad]
 };
 
 /// The foot that moves during a phase, and where it lands.
 struct Swing {
   Side foot = Side::left;
-  Foothold to;         ///< unused with a step
+  Foothold to;         ///< place of landing; unused if a step is given
   double lift = 0.02;  ///< height of the sole at mid-swing above the line between footholds [m]
   std::optional<RelativeStep> step = {};
 };
 
 /// The feet that carry the robot until `until`; phases follow each other from t = 0.
 struct Phase {
-  double until = 0;  ///< [s]
+  double until = 0;  ///< end of the phase [s]
   Support support = Support::both;
   std::optional<Swing> swing;
-  std::optional<ViipGoal> viip = {};  ///< VIIP controls the robot: a goal in place of keys
-  std::string pointer = {};           ///< JSON pointer of its source in the file; empty: of none
+  /// The goal with which VIIP controls the robot instead of keys.
+  std::optional<ViipGoal> viip = {};
+  /// JSON pointer of its source in the file; empty if it is from no file.
+  std::string pointer = {};
 };
 
 /// A ZMP key: a place under the supporting feet, or a point on the ground.
 struct ZmpKey {
   enum class Place { left, right, center, point };
-  Place place = Place::point;  ///< left/right: centre of that sole at that time
-  Eigen::Vector2d point = Eigen::Vector2d::Zero();  ///< world [m], for Place::point
+  Place place = Place::point;  ///< left/right: the centre of that sole at that time
+  Eigen::Vector2d point = Eigen::Vector2d::Zero();  ///< point in the world [m], for Place::point
 };
 /// The mirror image: left and right are exchanged.
 inline ZmpKey::Place opposite(ZmpKey::Place place) {
@@ -79,96 +81,101 @@ inline ZmpKey::Place opposite(ZmpKey::Place place) {
                                          : place;
 }
 
-/// Target of the end of a link: its place and its direction; or the point that a head looks at.
+/// The target of the end of a link, as its place and its direction, or the point that a head looks
+/// at.
 struct LinkTarget {
   enum class Frame { world, trunk };
   Frame frame = Frame::world;
-  std::optional<Eigen::Vector3d> position;   ///< none: the keys of the joints lead the link again
-  std::optional<Eigen::Vector3d> direction;  ///< from the link's joint to its end, unit vector
+  /// Place of the end; without it, the keys of the joints lead the link again.
+  std::optional<Eigen::Vector3d> position;
+  std::optional<Eigen::Vector3d> direction;  ///< unit vector from the link's joint to its end
 };
 
-/// Sets the tracks that it names at time t, and no other tracks.
+/// A keyframe sets the tracks that it names at time t, and no other tracks.
 struct Keyframe {
-  double t = 0;                                ///< [s]
-  std::optional<Interpolation> interpolation;  ///< of the segment that ends here
-  std::optional<std::string> posture;          ///< named posture of the robot
-  std::map<std::string, double> joints;        ///< by joint name [rad]
+  double t = 0;                                ///< time [s]
+  std::optional<Interpolation> interpolation;  ///< interpolation of the segment that ends here
+  std::optional<std::string> posture;          ///< name of a posture of the robot
+  std::map<std::string, double> joints;        ///< positions by joint name [rad]
   std::optional<ZmpKey> zmp;
-  std::optional<double> cog_x, cog_y, cog_height;  ///< world [m]
-  std::optional<double> fz;                        ///< [N]
-  std::optional<Eigen::Vector3d> torso;            ///< roll, pitch, yaw in the world [rad]
-  std::array<std::optional<Foothold>, 2> feet;     ///< by Side, world
-  std::map<std::string, LinkTarget> hands;         ///< by "left", "right" or the name of a link
-  std::optional<LinkTarget> gaze;                  ///< the point that the head looks at
-  std::map<std::string, double> weights;           ///< diagonal of W by joint name
-  SourcePlace place;                               ///< in the file, for messages
-  std::string pointer = {};                        ///< JSON pointer of its source; empty: of none
+  std::optional<double> cog_x, cog_y, cog_height;  ///< COG in the world [m]
+  std::optional<double> fz;                        ///< vertical force [N]
+  std::optional<Eigen::Vector3d> torso;  ///< roll, pitch and yaw of the torso in the world [rad]
+  std::array<std::optional<Foothold>, 2> feet;  ///< footholds by Side, in the world
+  std::map<std::string, LinkTarget> hands;  ///< targets by "left", "right" or the name of a link
+  std::optional<LinkTarget> gaze;           ///< the point that the head looks at
+  std::map<std::string, double> weights;    ///< diagonal of W, by joint name
+  SourcePlace place;                        ///< place in the file, for messages
+  std::string pointer = {};  ///< JSON pointer of its source; empty if it is from no file
 };
 
-/// The file of targets from which a table was imported, kept beside the table.
+/// The file of targets from which a table was imported, which is kept beside the table.
 struct KeptSequence {
-  std::string file;          ///< as the head of the table names it, or an absolute path
-  std::string sha256;        ///< of its bytes
-  std::string theta_sha256;  ///< of the angles that the import made of it (DenseTable::theta)
+  std::string file;    ///< name in the head of the table, or an absolute path
+  std::string sha256;  ///< checksum of its bytes
+  /// Checksum of the angles that the import made of it (DenseTable::theta).
+  std::string theta_sha256;
 };
 
 /// A sampled motion in a file beside the pattern: all columns of the file, at a fixed rate.
 struct DenseTable {
-  std::string file;                           ///< as the pattern names it
-  double dt = 0.001;                          ///< [s]
-  std::vector<std::string> joints;            ///< columns of theta
-  Eigen::MatrixXd theta;                      ///< rows x joints [rad]
-  bool commands = false;                      ///< theta are servo targets, not the posture
+  std::string file;                           ///< name in the pattern
+  double dt = 0.001;                          ///< time between rows [s]
+  std::vector<std::string> joints;            ///< names of the columns of theta
+  Eigen::MatrixXd theta;                      ///< joint positions, rows x joints [rad]
+  bool commands = false;                      ///< theta holds servo targets instead of the posture
   std::vector<BasePose> base;                 ///< empty or one per row
-  std::vector<Eigen::Vector3d> cog, zmp;      ///< empty or one per row, world [m]
-  std::vector<double> fz;                     ///< empty or one per row [N]
-  std::optional<KeptSequence> sequence = {};  ///< of an imported table
-  int interval_ms = 0;  ///< from row to row of the file that was imported; 0: none was [ms]
+  std::vector<Eigen::Vector3d> cog, zmp;      ///< places in the world [m]; empty or one per row
+  std::vector<double> fz;                     ///< vertical force [N]; empty or one per row
+  std::optional<KeptSequence> sequence = {};  ///< source of an imported table
+  int interval_ms = 0;  ///< time between rows of the imported file [ms]; 0 if none was imported
 };
 
 /// A smooth change that is added to the sampled motion, as a repair writes it: uniform cubic
-/// B-splines in time. Column order: base x y z [m], base rotation vector (world axes,
-/// left-multiplied) [rad], joints.
+/// B-splines in time. The columns are: base x y z [m], the rotation vector of the base (world axes,
+/// left-multiplied) [rad], and the joints.
 struct CorrectionTrack {
-  double begin = 0;                 ///< [s]
-  double spacing = 0;               ///< of the knots [s]
-  std::vector<std::string> joints;  ///< names of columns 6...
+  double begin = 0;                 ///< start of the track [s]
+  double spacing = 0;               ///< time between knots [s]
+  std::vector<std::string> joints;  ///< names of the columns from 6 on
   Eigen::MatrixXd coefficients;     ///< control points x (6 + joints)
 };
 
 /// The commanded quantity that a repair keeps and that the others have to follow. COG, ZMP and f_z
-/// that are not trusted become those of the full model.
+/// that are not trusted are replaced by those of the full model.
 enum class Trust { posture, cog, zmp };
 const char* name_of(Trust trust);
 
-/// The author's preferences for a repair; the caller of the repair decides what is left out.
+/// The author's preferences for a repair. The caller of the repair decides what is left out.
 struct RepairPreferences {
-  std::vector<std::string> joints;                 ///< locked: bit-identical
-  std::array<bool, 2> feet = {};                   ///< locked, by Side: the feet keep their path
-  std::vector<int> keyframes;                      ///< locked: nothing changes at their times
-  std::vector<std::pair<double, double>> windows;  ///< locked: nothing changes in them [s]
-  std::map<std::string, double> weights;           ///< factors on the cost of a joint
+  std::vector<std::string> joints;  ///< locked joints, which stay bit-identical
+  std::array<bool, 2> feet = {};    ///< locked feet, by Side, which keep their path
+  std::vector<int> keyframes;       ///< locked keyframes, at whose times nothing changes
+  std::vector<std::pair<double, double>> windows;  ///< locked windows, in which nothing changes [s]
+  std::map<std::string, double> weights;           ///< factors on the cost of joints, by name
   std::optional<Trust> trust;
-  std::optional<double> margin;  ///< wanted ZMP distance from the support's edge [m]
-  std::optional<double> safety;  ///< factor on the robustness cost; 0: smallest change alone
+  std::optional<double> margin;  ///< wanted distance of the ZMP from the support's edge [m]
+  /// Factor on the robustness cost; with 0, only the change is kept small.
+  std::optional<double> safety;
 
   bool empty() const;
 };
 
 struct Pattern {
   std::string name;
-  std::string file;     ///< source, for messages
-  std::string sha256;   ///< of its bytes, then of its includes and its table
+  std::string file;     ///< name of the source, for messages
+  std::string sha256;   ///< checksum of its bytes, then those of its includes and its table
   std::string schema;   ///< "$schema" as written, for editors; may be empty
-  std::string robot;    ///< name or path as written
-  std::string profile;  ///< actuator profile; "" = the robot's default
-  bool degrees = true;  ///< angle unit of the file; everything here is in rad
+  std::string robot;    ///< name or path of the robot as written
+  std::string profile;  ///< actuator profile; "" for the robot's default
+  bool degrees = true;  ///< angle unit of the file is degrees; all angles here are in rad
   Interpolation interpolation = Interpolation::minimum_jerk;
   std::string default_posture = "home";
-  bool full_model = true;  ///< COG from ZMP keys for the full model, else (14)(15)
-  double cog_height = 0;   ///< constant COG height without keys; 0: that of home [m]
+  /// The COG follows from ZMP keys by the full model, otherwise by (14)(15).
+  bool full_model = true;
+  double cog_height = 0;  ///< constant COG height if there are no keys; 0 for that of home [m]
   std::array<std::optional<Foothold>, 2>
-      start_feet;  ///< by Side; else the feet of the default posture
+      start_feet;  ///< start footholds by Side; without them, the feet of the default posture
   std::vector<Phase> phases;
   std::vector<Keyframe> keyframes;
   std::map<std::string, std::map<std::string, double>>
@@ -177,12 +184,13 @@ struct Pattern {
   std::optional<DenseTable> table;
   std::optional<CorrectionTrack> correction;
   std::map<std::string, double> parameters;  ///< declared ${names} with their values
-  std::map<std::string, double> tolerances;  ///< of the check, by finding kind
+  std::map<std::string, double> tolerances;  ///< tolerances of the check, by kind of finding
   RepairPreferences repair;
   World world;  ///< the ground under the robot
   ControllerSpec controller;
   std::vector<Disturbance> scenario;
-  Uncertainty uncertainty;  ///< under which the pattern is certified; empty: that of the robot
+  /// Uncertainty under which the pattern is certified; if empty, that of the robot.
+  Uncertainty uncertainty;
 
   double duration() const;  ///< end of the last phase, keyframe or table row [s]
 };

@@ -1,5 +1,6 @@
 #pragma once
-// Names in a pattern: postures of the pattern, then of the robot; joints; places for messages.
+// Looks up names in a pattern: postures of the pattern and then of the robot, joints, and places
+// for messages.
 
 #include <map>
 #include <string>
@@ -10,28 +11,31 @@
 
 namespace ayumi {
 
-/// Joints that a posture sets [rad]: the named ones of the pattern's posture, all of the robot's.
-/// Throws Error(bad_pattern) "file: place: ..." for an unknown posture or joint.
+/// The joints that a posture sets [rad]: the named ones for a posture of the pattern, and all for
+/// one of the robot. Throws Error(bad_pattern) "file: place: ..." for an unknown posture or joint.
 std::map<std::string, double> posture_joints(const RobotModel& model, const Pattern& pattern,
                                              const std::string& name, const SourcePlace& place);
 
-/// theta of the pattern's default posture [rad]; other joints are as in the robot's home.
+/// The theta of the pattern's default posture [rad]; joints that it does not name are as in the
+/// robot's home.
 Eigen::VectorXd default_posture(const RobotModel& model, const Pattern& pattern);
 
-/// COG height above the soles without keys: the pattern's, else that of its default posture [m].
-/// Throws Error(bad_pattern) when it is not a positive number.
+/// The height of the COG above the soles if there are no keys [m]: that of the pattern, or else
+/// that of its default posture. Throws Error(bad_pattern) if it is not a positive number.
 double default_cog_height(const RobotModel& model, const Pattern& pattern);
 
-/// Index of a joint that a pattern names. Throws Error(bad_pattern) for an unknown or mimic joint.
+/// The index of a joint that a pattern names. Throws Error(bad_pattern) for an unknown or mimic
+/// joint.
 int find_joint(const RobotModel& model, const std::string& joint, const SourcePlace& place);
 
-/// JSON pointer of a phase or keyframe in the pattern's file. Those of a block that repeats share
-/// one; those of patterns that are no file count from the first.
+/// The JSON pointer of a phase or keyframe in the pattern's file. The copies of a block that
+/// repeats share one pointer; in patterns that come from no file, the number is counted from the
+/// first phase or keyframe.
 std::string pointer_of_phase(const Pattern& pattern, size_t i);
 std::string pointer_of_keyframe(const Pattern& pattern, size_t i);
 
-/// Places for messages: a phase; a keyframe; what a JSON pointer, or words, name in the pattern's
-/// file.
+/// Places for messages: those of a phase, of a keyframe, and of what a JSON pointer or words name
+/// in the pattern's file.
 SourcePlace place_of_phase(const Pattern& pattern, size_t i);
 SourcePlace place_of_keyframe(const Pattern& pattern, size_t i);
 SourcePlace in_file(const Pattern& pattern, const std::string& inside);

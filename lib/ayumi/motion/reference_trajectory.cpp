@@ -24,7 +24,8 @@ ReferenceRow between(const ReferenceRow& a, const ReferenceRow& b, double u) {
 }  // namespace
 
 ReferenceTrajectory resampled(const ReferenceTrajectory& table, double dt) {
-  constexpr double kOnRow = 1e-6;  // Definition: part of a row within which a time is that row's
+  // Definition: largest distance from a row, as a fraction of a row, at which a time is that row's.
+  constexpr double kOnRow = 1e-6;
   if (table.rows.empty() || std::abs(dt - table.dt) < kOnRow * table.dt) return table;
   ReferenceTrajectory result = table;
   result.dt = dt;

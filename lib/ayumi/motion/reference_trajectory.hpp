@@ -17,26 +17,26 @@ struct Provenance {
 
 /// The servo that a table was made for.
 struct TableServo {
-  std::string content;  ///< "ideal" (the posture), "lead" or "lead+sag"; "" where it is not known
-  std::string profile;  ///< whose servos they are
-  /// Of the joints in the order of the columns, or one number for all of them: transport delay, and
-  /// time by which a joint is behind its target [s].
+  std::string content;  ///< "ideal" (the posture), "lead" or "lead+sag"; "" if it is not known
+  std::string profile;  ///< profile whose servos they are
+  /// The transport delay, and the time by which a joint is behind its target [s]. Each is one
+  /// number for all joints, or one per joint in the order of the columns.
   std::string delay, lag;
 };
 
 struct ReferenceRow {
-  Eigen::VectorXd theta;                          ///< servo targets, joints order [rad]
-  BasePose base;                                  ///< planned or reference base, world
-  Eigen::Vector3d cog = Eigen::Vector3d::Zero();  ///< world [m]
-  Eigen::Vector3d zmp = Eigen::Vector3d::Zero();  ///< world [m]
-  double fz = 0;                                  ///< [N]
-  std::array<bool, 2> contact = {true, true};     ///< left, right foot
+  Eigen::VectorXd theta;  ///< servo targets in the order of the joints [rad]
+  BasePose base;          ///< planned or reference base in the world
+  Eigen::Vector3d cog = Eigen::Vector3d::Zero();  ///< COG in the world [m]
+  Eigen::Vector3d zmp = Eigen::Vector3d::Zero();  ///< ZMP in the world [m]
+  double fz = 0;                                  ///< vertical force [N]
+  std::array<bool, 2> contact = {true, true};     ///< contact of the left and the right foot
 };
 
 struct ReferenceTrajectory {
-  double dt = 0.001;                ///< [s]
-  std::vector<std::string> joints;  ///< columns of theta
-  std::vector<ReferenceRow> rows;   ///< row k at k dt
+  double dt = 0.001;                ///< time between rows [s]
+  std::vector<std::string> joints;  ///< names of the columns of theta
+  std::vector<ReferenceRow> rows;   ///< rows, of which row k is at k dt
   Provenance provenance;
   TableServo servo = {};
 };

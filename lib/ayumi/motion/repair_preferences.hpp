@@ -10,7 +10,8 @@ namespace ayumi {
 /// for windows that begin after the end of the motion.
 void require_repair_preferences(const RobotModel& model, const Pattern& pattern);
 
-/// The preferences with locked keyframes as windows at their times, for a pattern without keys.
+/// The preferences for a pattern without keys, in which locked keyframes have become windows at
+/// their times.
 RepairPreferences without_keyframes(const Pattern& pattern);
 
 }  // namespace ayumi

@@ -9,7 +9,7 @@ const char* name_of(PushKind kind) {
 
 const char* name_of(const Disturbance& disturbance) {
   if (const auto* push = std::get_if<Push>(&disturbance.what)) return name_of(push->kind);
-  // In the order of the variant's alternatives, of which Push is the first.
+  // The names are in the order of the variant's alternatives, of which Push is the first.
   static constexpr const char* names[] = {"payload",        "floor",          "friction",
                                           "bump",           "latency",        "sensor_bias",
                                           "encoder_offset", "joint_friction", "gain_loss"};

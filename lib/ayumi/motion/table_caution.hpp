@@ -9,8 +9,8 @@ struct TableCaution {
   /// The scripted disturbances of the run that the table is from; empty for an undisturbed run. The
   /// table holds the reactions to them, which no robot should repeat.
   std::string disturbances;
-  /// Why no robot should receive the table ("the run fell at 2.31 s"); empty if there is no such
-  /// reason.
+  /// The reason why no robot should receive the table, such as "the run fell at 2.31 s"; empty if
+  /// there is no such reason.
   std::string unfit;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-// Goals of a VIIP phase in place of keys: the controller determines the motion of the COG, the
-// footholds and the jump. Plain data; docs/formats.md describes the format.
+// Goals of a VIIP phase, which replace keys: the controller determines the motion of the COG, the
+// footholds and the jump. They are plain data; docs/formats.md describes the format.
 
 #include <Eigen/Core>
 #include <variant>
@@ -20,20 +20,21 @@ struct CogVelocityGoal {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
 };
 
-/// Steps with a commanded COG velocity, in place when it is zero; the controller places the
-/// footholds. The robot stands before and after them.
+/// Steps with a commanded COG velocity; if it is zero, the robot steps in place. The controller
+/// places the footholds. The robot stands before and after the steps.
 struct StepGoal {
-  int steps = 0;  ///< swings; 0: as many as fit into the phase, the last one closes the feet
-  Eigen::Vector2d velocity = Eigen::Vector2d::Zero();  ///< forward, left [m/s]
-  double turn = 0;                                     ///< to the left [rad/s]
+  /// Number of swings; with 0 as many as fit into the phase, of which the last one closes the feet.
+  int steps = 0;
+  Eigen::Vector2d velocity = Eigen::Vector2d::Zero();  ///< velocity forward and to the left [m/s]
+  double turn = 0;                                     ///< turn to the left [rad/s]
 };
 
-/// Stoop, lift-off, flight, touchdown and settling, `times` times.
+/// A jump of stoop, lift-off, flight, touchdown and settling, repeated `times` times.
 struct JumpGoal {
-  /// End of the spring of (26): at the passage of ref z_G, or when f_z is zero.
+  /// The event that ends the spring of (26): the COG passes ref z_G, or f_z is zero.
   enum class Release { ref_z, spring };
-  double height = 0.03;  ///< z_H, planned apex above ref z_G [m]
-  double stoop = 0.03;   ///< z_d, below ref z_G [m]
+  double height = 0.03;  ///< z_H, the planned apex above ref z_G [m]
+  double stoop = 0.03;   ///< z_d, the depth of the stoop below ref z_G [m]
   double forward = 0;    ///< length of each jump [m]
   int times = 1;
   Release release = Release::ref_z;

@@ -103,7 +103,7 @@ namespace {
 
 // Largest number of rounds of legs and hands, and the change of a joint at which they end [rad, m].
 // Chosen: an arm has a twentieth of the robot's mass, so each round leaves about a twentieth of the
-// change. The rest changes accelerations at 1 kHz by less than 1e-5 rad/s^2.
+// change. What is left after the rounds changes accelerations at 1 kHz by less than 1e-5 rad/s^2.
 constexpr int kMostRounds = 30;
 constexpr double kSameJoint = 1e-11;
 
@@ -207,7 +207,7 @@ namespace {
 // larger ones.
 constexpr double kNotedLean = 1e-3, kNotedMiss = 1e-5;
 
-// Largest values in a motion.
+// The largest values in a motion.
 struct Worst {
   double miss = 0;   // displacement of a sole that carries the robot, for legs that lack joints [m]
   double swing = 0;  // displacement of a sole that swings [m]
@@ -222,7 +222,7 @@ struct Worst {
   }
 };
 
-// The posture at the start of a block: from the grid, or at rest.
+// The posture at the start of a block: it comes from the grid, or is the posture at rest.
 RobotState start_of_block(const SampleJob& job, const CogPlan& plan, int first) {
   if (!plan.postures.empty()) {
     const double share = static_cast<double>(first) / (job.count - 1);

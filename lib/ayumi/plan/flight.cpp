@@ -26,15 +26,17 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Step of the integration [s]. Chosen: a flight of 0.16 s has 80 steps of Heun's rule. Half: jump,
-/// moment in flight [N m] 0.0353 to 0.00614; twice: jump is inconsistent.
+/// Step of the integration [s]. Chosen: a flight of 0.16 s has 80 steps of Heun's rule. With half
+/// of the value, the moment in flight of the case "jump" changes from 0.0353 to 0.00614 N m; with
+/// twice, the case "jump" is inconsistent.
 constexpr double kStep = 0.002;
 /// Half width of central differences in time [s]. Chosen: a quarter of a tick, so that rounding and
-/// the curvature of the planned motion are both small. Figures change by less than 5 % from half to
-/// twice.
+/// the curvature of the planned motion are both small. Between half and twice the value, figures
+/// change by less than 5 %.
 constexpr double kDifference = 2.5e-4;
-/// Duration of a trunk swing that no height key bounds [s]. Chosen: about that of the push and of
-/// the landing of a jump. No measured case changes from half to twice (constants.md).
+/// Duration of a trunk swing that no height key bounds [s]. Chosen: about the duration of the push
+/// and of the landing of a jump. No measured case changes between half and twice the value
+/// (constants.md).
 constexpr double kBlend = 0.25;
 
 Vector3d rotation_rate(const Matrix3d& before, const Matrix3d& after, double time) {
@@ -170,8 +172,8 @@ double segment_at(const Pattern& pattern, double t, bool before) {
   return length;
 }
 
-// The turn of one flight: it begins level, with the necessary rate; the swings before and after it
-// begin and end at rest or at another flight.
+// The turn of one flight. It begins level, with the necessary rate. The swings before and after the
+// flight begin and end at rest or at another flight.
 struct Flight {
   double begin = 0, end = 0, swing_up = 0, swing_down = 0;
   std::vector<FlightTurn::Node> nodes;

@@ -1,14 +1,14 @@
 #pragma once
-// Whether legs that do not reach the ground are folded rather than straight, so that the COG has to
-// be higher and not lower.
+// Tells whether legs that do not reach the ground are folded rather than straight. If they are
+// folded, the COG has to be higher and not lower.
 
 #include "ayumi/motion/pattern_context.hpp"
 
 namespace ayumi {
 
 // Below this share of the COG height at home, legs are folded. Chosen: the deepest squat of HOAP-1
-// is at 0.6 and walks are above 0.9. At half of it, heights at which no leg folds further would
-// count as too high; at twice, legs that are nearly straight would count as folded.
+// is at 0.6 and walks are above 0.9. With half of this share, heights at which no leg folds further
+// would count as too high; with twice, legs that are nearly straight would count as folded.
 inline constexpr double kFoldedShare = 0.7;
 
 /// COG height in the home posture of a pattern [m].

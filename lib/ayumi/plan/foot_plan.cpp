@@ -19,13 +19,13 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr std::array<Side, 2> kSides = {Side::left, Side::right};
-// Times closer than this are equal [s]. Chosen: above rounding. No measured case changes from half
-// to twice (constants.md).
+// Times closer than this are equal [s]. Chosen: above rounding. No measured case changes between
+// half and twice the value (constants.md).
 constexpr double kInstant = 1e-9;
 // A foot counts as standing if its keys move it by less than this [m, rad]. Chosen: a home posture
 // that is given in degrees with two decimals turns a foot by 3e-7 rad, which no author writes into
-// a key; at half and at twice, such a foot still stands, and moves by less than any tolerance of
-// the check.
+// a key; with half and with twice this bound, such a foot still stands, and moves by less than any
+// tolerance of the check.
 constexpr double kStands = 1e-5;
 
 [[noreturn]] void complain(const Pattern& pattern, const std::string& place,
@@ -41,8 +41,8 @@ Isometry3d on_ground(const Vector3d& position, double yaw) {
 }
 
 // Time over which the feet take up the COG's speed in a flight [s]. Chosen: shorter than half of a
-// flight, longer than a servo's delay. Half: jump is inconsistent; twice: moment in flight [N m]
-// 0.0353 to 0.00372.
+// flight, longer than a servo's delay. With half of the value, the case "jump" is inconsistent;
+// with twice, the moment in flight changes from 0.0353 to 0.00372 N m.
 constexpr double kFlightRamp = 0.04;
 
 // Rises from 0 to 1. The first three derivatives are zero at both ends.
@@ -76,7 +76,7 @@ bool same_place(const Isometry3d& a, const Isometry3d& b) {
   const Isometry3d stands = feet.pose(side, first);
   size_t dragging = 0;
   bool by_curve = true,
-       kept = false;  // no key is at another place; a key at the end of the phase keeps the place
+       kept = false;  // no key is at another place; a key at the end of the phase keeps this place
   for (size_t i = 0; i < pattern.keyframes.size(); ++i) {
     const auto& key = pattern.keyframes[i].feet[index(side)];
     if (!key || pattern.keyframes[i].t < first - kInstant) continue;

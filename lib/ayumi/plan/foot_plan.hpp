@@ -13,25 +13,26 @@ namespace ayumi {
 
 /// Index of arrays by Side; the left side is first.
 inline int index(Side side) { return static_cast<int>(side); }
-/// The single support by this foot.
+/// The single support by the foot `side`.
 inline Support on(Side side) { return side == Side::left ? Support::left : Support::right; }
 
 /// Fraction at both ends of a swing in which the foot moves only up or down. Chosen: the lift at 8
 /// % is 2.5 % of its maximum, 0.5 mm of 20 mm, so that the foot is off the ground when it moves.
-/// Figures change by less than 5 % from half to twice.
+/// Between half and twice the value, figures change by less than 5 %.
 inline constexpr double kSwingMargin = 0.08;
 
 /// Pose of the sole frame at a foothold.
 Eigen::Isometry3d pose_of(const Foothold& foothold);
 
-/// Footholds at t = 0: those of the pattern, else those of its default posture on z = 0 with the
-/// middle of both sole frames at the origin (relative to the given foot when one is given).
+/// Footholds at t = 0: those of the pattern. Without them, those of its default posture on z = 0,
+/// with the middle of both sole frames at the origin (or relative to the given foot if one is
+/// given).
 std::array<Eigen::Isometry3d, 2> start_feet(const RobotModel& model, const Pattern& pattern);
 
 class FootPlan {
  public:
-  /// Throws Error(bad_pattern) that names phase or key: no phases, times not increasing, a swing of
-  /// a supporting foot, a foot key that moves a supporting foot.
+  /// Throws Error(bad_pattern) that names the phase or key if there are no phases, if times do not
+  /// increase, if a supporting foot swings, or if a foot key moves a supporting foot.
   FootPlan(const RobotModel& model, const Pattern& pattern);
 
   /// Pose of the sole frame in the world. A swing is minimum jerk along the ground with an added

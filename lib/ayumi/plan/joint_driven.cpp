@@ -51,7 +51,7 @@ void anchor_samples(const SampleJob& job, CommandSeries& series) {
     const double t = k * job.dt;
     if (!supports(job.feet.support(t), anchor)) {
       anchor = other(anchor);
-      // The new anchor stays at its place in the previous sample.
+      // The new anchor stays where it was in the previous sample.
       if (k > 0) {
         update_positions(job.model, series.samples[k - 1].state, data);
         held = sole_pose(job.model, data, anchor);
@@ -112,7 +112,7 @@ Isometry3d median_sole(const std::vector<Isometry3d>& soles, int first, int last
 // Otherwise the median counts.
 Isometry3d place_of(const std::vector<Isometry3d>& soles, int first, int last) {
   // Largest difference of two places [m], and of entries of their rotations. Chosen: the rounding
-  // of tables. No measured case changes from half to twice (constants.md).
+  // of tables. No measured case changes between half and twice the value (constants.md).
   constexpr double kSame = 1e-5;
   const Eigen::Matrix4d change = soles[last].matrix() - soles[first].matrix();
   if (change.cwiseAbs().maxCoeff() < kSame) return soles[first];

@@ -29,27 +29,31 @@ namespace {
 
 // Weights of a place (in lengths of the limb), of a direction and of a gaze, relative to the weight
 // of 1 rad from the joints' keys. Chosen: a posture one radian away misses a place by a few
-// nanometres; a direction gives way to the place, which an arm of four joints needs, and is met
-// within a hundredth of a degree where it can be. Half and twice change only these figures.
+// nanometres; an arm of four joints needs a direction that yields to the place; where the direction
+// is possible, it is met within a hundredth of a degree. With half and twice the weights, only
+// these figures change.
 constexpr double kPlaceWeight = 1e8, kDirectionWeight = 1e4, kGazeWeight = 1e8;
 
 // A link has reached its place if its end is within this distance [m]. Chosen: no hand needs a
 // tenth of a millimetre.
 constexpr double kThere = 1e-4;
-// A direction is met within this angle [rad]. Chosen: two degrees, because four joints of an arm
-// can point a hand only nearly. Half: fewer directions are taken; twice: the eye sees the miss.
+// A direction is met within this angle [rad]. Chosen: two degrees, because an arm of four joints
+// can point a hand only approximately. With half, fewer directions are accepted; with twice, a
+// person sees the difference.
 constexpr double kAligned = 2 * M_PI / 180;
 
 // Distance ahead of the head at which it looks without a target [m]. Chosen: the distance at which
 // a person looks at a thing in the hand. It affects only the movement to the first target.
 constexpr double kAhead = 1;
 
-// Steps of Newton's method. Chosen: a few suffice near a solution; a start far away takes tens.
+// Largest number of steps of Newton's method. Chosen: a few suffice near a solution; a start far
+// away takes tens.
 constexpr int kMostSteps = 200;
-// Largest change of a joint in a step [rad, m]. Chosen: so that the quadratic model holds.
+// Largest change of a joint in a step [rad, m]. Chosen: the quadratic model holds for such a
+// change.
 constexpr double kLongestStep = 0.3;
-// A step after which the next one would only be rounding [rad, m]. Derived: Newton's method squares
-// it, below the 1e-13 to which legs are solved.
+// After a step that is smaller than this, the next one would only be rounding [rad, m]. Derived:
+// Newton's method squares the error, to less than the 1e-13 to which legs are solved.
 constexpr double kLastStep = 1e-8;
 // Largest multiplier of a term over the root of its weight. Chosen: far above that of a posture a
 // few radians from its keys, and below what would outweigh the linear part of a limb that cannot
@@ -59,8 +63,8 @@ constexpr double kLargestPull = 1;
 // degree.
 constexpr double kNudge = 0.02;
 
-// Vectors of keys that are added up to less than this have no direction. Chosen: such keys are more
-// than about 170 degrees apart.
+// If the sum of the directions of keys is shorter than this, it has no direction. Chosen: such keys
+// are more than about 170 degrees apart.
 constexpr double kNoDirection = 0.08;
 
 // Updates the poses of these bodies in `data`. The root comes first, and the parent of each body is
@@ -200,7 +204,7 @@ void LinkPlan::add_target(const std::string& name, bool gaze, const std::vector<
   target.length = std::max(0.01, target.length + target.point.norm());
   if (!gaze && target.point.norm() > 1e-6) target.axis = target.point.normalized();
 
-  // Keys of this target, and keys of its joints, which let the joints lead the limb again.
+  // The keys of this target, and the keys of its joints after which the joints lead the limb again.
   double keyed = 0;  // last time at which the joints have keys before the first target
   for (size_t i = 0; i < pattern_->keyframes.size(); ++i) {
     const Keyframe& key = pattern_->keyframes[i];
@@ -231,7 +235,8 @@ void LinkPlan::add_target(const std::string& name, bool gaze, const std::vector<
 
 void LinkPlan::fill_tracks(Target& target) const {
   const auto fill = [&](bool directions, Blend& blend) {
-    std::array<std::array<std::vector<TrackKey>, 4>, 2> keys;  // by frame: x, y, z and their weight
+    // Keys by frame: x, y, z and their weight.
+    std::array<std::array<std::vector<TrackKey>, 4>, 2> keys;
     for (const Anchor& anchor : target.anchors) {
       const LinkTarget* const asked = anchor.target;
       const bool given = asked && (directions ? asked->direction.has_value() : true);

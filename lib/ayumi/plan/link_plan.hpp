@@ -56,8 +56,9 @@ class LinkPlan {
   std::string origin() const;
 
  private:
-  /// A quantity of the keys as a sum: what is given in the world, what is given in the frame of the
-  /// trunk, and the rest of the weight, which is not given.
+  /// A quantity of the keys as a sum of weighted parts: one part is given in the world, one is
+  /// given in the frame of the trunk, and the rest of the weight is for keys that do not give the
+  /// quantity.
   struct Blend {
     std::array<Track, 3> world, trunk;
     Track in_world{0.0}, in_trunk{0.0};
@@ -70,10 +71,10 @@ class LinkPlan {
   };
   struct Target {
     std::string name;  ///< name in messages
-    std::string key;   ///< place in a keyframe, "hands/left"
+    std::string key;   ///< place in a keyframe, such as "hands/left"
     bool gaze = false;
     int body = -1;
-    Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< end of the link, body frame [m]
+    Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< end of the link, in the body frame [m]
     Eigen::Vector3d axis =
         Eigen::Vector3d::Zero();  ///< direction of the link, body frame, unit vector
     double length = 0;            ///< length of the limb [m]
@@ -88,7 +89,7 @@ class LinkPlan {
   struct Group {
     std::vector<Target> targets;
     std::vector<int> dofs;
-    std::vector<int> path;  ///< bodies that these move and that carry a target, root first
+    std::vector<int> path;  ///< bodies that these dofs move and that carry a target, root first
     std::vector<std::pair<double, double>>
         windows;  ///< intervals in which targets move the joints [s]
     bool at(double t) const;
@@ -104,11 +105,11 @@ class LinkPlan {
   void add_target(const std::string& name, bool gaze, const std::vector<bool>& solved);
   void fill_tracks(Target& target) const;
   void put_in_group(Target target);
-  // Both move the bodies of the group's path alone: the rest of `data` belongs to the state
-  // already.
+  // Both functions only move the bodies of the group's path. The rest of `data` must already belong
+  // to the state.
   std::vector<Aim> aims_at(const Group& group, double t, const Eigen::VectorXd& keyed,
                            const RobotState& state, RobotData& data, bool directions) const;
-  // Moves the bodies of the group's path alone: the rest of `data` belongs to the state already.
+  // Only moves the bodies of the group's path. The rest of `data` must already belong to the state.
   double minimize(const Group& group, const std::vector<Aim>& aims, const Eigen::VectorXd& keyed,
                   RobotState& state, RobotData& data) const;
   bool reached(const std::vector<Aim>& aims, const RobotData& data) const;
@@ -119,7 +120,7 @@ class LinkPlan {
   const RobotModel* model_;
   const Pattern* pattern_;
   std::vector<Group> groups_;
-  double forgiven_before_ = 0;  ///< [s]
+  double forgiven_before_ = 0;  ///< before this time, a limb comes as near as it can [s]
 };
 
 }  // namespace ayumi

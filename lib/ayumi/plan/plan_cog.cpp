@@ -27,22 +27,23 @@ using Eigen::VectorXd;
 namespace {
 
 /// Step of the grid on which the COG is corrected [s]. Chosen: five ticks; 1/omega is 150 ms for a
-/// COG at 0.22 m. Figures change by less than 5 % from half to twice.
+/// COG at 0.22 m. Between half and twice the value, figures change by less than 5 %.
 constexpr double kGridStep = 0.005;
 /// ZMP error of the full model at which the correction ends [m]. Chosen: far below the margins of a
-/// sole, and 1/10 of what the check reports in its figures. Figures change by less than 5 % from
-/// half to twice.
+/// sole, and 1/10 of what the check reports in its figures. Between half and twice the value,
+/// figures change by less than 5 %.
 constexpr double kZmpGoal = 1e-4;
 /// Largest number of passes. Chosen: each pass reduces the error to a fraction, and passes end
-/// earlier when two in a row do not. No measured case changes from half to twice (constants.md).
+/// earlier when two in a row do not. No measured case changes between half and twice the value
+/// (constants.md).
 constexpr int kMostIterations = 12;
 
 constexpr const char* kStage = "solve the COG";
 
 // The plan on a uniform grid over the whole pattern.
 struct Grid {
-  int n = 0;     // intervals
-  double h = 0;  // [s]
+  int n = 0;     // number of intervals
+  double h = 0;  // length of an interval [s]
   double t(Eigen::Index k) const { return h * static_cast<double>(k); }
 };
 
@@ -60,8 +61,9 @@ Track default_height(const SampleJob& job, const Grid& grid) {
   return spline_through(grid, z);
 }
 
-// Least height of that pendulum, as a share of the height of the COG. Chosen: if the trunk leaned
-// against the movement of the COG, which has not been seen, the pendulum would not fall at once.
+// Smallest height of the pendulum of lean_height(), as a share of the height of the COG. Chosen: if
+// the trunk leaned against the movement of the COG, which has not been observed, the pendulum would
+// not fall at once.
 constexpr double kLeastHeight = 0.3;
 
 // Step of the COG to either side by which lean_height() looks at the postures [m]. Chosen: 1/20 of
@@ -95,7 +97,7 @@ Eigen::Vector2d lean_height(const SampleJob& job, const CogPlan& plan) {
     RobotState state = posture_at(cog);
     cog[axis] += 2 * kLook;
     const RobotState after = posture_at(cog);
-    // The speed with which the COG makes both steps in 1 s, at the first of the postures.
+    // The speed at the first of the postures, if the COG made both steps in 1 s.
     state.base_velocity = after.base.position - state.base.position;
     state.base_angular_velocity =
         log_rotation(after.base.attitude * state.base.attitude.conjugate());
@@ -109,7 +111,7 @@ Eigen::Vector2d lean_height(const SampleJob& job, const CogPlan& plan) {
   return height;
 }
 
-// (17) with the planned height plus `more`.
+// omega^2 by (17) with the planned height plus `more`.
 VectorXd omega_squared_of(const SampleJob& job, const CogPlan& plan, const Grid& grid,
                           double more) {
   VectorXd w2(grid.n + 1);
@@ -138,10 +140,10 @@ struct CogSolver {
   const SampleJob& job;
   CogPlan& plan;
   Grid grid;
-  std::array<VectorXd, 2> w2;  // by axis; 0 in flight
+  std::array<VectorXd, 2> w2;  // omega^2 by axis; 0 in flight
   std::array<VectorXd, 3> cog;
   std::vector<CommandSample> samples = {};  // values of the last pass
-  std::vector<Eigen::Matrix3d> trunk = {};  // as the pattern states it
+  std::vector<Eigen::Matrix3d> trunk = {};  // attitude of the trunk as the pattern states it
   std::array<VectorXd, 2> error = {};       // cmd ZMP - full-model ZMP in the solved axes
 
   void read_tracks();

@@ -100,7 +100,7 @@ CommandSeries sample_keys(const RobotModel& model, const Pattern& pattern,
     // been solved.
     try {
       sample_posture(model, pattern, options, progress, posture, on_the_way.key_time());
-    } catch (const MissedOnTheWay&) {  // a later key: the first message is kept
+    } catch (const MissedOnTheWay&) {  // a later key is out of reach: the first message is kept
     } catch (const Error& at_key) {
       const bool same = at_key.place().inside == on_the_way.place().inside;
       if (same || at_key.code() != ErrorCode::bad_pattern) throw;

@@ -22,8 +22,8 @@ struct SampleJob {
   const PatternTracks& tracks;
   const LinkPlan& links;
   double dt = 0.001;  ///< [s]
-  int count = 0;      ///< of samples
-  int threads = 0;    ///< 0: all cores
+  int count = 0;      ///< number of samples
+  int threads = 0;    ///< number of threads; 0: all cores
   const Progress& progress;
 };
 
@@ -52,7 +52,7 @@ void in_blocks(const SampleJob& job, const char* stage, int count, int block, co
   }
 }
 
-/// The next of a sequence of vectors at equal steps of time, extrapolated from the last four: an
+/// Extrapolates the next one of a sequence of vectors at equal time steps from the last four, as an
 /// initial guess.
 class Extrapolation {
  public:
@@ -75,7 +75,8 @@ Eigen::VectorXd keyed_joints(const SampleJob& job, double t);
 /// hands are not changed and serve as an initial guess.
 void put_plan(const SampleJob& job, double t, CommandSample& sample);
 
-/// Commanded trunk attitude: torso keys, else level with the mean heading of the planned feet.
+/// Commanded trunk attitude: the torso keys or, without keys, level with the mean heading of the
+/// planned feet.
 Eigen::Matrix3d trunk_attitude(const SampleJob& job, double t,
                                const std::array<Eigen::Isometry3d, 2>& feet);
 
@@ -83,7 +84,7 @@ Eigen::Matrix3d trunk_attitude(const SampleJob& job, double t,
 /// world axes, left-multiplied [rad].
 using TrunkTurn = std::array<Track, 3>;
 
-/// The base relative to the COG, and the joints: what Extrapolation continues.
+/// The base relative to the COG, and the joints, as one vector for Extrapolation.
 Eigen::VectorXd posture_of(const CommandSample& sample);
 
 /// Makes the initial guess of sample.state from the previous postures and sample.cog.
@@ -98,33 +99,34 @@ PostureSolution solve_posture(const SampleJob& job, double t, const Eigen::Matri
 bool flies(const SampleJob& job);
 
 /// Fraction of the weight below which the ground force is too small for a ZMP to correct, (17).
-/// Chosen: 5 %, as in motion/differentiate. No measured case changes from half to twice
-/// (constants.md).
+/// Chosen: 5 %, as in motion/differentiate. No measured case changes between half and twice the
+/// value (constants.md).
 inline constexpr double kZmpShare = 0.05;
 
 /// COG and ZMP of a motion driven by the body's tracks.
 struct CogPlan {
-  std::array<Track, 3> cog;                     ///< world [m]
-  std::array<Track, 3> zmp;                     ///< as the keys state them [m]
-  std::array<bool, 2> solved = {false, false};  ///< axes solved from the ZMP
+  std::array<Track, 3> cog;                     ///< COG in the world [m]
+  std::array<Track, 3> zmp;                     ///< ZMP in the world, as the keys state it [m]
+  std::array<bool, 2> solved = {false, false};  ///< whether an axis is solved from the ZMP
   std::array<Eigen::Vector2d, 2> bump = {
       Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};  ///< bumps at begin and end by axis [m]
   std::array<Eigen::Vector2d, 2> omega = {
       Eigen::Vector2d::Ones(), Eigen::Vector2d::Ones()};  ///< omega at begin and end by axis [1/s]
   TrunkTurn turn;
   double duration = 0;  ///< [s]
-  /// Postures on a grid from beginning to end that are close to the motion's, as initial guesses;
-  /// or none.
+  /// Postures on a grid from beginning to end that are close to those of the motion and serve as
+  /// initial guesses; may be empty.
   std::vector<RobotState> postures;
 
   Eigen::Vector3d cog_at(double t) const;
-  /// Commanded ZMP: the keys with the bumps that a start from rest needs.
+  /// The commanded ZMP: that of the keys, with the bumps that a start from rest needs.
   Eigen::Vector3d zmp_at(double t) const;
   /// The attitude of the trunk in the pattern, turned around flights.
   Eigen::Matrix3d turned(double t, const Eigen::Matrix3d& asked) const;
 };
 
-/// The COG: from its keys, and without keys from the ZMP by (14)(15), corrected for the full model.
+/// The COG from its keys. Without keys, it comes from the ZMP by (14)(15) and is corrected for the
+/// full model.
 CogPlan plan_cog(const SampleJob& job);
 
 /// Computes the commanded ZMP and f_z of a sample whose COG has its rates.
@@ -140,7 +142,7 @@ CommandSeries sample_body_driven(const SampleJob& job);
 /// The motion when keys or a table drive the legs.
 CommandSeries sample_joint_driven(const SampleJob& job);
 
-/// "0.42 mm"
+/// A length as text, such as "0.42 mm".
 std::string millimetres(double metres);
 
 }  // namespace ayumi

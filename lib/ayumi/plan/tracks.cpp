@@ -17,8 +17,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Times closer than this are equal [s]. Chosen: above rounding. No measured case changes from half
-// to twice (constants.md).
+// Times closer than this are equal [s]. Chosen: above rounding. No measured case changes between
+// half and twice the value (constants.md).
 constexpr double kSameTime = 1e-9;
 
 using Keys = std::vector<TrackKey>;
@@ -112,9 +112,9 @@ void KeyReader::read(const Keyframe& key) {
 
 bool same(double a, double b) { return std::abs(a - b) < kSameTime; }
 
-// A flight with keys of a coordinate at lift-off and touchdown is a parabola in it, and the motion
-// before and after has the parabola's rate and acceleration. Keys inside the flight are kept as
-// they are.
+// If a flight has keys of a coordinate at lift-off and touchdown, this coordinate follows a
+// parabola in flight, and the motion before and after has the parabola's rate and acceleration.
+// Keys inside the flight are kept as they are.
 Keys with_flights(const FootPlan& feet, const Keys& keys, double acceleration) {
   std::vector<QuinticEnd> ends;
   std::vector<bool> moving(keys.size(), false);
@@ -239,7 +239,7 @@ void read_table(const RobotModel& model, const Pattern& pattern, KeyReader& read
     for (int i = 0; i < 3; ++i)
       (*tracks.base)[i] =
           table_track(table.dt, rows, [&](size_t k) { return table.base[k].position[i]; });
-    std::vector<Eigen::Vector4d> q;  // w, x, y, z with continuous sign
+    std::vector<Eigen::Vector4d> q;  // quaternions w, x, y, z with continuous sign
     for (const BasePose& pose : table.base) {
       const Eigen::Quaterniond& a = pose.attitude;
       Eigen::Vector4d v(a.w(), a.x(), a.y(), a.z());
@@ -318,7 +318,7 @@ std::array<Track, 3> default_zmp(const FootPlan& feet) {
     for (int i = 0; i < 3; ++i) keys[i].push_back({t, point[i], Interpolation::minimum_jerk});
   };
   // Time of the weight shift at both ends of the motion [s]. Chosen: 3/omega for a COG at 0.22 m.
-  // No measured case changes from half to twice (constants.md).
+  // No measured case changes between half and twice the value (constants.md).
   constexpr double kShift = 0.45;
   add(0, feet.support_center(0));
   const auto& phases = feet.phases();

@@ -18,11 +18,11 @@ namespace ayumi {
 
 /// The author's tracks. COG, ZMP, f_z and torso are empty without keys.
 struct PatternTracks {
-  std::vector<Track> joints;                     ///< one per dof [rad]
+  std::vector<Track> joints;                     ///< tracks of the joints, one for each dof [rad]
   bool joint_driven = false;                     ///< the legs follow keys, not the COG
-  std::string driver;                            ///< the reason in words
-  std::array<std::optional<Track>, 3> cog;       ///< world x, y, z [m]
-  std::optional<std::array<Track, 3>> zmp;       ///< world [m]
+  std::string driver;                            ///< the reason for this in words
+  std::array<std::optional<Track>, 3> cog;       ///< COG in the world: x, y, z [m]
+  std::optional<std::array<Track, 3>> zmp;       ///< ZMP in the world [m]
   std::optional<Track> fz;                       ///< [N]
   std::optional<std::array<Track, 3>> torso;     ///< roll, pitch, yaw [rad]
   std::optional<std::array<Track, 3>> base;      ///< position from a table [m]
@@ -39,8 +39,8 @@ struct PatternTracks {
 PatternTracks read_tracks(const RobotModel& model, const Pattern& pattern, const FootPlan& feet,
                           const std::vector<bool>& solved);
 
-/// ZMP for a pattern with neither ZMP nor COG: the centre of the supporting sole in single support,
-/// from centre to centre in double support, and the middle of the feet at both ends.
+/// ZMP of a pattern with neither ZMP nor COG keys: the centre of the supporting sole in single
+/// support, from centre to centre in double support, and the middle of the feet at both ends.
 std::array<Track, 3> default_zmp(const FootPlan& feet);
 
 }  // namespace ayumi

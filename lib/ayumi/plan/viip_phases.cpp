@@ -14,11 +14,12 @@ namespace ayumi {
 namespace {
 
 /// COG speed below which the robot is at rest, in units of omega z. Chosen: the DCM is then within
-/// 1.5 % of z of the COG, 3 mm for z = 0.22 m. No measured case changes from half to twice
-/// (constants.md).
+/// 1.5 % of z of the COG, 3 mm for z = 0.22 m. No measured case changes between half and twice the
+/// value (constants.md).
 constexpr double kAtRest = 0.015;
 /// Time that is sampled for a pattern with VIIP phases only [s]. Chosen: 100 ticks of 1 ms; the
-/// posture is the same at all of them. No measured case changes from half to twice (constants.md).
+/// posture is the same at all of them. No measured case changes between half and twice the value
+/// (constants.md).
 constexpr double kShortestSample = 0.1;
 
 /// A VIIP phase: its number, begin and end, and the total duration of the VIIP phases before it.
@@ -128,7 +129,7 @@ CommandSeries with_viip_phases(const RobotModel& model, const Pattern& pattern,
     for (; done < at; ++done) series.samples.push_back(cut.samples[static_cast<size_t>(done)]);
     const CommandSample& from = cut.samples[static_cast<size_t>(at)];
     const SourcePlace place = place_of_phase(pattern, each.phase);
-    // At the last sample of a step the support is still that of the step.
+    // At the last sample of a step, the support is still the support of the step.
     const CommandSample& rests = cut.samples[static_cast<size_t>(std::max(0l, at - 1))];
     if (from.support != Support::both && rests.support != Support::both)
       fail(ErrorCode::bad_pattern, place,

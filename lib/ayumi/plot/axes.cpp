@@ -14,10 +14,11 @@ using Eigen::Vector4f;
 const Vector4f kGrid = {0.5f, 0.5f, 0.55f, 0.28f};
 const Vector4f kFrame = {0.25f, 0.25f, 0.28f, 1};
 constexpr double kNumbers = 11;  // font size of numbers [pixel]
-// Font size of the name of y, and how far it stands out to the left of the numbers [pixel].
+// Font size of the name of y, and the length by which the name extends to the left of the numbers
+// [pixel].
 constexpr double kName = 13, kNameOverhang = 8;
 
-/// First, lowest, highest and last point of every stretch of a quarter pixel.
+/// Keeps the first, the lowest, the highest and the last point of every stretch of a quarter pixel.
 std::vector<Vector2d> thinned(const std::vector<Vector2d>& points) {
   if (points.size() < 8) return points;
   std::vector<Vector2d> out;
@@ -37,8 +38,8 @@ std::vector<Vector2d> thinned(const std::vector<Vector2d>& points) {
   return out;
 }
 
-/// Leaves out points nearer than a tenth of a pixel to the line that remains (Ramer, Douglas and
-/// Peucker, with a stack of its own).
+/// Leaves out points that are nearer than a tenth of a pixel to the line that remains (by Ramer,
+/// Douglas and Peucker, with an explicit stack).
 std::vector<Vector2d> simplified(const std::vector<Vector2d>& points) {
   if (points.size() < 3) return points;
   std::vector<bool> keep(points.size(), false);
@@ -83,7 +84,7 @@ void narrow(Interval& share, double a, double step, double low, double high) {
   share.high = std::min(share.high, std::max(first, second));
 }
 
-/// Pieces of the polyline inside the frame.
+/// The pieces of the polyline that are inside the frame.
 std::vector<std::vector<Vector2d>> cut(const std::vector<Vector2d>& points, const Axes& axes) {
   std::vector<std::vector<Vector2d>> pieces;
   bool open = false;
@@ -124,7 +125,7 @@ std::vector<double> nice_ticks(const Interval& interval, int count) {
     if (ticks.size() > static_cast<size_t>(std::max(2, count))) break;
     chosen = i;
   }
-  // A single number on an axis does not show a scale.
+  // A single number on an axis would not show a scale.
   for (take(steps[chosen]); ticks.size() < 2 && chosen + 1 < steps.size();) take(steps[++chosen]);
   return ticks;
 }
@@ -162,7 +163,7 @@ void draw_axes(Drawing& drawing, const Axes& axes, const std::string& y_name, bo
       .points = {{axes.left, axes.top}, {right, axes.top}, {right, bottom}, {axes.left, bottom}},
       .closed = true,
       .stroke = kFrame});
-  // A long name is written in smaller letters, so that it does not reach into the next panel.
+  // A long name is written in smaller letters, so that it does not extend into the next panel.
   const double wide = text_width(y_name, kName);
   const double size = kName * std::min(1.0, (axes.height + kNameOverhang) / std::max(1.0, wide));
   drawing.items.push_back(DrawnText{.position = {axes.left - 58, axes.top + axes.height / 2},
@@ -193,7 +194,7 @@ void draw_line(Drawing& drawing, const Axes& axes, const std::vector<Vector2d>& 
 }
 
 void draw_cross(Drawing& drawing, const Axes& axes, const Vector2d& value, const Vector4f& color) {
-  constexpr double kArm = 5;  // [pixel]
+  constexpr double kArm = 5;  // length of an arm of the cross [pixel]
   Vector2d center = axes.at(value.x(), value.y());
   center.x() = std::clamp(center.x(), axes.left, axes.left + axes.width);
   center.y() = std::clamp(center.y(), axes.top + kArm, axes.top + axes.height - kArm);

@@ -27,14 +27,15 @@ constexpr double kBeforeFall = 0.5;  // time before a fall in which the fall is 
 struct PanelPlan {
   std::string name;  ///< name with the unit
   Value run;         ///< curves of every run
-  Value command;     ///< curve of the last run (all runs have the same command); empty: none
-  Value reference;   ///< curve of the last run; empty: none
-  double least = 0;  ///< smallest span of the axis
-  double seen = 0;   ///< runs whose values differ by less count as equal
-  std::vector<double> limits = {};  ///< drawn only if they are within the range
+  /// Curve of the last run (all runs have the same command); empty if there is none.
+  Value command;
+  Value reference;                  ///< curve of the last run; empty if there is none
+  double least = 0;                 ///< smallest span of the axis
+  double seen = 0;                  ///< difference of values below which runs count as equal
+  std::vector<double> limits = {};  ///< limits, which are only drawn if they are within the range
   bool limits_in_view = false;      ///< the range extends to the limits
   bool peaks = false;               ///< the peaks of landings get their values
-  /// In place of the runs: curves of the last run, each with its name.
+  /// Curves of the last run that are drawn instead of the runs, each with its name.
   std::vector<std::pair<std::string, Value>> named = {};
 };
 
@@ -81,8 +82,8 @@ Value component(Eigen::Vector3d SimulationSample::*quantity, int index) {
       [quantity, index](const SimulationSample& s) { return (s.*quantity)[index] / kMillimetre; };
 }
 
-/// No number where `is_there` is false: in flight there is no ZMP, although the log still has the
-/// last one.
+/// The value is not a number where `is_there` is false: in flight there is no ZMP, although the log
+/// still has the last one.
 Value where(const std::function<bool(const SimulationSample&)>& is_there, const Value& value) {
   return [=](const SimulationSample& s) { return is_there(s) ? value(s) : std::nan(""); };
 }
@@ -95,7 +96,7 @@ bool is_supported(const SimulationSample& s) {
 // ---- what moves most
 
 constexpr size_t kMostMoved = 3;      // number of curves, so that they can be distinguished
-constexpr double kLeastMoved = 0.5;   // a joint that moves less counts as resting [deg]
+constexpr double kLeastMoved = 0.5;   // a joint that moves less than this counts as resting [deg]
 constexpr double kMovedShare = 0.25;  // share of the largest move, below which a curve is left out
 constexpr double kSameCurve =
     0.03;  // curves that differ by less than this share of their range are joined
@@ -167,8 +168,8 @@ PanelPlan moved_panel(const RobotModel& model, const SimulationLog& log, const I
   return panel;
 }
 
-/// Distance of the ZMP from the edge of the hull of the soles that are planned down, at their true
-/// places, seen from above. No number in flight.
+/// The distance of the ZMP from the edge of the hull of the soles that are planned on the ground,
+/// at their true places, seen from above. In flight it is not a number.
 Value zmp_margin(const RobotModel& model) {
   const auto data = std::make_shared<RobotData>(model);  // workspace
   return [&model, data](const SimulationSample& s) {
@@ -239,8 +240,8 @@ void extend(std::vector<double>& values, const std::vector<Vector2d>& points) {
     if (std::isfinite(point.y())) values.push_back(point.y());
 }
 
-/// The range of the runs that fell before their fall, if nothing else determines the range of a
-/// panel.
+/// The values of the runs that fell, from the time before their fall. They are used if nothing else
+/// determines the range of a panel.
 std::vector<double> values_before_falls(const PanelPlan& panel, const std::vector<LociRun>& runs,
                                         const Interval& time) {
   std::vector<double> values;
@@ -252,8 +253,8 @@ std::vector<double> values_before_falls(const PanelPlan& panel, const std::vecto
   return values;
 }
 
-/// Range of the command and of the runs that stand, with a margin. The margin is wide if no run
-/// stands.
+/// The range of the command and of the runs in which the robot stands, with a margin. The margin is
+/// wide if there is no such run.
 Interval value_range(const PanelPlan& panel, const std::vector<LociRun>& runs,
                      const Interval& time) {
   std::vector<double> values;
@@ -338,7 +339,7 @@ void draw_phases(Drawing& drawing, const Axes& axes, const std::vector<SupportSp
 
 void draw_pushes(Drawing& drawing, const Axes& axes, const std::vector<PushRecord>& list,
                  bool names) {
-  double taken = 0;  // by text, from the left
+  double taken = 0;  // end of the last text, counted from the left
   for (const PushRecord& push : list) {
     const double x = axes.px(push.begin), bottom = axes.top + axes.height;
     drawing.items.push_back(
@@ -385,9 +386,10 @@ void draw_named(Drawing& drawing, const Axes& axes, const PanelPlan& panel,
 
 /// The peaks of a force that is well above its usual value, the highest first.
 std::vector<Vector2d> force_peaks(const std::vector<Vector2d>& force) {
-  // A peak is at least this many times the median, and the highest value for this time before and
-  // after it. Chosen: a landing is above twice the weight, and a walk below 1.4 times; feet land at
-  // least 0.2 s apart. A value below a share of the highest peak is not a peak.
+  // Smallest ratio of a peak to the median, the time before and after it for which it must be the
+  // highest value [s], and the share of the highest peak below which a value is not a peak. Chosen:
+  // a landing is above twice the weight, and a walk below 1.4 times; feet land at least 0.2 s
+  // apart.
   constexpr double kHigh = 1.5, kApart = 0.15, kShare = 0.2;
   std::vector<double> values;
   extend(values, force);
@@ -409,8 +411,8 @@ std::vector<Vector2d> force_peaks(const std::vector<Vector2d>& force) {
   return kept;
 }
 
-/// Values at the peaks of the forces of runs that stand, beside the curves, as far as there is room
-/// for the text.
+/// Writes the values at the peaks of the forces beside the curves of runs in which the robot
+/// stands, as far as there is room for the text.
 void draw_peaks(Drawing& drawing, const Axes& axes, const PanelPlan& panel,
                 const std::vector<LociRun>& runs) {
   std::vector<std::vector<Vector2d>> curves;
@@ -486,8 +488,8 @@ double largest_difference(const PanelPlan& panel, const std::vector<LociRun>& ru
   return most;
 }
 
-/// Removes the panels in which all runs are equal and returns a sentence with their names. All
-/// panels are kept if otherwise none would be left.
+/// Removes the panels in which all runs are equal, and returns a sentence with their names. If no
+/// panel would be left, all are kept.
 std::string leave_out_equal(std::vector<PanelPlan>& panels, const std::vector<LociRun>& runs,
                             const Interval& time) {
   std::vector<PanelPlan> kept;
@@ -503,7 +505,7 @@ std::string leave_out_equal(std::vector<PanelPlan>& panels, const std::vector<Lo
   return "These values are equal in all runs: " + text::join(names, ", ") + ".";
 }
 
-/// A sentence divided into lines of at most this width.
+/// A sentence, divided into lines of at most this width.
 std::vector<std::string> lines_of(const std::string& sentence, double width) {
   std::vector<std::string> lines = {""};
   for (size_t at = 0; at < sentence.size();) {

@@ -14,7 +14,7 @@ namespace {
 constexpr double kLegend = 12.5;  // font size [pixel]
 
 // Colours that can also be distinguished without colour vision: dark, vermilion, blue, green,
-// purple, sky, yellow.
+// purple, sky blue and yellow.
 const Eigen::Vector4f kRunColors[] = {{0.84f, 0.37f, 0.00f, 1}, {0.00f, 0.45f, 0.70f, 1},
                                       {0.00f, 0.62f, 0.45f, 1}, {0.80f, 0.47f, 0.65f, 1},
                                       {0.34f, 0.71f, 0.91f, 1}, {0.72f, 0.66f, 0.05f, 1}};
@@ -86,7 +86,7 @@ FramedRuns::FramedRuns(const RobotModel* model, const std::vector<LociRun>& as_l
 
 double draw_legend(Drawing& drawing, const Legend& entries, double top) {
   const auto width_of = [](const std::string& name) { return 34 + text_width(name, kLegend) + 22; };
-  // Items below each other begin at the same place.
+  // Entries below each other begin at the same place.
   const bool too_wide = std::any_of(entries.begin(), entries.end(), [&](const auto& entry) {
     return kLeft + width_of(entry.first) > drawing.width;
   });
@@ -132,7 +132,7 @@ Drawing start_drawing(const std::vector<LociRun>& runs, const LociOptions& optio
   for (const LociRun& run : runs)
     drawing.description.append(" ").append(legend_name(run)).append(";");
   drawing.description.back() = '.';
-  // A long title begins at the edge, and it has smaller letters if this is not enough.
+  // A long title begins at the edge, and it is written in smaller letters if that is not enough.
   const double wide = text_width(drawing.title, 16, true);
   const double left = kLeft + wide > drawing.width - kRight ? 8.0 : kLeft;
   const double room = drawing.width - left - 8;

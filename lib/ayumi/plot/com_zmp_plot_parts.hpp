@@ -1,5 +1,5 @@
 #pragma once
-// Parts that several plots of runs use: styles, legend, title, pushes.
+// Parts that several plots of runs share: styles, legend, title, pushes.
 
 #include <string>
 #include <utility>
@@ -21,39 +21,41 @@ inline const LineStyle kReferenceStyle = {
 inline const LineStyle kLimitStyle = {
     .color = {0.70f, 0.08f, 0.08f, 1}, .width = 1.1, .dashes = {8, 3, 2, 3}};
 
-/// Style of a run. A single run is drawn in the colour that a closed loop has beside an open one.
+/// The style of a run. A single run has the colour that a closed loop has beside an open one.
 LineStyle run_style(size_t index, size_t count);
 
 bool has_fallen(const SimulationLog& log);
 
-/// The times that are shown. Throws Error(usage) as draw_loci() describes.
+/// The interval of time that is shown. Throws Error(usage) as draw_loci() describes.
 Interval time_range(const std::vector<LociRun>& runs, const LociOptions& options);
 
-/// Pushes of all runs in this time. A push that is the same in several runs is listed once.
+/// The pushes of all runs in this interval. A push that is the same in several runs is listed once.
 std::vector<PushRecord> all_pushes(const std::vector<LociRun>& runs, const Interval& time);
 
 /// Runs with their places in one frame.
 struct FramedRuns {
   std::vector<SimulationLog> logs;
-  std::vector<LociRun> runs;  ///< runs of those logs
+  std::vector<LociRun> runs;  ///< the runs with those logs
 
-  /// The runs as they are without a model. Throws as in_frame().
+  /// Without a model, the runs stay as they are. Throws the same errors as in_frame().
   FramedRuns(const RobotModel* model, const std::vector<LociRun>& as_logged, Frame frame);
 };
 
-/// "closed loop (stands)"
+/// The text of a run in the legend, such as "closed loop (stands)".
 std::string legend_name(const LociRun& run);
 
 using Legend = std::vector<std::pair<std::string, LineStyle>>;
-/// The command if wanted, the runs, and, with `with_reference`, the reference ZMP.
+/// The entries of the legend: the command if it is wanted, the runs, and, with `with_reference`,
+/// the reference ZMP.
 Legend legend(const std::vector<LociRun>& runs, const std::string& reference,
               bool with_command = true);
 
-/// Draws the entries from left to right and begins a new line at the end of a line. Returns the
-/// bottom [pixel].
+/// Draws the entries from left to right, and begins a new line if a line is full. Returns the
+/// bottom of the legend [pixel].
 double draw_legend(Drawing& drawing, const Legend& entries, double top);
 
-/// A drawing with its title. `what` begins the description: "Loci against time".
+/// A drawing with its title. `what` is the beginning of the description, such as "Loci against
+/// time".
 Drawing start_drawing(const std::vector<LociRun>& runs, const LociOptions& options,
                       const std::string& what);
 

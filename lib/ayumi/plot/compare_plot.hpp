@@ -1,5 +1,6 @@
 #pragma once
-// A recording laid over a simulated run: one panel per curve, and the difference of both below it.
+// A recording drawn over a simulated run: one panel per curve, and below it the difference of the
+// two.
 
 #include <filesystem>
 
@@ -8,11 +9,11 @@
 
 namespace ayumi {
 
-/// Joints that move [deg], loads of the feet, their share with the landings, and the IMU. Throws
-/// Error(usage) when there is no curve.
+/// Draws joints that move [deg], loads of the feet, their share with the landings, and the IMU.
+/// Throws Error(usage) if there is no curve.
 Drawing draw_comparison(const Comparison& comparison, const std::string& title);
 
-/// Writes the plot as .svg or .png. Throws as above, and Error(bad_file).
+/// Writes the plot as .svg or .png. Throws the errors above, and Error(bad_file).
 void write_comparison_plot(const Comparison& comparison, const std::string& title,
                            const std::filesystem::path& path);
 

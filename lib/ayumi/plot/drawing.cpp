@@ -34,7 +34,7 @@ std::string hex(const Eigen::Vector4f& color) {
   return out;
 }
 
-/// fill="#rrggbb" fill-opacity="0.5"
+/// The attributes of a colour, such as fill="#rrggbb" fill-opacity="0.5".
 std::string paint(const std::string& what, const Eigen::Vector4f& color) {
   if (color[3] <= 0) return " " + what + "=\"none\"";
   std::string out = " " + what + "=\"" + hex(color) + "\"";

@@ -10,14 +10,16 @@
 
 namespace ayumi {
 
-/// A polyline or polygon; x to the right, y down [pixel]. Colours sRGB and alpha; alpha 0: none.
+/// A polyline or polygon, with x to the right and y down [pixel]. Colours are sRGB and alpha; with
+/// alpha 0, nothing is drawn.
 struct DrawnPath {
   std::vector<Eigen::Vector2d> points = {};
   bool closed = false;
   Eigen::Vector4f stroke = {0, 0, 0, 1};
   Eigen::Vector4f fill = {0, 0, 0, 0};
-  double width = 1;                 ///< of the stroke [pixel]
-  std::vector<double> dashes = {};  ///< on, off, ... [pixel]; empty: solid
+  double width = 1;  ///< width of the stroke [pixel]
+  /// Lengths of dashes and gaps in turn [pixel]; if empty, the line is solid.
+  std::vector<double> dashes = {};
 };
 
 /// A rectangle between two corners, filled and without a stroke.
@@ -27,33 +29,35 @@ DrawnPath filled_box(const Eigen::Vector2d& corner, const Eigen::Vector2d& oppos
 struct DrawnText {
   Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< anchor on the base line [pixel]
   std::string text;
-  double size = 12;  ///< [pixel]
+  double size = 12;  ///< font size [pixel]
   TextAnchor anchor = TextAnchor::left;
   bool bold = false;
-  bool upwards = false;  ///< turned to read from below
+  bool upwards = false;  ///< the text is turned so that it reads from below
   Eigen::Vector4f color = {0.1f, 0.1f, 0.12f, 1};
 };
 
 struct Drawing {
-  double width = 800, height = 600;                       ///< [pixel]
-  std::string title, description;                         ///< for screen readers
-  std::vector<std::variant<DrawnPath, DrawnText>> items;  ///< in the order they are laid
+  double width = 800, height = 600;  ///< size of the drawing [pixel]
+  std::string title, description;    ///< texts for screen readers
+  /// Items in the order in which they are drawn.
+  std::vector<std::variant<DrawnPath, DrawnText>> items;
 };
 
-/// Text between tags or in quotes of SVG and HTML; control characters but line ends are left out.
+/// The text for use between tags or in quotes of SVG and HTML. Control characters except line ends
+/// are left out.
 std::string escaped(const std::string& text);
 
-/// Width of a text in the font of drawings [pixel].
+/// The width of a text in the font of drawings [pixel].
 double text_width(const std::string& text, double size, bool bold = false);
 
 /// The bytes of an SVG file on a white ground.
 std::string to_svg(const Drawing& drawing);
 
-/// The same as a picture, `scale` picture pixels per pixel of the drawing.
+/// The drawing as a picture, with `scale` picture pixels per pixel of the drawing.
 Image to_image(const Drawing& drawing, double scale = 1);
 
-/// Writes .svg or .png by the name. Throws Error(usage) for another extension, Error(bad_file)
-/// where writing fails.
+/// Writes .svg or .png, depending on the name. Throws Error(usage) for another extension, and
+/// Error(bad_file) if writing fails.
 void write_drawing(const std::filesystem::path& path, const Drawing& drawing, double png_scale);
 
 }  // namespace ayumi

@@ -13,14 +13,14 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector4f;
 
-constexpr double kGaitWidth = 44, kGaitHeight = 24;  // [pixel]
-constexpr double kGaitGap = 12;  // distance of two cells, which has room for a bar [pixel]
+constexpr double kGaitWidth = 44, kGaitHeight = 24;  // size of a cell [pixel]
+constexpr double kGaitGap = 12;  // distance between two cells, with room for a bar [pixel]
 constexpr double kGaitEdge = 16, kGaitHead = 46,
-                 kGaitName = 26;   // margin, head, title of a panel [pixel]
+                 kGaitName = 26;   // margin, head, and title of a panel [pixel]
 constexpr double kGaitScale = 52;  // room for the numbers beside a panel [pixel]
-constexpr double kGaitBelow = 40;  // and for those below it [pixel]
+constexpr double kGaitBelow = 40;  // room for the numbers below a panel [pixel]
 constexpr double kGaitLine = 18;   // height of text [pixel]
-constexpr double kGaitText = 11;   // [pixel]
+constexpr double kGaitText = 11;   // font size [pixel]
 const Vector4f kGaitInk = {0.1f, 0.1f, 0.12f, 1}, kGaitGrey = {0.42f, 0.44f, 0.48f, 1};
 const Vector4f kLeastMargin = {0.93f, 0.95f, 0.98f, 1}, kMostMargin = {0.08f, 0.33f, 0.68f, 1};
 const Vector4f kMissingCell = {0.94f, 0.94f, 0.94f, 1}, kBothWays = {0.42f, 0.44f, 0.48f, 1};
@@ -31,7 +31,7 @@ DrawnText map_text(const Vector2d& at, const std::string& text,
   return {.position = at, .text = text, .size = kGaitText, .anchor = anchor, .color = color};
 }
 
-// Forward is up, and left is left.
+// The places of the cells. Forward is up, and left is left.
 struct CellPlaces {
   Vector2d corner;
   size_t rows, columns;

@@ -14,9 +14,10 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector4f;
 
-constexpr double kRow = 22, kTop = 84, kEdge = 16;   // height of a row, of the head, margin [pixel]
+// Height of a row, height of the head, and margin [pixel].
+constexpr double kRow = 22, kTop = 84, kEdge = 16;
 constexpr double kPanelWidth = 280, kPanelGap = 40;  // width and gap of the two panels [pixel]
-constexpr double kTextSize = 11;                     // [pixel]
+constexpr double kTextSize = 11;                     // font size [pixel]
 const Vector4f kLine = {0.86f, 0.87f, 0.89f, 1}, kGrey = {0.42f, 0.44f, 0.48f, 1};
 const Vector4f kWorse = {0.86f, 0.45f, 0.10f, 1}, kBetter = {0.08f, 0.33f, 0.68f, 1};
 

@@ -1,5 +1,5 @@
 #pragma once
-// A picture of the influences in a study of many runs: for every uncertain value, its rank
+// A picture of the influences in a study of many runs. For every uncertain value it shows the rank
 // correlation with the severity of the run, and the failure rates in the two halves of its range.
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace ayumi {
 
-/// The values in the order of their correlation, the strongest first. Throws Error(usage) when
+/// Draws the values in the order of their correlation, the strongest first. Throws Error(usage) if
 /// there is no value.
 Drawing draw_influences(const std::string& title, const std::vector<ValueInfluence>& influences);
 

@@ -16,8 +16,8 @@ using Eigen::Vector2d;
 using Eigen::Vector4f;
 
 constexpr double kPanel = 300,
-                 kRadius = 108;           // width of one panel, radius of its largest ring [pixel]
-constexpr double kHead = 74, kSide = 14;  // space above and beside the panels [pixel]
+                 kRadius = 108;  // width of one panel, and radius of its largest ring [pixel]
+constexpr double kHead = 74, kSide = 14;         // space above and beside the panels [pixel]
 constexpr double kPhaseName = 26, kRemark = 20;  // heights of lines of text [pixel]
 constexpr double kLegendLine = 18;               // the same for a legend of several lines
 constexpr size_t kColumns = 3, kMostLaws = 4;    // columns of panels; as many laws as colours
@@ -41,7 +41,7 @@ struct Panel {
   Vector2d center;
   double most;  // impulse at the largest ring [N s]
 
-  /// Forward is up, and left is left.
+  /// The place of a value. Forward is up, and left is left.
   Vector2d at(double direction, double impulse) const {
     const double r = kRadius * impulse / most;
     return center + r * Vector2d(-std::sin(direction), -std::cos(direction));
@@ -73,8 +73,8 @@ void draw_grid(Drawing& drawing, const Panel& panel, const PushMapPhase& phase,
     path.stroke = kMapGrid;
     drawing.items.push_back(path);
   }
-  // A direction between the last and the first one, where there is no line and no value of a curve;
-  // with few directions, between "forward" and "right".
+  // A direction between the last and the first one, where there is no line and no value of a curve.
+  // With few directions, it is between "forward" and "right".
   double beside = -M_PI / 4;
   if (phase.direction.size() > 2) {
     const auto [first, last] = std::minmax_element(phase.direction.begin(), phase.direction.end());
@@ -153,7 +153,7 @@ std::vector<std::string> wrapped(const std::string& words, double width) {
   return lines;
 }
 
-// As many lines as the width requires. Returns the height of the lines below the first one.
+// Draws as many lines as the width requires. Returns the height of the lines below the first one.
 double draw_legend(Drawing& drawing, const PushMap& map, bool capped) {
   double x = kSide, y = kHead - 24;
   const auto make_room = [&](double width) {
@@ -261,7 +261,7 @@ void write_push_map(const PushMap& map, const std::filesystem::path& path) {
 
 namespace {
 
-/// What the robot does in the phases in which it does not stand in the first posture.
+/// The motion of the robot in the phases in which it does not stand in the first posture.
 std::string motion_of(const CommandSeries& series) {
   const auto one = [](const CommandSample& s) {
     return s.support == Support::left || s.support == Support::right;

@@ -14,8 +14,8 @@ using Eigen::Vector3d;
 
 struct PlacedSole {
   Side side;
-  std::vector<Vector2d> corners;  ///< [mm]
-  double begin = 0, end = 0;      ///< time while the sole is planned down [s]
+  std::vector<Vector2d> corners;  ///< corners of the sole [mm]
+  double begin = 0, end = 0;      ///< time while the sole is planned on the ground [s]
 };
 
 /// The soles at their planned places, in the middle of each planned contact.
@@ -48,13 +48,13 @@ std::vector<PlacedSole> footholds(const RobotModel& model, const SimulationLog& 
       begin = end;
     }
   }
-  // In the order in which they land.
+  // The soles are sorted in the order in which they land.
   std::stable_sort(out.begin(), out.end(),
                    [](const PlacedSole& a, const PlacedSole& b) { return a.begin < b.begin; });
   return out;
 }
 
-/// The part of these times before the robot falls. After that, its soles and its ZMP show nothing
+/// The part of this interval before the robot falls. After that, its soles and its ZMP say nothing
 /// about the motion.
 Interval before_fall(const SimulationLog& log, Interval time) {
   if (has_fallen(log)) time.high = std::clamp(log.result.fell_at, time.low, time.high);
@@ -72,14 +72,14 @@ std::vector<Vector2d> path_of(const SimulationLog& log, const Interval& time,
     const bool there = quantity == &SimulationSample::zmp             ? s.fz > 0
                        : quantity == &SimulationSample::reference_zmp ? planned
                                                                       : true;
-    const double none = std::nan("");  // of the ZMP in flight
+    const double none = std::nan("");  // value of the ZMP in flight
     points.push_back(there ? Vector2d((s.*quantity).head<2>() / kMillimetre)
                            : Vector2d(none, none));
   }
   return points;
 }
 
-/// Both axes have one scale, and show everything that stands or was planned.
+/// Both axes have one scale, and show everything that stands on the ground or was planned to.
 Axes make_axes(const Drawing& drawing, const std::vector<LociRun>& runs, const Interval& time,
                const std::vector<PlacedSole>& feet, double top) {
   Eigen::AlignedBox2d box;
@@ -94,7 +94,7 @@ Axes make_axes(const Drawing& drawing, const std::vector<LociRun>& runs, const I
     box.extend(point);
   const Vector2d middle = box.center();
   Vector2d half = 0.55 * box.sizes().cwiseMax(100);
-  // The labels of footholds are put around them [pixel].
+  // Distance from the footholds in which their labels are placed [pixel].
   constexpr double kRoom = 26;
   half += Vector2d(kRoom, kRoom) * 2 * half.x() / (drawing.width - kLeft - kRight);
   Axes axes;
@@ -127,8 +127,9 @@ void draw_foothold(Drawing& drawing, const Axes& axes, const PlacedSole& foot) {
   drawing.items.push_back(outline);
 }
 
-/// Numbers in the order of landing, foot and time, each joined to its foothold by a line. A label
-/// stands where it covers no other and as few soles as can be, near its own.
+/// Draws labels with the number in the order of landing, the foot and the time, each joined to its
+/// foothold by a line. A label stands where it covers no other label and as few soles as possible,
+/// near its own.
 void label_footholds(Drawing& drawing, const Axes& axes, const std::vector<PlacedSole>& feet) {
   constexpr double kText = 11, kPad = 2, kTurns = 24;
   std::vector<Eigen::AlignedBox2d> taken, soles;

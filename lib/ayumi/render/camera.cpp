@@ -27,14 +27,15 @@ constexpr NamedView kViews[] = {{"front", 0.0, 0.14},
                                 {"ortho-side", -1.5707963267948966, 0.0, true},
                                 {"ortho-front", 0.0, 0.0, true}};
 
-// Chosen: no picture needs a larger value, and coordinates stay finite numbers.
+// Smallest and largest zoom. Chosen: no picture needs a larger value, and coordinates stay finite
+// numbers.
 constexpr double kLeastZoom = 1e-6, kMostZoom = 1e6;
 constexpr double kFieldOfView =
     0.5;  // angle so small that lengths in the picture can be compared [rad]
 
-// The height of the picture's middle stays while the COG is between these shares of its first
-// height, so that a squat or a jump is seen as one; beyond, the camera goes down with a fall and up
-// with stairs. Chosen: the deepest squat of the patterns lowers the COG to 0.78 of its height, the
+// Shares of the COG's first height between which the height of the picture's middle stays, so that
+// a squat or a jump can be seen as such. Beyond them, the camera goes down with a fall and up with
+// stairs. Chosen: the deepest squat of the patterns lowers the COG to 0.78 of its height, the
 // highest jump raises it to 1.2, and a fallen robot's COG is below 0.4.
 constexpr double kLowestStance = 0.75, kHighestJump = 1.3;
 
@@ -79,9 +80,9 @@ Vector3d project(const Camera& camera, int width, int height, const Vector3d& po
   return {(clip.x() / clip.w() + 1) / 2 * width, (1 - clip.y() / clip.w()) / 2 * height, -seen.z()};
 }
 
-// With D the distance, b how far a point is nearer and k the tangent of half the view: a point is
-// within the picture where |r - shift| <= k (D - b). Both edges touch a point at the D that is the
-// span of r + k b and r - k b over 2 k.
+// Let D be the distance, b how much nearer a point is, and k the tangent of half the view. A point
+// is within the picture if |r - shift| <= k (D - b). Both edges touch a point if D is the span of r
+// + k b and r - k b over 2 k.
 Framing framing(const Camera& camera, double aspect, const std::vector<Vector3d>& offsets,
                 double share) {
   const bool parallel = camera.parallel_height > 0;

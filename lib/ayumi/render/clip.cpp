@@ -136,29 +136,31 @@ std::string law_name(const ControllerType& law) {
   return law == ControllerKind::none ? std::string("open loop") : std::string(name_of(law));
 }
 
-/// Name of a file without folder and extension.
+/// The name of a file without folder and extension.
 std::string plain_name(const std::string& file) { return fs::path(file).stem().string(); }
 
-/// Triangles of a robot in a clip: beyond them, it is thinned by up to four times as much, and
-/// simplified where noise is left. Chosen: they take about 25 ms of a frame, so 1 s for each second
-/// of motion, and half of them face the eye, about one for three pixels; at half, corners of noisy
-/// meshes are several pixels apart, at twice, clips of robots with such meshes take 1 s longer.
+/// Largest number of triangles of a robot in a clip: beyond it, the robot is thinned by up to four
+/// times as much, and simplified if noise is left. Chosen: they take about 25 ms of a frame, which
+/// is 1 s for each second of motion, and half of them face the eye, about one for three pixels.
+/// With half of the value, corners of noisy meshes are several pixels apart; with twice, clips of
+/// robots with such meshes take 1 s longer.
 constexpr size_t kMostOfClip = 80'000;
-/// The frames from which on a clip is thinned. Chosen: thinning a robot with 280,000 triangles
-/// takes 0.3 s, which about five frames save; at half, clips of half a second gain too, at twice,
-/// clips of a second gain nothing.
+/// Smallest number of frames for which the robot of a clip is thinned. Chosen: thinning a robot
+/// with 280,000 triangles takes 0.3 s, which about five frames save. With half of the value, clips
+/// of half a second gain too; with twice, clips of a second gain nothing.
 constexpr int kThinFrames = 24;
 
 /// Longest wait for a frame before the caller may stop the work. Chosen: Ctrl-C is answered at
 /// once, and the wait costs nothing.
 constexpr std::chrono::milliseconds kFrameWait(50);
 
-/// Threads that draw a clip. Chosen: one encoder takes the frames of about that many, and each
-/// takes 40 MB; at half, a machine of 16 cores draws half as fast, at twice a clip takes 1.3 GB.
+/// Largest number of threads that draw a clip. Chosen: one encoder takes the frames of about that
+/// many, and each takes 40 MB. With half of the value, a machine of 16 cores draws half as fast;
+/// with twice, a clip takes 1.3 GB.
 constexpr int kMostClipThreads = 16;
 
-/// Frames 0..count-1 in order from `threads` workers that each own a renderer. At most two finished
-/// frames wait per worker, so memory does not grow with the clip.
+/// Frames 0..count-1 in order, from `threads` workers that each own a renderer. At most two
+/// finished frames wait per worker, so that memory does not grow with the clip.
 class FrameQueue {
  public:
   using MakeRenderer = std::function<std::unique_ptr<ClipRenderer>()>;
@@ -185,7 +187,7 @@ class FrameQueue {
     };
     try {
       for (int w = 0; w < workers; ++w) threads_.emplace_back(work, w);
-    } catch (...) {  // no further thread, or no memory for one
+    } catch (...) {  // there is no further thread, or no memory for one
       end();
       throw;
     }
@@ -195,7 +197,7 @@ class FrameQueue {
   FrameQueue& operator=(const FrameQueue&) = delete;
 
   /// Notes about what the renderers draw differently from the request. They are known when the
-  /// first frame was taken.
+  /// first frame has been taken.
   const std::vector<std::string>& notes() const { return notes_; }
 
   /// While it waits, `alive` is called several times per second. An exception of `alive` ends the
@@ -261,7 +263,7 @@ std::string frame_name(int k) {
   return "frame_" + std::string(number.size() < 5 ? 5 - number.size() : 0, '0') + number + ".png";
 }
 
-/// A message with the name that the user gave in place of the temporary name.
+/// A message with the name that the user gave instead of the temporary name.
 std::string with_name(std::string message, const std::string& temporary, const std::string& name) {
   for (size_t at; (at = message.find(temporary)) != std::string::npos;)
     message.replace(at, temporary.size(), name);
@@ -461,8 +463,8 @@ void ClipRenderer::frame_robot(const std::vector<double>& times) {
 
 namespace {
 
-/// "t = 0.00, 1.20, 2.40 s". Of many instants, the first and the last are named, and for a single
-/// one the text is empty.
+/// A text such as "t = 0.00, 1.20, 2.40 s". If there are many instants, the first and the last are
+/// named; for a single one, the text is empty.
 std::string instants_text(const std::vector<double>& times) {
   constexpr size_t kNamed = 6;  // Chosen: as many as fit beside a title.
   if (times.size() < 2) return "";
@@ -503,7 +505,7 @@ Image ClipRenderer::finished(const Scene& scene, const Overlay& overlay, double 
                              .anchor = TextAnchor::center,
                              .color = {0.45f, 0.08f, 0.33f, opacity},
                              .plate = {1, 1, 1, 0.75f * opacity}};
-    // The room between the lines of text above and below.
+    // The label stays in the room between the lines of text above and below.
     const double y = std::clamp(at.y(), std::min(2.6 * size, 0.5 * image.height),
                                 std::max(image.height - 2.6 * size, 0.5 * image.height));
     const double half = 0.5 * drawn_width(label.text, style), most = image.width - half;
@@ -517,12 +519,12 @@ Image ClipRenderer::finished(const Scene& scene, const Overlay& overlay, double 
 
 namespace {
 
-// Writes a title in at most `room` pixels: in smaller letters, and shortened where these are not
-// enough. Returns the width it takes.
+// Writes a title in at most `room` pixels: in smaller letters, and shortened if this is not enough.
+// Returns the width that it takes.
 double write_within(Image& image, double x, double y, std::string title, TextStyle style,
                     double room) {
   constexpr double kSmallest =
-      0.7;  // share of the size. Chosen: the smallest letters that can be read well
+      0.7;  // smallest share of the size. Chosen: the smallest letters that can be read well
   if (title.empty()) return 0;
   const double wide = drawn_width(title, style);
   if (wide > room) style.size *= std::clamp(room / wide, kSmallest, 1.0);
@@ -540,7 +542,7 @@ double ClipRenderer::write_title(Image& image, double top, double size, double t
   bold.bold = true;
   const std::string title =
       options_.title.empty() ? plain_name(log_.provenance.pattern) : options_.title;
-  // The room is the same at every time, so the title does not change its size in a clip.
+  // The room is the same at every time, so that the title does not change its size in a clip.
   double room = image.width - 2 * margin;
   if (log_.controller)
     room -= drawn_width(law_name(*log_.controller), plain) +
@@ -623,7 +625,9 @@ void ClipRenderer::write_scale(Image& image, const Camera& camera, double t) con
   below.z() -= n.dot(camera.target - ground.translation()) / n.z();
   const double pixel = camera.parallel_height / image.height;  // [m]
   const double foot = project(camera, image.width, image.height, below).y();
-  double step = 1;  // the smallest of 1, 2, 5 with at least three lines of text between marks [m]
+  // Distance between marks, the smallest of 1, 2, 5 times a power of ten with at least three lines
+  // of text between marks [m].
+  double step = 1;
   for (const double next : {0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001})
     if (next / pixel >= 3 * size) step = next;
   const auto line = [&](double y, int from, int to, double share) {
@@ -635,7 +639,8 @@ void ClipRenderer::write_scale(Image& image, const Camera& camera, double t) con
         value = static_cast<std::uint8_t>(std::lround(value * (1 - share)));
       }
   };
-  const double margin = 0.6 * size, top = margin + 2.4 * size;  // below the title
+  // Margin to the sides, and a top below the title.
+  const double margin = 0.6 * size, top = margin + 2.4 * size;
   const bool millimetres = step < 0.01;
   for (int k = 0; foot - k * step / pixel > top; ++k) {
     const double y = foot - k * step / pixel;
@@ -665,7 +670,7 @@ ClipSummary write_clip(const RobotModel& model, const SimulationLog& log, const 
   std::exception_ptr unshaped;
   std::atomic<bool> stopped = false;
   const auto make = [&] {
-    std::call_once(shaped, [&] {  // with an exception here, the next thread would try again
+    std::call_once(shaped, [&] {  // after an exception here, the next thread would try again
       try {
         shape = clip_shape(model, log, options, count >= kThinFrames,
                            [&](const ProgressEvent&) { return !stopped; });

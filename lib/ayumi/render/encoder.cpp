@@ -28,7 +28,7 @@ namespace {
 using Arguments = std::vector<std::string>;
 
 // Period at which the end of ffmpeg is tested, and the longest wait before `alive` is called.
-// Chosen: a clip is delayed by less than a frame takes, and Ctrl-C is answered at once.
+// Chosen: a clip is delayed by less than the time of a frame, and Ctrl-C is answered at once.
 constexpr std::chrono::milliseconds kPause(2), kPatience(50);
 
 /// The colour standard of to_yuv420(). Players assume it for video of this size.
@@ -50,10 +50,10 @@ Arguments format_arguments(const std::filesystem::path& path, int width, int hei
   Arguments arguments;
   if (extension == ".mp4") {
     // Without small partitions and motion of half a pixel, a fifth of the time is saved, the file
-    // is 16 % larger, and its PSNR is the same. A still finer search of motion (me, subme) costs
-    // two thirds more time for 0.4 dB and 6 % of size. Large transforms (8x8dct) cost a quarter
-    // more time, and the file is 1 % larger and 0.06 dB worse: most of a picture is even, and the
-    // rest are sharp edges.
+    // is 16 % larger, and its PSNR is the same. A still finer search of motion (me, subme) would
+    // cost two thirds more time for 0.4 dB and 6 % of size. Large transforms (8x8dct) would cost a
+    // quarter more time, and the file would be 1 % larger and 0.06 dB worse: most of a picture is
+    // even, and the rest consists of sharp edges.
     arguments = {
         "-c:v",         "libx264",
         "-preset",      "veryfast",
@@ -102,7 +102,7 @@ Arguments all_arguments(const std::filesystem::path& path, int width, int height
   all.insert(all.end(), format.begin(), format.end());
   for (const char* word : {"-map_metadata", "-1", "-fflags", "+bitexact", "-flags:v", "+bitexact"})
     all.emplace_back(word);
-  // A path that begins with a dash or contains a colon is still a file.
+  // With this prefix, a path that begins with a dash or contains a colon is still a file.
   all.push_back("file:" + path.string());
   return all;
 }
@@ -111,7 +111,7 @@ Arguments all_arguments(const std::filesystem::path& path, int width, int height
 
 void require_encoder(const std::string& program) {
   const char* const path = std::getenv("PATH");
-  std::string folders = path ? path : "/usr/bin:/bin";  // as execvp, without PATH
+  std::string folders = path ? path : "/usr/bin:/bin";  // as in execvp() if PATH is not set
   for (size_t begin = 0; begin <= folders.size();) {
     const size_t end = std::min(folders.find(':', begin), folders.size());
     const std::string folder = folders.substr(begin, end - begin);
@@ -130,7 +130,8 @@ ClipEncoder::ClipEncoder(const std::filesystem::path& path, int width, int heigh
     : path_(path), program_(program), width_(width), height_(height), alive_(std::move(alive)) {
   ChildStart start{.program = program, .arguments = all_arguments(path, width, height, fps)};
   for (char** variable = environ; *variable; ++variable) start.environment.emplace_back(*variable);
-  // A socket instead of a pipe: a write to a dead process then reports instead of raising a signal.
+  // This is a socket instead of a pipe: a write to a dead process then returns an error instead of
+  // raising a signal.
   int ends[2] = {-1, -1};
   const bool paired = socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) == 0;
   const int made = paired ? memfd_create("encoder", MFD_CLOEXEC) : -1;

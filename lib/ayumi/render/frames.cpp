@@ -14,12 +14,11 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-// The place of the plan is not taken from a sole that is tilted by more than this against the plan
-// [rad]. Chosen: soles of a walk tilt by less than 3 degrees, and a robot that falls exceeds this
-// at once.
+// Largest tilt of a sole against the plan [rad] with which the place of the plan is taken from it.
+// Chosen: soles of a walk tilt by less than 3 degrees, and a robot that falls exceeds this at once.
 constexpr double kTilted = 0.1;
 
-/// Poses of the soles' middles in many postures.
+/// The poses of the soles' middles in many postures.
 class SolePoses {
  public:
   explicit SolePoses(const RobotModel& model)

@@ -13,19 +13,20 @@ namespace ayumi {
 
 enum class Frame {
   world,
-  foot  ///< Sigma_0 of the paper: at the middle of the supporting sole, x to its toes, z up
+  foot  ///< Sigma_0 of the paper: at the middle of the supporting sole, x towards its toes, z up
 };
 const std::vector<std::string>& frame_names();
-/// Throws Error(usage) for an unknown name, with the known ones.
+/// The frame of that name. Throws Error(usage) with the known names for an unknown one.
 Frame frame_of(const std::string& name);
 
-/// The log with all places and directions in that frame. The supporting foot is the one planned
-/// down; of two, the one that carried before; in flight, and while that sole is tilted, as it was
-/// last. Throws Error(usage) for a robot without soles in the frame of the foot.
+/// The log with all places and directions in that frame. The supporting foot is the one that is
+/// planned on the ground; if both are, it is the one that carried before. In flight, and while that
+/// sole is tilted, the frame stays as it was last. Throws Error(usage) for a robot without soles in
+/// the frame of the foot.
 SimulationLog in_frame(const RobotModel& model, SimulationLog log, Frame frame);
 
-/// Throws Error(usage) where ground that is not a resting level plane would have to move with the
-/// foot.
+/// Throws Error(usage) if the ground is not a resting level plane, because it would have to move
+/// with the foot.
 void require_level_ground(const SimulationLog& log, Frame frame);
 
 }  // namespace ayumi

@@ -15,8 +15,8 @@ namespace {
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
-/// Chosen: hues 38 to 98 degrees apart that stand out against a light and a dark ground. Of hues
-/// that are equally far from the robot's, the first one is taken.
+/// Hues of ghosts. Chosen: they are 38 to 98 degrees apart and stand out against a light and a dark
+/// ground. Of hues that are equally far from the robot's, the first one is taken.
 const std::array<Vector3f, 6> kHues = {{{0.93f, 0.45f, 0.05f},    // orange
                                         {0.16f, 0.62f, 0.20f},    // green
                                         {0.12f, 0.42f, 0.92f},    // blue
@@ -24,20 +24,22 @@ const std::array<Vector3f, 6> kHues = {{{0.93f, 0.45f, 0.05f},    // orange
                                         {0.05f, 0.62f, 0.62f},    // turquoise
                                         {0.50f, 0.27f, 0.88f}}};  // violet
 
-/// Chosen: a colour 47 degrees from a hue counts half against it. With 2 it would be 66 degrees,
-/// and a robot of three colours left nothing to choose; with 8 it would be 33 degrees, less than
-/// two hues that are called by one name are apart.
+/// Power by which a colour near a hue counts. Chosen: a colour 47 degrees from a hue counts half
+/// against it. With 2 it would be 66 degrees, and a robot of three colours would leave nothing to
+/// choose; with 8 it would be 33 degrees, less than the distance of two hues that have the same
+/// name.
 constexpr int kSharpness = 4;
 
 /// Saturation below which a colour counts as grey. Chosen: silver has 0.05, and covers of a pale
 /// colour have 0.17 and more.
 constexpr float kGrey = 0.1f;
 
-/// Chosen: the bodies of few joints near a limit, as a share of the robot's surface. With more, the
-/// robot's own colours would count for little.
+/// Share of the robot's surface for which the colours of heat are counted. Chosen: the share of the
+/// bodies of few joints near a limit. With more, the robot's own colours would count for little.
 constexpr double kHeatShare = 0.2;
 
-/// The colour seen along the axis of greys: its direction is the hue, its length the saturation.
+/// The colour as seen along the axis of greys: its direction is the hue, and its length the
+/// saturation.
 Vector2f chroma(const Vector3f& c) {
   return {c[0] - (c[1] + c[2]) / 2, std::sqrt(0.75f) * (c[1] - c[2])};
 }
@@ -47,8 +49,8 @@ struct Use {
   std::array<double, kHues.size()> by_hue = {};
   double area = 0;
 
-  /// Weighted by the square of the saturation, so that large pale covers do not hide a few bright
-  /// ones.
+  /// Colours are weighted by the square of the saturation, so that large pale covers do not hide a
+  /// few bright ones.
   void add(const Vector3f& color, double weight) {
     const Vector2f own = chroma(color);
     const double saturation = own.norm();

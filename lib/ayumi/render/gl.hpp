@@ -1,6 +1,6 @@
 #pragma once
-// The OpenGL functions that the renderer uses, which are found at run time, and the objects that it
-// makes with them.
+// The OpenGL functions that the renderer uses, which are found at run time, and the OpenGL objects
+// that it makes.
 
 #include <GL/glcorearb.h>
 
@@ -74,7 +74,7 @@ namespace ayumi {
   X(VIEWPORT, Viewport)
 // clang-format on
 
-/// Vertices as RenderVertex holds them.
+/// Vertices in the layout of RenderVertex.
 struct GlMesh {
   GLuint array = 0, vertices = 0, indices = 0;
 };
@@ -86,28 +86,28 @@ struct GlTarget {
   bool sampled = false;  ///< `color` is a texture of several samples per pixel
 };
 
-/// Needs a current OffscreenContext, whose destruction frees all objects made here.
+/// The functions need a current OffscreenContext, whose destruction frees all objects made here.
 struct Gl {
 #define AYUMI_GL_MEMBER(TYPE, name) PFNGL##TYPE##PROC name;
   AYUMI_GL_FUNCTIONS(AYUMI_GL_MEMBER)
 #undef AYUMI_GL_MEMBER
 
-  /// Throws Error(internal) naming a function that is missing.
+  /// Throws Error(internal) with the name of a function that is missing.
   explicit Gl(const OffscreenContext& context);
 
   /// `between` is put before the text of the fragment shader. Throws Error(internal) with the
-  /// message of the compiler.
+  /// message of the compiler if it fails.
   GLuint link(const char* vertex, const char* fragment, const char* between = "") const;
   /// A picture for surfaces, which is repeated beyond its edges.
   GLuint make_texture(const std::vector<std::uint8_t>& rgba, int width, int height) const;
   GlMesh make_mesh() const;
-  /// A strip of two triangles over -1..1, with positions only.
+  /// A strip of two triangles over -1..1, which has only positions.
   GlMesh make_square() const;
   void fill(const GlMesh& mesh, const Triangles& triangles, GLenum usage) const;
-  /// Positions only, two numbers each.
+  /// A mesh that has only positions, two numbers each.
   GlMesh make_places() const;
-  /// `samples` per pixel; 0 for a target that needs no resolving. Throws Error(internal) if OpenGL
-  /// refuses.
+  /// A target with `samples` per pixel; 0 for a target that needs no resolving. Throws
+  /// Error(internal) if OpenGL refuses.
   GlTarget make_target(int width, int height, int samples, GLenum format, bool depth) const;
   void discard(GlTarget& target) const;
   void draw(const IndexRange& range) const;

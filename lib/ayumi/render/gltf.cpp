@@ -14,9 +14,9 @@
 #include "ayumi/render/log_reading.hpp"
 #include "ayumi/render/simplify.hpp"
 
-// Nodes: 0 the world, whose z becomes glTF's y; 1 + i body i, the root below the world. Triangles
-// of a body are gathered by colour and by whether they are seen from both sides; equal vertices are
-// one. Colours are sRGB bytes in the model and linear factors in the file.
+// Node 0 is the world, whose z becomes glTF's y. Node 1 + i is body i; the root is below the world.
+// Triangles of a body are grouped by colour and by whether they are seen from both sides; equal
+// vertices become one. Colours are sRGB bytes in the model and linear factors in the file.
 
 namespace ayumi {
 namespace {
@@ -38,7 +38,7 @@ struct Batch {
       key[3 + i] = vertex.normal[Eigen::Index(i)] + 0.0f;
     }
     key[6] = vertex.uv.x() + 0.0f;
-    key[7] = 1 - vertex.uv.y();  // downwards in glTF
+    key[7] = 1 - vertex.uv.y();  // v points downwards in glTF
     const auto [entry, fresh] = known.emplace(key, static_cast<std::uint32_t>(known.size()));
     indices.push_back(entry->second);
     if (!fresh) return;
@@ -90,7 +90,7 @@ std::vector<int> add_meshes(Writer& writer, const std::vector<BodySurface>& surf
 
 // ---- nodes and animations
 
-/// Pose of a body in the frame of its parent.
+/// The pose of a body in the frame of its parent.
 Eigen::Isometry3d joint_pose(const Body& body, double theta) {
   const double q = body.ratio * theta + body.offset;
   Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
@@ -105,7 +105,7 @@ BasePose as_base(const Eigen::Isometry3d& pose) {
   return {pose.translation(), Eigen::Quaterniond(pose.linear()).normalized()};
 }
 
-/// Pose of a body in the frame of its parent; the root's pose is in the world.
+/// The pose of a body in the frame of its parent; the root's pose is in the world.
 BasePose node_pose(const RobotModel& model, const Motion& motion, size_t body, size_t k) {
   if (model.bodies()[body].parent < 0) return motion.base[k];
   const Body& b = model.bodies()[body];
@@ -152,7 +152,7 @@ struct Channel {
 };
 
 void add_rotation(std::vector<float>& values, Eigen::Quaternionf q) {
-  // The shorter rotation, starting from the previous key.
+  // Of the two rotations, the shorter one from the previous key is taken.
   const size_t n = values.size();
   if (n >= 4 && q.x() * values[n - 4] + q.y() * values[n - 3] + q.z() * values[n - 2] +
                         q.w() * values[n - 1] <

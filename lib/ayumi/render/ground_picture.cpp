@@ -1,6 +1,7 @@
-// With a plane's point P = O + u U + v V, clip coordinates are linear in (u, v, 1). The inverse of
-// that map takes a pixel to (u, v, 1) / w, linear in the pixel; so every edge of what is seen of
-// the plane is a straight line of the picture, and a row of pixels shows it between two ends.
+// With a point P = O + u U + v V of the plane, clip coordinates are linear in (u, v, 1). The
+// inverse of that map takes a pixel to (u, v, 1) / w, which is linear in the pixel. Therefore every
+// edge of the visible part of the plane is a straight line of the picture, and in a row of pixels
+// the plane lies between two ends.
 #include "ayumi/render/ground_picture.hpp"
 
 #include <Eigen/LU>
@@ -14,7 +15,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kFade =
-    4.5;  // where the ground becomes the horizon, in distances of the camera from its target
+    // Distance at which the ground becomes the horizon, in distances of the camera from its target.
+    4.5;
 constexpr float kShadowStrength = 0.42f;
 constexpr std::array<float, 3> kHorizonColor = {0.877f, 0.893f, 0.907f};
 constexpr std::array<float, 3> kZenithColor = {0.735f, 0.798f, 0.867f};
@@ -34,8 +36,8 @@ std::uint8_t to_byte(float share) { return static_cast<std::uint8_t>(share * 255
 typedef float Eight __attribute__((vector_size(32)));
 typedef std::int32_t EightWhole __attribute__((vector_size(32)));
 
-/// A row of the plane: numerators of u and v and the denominator at the first pixel, their changes
-/// per pixel, and their changes per row.
+/// A row of pixels on the plane: numerators of u and v and the denominator at the first pixel,
+/// their changes per pixel, and their changes per row.
 struct GroundRow {
   std::array<float, 3> first, along, down;
   std::array<float, 2> middle;
@@ -56,7 +58,7 @@ AYUMI_INLINE void floor_of(const Eight& p, Eight& whole) {
   whole = whole > p ? whole - 1.0f : whole;
 }
 
-/// Distance of points from the nearest line [m].
+/// The distance of points from the nearest line [m].
 AYUMI_INLINE void off_line(const Eight& p, const GridLines& lines, Eight& away) {
   const Eight q = p * (1.0f / lines.spacing) + 0.5f;
   Eight whole;
@@ -65,8 +67,8 @@ AYUMI_INLINE void off_line(const Eight& p, const GridLines& lines, Eight& away) 
   away *= lines.spacing;
 }
 
-// Share of a pixel that lines across one axis cover. Far away, where lines merge, it is the mean
-// share.
+// The share of a pixel that lines across one axis cover. Far away, where lines merge, it is the
+// mean share.
 AYUMI_INLINE void add_lines(const Eight& p, const Eight& footprint, const Eight& sharpness,
                             const GridLines& lines, Eight& cover) {
   Eight away;
@@ -102,7 +104,7 @@ AYUMI_INLINE void see(const GroundRow& row, size_t axis, const Eight& at, const 
   larger(across + down, at * 0.0f + 1e-6f, seen.wide);
 }
 
-/// Share of the ground's colour at a distance. Far away, the ground becomes the horizon.
+/// The share of the ground's colour at a distance. Far away, the ground becomes the horizon.
 AYUMI_INLINE void near_share(const GroundRow& row, const Eight& u, const Eight& v, Eight& near) {
   const Eight du = (u - row.middle[0]) * row.fade, dv = (v - row.middle[1]) * row.fade;
   const Eight square = du * du + dv * dv;
@@ -127,7 +129,7 @@ AYUMI_INLINE void has_lines(const Seen& from, const Seen& to, const GridLines& l
   has = (first != last) | (wide > 0.29f * lines.spacing);
 }
 
-/// Colours of eight pixels as bytes of whole numbers, with red as the lowest byte.
+/// The colours of eight pixels as bytes of whole numbers, with red as the lowest byte.
 AYUMI_INLINE void mix_colors(const Eight& fine, const Eight& bold, const Eight& near,
                              std::array<std::int32_t, 8>& pixels) {
   EightWhole packed = {};
@@ -163,7 +165,7 @@ AYUMI_INLINE void eight_colors(const GroundRow& row, int x, int lines, float nea
 AYUMI_INLINE void draw_plane_row(const GroundRow& row, int begin, int end, std::uint8_t* rgb) {
   const Eight step = {0, 8, 16, 24, 32, 40, 48, 56};
   for (int block = begin; block < end; block += 64) {
-    // The first and the last of eight pixels, eight times.
+    // The first and the last pixels of eight blocks of eight pixels.
     const Eight first = step + float(block), last = step + (float(block) + 7.0f);
     Eight far_first, far_last;
     distance_of(row, first, far_first);
@@ -178,8 +180,8 @@ AYUMI_INLINE void draw_plane_row(const GroundRow& row, int begin, int end, std::
       has_lines(from[axis], to[axis], kBold, has);
       lines |= has & kBoldThere[axis];
     }
-    // What the horizon adds changes by less than a step of colour within eight pixels. The last of
-    // them may be beyond the end of what is seen of the plane, even behind the camera.
+    // The contribution of the horizon changes by less than a step of colour within eight pixels.
+    // The last of them may lie beyond the visible end of the plane, even behind the camera.
     Eight near, near_last;
     near_share(row, from[0].place, from[1].place, near);
     near_share(row, to[0].place, to[1].place, near_last);
@@ -261,7 +263,7 @@ GroundPicture::GroundPicture(const Camera& camera, const Eigen::Matrix4d& to_cli
   bool can = false;
   Eigen::Matrix3d back;
   flat.computeInverseWithCheck(back, can, 1e-12);
-  if (!can) return;  // the plane is seen from the side
+  if (!can) return;  // the plane is seen from the side in this case
   Eigen::Matrix3d from_pixel;
   from_pixel << 2.0 / width, 0, -1, 0, -2.0 / height, 1, 0, 0, 1;
   place_ = back * from_pixel;

@@ -1,6 +1,6 @@
 #pragma once
-// Ground, sky and the robot's shadow as a picture, row by row: each pixel is computed from its
-// place alone, without triangles. Colours are sRGB throughout.
+// Ground, sky and the robot's shadow as a picture, row by row. Each pixel is computed from its
+// place alone, without triangles. All colours are sRGB.
 
 #include <Eigen/Core>
 #include <array>
@@ -13,10 +13,11 @@
 
 namespace ayumi {
 
-/// Half edge of the square of the plane that is seen, in distances of the camera from its target.
+/// Half the edge of the visible square of the plane, in distances of the camera from its target.
 constexpr double kPlaneReach = 30;
 
-/// Point of the plane at the camera's target, its coordinates: the middle of that square.
+/// The point of the plane at the camera's target, in coordinates of the plane: the middle of that
+/// square.
 Eigen::Vector2d middle_of_plane(const Camera& camera, const GroundRectangle& plane);
 
 /// Pixels of a row; the end is excluded.
@@ -26,12 +27,13 @@ struct PixelSpan {
 
 /// The robot's shadow as coverage of a square of the plane.
 struct ShadowPicture {
-  static constexpr int kSize = 256;     ///< number of pixels of an edge
-  std::vector<std::uint8_t> cover;      ///< kSize^2, along u then v of the plane; empty: no shadow
-  Eigen::Vector4f dark = {0, 0, 0, 0};  ///< as covered() returns it
+  static constexpr int kSize = 256;  ///< number of pixels of an edge
+  /// Coverage of kSize^2 pixels, along u then v of the plane; empty without shadow.
+  std::vector<std::uint8_t> cover;
+  Eigen::Vector4f dark = {0, 0, 0, 0};  ///< dark part of the square, as covered() returns it
 
   /// The coverage, interpolated between pixels. Both arguments go from 0 to 1 over the square.
-  /// Outside the square, the value at its edge counts.
+  /// Outside the square, the value at its edge is used.
   float at(float along_u, float along_v) const;
 };
 
@@ -43,12 +45,12 @@ class GroundPicture {
   GroundPicture(const Camera& camera, const Eigen::Matrix4d& to_clip, int width, int height,
                 const GroundRectangle& plane, const Eigen::AlignedBox2d& hole, bool shown);
 
-  /// The parts of a row that show the plane: before the hole and behind it.
+  /// The parts of a row that show the plane, before the hole and behind it.
   std::array<PixelSpan, 2> plane_in_row(int y) const;
   void draw(const ShadowPicture& shadow, Image& image) const;
 
  private:
-  /// (a, b, c): pixels with a x + b y + c >= 0 are used.
+  /// (a, b, c) of a line: the pixels with a x + b y + c >= 0 are used.
   using Line = Eigen::Vector3d;
   int width_, height_;
   GroundRectangle plane_;
@@ -63,9 +65,9 @@ class GroundPicture {
   void draw_shadow(const ShadowPicture& shadow, Image& image) const;
 };
 
-/// Lays a part of a picture over it: four bytes per pixel from its bottom row upwards, red, green
-/// and blue multiplied by the fourth, which says how much of the pixel they cover. A row begins
-/// `stride` pixels after the one below.
+/// Lays a part of a picture over the image. It has four bytes per pixel and starts with its bottom
+/// row. Red, green and blue are multiplied by the fourth byte, which says how much of the pixel
+/// they cover. Each row begins `stride` pixels after the row below.
 void lay_pixels_over(const std::uint8_t* rgba, int stride, const PixelBox& box, Image& image);
 
 }  // namespace ayumi

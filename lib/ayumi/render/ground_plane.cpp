@@ -27,7 +27,8 @@ GroundRectangle ground_rectangle(const Eigen::Isometry3d& frame, const Eigen::Al
   return ground;
 }
 
-// With p from the plane's origin: p -> ((p - s (n.p)/(n.s)) . u - center) / reach, the same for v.
+// With p measured from the plane's origin, the map is p -> ((p - s (n.p)/(n.s)) . u - center) /
+// reach, and the same for v.
 Eigen::Matrix4d flattening(const GroundRectangle& plane, const Vector3d& sun) {
   const Eigen::Matrix3d fall =
       Eigen::Matrix3d::Identity() - sun * plane.normal.transpose() / plane.normal.dot(sun);
@@ -56,9 +57,9 @@ double horizon_height(const Camera& camera, const Vector3d& normal, const Matrix
 
 void blur(std::vector<std::uint8_t>& image, int size, int radius) {
   const auto n = static_cast<size_t>(size), r = static_cast<size_t>(radius), width = 2 * r + 1;
-  std::vector<std::uint8_t> smooth(image.size());  // box along rows
-  std::vector<std::uint16_t> sums(n);              // box along columns, a whole row at a time
-  // Multiplied and shifted, this divides every sum of `width` bytes by `width` exactly.
+  std::vector<std::uint8_t> smooth(image.size());  // mean over a box along rows
+  std::vector<std::uint16_t> sums(n);  // sums of a box along columns, for a whole row at a time
+  // Multiplying by this number and shifting divides every sum of `width` bytes by `width` exactly.
   const std::uint32_t part = (1u << 24) / static_cast<std::uint32_t>(width) + 1;
   require(width <= 255, "a shadow is blurred too widely");
   const auto mean = [&](std::uint32_t sum) { return static_cast<std::uint8_t>(sum * part >> 24); };

@@ -14,18 +14,20 @@ namespace {
 using Eigen::Vector3d;
 
 // How far a corner may be outside a plane of its own part, as a share of the part's size, and half
-// of how far a hidden one is inside. Chosen: a part of 200 pixels is then convex to 0.04 pixels; at
-// half, round parts whose corners have six digits are not convex, at twice, it is 0.08 pixels.
+// of how far a hidden corner must be inside. Chosen: a part of 200 pixels is then convex to 0.04
+// pixels. With half of the value, round parts whose corners have six digits are not convex; with
+// twice, it is 0.08 pixels.
 constexpr double kFlat = 2e-4;
-// Largest product of planes and corners of a part that is examined. Chosen: a part of 1,150
-// triangles; at twice, heavy meshes take longer to examine, at half, finely divided balls and tubes
-// are left out.
+// Largest product of planes and corners of a part that is examined. Chosen: that of a part of 1,150
+// triangles. With twice the value, heavy meshes take longer to examine; with half, finely divided
+// balls and tubes are left out.
 constexpr size_t kMostWork = 4'000'000;
-// Pairs of a piece and a triangle of a body, above which nothing is left out. Chosen: they take
-// about half a second; a body with so many pieces has screws and grilles, which hide little.
+// Number of pairs of a piece and a triangle of a body above which nothing is left out. Chosen:
+// these pairs take about half a second; a body with so many pieces has screws and grilles, which
+// hide little.
 constexpr size_t kMostTests = 200'000'000;
 
-/// Triangles that are connected.
+/// A group of triangles that are connected.
 struct Piece {
   std::vector<std::uint32_t> triangles;  // first index of each triangle, divided by 3
   Eigen::AlignedBox3d box;
@@ -90,7 +92,7 @@ void find_planes(const Triangles& surface, Piece& piece) {
   piece.planes = std::move(planes);
 }
 
-/// Whether a triangle is inside: all of its corners are inside.
+/// Whether a triangle is inside, which means that all its corners are inside.
 bool is_inside(const Piece& piece, const std::array<Vector3d, 3>& corners) {
   if (piece.planes.empty() || !piece.box.contains(corners[0])) return false;
   const double flat = kFlat * piece.box.diagonal().norm();
@@ -102,7 +104,7 @@ bool is_inside(const Piece& piece, const std::array<Vector3d, 3>& corners) {
   });
 }
 
-/// The body without those of its triangles that are inside one of the pieces, except in their own
+/// Removes from the body those triangles that are inside one of the pieces, except in their own
 /// piece.
 void leave_out(Triangles& surface, const std::vector<Piece>& pieces,
                const std::vector<std::int64_t>& own) {

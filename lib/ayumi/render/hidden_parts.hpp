@@ -9,8 +9,8 @@
 namespace ayumi {
 
 /// Leaves out triangles whose three corners are inside one convex, opaque, closed part of the same
-/// body's closed surface. Such a triangle is inside as a whole, so pictures stay what they are.
-/// Surfaces with holes, and what is inside parts that are not convex, stay.
+/// body's closed surface. Such a triangle is inside as a whole, so that pictures stay as they are.
+/// Surfaces with holes, and everything inside parts that are not convex, stay.
 void leave_out_hidden(std::vector<BodySurface>& robot);
 
 }  // namespace ayumi

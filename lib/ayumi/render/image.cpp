@@ -16,7 +16,7 @@ namespace {
 using SurfacePointer = std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)>;
 using ContextPointer = std::unique_ptr<cairo_t, decltype(&cairo_destroy)>;
 
-// [pixels] Definition: cairo makes no wider surface of an image.
+// Largest width of a surface [pixel]. Definition: cairo makes no wider surface of an image.
 constexpr double kWidestSurface = 32767;
 
 SurfacePointer make_surface(cairo_format_t format, int width, int height) {
@@ -65,16 +65,16 @@ SurfacePointer render_text(const std::string& text, const TextStyle& style) {
   return surface;
 }
 
-// Texts that are kept drawn. Chosen: more than one frame has; at half, a legend of many marks is
-// drawn anew for every frame; at twice, memory holds the times of past frames, which none shows
-// again.
+// Largest number of texts that are kept drawn. Chosen: more than one frame has. With half of the
+// value, a legend of many marks is drawn anew for every frame; with twice, memory holds the times
+// of past frames, which are never shown again.
 constexpr size_t kMostTexts = 64;
-// Bytes of the longest text that is kept. Chosen: the words of the legend have about 50; a longer
-// title is shortened letter by letter, and all its lengths would displace the others.
+// Number of bytes of the longest text that is kept. Chosen: the words of the legend have about 50;
+// a longer title is shortened letter by letter, and all its lengths would displace the others.
 constexpr size_t kLongestKept = 100;
 
-/// render_text(), of which the last ones are kept: the frames of a clip have the same words, and
-/// each is asked for its width first.
+/// Does the same as render_text(), but keeps the last results: the frames of a clip have the same
+/// words, and the width of each text is asked for before it is drawn.
 std::shared_ptr<cairo_surface_t> text_surface(const std::string& text, const TextStyle& style) {
   thread_local std::map<std::string, std::shared_ptr<cairo_surface_t>> kept;
   std::string key(reinterpret_cast<const char*>(&style.size), sizeof style.size);

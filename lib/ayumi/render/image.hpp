@@ -9,10 +9,10 @@
 
 namespace ayumi {
 
-/// sRGB, 8 bits per channel, rows from the top, no padding.
+/// A picture in sRGB, with 8 bits per channel, rows from the top and no padding.
 struct Image {
-  int width = 0, height = 0;      ///< [pixel]
-  std::vector<std::uint8_t> rgb;  ///< 3 width height
+  int width = 0, height = 0;      ///< size [pixel]
+  std::vector<std::uint8_t> rgb;  ///< 3 width height bytes
 
   const std::uint8_t* pixel(int x, int y) const { return &rgb[3 * (size_t(y) * width + x)]; }
   std::uint8_t* pixel(int x, int y) { return &rgb[3 * (size_t(y) * width + x)]; }
@@ -21,7 +21,7 @@ struct Image {
 /// The bytes of a PNG file.
 std::string encode_png(const Image& image);
 
-/// Whole or not at all. Throws Error(bad_file) naming the path and the reason.
+/// Writes the file whole or not at all. Throws Error(bad_file) with the path and the reason.
 void write_png(const std::filesystem::path& path, const Image& image);
 
 enum class TextAnchor { left, center, right };
@@ -31,14 +31,15 @@ struct TextStyle {
   bool bold = false;
   TextAnchor anchor = TextAnchor::left;
   Eigen::Vector4f color = {0.1f, 0.1f, 0.12f, 1.0f};  ///< sRGB and alpha
-  Eigen::Vector4f plate = {1.0f, 1.0f, 1.0f, 0.0f};   ///< box behind the text; alpha 0: none
+  /// Box behind the text; there is none with alpha 0.
+  Eigen::Vector4f plate = {1.0f, 1.0f, 1.0f, 0.0f};
 };
 
-/// Width that draw_text takes for it [pixel].
+/// The width that draw_text() takes for this text [pixel].
 int drawn_width(const std::string& text, const TextStyle& style);
 
-/// Writes one line of text; (x, y) is its anchor on the vertical middle of the line [pixel]. Parts
-/// outside the picture are left out. Returns the width it takes [pixel].
+/// Writes one line of text. (x, y) is its anchor on the vertical middle of the line [pixel]. Parts
+/// outside the picture are left out. Returns the width that the text takes [pixel].
 int draw_text(Image& image, double x, double y, const std::string& text, const TextStyle& style);
 
 }  // namespace ayumi

@@ -12,7 +12,8 @@
 namespace ayumi {
 namespace {
 
-/// a towards b by `share`; vectors of different sizes (an empty one) stay a.
+/// The vector between a and b at the fraction `share` of the way; if their sizes differ (one is
+/// empty), the result is a.
 template <typename Vector>
 Vector mix(const Vector& a, const Vector& b, double share) {
   if (a.size() != b.size()) return a;
@@ -23,7 +24,7 @@ BasePose mix(const BasePose& a, const BasePose& b, double share) {
   return {mix(a.position, b.position, share), a.attitude.slerp(share, b.attitude)};
 }
 
-/// Intervals of ticks in which exactly these feet (left, right) are planned on the ground.
+/// The intervals of ticks in which exactly these feet (left, right) are planned on the ground.
 std::vector<FlightRecord> stretches(const SimulationLog& log, const std::array<bool, 2>& feet) {
   std::vector<FlightRecord> result;
   bool before = false;
@@ -41,31 +42,33 @@ std::vector<FlightRecord> stretches(const SimulationLog& log, const std::array<b
 struct Candidate {
   double t = 0;       ///< time [s]
   double weight = 0;  ///< for postures, the size of the move [rad]; events have a higher weight
-  bool looks_like_another = false;  ///< near others, but worth a picture nevertheless
+  bool looks_like_another = false;  ///< it is near others, but worth a picture nevertheless
 };
 
-// Weights of events, above every posture: a joint moves by less than 10 rad.
+// Weights of events. They are above that of every posture, because a joint moves by less than 10
+// rad.
 constexpr double kPushWeight = 400, kFallWeight = 300, kApexWeight = 200, kStepWeight = 0.05;
 
-// A move of a joint that is worth a picture [rad], and the share of the largest move of the run.
-// Chosen: 3 degrees can just be seen in a picture of 400 pixels; at half, servo errors count, at
-// twice, a nod is missed.
+// The smallest move of a joint that is worth a picture [rad], and the same as a share of the
+// largest move of the run. Chosen: 3 degrees can just be seen in a picture of 400 pixels. With half
+// of the value, servo errors count; with twice, a nod is missed.
 constexpr double kSeenMove = 0.05, kSeenShare = 0.15;
 
-// An extreme that is held counts when it is reached, within this share of the move. Chosen: in a
-// quintic between rests 2 % of the way are left at four fifths of the time.
+// Share of the move within which an extreme that is held counts as reached. Chosen: in a quintic
+// between rests, 2 % of the way are left at four fifths of the time.
 constexpr double kReached = 0.02;
 
-/// Instants at which a curve turns back or comes to rest after a move of at least `least`, with the
-/// sizes of these moves.
+/// Adds the instants at which a curve turns back or comes to rest after a move of at least `least`,
+/// with the sizes of these moves.
 void add_turns(const std::vector<double>& values, double dt, size_t first, double least,
                std::vector<Candidate>& out) {
   if (values.empty()) return;
-  size_t low = 0, high = 0, from = 0;  // extremes since the last turn, and that turn
+  size_t low = 0, high = 0, from = 0;  // the extremes since the last turn, and that turn
   int direction = 0;
   const auto turn = [&](size_t at) {
     const double move =
-        std::min(10.0, std::abs(values[at] - values[from]));  // below the weight of every event
+        // Limited to a value below the weight of every event.
+        std::min(10.0, std::abs(values[at] - values[from]));
     size_t reached = from;
     while (reached < at && std::abs(values[reached] - values[at]) > kReached * move) ++reached;
     // The place where the move began was already shown.
@@ -92,7 +95,7 @@ void add_turns(const std::vector<double>& values, double dt, size_t first, doubl
       high = k;
     }
   }
-  // The value that the curve reaches and keeps.
+  // The last extreme is the value that the curve reaches and keeps.
   if (direction != 0) turn(direction > 0 ? high : low);
 }
 
@@ -106,8 +109,8 @@ std::vector<Candidate> turning_postures(const SimulationLog& log, size_t first, 
   };
   for (Eigen::Index i = 0; i < log.samples.front().state.theta.size(); ++i)
     add([i](const SimulationSample& s) { return s.state.theta[i]; });
-  // The movement of the COG divided by half its height above the ground, as if it were the arm of a
-  // joint.
+  // The movement of the COG is divided by half its height above the ground, as if that were the arm
+  // of a joint.
   const double height = std::max(1e-3, log.samples.front().cog.z() - log.world.height);
   add([&](const SimulationSample& s) { return 2 * s.cog.z() / height; });
   for (const int axis : {0, 1})  // the lean of the trunk
@@ -126,14 +129,14 @@ std::vector<Candidate> turning_postures(const SimulationLog& log, size_t first, 
   return out;
 }
 
-/// The tick nearest to a time.
+/// The tick that is nearest to a time.
 size_t tick_at(const SimulationLog& log, double t) {
   const double last = static_cast<double>(log.samples.size() - 1);
   return static_cast<size_t>(std::clamp(std::round(t / log.dt), 0.0, last));
 }
 
-/// The time at which the COG is highest in a flight; if several samples have the same height, the
-/// time in their middle [s].
+/// The time at which the COG is highest in a flight [s]. If several samples have the same height,
+/// it is the middle of their times.
 double apex_of(const SimulationLog& log, const FlightRecord& flight) {
   const size_t first = tick_at(log, flight.begin), last = tick_at(log, flight.end - log.dt);
   size_t low = first, high = first;
@@ -147,7 +150,7 @@ double apex_of(const SimulationLog& log, const FlightRecord& flight) {
 /// The time at which the robot has yielded most after each flight. The posture is similar to that
 /// of the stoop before it.
 std::vector<Candidate> landings(const SimulationLog& log, const std::vector<FlightRecord>& flown) {
-  // A robot yields within this time [s]. Chosen: twice the time of a landing from 0.1 m.
+  // Time within which a robot yields [s]. Chosen: twice the time of a landing from 0.1 m.
   constexpr double kYield = 0.5;
   std::vector<Candidate> out;
   for (size_t i = 0; i < flown.size(); ++i) {
@@ -166,8 +169,8 @@ std::vector<Candidate> landings(const SimulationLog& log, const std::vector<Flig
   return out;
 }
 
-/// Difference of two postures: the largest change of a joint [rad], or the change of the COG
-/// divided by half its height, as if it were the arm of a joint.
+/// The difference of two postures: the largest change of a joint [rad], or the change of the COG
+/// divided by half its height, as if that were the arm of a joint.
 double difference(const SimulationLog& log, double a, double b) {
   const SimulationSample &one = log.samples[tick_at(log, a)], &two = log.samples[tick_at(log, b)];
   const double height = std::max(1e-3, std::abs(one.cog.z() - log.world.height));
@@ -185,16 +188,16 @@ double news_at(const SimulationLog& log, double t, const std::vector<double>& ti
   return least;
 }
 
-/// Takes candidates by weight, none nearer to another than `apart`, until there are `count` times;
-/// events may be as near as they are. No posture is taken twice. Of those that weigh about the same
-/// it takes first what stands on other feet than the nearest time taken, then what is farthest from
-/// it.
+/// Takes candidates by weight until there are `count` times. No candidate is nearer to another than
+/// `apart`, except events, which may have any distance. No posture is taken twice. Among candidates
+/// of about the same weight, the function first takes one that stands on other feet than the
+/// nearest time taken, and then the one that is farthest from it.
 void take(const SimulationLog& log, std::vector<Candidate> candidates, size_t count, double apart,
           std::vector<double>& times) {
-  // Weights of the same power of this are alike. Chosen: the steps of a walk differ by less.
+  // Ratio of weights that are alike. Chosen: the steps of a walk differ by less.
   constexpr double kAlike = 1.25;
-  // The largest moves may be this near to each other and to the ends [s]. Chosen: half of the time
-  // of a quick step.
+  // Smallest distance of the largest moves from each other and from the ends [s]. Chosen: half of
+  // the time of a quick step.
   constexpr double kShortest = 0.2;
   double heaviest = 0;
   for (const Candidate& c : candidates)
@@ -230,8 +233,8 @@ void fill(const SimulationLog& log, size_t count, std::vector<double>& times) {
   // Number of instants that are compared. Chosen: as many pictures of a run as a person can
   // distinguish.
   constexpr int kLooked = 100;
-  // The least spacing, because joints of a robot that falls turn quickly: a share of an even one,
-  // and at most so long [s]. Chosen: a quarter, and half of a quick step.
+  // The smallest spacing as a share of an even one, and its largest value [s]; joints of a robot
+  // that falls turn quickly. Chosen: a quarter, and half of the time of a quick step.
   constexpr double kApart = 0.25, kLongest = 0.1;
   std::sort(times.begin(), times.end());
   const double begin = times.front(), length = times.back() - begin;
@@ -256,10 +259,11 @@ void fill(const SimulationLog& log, size_t count, std::vector<double>& times) {
   }
 }
 
-/// Time after which a robot that has fallen is no longer shown [s], because links without collision
-/// shapes sink into the ground.
+/// The time after which a robot that has fallen is no longer shown [s], because links without
+/// collision shapes sink into the ground.
 double sunk_at(const SimulationLog& log) {
-  // Share of the height of the COG. Chosen: half of that of a robot that lies on the floor.
+  // Height of the COG below which a robot has sunk, as a share of its first height. Chosen: half of
+  // that of a robot that lies on the floor.
   constexpr double kSunk = 0.1;
   const double height = log.samples.front().cog.z() - log.world.height;
   for (size_t k = tick_at(log, log.result.fell_at); k < log.samples.size(); ++k)
@@ -268,8 +272,8 @@ double sunk_at(const SimulationLog& log) {
   return duration(log);
 }
 
-/// The time at which the step or kick began in which the robot stands on one foot at `t` [s];
-/// otherwise `t`.
+/// The time at which the step or kick began if the robot stands on one foot at `t` [s]; otherwise
+/// `t`.
 double step_began(const SimulationLog& log, double t) {
   // Largest time before t [s]. Chosen: longer than the kicks of the examples, and short for a robot
   // that only stands on one foot.
@@ -281,15 +285,15 @@ double step_began(const SimulationLog& log, double t) {
   return std::max(t - kSlow, static_cast<double>(k) * log.dt);
 }
 
-/// The part of a run around its pushes or flights [s]; all of it where it has none, or where the
+/// The part of a run around its pushes or flights [s]; the whole run if it has none, or if the
 /// robot moves more elsewhere.
 FlightRecord shown_part(const SimulationLog& log) {
-  // The time of the push before the flights and of the landing after them [s].
+  // The time shown before the flights, for a push-off, and after them, for the landing [s].
   constexpr double kBefore = 0.25, kAfter = 0.35;
-  // The time from a push to the end of its effects, and the time after a fall [s].
+  // The time from a push to the end of its effects, and the time shown after a fall [s].
   constexpr double kRecovery = 1.25;
-  // A move elsewhere is shown as well where it is so much larger. Chosen: steps of one walk differ
-  // by less; a kick moves the knee by twice as much as the steps around it.
+  // Factor by which a move elsewhere must be larger to be shown as well. Chosen: steps of one walk
+  // differ by less; a kick moves the knee by twice as much as the steps around it.
   constexpr double kLarger = 1.5;
   const std::vector<FlightRecord> flown = flights(log);
   const std::vector<PushRecord> pushed = pushes(log);
@@ -374,7 +378,7 @@ bool floor_moves(const SimulationLog& log) {
 
 Eigen::Isometry3d marked_ground(const SimulationLog& log, double t,
                                 const SimulationSample& sample) {
-  constexpr double kLevel = 5e-4;  // loaded soles sink in by less, and steps are higher [m]
+  constexpr double kLevel = 5e-4;  // soles under load sink in by less, and steps are higher [m]
   Eigen::Isometry3d ground = ground_at(log, t);
   double height = 0;
   for (size_t side = 0; side < 2; ++side)
@@ -449,7 +453,7 @@ std::vector<double> telling_instants(const SimulationLog& log, int count) {
     candidates.push_back(c);
   for (const Candidate& c : landings(log, flown))
     if (within(c.t)) candidates.push_back(c);
-  // For a walk, the middle of every step.
+  // In a walk, the middle of every step is a candidate.
   for (const std::array<bool, 2> feet : {std::array{true, false}, std::array{false, true}})
     for (const FlightRecord& step : stretches(log, feet)) {
       const double middle = 0.5 * (step.begin + step.end);
@@ -487,8 +491,8 @@ std::string instant_text(const SimulationLog& log, double t) {
 }
 
 double verdict_instant(const SimulationLog& log) {
-  // What differs by less from the end stands as it will stand. Chosen: 2 mm of 0.25 m and 1 degree
-  // are less than a picture shows.
+  // Difference from the end below which the robot counts as standing as it will stand. Chosen: 2 mm
+  // of 0.25 m and 1 degree are less than a picture shows.
   constexpr double kPlace = 0.008, kAngle = M_PI / 180;
   const double last = duration(log);
   if (log.result.outcome == Outcome::fell) return log.result.fell_at;

@@ -1,6 +1,6 @@
 #pragma once
-// An OpenGL context without window, display or graphics card: by OSMesa or by
-// surfaceless EGL, whichever this build found.
+// An OpenGL context without window, display or graphics card, by OSMesa or by surfaceless EGL,
+// whichever was found when the library was built.
 
 #include <string>
 #include <vector>
@@ -9,38 +9,35 @@ namespace ayumi {
 
 enum class Offscreen { automatic, osmesa, egl };
 
-/// The ways this build has, the one that `automatic` takes first.
+/// The ways that this build has. The first is the one that `automatic` takes.
 std::vector<Offscreen> offscreen_ways();
 
-/// RAII around a context of OpenGL 3.3 core or newer. To be used by one thread
-/// at a time.
+/// Owns a context of OpenGL 3.3 core or newer. Only one thread may use it at a time.
 class OffscreenContext {
  public:
   using Function = void (*)();
 
-  /// Throws Error(internal) saying what is missing when there is no such
-  /// context to be had.
+  /// Throws Error(internal) that says what is missing if no such context can be made.
   explicit OffscreenContext(Offscreen way = Offscreen::automatic);
   ~OffscreenContext();
   OffscreenContext(const OffscreenContext&) = delete;
   OffscreenContext& operator=(const OffscreenContext&) = delete;
 
-  /// Makes the calling thread's OpenGL calls go here.
+  /// Makes this the context of the calling thread's OpenGL calls.
   void make_current();
-  /// Address of an OpenGL function; throws Error(internal) when the driver
-  /// lacks it.
+  /// The address of an OpenGL function. Throws Error(internal) if the driver lacks it.
   Function function(const char* name) const;
 
  private:
   Offscreen way_;
   void* context_ = nullptr;
-  void* display_ = nullptr;            ///< of EGL
-  unsigned char buffer_[4 * 16 * 16];  ///< of OSMesa; drawing goes to framebuffer objects
+  void* display_ = nullptr;            ///< display of EGL
+  unsigned char buffer_[4 * 16 * 16];  ///< buffer of OSMesa; drawing goes to framebuffer objects
 };
 
 namespace offscreen {
 
-/// What one way of making contexts has to do; each in a source of its own.
+/// The functions of each way of making contexts; each way has a source of its own.
 struct Osmesa {
   static void* create();
   static void destroy(void* context);

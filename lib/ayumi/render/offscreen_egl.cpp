@@ -15,8 +15,7 @@ namespace {
                                 "; install Mesa's EGL (libegl-mesa0), or build with OSMesa");
 }
 
-/// Mesa's display without any surface. The same for every context of the
-/// process.
+/// Mesa's display without any surface. It is the same for every context of the process.
 EGLDisplay surfaceless_display() {
   const auto get = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(
       eglGetProcAddress("eglGetPlatformDisplayEXT"));

@@ -1,5 +1,5 @@
-// The library is loaded by the first picture: with the compiler that it brings, it takes longer to
-// load than all other libraries together.
+// The library is only loaded for the first picture: with the compiler that it brings, it takes
+// longer to load than all other libraries together.
 #include "ayumi/base/error.hpp"
 #include "ayumi/render/offscreen_context.hpp"
 

@@ -19,7 +19,7 @@ struct Plane {
   Vector3d normal, u, v, origin;
   double size;  ///< height of the robot [m]
 
-  /// The point below, along gravity, on the plane, then `layer` steps above it.
+  /// The point below p, along gravity, on the plane, and then `layer` steps above it.
   Vector3d drop(const Vector3d& p, int layer) const {
     const Vector3d on = p - Vector3d::UnitZ() * (normal.dot(p - origin) / normal.z());
     return on + normal * (0.0008 * size * layer);
@@ -92,7 +92,8 @@ void add_forces(Triangles& target, const SimulationSample& sample, double weight
   for (size_t side = 0; side < 2; ++side) {
     const double share = sample.foot_force[side].norm() / weight;
     if (share < 0.01) continue;
-    // Impacts exceed the weight many times, so their arrow ends at twice the weight.
+    // Forces of impacts exceed the weight many times, so that their arrow is cut at twice the
+    // weight.
     const Vector3d arrow =
         sample.foot_force[side].normalized() * (0.5 * plane.size * std::min(share, 2.0));
     add_arrow(target, sample.foot_cop[side], sample.foot_cop[side] + arrow, 0.008 * plane.size,
@@ -112,8 +113,8 @@ void add_pushes(Overlay& overlay, const std::vector<PushRecord>& pushed, double 
     const double fade_from = std::max(push.end, push.begin + 0.6 * options.push_hold);
     const double opacity = t <= fade_from ? 1.0 : (last - t) / (last - fade_from);
     const Vector3d direction = (push.impulse.norm() > 0 ? push.impulse : push.peak).normalized();
-    // The tip of the arrow touches the robot at this point, and it moves on with the COG while it
-    // fades.
+    // The tip of the arrow touches the robot at this point and moves on with the COG while the
+    // arrow fades.
     const Vector3d tip = sample.cog + push.from_cog;
     const Vector3d tail = tip - options.push_length * size * direction;
     add_arrow(overlay.triangles, tail, tip, 0.014 * size, faded(overlay_color::kPush, opacity));
@@ -121,11 +122,11 @@ void add_pushes(Overlay& overlay, const std::vector<PushRecord>& pushed, double 
   }
 }
 
-/// Returns 2/3 where a joint begins to be near a limit of its range, 1 at the limit, and less
+/// Returns 2/3 if a joint begins to be near a limit of its range, 1 at the limit, and less
 /// elsewhere.
 double position_use(const Dof& dof, double theta, double home) {
-  // The part of the range that is near a limit. Chosen: a tenth is 10 to 20 degrees of most joints;
-  // at half a warning comes late, at twice deep knees are always warm.
+  // The part of the range that is near a limit. Chosen: a tenth is 10 to 20 degrees of most joints.
+  // With half of the value, a warning comes late; with twice, deep knees are always warm.
   constexpr double kNear = 0.1;
   double use = 0;
   for (const double side : {-1.0, 1.0}) {

@@ -1,7 +1,7 @@
 #pragma once
-// What a picture shows besides the robot: COG, ZMP, reference ZMP, support polygon, contact forces,
-// pushes, trails. Each has its own colour and shape, so that they can be distinguished without
-// colours.
+// Marks that a picture shows besides the robot: COG, ZMP, reference ZMP, support polygon, contact
+// forces, pushes, trails. Each has its own colour and shape, so that they can be distinguished
+// without colours.
 
 #include <Eigen/Geometry>
 #include <string>
@@ -20,19 +20,20 @@ struct OverlayOptions {
   bool support = true;        ///< hull of the soles of the planned contact feet
   bool forces = true;         ///< arrow per foot
   bool push = true;           ///< arrow with its value
-  bool trails = true;         ///< of COG (on the ground) and ZMP
+  bool trails = true;         ///< trails of COG (on the ground) and ZMP
   bool model = false;         ///< outlines of the soles, axes of the joints, arrow ahead
-  bool heat = false;          ///< bodies whose joint is near a limit in amber, at it in red
-  bool scale = true;          ///< heights in a parallel view
-  bool caption = true;        ///< line of text and legend of the marks
-  double trail = 2.0;         ///< length of the trails [s]
-  double push_length = 0.6;   ///< of its arrow, as a share of the robot's height
-  double push_hold = 0.6;     ///< a push is shown at least this long from its start [s]
+  /// Bodies whose joint is near a limit are amber, and those at a limit are red.
+  bool heat = false;
+  bool scale = true;         ///< heights in a parallel view
+  bool caption = true;       ///< line of text and legend of the marks
+  double trail = 2.0;        ///< length of the trails [s]
+  double push_length = 0.6;  ///< length of its arrow, as a share of the robot's height
+  double push_hold = 0.6;    ///< a push is shown at least this long from its start [s]
 };
 
 /// Text at a place in the world.
 struct Label {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< place in the world [m]
   std::string text;
   double opacity = 1;
 };
@@ -53,18 +54,19 @@ inline const Eigen::Vector4f kAhead = {0.84f, 0.15f, 0.12f, 1};
 inline const Eigen::Vector4f kPush = {0.78f, 0.25f, 0.62f, 1};
 }  // namespace overlay_color
 
-/// Corners of the support polygon of the planned contact feet on the ground plane (z of its
-/// frame is the normal), counter-clockwise seen from above; empty without contact or without soles.
+/// The corners of the support polygon of the planned contact feet on the ground plane (z of its
+/// frame is the normal), counter-clockwise seen from above. The list is empty without contact or
+/// without soles.
 std::vector<Eigen::Vector3d> support_corners(
     const RobotModel& model, const std::vector<Eigen::Isometry3d>& poses,
     const std::array<bool, 2>& contact,
     const Eigen::Isometry3d& ground = Eigen::Isometry3d::Identity());
 
-/// Closeness of the joint of each body to its limits of position, speed and torque, by body: 0 up
-/// to two thirds of the limit of speed or torque and outside the last tenth of the range, 1 at the
-/// limit. Where the home posture is near a limit, the joint is near it from a third of that
-/// distance on, so that nothing is near a limit at home. `profile` by name; the default one where
-/// unknown.
+/// How near the joint of each body is to its limits of position, speed and torque, by body: 0 up to
+/// two thirds of the limit of speed or torque and outside the last tenth of the range, 1 at the
+/// limit. If the home posture is near a limit, the joint only counts as near from a third of that
+/// distance on, so that nothing is near a limit at home. `profile` is the name of an actuator
+/// profile; the default one is used if it is unknown.
 std::vector<float> joint_heat(const RobotModel& model, const std::string& profile,
                               const SimulationSample& sample);
 
@@ -72,8 +74,8 @@ std::vector<float> joint_heat(const RobotModel& model, const std::string& profil
 bool shows_push(const std::vector<PushRecord>& pushed, double begin, double end,
                 const OverlayOptions& options);
 
-/// Overlay of the log at time t. `pushed` are the log's pushes(); `sample` and `poses` those of t;
-/// `height` of the robot [m] scales the marks.
+/// The overlay of the log at time t. `pushed` are the log's pushes(), `sample` and `poses` are
+/// those of t, and the `height` of the robot [m] scales the marks.
 Overlay make_overlay(const RobotModel& model, const SimulationLog& log,
                      const std::vector<PushRecord>& pushed, double t,
                      const SimulationSample& sample, const std::vector<Eigen::Isometry3d>& poses,

@@ -8,20 +8,20 @@
 
 #include "ayumi/base/error.hpp"
 
-// With R, G, B in 0..255 and L = 0.2126 R + 0.7152 G + 0.0722 B: Y = 16 + 219/255 L,
-// Cb = 128 + 224/255 (B - L) / 1.8556, Cr = 128 + 224/255 (R - L) / 1.5748; whole numbers, 2^16 the
-// unit; for the sum of four pixels, the unit is 2^18.
+// With R, G, B in 0..255 and L = 0.2126 R + 0.7152 G + 0.0722 B, Y = 16 + 219/255 L, Cb = 128 +
+// 224/255 (B - L) / 1.8556, and Cr = 128 + 224/255 (R - L) / 1.5748. They are computed in whole
+// numbers with the unit 2^16; for the sum of four pixels, the unit is 2^18.
 
 namespace ayumi {
 namespace {
 
-/// Shares of the luma. Source: ITU-R BT.709.
+/// Shares of the colours in the luma. Source: ITU-R BT.709.
 constexpr double kRed = 0.2126, kGreen = 0.7152, kBlue = 0.0722;
 
 constexpr int unit(double share) {
   return static_cast<int>(share * 65536 + (share < 0 ? -0.5 : 0.5));
 }
-/// Weights of R, G, B; what they make of grey is exactly nothing for the two colours.
+/// Weights of R, G, B. For grey, the weighted sums of the two colour signals are exactly zero.
 constexpr std::array<int, 3> kY = {unit(219.0 / 255 * kRed), unit(219.0 / 255 * kGreen),
                                    unit(219.0 / 255 * kBlue)};
 /// Range of the colours over 2 (1 - kBlue) and 2 (1 - kRed). Source: ITU-R BT.709.
@@ -61,8 +61,8 @@ void convert_one_by_one(const TwoRows& rows, size_t x, size_t width) {
 
 #ifdef __x86_64__
 
-// The same whole numbers, eight pixels at once. A product of pairs takes weights of 16 bits, so
-// that of green is split in two.
+// Computes the same whole numbers for eight pixels at once. A product of pairs takes weights of 16
+// bits, so that the weight of green is split in two.
 #define AYUMI_AVX2 [[gnu::target("avx2")]]
 
 AYUMI_AVX2 inline __m256i pairs_of_weights(int first, int second) {

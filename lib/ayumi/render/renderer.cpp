@@ -31,9 +31,9 @@ constexpr size_t kShadowTriangles =
 
 const Eigen::Vector4f kNoTint = Eigen::Vector4f::Zero();
 
-/// How far exposures lie behind where they are, as a share of the camera's distance. Chosen: about
-/// 5 mm on a robot of 0.5 m, more than a servo sags; at half, soles and command still mix, at
-/// twice, a ghost that stands out by less than 1 cm is hidden.
+/// Distance by which exposures lie behind their true place, as a share of the camera's distance.
+/// Chosen: about 5 mm on a robot of 0.5 m, more than a servo sags. With half of the value, soles
+/// and command still mix; with twice, a ghost that stands out by less than 1 cm is hidden.
 constexpr double kBehind = 0.007;
 
 /// The projection with `steps` times kBehind more of depth.
@@ -41,7 +41,7 @@ Matrix4f pushed_back(const Scene& scene, const Matrix4f& view_projection, size_t
   const Camera& camera = scene.camera;
   const double away = (camera.eye - camera.target).norm();
   const double step = kBehind * away * double(steps), range = camera.far - camera.near;
-  // Growth of OpenGL's depth for this distance.
+  // The growth of OpenGL's depth for this distance.
   const double deeper = camera.parallel_height > 0
                             ? 2 * step / range
                             : 2 * camera.far * camera.near / range * step / (away * (away + step));
@@ -181,7 +181,7 @@ std::vector<size_t> Renderer::Parts::nearest_first(const Scene& scene) const {
   return order;
 }
 
-/// Leaves `solid` in use, with the identity, no tint and full opacity.
+/// On return, the program `solid` is in use, with the identity, no tint and full opacity.
 template <typename Tint>
 void Renderer::Parts::draw_bodies(const std::vector<Eigen::Isometry3d>& poses, double opacity,
                                   const Tint& tint) {
@@ -217,7 +217,7 @@ void Renderer::Parts::draw_bodies(const std::vector<Eigen::Isometry3d>& poses, d
   gl.set(solid, "opacity", 1.0);
 }
 
-/// Leaves `solid` in use.
+/// On return, the program `solid` is in use.
 void Renderer::Parts::draw_scenery(const Scene& scene, const Matrix4f& flatten, bool with_shadow) {
   if (!all_scenery.count && scene.bumps.indices.empty()) return;
   gl.UseProgram(standing);
@@ -308,7 +308,7 @@ Image Renderer::render(const Scene& scene) {
   p.context.make_current();
   const Eigen::AlignedBox3d box = p.bounds_of(scene.poses);
   const Vector3d sun = sun_behind(scene.camera, Vector3d::UnitZ());
-  // A plane that the sun only grazes would carry a shadow without end.
+  // If the sun only grazes the plane, the shadow would have no end.
   const bool with_shadow = p.options.ground && p.options.shadow && !box.isEmpty() &&
                            scene.camera.parallel_height <= 0 &&
                            scene.ground.linear().col(2).dot(sun) > 0.2;
@@ -321,7 +321,8 @@ Image Renderer::render(const Scene& scene) {
       view_matrix(scene.camera);
   const Matrix4f view_projection = to_clip.cast<float>();
   const Setting setting = {plane, view_projection};
-  // What is drawn on nothing has its colours multiplied by its cover, and the covers add up.
+  // The colours of everything that is drawn on nothing are multiplied by its cover, and the covers
+  // add up.
   p.gl.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   p.gl.Disable(GL_BLEND);
   p.gl.Disable(GL_SCISSOR_TEST);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kShadowBlur = 2;  // radius of the box, in pixels of the coverage
 constexpr int kSamples =
-    4;  // samples per pixel where edges are smoothed, as in the shader kMeanFragment
+    4;  // samples per pixel if edges are smoothed, as in the shader kMeanFragment
 constexpr int kRoom = 64;  // pixels by which targets grow
 
 }  // namespace
@@ -69,7 +69,7 @@ PixelBox Renderer::Parts::below_ground(const Scene& scene, const Setting& settin
   };
   for (size_t i = 0; i < boxes.size(); ++i) {
     add(boxes[i], scene.poses[i]);
-    // These are drawn farther away than they are.
+    // Exposures are drawn farther away than they are.
     for (const Exposure& exposure : scene.exposures) region.add(boxes[i], exposure.poses[i]);
   }
   add(scenery_box, scene.floor);
@@ -105,7 +105,7 @@ void Renderer::Parts::draw_plane_depth(const Scene& scene, const Setting& settin
   gl.BindVertexArray(square.array);
   gl.Enable(GL_CULL_FACE);
   gl.Enable(GL_POLYGON_OFFSET_FILL);
-  gl.PolygonOffset(1, 1);  // soles lie in the ground plane
+  gl.PolygonOffset(1, 1);  // soles lie in the ground plane, so that its depth is moved away
   gl.ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
   gl.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
   gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);

@@ -1,7 +1,7 @@
 #pragma once
 // The OpenGL objects that the renderer holds. Bodies, marks and the order of a frame are in
-// renderer.cpp; the shadow, the plane that hides and the joining with the ground's picture in
-// renderer_ground.cpp.
+// renderer.cpp. The shadow, the depth of the ground plane, and the joining with the ground's
+// picture are in renderer_ground.cpp.
 
 #include <string>
 #include <utility>
@@ -23,7 +23,7 @@ struct Setting {
   Eigen::Matrix4f view_projection;
 };
 
-/// A body in the index buffer.
+/// The parts of the index buffer that draw a body.
 struct BodyRanges {
   IndexRange closed, open;
   std::vector<std::pair<IndexRange, GLuint>> textured;  // surfaces with their pictures
@@ -49,8 +49,9 @@ struct Renderer::Parts {
   IndexRange all_scenery;
   Eigen::AlignedBox3d scenery_box;
   Eigen::AlignedBox2d hole_box;
-  Eigen::Vector4f hole = {0, 0, 0, 0};  // low x, y, high x, y, in the plane's coordinates
-  ShadowPicture shadow;                 // shadow of the frame
+  // Corners of the hole, as low x, y, high x, y, in the plane's coordinates.
+  Eigen::Vector4f hole = {0, 0, 0, 0};
+  ShadowPicture shadow;  // shadow of the frame
 
   Parts(const DrawnRobot& drawn_bodies, const RenderOptions& render_options,
         const Scenery& on_floor);
@@ -68,7 +69,7 @@ struct Renderer::Parts {
   /// From now on, surfaces are drawn with their own opacity, and blended.
   void begin_mixing();
   void draw_exposures(const Scene& scene, const Eigen::Matrix4f& view_projection);
-  /// The part of the picture with anything except the ground.
+  /// The part of the picture that shows anything except the ground.
   PixelBox with_bodies(const Scene& scene, const Eigen::Matrix4f& view_projection) const;
   /// The part of the picture with anything that the ground may hide.
   PixelBox below_ground(const Scene& scene, const Setting& setting) const;
@@ -79,7 +80,7 @@ struct Renderer::Parts {
   /// The tiles of the box that contain anything except the ground.
   std::vector<PixelBox> covered_runs(const Scene& scene, const Eigen::Matrix4f& view_projection,
                                      const PixelBox& box) const;
-  /// Targets for a part of the picture, with its corner at theirs.
+  /// Makes targets for a part of the picture whose corner is the corner of the targets.
   void make_room(const PixelBox& box);
   /// Puts the smoothed colours over the picture of ground and sky.
   void lay_over(const PixelBox& box, const std::vector<PixelBox>& parts, Image& image);

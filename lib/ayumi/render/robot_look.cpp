@@ -12,10 +12,10 @@ namespace ayumi {
 namespace {
 
 /// Number of triangles of a robot above which not all of them can be seen. Chosen: two for each
-/// pixel that a robot takes of a picture of 720 rows, of which one faces the eye; at half, robots
-/// of makers would lose triangles, at twice, snapshots take twice as long.
+/// pixel that a robot takes of a picture of 720 rows, of which one faces the eye. With half of the
+/// value, robots of makers would lose triangles; with twice, snapshots take twice as long.
 constexpr size_t kMostTriangles = 200'000;
-/// Rows of the picture in which a thinned robot looks like its meshes.
+/// Number of rows of the picture in which a thinned robot looks like its meshes.
 constexpr double kRows = 720;
 /// Factor by which a tolerance grows if it left too many triangles, and the largest number of
 /// times. Chosen: at four times the first tolerance, outlines have corners of one pixel.

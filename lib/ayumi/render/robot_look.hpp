@@ -13,18 +13,20 @@
 namespace ayumi {
 
 struct RobotLook {
-  std::vector<BodySurface> surface;  ///< as robot_surface(), but with fewer triangles if too many
-  size_t triangles = 0;              ///< of the robot's own meshes
-  double moved = 0;                  ///< about how far the surface is from theirs [m]; 0: theirs
-  GhostColors ghost;                 ///< ghost_colors() of the robot's own meshes
+  /// Like robot_surface(), but with fewer triangles if there are too many.
+  std::vector<BodySurface> surface;
+  size_t triangles = 0;  ///< number of triangles of the robot's own meshes
+  double moved = 0;  ///< approximate distance of the surface from the meshes [m]; 0 if it is theirs
+  GhostColors ghost;  ///< ghost_colors() of the robot's own meshes
 };
 
-/// It depends on the robot alone, so that all pictures of a robot show the same surface.
+/// The look of a robot. It depends on the robot alone, so that all pictures of a robot show the
+/// same surface.
 std::shared_ptr<const RobotLook> robot_look(const RobotModel& model, const Progress& progress = {});
 
-/// How far a thinned surface may be from the robot's [pixel]. Chosen: the four samples of a pixel
-/// are a quarter of it apart; at half, more triangles of round parts stay, at twice, their outlines
-/// have corners of half a pixel.
+/// Distance by which a thinned surface may be away from the robot's [pixel]. Chosen: the four
+/// samples of a pixel are a quarter of it apart. With half of the value, more triangles of round
+/// parts stay; with twice, their outlines have corners of half a pixel.
 inline constexpr double kThinned = 0.3;
 
 /// Thins, first by `tolerance` [m] and then by multiples of it up to four, until at most `most`
@@ -32,7 +34,8 @@ inline constexpr double kThinned = 0.3;
 double thin_to(std::vector<BodySurface>& surface, double tolerance, size_t most,
                const Progress& progress = {});
 
-/// "the robot has 500000 triangles; it is drawn with 4000, whose points are moved by ...".
+/// A text such as "the robot has 500000 triangles; it is drawn with 4000, whose points are moved by
+/// ...".
 std::string words_of(const RobotLook& look, size_t drawn, double moved);
 
 }  // namespace ayumi

@@ -8,8 +8,8 @@ namespace ayumi {
 
 namespace {
 
-/// A posture on the ground with its COG, which is drawn like an instant of a run. The lower sole is
-/// on the ground.
+/// A posture on the ground with its COG, in the form of a log, so that it is drawn like an instant
+/// of a run. The lower sole is on the ground.
 SimulationLog stand_of(const RobotModel& model, const Eigen::VectorXd& theta) {
   SimulationLog log;
   log.joints = model.dof_names();

@@ -38,8 +38,8 @@ void add_shape(BodySurface& body, const PlacedShape& placed, const Eigen::Isomet
   }
 }
 
-/// Sticks from the frame of each body without a shape to the frames of the bodies that are attached
-/// to it.
+/// Adds sticks from the frame of each body without a shape to the frames of the bodies that are
+/// attached to it.
 void add_sticks(const RobotModel& model, std::vector<BodySurface>& surface) {
   const auto length = [](const Body& body) { return body.placement.translation().norm(); };
   double longest = 0;

@@ -11,41 +11,42 @@
 
 namespace ayumi {
 
-/// Triangles with a picture on them; seen from both sides.
+/// Triangles with a picture on them, which are seen from both sides.
 struct TexturedSurface {
   Triangles triangles;
-  std::string texture;  ///< as MeshPart::texture_file
+  std::string texture;  ///< file of the picture, as MeshPart::texture_file
 };
 
 /// The visible surface of one body, in the body frame.
 struct BodySurface {
-  Triangles closed;  ///< outside counter-clockwise; back faces need no drawing
-  Triangles open;    ///< to be seen from both sides
+  Triangles closed;  ///< the outside is counter-clockwise; back faces need no drawing
+  Triangles open;    ///< surfaces that are to be seen from both sides
   std::vector<TexturedSurface> textured;
 };
 
-/// One per body: the visuals of its links, or the collision shapes of a robot without any visual,
-/// and sticks to the next joints where such a body has no shape either. A colour set on a visual
-/// goes before the mesh's own and its texture; grey where neither is stated.
+/// The surfaces of all bodies: the visuals of their links, or the collision shapes if the robot has
+/// no visual at all. A body without any shape gets sticks to the next joints. A colour that is set
+/// on a visual has priority over the mesh's own colour and its texture. If no colour is given, the
+/// surface is grey.
 std::vector<BodySurface> robot_surface(const RobotModel& model);
 
 /// Whether any link has a visual.
 bool has_visuals(const RobotModel& model);
 
-/// All its triangles, whatever they look like.
+/// All triangles of a body, whatever they look like.
 std::vector<const Triangles*> parts_of(const BodySurface& body);
 
-/// Body frames in the world, one per body.
+/// The frames of the bodies in the world, one per body.
 std::vector<Eigen::Isometry3d> body_poses(const RobotModel& model, const RobotState& state);
 /// The same for many states: `data` is a workspace of the model.
 std::vector<Eigen::Isometry3d> body_poses(const RobotModel& model, const RobotState& state,
                                           RobotData& data);
 
-/// Axis-aligned bounds in the world [m].
+/// The axis-aligned bounds of the robot in the world [m].
 Eigen::AlignedBox3d robot_bounds(const std::vector<BodySurface>& surface,
                                  const std::vector<Eigen::Isometry3d>& poses);
 
-/// The largest edge of these bounds in a posture [m]; 1 where nothing is drawn.
+/// The largest edge of these bounds in a posture [m]; 1 if nothing is drawn.
 double robot_extent(const std::vector<BodySurface>& surface, const RobotModel& model,
                     const RobotState& state);
 

@@ -7,18 +7,19 @@
 
 #include "ayumi/base/key_numbers.hpp"
 
-// A vertex moves to the mean of the vertices in its cell; triangles whose corners share a cell go.
-// What goes has no part in the boundary, so a closed surface stays closed: each of its edges has as
-// many triangles on one side as on the other.
-// Within a cell, vertices that look towards different sides of a cube keep normals of their own, so
-// that edges stay edges.
+// Each vertex moves to the mean of the vertices in its cell, and triangles whose corners share a
+// cell are removed. A removed triangle has no part in the boundary, so that a closed surface stays
+// closed: each of its edges has as many triangles on one side as on the other. Within a cell,
+// vertices that look towards different sides of a cube keep normals of their own, so that edges
+// stay edges.
 
 namespace ayumi {
 namespace {
 
 using Eigen::Vector3f;
 
-/// Cell of a point, and in the lowest three bits the side of a cube to which its normal points.
+/// A key of the cell of a point; the lowest three bits are the side of a cube to which its normal
+/// points.
 std::uint64_t key_of(const RenderVertex& vertex, const Vector3f& origin, float edge,
                      bool with_side) {
   std::uint64_t key = 0;

@@ -1,5 +1,6 @@
 #pragma once
-// Snapshot strips: several instants of one run side by side in one picture, as the paper's Fig. 3.
+// Snapshot strips: several instants of one run side by side in one picture, as in Fig. 3 of the
+// paper.
 
 #include <filesystem>
 #include <string>
@@ -10,23 +11,26 @@
 namespace ayumi {
 
 struct StripOptions {
-  ClipOptions clip;           ///< picture size is that of one snapshot
-  std::vector<double> times;  ///< [s]; empty: `count` telling_instants()
+  ClipOptions clip;           ///< options of the pictures; their size is that of one snapshot
+  std::vector<double> times;  ///< instants [s]; if empty, `count` telling_instants()
   int count = 8;
   int columns = 4;
-  bool one_picture = false;  ///< all instants in one picture, the earlier the lighter
+  /// All instants are drawn in one picture, and earlier ones are lighter.
+  bool one_picture = false;
 };
 
-/// Pictures of one size in reading order. Throws Error(usage) for none or beyond 16384 pixels.
+/// A sheet of pictures of one size in reading order. Throws Error(usage) if there are none or the
+/// sheet exceeds 16384 pixels.
 Image draw_sheet(const std::vector<Image>& tiles, int columns);
 
-/// All snapshots in reading order, or over each other seen by a camera that stands still. Throws as
-/// ClipRenderer; Error(usage) for no snapshots or a picture beyond 16384 pixels; Interrupted when
-/// `progress` says stop. `notes`: where ClipRenderer::notes() go.
+/// All snapshots in reading order, or drawn over each other as seen by a camera that stands still.
+/// Throws the same errors as ClipRenderer, Error(usage) for no snapshots or a picture beyond 16384
+/// pixels, and Interrupted if `progress` says stop. `notes` receives ClipRenderer::notes().
 Image draw_strip(const RobotModel& model, const SimulationLog& log, const StripOptions& options,
                  const Progress& progress = {}, std::vector<std::string>* notes = nullptr);
 
-/// The same as a PNG file, whole or not at all. Throws as draw_strip and write_png.
+/// Writes the same as a PNG file, whole or not at all. Throws the same errors as draw_strip() and
+/// write_png().
 void write_strip(const RobotModel& model, const SimulationLog& log,
                  const std::filesystem::path& path, const StripOptions& options);
 

@@ -18,7 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr const char* kEmbedded = "data:";
-// On an edge of the file's picture [pixel]; more is refused to save memory.
+// Largest number of pixels on an edge of the file's picture; larger pictures are refused to save
+// memory.
 constexpr int kMostPixels = 16384;
 
 // ---- PNG
@@ -51,7 +52,8 @@ std::optional<Texture> decode_png(const std::string& bytes) {
   const unsigned char* data = cairo_image_surface_get_data(surface.get());
   for (int y = 0; y < texture.height; ++y)
     for (int x = 0; x < texture.width; ++x) {
-      const unsigned char* from = data + size_t(y) * stride + 4 * x;  // blue first, premultiplied
+      // Blue comes first, and colours are premultiplied.
+      const unsigned char* from = data + size_t(y) * stride + 4 * x;
       std::uint8_t* to = &texture.rgba[4 * (size_t(texture.height - 1 - y) * texture.width + x)];
       const int alpha = format == CAIRO_FORMAT_ARGB32 ? from[3] : 255;
       for (int c = 0; c < 3; ++c)
@@ -72,7 +74,7 @@ void jump_back(j_common_ptr info) {
   std::longjmp(reinterpret_cast<JpegErrors*>(info->err)->back, 1);
 }
 
-/// Fills what it is given, because a jump out of it runs no destructors.
+/// Fills variables of its caller, because a jump out of this function runs no destructors.
 bool decode_jpeg(const std::string& bytes, Texture& texture, std::vector<std::uint8_t>& row) {
   jpeg_decompress_struct info;
   JpegErrors errors;
@@ -109,7 +111,7 @@ bool decode_jpeg(const std::string& bytes, Texture& texture, std::vector<std::ui
   return true;
 }
 
-/// Half as wide and high, the mean of four pixels each.
+/// A texture half as wide and high, in which each pixel is the mean of four.
 Texture halved(const Texture& texture) {
   Texture out;
   out.width = std::max(1, texture.width / 2);
@@ -136,8 +138,7 @@ std::string lower(std::string text) {
   return text;
 }
 
-/// The file in the same folder whose name differs by case only; empty when
-/// there is none.
+/// The file in the same folder whose name only differs by case; empty if there is none.
 fs::path by_another_case(const fs::path& file) {
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(file.parent_path(), ignored))

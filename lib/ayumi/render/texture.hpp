@@ -8,18 +8,18 @@
 namespace ayumi {
 
 struct Texture {
-  int width = 1, height = 1;                              ///< [pixel]
+  int width = 1, height = 1;                              ///< size [pixel]
   std::vector<std::uint8_t> rgba = {255, 255, 255, 255};  ///< rows from the bottom
 };
 
-constexpr int kLargestTexture = 2048;  ///< larger ones are halved until they fit [pixel]
+constexpr int kLargestTexture = 2048;  ///< larger textures are halved until they fit [pixel]
 
-/// The picture `file` names, or, where it begins with "data:", the bytes behind
-/// that. One that cannot be read is white, and `notes` says so; a file whose
-/// name differs only by case is taken, and `notes` says that too.
+/// The picture in the file that `file` names, or in the bytes after "data:" if it begins with that.
+/// A picture that cannot be read is white, and `notes` says so; a file whose name only differs by
+/// case is taken, and `notes` says that too.
 Texture read_texture(const std::string& file, std::vector<std::string>& notes);
 
-/// The bytes that read_texture() decodes; empty where there is no such file.
+/// The bytes that read_texture() decodes; empty if there is no such file.
 std::string texture_bytes(const std::string& file, std::vector<std::string>& notes);
 
 }  // namespace ayumi

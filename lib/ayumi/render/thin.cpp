@@ -14,20 +14,22 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-// Rounds in which edges go, the smallest errors first. Chosen: in fewer rounds an edge with a large
-// error goes before one beside it with a small error; more rounds take longer.
+// Number of rounds in which edges are removed, the smallest errors first. Chosen: in fewer rounds
+// an edge with a large error goes before one beside it with a small error; more rounds take longer.
 constexpr int kRounds = 10;
-// Cosine of the angle by which a triangle may turn. Chosen: 30 degrees. At 45, round parts of a
-// heavy robot had spots of light in a picture; at half, round edges of a few pixels stay whole.
+// Cosine of the largest angle by which a triangle may turn. Chosen: 30 degrees. At 45, round parts
+// of a heavy robot had spots of light in a picture; at half, round edges of a few pixels stay
+// whole.
 constexpr double kLeastTurn = 0.866;
 // Cosine of the angle between normals that are taken for one smooth surface. Chosen: 10 degrees; a
 // corner without such a neighbour keeps its own normal.
 constexpr float kSmooth = 0.985f;
-// Weight of what keeps outlines, of the area of a square on the edge. Chosen: an outline may move
-// by a third of what a surface may.
+// Weight of the planes that keep outlines, as a multiple of the area of a square on the edge.
+// Chosen: an outline may move by a third of what a surface may.
 constexpr double kOutline = 10;
 
-/// Sum of weighted squared distances from planes, as a function of a point; and the weights.
+/// A sum of weighted squared distances from planes, as a function of a point, and the sum of the
+/// weights.
 struct Quadric {
   double xx = 0, xy = 0, xz = 0, xd = 0, yy = 0, yz = 0, yd = 0, zz = 0, zd = 0, dd = 0, weight = 0;
 
@@ -104,7 +106,7 @@ class Thinning {
     KeyNumbers<3> numbers(surface_.vertices.size());
     for (const RenderVertex& vertex : surface_.vertices) {
       KeyNumbers<3>::Key key;
-      for (size_t axis = 0; axis < 3; ++axis)  // -0 is 0
+      for (size_t axis = 0; axis < 3; ++axis)  // turns -0 into 0
         key[axis] = std::bit_cast<std::uint32_t>(vertex.position[Eigen::Index(axis)] + 0.0f);
       const std::uint32_t number = numbers.number(key);
       if (number == places_.size()) places_.emplace_back(vertex.position.cast<double>());
@@ -150,7 +152,7 @@ class Thinning {
     }
   }
 
-  /// A plane through the edge, upright on the triangle.
+  /// Adds a plane through the edge that is perpendicular to the triangle.
   void keep_outline(std::uint64_t edge, const Facet& facet) {
     const auto a = static_cast<std::uint32_t>(edge >> 32), b = static_cast<std::uint32_t>(edge);
     const Vector3d along = places_[b] - places_[a];
@@ -184,7 +186,8 @@ class Thinning {
         const std::uint32_t to = facets_[i].place[(k % 3 + 1 + k / 3) % 3];
         if (settled_[from] || settled_[to]) continue;
         const Quadric &a = quadrics_[from], &b = quadrics_[to];
-        // Each on its own: the mean over a large plane beside would hide a step.
+        // The two sums are tested separately, because the mean over a large plane nearby would hide
+        // a step.
         if (a.at(places_[to]) > most * a.weight || b.at(places_[to]) > most * b.weight) continue;
         if (can_move(from, to)) move(from, to);
       }
@@ -236,7 +239,8 @@ class Thinning {
     settled_[from] = settled_[to] = true;
   }
 
-  /// Of a corner that moves: that which joined it, one that looks nearly alike, or its own.
+  /// The look of a corner that moves: the one that joined it, one that looks nearly alike, or its
+  /// own.
   std::uint32_t look_at_end(std::uint32_t look) const {
     const RenderVertex& own = surface_.vertices[look];
     for (const auto& [before, after] : joined_)
@@ -261,11 +265,11 @@ class Thinning {
   const Triangles& surface_;
   double tolerance_;
   std::vector<Vector3d> places_;
-  std::vector<std::uint32_t> place_of_;  // by vertex
+  std::vector<std::uint32_t> place_of_;  // place by vertex
   std::vector<Facet> facets_;
-  std::vector<Quadric> quadrics_;              // by place
+  std::vector<Quadric> quadrics_;              // quadric by place
   std::vector<std::uint32_t> first_, around_;  // facets around each place
-  std::vector<bool> settled_;                  // in this round
+  std::vector<bool> settled_;                  // places that are settled in this round
   std::vector<std::pair<std::uint32_t, std::uint32_t>> joined_;
   std::vector<std::uint32_t> looks_;
 };

@@ -16,8 +16,9 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 using Eigen::Vector4f;
-constexpr double kTurn = 2 * std::numbers::pi;  // [rad]
-constexpr int kSegments = 32;  // around an axis; a sphere takes half as many from pole to pole
+constexpr double kTurn = 2 * std::numbers::pi;  // a full turn [rad]
+// Segments around an axis; a sphere takes half as many from pole to pole.
+constexpr int kSegments = 32;
 
 std::array<std::uint8_t, 4> to_bytes(const Vector4f& color) {
   std::array<std::uint8_t, 4> bytes;
@@ -37,8 +38,8 @@ void add_triangle(Triangles& target, std::uint32_t a, std::uint32_t b, std::uint
   target.indices.insert(target.indices.end(), {a, b, c});
 }
 
-/// A profile of (radius, z) with a normal each, turned about z. Neighbouring profile points form a
-/// band; z falls along the profile so that the outside is counter-clockwise.
+/// A profile of points (radius, z) with a normal each, which is turned about z. Neighbouring
+/// profile points form a band; z falls along the profile, so that the outside is counter-clockwise.
 struct ProfilePoint {
   double radius, z, normal_radius, normal_z;
 };
@@ -125,18 +126,18 @@ std::vector<std::uint32_t> weld(const Triangles& surface) {
   welded.reserve(surface.vertices.size());
   for (const RenderVertex& vertex : surface.vertices) {
     KeyNumbers<3>::Key key;
-    for (size_t axis = 0; axis < 3; ++axis)  // -0 is 0
+    for (size_t axis = 0; axis < 3; ++axis)  // turns -0 into 0
       key[axis] = std::bit_cast<std::uint32_t>(vertex.position[Eigen::Index(axis)] + 0.0f);
     welded.push_back(places.number(key));
   }
   return welded;
 }
 
-/// Every edge is passed as often in one direction as in the other.
+/// Whether every edge is passed as often in one direction as in the other.
 bool is_closed(const Triangles& surface) {
   const std::vector<std::uint32_t> welded = weld(surface);
   KeyNumbers<2> edges(surface.indices.size());
-  std::vector<std::int32_t> balance;  // of each edge
+  std::vector<std::int32_t> balance;  // balance of each edge
   for (size_t i = 0; i < surface.indices.size(); i += 3) {
     std::array<std::uint32_t, 3> corner;
     for (size_t k = 0; k < 3; ++k) corner[k] = welded[surface.indices[i + k]];
@@ -164,7 +165,7 @@ double signed_volume(const Triangles& surface) {
   return volume;
 }
 
-/// Sum over the faces of area times cosine between face and vertex normals.
+/// The sum over the faces of their area times the cosine between face and vertex normals.
 double agreement(const Triangles& surface) {
   double sum = 0;
   for (size_t i = 0; i < surface.indices.size(); i += 3) {

@@ -11,10 +11,10 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr int kSpare = 2;  // [pixel] around what is seen, for smoothed edges
-constexpr int kTile = 16;  // [pixel] edge
-// Half widths of the picture beyond which all tiles count as covered. Chosen: times 4096 pixels, a
-// whole number still holds it.
+constexpr int kSpare = 2;  // pixels around the visible part, for smoothed edges
+constexpr int kTile = 16;  // edge of a tile [pixel]
+// Half widths of the picture beyond which all tiles count as covered. Chosen: multiplied by 4096
+// pixels, it still fits into a whole number.
 constexpr double kFarOutside = 1e4;
 
 }  // namespace
@@ -29,7 +29,7 @@ void VisibleRegion::add(const Vector3d& point) {
     seen_.extend(Vector2d(1, 1));
     return;
   }
-  // Far outside is as good as just outside, and fits an int.
+  // A place far outside has the same effect as one just outside, and this one fits into an int.
   seen_.extend(Vector2d((clip.head<2>() / clip.w()).cwiseMax(-2).cwiseMin(2)));
 }
 
@@ -61,11 +61,12 @@ CoveredTiles::CoveredTiles(const Eigen::Matrix4f& view_projection, int width, in
       covered_(size_t(columns_) * size_t(rows_), false) {}
 
 void CoveredTiles::add(std::span<const Vector3d> points) {
-  std::vector<Vector2d> seen;  // [pixel] from the box's corner
+  std::vector<Vector2d> seen;  // places of visible points from the box's corner [pixel]
   Eigen::AlignedBox2d all;
   for (const Vector3d& point : points) {
     const Eigen::Vector4d clip = view_projection_ * point.homogeneous();
-    // Too far outside for whole numbers: a nearer place would turn the edges that end there.
+    // The point is too far outside for whole numbers, and a nearer place would turn the edges that
+    // end there.
     if (clip.w() < 1e-6 || !(clip.head<2>().cwiseAbs().maxCoeff() <= kFarOutside * clip.w()))
       return std::fill(covered_.begin(), covered_.end(), true);
     const Vector2d place = clip.head<2>() / clip.w();
@@ -89,7 +90,7 @@ void CoveredTiles::add(std::span<const Vector3d> points) {
       low = std::min(low, x);
       high = std::max(high, x);
     };
-    // What is between any two points, within the row.
+    // The tiles between any two points, within the row, are covered.
     for (size_t i = 0; i < seen.size(); ++i)
       for (size_t k = i; k < seen.size(); ++k) {
         const Vector2d &a = seen[i], &b = seen[k];

@@ -21,7 +21,7 @@ bool inside_a_window(const CorrectionSpec& spec, double begin, double end) {
 }
 
 bool locked_within(const CorrectionSpec& spec, double begin, double end) {
-  // Times closer than this are equal [s]. Chosen: above rounding, below the sample period.
+  // Times that are closer than this are equal [s]. Chosen: above rounding, below the sample period.
   constexpr double kTimeRounding = 1e-9;
   return std::any_of(spec.locked_windows.begin(), spec.locked_windows.end(), [&](const auto& w) {
     return begin < w.second + kTimeRounding && end > w.first - kTimeRounding;
@@ -32,11 +32,11 @@ bool is_locked(const CorrectionSpec& spec, int column) {
   return column >= 6 && !spec.locked.empty() && spec.locked[column - 6];
 }
 
-// If the first or last posture is at fault, it has to move. One variable then moves all three
-// control points of this end, so the motion still begins or ends with its original speed.
+// If the first or last posture is at fault, it has to move. Then one variable moves all three
+// control points of this end, so that the motion still begins or ends with its original speed.
 void free_end(const CorrectionSpec& spec, int first, double time, CorrectionVariables& v) {
   const double reach =
-      (time == 0 ? 1 : -1) * v.zero.spacing;  // reach of these three control points
+      (time == 0 ? 1 : -1) * v.zero.spacing;  // influence of these three control points
   if (!inside_a_window(spec, time, time) || !spec.free_ends[first == 0 ? 0 : 1]) return;
   for (const double kept : spec.kept_times)
     if (std::abs(kept - time) <= v.zero.spacing) return;
@@ -70,7 +70,7 @@ SampleChoice choose_samples(const CommandSeries& series, const ContactPlan& plan
       choice.all.insert(interval.first);
       choice.all.insert(interval.last);
     }
-  // Points beside the edges of a flight, where differences of samples have a meaning again.
+  // Adds the points beside the ends of a flight, where differences of samples become valid again.
   for (int k = 1; k < count; ++k) {
     if (at_flight_edge(series, k) == at_flight_edge(series, k - 1)) continue;
     choice.all.insert(k - 1);
@@ -83,7 +83,7 @@ SampleChoice choose_samples(const CommandSeries& series, const ContactPlan& plan
   return choice;
 }
 
-// Contact, ground and planned places of one foot.
+// Sets the contact, the ground and the planned places of one foot.
 void set_foot(const ContactPlan& plan, Side side, CollocationPoint& point) {
   const int s = static_cast<int>(side), k = point.sample;
   const int i = plan.index[s][k];

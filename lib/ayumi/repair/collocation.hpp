@@ -9,26 +9,26 @@
 
 namespace ayumi {
 
-/// Which control points are free: a uniform cubic B-spline over base position, base rotation vector
-/// and joints. Its first and last three control points stay zero, so that the motion starts and
-/// ends as before. If the posture at this end is at fault, the three points move together.
+/// The free control points of a uniform cubic B-spline over base position, base rotation vector and
+/// joints. Its first and last three control points stay zero, so that the motion starts and ends as
+/// before. If the posture at this end is at fault, the three points move together.
 struct CorrectionVariables {
   CorrectionTrack zero;   ///< the track with zero coefficients
   Eigen::MatrixXi index;  ///< variable of control point (row) and column, or -1
   int count = 0;
 
   Eigen::MatrixXd coefficients(
-      const Eigen::VectorXd& x) const;  ///< control points that the variables x give
+      const Eigen::VectorXd& x) const;  ///< control points for the variables x
   Eigen::VectorXd values(
-      const Eigen::MatrixXd& coefficients) const;   ///< variables x that the control points give
+      const Eigen::MatrixXd& coefficients) const;   ///< variables x for the control points
   bool act_at(const SplineWeights& weights) const;  ///< whether a free control point acts there
 };
 CorrectionVariables correction_variables(const RobotModel& model, const CommandSeries& series,
                                          const CorrectionSpec& spec);
 
-/// At the knots and between them, at both ends of every contact interval, beside the edges of
-/// flights, and at the times and limits that `spec` names; those that no variable moves are left
-/// out. In order of time.
+/// The collocation points in order of time. They are at the knots and between them, at both ends of
+/// every contact interval, beside the ends of flights, and at the times and limits that `spec`
+/// names. Points that no variable moves are left out.
 std::vector<CollocationPoint> collocation_points(const RobotModel& model,
                                                  const CommandSeries& series,
                                                  const ContactPlan& plan,

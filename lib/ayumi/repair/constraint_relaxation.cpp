@@ -28,7 +28,7 @@ RelaxedLayout layout_of(const Nlp& nlp, const std::vector<int>& group) {
   return layout;
 }
 
-// The violation at the start for each slack, in the unit of the slack.
+// The violation at the start for each slack, as a multiple of the slack's unit.
 VectorXd start_violations(const Nlp& nlp, const Slacks& slacks) {
   VectorXd g(nlp.constraint_lower.size()), violation = VectorXd::Zero(slacks.price.size());
   nlp.constraints(nlp.start, g);
@@ -68,15 +68,15 @@ Nlp relaxed(const Nlp& nlp, const Slacks& relaxation) {
     soft.start_multipliers.resize(m + extra);
     soft.start_multipliers << nlp.start_multipliers, VectorXd::Zero(extra);
     for (Eigen::Index i = 0; i < extra;
-         ++i) {  // parts of lower bounds that are below 0, and of upper bounds that are above 0
+         ++i) {  // only lower bounds below 0 and upper bounds above 0 count
       double& first = soft.start_multipliers[layout->twice[i]];
       soft.start_multipliers[m + i] = std::max(0.0, first);
       first = std::min(0.0, first);
     }
   }
 
-  // First the old nonzeros, then those of the second rows (at the columns of the old rows), then
-  // those of the slacks.
+  // The nonzeros have this order: first the old ones, then those of the second rows (at the columns
+  // of the old rows), then those of the slacks.
   soft.jacobian = nlp.jacobian;
   std::vector<int> second(static_cast<size_t>(m), -1);
   for (Eigen::Index i = 0; i < extra; ++i) {
@@ -162,7 +162,7 @@ ViolationPrice price_of(const RowKind& kind) {
 
 namespace {
 
-// Slacks while they are collected: one for each limit (kind and item) and window of time.
+// Collects the slacks: one for each limit (kind and item) and window of time.
 class SlackCollector {
  public:
   SlackCollector(const CorrectionProblem& problem, double dt, double window)
@@ -170,7 +170,7 @@ class SlackCollector {
     slacks_.group.assign(static_cast<size_t>(problem.constraint_count()), -1);
   }
 
-  // Where blocks share a slack, the smallest `most` of these blocks holds for the slack.
+  // If blocks share a slack, the smallest `most` of these blocks applies to the slack.
   void add(const RowBlock& block, double unit, double price, double most) {
     const double t = problem_.points()[block.point].sample * dt_;
     const std::tuple key(block.kind, block.item, std::lround(t / window_));

@@ -6,8 +6,8 @@
 // where [.] acts on the three rotation columns.
 //
 // With P the change of reference from the base to the support plane (axes R', arm from the plane's
-// origin to the base), the plane wrench is w = P W. A row g(w) has the derivatives  dg/dw P dW, and
-// by the base position, whose arm moves,  - (dg/dw).moment skew(f).
+// origin to the base), the plane wrench is w = P W. A row g(w) has the derivatives dg/dw P dW, and
+// by the base position, whose arm moves, - (dg/dw).moment skew(f).
 //
 // The DCM is COG + COG rate / omega. Its derivatives follow from those of the COG and of its rate:
 // for a function c(x, t), d(c')/dx is half of d(c'')/dx', and m c'' is the ground force, whose
@@ -94,13 +94,13 @@ Vector6d plane_wrench(const CollocationPoint& point, const PointState& state) {
   return plane_wrench(point.plane, state.motion.state.base.position, state.wrench);
 }
 
-// ---- the rows by their quantity
+// ---- the rows for each quantity
 
 namespace {
 
 using Derivatives = std::array<MatrixXd, 3>;
 
-// Base and joints from the root to a body.
+// The columns of the base and of the joints from the root to a body.
 void add_path_columns(const RobotModel& model, int body, std::vector<int>& columns) {
   for (int i = body; i > 0; i = model.bodies()[i].parent)
     columns.push_back(6 + model.bodies()[i].dof);
@@ -144,7 +144,8 @@ struct Columns {
     if (row.of == JointQuantity::motor_torque) return all_columns(model);
     return {6 + row.dof};
   }
-  // Base and joints are left out where they move both bodies alike: the paths of the two bodies.
+  // The base and the joints that move both bodies in the same way are left out. What remains are
+  // the paths of the two bodies.
   std::vector<int> operator()(const ClearanceRows& rows) const {
     const CollisionModel::Pair& pair = rows.collisions->pairs()[rows.shapes.pair];
     std::vector<int> columns;

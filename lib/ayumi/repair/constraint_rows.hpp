@@ -1,8 +1,8 @@
 #pragma once
-// The quantities of a corrected motion at one collocation point, with their derivatives by the
+// The quantities of a corrected motion at one collocation point, and their derivatives by the
 // correction's value, rate and acceleration there (6 + dof columns each: base position, base
-// rotation vector, joints); and from them the values and derivatives of the rows that limits place
-// (limits/row.hpp).
+// rotation vector, joints). From these follow the values and derivatives of the rows that limits
+// place (limits/row.hpp).
 
 #include <array>
 #include <vector>
@@ -18,15 +18,17 @@ struct PointState {
 
   Eigen::VectorXd change, rate, second;  ///< value of the correction and its derivatives (6 + dof)
   CorrectedMotion motion;
-  RobotData data;                            ///< positions and velocities of `motion`
-  Eigen::VectorXd force;                     ///< result of inverse_dynamics() (6 + dof)
-  Vector6d wrench = Vector6d::Zero();        ///< wrench of the ground, about the base
-  std::array<Eigen::Isometry3d, 2> soles;    ///< poses of the soles, by Side
-  Eigen::VectorXd torque;                    ///< torques, where the point needs them [dof]
-  std::array<Eigen::MatrixXd, 3> wrench_by;  ///< 6 x (6+dof) by value, rate, acceleration
-  std::array<Eigen::MatrixXd, 2> sole_by;    ///< 6 x (6+dof) by value
-  Eigen::MatrixXd cog_by;                    ///< 3 x (6+dof) by value
-  std::array<Eigen::MatrixXd, 3> torque_by;  ///< dof x (6+dof)
+  RobotData data;                          ///< positions and velocities of `motion`
+  Eigen::VectorXd force;                   ///< result of inverse_dynamics() (6 + dof)
+  Vector6d wrench = Vector6d::Zero();      ///< wrench of the ground, about the base
+  std::array<Eigen::Isometry3d, 2> soles;  ///< poses of the soles, by Side
+  Eigen::VectorXd torque;                  ///< torques, if the point needs them [dof]
+  /// Derivatives by value, rate and acceleration, 6 x (6+dof) each.
+  std::array<Eigen::MatrixXd, 3> wrench_by;
+  std::array<Eigen::MatrixXd, 2> sole_by;  ///< derivatives by value, 6 x (6+dof)
+  Eigen::MatrixXd cog_by;                  ///< derivative by value, 3 x (6+dof)
+  /// Derivatives by value, rate and acceleration, dof x (6+dof) each.
+  std::array<Eigen::MatrixXd, 3> torque_by;
 };
 
 /// Memory for the computation of derivatives.
@@ -37,7 +39,7 @@ struct DerivativeWorkspace {
       force_by;  ///< derivatives by the correction's value, rate and acceleration
 };
 
-/// Fills all but the derivatives.
+/// Fills everything except the derivatives.
 void fill_values(const RobotModel& model, const ActuatorLimits& actuators,
                  const CommandSample& sample, const CollocationPoint& point,
                  const Eigen::MatrixXd& coefficients, PointState& state);
@@ -47,17 +49,17 @@ void fill_derivatives(const RobotModel& model, const ActuatorLimits& actuators,
                       const CommandSample& sample, const CollocationPoint& point,
                       DerivativeWorkspace& workspace, PointState& state);
 
-/// The ground wrench about the support plane of the point, in its axes.
+/// The ground wrench about the support plane of the point, in the axes of the plane.
 Vector6d plane_wrench(const CollocationPoint& point, const PointState& state);
 
-/// Columns of the correction on which a block depends, in order.
+/// The columns of the correction on which a block depends, in order.
 std::vector<int> block_columns(const RobotModel& model, const RowBlock& block);
 
 Eigen::VectorXd block_values(const RobotModel& model, const RowBlock& block,
                              const CollocationPoint& point, const PointState& state);
 
-/// Derivatives by value, rate and acceleration, rows x (6+dof) each. A matrix is empty if all of
-/// its entries are zero.
+/// The derivatives by value, rate and acceleration, rows x (6+dof) each. A matrix is empty if all
+/// of its entries are zero.
 std::array<Eigen::MatrixXd, 3> block_derivatives(const RobotModel& model, const RowBlock& block,
                                                  const CollocationPoint& point,
                                                  const PointState& state);

@@ -62,7 +62,8 @@ AngularMotion<Scalar> angular_motion(const Vector<Scalar>& r, const Vector<Scala
                                      const Vector3d& dw0) {
   const Scalar s = dot(r, r);
   const Scalar ds = Scalar(2.0) * dot(r, dr);
-  const Series<Scalar> a = series(s, 2), b = series(s, 3);  // (1-cos f)/f^2, (f-sin f)/f^3
+  // The series of (1-cos f)/f^2 and (f-sin f)/f^3.
+  const Series<Scalar> a = series(s, 2), b = series(s, 3);
   const Scalar sinc = series(s, 1).value;
   const Scalar da = a.slope * ds, db = b.slope * ds;
   const Vector<Scalar> r_dr = cross(r, dr), r_ddr = cross(r, ddr);
@@ -119,7 +120,7 @@ void fill_motion_derivatives(const CommandSample& sample, const VectorXd& value,
   m.dw_value = block(angular.dw, 0);
   m.dw_rate = block(angular.dw, 3);
   m.dw_acceleration = block(angular.dw, 6);
-  m.tangent = m.w_rate;  // w is linear in r' with the factor J(r)
+  m.tangent = m.w_rate;  // w is linear in r', with the factor J(r)
 }
 
 }  // namespace ayumi

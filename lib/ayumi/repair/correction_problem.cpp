@@ -80,7 +80,7 @@ VectorXd CorrectionProblem::values(PointStates& states, const MatrixXd& c) const
   return g;
 }
 
-// Derivatives by a control point: its weights times the derivatives by value, rate and
+// The derivatives by a control point: its weights times the derivatives by value, rate and
 // acceleration.
 void CorrectionProblem::jacobian_values(const VectorXd& x, VectorXd& values) const {
   const auto fill = [&](size_t at, const PointState& state, DerivativeWorkspace&) {

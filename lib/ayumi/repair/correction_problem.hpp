@@ -17,8 +17,8 @@
 
 namespace ayumi {
 
-/// Model and series must outlive this object. Its functions use several threads themselves, so only
-/// one thread may call them at a time.
+/// The model and the series must outlive this object. Its functions use several threads themselves,
+/// so only one thread may call them at a time.
 class CorrectionProblem {
  public:
   CorrectionProblem(const RobotModel& model, const CommandSeries& series,
@@ -32,13 +32,13 @@ class CorrectionProblem {
   const Eigen::VectorXd& upper() const { return rows_.upper; }
 
   Eigen::VectorXd constraints(const Eigen::VectorXd& x) const;
-  /// Values of the rows for another motion over the same plan, with the same samples.
+  /// The values of the rows for another motion with the same plan and the same samples.
   Eigen::VectorXd constraints_of(const CommandSeries& motion) const;
 
-  /// Samples beside the points at which a single row is active (RowBlock::active).
+  /// The samples beside the points at which a single row is active (RowBlock::active).
   std::vector<ActiveLimit> beside_active(const Eigen::VectorXd& x) const;
 
-  /// The program; it refers to this object, which must outlive it.
+  /// The program. It refers to this object, which must outlive it.
   Nlp nlp() const;
 
   /// The correction for the variables x, and the variables for control points.
@@ -59,7 +59,7 @@ class CorrectionProblem {
   CorrectionVariables variables_;
   std::vector<CollocationPoint> points_;
   PlacedRows rows_;
-  std::vector<size_t> first_block_;  ///< first block of each point, and one more entry
+  std::vector<size_t> first_block_;  ///< first block of each point, with one more entry at the end
   std::vector<int> first_nonzero_;   ///< first nonzero of each block in the Jacobian
   SparsePattern jacobian_;
   ProgramHessian hessian_;

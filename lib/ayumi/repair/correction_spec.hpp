@@ -1,6 +1,6 @@
 #pragma once
-// What the program of a repair may move and what must hold: plain data, set up by repair_setup and
-// changed from round to round.
+// What the program of a repair may move, and which conditions it must fulfil. This is plain data,
+// which repair_setup fills and which changes from round to round.
 
 #include <Eigen/Core>
 #include <array>
@@ -25,7 +25,7 @@ struct ActiveLimit {
 };
 
 struct CorrectionSpec {
-  // What may move.
+  // These members say what may move.
   double spacing = repair_policy::knots::kSpacing;  ///< time between the knots [s]
   std::vector<TimeWindow> windows;         ///< windows in which control points are free [s]
   std::array<bool, 2> free_ends = {};      ///< whether the first and the last posture may move
@@ -33,26 +33,26 @@ struct CorrectionSpec {
   std::vector<TimeWindow> locked_windows;  ///< windows in which nothing may move [s]
   std::vector<double> kept_times;          ///< times at which the posture may not change [s]
   std::array<bool, 2> locked_feet = {};    ///< feet that keep their paths, by Side
-  Eigen::VectorXd weights;                 ///< factors on the weights of the joints [dof]; empty: 1
-  Eigen::MatrixXd initial;                 ///< control points to start from; empty: no correction
+  Eigen::VectorXd weights;  ///< factors on the weights of the joints by dof; empty: 1
+  Eigen::MatrixXd initial;  ///< initial control points; empty: no correction
 
   bool planned_feet = false;  ///< swinging feet follow the plan and not the given motion
 
-  // What is judged, as in the check.
+  // These members say what is judged, as in the check.
   Trust trust = Trust::posture;
-  const CollisionModel* collisions =
-      nullptr;                            ///< shapes whose clearances are watched; null: none are
-  std::vector<int> near_pairs;            ///< pairs of bodies that are watched
-  std::string profile;                    ///< limits of the actuators
-  Tolerances tolerance = tolerances({});  ///< tolerances of the check
-  double friction = 0.8;                  ///< friction coefficient of the ground
+  const CollisionModel* collisions = nullptr;  ///< shapes whose clearances are watched; null: none
+  std::vector<int> near_pairs;                 ///< pairs of bodies that are watched
+  std::string profile;                         ///< limits of the actuators
+  Tolerances tolerance = tolerances({});       ///< tolerances of the check
+  double friction = 0.8;                       ///< friction coefficient of the ground
 
-  // Distances that are kept from the check's limits.
-  bool at_check_limits = false;  ///< true: every limit is exactly where the check has it
+  // These are the distances that are kept from the check's limits.
+  bool at_check_limits = false;  ///< true: every limit is exactly that of the check
   double joint_margin =
       repair_policy::kFirstBackoff.joint_position;  ///< distance inside soft limits [rad]
   double limit_share = repair_policy::kFirstBackoff
-                           .limit_share;  ///< shares of the limits of speed, torque and friction
+                           /// Shares of the limits of speed, torque and friction that may be used.
+                           .limit_share;
   double zmp_margin =
       repair_policy::zmp::kLeastMargin;  ///< smallest ZMP margin inside the support [m]
   double least_normal_force =
@@ -63,19 +63,19 @@ struct CorrectionSpec {
   double sole_at_knots = repair_policy::stance::kShareAtKnots;  ///< share of that band at knots
   double clearance = repair_policy::clearance::kKept;  ///< smallest distance between bodies [m]
 
-  // Soft goals, beyond the check.
+  // These are soft goals beyond the check.
   double safe_margin =
-      0;  ///< wanted margin of the ZMP where the motion's own margin is below the least [m]
+      0;  ///< wanted margin of the ZMP if the motion's own margin is below the smallest [m]
   bool swing_goals =
       true;  ///< low soles are level and over their places, and the others are high enough
   double dcm_slack = repair_policy::dcm::kSlack;  ///< half the band of the DCM [m]
   double zmp_slack =
-      repair_policy::dcm::kZmpSlack;     ///< half the band of the ZMP where the DCM is held [m]
+      repair_policy::dcm::kZmpSlack;     ///< half the band of the ZMP while the DCM is held [m]
   std::array<bool, 3> planned_cog = {};  ///< axes of the COG that stay near the commanded one
   std::vector<TimeWindow>
       wrong_plan;  ///< windows in which the commanded COG or ZMP is at fault [s]
 
-  // Where rows are placed.
+  // These members say where rows are placed.
   int points_per_knot = repair_policy::collocation::kPerKnot;
   double watched_share = repair_policy::collocation::kWatchedShare;
   std::vector<double> extra_times;         ///< additional collocation points [s]
@@ -83,7 +83,9 @@ struct CorrectionSpec {
   std::vector<const CommandSeries*> seen;  ///< earlier results, the latest one last
 
   int threads =
-      0;  ///< threads for functions and derivatives; 0: all cores. Their number changes no result.
+      /// Number of threads for functions and derivatives; 0: all cores; results do not depend on
+      /// it.
+      0;
 };
 
 }  // namespace ayumi

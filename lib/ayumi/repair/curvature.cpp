@@ -30,14 +30,15 @@ void add_pose(const RobotModel& model, Side side, const PoseCurvature& w, const 
       double both = pose_curvature(w, J, i, j);
       if (i >= 3 && j < 6)
         both = 0.5 *
-               (both + pose_curvature(w, J, j, i));  // the base has three turns, which act at once
+               // The base has three rotations, which act at the same time.
+               (both + pose_curvature(w, J, j, i));
       both += w.square * rise[i] * rise[j];
       sum(i, j) += both;
       if (i != j) sum(j, i) += both;
     }
 }
 
-// Adds the curvature of  c . COG.
+// Adds the curvature of c . COG.
 void add_cog(const RobotModel& model, const Vector3d& c, const PointState& state, MatrixXd& sum) {
   const MatrixXd& J = state.cog_by;
   const Matrix3d& T = state.motion.tangent;
@@ -63,8 +64,8 @@ void add_cog(const RobotModel& model, const Vector3d& c, const PointState& state
   }
 }
 
-// Adds the curvature of the power of the ground wrench on a rigid motion. This motion turns with
-// `turn` and moves the base origin with `slide`.
+// Adds the curvature of the power of the ground wrench for a rigid motion, which turns with `turn`
+// and moves the base origin with `slide`.
 void add_power(const RobotModel& model, const Vector3d& slide, const Vector3d& turn,
                const PointState& state, DerivativeWorkspace& workspace, Curvature& sum) {
   const Vector3d up(0, 0, kGravity);
@@ -82,12 +83,12 @@ void add_power(const RobotModel& model, const Vector3d& slide, const Vector3d& t
   G.middleRows<3>(3) = (state.motion.tangent.transpose() * G.middleRows<3>(3)).eval();
   motion.head<3>() = slide;
   const Vector3d spin = d.acceleration.middleRows<3>(3) * motion;
-  G.block<3, 3>(3, 3) += 0.5 * skew(spin);  // r'' and r x r''/2 both turn
+  G.block<3, 3>(3, 3) += 0.5 * skew(spin);  // both r'' and r x r''/2 turn it
   sum.acceleration += G;
   add_cog(model, model.mass() * up.cross(turn), state, sum.value);
 }
 
-// Adds the curvature that the tangential force of rows of the ground wrench has.
+// Adds the curvature of rows of the ground wrench that comes from the tangential force.
 void add_cone(const WrenchRows& rows, double multiplier, const Vector6d& wrench,
               const CollocationPoint& point, const PointState& state, Curvature& sum) {
   sum.cone += rows.curvature(wrench, multiplier);

@@ -35,8 +35,9 @@ bool has_dcm(const CollocationPoint& at, const CommandSample& plan) {
   return at.stands() && plan.cog.z() > plan.zmp.z();
 }
 
-// By point: times around a posture that moves the DCM off a correct plan. Where plan and posture
-// agree and the motion still has an error, the DCM has to move.
+// For each point, whether the DCM is held there: these are times around a posture that moves the
+// DCM off a correct plan. If plan and posture agree and the motion still has an error, the DCM has
+// to move.
 std::vector<bool> where_dcm_is_held(const RowSite& site, const CorrectionSpec& spec) {
   std::vector<bool> held(site.points.size(), false);
   if (!spec.swing_goals || spec.trust != Trust::posture) return held;

@@ -1,9 +1,9 @@
 #pragma once
-// Rows that hold the DCM to its plan. They are a soft goal and belong to no limit: minimum change
-// alone would leave the DCM displaced where a posture is wrong, which costs push tolerance. The
-// supports stay as planned, so a displaced DCM withstands smaller pushes in the opposite direction.
-// The ZMP is held with the DCM, because a ZMP that compensates for a swinging limb acts as a push
-// on a controller that follows COG and feet.
+// Rows that keep the DCM near its plan. They are a soft goal and belong to no limit. Minimum change
+// alone would leave the DCM displaced where a posture is wrong, and this reduces the pushes that
+// the robot survives: the supports stay as planned, so a displaced DCM withstands smaller pushes in
+// the direction of its displacement. The ZMP is held together with the DCM, because a ZMP that
+// compensates for a swinging limb acts like a push on a controller that follows COG and feet.
 
 #include "ayumi/limits/row_site.hpp"
 #include "ayumi/repair/correction_spec.hpp"

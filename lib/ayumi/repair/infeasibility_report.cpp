@@ -1,5 +1,5 @@
-// Played s times slower, a motion has its rates divided by s and its accelerations by s^2. The
-// check itself judges the slowed window, so every kind of finding is scaled by the same route.
+// If a motion is played s times slower, its rates are divided by s and its accelerations by s^2.
+// The check itself judges the slowed window, so every kind of finding is scaled in the same way.
 #include "ayumi/repair/infeasibility_report.hpp"
 
 #include <algorithm>
@@ -63,8 +63,8 @@ InfeasibilityCause cause_of(const Finding& f) {
   return cause;
 }
 
-// Scales violations so that different kinds can be compared: shares of a limit, centimetres, tenths
-// of a radian.
+// Scales violations so that different kinds can be compared, as shares of a limit, in centimetres,
+// or in tenths of a radian.
 double severity_of(const InfeasibilityCause& cause) {
   if (cause.is_ratio) return cause.violation - 1;
   if (cause.finding.unit == "m") return cause.violation / policy::infeasible::kLength;
@@ -147,7 +147,7 @@ std::string remedy(const InfeasibilityCause& cause) {
          cause.finding.remedy;
 }
 
-// The lock that covers the time of a finding, in words. Empty if there is none.
+// The lock that covers the time of a finding, in words; empty if there is none.
 std::string time_lock(const Finding& f, const RepairOptions& options) {
   std::string posture;
   for (const auto& [begin, end] : options.locked_windows) {
@@ -216,13 +216,13 @@ void solve_relaxed(RepairState& state) {
   note_work(state, relaxed, solution);
   state.result.constraint_violation = violation;
   state.relaxation_cut_short = solution.status == NlpStatus::iteration_limit;
-  // If the nearby motion with the smallest violation still violates a limit, no motion passes. A
-  // search that stopped before its end does not show this.
+  // If even the nearby motion with the smallest violation violates a limit, no motion passes. A
+  // search that was stopped early does not show this.
   if (solution.status != NlpStatus::failed)
     state.status = state.relaxation_cut_short ? NlpStatus::iteration_limit : NlpStatus::infeasible;
   take(state, problem.track(solution.x.head(problem.variable_count())));
-  // If the search stopped early, its motion has errors that the search itself made. Then the errors
-  // of the given motion show what prevents a repair.
+  // If the search was stopped early, its motion has errors that the search itself made. Then the
+  // errors of the given motion show what prevents a repair.
   RepairResult& result = state.result;
   if (!state.relaxation_cut_short &&
       total_violation(result.check) < total_violation(state.as_given.check))

@@ -19,7 +19,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Dofs that move only one of the two bodies.
+// The dofs that move only one of the two bodies.
 std::vector<int> joints_between(const RobotModel& model, int a, int b) {
   std::vector<int> count(static_cast<size_t>(model.dof_count()), 0), result;
   for (const int body : {a, b})
@@ -68,7 +68,7 @@ class StraightLine {
   long begin_ = 0, end_ = 0;
 };
 
-// Violation of the rows of soles and clearances, which are the most nonlinear ones.
+// The violation of the rows of soles and clearances, which are the most nonlinear rows.
 struct LeastLinearViolation {
   double sum = 0, worst = 0;
 };
@@ -119,7 +119,8 @@ MatrixXd straight_line_guess(const RobotModel& model, const CommandSeries& serie
   for (const auto& [dof, of_joint] : windows)
     for (const TimeWindow& window : merged(of_joint)) {
       const StraightLine line(series, dof, window);
-      for (Index i = 0; i < rows; ++i) {  // a control point computed from the values at three knots
+      // Each control point is computed from the values at three knots.
+      for (Index i = 0; i < rows; ++i) {
         const double t = static_cast<double>(i - 1) * spacing;
         result(i, 6 + dof) += (8 * line.at(t) - line.at(t - spacing) - line.at(t + spacing)) / 6;
       }

@@ -12,23 +12,23 @@
 
 namespace ayumi {
 
-/// Control points of the same uniform cubic spline with half the distance between its knots.
+/// The control points of the same uniform cubic spline for half the distance between knots.
 Eigen::MatrixXd with_halved_knots(const Eigen::MatrixXd& coefficients);
 
-/// `rows` control points, `spacing` [s] apart, that lead the joints at fault straight past the
-/// errors: from `reach` [s] before an error to `reach` after it, with the angles and speeds that
-/// the motion has at these two times. For a joint beyond its limit, only this joint is moved. For
+/// `rows` control points at a distance of `spacing` [s] that lead the joints at fault straight past
+/// the errors, from `reach` [s] before an error to `reach` after it. At these two times, they have
+/// the angles and speeds of the motion. For a joint beyond its limit, only this joint is moved. For
 /// two bodies that overlap, all joints between them are moved.
 Eigen::MatrixXd straight_line_guess(const RobotModel& model, const CommandSeries& series,
                                     const std::vector<Finding>& findings, double reach,
                                     double spacing, Eigen::Index rows);
 
-/// The variables of the program at random control points.
+/// The variables of the program for random control points.
 Eigen::VectorXd random_start(const CorrectionProblem& problem, const RandomStart& how);
 
-/// The point from which the program starts: no correction, or, if this violates the strongly
-/// nonlinear rows (soles and clearances) by far, the straight-line guess that violates these rows
-/// least.
+/// The point from which the program starts. It is no correction. If this violates the strongly
+/// nonlinear rows (soles and clearances) by much, it is the straight-line guess with the smallest
+/// violation of these rows.
 Eigen::VectorXd initial_guess(const CorrectionProblem& problem, const Nlp& nlp,
                               const RobotModel& model, const CommandSeries& series,
                               const std::vector<Finding>& findings);

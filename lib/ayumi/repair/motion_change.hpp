@@ -1,6 +1,6 @@
 #pragma once
-// What changed from one motion to another: which joints, when and by how much, and COG, ZMP and
-// feet.
+// The changes from one motion to another: which joints changed, when and by how much, and the
+// changes of COG, ZMP and feet.
 
 #include <string>
 #include <vector>
@@ -12,9 +12,9 @@ namespace ayumi {
 
 struct JointChange {
   std::string joint;
-  double most = 0;            ///< largest change, signed [rad], of sliding joints [m]
+  double most = 0;            ///< largest change, signed [rad], for sliding joints [m]
   double at = 0;              ///< time of the largest change [s]
-  double begin = 0, end = 0;  ///< between these the change exceeds a tenth of it [s]
+  double begin = 0, end = 0;  ///< times between which the change exceeds a tenth of the largest [s]
 };
 
 /// The largest change of a quantity, and its time [s].
@@ -23,17 +23,18 @@ struct LargestChange {
 };
 
 struct MotionChange {
-  std::vector<JointChange> joints;  ///< those that move more than 1e-6 rad, the most first
-  LargestChange joint;              ///< of any joint [rad]
-  LargestChange cog;                ///< COG of the postures [m]
-  LargestChange zmp;                ///< commanded ZMP [m]
-  LargestChange fz;                 ///< commanded vertical force [N]
-  LargestChange foot;               ///< origin of a sole [m]
-  double compared = 0;              ///< length of the time that both motions have [s]
+  /// Joints that move by more than 1e-6 rad, the largest change first.
+  std::vector<JointChange> joints;
+  LargestChange joint;  ///< largest change of any joint [rad]
+  LargestChange cog;    ///< change of the COG of the postures [m]
+  LargestChange zmp;    ///< change of the commanded ZMP [m]
+  LargestChange fz;     ///< change of the commanded vertical force [N]
+  LargestChange foot;   ///< change of the origin of a sole [m]
+  double compared = 0;  ///< length of the time that both motions have [s]
 };
 
-/// Both series are sampled at one rate; the rest of the longer one is left out. Throws Error(usage)
-/// when the rates differ.
+/// Both series must be sampled at the same rate; the rest of the longer one is ignored. Throws
+/// Error(usage) if the rates differ.
 MotionChange motion_change(const RobotModel& model, const CommandSeries& before,
                            const CommandSeries& after);
 

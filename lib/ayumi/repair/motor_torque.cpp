@@ -1,11 +1,10 @@
-// The wrench (f, n) of a foot about the base origin adds  -ratio (a . n - a . (p x f))  to the
-// torque of a joint between base and sole, with a the joint's axis and p its position from that
-// origin. A small rotation w of everything below the joint, about a point at distance r from p,
-// changes a . m,  m = n - p x f,  by
+// The wrench (f, n) of a foot about the base origin adds -ratio (a . n - a . (p x f)) to the torque
+// of a joint between base and sole, with a the joint's axis and p its position from that origin. A
+// small rotation w of everything below the joint, about a point at distance r from p, changes a .
+// m, m = n - p x f, by
 //   w . (a x m - (a . r) f + (r . f) a),
-// and  a . f  of a sliding joint by  w . (a x f). The sharing of the wrench between two feet
-// depends on the ZMP alone and is piecewise smooth; its slope is taken by differences within a
-// piece.
+// and a . f of a sliding joint by w . (a x f). The sharing of the wrench between two feet depends
+// on the ZMP alone and is piecewise smooth; its slope is taken by differences within a piece.
 #include "ayumi/repair/motor_torque.hpp"
 
 #include "ayumi/repair/policy.hpp"
@@ -21,7 +20,7 @@ namespace {
 
 using FootWrenches = std::array<Vector6d, 2>;
 
-// Derivatives of the foot wrenches by base position and wrench, 6 x 9, by Side.
+// The derivatives of the foot wrenches by base position and wrench, 6 x 9, by Side.
 std::array<Eigen::Matrix<double, 6, 9>, 2> sharing_slope(const RobotModel& model,
                                                          const CollocationPoint& point,
                                                          const Vector3d& base,
@@ -51,14 +50,14 @@ std::array<Eigen::Matrix<double, 6, 9>, 2> sharing_slope(const RobotModel& model
   return slope;
 }
 
-// Gradient with respect to a small rotation about a point at distance `r` from the joint.
+// The gradient with respect to a small rotation about a point at distance `r` from the joint.
 Vector3d by_rotation(const Body& body, const Vector3d& axis, const Vector3d& r, const Vector3d& m,
                      const Vector3d& f) {
   if (body.prismatic) return axis.cross(f);
   return axis.cross(m) - axis.dot(r) * f + r.dot(f) * axis;
 }
 
-// Adds the part of one foot's wrench to the torques: derivatives by the wrench, and by the
+// Adds the contribution of one foot's wrench to the torques: derivatives by the wrench, and by the
 // configuration at a constant wrench.
 void add_foot(const RobotModel& model, Side side, const Vector6d& wrench, const RobotData& data,
               const Matrix3d& tangent, MatrixXd& by_wrench, MatrixXd& by_value) {
@@ -117,7 +116,7 @@ void fill_motor_torque_derivatives(const RobotModel& model, const ActuatorLimits
       state.torque_by[k] += by_wrench * slope[s].rightCols<6>() * state.wrench_by[k];
     state.torque_by[0].leftCols<3>() += by_wrench * slope[s].leftCols<3>();
   }
-  // Rotor inertia, viscous friction, and Coulomb friction within the ramp of its sign.
+  // The rotor inertia, viscous friction, and Coulomb friction within the ramp of its sign.
   for (int i = 0; i < dof; ++i) {
     const ServoDescription& servo = actuators.servo[static_cast<size_t>(i)];
     state.torque_by[2](i, 6 + i) += servo.rotor_inertia;

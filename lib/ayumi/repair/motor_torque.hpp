@@ -6,7 +6,7 @@
 
 namespace ayumi {
 
-/// Fills state.torque. The force, the wrench and the positions of `state` must be set.
+/// Fills state.torque. The force, the wrench and the positions of `state` must already be set.
 void fill_motor_torques(const RobotModel& model, const ActuatorLimits& actuators,
                         const CollocationPoint& point, PointState& state);
 

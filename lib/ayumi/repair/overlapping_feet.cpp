@@ -1,5 +1,5 @@
-// Two convex polygons overlap where none of their edges has the other polygon beyond it; the least
-// overlap along the normal of an edge is the way that parts them.
+// Two convex polygons overlap if none of their edges has the whole other polygon beyond it. The
+// smallest overlap along the normal of an edge is the displacement that separates them.
 #include "ayumi/repair/overlapping_feet.hpp"
 
 #include <algorithm>
@@ -31,7 +31,7 @@ double overlap_along_normals(const ConvexPolygon& a, const ConvexPolygon& b) {
   return least;
 }
 
-// Overlap of both soles along the ground of the first sole [m]; below 0 if they are apart.
+// The overlap of both soles along the ground of the first sole [m]; below 0 if they are apart.
 double overlap(const RobotModel& model, const Isometry3d& left, const Isometry3d& right) {
   std::vector<Vector2d> moved;
   for (const Vector2d& corner : model.sole(Side::right).polygon)

@@ -19,13 +19,13 @@ struct OverlappingFeet {
       Eigen::Vector3d::Zero();  ///< place of the sole that landed later, world [m]
 };
 
-/// The first contacts of both feet whose planned soles overlap and whose feet the report has
-/// colliding then; none if the plan separates the soles, or if the check allows the overlap.
+/// The first contacts of both feet whose planned soles overlap, if the report says that the feet
+/// collide then. Nothing if the plan separates the soles, or if the check allows the overlap.
 std::optional<OverlappingFeet> overlapping_feet(const RobotModel& model,
                                                 const CommandSeries& series,
                                                 const ConsistencyReport& report);
 
-/// Message: what is wrong, where it is wrong, and what to do.
+/// The message: what is wrong, where it is wrong, and what to do.
 std::string words_of(const OverlappingFeet& feet);
 
 }  // namespace ayumi

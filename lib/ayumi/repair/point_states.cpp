@@ -8,7 +8,7 @@ namespace {
 
 // Number of parts into which the points are divided for the threads, and the smallest number of
 // points in a part. Chosen: enough parts for the cores of a workstation; a part of fewer points
-// takes less time than to start a thread. Neither changes a result.
+// takes less time than starting a thread. Neither changes a result.
 constexpr size_t kMostParts = 16, kFewestPoints = 8;
 
 }  // namespace

@@ -1,7 +1,7 @@
 #pragma once
-// The states of all collocation points at one point of the program. Rows, Jacobian and curvature at
-// the same variables share them. Points do not depend on each other, so several threads compute
-// them, with the same bytes for any number of them.
+// The states of all collocation points for one set of variables of the program. Rows, Jacobian and
+// curvature at the same variables share them. Points do not depend on each other, so several
+// threads compute them; the bytes are the same for any number of threads.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -20,9 +20,9 @@ class PointStates {
   PointStates(const RobotModel& model, const ActuatorLimits& actuators, const CommandSeries& motion,
               const std::vector<CollocationPoint>& points, int threads);
 
-  /// Calls job(point, state, workspace) for every point with its state for the control points
-  /// `coefficients`, with derivatives or without, on several threads. What was computed for the
-  /// same control points before is not computed again.
+  /// Calls job(point, state, workspace) for every point on several threads. The state is that for
+  /// the control points `coefficients`, with or without derivatives. A result that was already
+  /// computed for the same control points is not computed again.
   template <class Job>
   void for_each(const Eigen::MatrixXd& coefficients, bool derivatives, const Job& job) {
     start(coefficients);

@@ -34,8 +34,8 @@ void place_objective(const VectorXd& weights, const CorrectionVariables& v, Prog
       for (int d = 0; d < 4 && point - d >= 0; ++d) {
         const int one = v.index(point, column), other = v.index(point - d, column);
         if (one < 0 || other < 0) continue;
-        // If two control points share a variable, their entry is on the diagonal, where both orders
-        // count.
+        // If two control points share a variable, their entry is on the diagonal, and both orders
+        // count there.
         const double share = d > 0 && one == other ? 2 : 1;
         h.pattern.add(std::max(one, other), std::min(one, other));
         values.push_back(
@@ -45,8 +45,9 @@ void place_objective(const VectorXd& weights, const CorrectionVariables& v, Prog
   h.objective = Eigen::Map<VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
-// Columns of base and legs are curved. On the ground, arms add little. In flight they add more, but
-// there programs with the whole curvature needed more iterations than programs without any.
+// The columns of base and legs are curved. On the ground, arms contribute little. In flight they
+// contribute more, but there, programs with the whole curvature needed more iterations than
+// programs without any.
 std::vector<int> curved_columns(const RobotModel& model,
                                 const std::vector<CollocationPoint>& points) {
   if (!model.has_soles() ||
@@ -151,7 +152,8 @@ void add_pairs(const ProgramHessian& h, const Eigen::MatrixXi& index, int point,
 
 void add_curvature(const ProgramHessian& h, const Eigen::MatrixXi& index,
                    const std::vector<PointCurvature>& points, int threads, VectorXd& values) {
-  // Control points that one thread takes at once. Chosen: less work than to start a thread.
+  // Number of control points that one thread takes at once. Chosen: a smaller number takes less
+  // time than starting a thread.
   constexpr int kTogether = 8;
   const auto count = static_cast<int>(index.rows());
   std::atomic<bool> stop = false;

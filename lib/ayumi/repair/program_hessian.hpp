@@ -1,6 +1,6 @@
 #pragma once
-// The Hessian of the program: that of the objective, which is constant, and on the ground the
-// curvature of the constraints times their multipliers (curvature.hpp). The objective is
+// The Hessian of the program. It is that of the objective, which is constant, plus, on the ground,
+// the curvature of the constraints times their multipliers (curvature.hpp). The objective is
 //   kObjectiveScale / 2 * sum_columns w integral (d^2 + tau^4 d''^2) dt,
 // quadratic in the control points, by the Gram matrices of the splines.
 
@@ -20,7 +20,7 @@ struct ProgramHessian {
   std::vector<int> first_nonzero;  ///< first nonzero of the four pairs of each control point
 };
 
-/// `weights` are change_weights(), by column.
+/// `weights` are change_weights(), for each column.
 ProgramHessian program_hessian(const RobotModel& model, const Eigen::VectorXd& weights,
                                const CorrectionVariables& variables,
                                const std::vector<CollocationPoint>& points);
@@ -32,7 +32,8 @@ void objective_gradient(const ProgramHessian& hessian, const Eigen::VectorXd& x,
 /// Curvature of the rows of one point, for the columns that are curved.
 struct PointCurvature {
   SplineWeights weights;
-  /// By value and value; by acceleration and value, and turned round. Empty where nothing curves.
+  /// Second derivatives by value and value, by acceleration and value, and the transpose of the
+  /// latter. Empty if nothing is curved.
   Eigen::MatrixXd value, mixed, turned;
   Eigen::Matrix2d cone = Eigen::Matrix2d::Zero();  ///< second derivatives by the tangential force
   std::array<Eigen::MatrixXd, 4> force;  ///< derivatives of this force by each control point
@@ -40,8 +41,8 @@ struct PointCurvature {
 PointCurvature curvature_at(const ProgramHessian& hessian, const SplineWeights& weights,
                             const Curvature& curvature);
 
-/// Adds the curvature of all points, which are in order of time, to the values of the nonzeros.
-/// `index` is that of CorrectionVariables.
+/// Adds the curvature of all points, in order of time, to the values of the nonzeros. `index` is
+/// that of CorrectionVariables.
 void add_curvature(const ProgramHessian& hessian, const Eigen::MatrixXi& index,
                    const std::vector<PointCurvature>& points, int threads, Eigen::VectorXd& values);
 

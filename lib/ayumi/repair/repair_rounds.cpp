@@ -1,7 +1,7 @@
-// Windows are enough because the effect of a correction decays: the COG forgets it as
+// Windows are enough because the effect of a correction decays. Its effect on the COG decays as
 // exp(-omega t), with omega of about 6 1/s for a small robot, to 5 % after half a second, and the
-// ZMP margin at the window's edge takes up the rest. Where that is not enough the windows grow, in
-// the end to the whole motion.
+// ZMP margin at the edge of the window absorbs the rest. If this is not enough, the windows grow,
+// at last to the whole motion.
 #include "ayumi/repair/repair_rounds.hpp"
 
 #include <algorithm>
@@ -27,14 +27,14 @@ struct RoundMemory {
   std::set<FoundAt> errors = {};             // errors that the last round left, if it was solved
 };
 
-// If a motion is repaired at all, a margin that is only a warning is repaired too.
+// If a motion is repaired at all, a margin that only causes a warning is repaired, too.
 bool has_full_margin(const ConsistencyReport& report) {
   return std::none_of(report.findings.begin(), report.findings.end(), [](const Finding& f) {
     return spec_of(f.kind).repair.warnings_too && f.severity == Severity::warning;
   });
 }
 
-// If a result passes although its program was not solved to the end, there is one more round.
+// If a result passes although its program was not solved to the end, one more round is made.
 bool is_over(const RepairState& state, const RoundMemory& memory) {
   if (memory.round >= policy::rounds::kMost || memory.unsolved >= policy::rounds::kMostUnsolved)
     return true;
@@ -55,8 +55,8 @@ void choose_windows(RepairState& state, RoundMemory& memory) {
   add_near_pairs(state.model, state.result.series, state.collisions, state.spec.near_pairs);
 }
 
-// A first program without a solution may only have been cut short. Finer knots are tried first;
-// then the soft goals are given up before the repair is.
+// A first program without a solution may only have been stopped too early. So finer knots are tried
+// first; then the soft goals are left out, before the repair ends.
 void widen_after_failure(RepairState& state, RoundMemory& memory) {
   if (state.status == NlpStatus::solved) return;
   if (memory.round > 0 || state.flight) ++memory.unsolved;
@@ -67,7 +67,7 @@ void widen_after_failure(RepairState& state, RoundMemory& memory) {
   state.spec.sole_at_knots = 1;
 }
 
-// The next round keeps more distance from the limits.
+// In the next round, the motion keeps a larger distance from the limits.
 void increase_backoff(CorrectionSpec& spec, int round) {
   if (2 * (round + 1) >= policy::rounds::kMost) spec.swing_goals = false;
   spec.joint_margin += policy::kBackoffStep.joint_position;
@@ -109,7 +109,7 @@ void solve_round(RepairState& state, RoundMemory& memory) {
   ++memory.round;
 }
 
-// The point with the smallest violation of a program that was stopped.
+// Keeps the point with the smallest violation of a program that was stopped.
 void keep_partial(RepairState& state) {
   state.result.partial = true;
   state.status = NlpStatus::iteration_limit;

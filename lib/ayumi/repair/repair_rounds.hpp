@@ -1,16 +1,16 @@
 #pragma once
-// The rounds of a repair: choose windows around what the check found, solve, lay the correction
-// over the motion at full rate, check again. A later round has more freedom (wider windows, finer
-// knots), rows for every limit to which the motion has come near, and a little more distance from
-// the limits.
+// The rounds of a repair. Each round chooses windows around the findings of the check, solves, adds
+// the correction to the motion at its full rate, and checks again. A later round has more freedom
+// (wider windows, finer knots), rows for every limit to which the motion has come near, and a
+// little more distance from the limits.
 
 #include "ayumi/repair/repair_state.hpp"
 
 namespace ayumi {
 
 /// Makes rounds until the result passes, or until their largest number is reached. The state then
-/// holds the last result, or an earlier one that passes. Throws Interrupted where no partial result
-/// is wanted.
+/// has the last result, or an earlier one that passes. Throws Interrupted if no partial result is
+/// wanted.
 void solve_rounds(RepairState& state);
 
 }  // namespace ayumi

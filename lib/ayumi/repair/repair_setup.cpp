@@ -37,7 +37,7 @@ void require_windows(const std::vector<TimeWindow>& windows) {
                                  " s: the end must not come before the beginning");
 }
 
-// Locked windows without length, moved to the nearest samples.
+// The times of locked windows without length, moved to the nearest samples.
 std::vector<double> kept_times(const std::vector<TimeWindow>& windows,
                                const CommandSeries& series) {
   std::set<long> samples;
@@ -50,7 +50,7 @@ std::vector<double> kept_times(const std::vector<TimeWindow>& windows,
   return times;
 }
 
-// Duration of the shortest flight [s]; unbounded for a motion without a flight.
+// The duration of the shortest flight [s]; unbounded for a motion without a flight.
 double shortest_flight(const CommandSeries& series) {
   double shortest = kNoBound;
   size_t first = 0;
@@ -127,8 +127,8 @@ CorrectionTrack trimmed(const CorrectionTrack& track) {
   return result;
 }
 
-// Only control points that already move are changed. The first and the last three are zero or tied
-// to each other. The second pass removes the rounding of the first.
+// Only control points that already differ from zero are changed. The first and the last three are
+// zero or tied to each other. The second pass removes the rounding of the first.
 CorrectionTrack kept_at(CorrectionTrack track, const std::vector<double>& times) {
   Eigen::MatrixXd& c = track.coefficients;
   const double end = track.begin + track.spacing * static_cast<double>(c.rows() - 3);
@@ -173,7 +173,7 @@ CorrectionSpec repair_spec(const RobotModel& model, const CommandSeries& series,
   if (options.generate) {
     spec.planned_feet = true;
     spec.planned_cog = options.generate->cog;
-    spec.swing_goals = false;  // the plan says how high the foot is, and where
+    spec.swing_goals = false;  // the plan already says where and how high the foot is
   }
   return spec;
 }

@@ -1,6 +1,6 @@
 #pragma once
 // Prepares the programs of a repair: the wishes of the caller, and the places and the spacing of
-// knots with which a correction has to act according to the report of the check.
+// the knots that the report of the check requires.
 
 #include "ayumi/repair/correction_problem.hpp"
 #include "ayumi/repair/repair.hpp"
@@ -16,19 +16,19 @@ CorrectionSpec repair_spec(const RobotModel& model, const CommandSeries& series,
 void add_near_pairs(const RobotModel& model, const CommandSeries& series,
                     const CollisionModel& collisions, std::vector<int>& pairs);
 
-/// Windows around errors, their consequences and ZMP margins that are too small, `pad` [s] wider on
-/// both sides; windows that overlap are one.
+/// The windows around errors, their consequences and ZMP margins that are too small, extended by
+/// `pad` [s] on both sides; overlapping windows are joined.
 std::vector<TimeWindow> windows_around(const std::vector<Finding>& findings, double pad);
 
 /// Windows in which the commanded COG or ZMP itself is at fault, and not only because of a posture.
 std::vector<TimeWindow> wrong_plan(const ConsistencyReport& report);
 
-/// The track as it is written to a file: numbers of nine decimals, and only the control points and
+/// The track in the form of a file: numbers with nine decimals, and only the control points and
 /// joints that move, with the three zero points on both sides that a cubic spline needs to begin at
 /// rest.
 CorrectionTrack trimmed(const CorrectionTrack& track);
 
-/// The trimmed track, whose control points are moved by the smallest amount with which nothing
+/// The trimmed track, with control points that are moved by the smallest amount with which nothing
 /// changes at `times`.
 CorrectionTrack kept_at(CorrectionTrack track, const std::vector<double>& times);
 
@@ -40,11 +40,11 @@ bool flight_is_at_fault(const ConsistencyReport& report);
 double spacing_of_faults(const CommandSeries& series, const ConsistencyReport& report,
                          double finest);
 
-/// Whether a locked joint is beyond its limits, or an error lies in a locked window, or a locked
-/// posture is at fault: then there is nothing to solve.
+/// Whether a locked joint is beyond its limits, an error lies in a locked window, or a locked
+/// posture is at fault. Then there is nothing to solve.
 bool locked_out(const CorrectionSpec& spec, const ConsistencyReport& report);
 
-/// Whether the first and the last posture are themselves at fault and may move, by end.
+/// For the first and the last posture: whether it is itself at fault and may move.
 std::array<bool, 2> faulty_ends(const ConsistencyReport& report, double duration, double spacing);
 
 }  // namespace ayumi

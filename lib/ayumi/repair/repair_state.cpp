@@ -172,9 +172,7 @@ void solve_program(RepairState& state, const std::string& stage, double toleranc
   const bool at_random = first && state.options.random_start.size > 0;
   hard.start = at_random ? random_start(problem, state.options.random_start) : usual;
   NlpSolution solution = solve_relaxing_goals(state, hard, stage, tolerance);
-  if (at_random &&
-      solution.status !=
-          NlpStatus::solved) {  // a start from which no solution was found is not used again
+  if (at_random && solution.status != NlpStatus::solved) {  // such a start is not used again
     hard.start = usual;
     solution = solve_relaxing_goals(state, hard, stage, tolerance);
   }

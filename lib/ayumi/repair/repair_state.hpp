@@ -1,7 +1,7 @@
 #pragma once
-// What the stages of one repair share: the question, the program of the last round, and the best
-// result so far. Stages are functions of this state: repair_rounds, tighten_to_check_limits and
-// infeasibility_report.
+// The data that the stages of one repair share: the question, the program of the last round, and
+// the best result so far. The stages are functions of this state: repair_rounds,
+// tighten_to_check_limits and infeasibility_report.
 
 #include <deque>
 #include <map>
@@ -28,7 +28,7 @@ struct RepairState {
   CorrectionSpec asked;  ///< specification of the first round
   bool flight = false;   ///< whether a flight is at fault
 
-  // The rounds so far.
+  // These members describe the rounds so far.
   CorrectionSpec spec = {};                       ///< specification of the next program
   std::optional<CorrectionProblem> problem = {};  ///< the last program
   NlpStatus status = NlpStatus::failed;           ///< status of the last program
@@ -37,29 +37,29 @@ struct RepairState {
   std::deque<CommandSeries> earlier = {};  ///< results of earlier rounds, which `spec` refers to
   Eigen::VectorXd least_violating = {};  ///< point of the last program with the smallest violation
 
-  /// Multipliers of the last program's rows that are not 0, by sample, kind, item and line. The
-  /// next program has most of these rows too.
+  /// Multipliers of those rows of the last program for which they are not 0, by sample, kind, item
+  /// and line. The next program also has most of these rows.
   std::map<std::tuple<int, const RowKind*, int, int>, double> multipliers = {};
 
-  // The result so far.
+  // These members describe the result so far.
   CorrectionTrack track = {};  ///< every control point of the result
   RepairResult result = {};
   RepairResult as_given = {};                   ///< the motion itself, with its own COG and ZMP
   std::optional<CorrectionTrack> passing = {};  ///< an earlier result that passes the check
-  bool relaxation_cut_short = false;  ///< the search was stopped by its limit of iterations
+  bool relaxation_cut_short = false;  ///< whether the limit of iterations stopped the search
   std::optional<OverlappingFeet> overlap =
-      {};  ///< feet that are planned in one place, so that nothing can be solved
+      {};  ///< feet that are planned in one place, in which case there is no solution
 };
 
 /// The state before the first round, with the check of the motion as it is given.
 RepairState repair_state(const RobotModel& model, const CommandSeries& series,
                          const RepairOptions& options, const Progress& progress);
 
-/// Makes the motion with a correction the result, and checks it.
+/// Makes the motion with this correction the result, and checks it.
 void take(RepairState& state, const CorrectionTrack& track);
 
-/// The check of a motion. A trusted quantity is judged as it was commanded, not as the corrected
-/// motion has it.
+/// The check of a motion. A trusted quantity is judged as it was commanded, and not as the
+/// corrected motion has it.
 ConsistencyReport report_of(const RepairState& state, const CommandSeries& series);
 
 /// Whether the result passes and its program was solved to the end.

@@ -22,7 +22,8 @@ bool differ(const RobotState& a, const RobotState& b) {
          a.base.attitude.coeffs() != b.base.attitude.coeffs();
 }
 
-// Times at which the motions differ, extended by the reach of the control points that act there.
+// The times at which the motions differ, extended by the reach of the control points that act
+// there.
 std::vector<TimeWindow> windows_of_change(const CommandSeries& before, const CommandSeries& after,
                                           double spacing) {
   const double pad = 4 * spacing;  // a cubic spline has four control points at each time
@@ -35,7 +36,7 @@ std::vector<TimeWindow> windows_of_change(const CommandSeries& before, const Com
   return merged(std::move(windows));
 }
 
-// The feet stay in their places for every factor of robustness.
+// For every factor of robustness, the feet stay in their places.
 double price_factor(const RowKind& kind, double safety) {
   return kind.relaxed == &RowPrices::foot ? 1 : safety;
 }
@@ -66,7 +67,7 @@ double robustness_cost(const RobotModel& model, const CommandSeries& before,
   spec.joint_margin = 0;
   const CorrectionProblem problem(model, before, spec);
   const VectorXd g = problem.constraints_of(after);
-  std::map<std::tuple<const RowKind*, int, long>, double> violations;  // by limit and window
+  std::map<std::tuple<const RowKind*, int, long>, double> violations;  // for each limit and window
   double sum = 0;
   for (const RowBlock& block : problem.blocks()) {
     const int k = problem.points()[static_cast<size_t>(block.point)].sample;

@@ -63,8 +63,7 @@ RowSettings row_settings(const CorrectionSpec& spec) {
   return s;
 }
 
-// The rows in the order in which the program has them, without the rows of points that have only a
-// few.
+// The rows in the order of the program, without the rows of points that only have a few.
 std::vector<RowBlock> ordered(std::vector<RowBlock> all,
                               const std::vector<CollocationPoint>& points) {
   std::erase_if(all, [&](const RowBlock& block) {

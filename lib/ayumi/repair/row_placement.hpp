@@ -13,7 +13,7 @@ namespace ayumi {
 /// The rows of the program.
 struct PlacedRows {
   std::vector<RowBlock> blocks;  ///< ordered by their points, and within a point by RowOrder
-  std::vector<std::vector<int>> columns;  ///< by block: the columns on which it depends
+  std::vector<std::vector<int>> columns;  ///< for each block, the columns on which it depends
   Eigen::VectorXd lower, upper;           ///< bounds of the rows
 };
 

@@ -81,8 +81,8 @@ bool take_first_passing(RepairState& state, const PassingResult& passing, double
     state.track = wanted;
     return false;
   }
-  // A small one of the shares kFirstBack * kBackFactor^i that passes, by halving. It is the least
-  // one if every motion farther back passes, too.
+  // A small one of the shares kFirstBack * kBackFactor^i that passes, found by bisection. It is the
+  // smallest one if every motion farther back passes, too.
   std::vector<double> shares;
   for (double share = policy::tighten::kFirstBack; share < most_back;
        share *= policy::tighten::kBackFactor)

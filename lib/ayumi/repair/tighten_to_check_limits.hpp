@@ -11,14 +11,14 @@ namespace ayumi {
 
 /// `spec` with the limits of the check, reduced only for rounding, and with the ZMP margins that
 /// were `asked` for and could be reached. With a robustness factor above 0, feet, clearances and
-/// the ZMP keep what is wanted beyond the check's limits; with 0 they do not.
+/// the ZMP keep the goals beyond the check's limits; with 0 they do not.
 CorrectionSpec at_check_limits(const CorrectionSpec& spec, const CorrectionSpec& asked,
                                double robustness);
 
 /// Adds the times of all errors as collocation points.
 void add_error_times(const ConsistencyReport& report, double dt, std::vector<double>& times);
 
-/// a + share (b - a); both have the same knots.
+/// Computes a + share (b - a); both have the same knots.
 CorrectionTrack between(const CorrectionTrack& a, const CorrectionTrack& b, double share);
 
 /// Replaces the result, which passes, by the smallest correction that also passes. Keeps the result

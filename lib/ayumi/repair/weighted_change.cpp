@@ -22,7 +22,7 @@ Vector3d base_rotation_change(const CommandSample& a, const CommandSample& b) {
   return log_rotation(b.state.base.attitude * a.state.base.attitude.conjugate());
 }
 
-// Second differences. The ends of the motion get those of their neighbours.
+// The second differences. The ends of the motion get the values of their neighbours.
 std::vector<Vector3d> turning_accelerations(const std::vector<Vector3d>& r, double dt) {
   std::vector<Vector3d> dd(r.size(), Vector3d::Zero());
   if (r.size() < 3) return dd;

@@ -14,30 +14,31 @@
 namespace ayumi {
 
 struct ChangePart {
-  std::string what;   ///< "base position", "base rotation" or a joint
-  double weight = 0;  ///< w; for a joint its W times the factor of the options [1/rad^2, 1/m^2]
-  double change = 0;  ///< the part's share of the sum [s]
+  std::string what;  ///< "base position", "base rotation" or a joint
+  /// Weight w; for a joint its W times the factor of the options [1/rad^2, 1/m^2].
+  double weight = 0;
+  double change = 0;  ///< share of the part in the sum [s]
 };
 
 struct WeightedChange {
-  double change = 0;              ///< the sum above [s]
+  double change = 0;              ///< the sum [s]
   double safety = 0;              ///< robustness cost (robustness_cost.hpp) [s]
   std::vector<ChangePart> parts;  ///< parts that are not 0, the largest first
   double total() const { return change + safety; }
 };
 
-/// w by column: base position and base rotation (policy.hpp), then W of the motion (of the robot
-/// where the motion has none) times `factors` by joint (empty: 1).
+/// The weights w by column: base position and base rotation (policy.hpp), then W of the motion
+/// times `factors` by joint (empty: 1). If the motion has no W, that of the robot is used.
 Eigen::VectorXd change_weights(const RobotModel& model, const CommandSeries& series,
                                const Eigen::VectorXd& factors = {});
 
-/// One factor by joint, 1 where `weights` names none. Throws Error(usage) for a joint that the
-/// robot does not have and for a factor that is not above 0.
+/// One factor for each joint, which is 1 if `weights` does not name it. Throws Error(usage) for a
+/// joint that the robot does not have and for a factor that is not above 0.
 Eigen::VectorXd weight_factors(const RobotModel& model,
                                const std::map<std::string, double>& weights);
 
-/// Without the robustness cost, over the time that both motions have. Throws Error(usage) when
-/// their rates differ.
+/// The change without the robustness cost, over the time that both motions have. Throws
+/// Error(usage) if their rates differ.
 WeightedChange weighted_change(const RobotModel& model, const CommandSeries& before,
                                const CommandSeries& after, const Eigen::VectorXd& factors = {});
 

@@ -38,7 +38,8 @@ std::string quoted(const std::string& text) {
 
 namespace {
 
-/// Below a column head, a number has no unit. Without heads, it may have a unit.
+/// Whether a cell is a number. Without heads, the number may have a unit; below a column head, it
+/// may not.
 bool is_number(const std::string& cell, bool with_heads) {
   constexpr const char* kBegin = "0123456789+-.";
   if (cell.empty() || std::string(kBegin).find(cell[0]) == std::string::npos) return false;
@@ -48,7 +49,7 @@ bool is_number(const std::string& cell, bool with_heads) {
 }  // namespace
 
 std::string table(const Table& table) {
-  // The table scrolls sideways on a narrow page, also with the keyboard.
+  // On a narrow page, the table scrolls sideways, also with the keyboard.
   std::string out = "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"" +
                     escaped(table.caption.empty() ? "Table" : table.caption) + "\"><table>\n";
   if (!table.caption.empty()) out += "<caption>" + escaped(table.caption) + "</caption>\n";

@@ -13,21 +13,21 @@ using ayumi::escaped;
 /// Base64 without line breaks.
 std::string base64(const std::string& bytes);
 
-/// Text in JSON quotes, safe inside a <script> element.
+/// A text in JSON quotes that is safe inside a <script> element.
 std::string quoted(const std::string& text);
 
 struct Table {
   std::string caption;
-  std::vector<std::string> head;               ///< text
-  std::vector<std::vector<std::string>> rows;  ///< HTML; numbers are aligned to the right
+  std::vector<std::string> head;               ///< heads of the columns as text
+  std::vector<std::vector<std::string>> rows;  ///< cells as HTML; numbers are aligned to the right
 };
-/// The first cell of a row is its heading.
+/// A table of HTML. The first cell of each row is its heading.
 std::string table(const Table& table);
 
 /// A time [s] with three digits. A click on it moves the replay to this time.
 std::string time_link(double t);
 
-/// <section id=...><h2>title</h2>contents</section>
+/// A section of the page: <section id=...><h2>title</h2>contents</section>.
 std::string section(const std::string& id, const std::string& title, const std::string& contents);
 
 }  // namespace ayumi::html

@@ -7,10 +7,10 @@
 namespace ayumi {
 
 extern const std::string_view kPageStyle;
-/// Empty if the program was built without npm.
+/// The script of the replay; empty if the program was built without npm.
 extern const std::string_view kReplayScript;
-/// The whole page with its style and script, for a server. Empty if the program was built without
-/// npm.
+/// The whole live page with its style and script, for a server; empty if the program was built
+/// without npm.
 extern const std::string_view kAuthorPage;
 
 }  // namespace ayumi

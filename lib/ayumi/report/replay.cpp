@@ -17,7 +17,7 @@ namespace {
 using Eigen::Vector3d;
 using html::quoted;
 
-// Largest number of nodes along a side of a field of heights; 9216 heights keep the page small.
+// Largest number of nodes along a side of a height field; 9216 heights keep the page small.
 constexpr int kFieldNodes = 96;
 
 const std::vector<std::string> kColumns = {"t",
@@ -54,7 +54,7 @@ std::string list(const Vector3d& v) {
   return list({text::exact(v.x()), text::exact(v.y()), text::exact(v.z())});
 }
 
-/// The pose of a moving floor, after the columns above.
+/// Columns for the pose of a moving floor, after the columns above.
 const std::vector<std::string> kFloorColumns = {"floor.x",  "floor.y",  "floor.z", "floor.qx",
                                                 "floor.qy", "floor.qz", "floor.qw"};
 
@@ -65,7 +65,7 @@ std::string pose_words(const Eigen::Isometry3d& pose) {
          "}";
 }
 
-/// Rows of 32-bit floats.
+/// A table with rows of 32-bit floats.
 struct FloatRows {
   std::string bytes;
 
@@ -79,7 +79,7 @@ struct FloatRows {
   void add(const Eigen::Quaterniond& q) {
     for (const double value : q.coeffs()) add(value);
   }
-  /// The columns kColumns.
+  /// Adds the columns kColumns of a sample.
   void add(double t, const SimulationSample& s) {
     add(t);
     add(s.cog);
@@ -133,7 +133,7 @@ std::string pushes_words(const SimulationLog& log) {
   return list(words);
 }
 
-/// Corners of triangles, each with its place and colour, in the floor's frame.
+/// The triangles of the ground: for each corner its place and colour, in the floor's frame.
 std::string scenery_bytes(const World& world) {
   const Triangles scenery = make_scenery(world, kFieldNodes);
   std::string bytes;
@@ -162,7 +162,7 @@ std::string bumps_words(const RobotModel& model, const SimulationLog& log) {
   return list(words);
 }
 
-/// The data about the robot and the world that the script needs, without braces.
+/// The data about the robot and the world that the script needs, as JSON without the outer braces.
 std::string common_words(const RobotModel& model, double height, const SimulationLog& log,
                          double rate, double start, const std::string& label) {
   return "\"rate\":" + text::exact(rate) + ",\"height\":" + text::exact(height) +
@@ -180,7 +180,7 @@ std::string quoted_list(const std::vector<std::string>& names) {
   return list(items);
 }
 
-/// The place of each body in its parent, in the order of their numbers.
+/// The place of each body relative to its parent, in the order of the bodies' numbers.
 std::string bodies_words(const RobotModel& model) {
   std::vector<std::string> words;
   for (const Body& body : model.bodies()) {

@@ -9,35 +9,36 @@
 namespace ayumi {
 
 struct ReplayPlan {
-  double rate = 50;           ///< [Hz]
+  double rate = 50;           ///< rate of the rows [Hz]
   size_t triangles = 60'000;  ///< largest number of triangles of the robot
 };
 
 struct ReplayData {
-  std::string model;    ///< bytes of a .glb: the run, then its ghosts
+  std::string model;    ///< bytes of a .glb with the run and then its ghosts
   std::string series;   ///< rows of 32-bit floats, little-endian
-  std::string scenery;  ///< corners of triangles: place and colour, 32-bit floats
-  std::string config;   ///< JSON
+  std::string scenery;  ///< corners of triangles: place and colour, as 32-bit floats
+  std::string config;   ///< configuration as JSON
   std::vector<std::string> ghosts;
-  double duration = 0, start = 0;  ///< [s]
+  double duration = 0, start = 0;  ///< duration and beginning of the replay [s]
 };
 
 ReplayData make_replay(const RobotModel& model, const RobotLook& look, const ReportInput& input,
                        const ReplayPlan& plan);
 
-/// The live page places the bodies itself, by rows of a table: bytes of a .glb of the robot in the
-/// first posture of the log, with at most that many triangles.
+/// The robot for the live page, which places the bodies itself by rows of a table. Returns the
+/// bytes of a .glb of the robot in the first posture of the log, with at most this many triangles.
 std::string live_model(const RobotModel& model, const SimulationLog& log, size_t triangles);
 
-/// JSON: names of the table's columns, how the bodies hang together, soles, pushes and world of the
-/// log. The columns are those of the report's replay, then the pose of the base, and angle, rate
-/// and torque of every joint; "base." and "q.", "dq.", "tau." begin their names.
+/// JSON with the names of the table's columns, the tree of the bodies, and the soles, pushes and
+/// world of the log. The columns are those of the report's replay, then the pose of the base
+/// ("base."), and the angle ("q."), rate ("dq.") and torque ("tau.") of every joint.
 std::string live_config(const RobotModel& model, const SimulationLog& log, double rate);
 
-/// The table: one row of 32-bit floats, little-endian, for each 1/rate seconds, and one at the end.
+/// The table: one row of 32-bit floats, little-endian, every 1/rate seconds, and one row at the
+/// end.
 std::string live_series(const SimulationLog& log, double rate);
 
-/// As ReplayData::scenery.
+/// The triangles of the ground in the form of ReplayData::scenery.
 std::string live_scenery(const World& world);
 
 }  // namespace ayumi

@@ -15,20 +15,21 @@
 #include "ayumi/report/replay.hpp"
 #include "ayumi/report/sections.hpp"
 
-// A page that is too large is made again with a coarser replay: half the triangles, then half the
-// rate, down to a tenth; then without the snapshots, and at last without the replay.
+// A page that is too large is made again with a coarser replay: first with half the triangles, then
+// with half the rate, each down to a tenth; then without the snapshots, and at last without the
+// replay.
 
 namespace ayumi {
 namespace {
 
-// Values that keep the page within its size: the number of keys of the replay, the largest number
-// of triangles of the robot, and the lowest rate of keys [Hz], between which the replay
+// Limits that keep the page within its size: the largest number of keys of the replay, the largest
+// number of triangles of the robot, and the lowest rate of keys [Hz], between which the replay
 // interpolates.
 constexpr double kMostKeys = 4000;
 constexpr size_t kFewestTriangles = 4000;
 constexpr double kLeastRate = 10;
 
-/// Allows only what is in the page.
+/// The browser may only use what is in the page.
 constexpr const char* kPolicy =
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; "
     "img-src data: blob:; connect-src data: blob:; base-uri 'none'; form-action 'none'";
@@ -46,11 +47,11 @@ std::string inline_svg(const Drawing& drawing) {
   return svg.substr(svg.find("<svg"));
 }
 
-// Widths for which curves are laid out [pixel]: of half a window of 1280, and of a telephone of 360
-// within its margins. Letters of 11 pixels stay that large there.
+// Widths for which curves are laid out [pixel]: half of a window of 1280 pixels, and a telephone of
+// 360 pixels without its margins. Letters keep their size of 11 pixels in both.
 constexpr double kWideCurves = 600, kNarrowCurves = 326;
 
-/// Curves over time and from above, for one width.
+/// Plots over time and from above, for one width.
 std::string curves(const RobotModel& model, const ReportInput& input, double width,
                    const std::string& kind) {
   const std::vector<LociRun> runs = loci_runs(input);

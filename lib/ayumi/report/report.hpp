@@ -1,7 +1,7 @@
 #pragma once
-// One HTML page of a run, complete in itself: verdict, replay, loci, findings, pictures, push
-// thresholds, provenance. It loads no other files. Without JavaScript, the replay is a picture and
-// everything else is the same.
+// One HTML page of a run that needs no other files: verdict, replay, plots, findings, pictures,
+// push thresholds, provenance. Without JavaScript, the replay is a picture and everything else is
+// the same.
 
 #include <memory>
 #include <string>
@@ -18,41 +18,42 @@
 namespace ayumi {
 
 struct ReportRun {
-  std::string name;          ///< "open loop", "closed loop"
-  const SimulationLog* log;  ///< must outlive the call
+  std::string name;          ///< name, such as "open loop" or "closed loop"
+  const SimulationLog* log;  ///< log of the run; must outlive the call
   /// Only the joints were measured: the recording appears as a ghost in the replay, without an
   /// outcome and without curves.
   bool recorded = false;
 };
 
 struct ReportInput {
-  std::string title;            ///< of the pattern
-  std::vector<ReportRun> runs;  ///< at least one; the last is judged and replayed
+  std::string title;            ///< title of the pattern
+  std::vector<ReportRun> runs;  ///< at least one run; the last one is judged and replayed
   RunResults results;
-  std::vector<PushThreshold> thresholds;   ///< empty: no study
-  const Comparison* comparison = nullptr;  ///< with a recording; must outlive the call
-  std::string libraries = {};              ///< of the program, with their versions; may be empty
+  std::vector<PushThreshold> thresholds;   ///< push thresholds; empty: there is no study
+  const Comparison* comparison = nullptr;  ///< comparison with a recording; must outlive the call
+  std::string libraries = {};  ///< libraries of the program with their versions; may be empty
 };
 
 struct ReportOptions {
-  std::shared_ptr<const RobotLook> look = {};  ///< of the robot; null: robot_look() of it
-  size_t max_bytes = 8'000'000;   ///< of the page; replay and pictures are reduced to keep it
-  double rate = 50;               ///< of the replay [Hz]
-  size_t max_triangles = 60'000;  ///< of the robot in the replay
+  std::shared_ptr<const RobotLook> look = {};  ///< look of the robot; null: robot_look() of it
+  size_t max_bytes = 8'000'000;   ///< size of the page; replay and pictures are reduced to keep it
+  double rate = 50;               ///< rate of the replay [Hz]
+  size_t max_triangles = 60'000;  ///< triangles of the robot in the replay
   bool replay = true;
-  Frame frame = Frame::world;  ///< of all places
+  Frame frame = Frame::world;  ///< frame of all places
 };
 
 struct Report {
   std::string html;
-  std::vector<std::string> caps;  ///< what was reduced or left out, and why, in words
+  /// Parts that were reduced or left out, and the reasons, in words.
+  std::vector<std::string> caps;
 };
 
 /// Whether this program was built with the replay.
 bool has_replay();
 
-/// The same input gives the same bytes. Throws Error(usage) for no runs or an empty one, and as
-/// ClipRenderer does.
+/// The same input gives the same bytes. Throws Error(usage) if there is no run or an empty one, and
+/// throws as ClipRenderer does.
 Report make_report(const RobotModel& model, const ReportInput& input,
                    const ReportOptions& options = {}, const Progress& progress = {});
 

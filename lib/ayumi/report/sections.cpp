@@ -16,7 +16,7 @@
 namespace ayumi::html {
 namespace {
 
-/// Three significant digits; whole numbers if the value is larger.
+/// A number with three significant digits, or as a whole number if it is larger.
 std::string three_digits(double value) {
   return std::abs(value) >= 999.5 ? text::fixed(value, 0) : text::brief(value, 3);
 }
@@ -46,7 +46,7 @@ std::string outcome_cell(const SimulationResult& result) {
   return marked(result.outcome == Outcome::stands ? Tone::good : Tone::bad, outcome_words(result));
 }
 
-/// "pushed with 1.1 N s at 3 s"
+/// The pushes of a run, such as "pushed with 1.1 N s at 3 s".
 std::string push_words(const SimulationLog& log) {
   std::string words;
   for (const PushRecord& push : pushes(log))
@@ -55,7 +55,7 @@ std::string push_words(const SimulationLog& log) {
   return words;
 }
 
-/// "72 (l_knee at 2.90 s)"
+/// A share with its place, such as "72 (l_knee at 2.90 s)".
 std::string share_cell(const SimulationLog& log, const JointShare& share) {
   return percent(share.ratio) + escaped(place_in_brackets(log, share));
 }
@@ -90,7 +90,7 @@ std::string export_words(const ExportNote& note, bool good) {
   return words + "</ul>\n";
 }
 
-/// Which of the runs the tables come from, if the runs of this page were disturbed.
+/// Says from which of the runs the tables come, if the runs of this page were disturbed.
 std::string source_of_tables(const SimulationLog& log) {
   if (log.scenario.empty()) return "";
   return "<p>The tables <code>reference.csv</code> and <code>hoap.csv</code> are from the run "
@@ -106,7 +106,7 @@ std::string margin(double metres) {
 Table moved_table(const RepairNote& note) {
   constexpr size_t kMostRows = 8;  // largest number of rows, so that the table stays short
   constexpr double kLeast =
-      0.005 * M_PI / 180;  // a joint whose move would be printed as 0.00 deg counts as not moved
+      0.005 * M_PI / 180;  // the move of a joint that would be printed as 0.00 deg is left out
   Table table = {
       "What the repair moved", {"joint", "by [deg]", "at [s]", "from [s]", "to [s]"}, {}};
   for (const RepairNote::Moved& j : note.joints)
@@ -260,7 +260,7 @@ std::string findings_section(const RobotModel& model, const ReportInput& input) 
 
 namespace {
 
-// A phase with its time, which may be its name. A short one stays on one line.
+// A phase with its time, which may also be its name. A short one stays on one line.
 std::string phase_words(const PushThreshold& threshold) {
   const std::string at = text::fixed(threshold.at, 3) + " s";
   if (threshold.phase == "t = " + at)
@@ -298,7 +298,7 @@ std::string thresholds_section(const ReportInput& input) {
 
 namespace {
 
-/// A time [s] in ms, never "-0".
+/// A time [s] in ms, never printed as "-0".
 std::string milliseconds(double time, int digits) {
   const double shown = std::round(1000 * time * std::pow(10, digits));
   return text::fixed(shown == 0 ? 0 : 1000 * time, digits);
@@ -352,7 +352,8 @@ std::string events_section(const ReportInput& input) {
 
 namespace {
 
-// If two simulators differ in this, a foot may fall in one and stand in the other.
+// If two simulators differ in the softness of the soles, the robot may fall in one and stand in the
+// other.
 std::string softness_of_soles(const RobotModel& model, const std::string& plant) {
   if (!model.has_soles()) return "no soles";
   std::vector<std::string> soles;

@@ -9,7 +9,7 @@
 namespace ayumi::html {
 
 std::string verdict_section(const ReportInput& input);
-/// Empty if there is no check.
+/// The findings of the check; empty if there is no check.
 std::string findings_section(const RobotModel& model, const ReportInput& input);
 std::string thresholds_section(const ReportInput& input);  ///< empty if there is no study
 std::string comparison_section(const ReportInput& input);  ///< empty if there is no recording
@@ -17,7 +17,7 @@ std::string events_section(const ReportInput& input);
 std::string provenance_section(const RobotModel& model, const ReportInput& input,
                                const std::vector<std::string>& caps);
 
-/// "closed loop (dtad)"
+/// The name of a run with its controller, such as "closed loop (dtad)".
 std::string name_of(const ReportRun& run);
 
 }  // namespace ayumi::html

@@ -7,9 +7,9 @@ namespace ayumi {
 /// error of the integrator of first order in the step.
 struct EnergyBalance {
   double servos = 0;
-  double contacts = 0;  ///< by the ground, also when it moves, and where links touch each other
-  double outside = 0;   ///< by pushes
-  double joints = 0;    ///< by friction and end stops of the joints
+  double contacts = 0;  ///< work of the ground, also when it moves, and of contacts between links
+  double outside = 0;   ///< work of pushes
+  double joints = 0;    ///< work of friction and end stops of the joints
 
   EnergyBalance& operator+=(const EnergyBalance& other) {
     servos += other.servos;

@@ -17,53 +17,56 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Verdict thresholds. docs/cli.md, "Simulating", defines them for users.
+// Thresholds of the verdict. docs/cli.md, "Simulating", defines them for users.
 
 /// Tilt of the trunk against the ground's normal beyond which the robot has fallen [rad]. Chosen:
 /// 46 deg is beyond the postures of the bundled patterns and long before the trunk touches the
-/// ground. Half: thrown stand, fall at 0.744 to 0.617 s; twice: 0.938 s.
+/// ground. With half of the value, the time of the fall of the case "thrown stand" changes from
+/// 0.744 to 0.617 s; with twice, to 0.938 s.
 constexpr double kFallTilt = 0.8;
-/// Cosine of a tilt above which the robot surely has not fallen: the angle is not needed then.
-/// Definition: above the cosine of kFallTilt, 0.697.
+/// Cosine of a tilt above which the robot certainly has not fallen, so that the angle need not be
+/// computed. Definition: above the cosine of kFallTilt, 0.697.
 constexpr double kSurelyUpright = 0.75;
 /// Fraction of the commanded COG height below which the robot has fallen. Chosen: lower than a
-/// robot with bent knees under its load, higher than one that sits or lies. Half: no change; twice:
-/// pushed walk falls.
+/// robot with bent knees under its load, higher than one that sits or lies. With half of the value,
+/// nothing changes; with twice, the case "pushed walk" falls.
 constexpr double kFallHeight = 0.6;
 /// Tilt of the trunk below which a robot stands at the end [rad]. Chosen: a quarter of kFallTilt.
-/// No measured case changes from half to twice (constants.md).
+/// No measured case changes between half and twice the value (constants.md).
 constexpr double kRestTilt = 0.2;
 /// Horizontal COG error at the end below which a robot stands, in units of the COG height z.
 /// Chosen: 22 mm for HOAP-1 (z 0.245 m), whose soles reach 42 mm behind and 56 mm in front of the
-/// ankle. No measured case changes from half to twice (constants.md).
+/// ankle. No measured case changes between half and twice the value (constants.md).
 constexpr double kRestError = 0.09;
 /// COG speed at the end below which a robot stands, in units of omega z. Chosen: the speed that
 /// moves the DCM by 0.054 z, which is 13 mm for HOAP-1 and keeps it inside the soles. No measured
-/// case changes from half to twice (constants.md).
+/// case changes between half and twice the value (constants.md).
 constexpr double kRestSpeed = 0.054;
 /// Amplitude of an oscillating ZMP below which a robot stands at the end, in units of z. Chosen: 5
 /// mm on HOAP-1. The noise of its sensors moves the ZMP of a robot that stands by 1.4 mm under DTAD
 /// and 2.6 mm under VIIP, and feet that hammer move it by 68 mm and more.
 constexpr double kRestZmp = 0.02;
 /// Time at the end in which the ZMP must be at rest [s]. Chosen: several periods of the slowest
-/// oscillation that is looked for, and shorter than the second for which a run goes on after its
+/// oscillation that is looked for, and shorter than the second for which a run continues after its
 /// motion.
 constexpr double kRestTime = 0.5;
 /// Slowest oscillation of the ZMP that is looked for [Hz]. Chosen: faster than any step, and slower
 /// than the rocking of a robot on soft soles. Slower motions are judged by the COG.
 constexpr double kSlowestRocking = 3;
 /// Time off the ground after which the robot is in flight [s]. Chosen: a shorter one is a rebound.
-/// Half: viip jump, flight 0.154 to 0.177 s; twice: no change.
+/// With half of the value, the duration of the flight of the case "viip jump" changes from 0.154 to
+/// 0.177 s; with twice, nothing changes.
 constexpr double kMinFlight = 0.04;
 /// Time off the ground after which the next contact of a foot is a touchdown [s]. Chosen: a shorter
-/// one is a rebound. Half: pushed walk, touchdowns 6 to 7; twice: 5.
+/// one is a rebound. With half of the value, the number of touchdowns of the case "pushed walk"
+/// changes from 6 to 7; with twice, to 5.
 constexpr double kMinFootFlight = 0.03;
-/// Events for which memory is reserved, so that a tick allocates nothing in a usual run.
+/// Number of events for which memory is reserved, so that a tick allocates nothing in a usual run.
 constexpr size_t kReservedEvents = 64;
 
-/// Rigid motion that takes the planned soles onto the real ones and the level ground of the plan
-/// onto the real ground: mean place, heading and slope. On a slope the plan is inclined with the
-/// feet.
+/// The rigid motion that takes the planned soles onto the real ones, and the level ground of the
+/// plan onto the real ground: the mean place, heading and slope. On a slope, the plan is inclined
+/// with the feet.
 Isometry3d plan_to_world(const RobotModel& model, const RobotData& data,
                          const CommandSample& command, const Vector3d& normal) {
   Vector3d plan = Vector3d::Zero(), real = Vector3d::Zero();
@@ -81,7 +84,7 @@ Isometry3d plan_to_world(const RobotModel& model, const RobotData& data,
     cosine += from.dot(to);
     ++count;
   }
-  // The mean heading of the soles, as a direction and without an angle.
+  // The mean heading of the soles is kept as a direction, without computing an angle.
   const double length = std::sqrt(sine * sine + cosine * cosine);
   Eigen::Matrix3d about_z = Eigen::Matrix3d::Identity();
   if (length > 0) {
@@ -128,7 +131,7 @@ void FallMonitor::observe_figures(double t, const CommandSample& command,
                                   const StepReport& report, double dt) {
   const double weight = model_->mass() * kGravity;
   SimulationResult& r = result_;
-  // In flight the command rises too, so the apex is relative to the height at lift-off.
+  // In flight the command rises, too, so the apex is relative to the height at lift-off.
   if (command.support != Support::none) level_ = command.cog.z();
   r.max_penetration = std::max(r.max_penetration, report.max_penetration);
   r.max_contact_residual = std::max(r.max_contact_residual, report.contact_residual);
@@ -210,7 +213,7 @@ void FallMonitor::observe_feet(double t, const CommandSample& command, const Rob
     for (const SoleForce& cell : report.soles[i]) fz += normal().dot(cell.force);
     const bool loaded = fz > kTouchLoad * weight;
     // A foot that still touches the ground has not left it, however small its load is. When it has
-    // been off the ground for long enough, the next load is its touchdown.
+    // been off the ground for long enough, its next load is a touchdown.
     const bool lifted = unloaded_[i] > kMinFootFlight;
     if (loaded && lifted) {
       ++result_.steps;
@@ -239,7 +242,8 @@ void FallMonitor::observe_feet(double t, const CommandSample& command, const Rob
   }
 }
 
-// Amplitude and frequency of the last ZMPs about their straight line, on the axis that moves more.
+// The amplitude and frequency of the last ZMPs relative to their straight line, on the axis with
+// the larger motion.
 void FallMonitor::judge_zmp() {
   const auto count = static_cast<Eigen::Index>(last_zmp_.size());
   if (static_cast<double>(count) * tick_ < 0.999 * kRestTime) return;

@@ -14,24 +14,25 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// Depth below a block's top up to which a point stands on the top [m]. A point that is deeper
+/// Largest depth below a block's top at which a point stands on the top [m]. A point that is deeper
 /// below the top than this, and deeper than it is behind the side, has hit the side. Chosen: far
 /// above the penetration of a loaded sole (tens of micrometres) and far below the height of a step.
-/// No measured case changes from half to twice (constants.md).
+/// No measured case changes between half and twice the value (constants.md).
 constexpr double kLip = 0.001;
-/// Depth inside a sole up to which an edge touches the sole's face [m]; a deeper edge has hit the
-/// sole's side. Chosen: five times kLip, below the thickness of a sole. No measured case changes
-/// from half to twice (constants.md).
+/// Largest depth inside a sole at which an edge touches the sole's face [m]; a deeper edge has hit
+/// the sole's side. Chosen: five times kLip, below the thickness of a sole. No measured case
+/// changes between half and twice the value (constants.md).
 constexpr double kFaceDepth = 0.005;
 /// Depth of a solid block below the plane [m]. Chosen: deeper than any body penetrates. No measured
-/// case changes from half to twice (constants.md).
+/// case changes between half and twice the value (constants.md).
 constexpr double kBlockDepth = 0.5;
 // Definition of the ids of inner points: 1024 for each block, then the nodes of the height field.
 constexpr long kBlockIds = 1 << 10, kFieldIds = 1 << 24;
 
-/// Corners and edges of the ground that may lie under one sole at the same time. Each is a contact,
-/// and the time of a step grows with the third power of their number. Chosen: a sole on the edges
-/// of a dozen tiles has 60; at twice, a second of simulation takes minutes.
+/// Largest number of corners and edges of the ground that may lie under one sole at the same time.
+/// Each is a contact, and the time of a step grows with the third power of their number. Chosen: a
+/// sole on the edges of a dozen tiles has 60; with twice the number, a second of simulation takes
+/// minutes.
 constexpr size_t kMostInnerPoints = 128;
 
 double cross_xy(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
@@ -39,7 +40,7 @@ double cross_xy(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a
 /// The plane of a sole over the ground.
 struct Plane {
   Vector3d origin, normal;
-  /// Height at the place p.
+  /// The height at the place p.
   double at(const Vector2d& p) const {
     return origin.z() - normal.head<2>().dot(p - origin.head<2>()) / normal.z();
   }
@@ -171,7 +172,7 @@ GroundTouch Ground::touch(const Vector3d& p) const {
   return std::isfinite(wall_depth) && result.gap > -kLip ? wall : result;
 }
 
-// Corners of a block within the sole, and crossings of the edges of both.
+// Finds the corners of a block within the sole, and the crossings of the edges of both.
 void Ground::inner_points(const std::vector<Vector3d>& sole, double reach,
                           std::vector<InnerPoint>& points) const {
   Vector2d center = Vector2d::Zero();
@@ -180,7 +181,7 @@ void Ground::inner_points(const std::vector<Vector3d>& sole, double reach,
   for (const Vector3d& c : sole) radius = std::max(radius, (c.head<2>() - center).norm());
   const Plane plane{sole[0], (sole[1] - sole[0]).cross(sole.back() - sole[0]).normalized()};
   if (plane.normal.z() < 0.5) return;
-  // What a higher block covers touches no sole.
+  // A part that a higher block covers touches no sole.
   const auto covered = [&](const Vector2d& p, double height) {
     return std::any_of(blocks_.begin(), blocks_.end(), [&](const Block& block) {
       if (block.height <= height || (p - block.center).norm() > block.radius) return false;
@@ -227,7 +228,7 @@ void Ground::inner_points(const std::vector<Vector3d>& sole, double reach,
   });
 }
 
-/// visit(i, j, place) for each node of the height field in the square around `center`.
+/// Calls visit(i, j, place) for each node of the height field in the square around `center`.
 template <typename Visit>
 void Ground::visit_nodes(const Vector2d& center, double radius, const Visit& visit) const {
   if (field_.heights.size() == 0) return;
@@ -245,8 +246,8 @@ void Ground::visit_nodes(const Vector2d& center, double radius, const Visit& vis
                      field_.spacing * Vector2d(static_cast<double>(i), static_cast<double>(j))));
 }
 
-// True when a node is higher than the mean of its neighbours along x or along y. Around the field
-// is the plane.
+// Whether a node is higher than the mean of its neighbours along x or along y. The field is
+// surrounded by the plane.
 bool Ground::stands_out(Eigen::Index i, Eigen::Index j) const {
   const Eigen::MatrixXd& z = field_.heights;
   const auto at = [&](Eigen::Index a, Eigen::Index b) {
@@ -258,8 +259,8 @@ bool Ground::stands_out(Eigen::Index i, Eigen::Index j) const {
 
 void Ground::tips(const Vector3d& center, double radius, std::vector<FieldTip>& tips) const {
   // Radius of a tip [m]. Chosen: a sphere has a normal in every direction, and a tenth of a
-  // millimetre is small against the spacing of a field. No measured case changes from half to twice
-  // (constants.md).
+  // millimetre is small against the spacing of a field. No measured case changes between half and
+  // twice the value (constants.md).
   constexpr double kBlunt = 1e-4;
   tips.clear();
   visit_nodes(center.head<2>(), radius, [&](Eigen::Index i, Eigen::Index j, const Vector2d& p) {

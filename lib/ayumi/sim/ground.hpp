@@ -13,7 +13,7 @@ namespace ayumi {
 
 /// The ground at a point.
 struct GroundTouch {
-  double gap = 0;  ///< gap along the normal, negative inside [m]
+  double gap = 0;  ///< gap along the normal; negative if the point is inside the ground [m]
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
   double rise = 0;  ///< rate of the ground's height at this point [m/s]
 };
@@ -23,15 +23,15 @@ struct GroundTouch {
 struct InnerPoint {
   long id = 0;              ///< number of the place, the same in the next step
   Eigen::Vector3d on_sole;  ///< point in the plane of the sole [m]
-  double gap = 0;           ///< gap along the normal, negative inside [m]
-  double rise = 0;          ///< [m/s]
+  double gap = 0;           ///< gap along the normal; negative if the place is inside the sole [m]
+  double rise = 0;          ///< rate of the ground's height [m/s]
 };
 
 /// A block as a solid, for shapes that lie on its edges.
 struct SolidBlock {
   Collider collider;
-  Eigen::Isometry3d pose;  ///< in the ground's frame
-  double rise = 0;         ///< [m/s]
+  Eigen::Isometry3d pose;  ///< pose in the ground's frame
+  double rise = 0;         ///< rate of its height [m/s]
 };
 
 /// A node of the height field that is higher than its neighbours.
@@ -44,25 +44,27 @@ class Ground {
  public:
   explicit Ground(const World& world);
 
-  /// Takes floor, friction and bumps of the coming step.
+  /// Takes over floor, friction and bumps of the coming step.
   void set(const StepInput& input);
 
-  /// True when the ground is only a plane, so that soles touch with their corners alone.
+  /// Whether the ground is only a plane, so that soles only touch it with their corners.
   bool plain() const { return blocks_.empty() && field_.heights.size() == 0; }
   const std::vector<SolidBlock>& solids() const { return solids_; }  ///< all blocks
   double top() const { return top_; }  ///< height of the highest point [m]
   const Eigen::Isometry3d& pose() const { return floor_.pose; }
-  Eigen::Vector3d normal() const { return floor_.pose.linear().col(2); }               ///< world
-  const Eigen::Vector3d& angular_velocity() const { return floor_.angular_velocity; }  ///< [rad/s]
+  /// The normal in the world.
+  Eigen::Vector3d normal() const { return floor_.pose.linear().col(2); }
+  /// In the world [rad/s].
+  const Eigen::Vector3d& angular_velocity() const { return floor_.angular_velocity; }
   bool at_rest() const { return floor_.velocity.isZero(0) && floor_.angular_velocity.isZero(0); }
-  /// Velocity of the floor at the point p, world [m, m/s].
+  /// The velocity of the floor at the point p, in the world [m, m/s].
   Eigen::Vector3d velocity(const Eigen::Vector3d& p) const {
     return floor_.velocity + floor_.angular_velocity.cross(p - floor_.pose.translation());
   }
 
-  /// Gap, normal and rise of the ground at the point p.
+  /// The gap, the normal and the rise of the ground at the point p.
   GroundTouch touch(const Eigen::Vector3d& p) const;
-  /// Coefficient of friction at the point p.
+  /// The coefficient of friction at the point p.
   double friction(const Eigen::Vector3d& p) const;
 
   /// Appends the corners, edges and nodes under the convex sole with these corners (anticlockwise
@@ -71,8 +73,9 @@ class Ground {
                     std::vector<InnerPoint>& points) const;
 
   /// Fills `tips` with the nodes of the height field within `radius` of `center` that are higher
-  /// than their neighbours, as small spheres. A shape can lie on these without a corner of its own;
-  /// the rest of the field is flat or hollow, where corners of the shape touch first.
+  /// than their neighbours, as small spheres. A shape can lie on these nodes without touching with
+  /// one of its corners; the rest of the field is flat or hollow, and there corners of the shape
+  /// touch first.
   void tips(const Eigen::Vector3d& center, double radius, std::vector<FieldTip>& tips) const;
 
  private:
@@ -93,9 +96,9 @@ class Ground {
   World world_;
   HeightField field_;
   FloorPose still_, floor_;
-  std::vector<Block> blocks_;       // of the world, then the bumps
+  std::vector<Block> blocks_;       // blocks of the world, then the bumps
   std::vector<SolidBlock> solids_;  // in the same order
-  size_t fixed_ = 0;                // blocks of the world
+  size_t fixed_ = 0;                // number of blocks of the world
   std::optional<double> friction_;
   double top_ = 0, fixed_top_ = 0;
 };

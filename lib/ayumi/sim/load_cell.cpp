@@ -20,7 +20,7 @@ double LoadCell::reported(double value) {
   newest_ = filled_ ? (newest_ + 1) % readings_.size() : 0;
   readings_[newest_] = value;
   filled_ = std::min(filled_ + 1, readings_.size());
-  // The sum is computed anew, so that no rounding adds up over a run.
+  // The sum is computed anew, so that rounding errors do not add up over a run.
   const auto end = readings_.begin() + static_cast<std::ptrdiff_t>(filled_);
   return std::accumulate(readings_.begin(), end, 0.0) / static_cast<double>(filled_);
 }

@@ -14,7 +14,7 @@ class LoadCell {
   /// `readings` is the number of readings whose mean is reported, at least 1.
   LoadCell(const CellResponse& response, int readings);
 
-  /// What the cell feels of the force of this reading, times the gain [N]:
+  /// The part of the force that the cell senses in this reading, times the gain [N]:
   ///   x = max(f - dead zone, 0),   y = y' moved no farther than into x -/+ hysteresis/2,
   /// with the y' of the reading before, at first 0. So y is x - hysteresis/2 while the force rises
   /// by more than the hysteresis, and x + hysteresis/2 while it falls.
@@ -26,12 +26,12 @@ class LoadCell {
 
  private:
   CellResponse response_;
-  double played_ = 0;             // y
+  double played_ = 0;             // the value y of the last reading
   std::vector<double> readings_;  // the last readings; the newest is at newest_
   size_t newest_ = 0, filled_ = 0;
 };
 
-/// The cells at the corners of a sole. Empty if the sidecar states no errors of load cells.
+/// The cells at the corners of a sole; empty if the sidecar states no errors of load cells.
 std::vector<LoadCell> load_cells(const RobotModel& model, Side side);
 
 }  // namespace ayumi

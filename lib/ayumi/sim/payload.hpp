@@ -1,5 +1,5 @@
 #pragma once
-// Makes the loads that a robot carries a part of its links.
+// Makes the loads that a robot carries part of its links.
 
 #include <vector>
 

@@ -1,8 +1,8 @@
 #pragma once
-// The interface between the simulator and a plant, the part that moves the robot. The state, the
-// servo targets and the forces from outside go in; the next state and the ground forces come out.
-// Any copyable class with the four members below is a plant. A copy of a PlantInterface is an
-// independent plant that continues exactly as the original would, to the last bit.
+// The interface between the simulator and a plant, the part that moves the robot. Its input is the
+// state, the servo targets and the forces from outside; its output is the next state and the ground
+// forces. Any copyable class with the four members below is a plant. A copy of a PlantInterface is
+// an independent plant that continues exactly as the original would, to the last bit.
 
 #include <any>
 #include <utility>
@@ -19,12 +19,12 @@ class PlantInterface {
   explicit PlantInterface(P plant) : plant_(std::move(plant)), calls_(&kCalls<P>) {}
 
   const RobotState& state() const { return calls_->state(plant_); }
-  /// Positions and velocities of state().
+  /// The positions and velocities of state().
   const RobotData& data() const { return calls_->data(plant_); }
-  /// Puts the robot in this state and forgets contacts. Throws Error(usage) for a value that is not
-  /// a number.
+  /// Puts the robot in this state and removes all contacts. Throws Error(usage) for a value that is
+  /// not a number.
   void set_state(const RobotState& state) { calls_->set_state(plant_, state); }
-  /// Advances by `dt` [s] with the servo targets [rad, m] held; the report holds until the next
+  /// Advances by `dt` [s] with constant servo targets [rad, m]. The report is valid until the next
   /// step. Throws Error(usage) with place and time for input that is not finite or not below 1e6.
   const StepReport& step(const Eigen::VectorXd& targets, const StepInput& input, double dt) {
     return calls_->step(plant_, targets, input, dt);

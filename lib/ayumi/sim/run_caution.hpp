@@ -6,12 +6,12 @@
 
 namespace ayumi {
 
-/// The disturbances in words: "1.1 N s on cog at 2.35 s; latency of 0.004 s at 0 s". Empty if there
-/// are none.
+/// The disturbances in words, such as "1.1 N s on cog at 2.35 s; latency of 0.004 s at 0 s". Empty
+/// if there are none.
 std::string words_of(const std::vector<Disturbance>& scenario);
 
-/// The reason why the table of this run is not for a robot: "the run fell at 2.31 s (trunk tilt)",
-/// "the run did not settle"; empty for a run that stands.
+/// The reason why the table of this run is not for a robot, such as "the run fell at 2.31 s (trunk
+/// tilt)" or "the run did not settle". Empty if the robot stands at the end.
 std::string unfit_words(const SimulationLog& log);
 
 /// Both cautions of a run.

@@ -21,8 +21,8 @@ using Eigen::Vector3d;
 namespace {
 
 /// Time in which a bump rises [s]. Chosen: 20 steps of 1 ms, so that the rate of its height is
-/// smooth and short against a step of a walk. No measured case changes from half to twice
-/// (constants.md).
+/// smooth and short against a step of a walk. No measured case changes between half and twice the
+/// value (constants.md).
 constexpr double kBumpRise = 0.02;
 
 int find_pushed_link(const RobotModel& model, const std::string& name) {
@@ -46,12 +46,12 @@ int find_joint(const RobotModel& model, const std::string& name) {
   return static_cast<int>(found - names.begin());
 }
 
-/// Factor on the rectangle's value in step i of n; its mean over the steps is 1 for impulses.
+/// Factor on the rectangle's value in step i of n. For impulses, its mean over the steps is 1.
 double shape_factor(const Push& push, long i, long n) {
   if (push.shape == PushShape::rectangle) return 1.0;
   const double phase = M_PI * (static_cast<double>(i) + 0.5) / static_cast<double>(n);
   if (push.kind != PushKind::impulse) return elementary::sin(phase);
-  // The sum of sin over midpoints is 1 / sin(pi / 2n).
+  // The sum of the sine over midpoints is 1 / sin(pi / 2n).
   return static_cast<double>(n) * elementary::sin(M_PI / (2.0 * static_cast<double>(n))) *
          elementary::sin(phase);
 }
@@ -206,7 +206,7 @@ RisingDisc Schedule::disc(Entry& entry, const Bump& bump, long k, const RobotDat
     const double s = std::clamp(static_cast<double>(i) * step_ / kBumpRise, 0.0, 1.0);
     return bump.height * s * s * s * (10 - 15 * s + 6 * s * s);
   };
-  // A bump that begins at 0 was there before the start and does not rise.
+  // A bump that begins at 0 existed before the start and does not rise.
   const long since = entry.first == 0 ? 1l << 30 : k - entry.first;
   RisingDisc result;
   result.block.kind = GroundBlock::Kind::disc;

@@ -1,5 +1,6 @@
 #pragma once
-// A scenario in integrator steps: the disturbances of robot, ground and sensors in each step.
+// A scenario in integrator steps: the disturbances of the robot, the ground and the sensors in each
+// step.
 
 #include <Eigen/Dense>
 #include <optional>
@@ -15,19 +16,19 @@ namespace ayumi {
 /// Errors of the sensors in a tick.
 struct SensorFault {
   double latency = 0;                              ///< latency that is added to the robot's own [s]
-  Eigen::Vector2d tilt = Eigen::Vector2d::Zero();  ///< bias of the attitude, world axes [rad]
-  Eigen::Vector3d gyro = Eigen::Vector3d::Zero();  ///< [rad/s]
+  Eigen::Vector2d tilt = Eigen::Vector2d::Zero();  ///< bias of the attitude in world axes [rad]
+  Eigen::Vector3d gyro = Eigen::Vector3d::Zero();  ///< bias of the gyro [rad/s]
   double force = 0;                                ///< bias of every load cell [N]
 };
 
-/// Pose of the floor at `t` [s] with the world's motions and these, and its mean velocity over the
-/// following `step` [s].
+/// The pose of the floor at `t` [s] with the world's motions and the given ones, and its mean
+/// velocity during the following `step` [s].
 FloorPose moving_floor(const World& world, const std::vector<FloorMotion>& motions, double t,
                        double step);
 
 class Schedule {
  public:
-  /// The model must outlive the schedule; `step` [s] is that of the integrator.
+  /// The model must outlive the schedule. `step` is the step of the integrator [s].
   Schedule(const RobotModel& model, const World& world, double step);
 
   /// Replaces the disturbances. Throws Error(bad_pattern) for an unknown link or joint.
@@ -37,17 +38,17 @@ class Schedule {
   /// for a robot whose positions are `data`. The lists of `input` keep their memory.
   void fill(long k, const RobotData& data, StepInput& input);
   SensorFault sensor_fault(long k) const;
-  double largest_latency() const;  ///< of the whole scenario [s]
+  double largest_latency() const;  ///< largest latency in the whole scenario [s]
 
-  /// Start of each disturbance, and end of each lasting one, in words.
+  /// The start of each disturbance, and the end of each lasting one, in words.
   std::vector<SimulationEvent> events() const;
 
  private:
   struct Entry {
     Disturbance source;
     long first = 0, count = 1;
-    int link = -1, joint = -1;  ///< -1: the COG; all joints
-    double per_step = 0;        ///< force or torque of a rectangle [N] or [N m]
+    int link = -1, joint = -1;  ///< -1: link: the COG; joint: all joints
+    double per_step = 0;        ///< force or torque if the push is a rectangle [N] or [N m]
     std::optional<Eigen::Vector2d>
         place{};  ///< place of a bump that has risen, in the ground's frame [m]
   };

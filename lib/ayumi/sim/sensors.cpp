@@ -14,8 +14,8 @@ using Eigen::Vector3d;
 namespace {
 
 /// Square root of the number of readings that the IMU averages at rest before the start. Chosen:
-/// 400 readings are 0.4 s, for which the robot holds its first posture. Figures change by less than
-/// 5 % from half to twice.
+/// 400 readings are 0.4 s, for which the robot holds its first posture. Between half and twice the
+/// value, figures change by less than 5 %.
 constexpr double kRestRoot = 20;
 
 }  // namespace
@@ -52,7 +52,7 @@ Sensors::Sensors(const RobotModel& model, const ActuatorLimits& actuators, doubl
 void Sensors::reach_back(double latency) {
   const size_t size = latency_ + static_cast<size_t>(std::lround(latency / dt_)) + 1;
   if (size <= ring_.size()) return;
-  // Moves the oldest reading to the front, so that the newest is the last of the filled ones.
+  // Moves the oldest reading to the front, so that the newest is the last one in the filled part.
   std::rotate(ring_.begin(), ring_.begin() + static_cast<long>((newest_ + 1) % ring_.size()),
               ring_.end());
   std::rotate(ring_.begin(), ring_.end() - static_cast<long>(filled_), ring_.end());
@@ -107,9 +107,9 @@ void Sensors::measure(const RobotState& state, const RobotData& truth, const Ste
   }
 }
 
-// All numbers of a reading at once, in the order in which they are used.
+// Draws all random numbers of a reading at once, in the order in which they are used.
 void Sensors::draw_numbers(const StepReport& report) {
-  size_t vectors = 2;  // gyro and attitude
+  size_t vectors = 2;  // vectors for gyro and attitude
   if (model_->description().sensors.accelerometer_noise > 0) vectors += tilt_.started() ? 1 : 3;
   numbers_.resize(3 * vectors + report.soles[0].size() + report.soles[1].size());
   random_.normals(numbers_.data(), static_cast<int>(numbers_.size()));
@@ -143,7 +143,7 @@ void Sensors::measure_imu(const RobotData& truth, const SensorFault& fault, Meas
     m.gyro += noise(s.gyro_noise);
     if (s.accelerometer_noise > 0) {
       const Vector3d force = specific_force(truth, attitude) + noise(s.accelerometer_noise);
-      // The unit is switched on while the robot rests and averages its readings before the start.
+      // The unit is switched on while the robot rests, and averages its readings before the start.
       if (tilt_.started()) {
         tilt_.update(m.gyro, force, dt_);
       } else {

@@ -21,7 +21,7 @@ double available_torque(const ActuatorLimits& limits, int dof, double rate, doub
   const double peak = limits.peak_torque[dof];
   const double speed = limits.speed[dof];
   if (rate * direction <= speed || !std::isfinite(speed)) return peak;
-  // 1 at the speed limit, 0 at 1.1 times the speed limit.
+  // The factor is 1 at the speed limit and 0 at 1.1 times the speed limit.
   return peak * std::clamp(11.0 - 10.0 * rate * direction / speed, 0.0, 1.0);
 }
 
@@ -108,7 +108,8 @@ const Eigen::VectorXd& TargetDelay::step(const Eigen::VectorXd& targets, double 
   if (longest_ <= 0) return now_ = targets;
   const auto needed = static_cast<Eigen::Index>(std::ceil(longest_ / dt)) + 2;
   if (needed > ring_.cols()) {
-    // Moves the newest to the last filled column, so that the order survives the larger ring.
+    // Moves the newest column to the last filled place, so that the order is kept in the larger
+    // ring.
     Eigen::MatrixXd larger(targets.size(), needed);
     std::vector<double> dts(static_cast<size_t>(needed), dt);
     for (Eigen::Index k = 0; k < count_; ++k) {
@@ -131,10 +132,10 @@ const Eigen::VectorXd& TargetDelay::step(const Eigen::VectorXd& targets, double 
   return now_;
 }
 
-// The command of `delay` ago passes over the window [-delay, dt - delay], with the time 0 at the
-// start of the step. Column 0 from the newest holds over [0, dt], column 1 up to 0, and so on.
+// The command of `delay` ago covers the interval [-delay, dt - delay], with the time 0 at the start
+// of the step. The newest column, number 0, holds over [0, dt], column 1 before 0, and so on.
 double TargetDelay::mean(Eigen::Index joint, double delay, double dt) const {
-  double sum = 0, missing = dt, end = dt;  // `end`: of the column's time
+  double sum = 0, missing = dt, end = dt;  // `end`: end of the column's time
   const double from = -delay, to = dt - delay;
   for (Eigen::Index k = 0; k < count_ && missing > 0; ++k) {
     const Eigen::Index column = (newest_ - k + ring_.cols()) % ring_.cols();

@@ -18,18 +18,18 @@ struct Estimate;
 /// The plant that moves the robot.
 struct PlantKind {
   std::string name = "ayumi";
-  /// Empty: Ayumi's own plant. The model must outlive the plant.
+  /// The function that makes the plant; empty: Ayumi's own plant. The model must outlive the plant.
   std::function<PlantInterface(const RobotModel&, const ActuatorLimits&, const World&)> make = {};
 };
 
-/// Servo targets in place of those of the control law, tick by tick: what the law would send at `t`
-/// [s], the estimate that it had, and its plan. The size stays that of `targets` [rad, m]. Copies
-/// of a simulator share the state of the function.
+/// Servo targets that replace those of the control law in each tick. The arguments are the targets
+/// that the law would send at `t` [s], the estimate that it had, and its plan. The size of
+/// `targets` must not change [rad, m]. Copies of a simulator share the state of the function.
 using TargetFunction = std::function<Eigen::VectorXd(
     double t, const Estimate& estimate, const CommandSample& plan, const Eigen::VectorXd& targets)>;
 
-/// One specimen of a robot. It differs from the model that its controller uses: in masses, soles
-/// and sensors (model), and in its servos (actuators). Links, joints and their order are the same.
+/// One individual robot. It differs from the model that its controller uses: in masses, soles and
+/// sensors (model), and in its servos (actuators). Links, joints and their order are the same.
 struct RobotUnit {
   RobotModel model;
   ActuatorLimits actuators;
@@ -37,26 +37,28 @@ struct RobotUnit {
 
 struct SimulateOptions {
   ControllerSpec controller;
-  std::string profile;  ///< actuator profile; "" = default
+  std::string profile;  ///< actuator profile; "": the default
   World world;
   std::vector<Disturbance> scenario;
-  double settle = 1.0;        ///< hold the last command this long after the pattern [s]
-  int substeps = 1;           ///< integrator steps per control tick
-  bool true_state = false;    ///< the controller gets the true state in place of sensor readings
-  bool sensor_noise = false;  ///< use the sidecar's noise, bias and latency
+  double settle = 1.0;  ///< time for which the last command is held after the pattern [s]
+  int substeps = 1;     ///< integrator steps in a control tick
+  /// Whether the controller gets the true state instead of sensor readings.
+  bool true_state = false;
+  bool sensor_noise = false;  ///< whether to use the sidecar's noise, bias and latency
   std::uint64_t seed = 1;
   PlantKind plant;
   TargetFunction targets = {};  ///< empty: the servos receive the targets of the control law
-  /// The robot that is simulated, sensors included; it must outlive the run. Null: the robot is
-  /// equal to its model.
+  /// The robot that is simulated, including its sensors; it must outlive the run. Null: the robot
+  /// is equal to its model.
   const RobotUnit* unit = nullptr;
-  /// A controller before its first tick, made with the same model, series and law, from which this
-  /// run's own is copied: that takes less time than making one. Null: the run makes its own.
+  /// A controller before its first tick, made with the same model, series and law. The run copies
+  /// its own controller from it, because this takes less time than making one. Null: the run makes
+  /// its own.
   const Controller* prepared = nullptr;
 };
 
-/// Throws Error(bad_model) when the robot has no soles or servos, Error(bad_pattern) for a
-/// disturbance on an unknown link, Error(usage) for an unknown controller or gain.
+/// Throws Error(bad_model) if the robot has no soles or servos, Error(bad_pattern) for a
+/// disturbance on an unknown link, and Error(usage) for an unknown controller or gain.
 SimulationLog simulate(const RobotModel& model, const CommandSeries& series,
                        const SimulateOptions& options, const Progress& progress = {});
 

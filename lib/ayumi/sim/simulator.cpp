@@ -1,6 +1,6 @@
-// Control tick k: measurement (with the forces of the step that ended at k dt), estimate,
-// controller, log, then the integrator steps with the targets held and the disturbances of each
-// step.
+// Control tick k consists of: the measurement (with the forces of the step that ended at k dt), the
+// estimate, the controller, the log, and then the integrator steps with constant targets and the
+// disturbances of each step.
 #include "ayumi/sim/simulator.hpp"
 
 #include <algorithm>
@@ -19,27 +19,28 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Time for which the servos hold the first posture before t = 0 [s]. Chosen: four
-/// periods of an oscillation of 10 Hz, so that soles and servos come to rest. Figures change by
-/// less than 5 % from half to twice.
+/// Time for which the servos hold the first posture before t = 0 [s]. Chosen: four periods of an
+/// oscillation of 10 Hz, so that soles and servos come to rest. Between half and twice the value,
+/// figures change by less than 5 %.
 constexpr double kBeforeStart = 0.4;
 /// Longest time for which ankles turn before t = 0 until their soles lie flat [s]. Chosen: as long
 /// as an offset of 3 degrees takes (sim/standing_calibration).
 constexpr double kLongestCalibration = 3;
-/// Step of Ayumi's own plant and of the sensors in that time [s]; another plant keeps its tick.
+/// Step of Ayumi's own plant and of the sensors during this time [s]; another plant keeps its tick.
 /// Chosen: the robot hardly moves, and the examination then takes a quarter of the time. Of 200
 /// draws of HOAP-1's uncertainty, 7 decide differently than with 1 ms whether an offset is found,
-/// and another seed of the noise changes 11 or 17. Half: 1; twice: 8 (docs/theory_plant.md).
+/// and another seed of the noise changes 11 or 17. With half of the step, 1 decides differently;
+/// with twice, 8 (docs/theory_plant.md).
 constexpr double kCalibrationStep = 0.004;
 /// Simulated time after a fall [s]. Chosen: the robot has reached the ground, which a replay shows.
-/// Figures change by less than 5 % from half to twice.
+/// Between half and twice the value, figures change by less than 5 %.
 constexpr double kAfterFall = 0.8;
 /// Samples for which the log reserves memory at the start; longer runs allocate more.
 constexpr long kReservedSamples = 1 << 15;
 /// Fraction of the weight that the vertical ground force needs for the true ZMP to be updated;
 /// below it, the ZMP keeps its last value. Chosen: the ZMP is a quotient of moment and force, and
-/// rounding and chatter of contacts disturb it at small forces. Figures change by less than 5 %
-/// from half to twice.
+/// rounding and chatter of contacts disturb it at small forces. Between half and twice the value,
+/// figures change by less than 5 %.
 constexpr double kZmpMinLoad = 0.02;
 
 const CommandSeries& checked(const CommandSeries& series, const SimulateOptions& options) {
@@ -95,8 +96,8 @@ Simulator::Simulator(const RobotModel& model, const CommandSeries& series,
   if (!options.true_state && options.controller.type != ControllerKind::none) calibrate_ankles();
 }
 
-// Before the first tick, with sensors of their own, so that a robot that stands on its soles takes
-// the same readings as without.
+// Done before the first tick with separate sensors, so that a robot that stands on its soles gets
+// the same readings as without this.
 void Simulator::calibrate_ankles() {
   const bool own_plant = !options_.plant.make;
   const double dt = own_plant ? std::max(kCalibrationStep, series_->dt) : series_->dt;
@@ -157,7 +158,7 @@ const CommandSample& Simulator::command(long k) const {
 
 double Simulator::time() const { return static_cast<double>(tick_) * series_->dt; }
 
-/// Energy of the robot without its loads, with its rotors [J].
+/// The energy of the robot without its loads, but with its rotors [J].
 double Simulator::energy() const {
   const RobotData& data = plant_.data();
   double twice = 0;
@@ -178,8 +179,8 @@ double Simulator::energy() const {
   return 0.5 * twice;
 }
 
-/// Puts the true state in the world in place of the estimate in the plan frame. The ZMP keeps its
-/// value in flight.
+/// Replaces the estimate in the plan frame by the true state in the world. The ZMP keeps its value
+/// in flight.
 void Simulator::replace_estimate_by_truth() {
   const RobotData& data = plant_.data();
   Estimate& e = true_estimate_;
@@ -211,8 +212,8 @@ const ControlOutput& Simulator::with_targets_of_caller(double t, const ControlOu
   return changed_;
 }
 
-/// The servos read their encoders, and with sensors as the sidecar describes them they receive
-/// whole counts.
+/// The servos read their encoders. If the sensors are as the sidecar describes them, the servos
+/// receive whole counts.
 const ControlOutput& Simulator::in_counts(const ControlOutput& out) {
   if (encoder_offset_.size() == 0 && !counts_targets_) return out;
   changed_ = out;
@@ -274,7 +275,8 @@ void Simulator::take_sample(const CommandSample& cmd, const Estimate& estimate,
   s.work = work_;
 }
 
-/// Forces and true ZMP of last_; the centre of pressure of a foot without load is left as it is.
+/// Fills the forces and the true ZMP of last_; the centre of pressure of a foot without load does
+/// not change.
 void Simulator::take_forces() {
   SimulationSample& s = last_;
   s.fz = 0;
@@ -364,9 +366,9 @@ void Simulator::step_once() {
   ++tick_;
 }
 
-/// step_once() where only the verdict counts. The plan is judged before the law goes on to the
-/// next, so that it need not be copied, and a law that measures nothing needs no estimate. `last`:
-/// the last of these ticks, after which plan and estimate are read.
+/// The same as step_once() if only the verdict counts. The plan is judged before the law continues
+/// with the next one, so it need not be copied, and a law that measures nothing needs no estimate.
+/// `last` marks the last of these ticks, after which plan and estimate are read.
 void Simulator::step_for_verdict(bool last) {
   const double t = time();
   const long step = tick_ * options_.substeps;

@@ -16,13 +16,14 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Distance of the centre of pressure from the nearest edge, as a share of the most there is, below
-// which a sole stands on an edge. Chosen: as in control/whole_body; a floor that slopes by 5
-// degrees leaves HOAP-1 0.6.
+// A sole stands on an edge if the distance of the centre of pressure from the nearest edge is less
+// than this share of the largest possible distance. Chosen: as in control/whole_body; a floor that
+// slopes by 5 degrees leaves HOAP-1 a share of 0.6.
 constexpr double kOnEdge = 0.15;
 
-// Share of this distance up to which an ankle turns, and share from which its sole is at rest.
-// Chosen: half of it, and less, so that the noise of the load cells does not end a rest.
+// Share of this distance up to which an ankle turns, and smaller share from which on its sole is at
+// rest. Chosen: half of the distance, and less for the rest, so that the noise of the load cells
+// does not end it.
 constexpr double kInside = 0.5;
 constexpr double kAtRest = 0.3;
 
@@ -32,31 +33,32 @@ constexpr double kAtRest = 0.3;
 constexpr double kPlanned = 1e-3;
 constexpr double kNear = 1e-3;
 
-// Smallest share of the weight on a foot that stands. Chosen: as in control/estimator.
+// Smallest share of the weight on a standing foot. Chosen: as in control/estimator.
 constexpr double kLeastLoad = 0.05;
 
-// Rate of an ankle whose sole stands on its edge [rad/s]. Chosen: one degree takes 0.6 s, slow
-// beside the rocking of the robot.
+// Rate at which an ankle turns while its sole stands on its edge [rad/s]. Chosen: one degree takes
+// 0.6 s, which is slow compared with the rocking of the robot.
 constexpr double kTurnRate = 0.03;
 
-// Rate at which a common tilt of both soles is undone [1/s]. Chosen: slow beside kTurnRate.
+// Rate at which a common tilt of both soles is removed [1/s]. Chosen: slow compared with kTurnRate.
 constexpr double kLevelRate = 3;
 
-// Low pass of the centre of pressure [s]. Chosen: a period of the rocking at 30 Hz.
+// Time constant of the low pass of the centre of pressure [s]. Chosen: a period of the rocking at
+// 30 Hz.
 constexpr double kFilter = 0.03;
 
-// Low pass of the tilt of the soles [s]. Chosen: the noise of an IMU of 3 mrad then is 0.2 mrad,
-// far below kLevel; and a third of the time constant of levelling.
+// Time constant of the low pass of the tilt of the soles [s]. Chosen: the noise of an IMU of 3 mrad
+// then becomes 0.2 mrad, far below kLevel; it is also a third of the time constant of levelling.
 constexpr double kTiltFilter = 0.1;
 
-// Tilt of the soles that counts as level [rad], and how long the soles have to be at rest [s].
-// Chosen: 0.2 degrees, by which the estimate of the attitude wanders; twice the time constant of
-// levelling, so that a sixth of it is left.
+// Tilt of the soles that counts as level [rad], and time for which the soles have to be at rest
+// [s]. Chosen: 0.2 degrees, by which the estimate of the attitude drifts; the time is twice the
+// time constant of levelling, so that a sixth of the tilt is left.
 constexpr double kLevel = 0.0035;
 constexpr double kRest = 0.6;
 
-// Smallest offset that is reported [rad]. Chosen: a third of a degree, beyond the bias of HOAP-1's
-// IMU of 5 mrad, by which all ankles turn.
+// Smallest offset that is reported [rad]. Chosen: a third of a degree, more than the bias of
+// HOAP-1's IMU of 5 mrad, by which all ankles turn.
 constexpr double kReported = 0.006;
 
 constexpr int kAnkleJoints = 2;  // Definition: the joints of a leg that are nearest to the foot

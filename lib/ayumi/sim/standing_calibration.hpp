@@ -21,9 +21,9 @@ class StandingCalibration {
   /// puts both soles flat on the ground and its ZMP well inside their hull.
   bool needed(const Measurement& measurement, const CommandSample& plan);
 
-  /// One tick at rest on both feet: the offsets change. `measurement` has readings that are already
-  /// corrected by offsets(), and `estimate` is computed from it. `feet` are the planned sole
-  /// frames.
+  /// One tick of rest on both feet, in which the offsets change. `measurement` has readings that
+  /// are already corrected by offsets(), and `estimate` is computed from it. `feet` are the planned
+  /// sole frames.
   void update(const Measurement& measurement, const Estimate& estimate,
               const std::array<Eigen::Isometry3d, 2>& feet);
 
@@ -31,14 +31,14 @@ class StandingCalibration {
   /// the ground may slope.
   bool found() const;
 
-  /// Whether every sole has carried its load inside its edges, and level, for some time.
+  /// Whether every sole has been level and has carried its load inside its edges for some time.
   bool done() const;
 
-  /// The offset of each encoder, reading minus true angle [rad], by dof. It is zero for all joints
-  /// except the ankles.
+  /// The offset of each encoder, its reading minus the true angle [rad], by dof. It is zero for all
+  /// joints except the ankles.
   const Eigen::VectorXd& offsets() const { return offsets_; }
 
-  /// One line for each ankle whose offset is large enough to report.
+  /// One line for each ankle whose offset is large enough to be reported.
   std::vector<std::string> lines() const;
 
  private:
@@ -54,7 +54,7 @@ class StandingCalibration {
   std::array<Eigen::Vector2d, 2>
       cop_;  // centre of pressure relative to the middle of the sole, after a low pass [m]
   Eigen::Vector3d tilt_ = Eigen::Vector3d::Zero();  // tilt of both soles, after a low pass [rad]
-  double at_rest_ = 0;                              // time without anything to turn [s]
+  double at_rest_ = 0;                              // time for which nothing had to be turned [s]
 };
 
 }  // namespace ayumi

@@ -13,7 +13,7 @@ namespace {
 
 bool sound(double x) { return std::abs(x) < kLargestNumber; }
 
-/// True when every element is smaller than kLargestNumber and not NaN.
+/// Whether every element is smaller than kLargestNumber and not NaN.
 template <typename Derived>
 bool sound(const Eigen::MatrixBase<Derived>& v) {
   for (Eigen::Index i = 0; i < v.size(); ++i)

@@ -1,6 +1,6 @@
 #pragma once
-// Checks of the input that every plant makes: values that are not finite or too large are refused
-// with their names, and within a run with the time.
+// Checks of the input that every plant makes. Values that are not finite or too large are refused
+// with their names and, within a run, with the time.
 
 #include "ayumi/model/robot_model.hpp"
 #include "ayumi/sim/step.hpp"

@@ -10,8 +10,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// Time constant of the gyro's bias [s]. Derived: with 4 kTiltTime both poles of the loop are equal
-/// and real, so that the estimate does not overshoot.
+/// Time constant of the gyro's bias [s]. Derived: with 4 kTiltTime, both poles of the loop are
+/// equal and real, so that the estimate does not overshoot.
 constexpr double kBiasTime = 4 * kTiltTime;
 
 }  // namespace

@@ -7,19 +7,21 @@
 namespace ayumi {
 
 /// A complementary filter: the attitude follows the gyro over times shorter than kTiltTime and the
-/// direction of gravity over longer times. The heading follows the gyro alone.
+/// direction of gravity over longer times. The heading only follows the gyro.
 class TiltEstimate {
  public:
   /// Starts at rest with this attitude; `gyro` is the gyro's mean reading at rest [rad/s].
   void start(const Eigen::Quaterniond& attitude, const Eigen::Vector3d& gyro);
   bool started() const { return started_; }
 
-  /// Takes readings in the axes of the unit: the rate now [rad/s] and the mean specific force of
-  /// the last `dt` [s] [m/s^2], which is gravity upwards where the unit is not accelerated.
+  /// Takes readings in the axes of the unit: the present rate [rad/s], and the mean specific force
+  /// of the last `dt` [s] [m/s^2]. If the unit is not accelerated, this force is gravity with
+  /// reversed sign.
   void update(const Eigen::Vector3d& gyro, const Eigen::Vector3d& force, double dt);
 
-  const Eigen::Quaterniond& attitude() const { return attitude_; }  ///< unit to world
-  const Eigen::Vector3d& gyro_bias() const { return bias_; }        ///< bias of the gyro [rad/s]
+  /// Rotation from the unit to the world.
+  const Eigen::Quaterniond& attitude() const { return attitude_; }
+  const Eigen::Vector3d& gyro_bias() const { return bias_; }  ///< bias of the gyro [rad/s]
 
  private:
   bool started_ = false;
@@ -28,8 +30,9 @@ class TiltEstimate {
 };
 
 /// Time constant with which gravity corrects the attitude [s]. Chosen: several steps of a walk,
-/// whose accelerations have no mean, and short against the drift of a gyro. Half: pushed walk with
-/// noise, touchdowns 8 to 6; twice: 7.
+/// whose accelerations have no mean, and short against the drift of a gyro. With half of the value,
+/// the number of touchdowns of the case "pushed walk with noise" changes from 8 to 6; with twice,
+/// to 7.
 constexpr double kTiltTime = 5.0;
 
 }  // namespace ayumi

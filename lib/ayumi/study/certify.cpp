@@ -16,11 +16,11 @@ namespace ayumi {
 namespace {
 
 /// Number of cases between two examinations by the test. Chosen: enough for many threads. At most
-/// so many cases are run without need. The results do not depend on it.
+/// that many cases are run without need. The results do not depend on it.
 constexpr long kBatch = 64;
-/// Largest number of runs, in units of those without a failure. Chosen: a robot that fails with a
-/// fifth of the permitted probability is then certified with a probability of 96 % (p0 = 0.01,
-/// confidence 0.95); five times gives 90 %, twenty times 98 %.
+/// Largest number of runs, as a multiple of the number without a failure. Chosen: a robot that
+/// fails with a fifth of the permitted probability is then certified with a probability of 96 % (p0
+/// = 0.01, confidence 0.95); five times gives 90 %, twenty times 98 %.
 constexpr long kMostRuns = 10;
 
 std::vector<bool> failures_in_order(const KnownResults& results) {
@@ -99,7 +99,8 @@ KnownResults run_cases(const UncertainTask& task, const CertifyOptions& options,
       stopped = outcome.stopped;
       if (stopped) std::fill(results.begin() + outcome.runs, results.end(), std::nullopt);
     }
-    // Only cases that the test uses are saved, so a program that is killed here leaves no others.
+    // Only cases that the test uses are saved, so that a program that is killed here leaves no
+    // others.
     if (save && !wanted.empty()) save(results);
     if (stopped) break;
   }

@@ -1,8 +1,9 @@
 #pragma once
 // A certificate: many runs of one task, each with values drawn from its uncertainty, until a
 // sequential test has decided whether the robot fails with a probability of at most p0. The runs
-// have numbers, and the decision depends on their results in the order of these numbers alone. So
-// it is the same for any number of threads and shards. docs/certify.md describes the method.
+// have numbers, and the decision only depends on their results in the order of these numbers.
+// Therefore it is the same for any number of threads and shards. docs/certify.md describes the
+// method.
 
 #include <functional>
 #include <optional>
@@ -17,42 +18,42 @@
 namespace ayumi {
 
 struct CertifyOptions {
-  double failure = 0.01;     ///< p0
+  double failure = 0.01;     ///< the probability p0
   double confidence = 0.95;  ///< confidence of every statement
-  long most = 0;             ///< largest number of runs; 0: ten times failure_free_runs()
-  bool all = false;          ///< run all of them; the verdict stays that of the sequential test
+  long most = 0;             ///< largest number of runs; 0 for ten times failure_free_runs()
+  bool all = false;          ///< all of them are run; the verdict stays that of the sequential test
   std::uint64_t seed = 1;
-  int threads = 0;  ///< 0: all cores; results do not depend on it
-  /// Runs only the cases whose number divided by `shards` leaves the remainder `shard`. It runs all
-  /// of them, without a verdict.
+  int threads = 0;  ///< number of threads; 0 for all cores; results do not depend on it
+  /// Only the cases whose number divided by `shards` leaves the remainder `shard` are run. All of
+  /// these are run, without a verdict.
   long shard = 0, shards = 1;
 };
 
-/// Results by the number of the case. Empty if a result is not known.
+/// Results by the number of the case. An entry is empty if the result is not known.
 using KnownResults = std::vector<std::optional<CaseResult>>;
 /// Called between runs with all known results, and never from two threads at once.
 using ResultsKnown = std::function<void(const KnownResults&)>;
 
-/// Number of cases that the options may need.
+/// The number of cases that the options may need.
 long most_cases(const CertifyOptions& options);
 
 /// Runs the cases that the test needs, or those of the shard; known ones are not run again. Cases
-/// after the stop of the test are empty. All values are drawn and checked before the first run.
+/// after the stop of the test stay empty. All values are drawn and checked before the first run.
 KnownResults run_cases(const UncertainTask& task, const CertifyOptions& options,
                        const KnownResults& known = {}, const ResultsKnown& save = {},
                        const Progress& progress = {});
 
-/// The same for chosen numbers of cases.
+/// Does the same for chosen numbers of cases.
 void run_numbers(const UncertainTask& task, const std::vector<long>& numbers,
                  const CertifyOptions& options, KnownResults& results, const ResultsKnown& save,
                  const Progress& progress);
 
 /// Bounds of the quantile 1 - p0 of the largest errors of a run, each with the confidence of the
 /// test, from as many first runs as a certificate without a failure needs. Runs that fell count as
-/// infinitely bad; infinite: no bound.
+/// infinitely bad; an infinite value means that there is no bound.
 struct QuantileBounds {
   double cog_error = 0, torque = 0, foot_tilt = 0;
-  long runs = 0;  ///< number of runs; 0: the test stopped before
+  long runs = 0;  ///< number of runs; 0 if the test stopped before
 };
 
 struct Certificate {
@@ -79,12 +80,13 @@ struct ValueInfluence {
   std::string name;
   double correlation =
       0;  ///< Spearman's rank correlation of the value and the severity() of the run
-  /// Failures and runs of the lower and the upper half of the values; each half has the same
+  /// Failures and runs in the lower and the upper half of the values; each half has the same
   /// probability.
   std::array<long, 2> failures = {0, 0}, runs = {0, 0};
-  std::array<RateInterval, 2> rate;  ///< Clopper-Pearson
+  std::array<RateInterval, 2> rate;  ///< intervals of Clopper and Pearson
 };
-/// In the order of UncertainTask::values(). Values that are the same in all runs are left out.
+/// The influences in the order of UncertainTask::values(). Values that are the same in all runs are
+/// left out.
 std::vector<ValueInfluence> influences(const UncertainTask& task, const CertifyOptions& options,
                                        const KnownResults& results);
 

@@ -12,7 +12,8 @@ namespace ayumi {
 
 namespace {
 
-/// The robot stands on both feet, or on the left foot with the COG over its middle.
+/// Pushes are studied while the robot stands on both feet, and on the left foot with the COG over
+/// its middle.
 std::vector<Reach> reaches(const RobotModel& model) {
   CommandSeries both = sample(model, stand_pattern(model, 0.01));
   CommandSeries left = both;

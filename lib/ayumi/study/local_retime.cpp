@@ -19,11 +19,11 @@ namespace ayumi {
 namespace {
 
 // Share of the room between standing still and a limit that a timing may use at first. Chosen: the
-// smoothing and the ticks between two points change less than the rest.
+// rest is more than the smoothing and the ticks between two points change.
 constexpr double kFirstShare = 0.97;
-// Factor on this share around an error of the check: the limit over the value, within these bounds,
-// and the time to either side [s of the path]. Chosen: one to three rounds remove the errors that
-// were seen.
+// Factor by which this share is reduced around an error of the check: the limit divided by the
+// value, within these bounds, and the time to either side [s of the path]. Chosen: one to three
+// rounds remove the errors that were seen.
 constexpr double kLeastShareStep = 0.9, kMostShareStep = 0.94;
 constexpr double kAround = 0.04;
 // Largest number of timings that are checked. Chosen: twice the largest number that a walk needed.
@@ -33,25 +33,27 @@ constexpr int kMostRounds = 10;
 // its result.
 constexpr int kTimings = 3, kLaterTimings = 2;
 
-// Width of one of the three boxes that smooth a timing [s]: s'' then has no jump and no
-// kink. Chosen: servos of small robots answer within 30 ms, and the motion gets 36 ms longer.
+// Width of one of the three boxes that smooth a timing [s], so that s'' has no jump and no kink.
+// Chosen: servos of small robots answer within 30 ms, and the motion gets 36 ms longer.
 constexpr double kBox = 0.013;
 
-// Period of sampling in the search for the pace of the path [s]. Chosen: a tenth of the usual work.
+// Period of sampling in the search for the pace of the path [s]. Chosen: the search then takes a
+// tenth of the usual work.
 constexpr double kSearchPeriod = 0.01;
-// Spacing of the points in this search [s]. Chosen: the peaks of a swing of 0.2 s have several.
+// Spacing of the points in this search [s]. Chosen: each peak of a swing of 0.2 s has several
+// points.
 constexpr double kSearchSpacing = 0.02;
-// Relative accuracy of that pace, and by how much the path is then slower. Chosen: coarse samples
-// miss the peaks by about a percent.
+// Relative accuracy of that pace, and the share by which the path is then slower. Chosen: coarse
+// samples miss the peaks by about a percent.
 constexpr double kPaceAccuracy = 0.02;
 constexpr double kPaceSpare = 1.01;
-// Factor between paces if the ZMP leaves the support, because no row predicts this. Chosen.
+// Factor between paces if the ZMP leaves the support, which no row predicts. Chosen.
 constexpr double kSlowerPace = 1.25;
 // Largest number of paces that are tried. Chosen: more than the search needs from one end of its
 // range to the other.
 constexpr int kMostPaces = 25;
-// Factor by which the path becomes slower where limits contradict each other, and the largest
-// number of times. Chosen: the share of the limits that is used asks for 1.5 %.
+// Factor by which the path becomes slower if limits contradict each other, and the largest number
+// of times. Chosen: the share of the limits that is used asks for 1.5 %.
 constexpr double kSlowerPath = 1.03;
 constexpr int kMostSlower = 6;
 
@@ -59,8 +61,8 @@ constexpr int kMostSlower = 6;
 // on the path. Definition: the largest pace is four times that of the path.
 constexpr double kLeastStill = 0.25;
 
-// Margin of the ZMP that is kept where 80 % of the path's margin is smaller, as a share of half the
-// width of the narrower sole. Chosen: a quarter.
+// Smallest margin of the ZMP that is kept if 80 % of the path's margin is smaller, as a share of
+// half the width of the narrower sole. Chosen: a quarter.
 constexpr double kLeastMargin = 0.25;
 
 bool keys_fly(const Pattern& pattern) {
@@ -88,8 +90,8 @@ class LocalSearch {
 
   LocalPace run() {
     result_.path_scale = keys_fly(pattern_) ? 1 : path_scale();
-    // The smallest margin is given up first, because a posture may be nearer to the edge at every
-    // pace. After that, the path becomes slower.
+    // The smallest margin is given up first, because a posture may be nearer to the edge than this
+    // margin at every pace. After that, the path becomes slower.
     double least_margin = kLeastMargin * half_sole_width(model_);
     for (int trial = 0; trial <= kMostSlower; ++trial) {
       result_.limited_by.clear();
@@ -108,9 +110,9 @@ class LocalSearch {
 
   /// A pause on the path, and the part of the pause without motion.
   struct Pause {
-    double begin = 0, end = 0;  ///< places
-    double length = 0;          ///< of the given pattern [s]
-    TimeSpan still;             ///< places
+    double begin = 0, end = 0;  ///< places on the path
+    double length = 0;          ///< length in the given pattern [s]
+    TimeSpan still;             ///< places on the path of the part without motion
   };
 
   // Plays the path at one pace, except in the pauses that are kept.
@@ -172,7 +174,7 @@ class LocalSearch {
   }
 
   // The smallest scale at which the whole path keeps its limits, found with coarse samples. If
-  // there is none, the largest scale that was tried.
+  // there is no such scale, the largest one that was tried.
   double path_scale() {
     PathLimitOptions path = options_.path;
     path.own_margin = 0;
@@ -208,7 +210,7 @@ class LocalSearch {
     }
   }
 
-  // The timing of this round. None if the limits contradict each other.
+  // The timing of this round. Returns nothing if the limits contradict each other.
   std::optional<Timing> quickest() {
     const std::vector<TimingPoint>& points = limits_->points();
     const int timings = timing_.x.empty() ? kTimings : kLaterTimings;
@@ -232,7 +234,7 @@ class LocalSearch {
     return timing_;
   }
 
-  // Samples and checks the result. Returns true if the check passes.
+  // Samples and checks the result. Returns whether the check passes.
   bool play(const Timing& timing) {
     report(progress_, {"retime", -1, "round " + std::to_string(result_.rounds)});
     const std::vector<double> times = times_of(timing.x);
@@ -314,7 +316,8 @@ class LocalSearch {
       const double t = options_.dt * static_cast<double>(k);
       while (i + 2 < times.size() && times[i + 1] <= t) ++i;
       const double step = points[i + 1].at - points[i].at;
-      const double lasts = 2 * step / (std::sqrt(x[i]) + std::sqrt(x[i + 1]));  // except in a pause
+      // This holds except in a pause.
+      const double lasts = 2 * step / (std::sqrt(x[i]) + std::sqrt(x[i + 1]));
       const double later = (t - times[i]) * lasts / (times[i + 1] - times[i]);
       const double u = (x[i + 1] - x[i]) / (2 * step);
       at.push_back(std::min(points[i].at + later * (std::sqrt(x[i]) + 0.5 * u * later), end));

@@ -33,15 +33,15 @@ struct LocalPace {
   double scale = 1;          ///< duration divided by that of the given pattern
   double path_scale = 1;     ///< uniform scale of the path
   std::vector<BindingLimit>
-      binding;              ///< limits that decide the pace, the one with the largest share first
-  int rounds = 0;           ///< number of timings that were checked
+      binding;     ///< limits that decide the pace; the one with the largest share comes first
+  int rounds = 0;  ///< number of timings that were checked
   std::string limited_by;   ///< the reason why none was found, in words
-  bool by_posture = false;  ///< limited by the posture, which no timing changes
+  bool by_posture = false;  ///< limited by the posture, which no timing can change
 };
 
 /// The table of the result gets the file name `table`. Flights keep their pace. Throws
-/// Error(bad_pattern) as sample() for a pattern that cannot be sampled, and for a phase with a
-/// goal.
+/// Error(bad_pattern) in the same cases as sample() for a pattern that cannot be sampled, and for a
+/// phase with a goal.
 LocalPace fastest_local_pace(const RobotModel& model, const Pattern& pattern,
                              const std::string& table, const LocalRetimeOptions& options,
                              const Progress& progress = {});

@@ -15,26 +15,27 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Least s'. Definition: at a hundredth of the path's pace the robot is practically at rest.
+// Smallest s'. Definition: at a hundredth of the path's pace the robot is practically at rest.
 constexpr double kLeastPace = 0.01;
 
-// Time beside a flight in which s' stays 1, besides the samples whose rates mix it with support
-// [s]. Derived: above half the reach of the smoothing of a timing (local_retime.cpp).
+// Time before and after a flight in which s' stays 1, in addition to the samples whose rates mix
+// flight with support [s]. Derived: above half the reach of the smoothing of a timing
+// (local_retime.cpp).
 constexpr double kBesideFlight = 0.025;
 
-// Steps of x (a share of it) and of u [1/s] for the slopes of torques, whose shares between the
-// feet bend. Chosen: small against the changes that matter and large against rounding.
+// Steps of x (as a share of it) and of u [1/s] for the slopes of torques, whose shares between the
+// feet are not linear. Chosen: small against the changes that matter and large against rounding.
 constexpr double kStepX = 1e-3, kStepU = 1e-2;
 
-// Tangential force over the weight at which the tip of the friction cone is rounded. Chosen: as in
-// a repair, small against mu.
+// Tangential force, divided by the weight, at which the tip of the friction cone is rounded.
+// Chosen: the same as in a repair, and small against mu.
 constexpr double kConeRounding = 1e-4;
 
 // Share of the sizes in a row below which its room counts as used up. Chosen: the step from point
 // to point moves a row by about as much.
 constexpr double kBinds = 0.01;
 
-// Definition: the name of the rows of limits/support.cpp.
+// Definition: the name that the rows have in limits/support.cpp.
 const char* const kSupportRows = "support";
 
 // Limits of the posture and of the commands do not depend on time, and the rows of a landing are
@@ -52,7 +53,7 @@ bool is_linear_in_time(const RowBlock& block) {
          std::holds_alternative<JointRow>(block.rule);
 }
 
-// Values and slopes of a block's rows at (u, x), for one point.
+// Values and slopes of a block's rows at (u, x) for one point.
 struct Slopes {
   VectorXd value, of_u, of_x;
 };
@@ -91,7 +92,7 @@ PathLimits::PathLimits(const RobotModel& model, const CommandSeries& series,
 template <class Work>
 void PathLimits::for_each_point(const Work& work) const {
   constexpr size_t kBlock =
-      64;  // Chosen: enough work for a thread, and few threads wait at the end
+      64;  // points per job. Chosen: enough work for a thread, and few threads wait at the end
   std::atomic<bool> stop = false;
   in_parallel(
       (sites_.size() + kBlock - 1) / kBlock, options_.check.threads, stop, [&](size_t block) {
@@ -139,7 +140,7 @@ void PathLimits::place_points(const PathLimitOptions& options) {
 void PathLimits::place_rows() {
   const Tolerances tolerances = ayumi::tolerances(options_.check, model_, series_);
   const std::vector<const CommandSeries*> seen;
-  RowSettings settings;  // with shares of 0 and 1: every limit has its rows, just at the limit
+  RowSettings settings;  // with shares of 0 and 1, every limit has its rows just at the limit
   settings.support.least = std::min(options_.least_margin, options_.most_margin);
   settings.support.safe = options_.most_margin;
   settings.support.own_share = options_.own_margin;
@@ -198,7 +199,8 @@ void PathLimits::linearize_point(size_t i, double u, double x, double share) {
     origins_[i].push_back(&block);
   };
   const auto add_both = [&](const RowBlock& block, int row, double value, double a, double b) {
-    const double still = value - a * u - b * x;  // bounds by the tangent
+    // The part that does not depend on u and x, by the tangent.
+    const double still = value - a * u - b * x;
     if (block.upper[row] < kUnbounded) add(block, a, b, block.upper[row] - still);
     if (block.lower[row] > -kUnbounded) add(block, -a, -b, still - block.lower[row]);
   };

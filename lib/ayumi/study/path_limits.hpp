@@ -1,6 +1,6 @@
 #pragma once
-// The limits of a motion along its path. Played with s'(t) in place of s' = 1, the same postures
-// have
+// The limits of a motion along its path. If the motion is played with s'(t) instead of s' = 1, the
+// same postures have
 //   dq = q_s s',   ddq = q_s s'' + q_ss s'^2,
 // so that inverse dynamics is F = F_0 + F_u u + F_x x with u = s'' and x = s'^2. The rows of all
 // limits of rates and forces, those that a repair keeps (limits/row.hpp), become rows in (u, x):
@@ -21,56 +21,57 @@ struct PathLimitOptions {
   double spacing = 0.01;  ///< spacing of the points on the path [s]
   double own_margin =
       0.8;  ///< share of the ZMP's margin at the path's own pace that the timing keeps
-  double least_margin = 0;          ///< margin that is kept where this share is smaller [m]
-  double most_margin = kUnbounded;  ///< no larger margin is kept [m]
+  double least_margin = 0;          ///< margin that is kept if this share is smaller [m]
+  double most_margin = kUnbounded;  ///< largest margin that is kept [m]
   double most_pace = 4;             ///< largest s'
   std::vector<TimeSpan> pauses;     ///< windows of the path in which s' is at most 1 [s]
 };
 
-/// A limit that decides a timing, and for which share of the time.
+/// A limit that decides a timing, and the share of the time for which it does so.
 struct BindingLimit {
   std::string
-      limit;  ///< name of its rows; "pace": the largest s'; "pause"; "" where no limit is active
+      limit;  ///< name of its rows; "pace" for the largest s'; "pause"; "" if no limit is active
   double share = 0;  ///< share of the duration
 };
 
 /// A row of one point with its origin.
 struct PathRow {
   const RowKind* kind = nullptr;
-  int item = 0;  ///< as RowBlock::item
+  int item = 0;  ///< the same number as RowBlock::item
   TimingRow row;
 };
 
 class PathLimits {
  public:
-  /// `series` is the path. Model and series must outlive this.
+  /// `series` is the path. Model and series must outlive this object.
   PathLimits(const RobotModel& model, const CommandSeries& series, const PathLimitOptions& options);
 
-  /// Points of the path, with rows after linearize().
+  /// The points of the path. They have rows after linearize().
   const std::vector<TimingPoint>& points() const { return timing_; }
 
-  /// Makes the rows about a timing with these u and x by point. `share` by point: of the room
-  /// between standing still and a limit that may be used. In a motion that flies, the path's own
-  /// pace (u = 0, x = 1) keeps all rows, because nothing else is possible in flight.
+  /// Makes the rows about a timing with these u and x by point. `share` gives, by point, the part
+  /// of the room between standing still and a limit that may be used. In a motion that flies, the
+  /// path's own pace (u = 0, x = 1) keeps all rows, because nothing else is possible in flight.
   void linearize(const std::vector<double>& u, const std::vector<double>& x,
                  const std::vector<double>& share);
 
-  /// The rows of points()[point] and what they stem from. Speeds are no rows but bounds of x.
+  /// The rows of points()[point] and their origins. Limits of speed have no rows; they are bounds
+  /// of x.
   std::vector<PathRow> rows_at(int point) const;
-  /// The sample of the path that is points()[point].
+  /// The index of the sample of the path that is points()[point].
   int sample_of(int point) const { return sites_[static_cast<size_t>(point)].sample; }
 
   bool flies() const { return flies_; }
 
   /// The values that the path allows if it is played at one pace.
   struct UniformPace {
-    bool keeps = false;  ///< its own pace keeps all rows
+    bool keeps = false;  ///< the path's own pace keeps all rows
     double pace = 0;     ///< the largest pace that keeps all rows except those of the ZMP
   };
   UniformPace uniform_pace();
 
-  /// The rows that are active for a timing with these times by point, the one with the largest
-  /// share first.
+  /// The rows that are active for a timing with these times by point; the one with the largest
+  /// share comes first.
   std::vector<BindingLimit> binding(const std::vector<double>& u, const std::vector<double>& x,
                                     const std::vector<double>& times) const;
 
@@ -96,14 +97,14 @@ class PathLimits {
   const ContactPlan plan_;
   bool flies_ = false;
   std::vector<CollocationPoint> sites_;
-  std::vector<char> fixed_;   ///< by point, s' = 1: in flight and beside it
-  std::vector<char> paused_;  ///< by point
+  std::vector<char> fixed_;   ///< by point: s' is 1 in flight and near it
+  std::vector<char> paused_;  ///< by point: it lies in a pause
   std::vector<RowBlock> rows_;
-  std::vector<std::vector<const RowBlock*>> rows_of_;  ///< by point, of rows_
-  std::vector<Forces> forces_;                         ///< by point
+  std::vector<std::vector<const RowBlock*>> rows_of_;  ///< rows by point, from rows_
+  std::vector<Forces> forces_;                         ///< forces by point
   std::vector<TimingPoint> timing_;
-  std::vector<std::vector<const RowBlock*>> origins_;  ///< of the rows in timing_
-  std::vector<const RowKind*> cap_;  ///< by point: the limit that bounds x; null: none
+  std::vector<std::vector<const RowBlock*>> origins_;  ///< origins of the rows in timing_
+  std::vector<const RowKind*> cap_;  ///< by point, the limit that bounds x; null if there is none
 };
 
 }  // namespace ayumi

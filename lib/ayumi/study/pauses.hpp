@@ -1,6 +1,6 @@
 #pragma once
-// Pauses of a motion: spans in which nothing moves. No limit is active there, so the author decides
-// how long they last.
+// Pauses of a motion, which are spans in which nothing moves. No limit is active there, so that the
+// author decides how long they last.
 
 #include <utility>
 #include <vector>
@@ -10,14 +10,15 @@
 
 namespace ayumi {
 
-/// Begin and end of a span [s].
+/// The begin and the end of a span [s].
 using TimeSpan = std::pair<double, double>;
 
-/// The spans of at least 0.1 s without motion of a joint or of the trunk, by time.
+/// The spans of at least 0.1 s in which no joint and no trunk moves, in the order of time.
 std::vector<TimeSpan> pauses_of(const CommandSeries& series);
 
-/// The pattern with each pause, a span of the given times, in `factor` times its length, and the
-/// rest shifted. A table or a correction keeps its times. Throws as stretched().
+/// The pattern in which each pause, a span of the given times, lasts `factor` times as long, and
+/// the rest is shifted. A table or a correction keeps its times. Throws the same errors as
+/// stretched().
 Pattern with_pauses_stretched(const RobotModel& model, const Pattern& pattern,
                               const std::vector<TimeSpan>& pauses, double factor);
 

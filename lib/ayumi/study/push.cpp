@@ -1,10 +1,10 @@
-// For each controller one baseline runs without a push. Just before the pushes of each phase it is
-// copied, and every push of that phase goes on from the copy. Level i is an impulse of i step B,
-// with B the capture bound. A level is survived when the nominal push and all its variations are
-// survived. The search probes, narrows [survived, failed] to one step, then tries levels below it
-// that were skipped; a failure there moves the limit down. A run counts as survived as soon as it
-// is in the set around the baseline from which the robot stands (study/recorded_run); a run that
-// does not get there goes on to its end.
+// For each controller, one baseline runs without a push. Just before the pushes of each phase it is
+// copied, and every push of that phase continues from the copy. Level i is an impulse of i step B,
+// where B is the capture bound. A level is survived if the nominal push and all its variations are
+// survived. The search first probes levels, narrows [survived, failed] to one step, and then tries
+// levels below it that were skipped; a failure there moves the limit down. A run counts as survived
+// as soon as it is in the set around the baseline from which the robot stands (study/recorded_run);
+// a run that does not get there continues to its end.
 #include "ayumi/study/push.hpp"
 
 #include <algorithm>
@@ -32,30 +32,31 @@ using Eigen::Vector3d;
 namespace {
 
 /// Distance of the DCM from the plan, in units of z, below which a robot has recovered. Chosen: 10
-/// mm for z = 0.22 m, a third of the half-width of HOAP-1's sole. Half: push while walking,
-/// recovery [s] 0.019 to 0.054; twice: push while standing, recovery [s] 0.019 to 0.
+/// mm for z = 0.22 m, a third of the half-width of HOAP-1's sole. With half of the value, the
+/// recovery in the push while walking takes 0.054 s instead of 0.019 s; with twice, the recovery in
+/// the push while standing takes 0 s instead of 0.019 s.
 constexpr double kNearPlan = 0.045;
-/// Share of the set around the unpushed run. Measured: a run that has been in it never drifts out
-/// of the whole set, if there is no sensor noise (docs/measurements/pushes.md, "Early verdicts").
+/// Share of the set around the unpushed run. Measured: without sensor noise, a run that has been in
+/// this part never drifts out of the whole set (docs/measurements/pushes.md, "Early verdicts").
 constexpr double kWellInside = 1.0 / 3;
 /// Tilt beyond which a stance foot is tilted [rad]. Chosen: above the tilt that the compliance of a
-/// loaded sole allows. No measured case changes from half to twice (constants.md).
+/// loaded sole allows. No measured case changes between half and twice the value (constants.md).
 constexpr double kTiltedFoot = 2 * M_PI / 180;
 /// Directions in which the nearest edge of the support is searched. Chosen: one every 5 degrees;
-/// the distance is then at most 0.1 % too large. No measured case changes from half to twice
-/// (constants.md).
+/// the distance is then at most 0.1 % too large. No measured case changes between half and twice
+/// the value (constants.md).
 constexpr int kEdgeDirections = 72;
-/// Level at which the search begins, in capture bounds. Chosen: near what HOAP-1 and humanoid30
-/// survive (docs/measurements/pushes.md). It changes the number of runs, and a limit only where a
-/// robot survives a push but not a smaller one.
+/// Level at which the search begins, in capture bounds. Chosen: near the limits of HOAP-1 and
+/// humanoid30 (docs/measurements/pushes.md). It changes the number of runs, and it changes a limit
+/// only if a robot survives a push but not a smaller one.
 constexpr double kGuess = 1.2;
 constexpr double kOpenLoopGuess = 0.4;
 constexpr double kStandingOpenLoopGuess = 1.0;
-/// First step away from that level with control, in levels; 1 in open loop. Chosen: limits with
-/// control lie farther apart.
+/// First step away from that level with control, in levels; in open loop it is 1. Chosen: limits
+/// with control lie farther apart.
 constexpr int kStride = 3;
 /// Ticks between two tests of a run. Chosen: 10 ms, short against 1/omega. No measured case changes
-/// from half to twice (constants.md).
+/// between half and twice the value (constants.md).
 constexpr long kTicksPerTest = 10;
 
 double near_distance(const Simulator& run) {
@@ -66,13 +67,13 @@ double near_distance(const Simulator& run) {
 /// A whole run without a push.
 struct Unpushed {
   RecordedRun states;
-  // Values by tick: the largest from this tick on.
-  std::vector<double> divergence = {};  // in units of z
+  // Values by tick, each of which is the largest from this tick on.
+  std::vector<double> divergence = {};  // distance of the DCM in units of z
   std::vector<double> foot_tilt = {};   // tilt of the stance foot [rad]
   double trunk_tilt = 0;                // largest tilt of the trunk in the whole run [rad]
 };
 
-/// A simulator just before the pushes of a phase, how the run goes on without a push, and whether
+/// A simulator just before the pushes of a phase, the course of the run without a push, and whether
 /// the robot then stands.
 struct PushBaseline {
   std::optional<Simulator> simulator;
@@ -117,7 +118,7 @@ class Search {
   const PushOptions& options_;
   const PushCase& case_;
   double dt_;
-  bool plan_moves_;  // the plan follows the robot, so a small distance from it shows nothing
+  bool plan_moves_;  // the plan follows the robot, so that a small distance from it shows nothing
   const std::atomic<bool>& stop_;
   std::vector<Variation> variations_;
   std::map<int, bool> tried_;
@@ -162,8 +163,8 @@ bool Search::survives(int level) {
   return tried_[level] = true;
 }
 
-// Whether the figures of a run do not change any more. The run stays in the set around the unpushed
-// run, in which nothing larger follows than what there has been.
+// Whether the figures of a run do not change any more. The run then stays in the set around the
+// unpushed run, in which no larger value follows than those that were already seen.
 bool Search::is_decided(const Simulator& run) const {
   const Unpushed& unpushed = *baseline_.unpushed;
   if (plan_moves_ || options_.simulate.sensor_noise || !unpushed.states.contains(run, kWellInside))
@@ -255,8 +256,9 @@ struct Study {
   const PushOptions& options;
   CommandSeries stand;
   std::vector<PushPhase> phases;
-  std::vector<ControllerSpec> controllers;  // open loop comes first
-  std::vector<PushBaseline> baselines;      // phase by phase, controller by controller
+  std::vector<ControllerSpec> controllers;  // controllers, of which open loop comes first
+  // Baselines, phase by phase, and in each phase controller by controller.
+  std::vector<PushBaseline> baselines;
   std::atomic<bool> stop = false;
 
   const CommandSeries& series_of(const PushPhase& phase) const {
@@ -269,9 +271,9 @@ struct Study {
   void search(size_t i, PushCase& found);
 };
 
-// The run of a controller to its end, standing or not. It is copied on the way for each phase.
+// Runs a controller to the end, standing or not. The run is copied on the way for each phase.
 void Study::run_baselines(size_t controller, bool standing) {
-  std::vector<std::pair<long, PushBaseline*>> branches;  // by tick
+  std::vector<std::pair<long, PushBaseline*>> branches;  // baselines to copy, by tick
   for (size_t p = 0; p < phases.size(); ++p)
     if (phases[p].standing == standing)
       branches.emplace_back(static_cast<long>((phases[p].at - options.time_spread) / series.dt) - 1,
@@ -287,7 +289,7 @@ void Study::run_baselines(size_t controller, bool standing) {
     unpushed->divergence.push_back(kNearPlan * divergence(run) / near_distance(run));
     unpushed->foot_tilt.push_back(run.last_estimate().foot_tilt.norm());
   };
-  unpushed->divergence = unpushed->foot_tilt = {0};  // before the first tick
+  unpushed->divergence = unpushed->foot_tilt = {0};  // values before the first tick
   const auto branch = [&] {
     for (const auto& [tick, baseline] : branches)
       if (std::max(0L, tick) == run.tick()) baseline->simulator = run;

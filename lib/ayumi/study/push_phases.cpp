@@ -12,7 +12,7 @@ namespace {
 
 /// A single support on the left foot.
 struct Interval {
-  size_t before, begin, end;  // start of the double support before it, then its start and end
+  size_t before, begin, end;  // start of the double support before it, then its own start and end
 };
 
 std::vector<Interval> left_steps(const CommandSeries& series) {

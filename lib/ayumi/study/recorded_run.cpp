@@ -1,6 +1,6 @@
-// Under a law that follows the plan by the clock, the next state depends on the present one in the
-// plan frame alone, where the ground is the same everywhere. So the deviation of a run from the
-// recorded one is a deviation of two trajectories of one system that varies with time alone.
+// If a law follows the plan by the clock, and the ground is the same everywhere, the next state
+// only depends on the present one in the plan frame. So the deviation of a run from the recorded
+// one is the deviation of two trajectories of one system that only varies with time.
 #include "ayumi/study/recorded_run.hpp"
 
 #include <algorithm>

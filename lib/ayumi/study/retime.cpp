@@ -15,28 +15,29 @@ namespace ayumi {
 namespace {
 
 /// Factor between scales that get faster. Chosen: a bracket of 25 % takes 7 bisections to 0.2 %. No
-/// measured case changes from half to twice (constants.md).
+/// measured case changes between half and twice the value (constants.md).
 constexpr double kFasterStep = 1.25;
 /// Factor between scales that get slower, up to kLargeScale. Chosen: small, because the range of
 /// scales that pass can be short: held poses heat the motors when they last longer. No measured
-/// case changes from half to twice (constants.md).
+/// case changes between half and twice the value (constants.md).
 constexpr double kSlowerStep = 1.05;
 /// Scale beyond which the search goes slower by kFasterStep.
 constexpr double kLargeScale = 3;
 /// Fraction of the excess of a joint's speed by which the scale grows at once. Chosen: below 1, so
-/// that the first scale that passes is not skipped. No measured case changes from half to twice
-/// (constants.md).
+/// that the first scale that passes is not skipped. No measured case changes between half and twice
+/// the value (constants.md).
 constexpr double kSpeedStep = 0.8;
-/// Factor between scales beyond an edge, and their number: 0.5 % each, 18 % in all. Chosen: a
-/// compromise, since each scale costs one sampling and one check. No measured case changes from
-/// half to twice (constants.md).
+/// Factor between scales beyond an edge, and their number below: 0.5 % each, 18 % in all. Chosen: a
+/// compromise, since each scale costs one sampling and one check. No measured case changes between
+/// half and twice the value (constants.md).
 constexpr double kBeyondStep = 1.005;
-// No measured case changes from half to twice (constants.md).
+// The number of these scales. No measured case changes between half and twice the value
+// (constants.md).
 constexpr int kBeyondSteps = 40;
 
 struct Trial {
   bool passes = false;
-  std::string reason;    // why not
+  std::string reason;    // reason why the scale does not pass
   double too_quick = 1;  // largest ratio of a joint's speed to its limit
   bool of_posture = false;
 };
@@ -102,9 +103,9 @@ class PaceSearch {
     return passing;
   }
 
-  // The fastest of the next scales that passes, 0 when none does. A pattern with flights may pass
-  // again at a faster scale, because other samples lie on the edges of the flights. The reason of
-  // the edge is kept.
+  // The fastest of the next scales that passes, or 0 if none does. A pattern with flights may pass
+  // again at a faster scale, because other samples then lie on the edges of the flights. The reason
+  // of the edge is kept.
   double beyond(double passing) {
     const std::string reason = reason_;
     double found = 0, scale = passing;

@@ -9,7 +9,7 @@ namespace ayumi {
 
 struct RetimeOptions {
   CheckOptions check = {};
-  double dt = 0.001;                    ///< of sampling [s]
+  double dt = 0.001;                    ///< period of sampling [s]
   double resolution = 0.002;            ///< relative resolution of the scale
   double fastest = 0.05, slowest = 20;  ///< range of the scale
 };
@@ -17,18 +17,17 @@ struct RetimeOptions {
 struct FastestPace {
   bool found = false;       ///< a scale up to `slowest` passes the check
   double scale = 1;         ///< smallest scale that passes, next to one that does not
-  bool bounded = false;     ///< false: even `fastest` passes
+  bool bounded = false;     ///< false if even `fastest` passes
   std::string limited_by;   ///< first error at the scale just below, in words
   bool by_posture = false;  ///< this error is in the posture of a table, which no pace changes
   int evaluations = 0;
 };
 
 /// Bisection between a scale that passes the check and one that does not. The search begins at 1.
-/// It goes faster by factors of 1.25 while scales pass; otherwise it goes slower by factors
-/// of 1.05, or by a larger step when a joint is much too fast. Beyond the first failure it also
-/// tries faster scales in steps of 0.5 % down to 0.82 of the edge, because jumps may pass again
-/// there, and continues from the fastest one that passes. A scale that cannot be sampled does not
-/// pass.
+/// It goes faster by factors of 1.25 while scales pass; otherwise it goes slower by factors of
+/// 1.05, or by a larger step if a joint is much too fast. Beyond the first failure it also tries
+/// faster scales in steps of 0.5 % down to 0.82 of the edge, because jumps may pass again there,
+/// and continues from the fastest one that passes. A scale that cannot be sampled does not pass.
 FastestPace fastest_pace(const RobotModel& model, const Pattern& pattern,
                          const RetimeOptions& options, const Progress& progress = {});
 

@@ -12,12 +12,12 @@ namespace ayumi {
 
 namespace {
 
-/// Halvings of an interval of probabilities. Derived: 2^-60 is below the spacing of doubles near
-/// the smallest failure probability that can be asked for.
+/// Number of halvings of an interval of probabilities. Derived: 2^-60 is below the spacing of
+/// doubles near the smallest failure probability that can be asked for.
 constexpr int kHalvings = 60;
 
-/// The runs of a test, run by run: the probability of every number of failures among the tests
-/// that go on.
+/// The course of a test, run by run: the probability of every number of failures among the tests
+/// that have not stopped.
 class Paths {
  public:
   /// Only numbers of failures up to `most` are followed.
@@ -51,8 +51,8 @@ long failure_free_runs(double failure, double confidence) {
   return std::max(1L, static_cast<long>(std::ceil(exact * (1 - 1e-12))));
 }
 
-// n_0 takes as little of the permitted error as it must. Every further stage may take half of what
-// is left, so that the sum stays below the permitted error for any number of stages.
+// n_0 takes as little of the permitted error as it must. Every further stage may take half of the
+// error that is left, so that the sum stays below the permitted error for any number of stages.
 SequentialTest::SequentialTest(double failure, double confidence, long most)
     : failure_(failure), confidence_(confidence) {
   if (!(failure > 0 && failure < 1))
@@ -75,7 +75,7 @@ SequentialTest::SequentialTest(double failure, double confidence, long most)
     if (k > widest) break;
     const bool enough = k == 0 ? n == first : paths.with(k) <= 0.5 * left;
     if (!enough || (k > 0 && n <= plan_.back())) continue;
-    // Tests with fewer failures ended earlier, so only those with k of them end here.
+    // Tests with fewer failures have ended earlier, so that only those with k failures end here.
     left -= paths.take(k);
     plan_.push_back(n);
   }
@@ -99,8 +99,9 @@ SequentialOutcome SequentialTest::outcome(const std::vector<bool>& failed) const
   return result;
 }
 
-// Outcomes in order: certified with 0, 1, 2, ... failures, then hopeless after many runs down to
-// hopeless after few. `strictly`: the probability of the better outcomes alone.
+// The outcomes are ordered: certified with 0, 1, 2, ... failures, then hopeless after many runs
+// down to hopeless after few. With `strictly`, the result is the probability of the better outcomes
+// alone.
 double SequentialTest::at_most(const SequentialOutcome& outcome, double p, bool strictly) const {
   Paths paths(p, plan_.size() - 1);
   const long last = plan_.back();
@@ -121,7 +122,7 @@ double SequentialTest::at_most(const SequentialOutcome& outcome, double p, bool 
 
 namespace {
 
-/// The p at which the decreasing function f crosses `level`; f(0) is above it.
+/// The p at which the decreasing function f crosses `level`, where f(0) is above it.
 template <typename Function>
 double crossing(const Function& f, double level) {
   double low = 0, high = 1;
@@ -138,8 +139,8 @@ double SequentialTest::upper_bound(const SequentialOutcome& outcome) const {
   if (!outcome.stopped) return 1;
   const double bound =
       crossing([&](double p) { return at_most(outcome, p, false); }, 1 - confidence_);
-  // The plan may leave a part of the error unused. A study that is not certified has no bound below
-  // p0 all the same.
+  // The plan may leave a part of the error unused. Nevertheless, a study that is not certified has
+  // no bound below p0.
   return outcome.certified ? bound : std::max(bound, failure_);
 }
 

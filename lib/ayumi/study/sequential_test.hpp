@@ -1,9 +1,9 @@
 #pragma once
 // A sequential test of "the robot fails with a probability of at most p0". It looks at the runs one
-// after the other. With k failures it certifies as soon as n_k runs are done, and it gives up when
-// k failures can no longer be certified within the largest number of runs. The plan n_0 < n_1 < ...
+// after the other. With k failures it certifies as soon as n_k runs are done, and it gives up if k
+// failures can no longer be certified within the largest number of runs. The plan n_0 < n_1 < ...
 // is fixed before the first run, and the probability that a robot with a failure probability above
-// p0 is ever certified is at most 1 - confidence. docs/certify.md proves this, and the bounds.
+// p0 is ever certified is at most 1 - confidence. docs/certify.md proves this and the bounds.
 
 #include <vector>
 
@@ -11,24 +11,25 @@ namespace ayumi {
 
 /// Where a test stopped.
 struct SequentialOutcome {
-  bool stopped = false;    ///< false: more runs are needed
-  bool certified = false;  ///< false and stopped: hopeless
+  bool stopped = false;    ///< if false, more runs are needed
+  bool certified = false;  ///< if false after the stop, the test is hopeless
   long runs = 0;           ///< number of runs up to the stop
-  long failures = 0;       ///< among them
+  long failures = 0;       ///< number of failures among them
 };
 
 class SequentialTest {
  public:
-  /// p0 = `failure` and `confidence` in (0, 1). Throws Error(usage) when `most` runs cannot certify
-  /// a robot that never fails.
+  /// p0 = `failure` and `confidence` are in (0, 1). Throws Error(usage) if `most` runs cannot
+  /// certify a robot that never fails.
   SequentialTest(double failure, double confidence, long most);
 
   double failure() const { return failure_; }
   double confidence() const { return confidence_; }
-  /// n_k: number of runs that certifies k failures; as many entries as `most` runs allow.
+  /// n_k, the number of runs that certifies k failures, with as many entries as `most` runs allow.
   const std::vector<long>& plan() const { return plan_; }
 
-  /// The outcome for the runs in their order, true for a failure. Runs after the stop do not count.
+  /// The outcome for the runs in their order, where true is a failure. Runs after the stop do not
+  /// count.
   SequentialOutcome outcome(const std::vector<bool>& failed) const;
 
   /// One-sided bounds of the failure probability after the test has stopped, each with the
@@ -36,7 +37,7 @@ class SequentialTest {
   double upper_bound(const SequentialOutcome& outcome) const;
   double lower_bound(const SequentialOutcome& outcome) const;
 
-  /// Probability that a robot with the failure probability p is certified.
+  /// The probability that a robot with the failure probability p is certified.
   double power(double p) const;
 
  private:
@@ -46,7 +47,7 @@ class SequentialTest {
   std::vector<long> plan_;
 };
 
-/// Number of runs without a failure that certify: the least n with (1 - failure)^n <= 1 -
+/// The number of runs without a failure that certifies: the smallest n with (1 - failure)^n <= 1 -
 /// confidence.
 long failure_free_runs(double failure, double confidence);
 

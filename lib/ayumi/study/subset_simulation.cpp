@@ -16,11 +16,11 @@ namespace ayumi {
 namespace {
 
 /// Correlation of a proposed sample with the one before. Chosen: between a third and a half of the
-/// proposals are then accepted at a share of 0.1; it changes the variance of the estimate and not
-/// its mean.
+/// proposals are then accepted at a share of 0.1. The value affects the variance of the estimate
+/// but not its mean.
 constexpr double kStay = 0.8;
 /// Probability that a proposal has another noise of the sensors. Chosen: noise and values then both
-/// move; it changes the variance of the estimate and not its mean.
+/// move. The value affects the variance of the estimate but not its mean.
 constexpr double kNewNoise = 0.5;
 
 struct Sample {
@@ -113,9 +113,9 @@ SubsetResult subset_simulation(size_t dimension,
     result.levels.push_back(next);
     result.reached = next >= threshold;
     if (result.reached || level + 1 >= options.levels) break;
-    // Samples above the level start the chains. Where equal severities make them more than are
-    // needed, every so many of them starts one, so that the choice does not depend on the severity.
-    // Each chain has as many samples as keep their number.
+    // Samples above the level start the chains. If equal severities give more of them than are
+    // needed, one is taken at equal intervals, so that the choice does not depend on the severity.
+    // The chains have such lengths that the number of samples is kept.
     std::vector<size_t> starts;
     for (size_t i = 0; i < samples.size(); ++i)
       if (above[i]) starts.push_back(i);

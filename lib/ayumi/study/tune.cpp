@@ -18,19 +18,20 @@ using Eigen::Vector3d;
 namespace {
 
 /// Part of the objective for a push that fells the robot. Chosen: far above the part of a push that
-/// is survived (about 1), so that the search avoids falls first. No measured case changes from half
-/// to twice (constants.md).
+/// is survived (about 1), so that the search avoids falls first. No measured case changes between
+/// half and twice the value (constants.md).
 constexpr double kFall = 10;
 /// Relative improvement of the objective that a step needs. Chosen: a smaller improvement is not
-/// worth a change of the gains. No measured case changes from half to twice (constants.md).
+/// worth a change of the gains. No measured case changes between half and twice the value
+/// (constants.md).
 constexpr double kImprovement = 1e-3;
 /// Time before its push at which a branch begins [s]. Chosen: as short as 20 ticks. The runs are
-/// equal up to the push, so that the objective changes only in its eighth digit. Figures change by
-/// less than 5 % from half to twice.
+/// equal up to the push, so that the objective changes only in its eighth digit. Between half and
+/// twice the value, figures change by less than 5 %.
 constexpr double kBranchLead = 0.02;
 /// Factor below which the search ends. Chosen: three square roots of the default factor 1.3 give
 /// 1.033, so the search continues for three rounds without an improvement. No measured case changes
-/// from half to twice (constants.md).
+/// between half and twice the value (constants.md).
 constexpr double kSmallestFactor = 1.03;
 
 using Gains = std::map<std::string, double>;
@@ -86,7 +87,7 @@ Simulator Tuner::begin(const PushPhase& phase, const Gains& gains) const {
   return run;
 }
 
-/// omega times the integral of |DCM - planned DCM| / z; kFall if the robot fell.
+/// omega times the integral of |DCM - planned DCM| / z, or kFall if the robot fell.
 double Tuner::push(const Simulator& baseline, const PushPhase& phase, int direction) const {
   const double angle = 2 * M_PI * direction / options.directions;
   const CommandSeries& plan = series_of(phase);

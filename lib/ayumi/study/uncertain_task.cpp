@@ -29,7 +29,7 @@ constexpr double kHollowSpacing = 0.02;
 /// some centimetres; beyond it the ground is a plane.
 constexpr double kHollowMargin = 0.2;
 /// Severity of a fall at the start of a run. Definition: far above that of a run that has not
-/// settled, and an hour of time [s] below it is still above.
+/// settled; even an hour of time [s] less leaves it above that.
 constexpr double kFallSeverity = 1e6;
 
 /// Random numbers that depend on a seed, a number and a name (FNV-1a over the name).
@@ -78,7 +78,7 @@ double most_of(UncertainKind kind) {
   return std::numeric_limits<double>::infinity();
 }
 
-/// When a run ends that does not fall [s].
+/// The time at which a run that does not fall ends [s].
 double run_end(const CommandSeries& series, const SimulateOptions& options) {
   return static_cast<double>(static_cast<long>(series.samples.size()) +
                              std::lround(options.settle / series.dt)) *
@@ -232,7 +232,7 @@ std::vector<double> UncertainTask::draw(const CaseNumbers& numbers) const {
   std::vector<double> result = shares(numbers);
   for (size_t i = 0; i < values_.size(); ++i) {
     const DrawnValue& value = values_[i];
-    // Only here the phases of a pattern are known.
+    // The phases of a pattern are only known here.
     const bool phase = value.push >= 0 && value.quantity->kind == UncertainKind::push_time &&
                        uncertainty_->pushes[static_cast<size_t>(value.push)].phases;
     result[i] = phase ? std::floor(result[i] * static_cast<double>(phases_.size()))
@@ -344,7 +344,7 @@ RobotUnit UncertainTask::unit(const std::vector<double>& drawn) const {
         d.sensors.set_latency(v);
         break;
       default:
-        break;  // a value of the ground, a bias or a push: see options()
+        break;  // values of the ground, biases and pushes are handled in options()
     }
   }
   RobotModel model(std::move(d));
@@ -431,7 +431,7 @@ SimulateOptions UncertainTask::options(const CaseNumbers& numbers,
         biased = true;
         break;
       default:
-        break;  // a value of the robot: see unit()
+        break;  // values of the robot are handled in unit()
     }
   }
   if (biased) {

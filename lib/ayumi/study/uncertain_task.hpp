@@ -2,7 +2,8 @@
 // A task under uncertainty: from the number of a case to the values of all uncertain quantities,
 // the robot that has them, and its run. Every value is drawn from its own random numbers, which
 // depend on the seed of the study, the number of the case and the name of the value. So a case has
-// the same values under every law and in every pattern, and a new quantity changes no other one.
+// the same values under every law and in every pattern, and adding a quantity does not change the
+// values of the others.
 
 #include <cstdint>
 #include <optional>
@@ -17,14 +18,14 @@
 
 namespace ayumi {
 
-/// One value that is drawn.
+/// A value that is drawn.
 struct DrawnValue {
-  std::string name;  ///< "mass", "mass of l_foot", "push: direction"
+  std::string name;  ///< name such as "mass", "mass of l_foot" or "push: direction"
   const UncertainQuantity* quantity = nullptr;
   std::vector<int> targets;           ///< links or dofs that have this value
-  int push = -1;                      ///< index of the push that it belongs to
-  size_t own = 0;                     ///< its own normal number
-  std::optional<size_t> factor = {};  ///< the normal number of its factor
+  int push = -1;                      ///< index of the push to which it belongs
+  size_t own = 0;                     ///< number of its own normal number
+  std::optional<size_t> factor = {};  ///< number of the normal number of its factor
 };
 
 /// All random numbers of one case: independent standard normal ones, and the seed of the noise of
@@ -47,26 +48,27 @@ struct CaseResult {
 
 /// Severity from which a run has failed. Definition: larger than any COG error in m.
 inline constexpr double kFailedSeverity = 1e3;
-/// How bad a run is: the largest COG error of a run that stands [m]; runs that do not settle are
-/// worse than all of these, and falls are worse still, the earlier the worse.
+/// How bad a run is. For a run in which the robot stands it is the largest COG error [m]. Runs that
+/// do not settle are worse than all of these. Falls are worse still, and an earlier fall is worse
+/// than a later one.
 double severity(const CaseResult& result);
 
 class UncertainTask {
  public:
-  /// Model, series and uncertainty must outlive this object. `options` has law, profile, world and
-  /// scenario. The pushes of the uncertainty replace the scenario. Throws Error(bad_pattern) "file:
-  /// place: what" for a quantity or factor that nothing in this robot or study uses.
+  /// Model, series and uncertainty must outlive this object. `options` contains law, profile, world
+  /// and scenario. The pushes of the uncertainty replace the scenario. Throws Error(bad_pattern)
+  /// "file: place: what" for a quantity or factor that nothing in this robot or study uses.
   UncertainTask(const RobotModel& model, const CommandSeries& series,
                 const Uncertainty& uncertainty, const SimulateOptions& options);
 
   const std::vector<DrawnValue>& values() const { return values_; }
-  /// Number of independent normal numbers of a case.
+  /// The number of independent normal numbers of a case.
   size_t dimension() const { return dimension_; }
 
   CaseNumbers numbers(std::uint64_t seed, long number) const;
   /// The values of a case, in the order of values().
   std::vector<double> draw(const CaseNumbers& numbers) const;
-  /// The share of all draws of each value that is below the one of this case.
+  /// For each value, the share of all its draws that is below the value of this case.
   std::vector<double> shares(const CaseNumbers& numbers) const;
 
   /// Throws Error(bad_pattern) for a value that no robot can have, such as a negative mass. `which`
@@ -74,14 +76,15 @@ class UncertainTask {
   void check(const std::vector<double>& drawn, const std::string& which) const;
 
   /// The robot of a case, and the options of its run. The caller sets SimulateOptions::unit to the
-  /// robot. Throws as check().
+  /// robot. Throws the same errors as check().
   RobotUnit unit(const std::vector<double>& drawn) const;
   SimulateOptions options(const CaseNumbers& numbers, const std::vector<double>& drawn) const;
 
-  /// Runs a case until its end, or until the robot fell.
+  /// Runs a case until its end, or until the robot has fallen.
   CaseResult run(const CaseNumbers& numbers) const;
 
-  /// A value in words: "mass of torso: 1.032", with the name of a phase or link where it has one.
+  /// A value in words, such as "mass of torso: 1.032", with the name of a phase or link if it has
+  /// one.
   std::string value_text(size_t value, double drawn) const;
 
  private:

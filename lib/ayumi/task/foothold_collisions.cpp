@@ -20,16 +20,19 @@ namespace {
 
 using Eigen::Isometry3d;
 
-// Chosen: each cause costs up to two checks. A walk whose every step collides has one cause.
+// Largest number of footholds that are examined. Chosen: each cause costs up to two checks. A walk
+// whose every step collides has one cause.
 constexpr size_t kMostFootholds = 3;
-// Chosen: what an author writes, and what is looked for at most.
+// Grain of a change to the side, and its largest size. Chosen: the grain is what an author writes,
+// and the largest size limits the search.
 constexpr double kSideGrain = 1e-3, kMostSide = 0.2;  // [m]
 constexpr double kDegree = EIGEN_PI / 180;            // [rad]
-constexpr double kRadianGrain = 0.01;                 // of a pattern in rad [rad]
-// Share of the width of a sole. Chosen: a step that is turned or narrowed a little too much. Feet
-// that are exchanged, or on the wrong side, overlap by most of their width.
+constexpr double kRadianGrain = 0.01;  // grain of a turn if the pattern is in rad [rad]
+// Largest overlap of the feet that is examined, as a share of the width of a sole. Chosen: the
+// overlap of a step that is turned or narrowed a little too much. Feet that are exchanged, or on
+// the wrong side, overlap by most of their width.
 constexpr double kGrazing = 0.25;
-constexpr double kRounding = 1e-9;  // Definition: of sums of decimal numbers [m], [rad]
+constexpr double kRounding = 1e-9;  // Definition: rounding of sums of decimal numbers [m], [rad]
 
 class Footholds {
  public:
@@ -95,8 +98,8 @@ class Footholds {
     return high - low;
   }
 
-  // Poses of the feet at the end of a phase, as the pattern plans them. Nothing if the pattern
-  // plans none.
+  // The clearance between the feet at the end of a phase, where the pattern plans them. Returns
+  // nothing if the pattern plans no feet there.
   std::optional<double> clearance_at_end(const Pattern& pattern, size_t phase) {
     std::array<Isometry3d, 2> soles;
     try {
@@ -116,7 +119,7 @@ class Footholds {
     return collisions_.clearance({a, b}, data_, kMostSide);
   }
 
-  // A phase of a block that repeats is written once.
+  // The pattern with a change of one phase. A phase of a block that repeats is written once.
   Pattern changed(size_t phase, const Change& change) const {
     Pattern pattern = task_.pattern;
     const std::string pointer = pointer_of_phase(pattern, phase);
@@ -126,7 +129,8 @@ class Footholds {
     return pattern;
   }
 
-  // The report of the check for this change. Nothing if the robot cannot do the motion.
+  // The number of errors that the check finds with this change. Returns nothing if the robot cannot
+  // do the motion.
   std::optional<size_t> errors_with(const Pattern& pattern) const {
     try {
       const CommandSeries series = sample_at_servo_period(task_.robot, pattern, {}, task_.threads);
@@ -137,7 +141,8 @@ class Footholds {
     }
   }
 
-  // The first of the changes with which the feet are apart, if the check then finds fewer errors.
+  // The first of the changes with which the feet are apart, provided that the check then finds
+  // fewer errors.
   template <typename ChangeAt>
   std::optional<Remedy> first_apart(size_t phase, int count, const ChangeAt& change_at) {
     for (int n = 1; n <= count; ++n) {
@@ -153,14 +158,14 @@ class Footholds {
     return {};
   }
 
-  // The foot moved outwards, as seen from the other foot.
+  // The change that moves the foot outwards, as seen from the other foot.
   std::optional<Remedy> to_the_side(size_t phase) {
     const Swing& swing = *task_.pattern.phases[phase].swing;
     const double outwards = swing.foot == Side::left ? 1 : -1;
     const FootPlan plan(task_.robot, task_.pattern);
     const Isometry3d stance = plan.pose(other(swing.foot), task_.pattern.phases[phase].until);
     return first_apart(phase, static_cast<int>(std::lround(kMostSide / kSideGrain)), [&](int n) {
-      // Number of whole grains beyond the written value, outwards.
+      // Number of whole grains beyond the written value, counted outwards.
       const double from = swing.step ? outwards * swing.step->side : 0;
       const double to = kSideGrain * (std::floor(from / kSideGrain + kRounding) + n);
       const Eigen::Vector3d shift = (to - from) * outwards * stance.linear().col(1);
@@ -179,7 +184,7 @@ class Footholds {
     });
   }
 
-  // The foot turned less against the other foot than the pattern says.
+  // The change that turns the foot less relative to the other foot than the pattern says.
   std::optional<Remedy> less_turned(size_t phase) {
     const Swing& swing = *task_.pattern.phases[phase].swing;
     if (!swing.step || std::abs(swing.step->turn) < kRounding) return {};
@@ -238,7 +243,7 @@ std::vector<Mistake> likely_causes(const Task& task, const CheckOptions& options
            foothold.place.starts_with(mistakes[0].place);
   };
   std::erase_if(causes, explained);
-  // A collision of the feet is named after a cause that explains everything.
+  // A collision of the feet is only named after a cause that explains everything.
   const bool enough = std::any_of(mistakes.begin(), mistakes.end(),
                                   [](const Mistake& mistake) { return mistake.explains_all; });
   causes.insert(enough ? causes.begin() : causes.end(), mistakes.begin(), mistakes.end());

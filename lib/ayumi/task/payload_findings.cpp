@@ -13,7 +13,8 @@ namespace ayumi {
 
 namespace {
 
-// Steps of the bisection for the mass that a motion bears. Chosen: 3 % of the payload.
+// Number of steps of the bisection for the mass that a motion bears. Chosen: the result is exact to
+// 3 % of the payload.
 constexpr int kMassSteps = 5;
 
 std::string mass_text(double mass) { return text::brief(mass, 4) + " kg"; }
@@ -33,11 +34,11 @@ std::vector<Finding> errors_with(const Task& task, const CheckOptions& options,
   return errors_brought_by(carried, check_consistency(loaded, task.series, options), plain);
 }
 
-// A payload that causes errors, and the largest mass that causes none.
+// A payload that causes errors.
 struct HeavyPayload {
   size_t which = 0;
   std::vector<Finding> errors;
-  double bearable = 0;  ///< [kg]
+  double bearable = 0;  ///< the largest mass that causes no errors [kg]
 };
 
 std::vector<HeavyPayload> heavy_payloads(const Task& task, const CheckOptions& options,

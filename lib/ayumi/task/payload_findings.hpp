@@ -11,13 +11,14 @@
 
 namespace ayumi {
 
-/// Adds to the report of the motion alone the errors that come with payloads; each says in `where`
+/// Adds to the report of the motion alone the errors that come with payloads. Each says in `where`
 /// what is carried, and in `hint` how heavy it may be. Returns the payloads that are too heavy,
 /// with the same words.
 std::vector<Mistake> judge_payloads(const Task& task, const CheckOptions& options,
                                     ConsistencyReport& report);
 
-/// As judge() of task.hpp. Also returns the payloads that are too heavy, if they are wanted.
+/// Does the same as judge() of task.hpp. It also returns the payloads that are too heavy, if they
+/// are wanted.
 Judgement judge(const Task& task, const CheckOptions& options, std::vector<Mistake>* payloads);
 
 }  // namespace ayumi

@@ -21,7 +21,7 @@ using Eigen::Vector3d;
 
 using Feet = std::array<bool, 2>;
 
-// By sample: the first sample of the next planned contacts, or -1.
+// For each sample, the first sample of the next planned contacts, or -1.
 std::vector<int> next_planned(const SimulationLog& log) {
   std::vector<int> next(log.samples.size(), -1);
   for (int k = static_cast<int>(log.samples.size()) - 2; k >= 0; --k) {

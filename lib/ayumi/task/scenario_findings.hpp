@@ -1,6 +1,6 @@
 #pragma once
-// What the check leaves out of the verdict because it is a disturbance, and what it would find with
-// it.
+// Says what the check leaves out of the verdict because it is a disturbance, and what the check
+// would find with it.
 
 #include <string>
 #include <vector>

@@ -30,7 +30,7 @@ size_t rows_ahead(const SimulationLog& log) {
   return log.controller && log.controller->kind != ControllerKind::none ? 1 : 0;
 }
 
-// The rate of the posture sent(k), computed from its neighbours.
+// The rate of the posture sent(k), computed from the neighbouring postures.
 template <class Sent>
 Eigen::VectorXd sent_rate(const Sent& sent, size_t k, size_t last, double dt) {
   const size_t before = k > 0 ? k - 1 : 0, after = std::min(k + 1, last);
@@ -90,7 +90,7 @@ ReferenceTrajectory table_of_postures(const RobotModel& model, const std::string
   std::vector<ReferenceRow>& rows = table.rows;
   const size_t ahead = rows_ahead(about), last = rows.empty() ? 0 : rows.size() - 1;
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(lead.size());
-  Eigen::VectorXd before, here;  // postures of the rows k - 1 and k, whose targets are made
+  Eigen::VectorXd before, here;  // postures of the rows k - 1 and k, for which targets are computed
   for (size_t k = 0; k < rows.size(); ++k) {
     before = std::exchange(here, rows[k].theta);
     const auto posture = [&](size_t i) -> const Eigen::VectorXd& {
@@ -99,7 +99,7 @@ ReferenceTrajectory table_of_postures(const RobotModel& model, const std::string
     const auto sent = [&](size_t i) -> const Eigen::VectorXd& {
       return posture(std::min(i + ahead, last));
     };
-    // Adding 0 makes 0 of a target of -0, as a sag of 0 does.
+    // Adding 0 turns a target of -0 into 0, as a sag of 0 does.
     rows[k].theta = sent(k) + lead.cwiseProduct(sent_rate(sent, k, last, about.dt)) + zero;
   }
   return table;

@@ -1,7 +1,7 @@
 #pragma once
-// Tables of servo targets, made for the servos of a profile: the plain posture, the posture ahead
-// by the lag of the servo (motion/servo_feedforward), or this and the offset against its sag under
-// the torque of the motion (control/torque_feedforward).
+// Tables of servo targets, made for the servos of a profile. A table holds the plain posture, or
+// the posture ahead by the lag of the servo (motion/servo_feedforward), or this with the offset
+// against the servo's sag under the torque of the motion (control/torque_feedforward).
 
 #include <string>
 #include <vector>
@@ -14,29 +14,31 @@
 namespace ayumi {
 
 enum class ServoContent { ideal, lead, lead_and_sag };
-/// "ideal", "lead", "lead+sag"
+/// The name of the content: "ideal", "lead" or "lead+sag".
 std::string name_of(ServoContent content);
-/// Throws Error(usage) for an unknown name.
+/// The content of that name. Throws Error(usage) for an unknown name.
 ServoContent servo_content(const std::string& name);
 
-/// What a table says of the servo that it was made for.
+/// What a table says about the servo that it was made for.
 TableServo table_servo(const RobotModel& model, const std::string& profile, ServoContent content);
 
 /// The pattern as it is, one row per sample.
 ReferenceTrajectory table_of_series(const RobotModel& model, const std::string& profile,
                                     const CommandSeries& series, ServoContent content);
 
-/// What a table of a run with its posture or with the lead is made of, taken sample by sample: the
-/// rows have the reference posture in place of the target. The rest is to be filled in.
+/// Appends the row of one sample for a table of a run with its posture or with the lead. The row
+/// has the reference posture instead of the target. The rest is to be filled in later.
 void append_posture(const SimulationSample& sample, ReferenceTrajectory& postures);
 
-/// The postures of a run, ahead by the lag of the servos of the profile, as table_of_log() with
-/// `lead` makes them. `about` is the log of the run, whose samples are not needed.
+/// The table of the postures of a run, ahead by the lag of the servos of the profile, as
+/// table_of_log() with `lead` makes it. `about` is the log of the run, whose samples are not
+/// needed.
 ReferenceTrajectory table_of_postures(const RobotModel& model, const std::string& profile,
                                       const SimulationLog& about, ReferenceTrajectory postures);
 
-/// The reference posture of a run. Its rates are differences of neighbouring samples. With the sag
-/// and the profile of the run, these are the targets that the servos received in the run.
+/// The table of the reference posture of a run. Its rates are differences of neighbouring samples.
+/// With the sag and the profile of the run, these are the targets that the servos received in the
+/// run.
 ReferenceTrajectory table_of_log(const RobotModel& model, const std::string& profile,
                                  const SimulationLog& log, ServoContent content);
 

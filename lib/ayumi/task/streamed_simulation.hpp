@@ -8,7 +8,8 @@
 
 namespace ayumi {
 
-/// As simulate() of a task, but each sample goes to `sink`, and the log has none.
+/// Does the same as simulate() of a task, but each sample goes to `sink`, and the log has no
+/// samples.
 SimulationLog simulate_streamed(const Task& task, const SimulateOptions& options,
                                 const Simulator::SampleSink& sink, const Progress& progress = {},
                                 const std::string& command_line = "");

@@ -43,7 +43,7 @@ void refuse_unknown_places(const Pattern& pattern, const RobotModel& robot) {
   }
 }
 
-// A wrong name is wrong use of the library; where a file contains it, it is bad input.
+// A wrong name in a call is wrong use of the library; in a file, it is bad input.
 template <class Check>
 void with_place(const SourcePlace& place, const Check& check) {
   try {

@@ -113,14 +113,15 @@ struct LoopGap {
   double posture = 0;  ///< largest difference of a joint [rad, m]
   double base = 0;     ///< difference of the base's place [m]
   double rate = 0;     ///< largest difference of a joint's rate [rad/s, m/s]
-  std::string joint;   ///< the joint that differs most
+  std::string joint;   ///< name of the joint that differs most
   bool closed = false;
 };
 /// Throws Error(bad_pattern) where a foot is in the air at an end.
 LoopGap loop_gap(const RobotModel& model, const MotionPart& motion);
 
 struct Ramps {
-  double in = 1, out = 1;  ///< [s]; 0: none
+  /// Duration of the transition at the beginning and at the end [s]; 0: no transition.
+  double in = 1, out = 1;
   std::string posture = "home";
 };
 /// The motion with transitions from a named posture to its first posture and back at the end, as a

@@ -12,12 +12,12 @@
 namespace ayumi {
 
 struct GaitCycle {
-  long begin = 0, end = 0;       ///< first and last sample
-  Side first = Side::right;      ///< foot that swings first
-  Eigen::Vector2d displacement;  ///< displacement of the robot in one cycle, in its heading at the
-                                 ///< beginning [m]
-  double turn = 0;               ///< turn in one cycle, left positive [rad]
-  LoopGap gap;                   ///< difference between the end and the beginning
+  long begin = 0, end = 0;   ///< first and last sample
+  Side first = Side::right;  ///< foot that swings first
+  /// Displacement of the robot in one cycle, relative to its heading at the beginning [m].
+  Eigen::Vector2d displacement;
+  double turn = 0;  ///< turn in one cycle, left positive [rad]
+  LoopGap gap;      ///< difference between the end and the beginning
 };
 
 /// The cycle that begins before swing `swing`, counted from 0. Throws Error(bad_pattern) where the

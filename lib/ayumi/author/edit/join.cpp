@@ -154,7 +154,7 @@ std::vector<RobotState> transition(const RobotModel& model, const RobotState& fr
   return states;
 }
 
-// The pattern as a table of posture and base; COG, ZMP and f_z come from the full model.
+// The pattern as a table of posture and base; its COG, ZMP and f_z come from the full model.
 Pattern plain(const RobotModel& model, const Pattern& pattern, const CommandSeries& series,
               const std::string& table, size_t rows) {
   Pattern result = baked(model, pattern, series, table);
@@ -184,10 +184,12 @@ bool has_keys(const Pattern& pattern, Side side) {
   });
 }
 
-// A foot has keys or swings, but not both. Where one part has keys of a foot, the swings of this
-// foot in the other part become keys along the same way. The posture is that of the table.
+// A foot has keys or swings, but not both. If one of the two parts has keys of a foot, the swings
+// of this foot in the other part become keys along the same path. The posture stays that of the
+// table.
 void write_swings_as_keys(const RobotModel& model, Side side, Pattern& pattern) {
-  constexpr int kKeys = 16;  // of one swing; chosen: its curve between them differs by below 0.1 mm
+  // Keys of one swing; chosen: between them, its curve differs by less than 0.1 mm.
+  constexpr int kKeys = 16;
   const FootPlan feet(model, pattern);
   std::vector<Keyframe> keys = std::move(pattern.keyframes);
   double begin = 0;
@@ -330,11 +332,11 @@ struct KeyedTracks {
   InverseKinematics legs;
   PatternTracks tracks;
   std::set<std::string> joints, weights;
-  std::map<std::string, bool> hands;  ///< by link; true: a target leads the link at the end
+  std::map<std::string, bool> hands;  ///< for each hand, true if a target leads the link at the end
   std::optional<bool> gaze;
 };
 
-// The keys that keep every track of `all` at the value that it has at time t of `of`.
+// The keys that keep every track of `all` at the value that this track has in `of` at time t.
 Keyframe keys_at(const RobotModel& model, const KeyedTracks& of, double t, const KeyedTracks& all) {
   Keyframe key;
   key.t = t;
@@ -513,7 +515,7 @@ LoopGap loop_gap(const RobotModel& model, const MotionPart& motion) {
 
 namespace {
 
-// The posture, standing with its COG between the present places of the feet.
+// The robot in this posture, with its COG between the present places of the feet.
 RobotState standing_at(const RobotModel& model, const Pattern& pattern, const std::string& posture,
                        const RobotState& near) {
   RobotState state = near;

@@ -1,6 +1,7 @@
-// Edits of keyframes, and a step that alternates with its mirror image. The k-th repetition lies
-// where the foot that carries has come to: with S the pose of this foot at the beginning, of the
-// pattern or of its image, and S_k where it stands then, points move by S_k S^-1.
+// Edits of keyframes, and a step that alternates with its mirror image. Each repetition begins
+// where the supporting foot stands at that time: with the pose S of this foot at the beginning of
+// the pattern (or of its mirror image) and its pose S_k at the beginning of repetition k, points
+// move by S_k S^-1.
 #include <algorithm>
 #include <cmath>
 
@@ -62,7 +63,8 @@ Pattern with_key_edited(const RobotModel& model, const Pattern& pattern, const K
     alone.keyframes = {key};
     alone = mirrored(model, alone);
     key = alone.keyframes.front();
-    // The image of a posture that is not symmetric is not the posture of this name.
+    // The mirror image of a posture that is not symmetric is not the posture of this name, so its
+    // angles are written instead.
     if (key.posture && alone.postures != pattern.postures) {
       const auto angles = posture_joints(model, alone, *key.posture, key.place);
       key.posture.reset();

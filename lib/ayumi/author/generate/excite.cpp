@@ -1,8 +1,9 @@
-// Motions that tell the constants of servos apart. The robot stands on one foot, because two feet
-// may press against each other with forces that nothing shows. The leg that stands carries the
-// weight in slow sweeps, up and down, to the sides, ahead and back. The other leg moves its foot in
-// the air: slow sweeps, whose turns show friction, a chirp and quick steps, which tell delay from
-// damping. Joints that are not of a leg make such motions alone, on both feet.
+// Motions by which the constants of servos can be told apart. The robot stands on one foot, because
+// two feet may press against each other with forces that no sensor measures. The supporting leg
+// carries the weight in slow sweeps: up and down, to the sides, forward and back. The other leg
+// moves its foot in the air: slow sweeps, whose turning points show friction, then a chirp and
+// quick steps, by which delay and damping can be told apart. Joints that do not belong to a leg
+// make such motions separately, while the robot stands on both feet.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -29,30 +30,32 @@ constexpr double kPause = 0.2;
 // Time in which the weight moves from both feet to one foot, and in which a foot is lifted [s].
 // Chosen: as in a slow walk.
 constexpr double kShiftTime = 1.2, kLiftTime = 0.5;
-// Rest on both feet between two stands on one [s]. Chosen: the motors then stay within what they
-// can bear for long.
+// Rest on both feet between two times on one foot [s]. Chosen: the motors then stay within the
+// torque that they can hold for a long time.
 constexpr double kRestTime = 2.2;
-// Half periods of the chirp [s] and the time of a step. Chosen: up to 6 Hz, and steps as quick as a
-// minimum-jerk curve of some degrees within the speed of small servos allows.
+// Half periods of the chirp [s] and the time of a step. Chosen: the chirp goes up to 6 Hz, and a
+// step is as quick as the speed of small servos allows for a minimum-jerk curve of some degrees.
 constexpr std::array<double, 8> kChirp = {0.45, 0.35, 0.28, 0.22, 0.18, 0.15, 0.11, 0.08};
 constexpr double kStepTime = 0.07;
-// Amplitude of the steps in that of the sweep. Chosen: a joint then reaches half of the speed of
-// small servos. The chirp's acceleration is about the same at all its frequencies.
+// Amplitude of the steps as a share of the amplitude of the sweep. Chosen: a joint then reaches
+// half of the speed of small servos. The chirp has about the same acceleration at all its
+// frequencies.
 constexpr double kStepShare = 0.33;
-// Largest angle of joints that move alone, of the foot in the air about each axis [rad], and what
-// is kept from the limits of a joint [rad]. Chosen: some thousand counts, without reaching for
-// other links.
+// Largest angle of joints outside the legs, and largest angle of the foot in the air about each
+// axis [rad]. Chosen: some thousand counts, without reaching other links.
 constexpr double kJointAngle = 0.25;
 constexpr double kFootAngle = 0.1;
-// Roll of the foot in the air, outer edge up, as its leg leans [rad]. Chosen: the middle of the
-// lean with which the robot puts its weight on one foot, so that the ankle stays within its range.
+// Roll of the foot in the air while its leg leans, with the outer edge up [rad], and the distance
+// that joints keep from their limits [rad]. Chosen: the roll is the middle of the lean with which
+// the robot puts its weight on one foot, so that the ankle stays within its range.
 constexpr double kFootLean = 0.17;
 constexpr double kLimitMargin = 0.05;
 // Distances by which the foot in the air moves forward, sideways and up, and the height to which it
-// is lifted, for HOAP-1 [m]. Chosen: without touching the other leg or the ground.
+// is lifted, for HOAP-1 [m]. Chosen: it does not touch the other leg or the ground.
 constexpr double kAhead = 0.02, kAside = 0.012, kUp = 0.012, kLift = 0.03;
-// Share of the sole over which the ZMP sweeps, and the depth of the squat on one leg in that of a
-// squat. Chosen: half, for the other half is needed against disturbances.
+// Share of the sole over which the ZMP sweeps, and depth of the squat on one leg as a share of the
+// depth of a squat on both. Chosen: about half, because the other half is needed against
+// disturbances.
 constexpr double kSoleShare = 0.4, kDepthShare = 0.5;
 
 using SetKey = std::function<void(Keyframe&, double)>;
@@ -98,8 +101,8 @@ class Motion {
 // The motions on one foot. Each of them is short, so that no motor gets hot.
 enum class OnOneFoot { squat, sway_ahead, sway_aside, swing_ahead, swing_aside };
 
-// The robot stands on the foot `side`, and then on both feet again. Slow sweeps of the leg that
-// stands go with slow sweeps of the foot in the air; this foot makes its chirps and steps alone.
+// The robot stands on the foot `side`, and then on both feet again. While the supporting leg makes
+// slow sweeps, the foot in the air makes slow sweeps, too; only this foot makes chirps and steps.
 void add_stand_on(const RobotModel& model, PatternBuilder& writer, double& t, Side side,
                   OnOneFoot what, double height, double scale) {
   Pattern standing;
@@ -146,7 +149,7 @@ void add_stand_on(const RobotModel& model, PatternBuilder& writer, double& t, Si
     if (what == OnOneFoot::sway_ahead) point.x() += kSoleShare * scale * half.x() * u;
     if (what == OnOneFoot::sway_aside) point.y() += kSoleShare * scale * half.y() * u;
     zmp(key, point);
-    // Only downwards, because the legs may be nearly straight.
+    // The squat goes only downwards, because the legs may be nearly straight.
     const double down =
         what == OnOneFoot::squat ? 0.5 * (1 - elementary::cos(M_PI * std::abs(u))) : 0.0;
     key.cog_height = height - depth * down;
@@ -160,8 +163,8 @@ void add_stand_on(const RobotModel& model, PatternBuilder& writer, double& t, Si
   writer.add(t += kShiftTime, first);
 }
 
-// Place of each joint that does not belong to a leg in its own chain. Joints with the same place
-// move together.
+// For each joint that does not belong to a leg: its number in its own chain. Joints with the same
+// number move together.
 std::map<int, std::vector<int>> other_joints(const RobotModel& model) {
   std::map<int, std::vector<int>> by_place;
   for (int j = 0; j < model.dof_count(); ++j) {
@@ -217,7 +220,7 @@ Pattern excite_pattern(const RobotModel& model, double scale, double stature) {
         half = std::min(half, room);
         center = std::clamp(center, dof.lower + margin + half, dof.upper - margin - half);
       }
-      // A joint that comes back to its limit would need a target of its servo beyond it.
+      // A joint that comes back to its limit would need a servo target beyond this limit.
       if (dof.limited) rest = std::clamp(rest, dof.lower + margin, dof.upper - margin);
       ranges.push_back({dof.name, center, half, rest});
     }

@@ -1,7 +1,8 @@
-// Footholds are relative to a centre that moves along the walk: step i moves it by the stride (and
-// sideways with the leading foot) along the mean heading of the step and turns it, and the swing
-// foot lands beside it at its home distance. The ZMP rests long enough at both ends for the COG to
-// start from rest: a bounded motion anticipates by exp(-w t).
+// Footholds are relative to a centre that moves along the walk. Step i moves the centre by the
+// stride along the mean heading of the step (and sideways with the leading foot) and turns it. The
+// swing foot lands beside the centre at its home distance. The ZMP rests so long at both ends that
+// the COG can start from rest: a bounded motion begins before the ZMP moves, by an amount that
+// decreases with exp(-w t).
 #include "ayumi/author/generate/generate.hpp"
 
 #include <algorithm>
@@ -36,8 +37,9 @@ constexpr double kStairHalfWidth = 1;
 /// the other foot is on the next stair.
 constexpr double kStairLeg = 0.905;
 
-/// Time in which the ZMP rests at both ends, and then moves onto the first foot, in units of
-/// 1/omega. Chosen: the anticipation of the COG has fallen to exp(-4.5) = 1 % at the ends.
+/// Time in which the ZMP rests at both ends, and time in which it then moves onto the first foot,
+/// in units of 1/omega. Chosen: the motion of the COG ahead of the ZMP has fallen to exp(-4.5) = 1
+/// % at the ends.
 constexpr double kZmpRest = 4.5, kZmpShift = 2.6;
 
 /// Distance by which the sole reaches forward of its frame and behind it [m].
@@ -93,7 +95,7 @@ void check_parameters(const RobotModel& model, const WalkParameters& p) {
   if (p.rise != 0) check_stairs(model, p);
   require_range("walk", "steps", p.steps, 1, 10000, "");
   require_range("walk", "stride", p.stride, -0.6 * leg, 0.6 * leg, " m");
-  // Legs swing as pendulums do: a robot of a quarter of HOAP-1's size steps twice as fast.
+  // Legs swing as pendulums do: a robot of a quarter of HOAP-1's size can step twice as fast.
   const double fastest = 0.2 * std::min(1.0, std::sqrt(size_beside_hoap1(model)));
   require_range("walk", "period", p.period, 0.01 * std::floor(100 * fastest), 10, " s");
   require_range("walk", "double_support", p.double_support, 0.05, 0.6, "");
@@ -282,7 +284,7 @@ Pattern walk_in_parts(const RobotModel& model, const std::vector<WalkParameters>
   double yaw = 0;
   if (first.rise != 0) {
     pattern.world = stairs(model, first);
-    // Between soles of different height the height of the ZMP is a convention.
+    // Between soles of different height, the height of the ZMP is a matter of convention.
     pattern.tolerances["zmp_residual"] = to_tenth_millimetre(std::max(0.005, 0.6 * first.rise));
   }
   for (size_t part = 0; part < parts.size(); ++part) {

@@ -9,16 +9,19 @@ namespace ayumi {
 struct WalkParameters {
   int steps = 8;                 ///< steps that move; one more step brings the feet together
   double stride = 0.03;          ///< forward distance between successive footholds [m]
-  double period = 0.55;          ///< of one step: single and double support [s]
-  double double_support = 0.18;  ///< fraction of the period
-  double lift = 0.015;           ///< of the swing sole [m]
-  double cog_height = 0;         ///< 0: of the home posture, lower if its legs are straight [m]
-  double turn = 0;               ///< yaw change per step, left positive [rad]
-  double side = 0;               ///< sideways distance per pair of steps, left positive [m]
-  double rise = 0;               ///< height of a stair [m]; not 0: every stride leads to the next
-                                 ///< stair, the other foot follows, and the world has the stairs
-  double zmp_inwards = 0;        ///< of the ZMP from the middle of the standing sole towards the
-                                 ///< other foot, so that the COG sways less [m]
+  double period = 0.55;          ///< duration of one step, single and double support together [s]
+  double double_support = 0.18;  ///< double support as a fraction of the period
+  double lift = 0.015;           ///< height to which the swing sole is lifted [m]
+  /// Height of the COG [m]; 0: that of the home posture, or less if its legs are straight.
+  double cog_height = 0;
+  double turn = 0;  ///< yaw change per step, left positive [rad]
+  double side = 0;  ///< sideways distance per pair of steps, left positive [m]
+  /// Height of a stair [m]; if not 0, every stride leads to the next stair, the other foot follows,
+  /// and the world has the stairs.
+  double rise = 0;
+  /// Distance by which the ZMP is moved from the middle of the standing sole towards the other
+  /// foot, so that the COG sways less [m].
+  double zmp_inwards = 0;
   Side first_swing = Side::right;
 };
 
@@ -40,15 +43,16 @@ Pattern stand_pattern(const RobotModel& model, double duration, double cog_heigh
 
 /// The COG moves to and fro over both feet; every part starts and ends at rest.
 struct SwayParameters {
-  double side = 0.02;   ///< to either side of the middle [m]
-  double forward = 0;   ///< to the front and back of the middle [m]
-  double period = 2.0;  ///< of one to and fro [s]
+  double side = 0.02;   ///< distance to either side of the middle [m]
+  double forward = 0;   ///< distance to the front and back of the middle [m]
+  double period = 2.0;  ///< duration of one movement to and fro [s]
   int cycles = 2;
-  double cog_height = 0;  ///< 0: starting_height() [m]
+  double cog_height = 0;  ///< height of the COG; 0: starting_height() [m]
 };
 SwayParameters sway_defaults(const RobotModel& model);
 
-/// COG keys: the middle, left (front), right (back), the middle. Throws as walk_pattern.
+/// The pattern has COG keys: the middle, left (front), right (back), the middle. Throws as
+/// walk_pattern.
 Pattern sway_pattern(const RobotModel& model, const SwayParameters& parameters);
 
 /// Half of the width of the narrower sole [m].
@@ -60,24 +64,24 @@ double starting_height(const RobotModel& model);
 
 /// The COG moves down and up over both feet.
 struct SquatParameters {
-  double depth = 0.03;  ///< below the home posture's COG [m]
-  double period = 2.0;  ///< of one cycle without the hold [s]
+  double depth = 0.03;  ///< depth below the home posture's COG [m]
+  double period = 2.0;  ///< duration of one cycle without the hold [s]
   double hold = 0.3;    ///< time at the lowest point [s]
   int cycles = 2;
-  double cog_height = 0;  ///< at the top; 0: starting_height() [m]
+  double cog_height = 0;  ///< height of the COG at the top; 0: starting_height() [m]
 };
 SquatParameters squat_defaults(const RobotModel& model);
 
-/// COG height keys; the horizontal COG is solved. Throws as walk_pattern.
+/// The pattern has keys of the COG height; the horizontal COG is solved. Throws as walk_pattern.
 Pattern squat_pattern(const RobotModel& model, const SquatParameters& parameters);
 
 /// The COG goes down as if to sit on a seat and stays there, or comes up from there. The trunk
 /// leans forward and comes back during this time.
 struct SeatParameters {
-  double depth = 0.05;    ///< below the standing COG [m]
-  double lean = 0.35;     ///< of the trunk half-way [rad]
-  double period = 1.5;    ///< of the motion [s]
-  double cog_height = 0;  ///< standing; 0: starting_height() [m]
+  double depth = 0.05;    ///< depth below the standing COG [m]
+  double lean = 0.35;     ///< lean of the trunk half-way [rad]
+  double period = 1.5;    ///< duration of the motion [s]
+  double cog_height = 0;  ///< height of the standing COG; 0: starting_height() [m]
 };
 SeatParameters seat_defaults(const RobotModel& model);
 Pattern sit_pattern(const RobotModel& model, const SeatParameters& parameters);
@@ -86,10 +90,10 @@ Pattern rise_pattern(const RobotModel& model, const SeatParameters& parameters);
 /// The trunk leans forward and comes back. The COG goes down by as much as it does when only the
 /// trunk moves.
 struct BowParameters {
-  double angle = 0.5;     ///< of the trunk [rad]
-  double period = 2.4;    ///< down and up without the hold [s]
+  double angle = 0.5;     ///< angle by which the trunk leans [rad]
+  double period = 2.4;    ///< duration of both movements without the hold [s]
   double hold = 0.5;      ///< time at the lowest point [s]
-  double cog_height = 0;  ///< standing; 0: starting_height() [m]
+  double cog_height = 0;  ///< height of the standing COG; 0: starting_height() [m]
 };
 BowParameters bow_defaults(const RobotModel& model);
 Pattern bow_pattern(const RobotModel& model, const BowParameters& parameters);
@@ -98,8 +102,8 @@ Pattern bow_pattern(const RobotModel& model, const BowParameters& parameters);
 struct WaveParameters {
   Side side = Side::right;
   int cycles = 3;
-  double period = 0.6;    ///< of one to and fro [s]
-  double cog_height = 0;  ///< 0: starting_height() [m]
+  double period = 0.6;    ///< duration of one movement to and fro [s]
+  double cog_height = 0;  ///< height of the COG; 0: starting_height() [m]
 };
 WaveParameters wave_defaults(const RobotModel& model);
 /// Throws as walk_pattern, and when no arm of three joints reaches beside the head.
@@ -109,10 +113,10 @@ Pattern wave_pattern(const RobotModel& model, const WaveParameters& parameters);
 /// its place.
 struct KickParameters {
   Side side = Side::right;
-  double length = 0.04;   ///< ahead of its place [m]
-  double height = 0.03;   ///< above the ground when it kicks [m]
-  double period = 1.6;    ///< of the swing [s]
-  double cog_height = 0;  ///< 0: starting_height() [m]
+  double length = 0.04;   ///< distance of the kick ahead of the foot's place [m]
+  double height = 0.03;   ///< height of the foot above the ground when it kicks [m]
+  double period = 1.6;    ///< duration of the swing [s]
+  double cog_height = 0;  ///< height of the COG; 0: starting_height() [m]
 };
 KickParameters kick_defaults(const RobotModel& model);
 Pattern kick_pattern(const RobotModel& model, const KickParameters& parameters);
@@ -122,19 +126,20 @@ Pattern kick_pattern(const RobotModel& model, const KickParameters& parameters);
 /// all amplitudes, `stature` a factor on the COG height. Throws as walk_pattern.
 Pattern excite_pattern(const RobotModel& model, double scale = 1, double stature = 1);
 
-/// Stoop, lift-off, flight, touchdown and settling, `times` times without a rest between.
+/// A jump has a stoop, lift-off, flight, touchdown and settling; with `times` jumps there is no
+/// rest between them.
 struct JumpParameters {
-  double height = 0.03;      ///< of the COG above ref z_G, the height of lift-off and landing [m]
-  double stoop = 0.03;       ///< below ref z_G, before and after [m]
+  double height = 0.03;  ///< rise of the COG above ref z_G, its height at lift-off and landing [m]
+  double stoop = 0.03;   ///< depth of the COG below ref z_G before and after a flight [m]
   double cog_height = 0.22;  ///< ref z_G above the soles [m]
   double forward = 0;        ///< length of each jump [m]
   int times = 1;
 };
 JumpParameters jump_defaults(const RobotModel& model);
 
-/// COG height keys at the lowest points, at lift-off and at touchdown, and foot keys for a jump
-/// forward; the flight is the parabola. Throws as walk_pattern, and when no push within the stoop
-/// reaches the height.
+/// The pattern has keys of the COG height at the lowest points, at lift-off and at touchdown, and
+/// foot keys for a jump forward; the flight is the parabola. Throws as walk_pattern, and if no push
+/// within the stoop reaches the height.
 Pattern jump_pattern(const RobotModel& model, const JumpParameters& parameters);
 
 }  // namespace ayumi

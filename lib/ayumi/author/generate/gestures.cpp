@@ -1,5 +1,5 @@
-// Gestures. Each part is minimum jerk with rest at both ends; the motion starts and ends with the
-// COG over the middle of the feet, or is solved from ZMP keys there.
+// Gestures. Each part is minimum jerk with rest at both ends. The motion starts and ends with the
+// COG over the middle of the feet, or its COG is solved from ZMP keys there.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -182,7 +182,7 @@ Pattern seat_pattern(const RobotModel& model, const char* name, const SeatParame
   first.zmp = ZmpKey{ZmpKey::Place::center, Vector2d::Zero()};
   writer.add(0, first);
   writer.add(rest, height_and_pitch(from, 0));
-  // The height has no key half-way, so the movement has only one part.
+  // The height has no key half-way, so that it changes in one movement.
   Keyframe middle;
   middle.torso = height_and_pitch(0, p.lean).torso;
   writer.add(rest + 0.5 * p.period, middle);
@@ -267,8 +267,8 @@ Pattern wave_pattern(const RobotModel& model, const WaveParameters& p) {
        b = model.bodies()[static_cast<size_t>(b)].parent)
     length += model.bodies()[static_cast<size_t>(b)].placement.translation().norm();
   // The two ends of a wave, in lengths of the arm from the shoulder: ahead, outwards, up. Chosen:
-  // beside the head, within reach of arms of three joints and clear of the head; where the arm
-  // cannot be raised so far, lower and farther ahead.
+  // beside the head, within reach of arms of three joints and clear of the head. If the arm cannot
+  // be raised so far, the places further down the list are lower and farther ahead.
   constexpr std::array<std::array<std::array<double, 3>, 2>, 3> kPlaces = {
       {{{{0.3, 0.35, 0.65}, {0.3, 0.6, 0.5}}},
        {{{0.6, 0.3, 0.3}, {0.5, 0.6, 0.2}}},
@@ -369,7 +369,7 @@ Pattern kick_pattern(const RobotModel& model, const KickParameters& p) {
     Keyframe key;
     Foothold foot;
     const Vector3d moved = place * Vector3d(ahead, 0, up);
-    // Rounding errors of the kinematics beside the place where the foot stands [m, rad].
+    // Removes rounding errors of the kinematics from the place where the foot stands [m, rad].
     const auto without_rounding = [](double x) { return std::round(1e9 * x) / 1e9; };
     for (int i = 0; i < 3; ++i)
       foot.position[i] = up == 0 ? without_rounding(moved[i]) : to_tenth_millimetre(moved[i]);

@@ -20,7 +20,7 @@ namespace {
 /// Fraction of the stoop by which the COG may sink before it rises in a push. Chosen: small
 /// compared with the stoop.
 constexpr double kSink = 0.02;
-/// Time of standing at both ends, in units of 1/omega. Chosen: as kZmpRest of the walk.
+/// Time of standing at both ends, in units of 1/omega. Chosen: the same as kZmpRest of the walk.
 constexpr double kStanding = 4.5;
 /// Time of stooping, and of rising after the landing, in units of 1/omega. Chosen: slow enough for
 /// a COG that rests over the feet.

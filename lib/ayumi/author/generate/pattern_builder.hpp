@@ -8,7 +8,8 @@ namespace ayumi {
 double to_millisecond(double t);
 double to_tenth_millimetre(double x);
 
-/// Throws Error(usage) that names a parameter of the generator `pattern` out of its range.
+/// Throws Error(usage) that names the parameter if a parameter of the generator `pattern` is out of
+/// its range.
 void require_range(const char* pattern, const char* name, double value, double low, double high,
                    const char* unit);
 
@@ -25,7 +26,7 @@ double size_beside_hoap1(const RobotModel& model);
 /// Adds keys and phases to a pattern. Times are rounded to the millisecond.
 struct PatternBuilder {
   Pattern& pattern;
-  double t = 0;  ///< end of the last phase [s]
+  double t = 0;  ///< time at which the last phase ends [s]
 
   void key(double at, ZmpKey::Place place);
   void add(double at, Keyframe key);

@@ -20,31 +20,32 @@ namespace {
 // Thresholds of the detection, between the speeds and heights of standing feet and those of swings.
 
 /// Largest relative speed of standing feet [m/s]. Chosen: a seventh of the mean speed of a swing of
-/// the generated walk (60 mm in 0.45 s). Half: contact 3 of the imported walk begins at 1.553
-/// s, not 1.543 s; twice: at 1.527 s.
+/// the generated walk (60 mm in 0.45 s). With half of the value, contact 3 of the imported walk
+/// begins at 1.553 s instead of 1.543 s; with twice, at 1.527 s.
 constexpr double kRestSpeed = 0.020;
 /// A rotation counts as the speed of a point at this distance [m]. Derived: half the length of
 /// HOAP-1's sole (98 mm).
 constexpr double kLever = 0.05;
 /// Largest difference in height of standing feet [m]. Chosen: a fifth of the lift of the generated
-/// walk (15 mm). No measured case changes from half to twice (constants.md).
+/// walk (15 mm). No measured case changes between half and twice the value (constants.md).
 constexpr double kLevel = 0.003;
 /// At an immediate change of the supporting foot: largest speed of the feet along the ground [m/s].
 /// Chosen: twice kRestSpeed, because recorded commands compensate the compliance of loaded legs. No
-/// measured case changes from half to twice (constants.md).
+/// measured case changes between half and twice the value (constants.md).
 constexpr double kHandoverSpeed = 0.04;
 /// At such a change: time before and after it in which both feet may support [s]. Chosen: about
-/// half a step of the generated walk (0.55 s). No measured case changes from half to twice
-/// (constants.md).
+/// half a step of the generated walk (0.55 s). No measured case changes between half and twice the
+/// value (constants.md).
 constexpr double kHandoverTime = 0.3;
 /// At such a change: largest difference in height [m]. Chosen: two thirds of the lift of the
-/// generated walk (15 mm). No measured case changes from half to twice (constants.md).
+/// generated walk (15 mm). No measured case changes between half and twice the value
+/// (constants.md).
 constexpr double kHandoverHeight = 0.01;
 /// Speeds are differences over twice this time [s]. Derived: one count of a HOAP servo (8e-5 rad)
 /// at 0.3 m is then 1 mm/s, small against kRestSpeed.
 constexpr double kLook = 0.010;
 /// Shortest time with one support [s]. Chosen: a fifth of the double support of the generated walk
-/// (0.1 s). No measured case changes from half to twice (constants.md).
+/// (0.1 s). No measured case changes between half and twice the value (constants.md).
 constexpr double kShortestSupport = 0.02;
 
 double speed_between(const Isometry3d& from, const Isometry3d& to, double time) {
@@ -52,7 +53,8 @@ double speed_between(const Isometry3d& from, const Isometry3d& to, double time) 
   return ((to.translation() - from.translation()).norm() + kLever * turn.norm()) / time;
 }
 
-// +1: only the left foot supports, -1: only the right, 0: both, 2: undecided, a foot moves too low.
+// Label of each row. +1: only the left foot supports, -1: only the right foot supports, 0: both
+// support, 2: undecided, because a foot moves at too low a height.
 std::vector<int> relative_labels(const RobotModel& model, const Soles& soles, double dt) {
   const int n = static_cast<int>(soles[0].size());
   const int look = std::max(1, static_cast<int>(std::lround(kLook / dt)));
@@ -125,7 +127,7 @@ void add_handovers(const Soles& soles, double dt, std::vector<int>& labels) {
   }
 }
 
-// Vertical force that the motion of the COG needs in each row, in weights.
+// Vertical force that the motion of the COG needs in each row, as a multiple of the weight.
 std::vector<double> loads_of(const RobotModel& model, const RawMotion& motion) {
   const int n = static_cast<int>(motion.theta.rows());
   // Half of the time over which the acceleration is a mean [s]. Chosen: long against the rows of a
@@ -240,13 +242,14 @@ double cog_outside(const RobotModel& model, const RawMotion& motion, const Soles
   return -ConvexPolygon(model.sole(static_cast<Side>(foot)).polygon).margin(cog.head<2>());
 }
 
-// One foot alone carries the robot for a moment only where the COG is near it: else the ZMP would
-// be far outside of the sole. Such a moment joins the double support beside it, or its longer
-// neighbour.
+// One foot alone carries the robot for a moment only if the COG is near this foot; otherwise the
+// ZMP would be far outside of the sole. A moment for which this is not so joins the double support
+// beside it, or its longer neighbour.
 std::vector<Support> without_doubtful_moments(const RobotModel& model, const RawMotion& motion,
                                               const Soles& soles, std::vector<Support> supports) {
-  // Time with one foot that is doubtful [s]. Chosen: a quarter of the single support of the
-  // generated walk (0.45 s), and longer than what a landing with one foot first takes.
+  // Duration up to which a support by one foot is doubtful [s]. Chosen: a quarter of the single
+  // support of the generated walk (0.45 s), and longer than a landing in which one foot touches
+  // first.
   constexpr double kMoment = 0.1;
   const std::vector<Stretch> all = stretches(supports);
   for (size_t i = 0; i < all.size() && all.size() > 1; ++i) {
@@ -255,8 +258,8 @@ std::vector<Support> without_doubtful_moments(const RobotModel& model, const Raw
     if (run.support == Support::both || run.support == Support::none || rows * motion.dt > kMoment)
       continue;
     const int foot = run.support == Support::left ? 0 : 1;
-    // Distance of the COG from the sole at which one foot cannot carry it [m]. Chosen: half the
-    // width of the sole.
+    // Distance of the COG from the sole from which on one foot cannot carry it [m]. Chosen: half
+    // the width of the sole.
     Eigen::AlignedBox2d sole;
     for (const Eigen::Vector2d& corner : model.sole(static_cast<Side>(foot)).polygon)
       sole.extend(corner);
@@ -286,7 +289,8 @@ double height_of(const RobotModel& model, const RawMotion& motion, const Soles& 
 void end_swings(const RobotModel& model, const RawMotion& motion, const Soles& soles,
                 std::vector<Support>& supports) {
   // A foot this much above its place at rest has left it [m]. Chosen: above the rounding of tables.
-  // Half: contact 1 of the imported walk ends at 1.678 s, not 1.681 s; twice: at 1.683 s.
+  // With half of the value, contact 1 of the imported walk ends at 1.678 s instead of 1.681 s; with
+  // twice, at 1.683 s.
   constexpr double kAtRest = 1e-5;
   for (const Stretch& run : stretches(supports)) {
     if (run.support != Support::both) continue;
@@ -299,7 +303,7 @@ void end_swings(const RobotModel& model, const RawMotion& motion, const Soles& s
       const int middle = (run.first + run.last) / 2;
       int least = edge;
       while (least != middle && height(least + step) < height(least)) least += step;
-      if (least == middle) continue;  // the sole sinks all the time, which is a load and no swing
+      if (least == middle) continue;  // the sole sinks all the time: a load, no swing
       const double place = height(least);
       for (int k = edge; k != least && height(k) > place + kAtRest; k += step)
         supports[k] = supports[outside];

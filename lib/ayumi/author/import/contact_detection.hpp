@@ -9,12 +9,12 @@
 
 namespace ayumi {
 
-using Soles = std::array<std::vector<Eigen::Isometry3d>, 2>;  ///< frames by Side, then row
+using Soles = std::array<std::vector<Eigen::Isometry3d>, 2>;  ///< sole frames by Side, then by row
 
 /// Sole frames in the world if the motion has a base, otherwise in the base.
 Soles soles_of(const RobotModel& model, const RawMotion& motion);
 
-/// Height of the lowest corner of a sole in row k; `foot` by Side.
+/// Height of the lowest corner of a sole in row k; `foot` is the index of its Side.
 double lowest_point(const RobotModel& model, const Soles& soles, int foot, int k);
 
 /// Support by row. Standing feet do not move relative to each other; at an immediate change of the

@@ -111,7 +111,8 @@ class Grounding {
     return supports(runs_[run].support, static_cast<Side>(foot));
   }
 
-  // First both feet with their relative pose; then each new contact relative to the other foot.
+  // Places both feet first, by their relative pose, and then each new contact relative to the other
+  // foot.
   void place_feet() {
     const int k = middle(0);
     const Isometry3d right = soles_[0][k].inverse() * soles_[1][k];
@@ -232,7 +233,7 @@ class Grounding {
   const Soles soles_;
   const std::vector<Support> supports_;
   const std::vector<Stretch> runs_;
-  std::vector<std::array<Isometry3d, 2>> place_;  // by run, then Side
+  std::vector<std::array<Isometry3d, 2>> place_;  // places of the feet, by run, then by Side
 };
 
 void require_motion(const RobotModel& model, const RawMotion& motion) {
@@ -268,14 +269,15 @@ std::string movement_at(const RobotModel& model, const RawMotion& motion, Eigen:
   return speed > kRestSlide ? "the root at " + text::brief(speed, 3) + " m/s" : "";
 }
 
-// Rows between rows, and the rows of the slow ends.
+// The rows of a motion with slow ends, and the values of the given motion between its rows.
 class Slowed {
  public:
   Slowed(int rows, const CutEnds& cut, int ramp)
       : rows_(rows), ramp_(ramp), begin_(cut.begin ? ramp : 0), end_(cut.end ? ramp : 0) {}
 
   int count() const { return rows_ + (begin_ + end_) / 2; }
-  // The place in the rows of the motion at row k of the slowed one; whole between the ends.
+  // The position in the rows of the given motion that belongs to row k of the slowed motion; it is
+  // a whole number between the slow ends.
   double at(int k) const {
     if (k < begin_) return ramp_ * advance(static_cast<double>(k) / ramp_);
     const int left = count() - 1 - k;
@@ -284,7 +286,7 @@ class Slowed {
   }
 
  private:
-  // Integral of minimum jerk from 0 to 1: a half at u = 1.
+  // Integral of minimum jerk from 0 to u; it is a half at u = 1.
   static double advance(double u) { return u * u * u * u * (2.5 - 3 * u + u * u); }
 
   int rows_, ramp_, begin_, end_;

@@ -18,8 +18,9 @@ struct ContactThresholds {
   double height = 0.012;
   /// Largest speed of the sole [m/s]. Chosen: a tenth of the speed of a quick swing (1.5 m/s).
   double speed = 0.15;
-  /// Least vertical force that the motion of the COG needs, in weights. Chosen: 0 is flight and 1
-  /// is rest; recordings at 30 rows per second state it within about 0.2.
+  /// Smallest vertical force that the motion of the COG needs, as a multiple of the weight. Chosen:
+  /// 0 is flight and 1 is rest; recordings at 30 rows per second give this force to within about
+  /// 0.2.
   double load = 0.3;
 };
 
@@ -27,11 +28,11 @@ struct ContactThresholds {
 struct RawMotion {
   double dt = 0.001;                      ///< [s]
   Eigen::MatrixXd theta;                  ///< rows x dof, the robot's order [rad]
-  std::vector<BasePose> base;             ///< empty or one per row
-  std::vector<Eigen::Vector3d> cog, zmp;  ///< empty or one per row, world [m]
-  std::vector<double> fz;                 ///< empty or one per row [N]
-  std::vector<Support> support;           ///< one per row; empty: to be detected
-  ContactThresholds contact = {};         ///< of the detection
+  std::vector<BasePose> base;             ///< empty or one for each row
+  std::vector<Eigen::Vector3d> cog, zmp;  ///< world coordinates, empty or one for each row [m]
+  std::vector<double> fz;                 ///< vertical force, empty or one for each row [N]
+  std::vector<Support> support;           ///< support, one for each row; empty: to be detected
+  ContactThresholds contact = {};         ///< thresholds of the detection
 };
 
 /// Support in each row. Feet on the ground do not move relative to each other: both support while
@@ -48,7 +49,7 @@ std::vector<Support> detect_supports(const RobotModel& model, const RawMotion& m
 /// One foot on the ground.
 struct FootContact {
   Side foot = Side::left;
-  double begin = 0, end = 0;  ///< [s]
+  double begin = 0, end = 0;  ///< beginning and end of the contact [s]
   Foothold place;
 };
 
@@ -57,21 +58,23 @@ struct FootContact {
 /// unless the motion has a base. It starts with the feet at the origin and the heading along x.
 struct GroundedMotion {
   Pattern pattern;
-  std::vector<FootContact> contacts;  ///< in order of begin
-  /// For a motion with a base, in words: how far the soles float, sink and slide, and the flights.
+  std::vector<FootContact> contacts;  ///< contacts in the order in which they begin
+  /// Remarks in words about a motion with a base: how far the soles float, sink and slide, and when
+  /// it flies.
   std::vector<std::string> notes = {};
 };
 /// Throws Error(bad_model) without soles, Error(bad_pattern) for fewer than 6 rows.
 GroundedMotion grounded(const RobotModel& model, const RawMotion& motion, const std::string& table);
 
-/// A motion with a base, moved up and down so that the lowest supporting sole is at height 0;
-/// between contacts, the shift is interpolated linearly. Without a base, the motion as it is.
+/// The motion with its base moved up and down, so that the lowest supporting sole is at height 0;
+/// between contacts, the shift is interpolated linearly. A motion without a base is returned as it
+/// is.
 RawMotion put_on_ground(const RobotModel& model, RawMotion motion);
 
 /// Ends at which the motion was cut while the robot moved.
 struct CutEnds {
   bool begin = false, end = false;
-  std::vector<std::string> words = {};  ///< one line for each, with the fastest joint
+  std::vector<std::string> words = {};  ///< one line for each end, with the fastest joint
 };
 CutEnds cut_ends(const RobotModel& model, const RawMotion& motion);
 

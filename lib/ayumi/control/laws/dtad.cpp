@@ -35,20 +35,23 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Bound of the accepted offset of the ZMP, times z: 20 mm on HOAP-1, the offset of a slope of 5
-// deg. Chosen: what a slope needs that the walk survives (docs/theory.md, "The offset"). Figures
-// change by less than 5 % from half to twice.
+// Bound of the accepted offset of the ZMP, as a multiple of z: 20 mm on HOAP-1, the offset of a
+// slope of 5 deg. Chosen: it is sufficient for every slope on which the walk does not fall
+// (docs/theory.md, "The offset"). Between half and twice the value, figures change by less than 5
+// %.
 constexpr double kOffsetLimit = 0.09;
 
-// Distance of the planned ZMP from the planned COG from which a plan at rest contradicts itself,
-// and way of the COG in a time 1/omega up to which a plan rests, times z: 1 mm on HOAP-1. Chosen:
-// above rounding and the noise of sampled motions. Half and twice change nothing for a ZMP that is
-// 10 mm off (scenarios/imported_motions_test).
+// If the planned ZMP is farther than this from the planned COG in a plan at rest, the plan
+// contradicts itself. A plan is at rest if its COG moves by less than this within 1/omega. Both
+// lengths are multiples of z: 1 mm on HOAP-1. Chosen: above rounding and the noise of sampled
+// motions. Half and twice change nothing for a ZMP that is 10 mm off
+// (scenarios/imported_motions_test).
 constexpr double kContradiction = 0.004;
 
 // Time after which the tilt of a foot that lies on the ground counts as a slope of the ground, in
-// 1/omega: 50 ms on HOAP-1. Chosen: docs/theory.md, "A foot on a bump". Half: pushed walk,
-// touchdowns 6 to 5; twice: rough walk, touchdowns 6 to 7.
+// 1/omega: 50 ms on HOAP-1. Chosen: docs/theory.md, "A foot on a bump". With half of the value, the
+// number of touchdowns of the case "pushed walk" changes from 6 to 5; with twice, the number of
+// touchdowns of the case "rough walk" changes from 6 to 7.
 constexpr double kContactTiltTime = 0.33;
 
 using GainFields = std::map<std::string, double*>;
@@ -86,8 +89,8 @@ GainFields gain_fields(DtadParams& p) {
   return fields;
 }
 
-/// Tilt of the plan's trunk about the world's x and y axes [rad]. `data` belongs to a posture whose
-/// waist is that of the plan.
+/// The tilt of the plan's trunk about the world's x and y axes [rad]. `data` belongs to a posture
+/// whose waist is that of the plan.
 Vector2d planned_tilt(const RobotModel& model, const RobotData& data, const RobotState& plan) {
   const Vector3d in_base = data.rotation[0].transpose() * data.rotation[model.trunk_body()].col(2);
   const Vector3d up = plan.base.attitude * in_base;
@@ -185,7 +188,7 @@ DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec) {
       fail(code, where + ": " + name_of(p.kind) + " has no gain '" + name + "'" +
                      text::suggestion(name, names) + " (known: " + text::join(names, ", ") + ")");
   };
-  // The parameters of the body are the robot's own under every law.
+  // The parameters of the body are the robot's own ones under every law.
   DtadParams dtad;
   GainFields of_dtad = gain_fields(dtad);
   for (const char* name : {"k", "d"}) of_dtad[name] = nullptr;
@@ -258,7 +261,7 @@ Dtad::Dtad(const RobotModel& model, const ActuatorLimits& limits, const DtadPara
   if (params.kind == ControllerKind::foot_guided)
     guide_.emplace(command_.series(), params.least_guide_time);
   if (plan().support == Support::right) anchor_ = Side::right;
-  // Where legs lack joints, the trunk leans as the COG needs it, so it cannot turn for the balance.
+  // If legs lack joints, the trunk leans as the COG requires, so it cannot turn for the balance.
   if (InverseKinematics(model, model.posture()).lacks_joints()) params_.momentum_gain = 0;
 }
 
@@ -291,7 +294,8 @@ CogReference Dtad::cog_reference(const Estimate& estimate, LawTerms& terms) {
   CogReference ref;
   const ConvexPolygon& polygon =
       region_.update(*model_, command.feet, command.support, p.margin * z);
-  // A planned ZMP outside the support, as in imported motions, is not an error to answer.
+  // A planned ZMP outside the support, as in imported motions, is not an error that the law should
+  // answer.
   const Vector2d planned =
       polygon.empty() ? Vector2d(command.zmp.head<2>()) : polygon.project(command.zmp.head<2>());
   const Vector2d wanted =
@@ -385,7 +389,8 @@ bool Dtad::in_flight(const Estimate& estimate) {
 }
 
 // Off the ground, no law can change the path of the COG, and the measured COG depends on the feet
-// and not on the place of the robot. The posture returns to the command, the legs to the vertical.
+// and not on the place of the robot. So the posture returns to the command, and the legs return to
+// the vertical.
 void Dtad::fly(const Estimate& e, const CommandSample& next, ControlOutput& out) {
   const CommandSample& command = plan();
   out.terms = {.stage = LawStage::follow_flight};

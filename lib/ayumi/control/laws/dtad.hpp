@@ -16,42 +16,46 @@ namespace ayumi {
 
 /// Dimensionless gains: rates in units of omega = sqrt(g / z), times in units of 1 / omega, lengths
 /// in units of the COG height z. The names in files and on the command line are those in brackets.
-/// Where the values come from: docs/theory.md, "DTAD".
+/// docs/theory.md, "DTAD", explains the origin of the values.
 struct DtadParams {
   double pole_ratio = 0.25;    ///< [q] second pole of (18)(19): K = 1 + q, D = (1 + q)/omega
   std::optional<double> k;     ///< [k] K given directly, with d; must exceed 1
   std::optional<double> d;     ///< [d] D omega given directly, with k; must be positive
-  double long_term = 1;        ///< [long] share of (18)(19); 0: ref ZMP is the commanded one
-  double as_printed = 0;       ///< [as_printed] 1: D with the printed sign, a demonstration
+  double long_term = 1;        ///< [long] share of (18)(19); 0: ref ZMP is the commanded ZMP
+  double as_printed = 0;       ///< [as_printed] 1: D has the printed sign, as a demonstration
   double zmp_gain = 1;         ///< [ka] short-term loop on the measured ZMP; grows towards (14)
-  double rocking_damping = 8;  ///< [damp] of the robot's rocking on its soles and servos
+  double rocking_damping = 8;  ///< [damp] damping of the robot's rocking on its soles and servos
   double pull_rate = 1.8;      ///< [ks] pull of the reference COG to the command
   double pull_damping = 1.8;   ///< [kd] damping of that pull
-  double zmp_filter = 0.01;    ///< [tau_z] low pass of the measured ZMP
-  double margin = 0.01;        ///< [margin] kept inside the support region
-  double offset_time = 6.6;  ///< [washout] after which a constant ZMP offset is accepted; 0: never
+  double zmp_filter = 0.01;    ///< [tau_z] time constant of the low pass of the measured ZMP
+  double margin = 0.01;  ///< [margin] distance that is kept from the edge of the support region
+  /// [washout] time after which a constant ZMP offset is accepted; 0: never.
+  double offset_time = 6.6;
   double height_stiffness = 1.0;  ///< [kz] K_z of (20), times omega^2
   double height_damping = 2.0;    ///< [dz] D_z of (20), times omega
   double fz_gain = 0.3;           ///< [kaz] short-term loop on the measured f_z
-  double ankle_share = 0.5;  ///< [ankle] share of the stance foot's tilt turned back at the ankle
-  double compliance = 0.5;   ///< [conform] share of one foot's ground slope against the ground at
-                             ///< large that its ankle gives in to
-  double momentum_gain = 6;  ///< [momentum] moment that trunk and arms take up, as a multiple of
-                             ///< the one that a ZMP wanted outside the support stands for; 0: off
-  double step_share = 0;     ///< [step] of the error the supports leave over, answered by
-                             ///< footholds; 0: off
-  double time_scale_limit = 2.5;  ///< [hurry] fastest clock of a pattern whose footholds move
-  bool literal = false;           ///< (14) integrated as printed, D sign corrected: a demonstration
-  ControllerKind kind = ControllerKind::dtad;  ///< that chooses the ZMP: DTAD or a baseline
-  /// [effort] preview: cost of the jerk's change. Source: Q = 1, R = 1e-6 of Kajita and others
-  /// (2003), with their tick of 5 ms and COG height of 0.814 m made dimensionless.
+  double ankle_share = 0.5;  ///< [ankle] share of the stance foot's tilt that the ankle compensates
+  /// [conform] share of the difference between one foot's ground slope and the general slope to
+  /// which its ankle yields.
+  double compliance = 0.5;
+  /// [momentum] moment that trunk and arms provide, as a multiple of the moment that corresponds to
+  /// a wanted ZMP outside the support; 0: off.
+  double momentum_gain = 6;
+  /// [step] share of the error that the supports cannot remove and footholds answer; 0: off.
+  double step_share = 0;
+  double time_scale_limit = 2.5;  ///< [hurry] fastest clock of a pattern with moving footholds
+  bool literal = false;  ///< (14) integrated as printed, with D's sign corrected: a demonstration
+  /// The method that chooses the ZMP: DTAD or a baseline.
+  ControllerKind kind = ControllerKind::dtad;
+  /// [effort] preview: cost of the jerk's change. Source: Q = 1 and R = 1e-6 of Kajita and others
+  /// (2003), made dimensionless with their tick of 5 ms and their COG height of 0.814 m.
   double preview_effort = 5e-7;
-  double preview_horizon = 5.5;  ///< [horizon] preview: of the planned ZMP; theirs, 1.6 s
+  double preview_horizon = 5.5;  ///< [horizon] preview: horizon of the planned ZMP; theirs is 1.6 s
   double preview_feedback = 1;   ///< [feedback] preview: share of its gains on the measured state
-  double least_guide_time = 1;   ///< [soonest] foot-guided: least time that the DCM is given
+  double least_guide_time = 1;   ///< [soonest] foot-guided: smallest time that the DCM is given
   StepWeights steps;             ///< [place], [time], [offset], [zmp], [slowest] dcm-step
 
-  /// Whether the plan moves with the robot, in a pattern without VIIP goals.
+  /// Whether the plan moves with the robot in a pattern without VIIP goals.
   bool moves_footholds() const {
     return kind == ControllerKind::dcm_step || (step_share > 0 && !literal);
   }
@@ -61,23 +65,24 @@ struct DtadParams {
   }
 };
 
-/// Whether the gains of the law are in DtadParams: those of DTAD and of the baselines.
+/// Whether DtadParams contains the gains of the law: this is so for DTAD and the baselines.
 inline bool has_dtad_gains(ControllerKind kind) {
   return kind == ControllerKind::dtad || is_baseline(kind);
 }
 
-/// Defaults, then the robot's sidecar, then the pattern's gains. Throws Error(usage) naming an
-/// unknown gain, K <= 1 or D <= 0, q together with k and d, or a value out of range.
+/// The defaults, which the robot's sidecar overrides, and then the pattern's gains. Throws
+/// Error(usage) that names an unknown gain, for K <= 1 or D <= 0, for q together with k and d, or
+/// for a value out of range.
 DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec);
 
-/// Its gains by the names of files; K and D omega as the law uses them are "k" and "d".
+/// The gains by their names in files; "k" and "d" are K and D omega as the law uses them.
 std::vector<std::pair<std::string, double>> gains_of(DtadParams params);
 
-/// K and D (times omega) of (18)(19) as the law uses them, share and sign put in.
+/// K and D (times omega) of (18)(19) as the law uses them, including share and sign.
 double long_term_k(const DtadParams& params);
 double long_term_d(const DtadParams& params);
 
-/// K and D of (18)(19), and those by which a baseline chooses the ZMP.
+/// K and D of (18)(19), or those by which a baseline chooses the ZMP.
 struct HorizontalGains {
   double K = 0;  ///< [1]
   double D = 0;  ///< [s]
@@ -87,8 +92,8 @@ struct HorizontalGains {
 class Dtad {
  public:
   /// Starts at rest in the posture of the command, which the servos hold with `target` [rad].
-  /// `torque_lead`: offsets of the servo targets by sample of the pattern [rad], one column:
-  /// throughout (control/torque_feedforward).
+  /// `torque_lead` has the offsets of the servo targets for each sample of the pattern [rad]; a
+  /// single column applies to all samples (control/torque_feedforward).
   Dtad(const RobotModel& model, const ActuatorLimits& limits, const DtadParams& params,
        CommandPlan command, std::shared_ptr<const Eigen::MatrixXd> torque_lead,
        const Eigen::VectorXd& target);
@@ -119,18 +124,19 @@ class Dtad {
   std::shared_ptr<const Eigen::MatrixXd> torque_lead_;
   ReferenceBody body_;
   AngularMomentumTask momentum_;
-  std::optional<PreviewControl> preview_;  // of the baselines of these names
-  CogMotion previewed_;                    // by preview_, in this tick
+  std::optional<PreviewControl> preview_;  // for the baselines that preview the ZMP
+  CogMotion previewed_;                    // its motion in this tick
   std::optional<FootGuided> guide_;
   SupportRegion region_;
-  Eigen::VectorXd offsets_;  // of the servo targets: ankles and torque [rad]
+  Eigen::VectorXd offsets_;  // offsets of the servo targets for ankles and torque [rad]
   Side anchor_ = Side::left;
-  ReactionFilter filter_;                              // measured ZMP and f_z
-  Eigen::Vector2d offset_ = Eigen::Vector2d::Zero();   // accepted offset of the ZMP [m]
-  Eigen::Vector2d outside_ = Eigen::Vector2d::Zero();  // ZMP wanted less the one asked for [m]
-  bool first_ = true;                                  // no tick yet, from rest
-  bool ended_ = false;                                 // the plan is at rest behind its last sample
-  bool flying_ = false;                                // from the planned lift-off to the landing
+  ReactionFilter filter_;                             // measured ZMP and f_z
+  Eigen::Vector2d offset_ = Eigen::Vector2d::Zero();  // accepted offset of the ZMP [m]
+  // Wanted ZMP minus the ZMP that is asked for [m].
+  Eigen::Vector2d outside_ = Eigen::Vector2d::Zero();
+  bool first_ = true;    // no tick has been computed yet; starts from rest
+  bool ended_ = false;   // the plan is at rest after its last sample
+  bool flying_ = false;  // true from the planned lift-off to the landing
 };
 
 }  // namespace ayumi

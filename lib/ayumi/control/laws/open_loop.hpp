@@ -1,6 +1,6 @@
 #pragma once
 // Open loop: the servos receive the command with its feedforward, or the targets that the series
-// has in place of the command. Nothing is measured.
+// has instead of the command. Nothing is measured.
 
 #include <memory>
 
@@ -10,10 +10,10 @@ namespace ayumi {
 
 class OpenLoop {
  public:
-  /// `torque_lead` has the offsets of the servo targets by sample of the pattern [rad]; a single
-  /// column holds for all samples (control/torque_feedforward). `target` has the last servo targets
-  /// [rad]. `targets` has the targets by sample of the series, dof x samples; it must outlive this
-  /// law and its copies.
+  /// `torque_lead` has the offsets of the servo targets for each sample of the pattern [rad]; a
+  /// single column applies to all samples (control/torque_feedforward). `target` has the last servo
+  /// targets [rad]. `targets` has the targets for each sample of the series, dof x samples; it must
+  /// outlive this law and its copies.
   OpenLoop(const ActuatorLimits& actuators, CommandPlan command,
            std::shared_ptr<const Eigen::MatrixXd> torque_lead, const Eigen::VectorXd& target,
            const Eigen::MatrixXd& targets);

@@ -35,47 +35,51 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Least time to a landing from which the regulator aims at it [s]. Chosen: the ZMP it asks for
-// grows with 1 / (1 - E); later only the foothold can still answer. Half: pushed steps, torque
-// 0.499 to 0.452; twice: pushed viip walk, touchdowns 5 to 4.
+// If less than this time is left to a landing, the regulator no longer aims at it [s]. Chosen: the
+// ZMP that it requires grows with 1 / (1 - E); later, only the foothold can still answer. With half
+// of the value, the torque of the case "pushed steps" changes from 0.499 to 0.452; with twice, the
+// number of touchdowns of the case "pushed viip walk" changes from 5 to 4.
 constexpr double kLeastTimeToLanding = 0.06;
 
 // The weight shift ends when the DCM is within this distance of the place where the first step
-// starts, times z: 6 mm on HOAP-1. Chosen with the prototype: nearer costs time, farther throws the
-// DCM off. No measured case changes from half to twice (constants.md).
+// starts, as a multiple of z: 6 mm on HOAP-1. Chosen with the prototype: a smaller distance costs
+// time, and a larger one disturbs the DCM. No measured case changes between half and twice the
+// value (constants.md).
 constexpr double kShiftDone = 0.027;
 
-// Least length of the weight shift, times 1/omega: 0.36 s on HOAP-1. Chosen with the prototype: the
-// regulator settles within this time. Half: pushed steps, slip 0.0809 to 1.96 mm; twice: the steps
-// are refused.
+// Smallest duration of the weight shift, as a multiple of 1/omega: 0.36 s on HOAP-1. Chosen with
+// the prototype: the regulator settles within this time. With half of the value, the slip of the
+// case "pushed steps" changes from 0.0809 to 1.96 mm; with twice, the steps are refused.
 constexpr double kShiftTime = 2.4;
 
-// Time kept for standing after timed steps, times 1/omega. Chosen: exp(-5) of an error is left.
-// Half: no change; twice: the steps are refused.
+// Time that is reserved for standing after timed steps, as a multiple of 1/omega. Chosen: exp(-5)
+// of an error is left. With half of the value, nothing changes; with twice, the steps are refused.
 constexpr double kSettleTime = 5;
 
-// Share of the swing before which a force on the swing foot is not a landing. Chosen with the
+// A force on the swing foot before this share of the swing is not a landing. Chosen with the
 // prototype: a foot still drags after its lift-off, and a landing is early by at most a third of a
-// swing. Half: no change; twice: steps, touchdowns 2 to 4.
+// swing. With half of the value, nothing changes; with twice, the number of touchdowns of the case
+// "steps" changes from 2 to 4.
 constexpr double kStepLandingAfter = 0.6;
 
-// Fastest clock of a step that comes sooner, times its own pace. Chosen: joint speeds bound the
-// swing before. No measured case changes from half to twice (constants.md).
+// Fastest clock of a step that is made earlier, as a multiple of its own pace. Chosen: joint speeds
+// limit the swing before this clock is reached. No measured case changes between half and twice the
+// value (constants.md).
 constexpr double kStepTimeScaleLimit = 4;
 
 // Share of the difference between a landing error and the known bias that is taken over at each
-// landing. Chosen: the bias is known after three steps, a single push moves it by half. Figures
-// change by less than 5 % from half to twice.
+// landing. Chosen: the bias is known after three steps, and a single push changes it by half of its
+// error. Between half and twice the value, figures change by less than 5 %.
 constexpr double kBiasShare = 0.5;
 
-// Largest landing bias, times z: 3.3 mm on HOAP-1. Chosen: twice the error that lagging servos make
-// (1.5 mm). A larger error comes from a push. No measured case changes from half to twice
-// (constants.md).
+// Largest landing bias, as a multiple of z: 3.3 mm on HOAP-1. Chosen: twice the error that lagging
+// servos make (1.5 mm). A larger error comes from a push. No measured case changes between half and
+// twice the value (constants.md).
 constexpr double kLandingBiasLimit = 0.015;
 
-// Time after which a lasting tilt of the stance foot counts as a slope of the ground, times
-// 1/omega: 1 s on HOAP-1. Chosen: equal to the offset time of DTAD. Figures change by less than 5 %
-// from half to twice.
+// Time after which a lasting tilt of the stance foot counts as a slope of the ground, as a multiple
+// of 1/omega: 1 s on HOAP-1. Chosen: equal to the offset time of DTAD. Between half and twice the
+// value, figures change by less than 5 %.
 constexpr double kSlopeTime = 6.6;
 
 // Time constant of the low pass of the vertical push that the load cells measure, without the lag
@@ -266,7 +270,7 @@ void Viip::set_goal(const ViipGoal& goal, long ticks) {
   plan_ = next_;
 }
 
-// Number of swings: the requested number, or as many as fit.
+// Number of swings: the requested number, or as many as there is time for.
 void Viip::start_steps() {
   const double period = (params_.single_support + params_.double_support) / omega_;
   const double time = static_cast<double>(ticks_left_) * dt_ - (kSettleTime + kShiftTime) / omega_;
@@ -289,7 +293,7 @@ Vector3d Viip::standing_velocity(const Vector3d& velocity) const {
   return rotated(velocity, ground_middle(*model_, next_.feet).yaw);
 }
 
-// The admissible ZMP that is nearest, section 3.3 of the paper.
+// The nearest admissible ZMP, section 3.3 of the paper.
 Vector2d Viip::inside_support(const Vector2d& zmp) const {
   const ConvexPolygon polygon =
       support_polygon(*model_, plan_.feet, plan_.support).shrunk(params_.margin * height_);
@@ -354,7 +358,7 @@ Viip::WantedZmp Viip::regulate(const Vector2d& dcm, int state) const {
         const Vector2d after = moving();
         return {(1 - share) * before + share * after, share * stands};
       }
-      // From foot to foot the ZMP moves gradually; the answer to a push is added at once.
+      // The ZMP moves gradually from foot to foot, but the reaction to a push is added at once.
       const Side foot = other(anchor_);
       const Vector2d place =
           footsteps_.zmp_on(foot, ground_pose(*model_, foot, plan_.feet[index(foot)]));
@@ -433,8 +437,8 @@ double Viip::time_to_landing() const {
   return std::max(params_.single_support / omega_ - elapsed_, 0.0) / time_scale_;
 }
 
-// With Z at the edge the DCM misses the place where the foot was to meet it by a + c E,
-// E = exp(w T): the step comes as much sooner as keeps that within `early_step_bound` z.
+// While Z is at the edge, the DCM misses its place relative to the foot by a + c E with E = exp(w
+// T). The step is made so much earlier that this error stays within `early_step_bound` z.
 void Viip::choose_time_scale(const PlannedStep& step, const Vector2d& dcm) {
   const double left = std::max(params_.single_support / omega_ - elapsed_, 0.0);
   time_scale_ = 1;
@@ -471,7 +475,7 @@ Vector2d Viip::landing_point(const PlannedStep& step, const Vector2d& dcm) const
   return stance.position + Eigen::Rotation2Dd(stance.yaw) * beside_stance;
 }
 
-// The path of the swing foot: it lifts off, moves to the landing point, which moves too, and comes
+// The path of the swing foot: it lifts off, moves to the landing point, which may move, and comes
 // down.
 void Viip::move_swing_foot(const Vector2d& dcm) {
   const double length = params_.single_support / omega_;

@@ -40,40 +40,43 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Least length of the stoop, times 1/omega: 0.75 s on HOAP-1. Measured with the prototype: a stoop
-// of 0.4 s leaves the apex 5 mm low, one of 0.8 s does not.
+// Smallest duration of the stoop, as a multiple of 1/omega: 0.75 s on HOAP-1. Measured with the
+// prototype: a stoop of 0.4 s leaves the apex 5 mm low, one of 0.8 s does not.
 constexpr double kStoopTime = 5;
 
-// Distance from its depth at which the stoop is reached, times ref z_G: 2 mm on HOAP-1. Chosen: an
-// error of the depth that changes the apex by less than the acceptance of 5 %. No measured case
-// changes from half to twice (constants.md).
+// Distance from its depth at which the stoop counts as reached, as a multiple of ref z_G: 2 mm on
+// HOAP-1. Chosen: an error of the depth that changes the apex by less than the acceptance of 5 %.
+// No measured case changes between half and twice the value (constants.md).
 constexpr double kStoopReached = 0.01;
 
 // Lean of the trunk when stooped, times z_d / ref z_G [rad]. Derivation: docs/theory_flight.md,
 // "Lean". Measured with version 0.1: 0 leaves the apex of springs 8 to 10 % low.
 constexpr double kStoopLean = 1.2;
 
-// sqrt(K_Pz / m) after the landing, times omega. Chosen: back at ref z_G within the 0.6 s that the
-// acceptance asks for. Half: viip jump, ZMP error 3.39 to 4 mm; twice: less than 5 %.
+// sqrt(K_Pz / m) after the landing, as a multiple of omega. Chosen: the COG is back at ref z_G
+// within 0.6 s. With half of the value, the ZMP error of the case "viip jump" changes from 3.39 to
+// 4 mm; with twice, figures change by less than 5 %.
 constexpr double kSettleRate = 2.2;
 
-// Ground force that counts as none [N], and the time for which it must last [s]. Measured with the
+// Ground force that counts as zero [N], and the time for which it must last [s]. Measured with the
 // prototype: without this time, chattering contacts trigger the release, and the apex is at 10 mm
 // instead of 20 mm.
 constexpr double kNoForce = 0.5;
 constexpr double kNoForceTime = 0.015;
 
-// Largest rate of a servo target, times the joint's speed limit: targets lead the joint by (delay +
-// kd/kp) dtheta + tau/kp. Chosen: that lead must build up within the push. Half: viip jump, slip
-// 1.3 to 2.69 mm; twice: ZMP error 3.39 to 1.31 mm.
+// Largest rate of a servo target, as a multiple of the joint's speed limit: targets lead the joint
+// by (delay + kd/kp) dtheta + tau/kp. Chosen: this lead must build up within the push. With half of
+// the value, the slip of the case "viip jump" changes from 1.3 to 2.69 mm; with twice, the ZMP
+// error of the case "viip jump" changes from 3.39 to 1.31 mm.
 constexpr double kTargetRate = 3;
 
 // Time over which the torque feedforward is faded in and out [s]. Chosen: within the stoop, and
-// long against the lag of servos, up to 20 ms. Figures change by less than 5 % from half to twice.
+// long against the lag of servos, up to 20 ms. Between half and twice the value, figures change by
+// less than 5 %.
 constexpr double kTorqueFadeTime = 0.3;
 
-// Time constant with which the motion of the legs fades after release [s]. Source:
-// docs/theory_flight.md, "Flight": stopping them at once asks for tens of newton metres. The
+// Time constant with which the motion of the legs decays after release [s]. Source:
+// docs/theory_flight.md, "Flight": an immediate stop would require tens of newton metres. The
 // prototype had 20 ms.
 constexpr double kRunOnTime = 0.030;
 
@@ -88,38 +91,41 @@ constexpr double kRetractionHold = 0.010;
 constexpr double kRetractionShare = 0.9;
 
 // Longest retraction as a share of the flight. Chosen: the legs then have the middle of the flight
-// to swing to their landing places. Half: viip hops, slip 1.44 to 1.7 mm; twice: no change.
+// to swing to their landing places. With half of the value, the slip of the case "viip hops"
+// changes from 1.44 to 1.7 mm; with twice, nothing changes.
 constexpr double kRetractionFlightShare = 0.4;
 
-// Time after release in which forces are not a touchdown yet [s]. Chosen with the prototype: the
-// feet may still touch the ground they leave. No measured case changes from half to twice
-// (constants.md).
+// Time after release in which forces do not yet mean a touchdown [s]. Chosen with the prototype:
+// the feet may still touch the ground that they leave. No measured case changes between half and
+// twice the value (constants.md).
 constexpr double kTouchdownBlindTime = 0.040;
 
-// Touchdown: a force of this share of the weight that lasts this long [s], or at once from the
-// harder share on. Chosen: above the noise of the load cells, within three ticks of the impact. No
-// measured case changes from half to twice (constants.md).
+// A touchdown is a force of the first share of the weight that lasts for the time [s], or a force
+// of the second, larger share at once. Chosen: above the noise of the load cells, within three
+// ticks of the impact. No measured case changes between half and twice the value (constants.md).
 constexpr double kTouchdownShare = 0.1;
-// No measured case changes from half to twice (constants.md).
+// No measured case changes between half and twice the value (constants.md).
 constexpr double kTouchdownTime = 0.003;
-// No measured case changes from half to twice (constants.md).
+// No measured case changes between half and twice the value (constants.md).
 constexpr double kHardTouchdownShare = 0.4;
 
 // A flight that is longer than planned by this ends as if it had touched down [s]. Chosen: half of
 // a flight of 0.1 m; the landing then meets a ground that is lower than planned. No measured case
-// changes from half to twice (constants.md).
+// changes between half and twice the value (constants.md).
 constexpr double kLateTouchdown = 0.15;
 
 // Correction of the feet in flight [1/s], pull towards the held posture [1/s], damping of the
 // flight's solve (times trace / rows) and the length that makes its angular rows comparable with
-// linear ones [m]. Chosen as in control/whole_body; the feet have only the flight's 0.1 s. Half:
-// viip hops, ZMP error 6.45 to 7.47 mm; twice: 6.12 mm.
+// linear ones [m]. Chosen as in control/whole_body; the feet only have the 0.1 s of the flight.
+// With half of the value, the ZMP error of the case "viip hops" changes from 6.45 to 7.47 mm; with
+// twice, to 6.12 mm.
 constexpr double kFlightFootRate = 40;
-// Figures change by less than 5 % from half to twice.
+// Between half and twice the value, figures change by less than 5 %.
 constexpr double kFlightPostureRate = 2;
-// Figures change by less than 5 % from half to twice.
+// Between half and twice the value, figures change by less than 5 %.
 constexpr double kFlightDamping = 1e-5;
-// Half: less than 5 %; twice: viip jump, slip 1.3 to 1.51 mm.
+// With half of the value, figures change by less than 5 %; with twice, the slip of the case "viip
+// jump" changes from 1.3 to 1.51 mm.
 constexpr double kFlightLength = 0.2;
 
 double smooth_rise(double x) {
@@ -141,7 +147,7 @@ double heading_of_feet(const std::array<Eigen::Isometry3d, 2>& feet) {
   return elementary::atan2(x.y(), x.x());
 }
 
-/// Angular momentum about the COG per generalised velocity: 3 x (6 + dof).
+/// The angular momentum about the COG for each unit of generalised velocity: 3 x (6 + dof).
 Eigen::MatrixXd angular_momentum_rows(const RobotData& data, const Eigen::MatrixXd& M) {
   return M.middleRows<3>(3) - skew(data.cog_offset) * M.topRows<3>();
 }
@@ -239,7 +245,7 @@ LawStage ViipJump::law_stage() const {
   return LawStage::settle;
 }
 
-// Ref f_z of the stage, (24)-(27) with gains per unit mass.
+// The ref f_z of the stage, by (24)-(27) with gains per unit of mass.
 double ViipJump::vertical_force(LawTerms& terms) const {
   const double m = model_->mass();
   const double z = data_.cog.z() - ground_of(plan_.feet), dz = dcog_.z();
@@ -294,8 +300,8 @@ CogReference ViipJump::cog_reference(const Estimate& e, LawTerms& terms) {
   Vector2d goal = middle_of_soles(*model_, plan_.feet) + offset_;
   Vector2d rate = Vector2d::Zero(), acceleration = Vector2d::Zero();
   if (stage_ == Stage::push && goal_.forward != 0) {
-    // Horizontal speed with which the robot moves the distance during push, flight and landing,
-    // which lasts as long as the push.
+    // The horizontal speed with which the robot covers the distance during push, flight and
+    // landing; the landing lasts as long as the push.
     const JumpFigures f = jump_figures(goal_);
     const double yaw = heading_of_feet(plan_.feet), s = std::min(1.0, elapsed_ / f.push);
     const Vector2d speed =
@@ -334,8 +340,8 @@ CogReference ViipJump::cog_reference(const Estimate& e, LawTerms& terms) {
   return ref;
 }
 
-// The end of the push falls into this tick: the speed becomes the one whose parabola has the
-// planned apex, from where the tick ends.
+// Whether the end of the push falls into this tick. If so, the speed becomes the one whose parabola
+// has the planned apex, from the place where the tick ends.
 bool ViipJump::leaves_now() {
   const double spring = goal_.release == JumpGoal::Release::spring ? kGravity / stiffness_ : 0.0;
   const double z = data_.cog.z() - ground_of(plan_.feet) - height_;
@@ -352,7 +358,7 @@ double ViipJump::lean() const {
   return stage_ == Stage::push ? most : 0.0;
 }
 
-// `level`: share of the correction that keeps the trunk as the pattern holds it.
+// `level` is the share of the correction that keeps the trunk as the pattern holds it.
 Resolution ViipJump::resolve_standing(const Vector3d& trunk_rate, double level) const {
   CommandSample wanted = plan_;
   wanted.state.dtheta.setZero();
@@ -380,8 +386,8 @@ Resolution ViipJump::resolve_with_momentum(double share) {
   return resolve_standing(share * rate, 1 - share);
 }
 
-// Torques of the servos for the motion of the reference. Both feet share the ground's wrench
-// equally.
+// Torques of the servos for the motion of the reference. Both feet take equal shares of the
+// ground's wrench.
 VectorXd ViipJump::torque(const VectorXd& velocity) {
   const VectorXd acceleration = velocity_.size() == 0 ? VectorXd(VectorXd::Zero(velocity.size()))
                                                       : VectorXd((velocity - velocity_) / dt_);
@@ -410,7 +416,7 @@ VectorXd ViipJump::torque(const VectorXd& velocity) {
   return torque;
 }
 
-// The servo target leads the posture by the angle that damping and torque would hold the joint
+// The servo target leads the posture by the angle by which damping and torque would hold the joint
 // back.
 void ViipJump::move_joints(const VectorXd& velocity, ControlOutput& out) {
   const VectorXd tau = torque(velocity);
@@ -465,7 +471,7 @@ void ViipJump::stand(const Estimate& e, ControlOutput& out) {
       break;
     case Stage::push: {
       unloaded_ = e.fz < kNoForce ? unloaded_ + dt_ : 0;
-      // If the legs cannot follow the spring any more, they leave the ground at this moment.
+      // If the legs can no longer follow the spring, the robot leaves the ground at this moment.
       const bool behind = r.scale < 1 && z > height_;
       if (last || behind || unloaded_ > kNoForceTime) {
         release();
@@ -607,7 +613,7 @@ void ViipJump::fly(const Estimate& e, ControlOutput& out) {
       dtheta[j] = std::clamp(dtheta[j], (dof.lower - reference_.theta[j]) / dt_,
                              (dof.upper - reference_.theta[j]) / dt_);
   }
-  // Rows of both soles.
+  // The rows of both soles.
   const VectorXd left = J * dtheta - u;
   out.residuals = {};
   out.residuals.foot = elementary::hypot(left.head<3>().norm(), left.segment<3>(6).norm());
@@ -626,9 +632,10 @@ void ViipJump::fly(const Estimate& e, ControlOutput& out) {
   if (touched || elapsed_ > flight_.duration + kLateTouchdown) touch_down(e);
 }
 
-// The vertical speed of the COG: measured from the ground while the feet bear, and from there on
-// the integral of what the load cells read less the weight. Load cells and encoders are equally
-// late, so the time of a flight is not. The speed before an impact is that before the load began.
+// The vertical speed of the COG. While the feet carry load, it is measured from the ground; from
+// then on, it is the integral of the load cells' reading minus the weight. Load cells and encoders
+// have the same delay, so the duration of a flight has none. The speed before an impact is the one
+// before the load began.
 void ViipJump::measure_speed(const Estimate& e) {
   const double load = e.fz / (model_->mass() * kGravity);
   const bool may_land = stage_ == Stage::flight && elapsed_ > kTouchdownBlindTime;

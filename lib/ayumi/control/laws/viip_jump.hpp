@@ -6,13 +6,14 @@
 
 namespace ayumi {
 
-/// What a jump by (26) does to a point mass [m], [m/s], [s]; heights above ref z_G.
+/// The effect of a jump by (26) on a point mass [m], [m/s], [s]; heights are above ref z_G.
 struct JumpFigures {
-  double apex = 0;      ///< z_H if released at ref z_G; z_H + z_d^2/(4 z_H) if held until f_z = 0
-  double lift_off = 0;  ///< 0, or z_d^2/(2 z_H)
-  double lift_off_speed = 0;    ///< upwards
-  double touchdown_speed = 0;   ///< downwards, at ref z_G
-  double push = 0, flight = 0;  ///< durations
+  /// z_H if released at ref z_G; z_H + z_d^2/(4 z_H) if the push lasts until f_z = 0.
+  double apex = 0;
+  double lift_off = 0;          ///< 0, or z_d^2/(2 z_H)
+  double lift_off_speed = 0;    ///< speed at lift-off, upwards
+  double touchdown_speed = 0;   ///< speed at touchdown, downwards, at ref z_G
+  double push = 0, flight = 0;  ///< durations of push and flight
 };
 JumpFigures jump_figures(const JumpGoal& goal);
 
@@ -36,7 +37,7 @@ class ViipJump {
  private:
   enum class Stage { stoop, push, flight, landing, settle };
 
-  // Values of one flight, from its release on.
+  // The values of one flight, from its release on.
   struct Flight {
     Eigen::Vector3d cog = Eigen::Vector3d::Zero(), velocity = Eigen::Vector3d::Zero();
     Eigen::Vector3d momentum = Eigen::Vector3d::Zero();  // angular momentum about the COG [N m s]
@@ -76,7 +77,7 @@ class ViipJump {
   double height_, omega_;  // ref z_G above the ground, sqrt(g / z)
   CommandPlan command_;    // command of the pattern, for the next law
   CommandSample held_, plan_;
-  Eigen::Vector2d offset_;  // held COG from the middle of the feet [m]
+  Eigen::Vector2d offset_;  // held COG relative to the middle of the feet [m]
   mutable RobotData data_;
   Eigen::VectorXd weight_, lead_, target_;
   RobotState reference_;
@@ -92,7 +93,7 @@ class ViipJump {
   double speed_before_ = 0;   // this velocity when the feet carried no load for the last time [m/s]
   double forward_ = 0;        // share of the torque that is fed forward, 0 to 1
   Eigen::VectorXd velocity_;  // generalised velocity of the last tick; empty after an impact
-  int left_ = 1;              // remaining jumps, with this one
+  int left_ = 1;              // number of remaining jumps, including this one
   double from_ = 0;           // COG height at which the stage began [m]
   double stiffness_ = 0;      // K_Pz / m of (26) or (27) [1/s^2]
   double depth_ = 0;          // depth of the push or of the landing [m]

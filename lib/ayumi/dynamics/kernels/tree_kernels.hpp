@@ -1,7 +1,7 @@
 #pragma once
-// Seam between the dynamics and their kernels, which are compiled once per instruction set. Nothing
-// here or behind it may use inline functions of other headers: the linker would be free to take
-// the copy made for the wider instruction set.
+// The border between the dynamics and their kernels, which are compiled once per instruction set.
+// Nothing here or behind it may use inline functions of other headers: the linker would be free to
+// take the copy made for the wider instruction set.
 
 namespace ayumi::kernels {
 
@@ -10,43 +10,44 @@ namespace ayumi::kernels {
 struct Link {
   int parent = -1, dof = -1, axis = 0;
   bool prismatic = false;
-  bool turned = false;  ///< the joint frame is turned against the parent
+  bool turned = false;  ///< the joint frame is turned relative to the parent
   double ratio = 1, offset = 0;
-  double r[3] = {}, E[9] = {};                 ///< joint frame in the parent
-  double mass = 0, moment[3] = {}, I[6] = {};  ///< about the link's origin
+  double r[3] = {}, E[9] = {};  ///< position and turn of the joint frame in the parent
+  /// Mass, first moment and inertia about the link's origin.
+  double mass = 0, moment[3] = {}, I[6] = {};
   double subtree_mass = 0;
-  // Of the body in its own axes, which C turns to those above.
+  // The numbers from here to C concern the body in its own axes, which C turns to the axes above.
   double drive = 1;     ///< joint coordinate about or along the body's axis per dof
-  double along = 1;     ///< -1: that axis points against the one above
-  bool skewed = false;  ///< C is not one
-  double C[9] = {};     ///< row by row
+  double along = 1;     ///< -1 if that axis points against the one above
+  bool skewed = false;  ///< C is not the unit matrix
+  double C[9] = {};     ///< the turn C, row by row
   double com[3] = {}, about_com[6] = {};
 };
 
 struct Tree {
   const Link* links = nullptr;
   int count = 0, dofs = 0;
-  double gravity = 0;  ///< along -z [m/s^2]
+  double gravity = 0;  ///< gravity along -z [m/s^2]
 };
 
-/// Arrays by body: 9 numbers each of `rotation` column by column, 3 of the others. World axes,
-/// positions from the base origin.
+/// Arrays by body: `rotation` has 9 numbers for each, column by column, and the others have 3. They
+/// are in world axes, with positions from the base origin.
 struct Bodies {
   double *rotation, *position, *axis, *com, *angular_velocity, *velocity;
-  double* scratch;  ///< body_scratch_doubles(), aligned to 64 bytes
+  double* scratch;  ///< body_scratch_doubles() numbers, aligned to 64 bytes
 };
 constexpr int body_scratch_doubles(int links) { return 24 * links + 16; }
 
-/// Where entries (a, b) of a symmetric matrix are stored, a and b columns of the generalised
-/// velocity: at row[a] + entry[b] where a has the higher rank, with `both` at row[b] + entry[a] as
-/// well. entry[b] = b for the base's.
+/// Where entries (a, b) of a symmetric matrix are stored, for columns a and b of the generalised
+/// velocity: at row[a] + entry[b] if a has the higher rank, and with `both` at row[b] + entry[a] as
+/// well. For columns of the base, entry[b] = b.
 struct Layout {
   const int *row, *entry, *rank;
   bool both;
 };
 
-/// Places in the order of a factor, ancestors first: the one above (-1 at the end), how many are
-/// above, and where its row begins, a multiple of four.
+/// Places in the order of a factor, ancestors first: the place above (-1 at the end), the number of
+/// places above, and the beginning of its row, a multiple of four.
 struct Paths {
   int count;
   const int *parent, *depth, *offset;
@@ -54,28 +55,29 @@ struct Paths {
 
 /// One state, or `width` states with the numbers of one quantity side by side.
 struct Job {
-  const double* attitude = nullptr;          ///< x, y, z, w
-  const double* angular_velocity = nullptr;  ///< of the base, world
+  const double* attitude = nullptr;          ///< quaternion x, y, z, w of the base
+  const double* angular_velocity = nullptr;  ///< angular velocity of the base, world axes
   const double *theta = nullptr, *dtheta = nullptr;
-  const double* input = nullptr;     ///< acceleration, or force
-  const double* rotor = nullptr;     ///< by dof, one number each; null: none. Forward dynamics only
-  double* output = nullptr;          ///< force, or acceleration
-  double* scratch = nullptr;         ///< scratch_doubles(), aligned to 64 bytes
-  const double* velocity = nullptr;  ///< of the base origin, world
+  const double* input = nullptr;  ///< acceleration or force
+  /// Rotor inertia by dof, one number each, for forward dynamics only; null if there are none.
+  const double* rotor = nullptr;
+  double* output = nullptr;          ///< force or acceleration
+  double* scratch = nullptr;         ///< scratch_doubles() numbers, aligned to 64 bytes
+  const double* velocity = nullptr;  ///< velocity of the base origin, world axes
 };
 
 constexpr int kMaxWidth = 4;
 constexpr int scratch_doubles(int links) { return kMaxWidth * 64 * (links + 1); }
 
-/// The joints that move a body, each with the line of a contact's Jacobian that is its own.
+/// The joints that move a body, each with its line of a contact's Jacobian.
 struct Chain {
   int count;
   const int *body, *line;
   const Link* links;
-  const double *position, *axis;  ///< of Bodies
+  const double *position, *axis;  ///< arrays of Bodies
 };
 
-/// A point (from the base origin) and the axes in which it touches: rows of a matrix that stands
+/// A point (from the base origin) and the axes in which it touches: rows of a matrix that is stored
 /// column by column.
 struct Contact {
   const double *point, *axes;
@@ -89,12 +91,13 @@ struct Kernels {
   void (*inverse_wide)(const Tree&, const Job&);
   void (*forward_wide)(const Tree&, const Job&);
   void (*sine_cosine)(const double* angle, double* sine, double* cosine, int count);
-  // One state in world axes. `moment`: sum of m com; `momentum`: linear.
+  // These work on one state in world axes. `moment` is the sum of m com, and `momentum` the linear
+  // momentum.
   void (*positions)(const Tree&, const Job&, const Bodies&, double* moment);
   void (*velocities)(const Tree&, const Job&, const Bodies&, double* momentum);
   void (*mass_entries)(const Tree&, const Bodies&, const Layout&, double* M);
   void (*newton_euler)(const Tree&, const Job&, const Bodies&);
-  // Small matrices: tree_kernels_factor.hpp.
+  // These work on small matrices; they are described in tree_kernels_factor.hpp.
   bool (*factor)(const Paths&, double* rows, double* inverse);
   void (*solve_path)(const Paths&, const double* rows, const double* inverse, int last, int width,
                      double* Y);
@@ -106,11 +109,12 @@ struct Kernels {
   void (*contact_lines)(const Contact& contact, const Chain& chain, int stride, double* lines);
 };
 
-/// What every processor has: two numbers at once.
+/// The kernels that every processor can run, with two numbers at once.
 const Kernels& plain_kernels();
-/// Four at once; null where this was not compiled in. Call only on processors with AVX2.
+/// The kernels with four numbers at once; null if they were not compiled in. They may only be
+/// called on processors with AVX2.
 const Kernels* avx2_kernels();
-/// The widest that this processor has.
+/// The widest kernels that this processor can run.
 const Kernels& best_kernels();
 
 }  // namespace ayumi::kernels

@@ -1,5 +1,5 @@
-// Compiled with -mavx2 where the compiler knows it; empty otherwise. No fused multiply-add: every
-// instruction set gives the same bits.
+// This source is compiled with -mavx2 if the compiler knows that option, and is empty otherwise. It
+// uses no fused multiply-add, so that every instruction set gives the same bits.
 #include "ayumi/dynamics/kernels/tree_kernels.hpp"
 
 #ifdef __AVX2__

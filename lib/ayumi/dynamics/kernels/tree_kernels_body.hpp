@@ -7,11 +7,11 @@
 //   of a body: f = m a + W h,   n = h x a + I alpha + w x I w
 //   inwards:   tau = s.n (sliding s.f),  f_p += E P f,  n_p += E P n + r x (E P f)
 // Forward: the articulated f = M a + H alpha + p_f, n = H' a + I alpha + p_n go inwards with the
-// joint solved out, U = (H s, I s), D = s.I s + rotor:  (M H; H' I) -= U U' / D.
+// joint solved out, U = (H s, I s), D = s.I s + rotor: (M H; H' I) -= U U' / D.
 
 #include "ayumi/dynamics/kernels/tree_kernels_fours.hpp"
 #include "ayumi/dynamics/kernels/tree_kernels_vectors.hpp"
-// The kernels one by one, on what stands above.
+// The kernels themselves, which use what stands above.
 #include "ayumi/dynamics/kernels/tree_kernels_factor.hpp"
 #include "ayumi/dynamics/kernels/tree_kernels_forward.hpp"
 #include "ayumi/dynamics/kernels/tree_kernels_inverse.hpp"

@@ -1,6 +1,6 @@
 // Part of tree_kernels_body.hpp: the sparse factor M = L' L. The row of a place holds its path from
-// the root: an ancestor's path is the beginning of it, so all runs over whole beginnings. Rows are
-// filled up to fours with numbers of no meaning.
+// the root. The path of an ancestor is the beginning of it, so that all loops run over whole
+// beginnings of rows. Rows are filled up to a multiple of four with numbers that have no meaning.
 
 namespace {
 
@@ -13,7 +13,7 @@ bool factor_rows(const Paths& paths, double* rows, double* inverse) {
     const double pivot = row[depth];
     if (!(pivot > 0)) return false;
     const double root = __builtin_sqrt(pivot);
-    inverse[k] = root * (1.0 / pivot);  // neither waits for the other
+    inverse[k] = root * (1.0 / pivot);  // neither factor waits for the other
     for (int t = 0; t < depth; t += 4) store_four(row + t, inverse[k] * load_four(row + t));
     row[depth] = root;
     for (int i = paths.parent[k], t = depth - 1; t >= 0; i = paths.parent[i], --t) {
@@ -26,7 +26,7 @@ bool factor_rows(const Paths& paths, double* rows, double* inverse) {
   return true;
 }
 
-// Y <- L^-T Y for `width` columns (a multiple of four) that are zero but on the path to `last`;
+// Y <- L^-T Y for `width` columns (a multiple of four) that are zero except on the path to `last`;
 // Y has a row for every entry of that path.
 void solve_path(const Paths& paths, const double* rows, const double* inverse, int last, int width,
                 double* Y) {
@@ -54,7 +54,7 @@ inline void store_part(const Tile& tile, int rows, int columns, double* out, int
     for (int l = 0; l < 4 && l < rows; ++l) out[k * stride + l] = c[k][l];
 }
 
-// The other half of a symmetric product: column k of a tile becomes a row.
+// Writes the other half of a symmetric product: column k of a tile becomes a row.
 inline void store_across(const Tile& tile, double* out, int stride) {
   const Four a = __builtin_shufflevector(tile.c0, tile.c1, 0, 4, 2, 6),
              b = __builtin_shufflevector(tile.c0, tile.c1, 1, 5, 3, 7),
@@ -66,7 +66,7 @@ inline void store_across(const Tile& tile, double* out, int stride) {
   store_four(out + 3 * stride, __builtin_shufflevector(b, d, 2, 3, 6, 7));
 }
 
-// One tile of a product, and two of them below each other, whose sums do not wait for each other.
+// One tile of a product, and two tiles one below the other, whose sums do not wait for each other.
 inline void tile_of(const double* x, int a, const double* y, int b, int depth, Tile& sum) {
   for (int t = 0; t < depth; ++t, x += a, y += b) {
     const Four v = load_four(x);
@@ -98,13 +98,13 @@ inline void store_tile(const Tile& sum, double* to, int stride) {
   store_four(to + 3 * stride, sum.c3);
 }
 
-// out(i, j) = sum over t of A(t, i) B(t, j) for i < rows, j < columns; A and B have `depth` lines
-// of a and b numbers (multiples of four), the columns of `out` are `stride` apart.
+// out(i, j) = sum over t of A(t, i) B(t, j) for i < rows, j < columns. A and B have `depth` lines
+// of a and b numbers (multiples of four), and the columns of `out` are `stride` numbers apart.
 void gram(const double* A, int a, const double* B, int b, int depth, int rows, int columns,
           double* out, int stride) {
-  // With itself and filled up to fours, half of the product is enough.
+  // For the product of a matrix with itself, filled up to a multiple of four, half of it is enough.
   const bool half = A == B && rows == columns && (rows & 3) == 0;
-  constexpr bool kTwo = sizeof(Wide) == sizeof(Four);  // else there are too few registers
+  constexpr bool kTwo = sizeof(Wide) == sizeof(Four);  // otherwise there are too few registers
   for (int j = 0; j < columns; j += 4)
     for (int i = half ? j : 0; i < rows; i += 4) {
       double* to = out + j * stride + i;
@@ -127,7 +127,7 @@ void gram(const double* A, int a, const double* B, int b, int depth, int rows, i
     }
 }
 
-// y <- y + A x of a matrix of `rows` by `columns`, columns `stride` apart.
+// y <- y + A x for a matrix of `rows` by `columns`, whose columns are `stride` numbers apart.
 void multiply_add(const double* A, int rows, int columns, int stride, const double* x, double* y) {
   int i = 0;
   for (; i + 4 <= rows; i += 4) {
@@ -139,7 +139,7 @@ void multiply_add(const double* A, int rows, int columns, int stride, const doub
     for (int k = 0; k < columns; ++k) y[i] += x[k] * A[k * stride + i];
 }
 
-// Takes from four columns, j to j + 3, what the columns before them have in common with them.
+// Subtracts from the four columns j to j + 3 their parts along the columns before them.
 inline void subtract_columns(double* A, int size, int stride, int j) {
   for (int i = j; i < size; i += 4) {
     Four sum[4];
@@ -153,11 +153,11 @@ inline void subtract_columns(double* A, int size, int stride, int j) {
   }
 }
 
-// x <- A^-1 x of a symmetric positive definite matrix of `size` rows by its lower triangle; columns
-// `stride` apart, which is `size` filled up to fours, as many of them, and x has as many entries.
-// A becomes C of A = C D^-1 C', D the diagonal of C, with 1/D in its place: a root or a quotient
-// for each step of the solution would be what it waits for. False where A is not safely positive;
-// x is as before then.
+// x <- A^-1 x for a symmetric positive definite matrix of `size` rows, given by its lower triangle.
+// Its columns are `stride` numbers apart; `stride` is `size` rounded up to a multiple of four.
+// There are `stride` columns, and x has `stride` entries. A becomes C of A = C D^-1 C', where D is
+// the diagonal of C, with 1/D in its place: a square root or a quotient in each step would delay
+// the whole solution. Returns false if A is not safely positive; x is then unchanged.
 bool solve_positive(double* A, int size, int stride, double* x) {
   double largest = 0;
   for (int k = 0; k < size; ++k)
@@ -175,7 +175,7 @@ bool solve_positive(double* A, int size, int stride, double* x) {
     if (!(column[j] > 1e-14 * largest)) return false;
     column[j] = 1.0 / column[j];
   }
-  // What stands above the diagonal in its block of four has no meaning.
+  // In each block of four, the numbers above the diagonal have no meaning.
   for (int k = 0; k < size; ++k) {
     const double* column = A + k * stride;
     const double share = x[k] * column[k];

@@ -2,12 +2,12 @@
 
 namespace {
 
-// An articulated body: f = M a + H alpha + f0, n = H' a + I alpha + n0; M and I symmetric.
+// An articulated body: f = M a + H alpha + f0, n = H' a + I alpha + n0, with symmetric M and I.
 template <typename T>
 struct Articulated {
   T M[6], H[9], I[6];
-  Vec<T> f, n;       // f0, n0
-  Vec<T> w, ca, cl;  // its angular velocity and what the rates alone add to alpha and a
+  Vec<T> f, n;       // f0 and n0
+  Vec<T> w, ca, cl;  // angular velocity of the body, and what the rates alone add to alpha and a
   Vec<T> Uf, Un, a, alpha;
   T inverse, drive;
 };
@@ -27,7 +27,7 @@ inline void start_body(const Link& link, Articulated<T>& t) {
   t.n = cross<T>(t.w, symmetric_times<T>(link.I, t.w));
 }
 
-// What is left of the body once its joint about or along K gives way, in the joint's axes.
+// What is left of the body once its joint about or along axis K gives way, in the joint's axes.
 template <int K, bool kSlides, typename T>
 inline void solve_joint(Articulated<T>& t, const Joint<T>& joint, T force, double rotor) {
   for (int j = 0; j < 3; ++j) {
@@ -66,7 +66,8 @@ inline void solve_joint(Articulated<T>& t, const Joint<T>& joint, T force, doubl
   t.n = back<K>(t.n, joint.c, joint.s);
 }
 
-// Adds a body, its joint solved and its axes the parent's, at r to the parent.
+// Adds a body to its parent. The body's joint is already solved, its axes are those of the parent,
+// and it is at r.
 template <typename T, typename R>
 inline void add_to_parent(const Articulated<T>& t, const R& r, Articulated<T>& p) {
   // X = H - M [r x], I + [r x] X + ([r x] H)'.
@@ -94,7 +95,8 @@ inline void add_to_parent(const Articulated<T>& t, const R& r, Articulated<T>& p
   add_to(p.n, t.n + cross<T>(r, t.f));
 }
 
-// x <- A^-1 x for a symmetric positive definite matrix of six by L D L', the lower part given.
+// x <- A^-1 x for a symmetric positive definite matrix of six rows by L D L'. The lower part is
+// given.
 template <typename T>
 inline void solve_six(T (&A)[6][6], T (&x)[6]) {
   T inverse[6];
@@ -178,7 +180,8 @@ void forward_dynamics(const Tree& tree, const Job& job) {
   for (int i = tree.count - 1; i > 0; --i) {
     const Link& link = tree.links[i];
     Articulated<T>& t = bodies[i];
-    // The joint's own force is told along its axis here: ratio is 1 or -1 where nothing is tied.
+    // The joint's own force is expressed along its axis here: if no joints are tied, the ratio is 1
+    // or -1.
     const T force = link.ratio * load<T>(job.input, 6 + link.dof);
     const double rotor = job.rotor ? job.rotor[link.dof] : 0.0;
     const Joint<T>& joint = joints[i];

@@ -1,5 +1,5 @@
-// Part of tree_kernels_body.hpp: vectors of the world in one register of four numbers (two of two
-// where the processor has no wider ones), the fourth of no meaning.
+// Part of tree_kernels_body.hpp: vectors of the world in one register of four numbers, the last of
+// which has no meaning (in two registers of two if the processor has no wider ones).
 
 namespace {
 
@@ -28,7 +28,7 @@ inline Four cross_four(const Four& a, const Four& b) { return next(a * next(b) -
 inline double sum_of_three(const Four& t) { return (t[0] + t[1]) + t[2]; }
 inline double dot_four(const Four& a, const Four& b) { return sum_of_three(a * b); }
 
-// Three by three by columns.
+// A matrix of three by three, stored by columns.
 struct Columns {
   Four c[3];
 };
@@ -40,11 +40,11 @@ inline Columns load_columns(const double* from) {
   return {{load_four(from), load_four(from + 3), load_three(from + 6)}};
 }
 inline void store_columns(double* to, const Columns& m) {
-  store_four(to, m.c[0]);  // the fourth number is put right by the next column
+  store_four(to, m.c[0]);  // the fourth number is overwritten by the next column
   store_four(to + 3, m.c[1]);
   store_three(to + 6, m.c[2]);
 }
-// R S R' for symmetric S of six.
+// R S R' for a symmetric S, given by six numbers.
 inline Columns turned(const Columns& R, const double* S) {
   const Columns X = {{times_four(R, S[0], S[1], S[2]), times_four(R, S[1], S[3], S[4]),
                       times_four(R, S[2], S[4], S[5])}};

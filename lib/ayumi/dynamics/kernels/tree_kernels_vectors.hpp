@@ -1,7 +1,7 @@
-// Part of tree_kernels_body.hpp: vectors and turns of scalars T, sines and cosines, joints.
+// Part of tree_kernels_body.hpp: vectors and turns of scalars T, sines and cosines, and joints.
 
-// Declared here, because its header brings inline functions, which are not for every processor when
-// they are compiled here.
+// The function is declared here, because its header has inline functions, which would be compiled
+// here for processors that not everyone has.
 namespace ayumi::elementary {
 double sin(double x);
 double cos(double x);
@@ -47,7 +47,7 @@ template <typename T, typename A, typename B>
 inline Vec<T> cross(const A& a, const B& b) {
   return {{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}};
 }
-// Matrices of nine, row by row.
+// Matrices of nine numbers, row by row.
 template <typename T, typename A, typename B>
 inline Vec<T> times(const A& m, const B& v) {
   return {{m[0] * v[0] + m[1] * v[1] + m[2] * v[2], m[3] * v[0] + m[4] * v[1] + m[5] * v[2],
@@ -58,7 +58,7 @@ inline Vec<T> transposed_times(const A& m, const B& v) {
   return {{m[0] * v[0] + m[3] * v[1] + m[6] * v[2], m[1] * v[0] + m[4] * v[1] + m[7] * v[2],
            m[2] * v[0] + m[5] * v[1] + m[8] * v[2]}};
 }
-// Symmetric matrices of six.
+// Symmetric matrices of six numbers.
 template <typename T, typename A, typename B>
 inline Vec<T> symmetric_times(const A& m, const B& v) {
   return {{m[0] * v[0] + m[1] * v[1] + m[2] * v[2], m[1] * v[0] + m[3] * v[1] + m[4] * v[2],
@@ -66,7 +66,7 @@ inline Vec<T> symmetric_times(const A& m, const B& v) {
 }
 constexpr int kSix[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
 
-// The turn of a joint about axis K: parent's components into the link's, and back.
+// The turn of a joint about axis K: it takes the parent's components to the link's, and back.
 template <int K, typename T>
 inline Vec<T> into(const Vec<T>& v, T c, T s) {
   constexpr int a = (K + 1) % 3, b = (K + 2) % 3;
@@ -86,12 +86,14 @@ inline Vec<T> back(const Vec<T>& v, T c, T s) {
   return result;
 }
 
-// sin and cos by Taylor's series on |r| <= pi/4, the nearest multiple of pi/2 taken off in three
-// parts of which the first two multiply exactly. Within 2 units of the last place to |q| = 1e5.
+// sin and cos by Taylor's series on |r| <= pi/4, where r is the angle minus the nearest multiple of
+// pi/2. That multiple is subtracted in three parts, of which the first two multiply exactly. The
+// result is within 2 units of the last place up to |q| = 1e5.
 constexpr double kLargestAngle = 1e5;
 template <typename T>
 inline void sine_cosine(T q, T& sine, T& cosine) {
-  constexpr double kRound = 6755399441055744.0;  // 1.5 * 2^52: the sum's last bit is worth one
+  // 1.5 * 2^52: the last bit of a sum with it is worth one.
+  constexpr double kRound = 6755399441055744.0;
   const T shifted = q * 0.63661977236758134308 + kRound;
   const T k = shifted - kRound;
   T r = q - k * 0x1.921fb544p0;
@@ -112,7 +114,7 @@ inline void sine_cosine(T q, T& sine, T& cosine) {
   c = c * x - 1.0 / 720.0;
   c = c * x + 1.0 / 24.0;
   c = 1.0 - x * (0.5 - x * c);
-  // k mod 4 as m = 0, 1, +-2, -1: the sine is s, c, -s, -c, the cosine c, -s, -c, s.
+  // With k mod 4 as m = 0, 1, +-2, -1, the sine is s, c, -s, -c and the cosine c, -s, -c, s.
   const T half = k * 0.5;
   const T rest = half - ((half + kRound) - kRound);  // 0 or +-0.5
   const T odd = rest * rest * 4.0;
@@ -123,7 +125,7 @@ inline void sine_cosine(T q, T& sine, T& cosine) {
   cosine = even * c - turn * s;
 }
 
-// Joint positions of all links, and sines and cosines of those that turn.
+// The joint positions of all links, and the sines and cosines of those that turn.
 template <typename T>
 struct Joint {
   T q, s, c;
@@ -138,7 +140,7 @@ inline bool any_large(T q) {
   return false;
 }
 
-// Angles beyond the series' reach go to the library, one by one.
+// Angles beyond the reach of the series are computed by the library, one by one.
 template <typename T>
 __attribute__((noinline)) void far_sine_cosine(T q, T& s, T& c) {
   for (unsigned i = 0; i < sizeof(T) / sizeof(double); ++i) {
@@ -170,9 +172,10 @@ inline void sines_and_cosines(const double* angle, double* sine, double* cosine,
   }
 }
 
-// Several joints of one state, or one joint of several states, go through the series at once.
-// One joint's place among those that go through the series at once: a lane of one state, or all
-// lanes of several states. Not by way of memory, where a vector is late that was stored by numbers.
+// Several joints of one state, or one joint of several states, go through the series at once. These
+// functions write and read the place of one joint in such a group: one lane for one state, or all
+// lanes for several states. They do not go through memory, because a vector is late if it was
+// stored number by number.
 inline void put_lane(Wide& all, int lane, double x) { all[lane] = x; }
 inline void put_lane(Wide& all, int, const Wide& x) { all = x; }
 inline void get_lane(const Wide& all, int lane, double& x) { x = all[lane]; }
@@ -232,7 +235,7 @@ inline Vec<T> load_vec(const double* from, int k) {
   return {{load<T>(from, k), load<T>(from, k + 1), load<T>(from, k + 2)}};
 }
 
-// Joint origin in the parent.
+// The origin of the joint in the parent.
 template <typename T>
 inline Vec<T> arm_of(const Link& link, T q) {
   Vec<T> r;
@@ -245,7 +248,7 @@ inline Vec<T> arm_of(const Link& link, T q) {
   return r;
 }
 
-// Symmetric matrix turned back by the joint about K.
+// A symmetric matrix, turned back by the joint about K.
 template <int K, typename T>
 inline void turn_symmetric(T* S, T c, T s) {
   constexpr int a = (K + 1) % 3, b = (K + 2) % 3;
@@ -254,7 +257,7 @@ inline void turn_symmetric(T* S, T c, T s) {
   kk_a = c * ka - s * kb;
   kk_b = s * ka + c * kb;
   T &aa = S[kSix[a][a]], &bb = S[kSix[b][b]], &ab = S[kSix[a][b]];
-  // Rows first: (a, b) -> (c a - s b, s a + c b), then columns likewise.
+  // The rows are turned first, (a, b) -> (c a - s b, s a + c b), and then the columns likewise.
   const T raa = c * aa - s * ab, rab = c * ab - s * bb, rbb = s * ab + c * bb;
   const T rba = s * aa + c * ab;
   aa = c * raa - s * rab;

@@ -3,9 +3,9 @@
 //   w_i = w_p + s dq,  v_i = v_p + w_p x r,       alpha_i = alpha_p + s ddq + w_p x s dq,
 //   a_i = a_p + alpha_p x r + w_p x (w_p x r),    f = m (a_c + g z),  n = I alpha + w x I w + c x
 //   f, tau = s . (n_subtree - p x f_subtree).
-// A prismatic joint adds s ddq + 2 w_p x s dq to a_i in place of the angular terms.
-// Most bodies stand next to their parent. What goes from one to the other then stays in registers:
-// a number that has just been stored is late when it is loaded again.
+// A prismatic joint adds s ddq + 2 w_p x s dq to a_i instead of the angular terms. Most bodies
+// stand next to their parent. What goes from one to the other then stays in registers: a number
+// that has just been stored is late when it is loaded again.
 
 namespace {
 
@@ -25,12 +25,12 @@ inline Columns turned_about(const Columns& R, double c, double s) {
 }
 
 struct Frame {
-  Columns R;  // in link axes
+  Columns R;  // attitude in link axes
   Four p;
 };
 
-// A body from the frame its joint starts from, which becomes the body's (both in link axes);
-// returns its first moment.
+// Carries a body from the frame in which its joint starts, which becomes the body's frame (both in
+// link axes). Returns its first moment.
 template <int K>
 inline Four place_body(const Link& link, const Joint<double>& joint, Frame& frame,
                        const Bodies& bodies, int i) {
@@ -112,7 +112,7 @@ void body_velocities(const Tree& tree, const Job& job, const Bodies& bodies, dou
   store_three(momentum, sum);
 }
 
-// A subtree's first and second moment, and what a unit rate of its joint moves.
+// The first and second moment of a subtree, and the motion that a unit rate of its joint gives it.
 struct Subtree {
   Columns I;
   Four h, v, w;
@@ -127,8 +127,8 @@ inline Columns about_origin(const Link& link, const double* rotation, const Four
   return I;
 }
 
-// Of a column and one of another rank, or of two that are the same; without ties the column of
-// the body further out is the one of higher rank, and nothing comes twice.
+// Puts the entry of two columns of different rank, or of a column with itself. Without ties, the
+// column of the body that is further out has the higher rank, and no entry comes twice.
 template <bool kTied>
 inline void put_entry(const Layout& at, double* M, int a, int b, double value) {
   const bool swap = kTied && at.rank[a] < at.rank[b];
@@ -137,7 +137,8 @@ inline void put_entry(const Layout& at, double* M, int a, int b, double value) {
   if (at.both && (!kTied || a != b)) M[at.row[swap ? a : b] + at.entry[swap ? b : a]] = entry;
 }
 
-// What a unit rate of each joint moves, and each body's own inertia.
+// Fills each subtree with the body's own inertia and with the motion that a unit rate of its joint
+// gives it.
 inline void start_subtrees(const Tree& tree, const Bodies& bodies, Subtree* subtrees) {
   for (int i = 0; i < tree.count; ++i) {
     const Link& link = tree.links[i];
@@ -194,7 +195,7 @@ inline void put_columns(const Tree& tree, const Subtree* subtrees, int i, const 
   }
 }
 
-// The mass matrix; what it leaves out is zero before.
+// The entries of the mass matrix. Entries that this function leaves out must be zero before.
 void mass_entries(const Tree& tree, const Bodies& bodies, const Layout& at, double* M) {
   auto* subtrees = reinterpret_cast<Subtree*>(bodies.scratch);
   start_subtrees(tree, bodies, subtrees);
@@ -268,8 +269,9 @@ void newton_euler(const Tree& tree, const Job& job, const Bodies& bodies) {
   store_three(job.output + 3, n);
 }
 
-// Adds what a unit velocity of the base (lines 0 to 5) and of each joint gives a point that
-// touches, in the contact's axes: three numbers in each line, lines `stride` apart.
+// Adds the velocity that a unit velocity of the base (lines 0 to 5) and of each joint gives a
+// touching point, in the contact's axes: three numbers in each line, with lines `stride` numbers
+// apart.
 void contact_lines(const Contact& contact, const Chain& chain, int stride, double* lines) {
   const Columns axes = load_columns(contact.axes);
   const double* q = contact.point;

@@ -9,7 +9,7 @@ namespace ayumi {
 
 namespace {
 
-// The axes x forward, y left, z up become z forward, x left, y up.
+// Turns the axes x forward, y left, z up into z forward, x left, y up.
 Eigen::Matrix3d y_up() {
   Eigen::Matrix3d turn;
   turn << 0, 1, 0, 0, 0, 1, 1, 0, 0;
@@ -21,7 +21,7 @@ std::string centimetres(const Eigen::Vector3d& metres) {
   return text::brief(v.x(), 8) + " " + text::brief(v.y(), 8) + " " + text::brief(v.z(), 8);
 }
 
-// The three angles of R = Rz Rx Ry in degrees.
+// The three angles of R = Rz Rx Ry in degrees, as text.
 std::string channels(const Eigen::Matrix3d& rotation) {
   const Eigen::Matrix3d r = y_up() * rotation * y_up().transpose();
   const double x = elementary::asin(std::clamp(r(2, 1), -1.0, 1.0));

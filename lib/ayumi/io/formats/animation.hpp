@@ -6,12 +6,12 @@
 
 namespace ayumi {
 
-/// Lengths are in centimetres, y is up and z is forward. There is one joint for each body, with its
-/// rotations in the order z, x, y.
+/// Writes BVH. Lengths are in centimetres, y is up and z is forward. There is one joint for each
+/// body, with its rotations in the order z, x, y.
 std::vector<WrittenFile> write_bvh(const RobotModel& model, const MotionFile& motion);
 
-/// qpos is the position x y z of the root, its quaternion w x y z, and the joints in the robot's
-/// order.
+/// Writes keyframes of a MuJoCo model. qpos is the position x y z of the root, its quaternion w x y
+/// z, and the joints in the robot's order.
 std::vector<WrittenFile> write_mujoco_keys(const RobotModel& model, const MotionFile& motion);
 
 }  // namespace ayumi

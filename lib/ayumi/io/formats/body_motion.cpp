@@ -35,7 +35,7 @@ class BodyMotionReader {
       source_.refuse(line_of(root_),
                      "there is no sequence of joint angles (JointDisplacement); add one");
     if (!(motion_.rate > 0)) {
-      motion_.rate = 100;  // Definition: what Choreonoid takes where the file states none
+      motion_.rate = 100;  // Definition: what Choreonoid assumes if the file states no rate
       motion_.notes.push_back("frame rate: 100 per second, because the file states none");
     }
     place_zmp();
@@ -95,7 +95,7 @@ class BodyMotionReader {
       left_out_.push_back(content.empty() ? type : content);
   }
 
-  // Reads rows of `width` numbers without their times; a width of 0 is that of the first row.
+  // Reads rows of `width` numbers without their times. If `width` is 0, the first row decides it.
   std::vector<std::vector<double>> rows_of(const YamlNode& frames, size_t width) {
     std::vector<std::vector<double>> rows;
     if (frames.items.empty() && !frames.numbers.empty())  // the value is one list of single numbers

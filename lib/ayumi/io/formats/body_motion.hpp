@@ -7,7 +7,7 @@ namespace ayumi {
 
 std::string recognize_body_motion(const MotionInput& source);
 MotionFile read_body_motion(const MotionInput& source);
-/// Version 4.
+/// Writes version 4.
 std::vector<WrittenFile> write_body_motion(const RobotModel& model, const MotionFile& motion);
 
 }  // namespace ayumi

@@ -48,7 +48,7 @@ int devices_of(const RobotModel& model) {
   return most;
 }
 
-// The numbers of devices in words, as in "25 (HOAP-1), 27 (HOAP-2)".
+// The numbers of devices as text, such as "25 (HOAP-1), 27 (HOAP-2)".
 std::string list_of(const std::vector<SequenceLayout>& layouts, bool with_interval) {
   std::vector<std::string> words;
   for (const SequenceLayout& layout : layouts)
@@ -148,7 +148,7 @@ class Reader {
              "' is not a whole number from -32768 to 32767");
       row.values.push_back(*count);
     }
-    size_t at = 0;  // the place behind the comma after the last motor
+    size_t at = 0;  // the place after the comma that follows the last motor
     for (size_t comma = 0; comma < begin + motors && at != std::string_view::npos; ++comma)
       at = line.find(',', at == 0 ? 0 : at + 1);
     result_.last_words = at == std::string_view::npos ? "" : std::string(line.substr(at));
@@ -172,7 +172,7 @@ class Reader {
     result_.rows.push_back(std::move(row));
   }
 
-  // If there is a fraction anywhere, the values are angles, and the layout is the one of angles.
+  // If any value has a fraction, the values are angles, and the layout is the one of angles.
   void set_bare_times() {
     const size_t columns = result_.layout.columns();
     const SequenceLayout* found = nullptr;
@@ -241,7 +241,8 @@ std::vector<int> dofs_by_device(const RobotModel& model, const SequenceLayout& l
   return dofs;
 }
 
-// Rows [begin, end) of counts in device order, with what stands before and behind the motors.
+// Appends the rows [begin, end) of counts in device order, with the cells before and after the
+// motors.
 void append_rows(std::string& text, const Eigen::MatrixXi& counts, const std::vector<int>& dofs,
                  Eigen::Index begin, Eigen::Index end, const std::string& before,
                  const std::string& behind) {
@@ -311,7 +312,7 @@ bool looks_like_hoap(const std::string& bytes, const RobotModel& model) {
   std::string_view line = take_line(rest);
   while (line.empty() && !rest.empty()) line = take_line(rest);
   const std::vector<std::string_view> cells = cells_of(line);
-  if (is_row_of_commands(cells)) return true;  // no head row could begin so
+  if (is_row_of_commands(cells)) return true;  // no head row can begin in this way
   if (!all_numbers(cells)) return false;
   for (const SequenceLayout& layout : sequence_layouts(model))
     if (!layout.has_interval() && layout.columns() == cells.size()) return true;

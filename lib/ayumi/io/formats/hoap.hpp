@@ -16,18 +16,21 @@
 
 namespace ayumi {
 
-/// The robot's layouts. A sidecar without any has two: interval, 2, the motors of all encoders and
-/// three requests; and the motors followed by two more values, without an interval.
+/// The robot's layouts. A sidecar without any layout has two: the first has the interval, 2, the
+/// motors of all encoders and three requests; the second has the motors and then two more values,
+/// without an interval.
 std::vector<SequenceLayout> sequence_layouts(const RobotModel& model);
 
-/// The layout of that name, else the first with an interval: the one that is written. Throws
-/// Error(bad_model) where there is none, or where the robot does not have each of its devices once.
+/// The layout with this name; without a name, the first one with an interval. Tables are written in
+/// it. Throws Error(bad_model) if there is no such layout, or if the robot does not have each of
+/// its devices once.
 SequenceLayout written_layout(const RobotModel& model, const std::string& name = "");
 
 /// One row with a value for every motor.
 struct HoapRow {
-  int at = 0;                  ///< [ms] from the first row of the file
-  std::vector<double> values;  ///< by device from 1: counts, or radians where the layout says so
+  int at = 0;  ///< time from the first row of the file [ms]
+  /// Values by device, from device 1 on: counts, or radians if the layout says so.
+  std::vector<double> values;
 };
 
 /// What a sequence file contains.
@@ -36,43 +39,47 @@ struct HoapFile {
   std::vector<HoapRow> rows;
   int tick_ms = 1;           ///< greatest common divisor of the intervals between rows [ms]
   bool even = true;          ///< all these intervals are equal
-  int general_commands = 0;  ///< rows with commands to one device
-  std::string first_words, last_words;  ///< behind the motors of the first and last row, as written
-  std::string line_end = "\n";          ///< of the first line
+  int general_commands = 0;  ///< number of rows with commands to one device
+  /// Text after the motors of the first and the last row, as written.
+  std::string first_words, last_words;
+  std::string line_end = "\n";  ///< end of the first line
 
   double dt() const { return 0.001 * tick_ms; }
 };
 
-/// Blanks, CR, `-0` and any text after the motors are accepted. Rows without an interval follow
-/// each other in the interval of their layout, or in `interval_ms` where it is above 0. Throws
-/// Error(bad_file) "file:line: ..." for a number of columns that no layout of the robot has, a
-/// value that is no count of 16 bits (or no angle), an interval that is none, no rows.
+/// Blanks, CR, `-0` and any text after the motors are accepted. The interval between rows that
+/// state none is that of their layout, or `interval_ms` if this is above 0. Throws Error(bad_file)
+/// "file:line: ..." if no layout of the robot has this number of columns, if a value is not a count
+/// of 16 bits (or not an angle), if an interval is not a positive whole number, and if there are no
+/// rows.
 HoapFile parse_hoap(const std::string& bytes, const std::string& file, const RobotModel& model,
                     int interval_ms = 0);
 
-/// Whether a file begins as a sequence of this robot.
+/// Whether the beginning of a file looks like a sequence of this robot.
 bool looks_like_hoap(const std::string& bytes, const RobotModel& model);
 
 /// Values of one device (counted from 1) at every tick, interpolated linearly between rows.
 Eigen::VectorXd values_on_ticks(const HoapFile& sequence, int device);
 
-/// Angle of a joint per unit of the file's values; radians have the sign of the encoder.
+/// Angle of a joint per unit of the file's values. Radians have the sign of the encoder.
 double angle_of_unit(const HoapFile& sequence, const Dof& dof);
 
-/// The servo targets: joint angles of a sequence at its ticks (other fields zero), in the robot's
-/// joint order. Joints without a device in the file keep their home angle.
+/// The servo targets: the joint angles of a sequence at its ticks, in the robot's joint order; the
+/// other fields are zero. Joints without a device in the file keep their home angle.
 ReferenceTrajectory hoap_targets(const RobotModel& model, const HoapFile& sequence);
 
-/// The table as a sequence file, in the layout that the robot writes unless another is given;
-/// counts by encoder_counts under the options' step limits. Throws Error(bad_pattern) when dt is
-/// not whole milliseconds or a count leaves 16 bits.
+/// The table as a sequence file, in the layout that the robot writes unless another one is given.
+/// The counts are those of encoder_counts under the step limits of the options. Throws
+/// Error(bad_pattern) if dt is not a whole number of milliseconds or a count does not fit into 16
+/// bits.
 std::string hoap_csv(const RobotModel& model, const ReferenceTrajectory& table,
                      const SafetyOptions& options = {});
 std::string hoap_csv(const RobotModel& model, const ReferenceTrajectory& table,
                      const SafetyOptions& options, const SequenceLayout& layout);
 
-/// An imported sequence as it was, with the rows of `table` before row `first` ahead of it, and
-/// those from `first` + `count` behind it: a ramp and a hold in the form of the sequence.
+/// An imported sequence as it was, with a ramp and a hold around it in the form of the sequence:
+/// the rows of `table` before row `first` stand before it, and the rows from `first` + `count` on
+/// stand after it.
 std::string hoap_csv_around(const RobotModel& model, const ReferenceTrajectory& table, size_t first,
                             size_t count, const SafetyOptions& options, const HoapFile& sequence,
                             const std::string& bytes);

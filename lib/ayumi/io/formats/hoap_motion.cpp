@@ -1,6 +1,6 @@
-// Real sequence files are not clean tables. They have line ends of two kinds, blanks around cells,
-// "-0", requests where others have words for hobby servos, and commands to single devices between
-// the rows. What robots answer, or what other programs write for them, has no intervals, and is
+// Real sequence files are not clean tables. They have two kinds of line ends, blanks around cells,
+// "-0", words for hobby servos in the place of requests, and commands to single devices between the
+// rows. Recordings of robots and files of other programs have no intervals, and their values are
 // counts or radians.
 #include "ayumi/io/formats/hoap_motion.hpp"
 
@@ -22,9 +22,9 @@ void refuse_lost_motion(const HoapFile& sequence, int device, const RobotModel& 
   const auto [least, most] = std::minmax_element(
       sequence.rows.begin(), sequence.rows.end(),
       [&](const HoapRow& a, const HoapRow& b) { return a.values[column] < b.values[column]; });
-  // An axis that moves less than this holds its place. Chosen: 0.05 degrees, half of what servos do
-  // not follow (kOfCounts of motion_import.cpp); as counts those of an encoder of 209 counts per
-  // degree.
+  // An axis that moves by less than this holds its place. Chosen: 0.05 degrees, half of what servos
+  // do not follow (kOfCounts of motion_import.cpp); the number of counts is that of an encoder with
+  // 209 counts per degree.
   constexpr double kTremblingCounts = 10, kTremblingAngle = 0.05 * EIGEN_PI / 180;
   const double low = least->values[column], high = most->values[column];
   const std::string unit = sequence.layout.radians ? " rad" : " counts";
@@ -72,7 +72,7 @@ void say_largest_step(const HoapFile& sequence, std::vector<std::string>& filled
 
 /// The joints whose angles leave their position limits in some row.
 std::vector<std::string> beyond_limits(const RobotModel& model, const Eigen::MatrixXd& theta) {
-  constexpr double kSlack = 1e-6;  // Chosen: rounding of decimals [rad]; no knee bends by it
+  constexpr double kSlack = 1e-6;  // Chosen: rounding of decimals [rad]; no knee shows it
   std::vector<std::string> names;
   for (int j = 0; j < model.dof_count(); ++j) {
     const Dof& dof = model.dofs()[static_cast<size_t>(j)];
@@ -83,8 +83,8 @@ std::vector<std::string> beyond_limits(const RobotModel& model, const Eigen::Mat
   return names;
 }
 
-// The angles in radians. The notes say which of them were negated, and whether the other reading
-// fits better.
+// The angles in radians. The notes say which of them were negated, and whether the angles fit
+// better with the other signs.
 void apply_signs(const RobotModel& model, bool encoder_signs, Eigen::MatrixXd& theta,
                  std::vector<std::string>& notes) {
   std::vector<std::string> negative;

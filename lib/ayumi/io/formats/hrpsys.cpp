@@ -150,8 +150,9 @@ MotionFile read_hrpsys(const MotionInput& source) {
         motion.zmp.push_back(motion.base[k].position + motion.base[k].attitude * local);
         off = std::max(off, std::abs(motion.zmp.back().z()));
       }
-      // Read relative to the waist, a ZMP that is nearer to the ground than this is taken to be in
-      // the frame of the waist. Chosen: a tenth of the height of a small robot's waist [m].
+      // A ZMP that is nearer to the ground than this, if it is read relative to the waist, is taken
+      // to be in the frame of the waist. Chosen: a tenth of the height of a small robot's waist
+      // [m].
       constexpr double kNearGround = 0.03;
       motion.notes.push_back(
           off < kNearGround

@@ -26,7 +26,7 @@ bool has_key(const MotionInput& source, const std::string& key) {
   return source.bytes.find("\"" + key + "\"") != std::string::npos;
 }
 
-// Degrees with as many digits as a number in radians keeps.
+// An angle in degrees as text, with as many digits as a number in radians has.
 std::string degrees_text(double radians) {
   char text[40];
   std::snprintf(text, sizeof text, "%.12g", radians / kRadiansPerDegree);

@@ -1,6 +1,6 @@
 #pragma once
-// A log as comma-separated text: one head row with names and units, then a row per tick. Numbers
-// are the shortest text from which the same number is read back.
+// A log as comma-separated text: one head row with names and units, then one row for each tick.
+// Numbers are the shortest texts that give the same number again.
 
 #include <string>
 

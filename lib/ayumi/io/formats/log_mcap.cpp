@@ -22,13 +22,14 @@ using Eigen::Vector3d;
 using OrderedJson = nlohmann::ordered_json;
 
 constexpr const char* kWorld = "world";
-// [Hz] Chosen: what is drawn has fewer rows per second than the numbers have, about as many as a
-// screen shows. At half of it a file of the bundled walk is 1.4 % smaller, at twice 2.7 % larger.
+// Rate of the messages that are drawn [Hz]. Chosen: fewer rows per second than the numbers have,
+// and about as many as a screen shows. With half of it, a file of the bundled walk is 1.4 %
+// smaller; with twice, 2.7 % larger.
 constexpr double kDrawRate = 50;
 
 std::uint64_t nanoseconds(double t) { return static_cast<std::uint64_t>(std::llround(1e9 * t)); }
 
-// ---- JSON schemas, only of the fields that are written ----
+// ---- JSON schemas, with only the fields that are written ----
 
 OrderedJson object(const OrderedJson& properties) {
   return {{"type", "object"}, {"properties", properties}};
@@ -164,7 +165,8 @@ OrderedJson arrow(const std::string& id, const Vector3d& at, const Vector3d& vec
   return made;
 }
 
-// The sizes of the marks follow from the height of the COG, and forces from the weight.
+// The marks of the scene. Their sizes follow from the height of the COG, and those of forces from
+// the weight.
 class Marks {
  public:
   Marks(const RobotModel& model, const SimulationLog& log)
@@ -317,7 +319,8 @@ void write(const Node& node, const LogTable& table, size_t row, std::string& tex
   text += '}';
 }
 
-// "measured.cog" is the field "cog" of the topic "/measured", "cog" that of "/state".
+// The columns by topic: "measured.cog" is the field "cog" of the topic "/measured", and "cog" is a
+// field of the topic "/state".
 std::vector<Node> topics_of(const LogTable& table) {
   static const std::set<std::string> groups = {"measured", "cmd",     "ref",  "left",       "right",
                                                "push",     "contact", "work", "disturbance"};

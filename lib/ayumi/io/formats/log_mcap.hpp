@@ -1,9 +1,9 @@
 #pragma once
-// A log as MCAP with JSON messages, which Foxglove opens. Numbers of every tick are in one topic
-// per group of quantities ("/state", "/measured", "/left", ...) and in /joint_states. /tf has the
-// frames of all links, /robot their surface (once), /scene the marks of COG, ZMP, DCM and forces,
-// and /events what happened. The schemas named foxglove.* are those of Foxglove, as far as their
-// fields are written.
+// A log as MCAP with JSON messages, which Foxglove opens. The numbers of every tick are in one
+// topic for each group of quantities ("/state", "/measured", "/left", ...) and in /joint_states.
+// /tf has the frames of all links, /robot has their surface (once), /scene has the marks of COG,
+// ZMP, DCM and forces, and /events has the events. The schemas named foxglove.* are those of
+// Foxglove, with only the fields that are written.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -14,11 +14,11 @@
 
 namespace ayumi {
 
-/// A surface with a colour per vertex, in the frame of a body.
+/// A surface with a colour for each vertex, in the frame of a body.
 struct ColoredMesh {
-  std::vector<Eigen::Vector3f> points;   ///< [m]
-  std::vector<Eigen::Vector4f> colors;   ///< sRGB and alpha, 0 to 1
-  std::vector<std::uint32_t> indices{};  ///< three per triangle
+  std::vector<Eigen::Vector3f> points;   ///< vertices [m]
+  std::vector<Eigen::Vector4f> colors;   ///< colour of each vertex: sRGB and alpha, from 0 to 1
+  std::vector<std::uint32_t> indices{};  ///< three vertices for each triangle
 };
 
 struct McapTopic {
@@ -31,7 +31,7 @@ struct McapLog {
   std::vector<McapTopic> topics;
 };
 
-/// `surface` has one mesh per body, or is empty. `table` is that of the log.
+/// `surface` has one mesh for each body, or is empty. `table` is the table of the log.
 McapLog log_mcap(const RobotModel& model, const std::vector<ColoredMesh>& surface,
                  const SimulationLog& log, const LogTable& table);
 

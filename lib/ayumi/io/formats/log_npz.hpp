@@ -1,8 +1,8 @@
 #pragma once
-// A log as a .npz archive of NumPy: one array per quantity, with the shape rows x columns, or only
-// rows where the quantity is one number. The array "joints" names the joints, and "about" is JSON:
-// shape, unit and columns of every array, and from what the run was made. No array needs pickle.
-// The archive is not compressed.
+// A log as a .npz archive of NumPy. There is one array for each quantity. It has the shape rows x
+// columns, or only rows if the quantity is one number. The array "joints" names the joints. The
+// array "about" is JSON: shape, unit and columns of every array, and the origin of the run. No
+// array needs pickle. The archive is not compressed.
 
 #include <string>
 #include <vector>

@@ -21,19 +21,20 @@ class McapWriter {
   /// `library` names the program that writes.
   explicit McapWriter(const std::string& library);
 
-  /// Metadata, schemas and channels come before the first message.
+  /// Metadata, schemas and channels must be added before the first message.
   void add_metadata(const std::string& name, const Metadata& values);
-  /// A topic whose messages are JSON of the form that `json_schema` describes; returns its channel.
+  /// Adds a topic whose messages are JSON of the form that `json_schema` describes. Returns its
+  /// channel.
   std::uint16_t add_channel(const std::string& topic, const std::string& schema_name,
                             const std::string& json_schema);
 
-  /// `time` [ns] must not be before that of the message before.
+  /// `time` [ns] must not be before the time of the previous message.
   void add_message(std::uint16_t channel, std::uint64_t time, const std::string& json);
 
   /// Returns the whole file. Nothing can be added afterwards.
   std::string finish();
 
-  /// The number of messages so far of each channel.
+  /// The number of messages of each channel so far.
   const std::map<std::uint16_t, std::uint64_t>& counts() const { return counts_; }
 
  private:
@@ -53,11 +54,12 @@ class McapWriter {
   void close_chunk();
 
   std::string file_;
-  std::vector<std::string> schemas_, channels_;  ///< whole records, repeated in the summary
+  /// Whole records, which are repeated in the summary.
+  std::vector<std::string> schemas_, channels_;
   std::vector<MetadataIndex> metadata_;
   std::vector<ChunkIndex> chunks_;
   std::map<std::uint16_t, std::uint64_t> counts_;
-  std::uint64_t first_ = 0, last_ = 0;  ///< times of all messages
+  std::uint64_t first_ = 0, last_ = 0;  ///< times of the first and the last message
   bool any_ = false;
 
   // The chunk that is being filled.

@@ -93,7 +93,7 @@ std::string lower_extension(const std::string& file) {
   return extension;
 }
 
-// The number of lines at the beginning that may say what a text is. Chosen: heads of the formats
+// Number of lines at the beginning that may show the format of a text. Chosen: heads of the formats
 // above are shorter.
 constexpr size_t kHeadLines = 50;
 
@@ -105,7 +105,7 @@ std::vector<std::string_view> head_lines(const MotionInput& source) {
   return lines;
 }
 
-// The number of cells of a line that are numbers, and of pairs of words with nothing but blanks
+// The number of cells of a line that are numbers, and the number of pairs of words with only blanks
 // between them.
 struct LineParts {
   size_t numbers = 0, cells = 0, word_pairs = 0;
@@ -129,7 +129,7 @@ LineParts parts_of(std::string_view line) {
   return parts;
 }
 
-// Whether a text is sentences: words between blanks, and no row of numbers.
+// Whether a text consists of sentences: it has words between blanks and no row of numbers.
 bool is_prose(const MotionInput& source) {
   size_t pairs = 0;
   for (const std::string_view line : head_lines(source)) {
@@ -279,7 +279,8 @@ std::vector<std::string> written_format_names() {
 
 Recognized recognize(const MotionInput& source) {
   const Foreign* kind = signed_kind(source);
-  // A text does not begin with bytes of 0, whatever stands before them.
+  // Number of bytes that are looked at. Chosen: no text has bytes of 0 at its beginning, whatever
+  // else stands there.
   constexpr size_t kBeginning = 100;
   const bool binary = source.bytes.substr(0, kBeginning).find('\0') != std::string::npos;
   for (const MotionFormat& format : motion_formats()) {

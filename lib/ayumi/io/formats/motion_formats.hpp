@@ -1,6 +1,6 @@
 #pragma once
-// The formats of motions: how a file is recognized, its reader and its writer, and what it cannot
-// hold. A new format is one pair of files and one line of the table.
+// The formats of motions: how a file is recognized, its reader and its writer, and what the format
+// cannot hold. A new format is one pair of files and one line of the table.
 
 #include <string>
 #include <vector>
@@ -24,14 +24,15 @@ enum FormatPart : unsigned {
 
 struct MotionFormat {
   std::string name;   ///< its name for --format
-  std::string words;  ///< "Webots .motion"
+  std::string words;  ///< name for people, such as "Webots .motion"
   unsigned holds = 0;
-  bool played = false;  ///< a robot's own program plays such files
-  bool binary = false;  ///< the content is no text
-  /// Says why the content is of this format; "" where it is not. Null: the format is only written.
+  bool played = false;  ///< whether a robot's own program plays such files
+  bool binary = false;  ///< whether the content is not text
+  /// Says why the content has this format; "" if it does not have it. Null: the format is only
+  /// written.
   std::string (*recognize)(const MotionInput&) = nullptr;
   MotionFile (*read)(const MotionInput&) = nullptr;
-  /// Null: the format is only read.
+  /// Writes the files; null: the format is only read.
   std::vector<WrittenFile> (*write)(const RobotModel&, const MotionFile&) = nullptr;
   /// In place of `read`: makes the keys of a pattern, and adds to the notes what was assumed.
   Pattern (*read_keys)(const MotionInput&, std::vector<std::string>& notes) = nullptr;
@@ -40,7 +41,7 @@ struct MotionFormat {
 /// All formats, in the order in which content is compared with them.
 const std::vector<MotionFormat>& motion_formats();
 
-/// The format of that name; null where there is none.
+/// The format with this name; null if there is none.
 const MotionFormat* find_motion_format(const std::string& name);
 
 /// The names of the formats that are read, or of those that are written.
@@ -49,13 +50,13 @@ std::vector<std::string> written_format_names();
 
 struct Recognized {
   const MotionFormat* format = nullptr;
-  std::string reason;  ///< what it is, in words
+  std::string reason;  ///< the reason in words
 };
-/// Throws Error(bad_file). The message names the formats that are read, and says what the file is
-/// where Ayumi knows its kind but does not read it.
+/// Throws Error(bad_file). The message names the formats that are read. If Ayumi knows what the
+/// file is but does not read it, the message says so.
 Recognized recognize(const MotionInput& source);
 
-/// What the format cannot hold of the motion, in words; empty: nothing is lost.
+/// In words, what the format cannot hold of the motion; empty if nothing is lost.
 std::string cannot_hold(const MotionFormat& format, const MotionFile& motion);
 
 }  // namespace ayumi

@@ -18,15 +18,15 @@ namespace ayumi {
 
 namespace {
 
-/// Most rows of a file and of a motion. Chosen: a motion of this length and 60 columns takes 200
-/// MB.
+/// Largest number of rows of a file and of a motion. Chosen: a motion of this length with 60
+/// columns takes 200 MB.
 constexpr size_t kMostRows = 400'000;
 
 /// The rows of a motion: every quantity is a column, so that all are treated alike.
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 std::string shortened(const std::vector<std::string>& names) {
-  constexpr size_t kMost = 40;  // names. Chosen: a line that a person still reads
+  constexpr size_t kMost = 40;  // largest number of names. Chosen: a line that a person still reads
   return text::join_first(names, kMost);
 }
 
@@ -70,14 +70,14 @@ void refuse_other_encodings(const MotionInput& source) {
                     " is not UTF-8 text (the file may be Latin-1); save the file as UTF-8");
 }
 
-// ---- Size, before a reader takes memory for it
+// ---- checks of the size, before a reader takes memory for it
 
-/// Most values of one row, and most characters of one value. Chosen: no robot comes near; tables
-/// whose rows are joints have as many values in a row as there may be rows.
+/// Largest number of values in one row, and of characters in one value. Chosen: no robot comes near
+/// to them. In tables whose rows are joints, a row may have as many values as there may be rows.
 constexpr size_t kMostInRow = kMostRows, kLongestValue = 100'000;
-/// Most lists of numbers and most elements in text that does not have one row in each line. Chosen:
-/// 500 s of 20 joints at 50 rows per second in the format with the most (a list for each joint); a
-/// parser takes about 0.4 kB and 1 us for each.
+/// Largest number of lists of numbers, and of elements, in a text that does not have one row in
+/// each line. Chosen: 500 s of 20 joints at 50 rows per second in the format with the most lists
+/// (one for each joint). A parser takes about 0.4 kB and 1 us for each.
 constexpr size_t kMostLists = 500'000;
 /// Largest depth of elements inside each other. Chosen: motions need five; parsers descend by
 /// recursion.
@@ -127,8 +127,8 @@ bool has_decimal_commas(const std::string& text) {
   return commas > 2 && points * 50 < commas;
 }
 
-// The end of every message about a motion's content. It says which remedy the content suggests, and
-// how the format was recognized (null: it was not).
+// The end of every message about a motion's content. It names the remedy that the content suggests,
+// and says how the format was recognized; `format` is null if it was not.
 std::string remedy(const MotionFormat* format, const ImportedMotion& motion,
                    const std::string& bytes, const std::string& message) {
   std::string words;
@@ -148,14 +148,14 @@ std::string remedy(const MotionFormat* format, const ImportedMotion& motion,
   return words + ")";
 }
 
-// A text that was cut off may end within a number, and nothing but that end can show it.
+// A text that was cut off may end within a number, and only this end can show it.
 bool may_be_cut(const std::string& text) {
   const auto last = static_cast<unsigned char>(text.back());
   return std::isdigit(last) || last == '.' || last == '-';
 }
 
-// The format of the file. Then `source` has its content as readers take it, and `result` the name
-// of the format and the reason.
+// Recognizes the format of the file. Afterwards, `source` has the content in the form that readers
+// take, and `result` has the name of the format and the reason.
 const MotionFormat& format_of(const std::string& bytes, MotionInput& source,
                               ImportedMotion& result) {
   const ImportOptions& options = source.options;
@@ -205,7 +205,7 @@ MotionFile read_file_of(const std::string& bytes, const std::string& file, const
   return motion;
 }
 
-// ---- Joints
+// ---- joints
 
 std::vector<std::string> column_names(const MotionFile& motion, const RobotModel& model,
                                       const ImportOptions& options, const std::string& file,
@@ -242,8 +242,8 @@ std::vector<std::string> column_names(const MotionFile& motion, const RobotModel
   return motion.joints;
 }
 
-/// From this angle of a joint with limits on, a column is in degrees [rad]. Chosen: more than one
-/// and a half turns, which no joint with limits makes.
+/// A column is in degrees if a joint with limits has an angle of at least this [rad]. Chosen: more
+/// than one and a half turns, which no joint with limits makes.
 constexpr double kNoAngle = 10;
 
 void refuse_degrees(const MotionFile& motion, Eigen::Index column, const std::string& name,
@@ -260,8 +260,9 @@ void refuse_degrees(const MotionFile& motion, Eigen::Index column, const std::st
                   : "this format holds radians, so correct the file"));
 }
 
-/// Farthest place of a motion from the origin of its world [m], and largest ground force in weights
-/// of the robot. Chosen: far beyond any recording; a digit too many or a damaged number is beyond.
+/// Largest distance of a motion from the origin of its world [m], and largest ground force as a
+/// multiple of the robot's weight. Chosen: far beyond any recording; a number with a digit too many
+/// or a damaged number exceeds them.
 constexpr double kFarthest = 10000, kMostWeights = 1000;
 
 void refuse_absurd(const MotionFile& motion, const RobotModel& model, const std::string& file) {
@@ -312,7 +313,7 @@ std::vector<int> map_joints(const MotionFile& motion, const RobotModel& model,
            "the columns '" + names[static_cast<size_t>(column)] + "' and '" + names[i] +
                "' are the same joint; remove one of them");
     const auto at = static_cast<Eigen::Index>(i);
-    if (motion.values.col(at).array().isNaN().all()) continue;  // never set
+    if (motion.values.col(at).array().isNaN().all()) continue;  // the joint is never set
     column = static_cast<int>(i);
     matched.push_back(names[i]);
     refuse_degrees(motion, at, names[i], model.dofs()[static_cast<size_t>(dof)],
@@ -344,9 +345,10 @@ std::vector<int> map_joints(const MotionFile& motion, const RobotModel& model,
   return columns;
 }
 
-// ---- Rows
+// ---- rows
 
-// The columns: theta of the robot, then what else the motion has. NaN: not set.
+// The columns: theta of the robot, and then the other quantities of the motion. NaN means that a
+// value is not set.
 Rows rows_of(const MotionFile& motion, const std::vector<int>& columns, const RobotModel& model,
              bool degrees) {
   const Eigen::Index rows = motion.rows(), dofs = model.dof_count();
@@ -393,7 +395,7 @@ class SetColumn {
       }
     slope_.assign(t_.size(), 0);
     // Monotone cubics (Fritsch and Carlson 1980, with the harmonic mean of Fritsch and Butland
-    // 1984): they do not go beyond the keys, and are at rest at the first and the last one.
+    // 1984). They do not overshoot the keys, and are at rest at the first and the last key.
     for (size_t i = 1; smooth && i + 1 < t_.size(); ++i) {
       const double h0 = t_[i] - t_[i - 1], h1 = t_[i + 1] - t_[i];
       const double d0 = (x_[i] - x_[i - 1]) / h0, d1 = (x_[i + 1] - x_[i]) / h1;
@@ -439,7 +441,7 @@ struct Spacing {
   bool even = false;
 };
 
-// The median step, or the mean one where the format rounds its times.
+// The median step, or the mean step if the format rounds its times.
 Spacing spacing_of(const std::vector<double>& times, double time_step) {
   std::vector<double> steps;
   for (size_t k = 1; k < times.size(); ++k) steps.push_back(times[k] - times[k - 1]);
@@ -491,11 +493,11 @@ std::vector<double> times_of(const MotionFile& motion, const ImportOptions& opti
   return times;
 }
 
-/// From this step on, rows are key postures [s]. Chosen: recordings have at least 20 rows per
-/// second, and players do not hold a posture for longer.
+/// If the step is at least this long, the rows are key postures [s]. Chosen: recordings have at
+/// least 20 rows per second, and players do not hold a posture for longer.
 constexpr double kKeyStep = 0.06;
-/// The step of the rows between key postures [s]. Chosen: half of the interval of hobby servos (20
-/// ms); for action files the unit of their times, so that their keys are rows.
+/// Step of the rows between key postures [s]. Chosen: half of the interval of hobby servos (20 ms);
+/// for action files it is the unit of their times, so that their keys are rows.
 constexpr double kKeyTick = 0.01, kActionTick = 0.008;
 
 Rows even_rows(const MotionFile& motion, const Rows& rows, const ImportOptions& options,
@@ -541,8 +543,8 @@ void set_motion(const Rows& rows, const MotionFile& file, Eigen::Index dofs, Raw
       base.position = vector();
       const auto q = rows.row(k).segment<4>(c);
       base.attitude = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
-      // Definition: the tolerance of Ayumi's own tables for a unit quaternion, whose bits are then
-      // kept.
+      // Definition: the tolerance of Ayumi's own tables for a unit quaternion; the bits of such a
+      // quaternion are kept.
       constexpr double kUnit = 1e-6;
       if (!(std::abs(base.attitude.norm() - 1) < kUnit)) base.attitude.normalize();
       motion.base.push_back(base);
@@ -590,8 +592,8 @@ void hold_last_row(Eigen::Index least, ImportedMotion& imported) {
                             " rows, the least number for a check");
 }
 
-// A motion begins and ends at rest, so its rows go on beyond both ends as if it returned along its
-// own path.
+// A motion begins and ends at rest. So its rows are continued beyond both ends as if it returned
+// along its own path.
 Eigen::VectorXd smoothed_from_rest(const Eigen::VectorXd& raw, double band, double cutoff) {
   const Eigen::Index n = raw.size();
   const auto more = std::min<Eigen::Index>(n - 1, static_cast<Eigen::Index>(2 / cutoff));
@@ -600,14 +602,16 @@ Eigen::VectorXd smoothed_from_rest(const Eigen::VectorXd& raw, double band, doub
   return smoothed_within(mirrored, band, cutoff).segment(more, n);
 }
 
-// Angles that were rounded, or measured with noise, have accelerations from row to row that no
-// motion has: the differences of a row's acceleration from its neighbours' are then larger than the
-// accelerations themselves. In smooth motions they are smaller.
+// Angles that were rounded or measured with noise have accelerations from row to row that no motion
+// has. The difference of a row's acceleration from those of its neighbours is then larger than the
+// accelerations themselves. In smooth motions it is smaller.
 void say_rough(const RobotModel& model, ImportedMotion& imported) {
-  // Derived: white noise has third differences sqrt(20/6) = 1.8 times its second ones; a motion of
-  // 2 Hz at 30 rows per second 0.4 times. In between.
+  // Ratio of third to second differences above which a motion is noisy. Derived: between white
+  // noise, which has a ratio of sqrt(20/6) = 1.8, and a motion of 2 Hz at 30 rows per second, which
+  // has 0.4.
   constexpr double kNoise = 1.2;
-  // Acceleration of noise that is said [rad/s^2, m/s^2]. Chosen: what quick motions of joints have.
+  // Acceleration of the noise above which a note is written [rad/s^2, m/s^2]. Chosen: the
+  // acceleration of joints in quick motions.
   constexpr double kSaid = 20;
   const Eigen::MatrixXd& theta = imported.motion.theta;
   const Eigen::Index rows = theta.rows();
@@ -633,14 +637,15 @@ void say_rough(const RobotModel& model, ImportedMotion& imported) {
       "smooths the angles and changes each by at most DEG degrees (try 0.1)");
 }
 
-// Counts are rounded, and straight between the times for which they were made: differences of that
-// are no accelerations of anything. Servos do not follow a tenth of a degree.
+// Counts are rounded, and they are interpolated linearly between the times for which they were
+// made, so that their differences are no accelerations of the motion. Servos do not follow a change
+// of a tenth of a degree.
 void smooth_angles(const RobotModel& model, const ImportOptions& options,
                    ImportedMotion& imported) {
-  // Largest change of an angle [deg]. Chosen: 21 counts; what servos do not follow.
+  // Largest change of an angle [deg]. Chosen: 21 counts, which servos do not follow.
   constexpr double kOfCounts = 0.1;
-  // Frequency up to which a motion is kept [1/s]. Chosen: ten times that of the steps of a walk
-  // (0.55 s each).
+  // Frequency up to which a motion is kept [1/s]. Chosen: ten times the frequency of the steps of a
+  // walk (0.55 s each).
   constexpr double kCutoff = 20;
   const double degrees = options.smooth.value_or(imported.format == "hoap" ? kOfCounts : 0);
   if (degrees <= 0) {
@@ -655,7 +660,7 @@ void smooth_angles(const RobotModel& model, const ImportOptions& options,
     theta.col(i) =
         smoothed_from_rest(raw, degrees * kRadiansPerDegree, kCutoff * imported.motion.dt);
     if (!dof.limited) continue;
-    // Beside a jump it swings over: no limit is to be broken by that.
+    // Smoothing overshoots beside a jump, but it must not violate a limit.
     const double margin = model.description().soft_limit_margin;
     theta.col(i) = theta.col(i)
                        .cwiseMax(std::min(dof.lower + margin, raw.minCoeff()))
@@ -692,7 +697,7 @@ void read_rows(const std::string& bytes, const std::string& file, const RobotMod
              std::to_string(kLeastRows) + " are needed");
 }
 
-// Calls `read`; an Error about the file then says what the file was taken for.
+// Calls `read`. An Error about the file gets an addition that says which format was assumed.
 template <typename Read>
 void with_remedy(const std::string& bytes, ImportedMotion& result, const Read& read) {
   try {

@@ -27,7 +27,7 @@ std::string shape_text(const std::vector<size_t>& shape) {
   return text + ")";
 }
 
-// Valid UTF-8 as code points; any other byte as U+FFFD.
+// The code points of a UTF-8 text; every invalid byte becomes U+FFFD.
 std::u32string code_points(const std::string& text) {
   std::u32string points;
   for (size_t at = 0; at < text.size();) {
@@ -39,7 +39,7 @@ std::u32string code_points(const std::string& text) {
   return points;
 }
 
-// "<U8" as UTF-8.
+// The text of a cell of the type "<U8" as UTF-8.
 std::string word_of(const char* data, size_t length) {
   std::string word;
   for (size_t i = 0; i < length; ++i) {
@@ -70,7 +70,7 @@ void take_numbers(const std::string& bytes, size_t at, size_t count, NpyArray& a
   }
 }
 
-// The text between quotes, or the word, after 'key':.
+// The text between quotes, or the word, after `'key':`.
 std::string value_in_head(const std::string& head, const std::string& key) {
   const size_t at = head.find("'" + key + "':");
   if (at == std::string::npos) return "";
@@ -81,7 +81,7 @@ std::string value_in_head(const std::string& head, const std::string& key) {
   return head.substr(begin, head.find_first_of(",}", begin) - begin);
 }
 
-/// Numbers of all arrays together. Chosen: 100 MB.
+/// Largest number of numbers in all arrays together. Chosen: 100 MB.
 constexpr size_t kMostNumbers = 100'000'000 / sizeof(double);
 
 NpyArray array_of(const std::string& bytes, const SourcePlace& place) {

@@ -12,10 +12,10 @@ namespace ayumi {
 /// C.
 std::string npy_bytes(const std::string& type, const std::vector<size_t>& shape, std::string data);
 
-/// Strings; NumPy stores 4 bytes per character and one length for all.
+/// An array of strings. NumPy stores 4 bytes for each character, and one length for all strings.
 std::string npy_words(const std::vector<std::string>& words, const std::vector<size_t>& shape);
 
-/// Numbers as "<f8".
+/// An array of numbers of the type "<f8".
 std::string npy_numbers(const std::vector<double>& numbers, const std::vector<size_t>& shape);
 
 struct NamedFile {
@@ -28,13 +28,14 @@ std::string zip_of(const std::vector<NamedFile>& files);
 /// An array that was read.
 struct NpyArray {
   std::vector<size_t> shape;
-  std::vector<double> numbers;     ///< of a numeric array, in the order of C
-  std::vector<std::string> words;  ///< of an array of strings
-  std::string refused = {};        ///< why the content was not read; "" where it was
+  std::vector<double> numbers;     ///< numbers of a numeric array, in the order of C
+  std::vector<std::string> words;  ///< words of an array of strings
+  std::string refused = {};        ///< reason why the content was not read; "" if it was read
 };
 
-/// The arrays by name. Throws Error(bad_file) for what is no archive, a truncated array, and more
-/// than 100 MB of numbers. Arrays of other kinds (objects) say so in `refused`.
+/// The arrays by name. Throws Error(bad_file) for a file that is not an archive, for a truncated
+/// array, and for more than 100 MB of numbers. Arrays of other kinds (objects) have the reason in
+/// `refused`.
 std::map<std::string, NpyArray> read_npz(const std::string& bytes, const std::string& file);
 
 }  // namespace ayumi

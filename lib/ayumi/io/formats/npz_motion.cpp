@@ -44,7 +44,8 @@ class ArrayReader {
     return *array;
   }
 
-  // The array must be rows x width (0: any width), or rows x bodies x width.
+  // The array with this name. It must be rows x width (any width if `width` is 0), or rows x bodies
+  // x width.
   const NpyArray& rows(const std::string& name, size_t dimensions, size_t width,
                        size_t rows) const {
     const NpyArray& array = at(name);
@@ -113,7 +114,7 @@ void append(std::vector<double>& list, const Eigen::Vector3d& v) {
   list.insert(list.end(), {v.x(), v.y(), v.z()});
 }
 
-// Differences are taken over two rows, and over one row at the ends.
+// The rates as differences over two rows, or over one row at the ends.
 template <typename Difference>
 auto rate_at(size_t k, size_t rows, double rate, const Difference& difference) {
   const size_t a = k > 0 ? k - 1 : 0, b = std::min(k + 1, rows - 1);
@@ -157,7 +158,7 @@ MotionFile read_tracking_npz(const MotionInput& source) {
 
 namespace {
 
-/// `beside` rows at the beginning and `beside` rows at the end are not written.
+/// Makes an archive without the first `beside` and the last `beside` rows.
 std::string tracking_npz(const RobotModel& model, const MotionFile& motion, size_t beside) {
   const auto rows = static_cast<size_t>(motion.rows()), bodies = model.bodies().size();
   const size_t kept = rows - 2 * beside;
@@ -173,7 +174,7 @@ std::string tracking_npz(const RobotModel& model, const MotionFile& motion, size
       position[k].push_back(motion.base[k].position + data.position[b]);
       turn[k].emplace_back(data.rotation[b]);
     }
-    position[k][0] = motion.base[k].position;  // the bits of the root
+    position[k][0] = motion.base[k].position;  // exactly the bits of the root
     turn[k][0] = motion.base[k].attitude;
   }
   std::vector<double> joint, speed, place, quaternion, linear, angular;

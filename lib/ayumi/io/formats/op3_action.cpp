@@ -20,9 +20,9 @@ constexpr int kNotUsed = 0x4000, kTorqueOff = 0x2000, kZero = 2048;
 constexpr unsigned char kUsualSpeed = 32;
 constexpr double kTick = 0.008;              // [s]
 constexpr double kCount = EIGEN_PI / kZero;  // [rad]
-// How long a page of one posture lasts [s]. Chosen: long enough to be judged, in units of 8 ms.
+// Duration of a page with one posture [s]. Chosen: long enough to be judged, in units of 8 ms.
 constexpr double kHeld = 0.8;
-// Most damaged pages that a note names. Chosen: they fit on a line.
+// Largest number of damaged pages that a note names. Chosen: they fit on a line.
 constexpr size_t kNamedPages = 5;
 
 size_t byte_at(const std::string& bytes, size_t at) {
@@ -63,8 +63,7 @@ std::string recognize_op3_action(const MotionInput& source) {
   const std::string& bytes = source.bytes;
   if (bytes.find('\0') == std::string::npos) return "";
   if (bytes.size() == kPages * kPageBytes) return "the file has 256 pages of 512 bytes";
-  // In a file that was cut off, or that goes on behind its pages, the whole pages are sound or
-  // empty.
+  // If a file was cut off, or continues after its pages, every whole page is either sound or empty.
   size_t sound = 0, others = 0;
   for (size_t page = 0; (page + 1) * kPageBytes <= std::min(bytes.size(), kPages * kPageBytes);
        ++page) {
@@ -165,7 +164,7 @@ MotionFile read_op3_action(const MotionInput& source) {
     page = byte_at(bytes, begin + kNext);
     if (page == 0) break;
   }
-  if (rows.size() == 1) {  // one posture: the robot holds it
+  if (rows.size() == 1) {  // one posture, which the robot holds
     rows.push_back(rows.front());
     motion.times.push_back(now + kHeld);
     motion.notes.push_back("the file has one posture, which is held for " + text::brief(kHeld) +
@@ -222,7 +221,7 @@ std::vector<WrittenFile> write_op3_action(const RobotModel& model, const MotionF
     const size_t first = page > 0 ? (page - 1) * kSteps : rows;
     const size_t count = first < rows ? std::min(kSteps, rows - first) : 0;
     set(begin + kRepeat, 1);
-    set(begin + kSchedule, 0x0a);  // Definition: steps are timed, and not by speed
+    set(begin + kSchedule, 0x0a);  // Definition: steps have a time, not a speed
     set(begin + kSpeed, kUsualSpeed);
     set(begin + kAccel, kUsualSpeed);
     set(begin + kStepCount, count);

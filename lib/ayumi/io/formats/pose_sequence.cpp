@@ -21,20 +21,21 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-// A foot that differs less than this from key to key stands still [m, rad]. Chosen: editors of key
-// poses print nine digits, and solvers of postures leave some micrometres.
+// A foot that changes by less than this from key to key stands still [m, rad]. Chosen: editors of
+// key poses print nine digits, and solvers of postures leave an error of some micrometres.
 constexpr double kSamePlace = 1e-3, kSameTurn = 2e-3;
-// Most keys of a file. Chosen: a motion edited by hand has some hundred. A file of 20,000 keys
-// takes half a second and 70 MB.
+// Largest number of keys of a file. Chosen: a motion edited by hand has some hundred. A file of
+// 20,000 keys takes half a second and 70 MB.
 constexpr size_t kMostKeys = 20'000;
 
 /// One key of the file.
 struct PoseKey {
-  double time = 0, transition = 0;  ///< [s]; transition 0: since the key before
-  std::vector<int> joints;          ///< ids
+  /// Time of the key and of its transition [s]; transition 0: since the previous key.
+  double time = 0, transition = 0;
+  std::vector<int> joints;  ///< ids of the joints
   std::vector<double> angles;
   std::optional<Isometry3d> base;
-  std::array<std::optional<Isometry3d>, 2> feet;  ///< soles, by Side
+  std::array<std::optional<Isometry3d>, 2> feet;  ///< poses of the soles by Side
   std::array<bool, 2> touching = {};
   std::optional<Vector3d> zmp;
 };
@@ -82,7 +83,7 @@ class PoseSequenceReader {
     return node.numbers;
   }
 
-  // How often a word stands at the beginning of a line, or behind a blank or a brace.
+  // The number of times that a word stands at the beginning of a line, or after a blank or a brace.
   size_t words(std::string_view word) const {
     const std::string& text = source_.bytes;
     size_t count = 0;
@@ -92,7 +93,7 @@ class PoseSequenceReader {
     return count;
   }
 
-  // This is asked before the text is parsed, and again afterwards.
+  // Refuses too many keys. This is called before the text is parsed, and again afterwards.
   void require_few(size_t keys) const {
     if (keys > kMostKeys)
       source_.refuse(0, "the file has " + std::to_string(keys) +
@@ -100,8 +101,8 @@ class PoseSequenceReader {
                             "; export the motion as body motion (.seq or .yaml) in Choreonoid");
   }
 
-  // The format states its version in a comment above its keys; other files of Choreonoid have a
-  // key.
+  // The format states its version in a comment above its keys; other files of Choreonoid have a key
+  // for it.
   void require_known(const YamlNode& root) const {
     const YamlNode* type = root.find("type");
     if (!type) refuse(root, "`type: PoseSeq` is missing; add it");
@@ -201,7 +202,8 @@ class PoseSequenceReader {
     left_out_.insert(name->text);
   }
 
-  // Gives the ids joints of the robot: as --joints says, or by their order if the user asks for it.
+  // Assigns the ids to joints of the robot, as --joints says, or by their order if the user asks
+  // for it.
   void map_ids(const YamlNode& root) {
     int most = -1;
     for (const PoseKey& key : keys_)
@@ -235,8 +237,9 @@ class PoseSequenceReader {
     return true;
   }
 
-  // The position of the COG in every key that places the base link: the legs bend so that both feet
-  // and the base link have their places. Empty: the legs do not reach, or the key has no base link.
+  // The position of the COG in every key that places the base link. The legs bend so that both feet
+  // and the base link have their places. A position is empty if the legs do not reach, or if the
+  // key has no base link.
   std::vector<std::optional<Vector3d>> cogs_of_bases(const InverseKinematics& solver) const {
     std::vector<std::optional<Vector3d>> result;
     RobotState state = model_.rest_state();
@@ -288,12 +291,13 @@ class PoseSequenceReader {
                                      Eigen::Quaterniond(b.linear())) < kSameTurn;
   }
 
-  /// When a foot leaves its place, and when it stands at the next one.
+  /// The times at which a foot leaves its place and at which it stands at the next one.
   struct Move {
     double from = 0, to = 0;
   };
 
-  // A foot that stands keeps its place to the last bit, because it must not move while it carries.
+  // A standing foot keeps its place to the last bit, because it must not move while it supports the
+  // robot.
   std::vector<Move> settle(size_t foot) {
     std::vector<Move> moves;
     const PoseKey* before = nullptr;
@@ -379,8 +383,9 @@ class PoseSequenceReader {
 
   Keyframe& frame_at(double time) { return frames_[time]; }
 
-  // One track: `value_of(key)` is its value in a key, if it has one, and `set` writes a value into
-  // a keyframe. Where a key limits its transition, the value before holds until then.
+  // Reads one track. `value_of(key)` is the value of the track in a key, if it has one, and `set`
+  // writes a value into a keyframe. If a key limits its transition, the value before it holds until
+  // the transition begins.
   template <typename ValueOf, typename Set>
   void add_track(const ValueOf& value_of, const Set& set) {
     decltype(value_of(keys_.front())) before;
@@ -416,10 +421,10 @@ class PoseSequenceReader {
     return phase.support == Support::left || phase.support == Support::right;
   }
 
-  // The ZMP of a file that states it once or never, as the editor of such files generates it: under
-  // the standing foot, and between steps from foot to foot. Before the first and after the last
-  // step it is where the file states it. If the file states none, it is between the feet, as far as
-  // the next key pose allows.
+  // The ZMP of a file that states it once or never. It is generated as the editor of such files
+  // does it: it is under the standing foot, and moves from foot to foot between steps. Before the
+  // first and after the last step it is where the file states it. If the file states none, it is
+  // between the feet, as far as the next key pose allows.
   void add_zmp_of_feet(const std::vector<Phase>& phases) {
     const auto set = [&](double time, ZmpKey zmp) { frame_at(time).zmp = zmp; };
     const auto first = std::find_if(phases.begin(), phases.end(), is_single);
@@ -520,8 +525,8 @@ class PoseSequenceReader {
   std::vector<std::string>& notes_;
   const RobotModel& model_;
   std::vector<PoseKey> keys_;
-  std::vector<std::string> names_;     // by id
-  std::map<double, Keyframe> frames_;  // by time
+  std::vector<std::string> names_;     // names by id
+  std::map<double, Keyframe> frames_;  // keyframes by time
   std::set<std::string> left_out_, other_;
   int still_ = 0, legs_ = 0, out_of_reach_ = 0;
   bool zmp_leads_ = false, zmp_follows_ = false;

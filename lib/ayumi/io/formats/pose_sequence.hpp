@@ -8,9 +8,10 @@ namespace ayumi {
 
 std::string recognize_pose_sequence(const MotionInput& source);
 
-/// Joints, feet, trunk, COG height and ZMP of every key as keyframes, and as phases which feet
-/// stand still between the keys. Where the file places feet, the legs follow from them, and
-/// elsewhere from their joints. `notes` says what was assumed and left out. Throws Error(bad_file).
+/// The keyframes have the joints, feet, trunk, COG height and ZMP of every key, and the phases say
+/// which feet stand still between the keys. If the file places feet, the legs follow from these
+/// places, otherwise from their joints. `notes` says what was assumed and left out. Throws
+/// Error(bad_file).
 Pattern read_pose_sequence(const MotionInput& source, std::vector<std::string>& notes);
 
 }  // namespace ayumi

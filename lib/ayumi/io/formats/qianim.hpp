@@ -1,6 +1,6 @@
 #pragma once
-// Curves of NAO's Choregraphe as XML (.qianim, and the timelines of behaviours): keys of each
-// actuator by frame, in degrees.
+// Curves of NAO's Choregraphe as XML (.qianim, and the timelines of behaviours). They contain keys
+// of each actuator by frame, in degrees.
 
 #include "ayumi/io/formats/motion_file.hpp"
 

@@ -62,7 +62,7 @@ Trajectory trajectory_of(const MotionInput& source, const YamlNode& names, const
       source.refuse(yaml_line(point), "a point needs positions and time_from_start");
     if (!positions->items.empty())
       source.refuse(yaml_line(*positions), "the positions are not finite numbers");
-    // These values are not used, but a file in which they are wrong is broken.
+    // These values are not used, but if they are wrong, the file is broken.
     for (const char* const key : {"velocities", "accelerations", "effort"}) {
       const YamlNode* const list = point.find(key);
       if (!list) continue;
@@ -91,7 +91,8 @@ void find_trajectories(const MotionInput& source, const YamlNode& node,
   for (const YamlNode& item : node.items) find_trajectories(source, item, found);
 }
 
-// The documents of a stream, which lines of three hyphens separate. Lines keep their numbers.
+// The documents of a stream, which are separated by lines of three hyphens. Lines keep their
+// numbers.
 std::vector<std::string> documents_of(const std::string& text) {
   std::vector<std::string> documents(1);
   size_t lines = 0;
@@ -125,7 +126,7 @@ MotionFile joined(const MotionInput& source, std::vector<Trajectory> all) {
     }
     const double end = same->times.back();
     for (size_t k = 0; k < one.times.size(); ++k) {
-      if (!(one.times[k] > 0)) continue;  // where the one before has ended
+      if (!(one.times[k] > 0)) continue;  // the previous trajectory has ended before this time
       same->times.push_back(end + one.times[k]);
       same->rows.push_back(std::move(one.rows[k]));
     }

@@ -11,7 +11,7 @@ namespace ayumi {
 namespace {
 
 // Size of the motion. Chosen: a person sees it clearly, and no joint touches anything with it. Half
-// of it is hard to see at a wrist; with twice of it, feet of a robot touch each other.
+// of it is hard to see at a wrist; with twice, the feet of a robot touch each other.
 constexpr double kAngle = 5 * EIGEN_PI / 180;  // [rad]
 constexpr double kSlide = 0.01;                // [m]
 // Times of one test [s]. Chosen: 2.5 degrees per second on average, slow enough to be stopped.
@@ -41,7 +41,8 @@ std::vector<SignTest> sign_tests(const RobotModel& model, double dt) {
   for (int j = 0; j < model.dof_count(); ++j) {
     const Dof& dof = model.dofs()[static_cast<size_t>(j)];
     const auto at = static_cast<size_t>(j);
-    if (model.limits().has_servo[at] && model.limits().servo[at].kp <= 0) continue;  // passive
+    // A passive joint.
+    if (model.limits().has_servo[at] && model.limits().servo[at].kp <= 0) continue;
     SignTest test;
     test.dof = j;
     test.from = home[j];

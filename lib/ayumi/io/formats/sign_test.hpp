@@ -1,6 +1,6 @@
 #pragma once
-// The first day with a robot whose encoder signs are unproven: one slow, small motion per joint,
-// from the home posture and back, while the robot hangs free.
+// Tables for the first day with a robot whose encoder signs are not yet verified. There is one
+// slow, small motion for each joint, from the home posture and back, while the robot hangs free.
 
 #include <string>
 #include <vector>
@@ -12,15 +12,15 @@ namespace ayumi {
 
 struct SignTest {
   int dof = 0;
-  std::string name;           ///< of its file, without extension: "04_r_knee"
-  double from = 0, to = 0;    ///< [rad], sliding joints [m]
-  ReferenceTrajectory table;  ///< plain postures; no ground carries the robot
+  std::string name;         ///< name of its file, without extension: "04_r_knee"
+  double from = 0, to = 0;  ///< angles at the beginning and at the end [rad], of sliding joints [m]
+  ReferenceTrajectory table;  ///< postures only; no ground supports the robot
 };
 
-/// One test for every joint with a motor, in the order of devices (else of joints), one row each
-/// `dt` [s]. The joint moves by 5 degrees (10 mm) in its positive direction; in the negative one,
-/// or less far, where its position limits ask for that. Throws Error(bad_model) where no joint has
-/// a motor.
+/// One test for every joint with a motor, in the order of the devices (or of the joints if there
+/// are none), with a row every `dt` [s]. The joint moves by 5 degrees (10 mm) in its positive
+/// direction. It moves in the negative direction, or by less, if its position limits require this.
+/// Throws Error(bad_model) if no joint has a motor.
 std::vector<SignTest> sign_tests(const RobotModel& model, double dt);
 
 }  // namespace ayumi

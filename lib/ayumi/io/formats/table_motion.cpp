@@ -20,7 +20,7 @@ namespace {
   fail(ErrorCode::bad_file, {file}, reason);
 }
 
-// "r_knee[deg]" and "r_knee (deg)" are a name and its unit, and so are "time_s" and "time_ms".
+// A name and its unit, such as "r_knee[deg]", "r_knee (deg)", "time_s" and "time_ms".
 struct ColumnName {
   std::string name, unit;
 };
@@ -50,8 +50,8 @@ bool is_group_column(const std::string& column) {
   return column == "fz[N]";
 }
 
-// Joint columns by bare name or with a unit become theta columns, and a time column of any name
-// t[s].
+// Joint columns with a name only, or with a unit, become theta columns. A time column of any name
+// becomes t[s].
 void rename_column(NumberTable& table, Eigen::Index i, const RobotModel& model,
                    const ImportOptions& options) {
   std::string& column = table.columns[static_cast<size_t>(i)];
@@ -62,7 +62,7 @@ void rename_column(NumberTable& table, Eigen::Index i, const RobotModel& model,
     return;
   }
   if (is_group_column(column)) return;
-  const bool whole = find_joint(model, column) >= 0;  // a name may end like a unit
+  const bool whole = find_joint(model, column) >= 0;  // the name itself may end like a unit
   std::string joint = whole ? column : named.name;
   if (joint.starts_with("theta.") && !named.unit.empty()) joint = joint.substr(6);
   const std::string unit = whole ? "" : named.unit;

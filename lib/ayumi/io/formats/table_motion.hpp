@@ -1,7 +1,8 @@
 #pragma once
-// Tables with a head row: t[s] (or t, time, time_ms), joints as theta.<joint>[rad] or by their
-// names, bare or with a unit as in r_knee[deg], and whole groups of cog, zmp, fz, base and contact
-// columns as in Ayumi's own tables; the same as JSON with "columns" and "data".
+// Tables with a head row. They have a time t[s] (or t, time, time_ms), joints as theta.<joint>[rad]
+// or by their names (with or without a unit, as in r_knee[deg]), and whole groups of cog, zmp, fz,
+// base and contact columns, as Ayumi's own tables have. The same content may be JSON with "columns"
+// and "data".
 
 #include "ayumi/io/formats/motion_file.hpp"
 #include "ayumi/motion/reference_trajectory.hpp"

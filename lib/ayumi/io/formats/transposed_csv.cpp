@@ -18,7 +18,7 @@ bool is_number(std::string_view cell) {
   return !cell.empty() && error == std::errc() && end == cell.data() + cell.size();
 }
 
-// Rows of words, such as comments on the key postures, have no number at all.
+// Rows of words, such as comments on the key postures, contain no number at all.
 bool has_words_only(const std::vector<std::string_view>& cells) {
   bool words = false;
   for (size_t i = 1; i < cells.size(); ++i) {

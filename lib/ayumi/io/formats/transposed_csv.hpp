@@ -1,5 +1,6 @@
 #pragma once
-// Key postures with time along the first row and one row per joint.
+// Reads key postures in a table whose first row has the times and whose other rows have one joint
+// each.
 
 #include "ayumi/io/formats/motion_file.hpp"
 

@@ -67,7 +67,7 @@ MotionFile read_webots_motion(const MotionInput& source) {
   motion.time_step = kMillisecond;
   head.erase(head.begin(), head.begin() + 2);
   char separator = ',';
-  if (head.empty()) {  // the names stand in the second line
+  if (head.empty()) {  // the names are in the second line
     const std::string_view names = take_line(rest);
     ++line;
     if (names.find('%') != std::string_view::npos) separator = '%';
@@ -136,7 +136,7 @@ std::vector<WrittenFile> write_webots_durations(const RobotModel&, const MotionF
   for (Eigen::Index k = 0; k < motion.rows(); ++k) {
     text += "play";
     for (const double value : motion.values.row(k)) text += "%" + text::exact(value);
-    // The first pose, too, is reached in the time of one row.
+    // The first pose is also reached in the time of one row.
     const auto at = static_cast<size_t>(k);
     const double time = k > 0 ? motion.times[at] - motion.times[at - 1] : 1 / motion.rate;
     text += "%" + text::exact(time) + "\n";

@@ -1,7 +1,7 @@
 #pragma once
-// Webots .motion: a head with the names of motors, then time, name of the pose and angles. V1.1 of
-// the NAO teams has the names in a second line, % between the cells, and durations at the end of
-// the rows in place of times.
+// Webots .motion files. They have a head with the names of motors, and rows with a time, the name
+// of a pose and angles. The version V1.1 of the NAO teams has the names in a second line, % between
+// the cells, and durations at the end of the rows instead of times.
 
 #include "ayumi/io/formats/motion_file.hpp"
 
@@ -11,7 +11,7 @@ std::string recognize_webots_motion(const MotionInput& source);
 MotionFile read_webots_motion(const MotionInput& source);
 std::vector<WrittenFile> write_webots_motion(const RobotModel& model, const MotionFile& motion);
 
-/// Writes V1.1 with `%` between the cells and the names in the second line. The last cell of a row
+/// Writes V1.1, with `%` between the cells and the names in the second line. The last cell of a row
 /// is the time in which its pose is reached. read_webots_motion() reads this form.
 std::string recognize_webots_durations(const MotionInput& source);
 std::vector<WrittenFile> write_webots_durations(const RobotModel& model, const MotionFile& motion);

@@ -1,7 +1,7 @@
 #pragma once
-// Sequences of joint displacements of mi-lib (.zvs): "dt n ( v1 ... vn )" in each line. Where the
-// root floats, its position and rotation vector come first. The joints have the names of the robot
-// (.ztk) of the same name beside the motion, where there is one.
+// Sequences of joint displacements of mi-lib (.zvs): each line is "dt n ( v1 ... vn )". If the root
+// floats, its position and rotation vector come first. If there is a robot (.ztk) of the same name
+// beside the motion, the joints have the names of this robot.
 
 #include "ayumi/io/formats/motion_file.hpp"
 

@@ -1,7 +1,8 @@
 #pragma once
-// How deep arrays and objects of a JSON text may be nested. The library that reads JSON reads any
-// depth, but copies, compares and writes by recursion, so a text that is nested deeply enough ends
-// the program where its value is used. Every reader of JSON refuses such a text first.
+// Limits the depth to which arrays and objects of a JSON text may be nested. The library that reads
+// JSON accepts any depth, but it copies, compares and writes by recursion. A text that is nested
+// deeply enough would end the program where its value is used. So every reader of JSON refuses such
+// a text first.
 
 #include <cstddef>
 #include <optional>
@@ -9,11 +10,11 @@
 
 namespace ayumi {
 
-// Nested arrays and objects. Chosen: Ayumi's files need ten; functions that descend by recursion
-// need less than 1 kB of the 8 MB stack for each.
+// Largest number of arrays and objects inside each other. Chosen: Ayumi's files need ten; functions
+// that descend by recursion need less than 1 kB of the 8 MB stack for each.
 inline constexpr int kDeepestNesting = 200;
 
-/// The place at which the text opens the first array or object that is nested too deeply. Nothing
+/// The place at which the text opens the first array or object that is nested too deeply; nothing
 /// if there is none. Strings and comments are skipped.
 inline std::optional<size_t> nested_too_deep(const std::string& bytes) {
   int depth = 0;
@@ -41,9 +42,9 @@ inline std::optional<size_t> nested_too_deep(const std::string& bytes) {
   return {};
 }
 
-/// The value of a JSON text that is trusted less than its form, as Json or OrderedJson; a discarded
-/// value where the text is no JSON or is nested too deeply. A discarded value has no members:
-/// asking it for one is an exception of the library, as for a value of the wrong type.
+/// The value of a JSON text whose form is not certain, as Json or OrderedJson. It is a discarded
+/// value if the text is not JSON or is nested too deeply. A discarded value has no members: to ask
+/// it for a member is an exception of the library, as for a value of the wrong type.
 template <typename Value>
 Value shallow_json(const std::string& bytes, bool with_comments = false) {
   if (nested_too_deep(bytes)) return Value(Value::value_t::discarded);

@@ -42,7 +42,8 @@ std::string kind_of(const Json& value) {
   fail(code, {file, "", line, column}, message);
 }
 
-// "[json.exception...] parse error at line 1, column 2: what" -> "what"; "[...] what" -> "what"
+// The reason in a message of the library: "[json.exception...] parse error at line 1, column 2:
+// what" becomes "what", and "[...] what" becomes "what".
 std::string reason_of(const std::string& message) {
   const size_t at = message.find("column ");
   if (at == std::string::npos) return message.substr(message.find("] ") + 2);
@@ -50,9 +51,9 @@ std::string reason_of(const std::string& message) {
   return colon == std::string::npos ? message : message.substr(colon + 2);
 }
 
-// Builds a document in time that is linear in its text: the library's own parser with a callback
-// visits all members of an object again after each of them. Stops at what is nested too deeply, and
-// remembers the first key that is given twice.
+// Builds a document in a time that is linear in the length of its text. The library's own parser
+// with a callback would visit all members of an object again after each of them. Stops at a value
+// that is nested too deeply, and remembers the first key that is given twice.
 class DocumentBuilder : public nlohmann::json_sax<Json> {
  public:
   explicit DocumentBuilder(Json& root) : root_(root) {}
@@ -110,7 +111,7 @@ class DocumentBuilder : public nlohmann::json_sax<Json> {
 
   Json& root_;
   std::vector<Json*> open_;  // arrays and objects that are not yet complete
-  Json* member_ = nullptr;   // value of the innermost object whose key was read last
+  Json* member_ = nullptr;   // the value that belongs to the last key of the innermost object
   bool too_deep_ = false;
   std::string duplicate_;
 };
@@ -141,7 +142,8 @@ Json parse_json(const std::string& bytes, const std::string& file, ErrorCode cod
       fail_in_text(code, file, bytes, slip->at, slip->words);
     fail_in_text(code, file, bytes, offset, reason);
   } catch (const Json::exception& error) {
-    // A number beyond those of a double, which stands between quotes at the end of the message.
+    // The text has a number that no double can hold; it stands between quotes at the end of the
+    // message.
     const std::string reason = reason_of(error.what());
     const size_t quote = reason.find('\'');
     const size_t at = quote == std::string::npos

@@ -1,7 +1,8 @@
 #pragma once
-// Strict reading of JSON documents: every complaint names the file, the JSON pointer and what was
+// Strict reading of JSON documents. Every complaint names the file, the JSON pointer and what was
 // expected, e.g. "step.json: /keyframes/3/time: expected a number, found a string". Comments are
-// allowed, duplicate keys, trailing text and non-finite numbers are not. Included by io/*.cpp only.
+// allowed; duplicate keys, trailing text and numbers that are not finite are refused. Included by
+// io/*.cpp only.
 
 #include <Eigen/Core>
 #include <map>
@@ -29,7 +30,8 @@ using JsonPlaces = std::map<std::string, JsonPlace>;
 /// A key in the form that it has in a JSON pointer.
 std::string json_pointer_token(const std::string& key);
 
-/// One value of a JSON document together with its place. Cheap to copy; the document outlives it.
+/// One value of a JSON document together with its place. It is cheap to copy, and the document must
+/// outlive it.
 class JsonNode {
  public:
   JsonNode(const Json& value, std::string file, std::string pointer, ErrorCode code,
@@ -49,8 +51,8 @@ class JsonNode {
   [[noreturn]] void complain(const std::string& message) const;
 
   bool has(const std::string& key) const;
-  JsonNode at(const std::string& key) const;                   ///< complains if it is missing
-  std::optional<JsonNode> find(const std::string& key) const;  ///< none if it is missing
+  JsonNode at(const std::string& key) const;                   ///< complains if the key is missing
+  std::optional<JsonNode> find(const std::string& key) const;  ///< no value if the key is missing
   std::vector<JsonNode> items() const;  ///< items of an array; complains otherwise
   std::vector<std::pair<std::string, JsonNode>> members()
       const;  ///< members of an object, sorted by key
@@ -68,7 +70,7 @@ class JsonNode {
   std::uint64_t unsigned_integer() const;
   bool boolean() const;
   std::string string() const;
-  /// A string that must be one of `allowed`; suggests the nearest.
+  /// A string that must be one of `allowed`; an error suggests the nearest of them.
   std::string one_of(const std::vector<std::string>& allowed) const;
   Eigen::Vector2d vector2() const;
   Eigen::Vector3d vector3() const;

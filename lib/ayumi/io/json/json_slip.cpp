@@ -114,7 +114,7 @@ class SlipFinder {
 
   std::string quoted(size_t begin, size_t end) const {
     if (end - begin <= kQuoted) return text_.substr(begin, end - begin);
-    size_t cut = begin + kQuoted;  // not inside a letter of several bytes
+    size_t cut = begin + kQuoted;  // the cut is not inside a letter of several bytes
     while (cut > begin && (text_[cut] & 0xc0) == 0x80) --cut;
     return text_.substr(begin, cut - begin) + "...";
   }
@@ -128,7 +128,8 @@ class SlipFinder {
 
   static char closing(char bracket) { return bracket == '{' ? '}' : ']'; }
 
-  // "t: 0.5, "zmp": the mark that should open a word closed the word before it.
+  // Whether the word opened by mistake, as in "t: 0.5, "zmp": the mark that should open a word
+  // closed the word before it.
   bool opens_in_word() const {
     return token_ == Token::word && last_ == Token::string && text_[at_ - 1] == '"';
   }
@@ -225,7 +226,7 @@ class SlipFinder {
     say_unclosed(at_);
   }
 
-  // An expression belongs to a token as a whole: ${stride} * 2.
+  // Reads a word. An expression such as ${stride} * 2 belongs to one token as a whole.
   void read_word() {
     int open = 0;  // number of open braces of ${...}
     for (; end_ < text_.size(); ++end_) {
@@ -504,11 +505,11 @@ class SlipFinder {
   std::vector<Open> open_;
   std::optional<JsonSlip> slip_;
   Token token_ = Token::end;
-  size_t at_ = 0, end_ = 0;  // begin and end of the token
+  size_t at_ = 0, end_ = 0;  // begin and end of the present token
   size_t before_ = 0;        // end of the previous token
   Token last_ = Token::end;  // the previous token, and its place
   size_t last_at_ = 0;
-  std::optional<size_t> doubtful_;  // a bracket that perhaps closes a bracket of another one
+  std::optional<size_t> doubtful_;  // a bracket that perhaps closes the wrong opening bracket
   size_t name_at_ = 0, name_end_ = 0, value_begin_ = 0;
 };
 

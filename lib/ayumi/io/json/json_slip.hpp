@@ -1,8 +1,8 @@
 #pragma once
-// Finds what an author has mistyped in a text that is not JSON: a comma, a quotation mark, a colon
-// or a bracket that is missing or superfluous, or a word or number that JSON writes in another way.
-// The library that reads JSON names the token at which it gave up, which is often a line after the
-// slip.
+// Finds what an author has mistyped in a text that is not JSON. It may be a comma, a quotation
+// mark, a colon or a bracket that is missing or superfluous, or a word or number that JSON writes
+// in another way. The library that reads JSON names the token at which it gave up, which is often a
+// line after the mistake.
 
 #include <cstddef>
 #include <optional>
@@ -15,7 +15,7 @@ struct JsonSlip {
   std::string words;  ///< "a comma is missing after \"home\""
 };
 
-/// The first slip of a text that the reader of JSON refuses. Nothing if none is recognized.
+/// The first mistake in a text that the reader of JSON refuses; nothing if none is recognized.
 std::optional<JsonSlip> find_json_slip(const std::string& text);
 
 }  // namespace ayumi

@@ -275,7 +275,7 @@ std::string without_value(const std::string& text, const std::string& pointer) {
     return before.substr(0, line_begin(before, begin)) +
            (next == std::string::npos ? "" : text.substr(next + 1));
   }
-  // Inside a line, one space stays between the neighbours.
+  // One space stays between the neighbours if they are in one line.
   size_t next = end;
   while (next < text.size() && text[next] == ' ') ++next;
   if (index + 1 < parts.size()) return before + text.substr(next);

@@ -25,10 +25,11 @@ struct JsonTree {
 /// The text must be JSON that parse_json() reads.
 JsonTree json_tree(const std::string& text);
 
-/// The place of the value of a JSON pointer. Nothing if there is none.
+/// The place of the value of a JSON pointer; nothing if there is none.
 std::optional<JsonSpan> find_value(const std::string& text, const std::string& pointer);
 
-/// The value that is nearest to the pointer: its own value, or the innermost one around it.
+/// The value that is nearest to the pointer: the value of the pointer, or the innermost existing
+/// one around it.
 JsonSpan nearest_value(const std::string& text, const std::string& pointer);
 
 /// The line of a place in a text, counted from 1.

@@ -12,8 +12,8 @@ namespace {
 
 using StudyJson = nlohmann::ordered_json;
 
-// Chosen: the ranges of robots/hoap1/uncertainty.json that are not measured there. Half or twice of
-// a range changes what a certificate says of the robot; so every one is printed as assumed.
+// Chosen: the ranges of robots/hoap1/uncertainty.json that are not measured there. Half or twice a
+// range changes what a certificate says about the robot, so every range is printed as assumed.
 
 /// Displacement of the centre of mass of the heaviest link, in COG heights. Chosen: 5 mm for
 /// HOAP-1.

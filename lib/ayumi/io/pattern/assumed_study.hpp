@@ -1,6 +1,6 @@
 #pragma once
-// The uncertainty of a robot about which nobody has stated any: the usual ranges of small humanoid
-// robots, scaled to this one. Every distribution is assumed, and says so.
+// The uncertainty of a robot whose files state none: the usual ranges of small humanoid robots,
+// scaled to this one. Every distribution is marked as assumed.
 
 #include "ayumi/io/pattern/study_file.hpp"
 

@@ -1,5 +1,5 @@
-// Recursive descent:  sum = product {(+|-) product};  product = factor {(*|/) factor};
-// factor = -factor | ( sum ) | ${name} | number | pi | function ( sum {, sum} ).
+// Recursive descent: sum = product {(+|-) product}; product = factor {(*|/) factor}; factor =
+// -factor | ( sum ) | ${name} | number | pi | function ( sum {, sum} ).
 #include "ayumi/io/pattern/expression.hpp"
 
 #include <algorithm>
@@ -42,7 +42,7 @@ const std::map<std::string, Function>& functions() {
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 
-// The letters and digits from `at` on.
+// The word of letters and digits that begins at `at`.
 std::string_view word_at(std::string_view text, size_t at) {
   size_t end = at;
   while (end < text.size() && (is_letter(text[end]) || (text[end] >= '0' && text[end] <= '9')))

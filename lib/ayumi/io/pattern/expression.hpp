@@ -13,10 +13,10 @@ namespace ayumi {
 /// Whether a string is meant as an expression: it names a parameter, "${name}", a function or pi.
 bool is_expression(std::string_view text);
 
-/// Value of + - * / parentheses, unary minus, numbers, ${names}, pi, sin, cos, sqrt, abs, atan2,
-/// min and max, angles in radians. Names met are added to `used` when given. Throws
-/// Error(bad_pattern) "where: reason" for an unknown name, bad syntax or a result that is not
-/// finite.
+/// The value of an expression with + - * /, parentheses, unary minus, numbers, ${names}, pi, sin,
+/// cos, sqrt, abs, atan2, min and max; angles are in radians. Adds the names that it contains to
+/// `used` if this is given. Throws Error(bad_pattern) "where: reason" for an unknown name, for
+/// wrong syntax or for a result that is not finite.
 double evaluate_expression(std::string_view text, const std::map<std::string, double>& parameters,
                            const SourcePlace& where, std::set<std::string>* used = nullptr);
 

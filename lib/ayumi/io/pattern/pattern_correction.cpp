@@ -34,7 +34,7 @@ size_t end_of_string(const std::string& text, size_t i) {
 TopObject find_top(const std::string& text) {
   TopObject top;
   int depth = 0;
-  bool ours = false;  // the value being passed belongs to "correction"
+  bool ours = false;  // whether the present value belongs to "correction"
   std::string key;
   for (size_t i = 0; i < text.size(); ++i) {
     const size_t comment = skip_comment(text, i);

@@ -73,7 +73,7 @@ std::string replacing(const Json& document, const std::string& pointer, const Js
   }
 }
 
-// Members are spaced as the patterns of this program are: { "a": 1, "b": [1, 2] }.
+// A value as text with the spaces that patterns of this program have: { "a": 1, "b": [1, 2] }.
 std::string spaced(const Json& value) {
   if (value.is_number_float()) return number_text(value.get<double>());
   if (value.is_object()) {
@@ -112,7 +112,7 @@ std::string set(const std::string& text, const Json& document, const PatternEdit
                       plain ? replacing(document, edit.pointer, before, wanted, parameters)
                             : spaced_in_order(edit.value));
   }
-  // The missing members are added to the innermost object that exists, as one member.
+  // Missing members are added to the innermost object that exists, together as one member.
   Place place = split(edit.pointer);
   std::string value = spaced_in_order(edit.value);
   while (!find_value(text, place.around)) {
@@ -122,7 +122,7 @@ std::string set(const std::string& text, const Json& document, const PatternEdit
   return with_member(text, place.around, unescaped(place.name), value);
 }
 
-// The index at which an edit of a list's items takes place; "-" is behind the last one.
+// The index at which an edit changes the items of a list; "-" means after the last item.
 size_t item_index(const PatternEdit& edit, size_t size) {
   const Place place = split(edit.pointer);
   if (place.name == "-") return size;
@@ -190,8 +190,8 @@ bool moves_items(const Json& document, const PatternEdit& edit) {
   return document.contains(around) && document.at(around).is_array();
 }
 
-// Pointers refer to the text before the first edit: what moves items comes last, and from the end
-// of a list to its beginning.
+// Pointers refer to the text before the first edit. So edits that move items come last, and they go
+// from the end of a list to its beginning.
 std::vector<PatternEdit> in_working_order(const Json& document,
                                           const std::vector<PatternEdit>& edits) {
   std::vector<PatternEdit> first, last;
@@ -222,7 +222,8 @@ std::vector<PatternEdit> in_working_order(const Json& document,
 std::string shifted_expression(const std::string& expression, double change) {
   const double step = rounded(change);
   if (step == 0) return expression;
-  // A number behind the last + or - outside brackets and names, with nothing after it.
+  // Changes a number after the last + or - that is outside brackets and names, if nothing follows
+  // it.
   int depth = 0;
   size_t sign = std::string::npos;
   for (size_t i = 0; i < expression.size(); ++i) {
@@ -246,7 +247,8 @@ std::string shifted_expression(const std::string& expression, double change) {
       if (expression[sign] == '-') number = -number;
       head = expression.substr(0, before + 1);
       spaces = expression.substr(before + 1,
-                                 sign - before - 1);  // in the form in which the author writes them
+                                 // In the form in which the author writes the expression.
+                                 sign - before - 1);
       spaces_after = expression.substr(sign + 1, begin - sign - 1);
     } else {
       number = 0;

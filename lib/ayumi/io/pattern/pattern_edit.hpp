@@ -1,7 +1,7 @@
 #pragma once
-// Changes of single values in the text of a pattern file, as an author makes them by hand: every
-// other byte stays. A number that the author wrote as an expression stays an expression: what is
-// added to it is written behind it, as in "${lift_off} + 0.02".
+// Changes single values in the text of a pattern file, as an author does it by hand; every other
+// byte stays the same. A number that the author wrote as an expression stays an expression: a
+// change is appended to it, as in "${lift_off} + 0.02".
 
 #include <map>
 #include <string>
@@ -18,16 +18,16 @@ struct PatternEdit {
   };
   Kind kind = Kind::set;
   std::string pointer;  ///< place as a JSON pointer
-  /// JSON text; empty for remove. For repeat: { "items": how many, and what the block has, as
-  /// "repeat" and "count" }.
+  /// JSON text of the new value; empty for `remove`. For `repeat`: { "items": the number of items,
+  /// and the members of the block, such as "repeat" and "count" }.
   std::string value;
 };
 
 /// The text after the edits. The pointers of all edits refer to the text before the first one;
 /// items that are inserted at the same index stand in the order of the edits. An expression gets
-/// its new value with the parameters that are `set` from outside, and with the text's for all
-/// others. Throws Error(usage) for a place that is not there, and Error(bad_pattern) for a value
-/// that is not JSON and where the text is not JSON.
+/// its new value with the parameters that are `set` from outside, and with the values in the text
+/// for all others. Throws Error(usage) for a place that does not exist, and Error(bad_pattern) if
+/// the text or a value is not JSON.
 std::string edited_text(const std::string& text, const std::vector<PatternEdit>& edits,
                         const std::map<std::string, double>& set = {});
 

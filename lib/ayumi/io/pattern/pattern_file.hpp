@@ -1,6 +1,6 @@
 #pragma once
-// Pattern <-> pattern file ("ayumi.pattern/1"). docs/formats.md is the specification,
-// docs/schemas/pattern-1.schema.json the same for editors.
+// Reads and writes pattern files ("ayumi.pattern/1"). docs/formats.md is their specification;
+// docs/schemas/pattern-1.schema.json is the same specification for editors.
 
 #include <filesystem>
 #include <map>
@@ -11,53 +11,56 @@
 
 namespace ayumi {
 
-/// Largest pattern, and largest file that it includes [bytes]. Source: docs/formats.md.
+/// Largest size of a pattern, and of a file that it includes [bytes]. Source: docs/formats.md.
 inline constexpr size_t kLargestPattern = size_t{64} << 20;
 
-/// Reads a pattern, its posture libraries and its table. `set_parameters` replaces defaults of
-/// declared parameters. Strict: throws Error(bad_pattern) "file: /json/pointer: what, limit, what
-/// to do" for unknown keys, wrong types or units, times that do not increase, empty lists, numbers
-/// that are not finite or beyond 1e6; Error(bad_file) when a file cannot be read; Error(usage) for
-/// a parameter the pattern does not declare or use.
+/// Reads a pattern, its posture libraries and its table. `set_parameters` replaces the defaults of
+/// declared parameters. The reader is strict. It throws Error(bad_pattern) "file: /json/pointer:
+/// what, limit, what to do" for unknown keys, wrong types or units, times that do not increase,
+/// empty lists, and numbers that are not finite or beyond 1e6; Error(bad_file) if a file cannot be
+/// read; and Error(usage) for a parameter that the pattern does not declare or use.
 Pattern read_pattern(const std::filesystem::path& path,
                      const std::map<std::string, double>& set_parameters = {});
 
-/// The same of the bytes of a pattern file; `path` names it in messages, and what it includes is
-/// looked for beside it.
+/// Reads the bytes of a pattern file in the same way. `path` names it in messages, and the files
+/// that it includes are searched beside it.
 Pattern pattern_of_text(const std::string& text, const std::filesystem::path& path,
                         const std::map<std::string, double>& set_parameters = {});
 
-/// A posture library ("ayumi.postures/1"): what patterns include.
+/// A posture library ("ayumi.postures/1"), which patterns can include.
 struct PostureLibrary {
-  std::string robot;    ///< as its author wrote it, a note; "" where there is none
+  std::string robot;    ///< the robot's name as its author wrote it, as a note; "" if there is none
   bool degrees = true;  ///< angle unit of the file
-  std::map<std::string, std::map<std::string, double>> postures;  ///< by name and joint [rad], [m]
+  /// Angles by posture name and joint [rad], [m].
+  std::map<std::string, std::map<std::string, double>> postures;
 };
 /// Throws as read_pattern().
 PostureLibrary read_posture_library(const std::filesystem::path& path);
 
-/// The robot to load: the bundled name as written, or the path as it holds from here.
+/// The robot to load: a bundled name as it is written, or a path that is valid from the working
+/// folder.
 std::string robot_of(const Pattern& pattern);
 
-/// The file's text: short, keys in a fixed order, one phase or keyframe per line, `comments` as
-/// lines above. Numbers are the shortest that read back to the same double; angles in the pattern's
-/// unit. Expressions are written as their values (the parameters then become a comment).
+/// The text of the file. It is short, its keys have a fixed order, each phase or keyframe has one
+/// line, and `comments` are lines above. Numbers are the shortest texts that give the same double
+/// again; angles are in the pattern's unit. Expressions are written as their values, and the
+/// parameters become a comment.
 std::string pattern_text(const Pattern& pattern, const std::vector<std::string>& comments = {});
 
-/// Writes pattern_text. A relative robot or table path is rewritten to hold from `path`'s folder;
-/// the table's own data are not copied.
+/// Writes pattern_text(). A relative path of a robot or table is changed so that it is valid from
+/// the folder of `path`. The data of the table are not copied.
 void write_pattern(const std::filesystem::path& path, const Pattern& pattern,
                    const std::vector<std::string>& comments = {});
 
 /// The value of the key "correction" as text.
 std::string correction_text(const CorrectionTrack& track);
 
-/// The text of a pattern file with its correction replaced or added; every other byte, comments and
-/// expressions included, stays as the author wrote it. `text` must be a pattern that reads.
+/// The text of a pattern file with its correction replaced or added. Every other byte, comments and
+/// expressions included, stays as the author wrote it. `text` must be a pattern that can be read.
 std::string with_correction(const std::string& text, const CorrectionTrack& track);
 
-/// Known keys of every kind of object in a pattern file, by the name the schema uses ("pattern",
-/// "phase", "keyframe", ...). The reader accepts exactly these.
+/// The known keys of every kind of object in a pattern file, by the name that the schema uses
+/// ("pattern", "phase", "keyframe", ...). The reader accepts exactly these keys.
 const std::map<std::string, std::vector<std::string>>& pattern_keys();
 
 }  // namespace ayumi

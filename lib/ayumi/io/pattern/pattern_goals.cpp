@@ -9,8 +9,8 @@ namespace ayumi {
 namespace {
 
 constexpr double kMostSteps =
-    10000;                       // most steps. Chosen: longer than kLongestPattern at 0.36 s each
-constexpr double kFastest = 10;  // [m/s], [rad/s]. Chosen: any speed beyond is a mistake
+    10000;  // largest number of steps. Chosen: longer than kLongestPattern at 0.36 s each
+constexpr double kFastest = 10;  // [m/s], [rad/s]. Chosen: any higher speed is a mistake
 
 int read_count(const JsonNode& node, PatternScope& scope, double most) {
   const double count = read_number(node, scope, 1, most);

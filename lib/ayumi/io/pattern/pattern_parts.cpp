@@ -19,14 +19,15 @@ Support read_support(const JsonNode& node) {
   return Support::none;
 }
 
-// The highest that a foot is lifted [m]. Chosen: more than any legs can.
+// Largest height to which a foot is lifted [m]. Chosen: more than any legs can reach.
 constexpr double kLargestLift = 10;
 
 // Sums of times are rounded to this number of parts of a second, so that they print as they would
 // be written [1/s].
 constexpr double kTimeSteps = 1e9;
 
-// The time that `absolute` gives, or `relative` as counted from `before` [s].
+// The time that the key `absolute` states, or that the key `relative` states as counted from
+// `before` [s].
 double read_moment(const JsonNode& node, const char* absolute, const char* relative, double before,
                    PatternScope& scope) {
   if (node.has(absolute) == node.has(relative))
@@ -230,7 +231,7 @@ ControllerSpec read_controller(const JsonNode& node, PatternScope& scope) {
 
 CorrectionTrack read_correction(const JsonNode& node) {
   only_pattern_keys(node, "correction");
-  PatternScope scope;  // no parameters, no angle unit: SI as the columns say
+  PatternScope scope;  // no parameters and no angle unit: SI units, as the columns state them
   CorrectionTrack track;
   track.begin = read_number(node.at("begin"), scope, -kLongestPattern, kLongestPattern);
   track.spacing = read_number(node.at("spacing"), scope);

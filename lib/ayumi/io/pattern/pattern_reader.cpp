@@ -15,8 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Phases and keyframes of a file, repeated ones included. Chosen: one each 0.1 s of the longest
-// pattern is less than half of it.
+// Largest number of phases and keyframes of a file, repeated ones included. Chosen: one item every
+// 0.1 s of the longest pattern gives less than half of it.
 constexpr size_t kMostItems = 100000;
 // Largest number of rounds of a block, and largest depth of blocks in each other. Chosen: far more
 // than anybody writes.
@@ -35,7 +35,7 @@ void require_parameter_name(const std::string& name, const JsonNode& place) {
     place.complain("the name of a parameter must not be empty and must not contain $, { or }");
 }
 
-// The numbers of "parameters"; those that are set from outside are replaced.
+// Reads the numbers of "parameters"; values that are set from outside replace them.
 void read_parameters(const JsonNode& root, const std::map<std::string, double>& set,
                      PatternScope& scope) {
   if (const auto parameters = root.find("parameters"))
@@ -202,9 +202,9 @@ void each_item(const JsonNode& list, const std::string& name, PatternScope& scop
 // Chosen: half of ten.
 constexpr double kGrossTime = 5;
 
-// "; /keyframes/4 may be meant at 2.3 s": where the time before the one that is too early would be
-// in order with a slip of the keyboard less, or else that one itself. `before` is the time before
-// both.
+// The end of a message about times that do not increase, such as "; /keyframes/4 may be meant at
+// 2.3 s". It names the earlier time if this time would be in order without a slip of the keyboard,
+// or else the later time. `before` is the time before both.
 std::string meant_time(double before, double previous, const std::string& place_of_previous,
                        double t, const std::string& otherwise) {
   // If a time is only a little too late, its decimal point is not in a wrong place.
@@ -219,7 +219,8 @@ std::string meant_time(double before, double previous, const std::string& place_
   return "; give a later time" + otherwise;
 }
 
-// The end of a message about a time from the beginning on that may be counted from the time before.
+// The end of a message about a time that counts from the beginning, if it was probably meant to
+// count from the time before.
 std::string meant_span(const JsonNode& node, const std::string& absolute,
                        const std::string& relative, double value) {
   if (!node.has(absolute) || !(value > 0)) return "";

@@ -1,4 +1,4 @@
-// "repair" of a pattern file: what its author wants a repair to keep, weigh and trust.
+// Reads "repair" of a pattern file: what its author wants a repair to keep, to weigh and to trust.
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/pattern/pattern_scope.hpp"
 
@@ -6,7 +6,7 @@ namespace ayumi {
 
 namespace {
 
-// Margin of the ZMP [m]. Chosen: twice that of HOAP-1 standing on both feet (48 mm).
+// Largest margin of the ZMP [m]. Chosen: twice the margin of HOAP-1 standing on both feet (48 mm).
 constexpr double kWidestMargin = 0.1;
 
 std::pair<double, double> read_window(const JsonNode& node, PatternScope& scope) {

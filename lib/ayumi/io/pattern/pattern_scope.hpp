@@ -1,6 +1,6 @@
 #pragma once
-// Shared by the sources that read pattern files: values that may be expressions, and angles in the
-// file's unit.
+// Functions for the sources that read pattern files: values that may be expressions, and angles in
+// the file's unit.
 
 #include <optional>
 #include <set>
@@ -11,7 +11,7 @@
 
 namespace ayumi {
 
-/// Largest number. Source: docs/formats.md; anything beyond is a mistake.
+/// Largest number. Source: docs/formats.md; a larger one is a mistake.
 inline constexpr double kLargestNumber = 1e6;
 /// Longest pattern [s]. Source: docs/formats.md.
 inline constexpr double kLongestPattern = 3600;
@@ -20,10 +20,10 @@ inline constexpr double kLongestPattern = 3600;
 struct PatternScope {
   std::map<std::string, double> parameters;
   std::set<std::string> used;              ///< names of parameters in expressions
-  std::optional<double> radians_per_unit;  ///< empty: the file names no angle unit
+  std::optional<double> radians_per_unit;  ///< angle unit; empty: the file names none
 };
 
-/// Whether a pattern's "robot" is a path rather than a bundled name.
+/// Whether a pattern's "robot" is a path and not a bundled name.
 bool names_a_path(const std::string& robot);
 
 /// Makes an error of every key that pattern_keys() does not list for `kind`.

@@ -17,25 +17,26 @@ std::filesystem::path table_beside(const std::filesystem::path& path);
 /// .sequence.csv.
 std::filesystem::path sequence_beside(const std::filesystem::path& path);
 
-/// The pattern file, its posture libraries and its table, as far as it names them. Throws as
-/// read_pattern when it is missing or no JSON.
+/// The pattern file, its posture libraries and its table, as far as the pattern names them. Throws
+/// as read_pattern if the file is missing or is not JSON.
 std::vector<std::filesystem::path> pattern_files(const std::filesystem::path& path);
 
-/// Writes as write_pattern() does. The data of a table go to table_beside(path), and the pattern
-/// names that file. The bytes of the `sequence` that the table was imported from go to
-/// sequence_beside(path), and the head of the table names it; a table that names one already keeps
-/// the name as long as its angles are those of the import. Either all files are there afterwards or
-/// none. The head of the table says what there is to say of the run that it is from.
+/// Writes as write_pattern() does. The data of a table are written to table_beside(path), and the
+/// pattern names that file. The bytes of the `sequence` from which the table was imported are
+/// written to sequence_beside(path), and the head of the table names that file. A table that
+/// already names one keeps the name as long as its angles are those of the import. Afterwards,
+/// either all files are there or none. The head of the table has the caution of the run from which
+/// the table comes.
 void write_pattern_and_table(const std::filesystem::path& path, const Pattern& pattern,
                              const std::vector<std::string>& comments = {},
                              const TableCaution& caution = {}, const std::string& sequence = {});
 
-/// The bytes of the sequence that the pattern's table was imported from. Throws Error(bad_file)
-/// where the file is missing or is not the one that was imported.
+/// The bytes of the sequence from which the pattern's table was imported. Throws Error(bad_file) if
+/// the file is missing or is not the imported one.
 std::string kept_sequence(const DenseTable& table);
 
-/// What the head of the pattern's table says of the run that it is from; nothing for a pattern
-/// without a table.
+/// The caution in the head of the pattern's table about the run from which the table comes; nothing
+/// for a pattern without a table.
 TableCaution caution_of(const Pattern& pattern);
 
 }  // namespace ayumi

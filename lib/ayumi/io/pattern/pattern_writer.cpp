@@ -308,8 +308,8 @@ void write_pattern(const fs::path& path, const Pattern& pattern,
     if (moved.table) moved.table->file = rebased(moved.table->file, from, to);
     if (names_a_path(moved.robot)) {
       moved.robot = rebased(moved.robot, from, to);
-      // This is a folder beside the pattern, or the pattern's own; its name alone would be a
-      // bundled robot.
+      // The robot is a folder beside the pattern, or the pattern's own folder. Its name alone would
+      // mean a bundled robot.
       if (!names_a_path(moved.robot)) moved.robot = "./" + moved.robot;
     }
     if (!moved.schema.empty() && moved.schema.find("://") == std::string::npos)

@@ -12,10 +12,10 @@ using Eigen::Vector2d;
 
 namespace {
 
-// Largest height of the ground over its origin, and largest shift of the floor [m]. Chosen: more is
-// a mistake.
+// Largest height of the ground over its origin, and largest shift of the floor [m]. Chosen: a
+// larger one is a mistake.
 constexpr double kHighest = 10;
-// Most nodes along a side of a field of heights. Source: docs/formats.md.
+// Largest number of nodes along a side of a height field. Source: docs/formats.md.
 constexpr size_t kLargestField = 512;
 
 Vector2d read_vector2(const JsonNode& node, PatternScope& scope) {
@@ -225,8 +225,8 @@ What read_gain_loss(const JsonNode& node, PatternScope& scope) {
 /// How the disturbances of one type are read.
 struct DisturbanceFormat {
   std::string type;
-  bool ends;                      ///< it needs a duration; other types may do without
-  std::vector<std::string> keys;  ///< keys besides type, at and duration
+  bool ends;                      ///< whether it needs a duration; other types may omit it
+  std::vector<std::string> keys;  ///< keys in addition to type, at and duration
   What (*read)(const JsonNode&, PatternScope&);
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 // Pieces of pattern files as text, and the world and the disturbances of a scenario in the form of
-// pattern files. Logs carry the same form, in radians.
+// pattern files. Logs contain the same form, in radians.
 
 #include <charconv>
 #include <nlohmann/json.hpp>
@@ -18,7 +18,7 @@ inline std::string quoted(const std::string& text) {
 
 inline std::string number(double value) { return value == 0 ? "0" : text::exact(value); }
 
-// The shortest number of degrees that reads back to the same radians, or the nearest one where no
+// The shortest number of degrees that gives the same radians again, or the nearest number if no
 // double does.
 inline std::string degrees(double radians) {
   const double value = radians / kRadiansPerDegree;
@@ -47,7 +47,7 @@ class Members {
     return items_.empty() ? "{}" : "{ " + text::join(items_, ", ") + " }";
   }
   std::string array() const { return "[" + text::join(items_, ", ") + "]"; }
-  /// With one member on each line.
+  /// The text with one member on each line.
   std::string lines(char open, char close, const std::string& indent) const {
     return open + ("\n" + indent + "  ") + text::join(items_, ",\n" + indent + "  ") + "\n" +
            indent + close;

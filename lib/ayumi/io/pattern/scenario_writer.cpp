@@ -40,7 +40,7 @@ std::string field_text(const HeightField& field) {
       .object();
 }
 
-/// Adds the members that a kind of disturbance has beside type, at and duration.
+/// Adds the members that a kind of disturbance has in addition to type, at and duration.
 struct WhatText {
   Members& members;
   bool in_degrees;

@@ -12,16 +12,16 @@
 
 namespace ayumi {
 
-/// The values of the settings of a part, by the number of the case in it.
+/// The values of the settings of one part, by the number of the case in this part.
 struct SweepStudy::Part {
   enum class Kind { axis, product, list, hypercube };
   Kind kind = Kind::list;
   long size = 0;
-  std::string name = {};                          ///< of an axis
-  std::vector<SettingValue> values = {};          ///< of an axis
-  std::vector<Part> parts = {};                   ///< of a product or list
-  std::vector<long> begins = {};                  ///< of the parts of a list
-  std::vector<std::string> names = {};            ///< of a hypercube
+  std::string name = {};                  ///< name of an axis
+  std::vector<SettingValue> values = {};  ///< values of an axis
+  std::vector<Part> parts = {};           ///< parts of a product or list
+  std::vector<long> begins = {};          ///< number of the first case of each part of a list
+  std::vector<std::string> names = {};    ///< names of a hypercube
   std::vector<std::vector<double>> columns = {};  ///< values of a hypercube, by name and sample
 
   void set(long number, Settings& settings) const {
@@ -58,14 +58,15 @@ namespace {
 using Part = SweepStudy::Part;
 
 constexpr const char* kPrefixes[] = {"set.", "gain.", "value."};
-/// The settings whose values are words, whole numbers, and switches.
+/// The settings whose values are words, those whose values are whole numbers, and switches.
 const std::vector<std::string> kWords = {"pattern",    "robot", "profile",
                                          "controller", "world", "disturbances"};
 const std::vector<std::string> kWholeNumbers = {"seed", "draw", "substeps"};
 const std::vector<std::string> kSwitches = {"noise", "true_state"};
 const std::vector<std::string> kMeasures = {"verdict", "margins", "energy",
                                             "check",   "repair",  "thresholds"};
-/// Largest seed and number of a draw. Definition: whole numbers up to it are exact as a double.
+/// Largest seed and largest number of a draw. Definition: a double holds whole numbers up to this
+/// one exactly.
 constexpr double kLargestWhole = 9007199254740992.0;
 
 bool contains(const std::vector<std::string>& list, const std::string& name) {
@@ -173,7 +174,7 @@ Part product_of(const JsonNode& node, std::vector<Part> parts) {
   return product;
 }
 
-/// In each column, every one of n equal parts of the range has one sample.
+/// In each column, each of n equal parts of the range has one sample.
 Part read_hypercube(const JsonNode& node) {
   node.only_keys({"samples", "seed", "ranges"});
   Part cube{.kind = Part::Kind::hypercube, .size = read_count(node.at("samples"), 1)};
@@ -243,8 +244,9 @@ void collect(const Part& part, const std::string& setting, std::set<std::string>
   for (const Part& each : part.parts) collect(each, setting, words);
 }
 
-/// The names of settings that differ between cases: those of every axis with several values, and
-/// those that only some entries of a list have, or that have different values there.
+/// Finds the names of settings that differ between cases: the names of every axis with several
+/// values, and the names that only some entries of a list have, or that have different values in
+/// them.
 void differing(const Part& part, const Settings& fixed, std::set<std::string>& names) {
   if (part.kind == Part::Kind::axis && part.values.size() > 1) names.insert(part.name);
   if (part.kind == Part::Kind::hypercube) names.insert(part.names.begin(), part.names.end());
@@ -411,7 +413,7 @@ SweepStudy::SweepStudy(const std::string& text, const std::filesystem::path& pat
     const auto number = [&](const char* key, double least, double most, double& into) {
       if (const auto node = given->find(key)) into = node->number_within(least, most);
     };
-    // The same ranges as those of `ayumi push`.
+    // These ranges are the same as those of `ayumi push`.
     count("directions", 1, 360, t.directions);
     count("replicas", 0, 100, t.replicas);
     number("step", 0.005, 1, t.step);

@@ -22,7 +22,7 @@ using SettingValue = std::variant<double, std::string>;
 /// The settings by name: "pattern", "set.stride", "gain.ka", ...
 using Settings = std::map<std::string, SettingValue>;
 
-/// What is kept of each case.
+/// Results that are kept for each case.
 struct SweepMeasures {
   bool verdict = true, margins = false, energy = false;  ///< these three share one simulation
   bool check = false, repair = false, thresholds = false;
@@ -56,11 +56,11 @@ class SweepStudy {
   long size() const;
   /// The names of the settings that differ between cases, sorted.
   const std::vector<std::string>& axes() const { return axes_; }
-  /// All settings of a case.
+  /// All settings of the case with this number.
   Settings settings(long number) const;
-  /// Every word that a setting has in any case, e.g. of all patterns; sorted.
+  /// All words that a setting has in any case, for example all patterns; sorted.
   std::vector<std::string> words(const std::string& setting) const;
-  /// Every name of a setting that some case has, with one of its values and its JSON pointer.
+  /// The name of a setting that some case has, with one of its values and its JSON pointer.
   struct Named {
     SettingValue value;
     std::string pointer;
@@ -90,11 +90,11 @@ class SweepStudy {
   SweepThresholds thresholds_;
 };
 
-/// A setting as text: the shortest number, or the word.
+/// The text of a setting: the shortest number, or the word.
 std::string setting_text(const SettingValue& value);
-/// The number of a setting, or `otherwise`.
+/// The number of a setting, or `otherwise` if there is none.
 double number_of(const Settings& settings, const std::string& name, double otherwise);
-/// The word of a setting, or "".
+/// The word of a setting, or "" if there is none.
 std::string word_of(const Settings& settings, const std::string& name);
 
 }  // namespace ayumi

@@ -14,7 +14,7 @@ namespace ayumi {
 namespace {
 
 /// Largest distance of a range from the mean of its normal distribution [standard deviations].
-/// Reason: beyond 37, the probability exp(-37^2/2) of the range cannot be told from 0.
+/// Reason: beyond 37, the probability exp(-37^2/2) of the range cannot be distinguished from 0.
 constexpr double kFarthestRange = 30;
 
 constexpr const char* kSpreads[] = {"uniform", "normal", "truncated", "choice"};
@@ -201,7 +201,7 @@ UncertainQuantity one_of_several(UncertainKind kind, const SourcePlace& place, s
   return q;
 }
 
-/// Longest push [s]. Chosen: that of `ayumi push --duration`.
+/// Longest push [s]. Chosen: the limit of `ayumi push --duration`.
 constexpr double kLongestPush = 1;
 
 UncertainPush read_push(const JsonNode& node, const std::vector<UncertainFactor>& factors,

@@ -52,7 +52,7 @@ std::string quantity_text(const UncertainQuantity& q, bool in_degrees) {
   return members.object();
 }
 
-/// A part without a source is a single number.
+/// The text of a part; a part without a source is a single number.
 std::string part_text(const UncertainQuantity& q, bool angle, bool in_degrees) {
   if (q.source.empty())
     return angle ? angle_text(q.distribution.values[0], in_degrees)

@@ -1,4 +1,4 @@
-// Choreonoid's frames: the joint of a link is at the link's origin, `translation` and `rotation`
+// Frames of Choreonoid: the joint of a link is at the link's origin, `translation` and `rotation`
 // place it in the parent link, and a rotation is an axis and an angle. Cylinders, capsules and
 // cones stand along y.
 #include "ayumi/io/robot/choreonoid_body.hpp"
@@ -246,7 +246,7 @@ class BodyReader {
     return unit * std::max(std::abs(v[0]), std::abs(v[1]));
   }
 
-  // Masses of a link and of the rigid bodies among its elements are one body.
+  // Adds the mass of a rigid body among the elements of a link to the mass of the link.
   void add_mass(const YAML::Node& node, const Isometry3d& at, LinkDescription& link) const {
     const YAML::Node mass = node["mass"];
     if (!mass) return;
@@ -430,7 +430,7 @@ class BodyReader {
 
   const fs::path& path_;
   MeshPlaces places_;
-  double angle_ = 1;  // [rad] of the file's unit
+  double angle_ = 1;  // the file's unit of angles [rad]
   RobotDescription robot_;
   std::vector<std::pair<int, std::string>> ids_;
   std::set<std::string> left_out_;

@@ -10,7 +10,7 @@
 namespace ayumi {
 
 inline TriangleMesh ellipsoid_mesh(const Eigen::Vector3d& radii) {
-  // Facets. Chosen: the surface is off by 1 % of a radius.
+  // Numbers of facets. Chosen: the surface deviates by 1 % of a radius.
   constexpr int kRings = 12, kSectors = 24;
   MeshPart part;
   for (int ring = 0; ring <= kRings; ++ring)

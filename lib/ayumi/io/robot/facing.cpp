@@ -23,7 +23,7 @@ Eigen::Vector3d facing_direction(const std::string& facing) {
 void turn_to_face_x(RobotDescription& robot, const std::string& facing) {
   if (facing == "x") return;
   const Eigen::Vector3d x = facing_direction(facing), z = Eigen::Vector3d::UnitZ();
-  Eigen::Isometry3d turn = Eigen::Isometry3d::Identity();  // from the URDF's root frame
+  Eigen::Isometry3d turn = Eigen::Isometry3d::Identity();  // turn relative to the URDF's root frame
   turn.linear().row(0) = x;
   turn.linear().row(1) = z.cross(x);
   turn.linear().row(2) = z;

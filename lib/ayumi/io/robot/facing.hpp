@@ -11,10 +11,11 @@
 
 namespace ayumi {
 
-/// "x", "y", "-x", "-y".
+/// The names of the directions: "x", "y", "-x", "-y".
 const std::vector<std::string>& facing_names();
 
-/// Unit vector in the URDF's root link. Throws Error(internal) for another name.
+/// The direction of this name as a unit vector in the URDF's root link. Throws Error(internal) for
+/// another name.
 Eigen::Vector3d facing_direction(const std::string& facing);
 
 /// Turns the frame of the root link about z so that its x axis is the former `facing`. The bodies

@@ -26,11 +26,11 @@ using Eigen::Vector3d;
 
 constexpr double kRadian = 180 / std::numbers::pi;  // [deg]
 
-// Noise of sensors that nobody has measured yet. Source: data sheets of usual MEMS inertial units
-// and of hobby load cells; they act in simulations with noise only.
+// Noise of sensors for which nobody has measured it yet. Source: data sheets of usual MEMS inertial
+// units and of hobby load cells; the values only affect simulations with noise.
 constexpr double kAttitudeNoise = 0.002, kGyroNoise = 0.01, kAccelerometerNoise = 0.1,
                  kForceNoise = 1;
-// Latency [s]. Chosen: two periods of 1 ms.
+// Latency of the sensors [s]. Chosen: two periods of 1 ms.
 constexpr double kLatency = 0.002;
 
 std::string json_text(const std::string& text) { return nlohmann::json(text).dump(); }
@@ -42,7 +42,7 @@ std::string rounded_text(double value, int digits) {
   return text::exact(std::round(value * unit) / unit + 0.0);
 }
 
-// Lines of at most `width` characters, each after "  // ".
+// Lines of at most `width` characters, each after " // ".
 std::string remark(const std::string& sentence, const std::string& indent = "  ") {
   constexpr size_t width = 96;
   std::string lines, line;
@@ -133,7 +133,7 @@ std::string trunk_text(const RobotModel& model) {
          "  \"trunk_link\": " + json_text(name) + ",\n";
 }
 
-// "hip: yaw J0, roll J1; knee J3; ankle: pitch J4".
+// A leg in words, such as "hip: yaw J0, roll J1; knee J3; ankle: pitch J4".
 std::string leg_in_words(const RobotModel& model, Side side) {
   const InverseKinematics ik(model, model.posture());
   RobotData data(model);
@@ -157,7 +157,7 @@ std::string leg_in_words(const RobotModel& model, Side side) {
   return text::join(words, ", ");
 }
 
-// "left l_foot, 98 mm long and 62 mm wide, 40 mm below the ankle".
+// A sole in words, such as "left l_foot, 98 mm long and 62 mm wide, 40 mm below the ankle".
 std::string sole_in_words(const RobotModel& model, Side side) {
   const SoleDescription& sole = model.description().soles.at(name_of(side));
   Vector2d low = sole.polygon[0], high = low;
@@ -411,9 +411,9 @@ LinkExtent extent_of(const LinkDescription& link) {
   return extent;
 }
 
-// An inertia that the link cannot have: none, one that no body has, or one of a body larger than
-// its shape, as model/diagnose says. `largest` is the largest reach of all links, for a link
-// without a shape [m].
+// Whether the link cannot have its inertia: it is missing, or no body can have it, or its body
+// would be larger than the link's shape (see model/diagnose). For a link without a shape, `largest`
+// is the largest reach of all links [m].
 bool is_inertia_of_no_link(const LinkDescription& link, const LinkExtent& extent, double largest) {
   const Eigen::Matrix3d& tensor = link.inertia.about_com;
   const Vector3d moments = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(tensor).eigenvalues();
@@ -437,7 +437,8 @@ Eigen::Matrix3d inertia_of_extent(const LinkDescription& link, const LinkExtent&
   return mass / 12 * (Vector3d::Constant(square.sum()) - square).asDiagonal().toDenseMatrix();
 }
 
-// Gives links that cannot have the inertia of their file the inertia of a box. Returns their names.
+// Gives the inertia of a box to every link that cannot have the inertia in its file. Returns the
+// names of these links.
 std::vector<std::string> take_inertias_of_shapes(RobotDescription& robot) {
   std::vector<LinkExtent> extents;
   double largest = 0;
@@ -549,10 +550,11 @@ FirstSidecar first_sidecar(const std::string& robot, const std::filesystem::path
   namespace fs = std::filesystem;
   const fs::path urdf = fs::weakly_canonical(fs::absolute(stated.urdf_file));
   const std::string urdf_as_written = seen_from(folder, urdf);
-  std::vector<std::string> read = stated.assumptions;  // nothing is guessed yet
+  // What the files state, before anything is guessed.
+  std::vector<std::string> read = stated.assumptions;
   const std::vector<std::string> massless = hold_joints_without_mass(stated);
   const std::vector<std::string> play = hold_play_of_gears(stated);
-  constexpr size_t kMostNamed = 3;  // missing meshes in the to-do list
+  constexpr size_t kMostNamed = 3;  // number of missing meshes that the to-do list names
   for (const std::string& gap : gaps_of_the_files(stated, kMostNamed)) read.push_back(gap);
   RobotGuess guess = guess_robot(std::move(stated));
   const std::vector<std::string> boxes = take_inertias_of_shapes(guess.robot);

@@ -1,6 +1,6 @@
 #pragma once
-// The first sidecar of a robot that has a URDF only, for a person to correct: every guess stands
-// under a comment with its reason and with what to check.
+// The first sidecar of a robot that has only a URDF, for a person to correct. Every guess has a
+// comment above it with its reason and with what to check.
 
 #include <filesystem>
 #include <functional>
@@ -21,7 +21,7 @@ struct FirstSidecar {
 
 /// Gains of DTAD for a robot, which io cannot compute.
 struct SidecarGains {
-  std::vector<std::pair<std::string, double>> dtad;  ///< gains by name; empty: the defaults
+  std::vector<std::pair<std::string, double>> dtad;  ///< gains by name; empty: the default gains
   std::string why, check;                            ///< reason of the guess
   std::string to_do;                                 ///< point for the to-do list; "": nothing
 };

@@ -12,17 +12,18 @@ namespace {
 
 using OrderedJson = nlohmann::ordered_json;
 
-// One digit more than the interval of a value determines.
+// The number with one digit more than the interval of the value determines.
 double sidecar_number(double value) { return std::stod(text::brief(value, 5)); }
 
-// A zero offset that a sidecar may state [rad]. Definition: the reader of sidecars takes no more.
+// Largest zero offset that a sidecar may state [rad]. Definition: the reader of sidecars accepts no
+// larger one.
 constexpr double kWritableOffset = 0.5;
 
-// What a joint's servo is in the simulation: that of `source`. A stiffness that is not determined
-// is at least the lower end of its interval, which is written; where there is none, the robot keeps
-// its own. A delay that stands for the damping too is written as damping, because a servo without
-// any would let the joint oscillate. The offset is the joint's own: where it stands, beside its
-// command, without load.
+// The servo of a joint as the simulation gets it; its constants are those of `source`. If the
+// stiffness is not determined, the lower end of its interval is written; if there is no such end,
+// the robot keeps its own stiffness. A delay that also stands for the damping is written as
+// damping, because a servo without any damping would let the joint oscillate. The offset is the
+// joint's own: the difference between its angle and its command without load.
 OrderedJson servo_group(const IdentifiedJoint& joint, const IdentifiedJoint& source,
                         const ServoDescription& own) {
   OrderedJson group = {{"joints", {joint.joint}}};

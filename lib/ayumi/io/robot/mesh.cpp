@@ -32,12 +32,14 @@ constexpr size_t kLongestCompanionName = 4096;
 // Longest wait of the caller before it asks whether the work shall go on. Chosen: Ctrl-C is
 // answered at once, and the wait costs nothing.
 constexpr std::chrono::milliseconds kPause(50);
-// [bytes] Chosen: a line or two of a message for people.
+// Largest number of bytes of a refusal. Chosen: a line or two of a message for people.
 constexpr size_t kLongestRefusal = 400;
-// An answer is received in pieces, so that one that states a size and ends takes no memory. Chosen.
+// Number of bytes in which an answer is received. Chosen: an answer that states a large size but
+// then ends takes no memory for this size.
 constexpr size_t kAnswerPiece = size_t{4} << 20;
 
-// The archive of the program brings its own shared libraries. The others are those of sanitizers.
+// Environment variables that the reader receives. The archive of the program has its own shared
+// libraries; the other variables are those of sanitizers.
 const std::vector<std::string> kReaderEnvironment = {"LD_LIBRARY_PATH", "ASAN_OPTIONS",
                                                      "UBSAN_OPTIONS", "LSAN_OPTIONS"};
 #ifdef __SANITIZE_ADDRESS__
@@ -72,7 +74,7 @@ struct ReaderLost {
   bool try_again = true;
 };
 
-// One reader at a time, used for one mesh after the other.
+// A reader, used for one mesh after the other.
 class MeshReader {
  public:
   MeshReader(const MeshReading& reading, const std::atomic<bool>& stop)
@@ -108,7 +110,7 @@ class MeshReader {
     fail(ErrorCode::bad_file, {path_.string()}, message);
   }
 
-  // The request, and everything until its answer.
+  // Sends the request, and receives everything until the answer to it.
   TriangleMesh ask_reader(const MeshRequest& request, const std::string& bytes, bool fresh) {
     companions_ = 0;
     companion_bytes_ = 0;
@@ -202,7 +204,7 @@ class MeshReader {
     }
   }
 
-  // Throws ReaderLost unless the exchange is done.
+  // Throws ReaderLost if the exchange is not done.
   void need(Exchange exchange) {
     if (exchange == Exchange::done) return;
     if (stop_) throw Interrupted();
@@ -252,7 +254,7 @@ class MeshReader {
     }
   }
 
-  // A path, or "data:" and the bytes of a picture inside the file.
+  // A path, or "data:" with the bytes of a picture inside the file.
   std::string texture_of(std::string texture) const {
     if (texture.empty()) return texture;
     const bool inside = texture[0] == kTextureBytes;
@@ -271,7 +273,8 @@ class MeshReader {
   size_t companion_bytes_ = 0;
 };
 
-/// work() on another thread, while this one asks `progress`; it sets `stop` where it throws.
+/// Runs work() on another thread, while this thread calls `progress`. If `progress` throws, it sets
+/// `stop`.
 template <typename Work>
 void watched(const Progress& progress, std::atomic<bool>& stop, const Work& work) {
   if (!progress) return work();
@@ -302,8 +305,8 @@ std::vector<TriangleMesh> load_meshes(const std::vector<MeshRequest>& requests,
   const size_t groups = std::min(kMeshReaders, requests.size());
   std::vector<MeshFailure> failures(groups);
   std::atomic<bool> stop = false, failed = false;
-  // Which reader reads which meshes does not depend on the machine. The first failure of each group
-  // is known, and so is the first of all.
+  // The choice of the reader for each mesh does not depend on the machine. The first failure of
+  // each group is known, so that the first failure of all is known, too.
   const auto read_group = [&](size_t group) {
     size_t i = group;
     try {

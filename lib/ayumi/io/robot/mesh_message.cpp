@@ -17,7 +17,8 @@ struct PartHead {
 };
 static_assert(sizeof(PartHead) == 56);
 
-// Chosen: float has 24 bits, so a normalized vector is nearer to 1 than this by far.
+// Largest difference of the length of a normal from 1. Chosen: float has 24 bits, so a normalized
+// vector is far nearer to 1 than this.
 constexpr float kUnitTolerance = 1e-3f;
 
 template <typename Item>

@@ -55,17 +55,17 @@ struct MeshRequestHead {
 /// GB.
 constexpr size_t kMostMeshTriangles = 5'000'000;
 
-/// The first byte of MeshPart::texture_file in an encoded mesh, which holds no resolved path: the
-/// name of a file as the mesh has it, or the bytes of a picture.
+/// The first byte of MeshPart::texture_file in an encoded mesh. It says whether the name of a file
+/// follows, as the mesh states it, or the bytes of a picture; an encoded mesh has no resolved path.
 constexpr char kTextureName = 'n', kTextureBytes = 'b';
 
 /// The mesh as bytes. The same mesh gives the same bytes.
 std::string encode_mesh(const TriangleMesh& mesh);
 
-/// The mesh in the bytes that a reader sent, which are not trusted: every count is compared with
-/// the bytes that are left before memory is taken, every index with the number of vertices, every
-/// number has to be finite, every normal a unit vector. Throws Error(bad_file) saying what is
-/// wrong.
+/// The mesh in the bytes that a reader sent. The bytes are not trusted: every count is compared
+/// with the number of remaining bytes before memory is allocated, every index is compared with the
+/// number of vertices, every number has to be finite, and every normal has to be a unit vector.
+/// Throws Error(bad_file) that says what is wrong.
 TriangleMesh decode_mesh(std::string_view bytes);
 
 }  // namespace ayumi

@@ -31,14 +31,13 @@ bool names_package(const fs::path& folder, const std::string& name) {
   return tag && tag->GetText() && name == tag->GetText();
 }
 
-// The package in a folder, or in one of its subfolders. Empty if there is none.
+// The package in a folder or in one of its subfolders; empty if there is none.
 fs::path package_in(const fs::path& folder, const std::string& name, bool neighbours) {
   std::error_code ignored;
   if (folder.filename() == name || names_package(folder, name)) return folder;
   if (fs::is_directory(folder / name, ignored)) return folder / name;
   if (!neighbours) return {};
-  std::vector<fs::path>
-      found;  // in the order of their names, which does not depend on the file system
+  std::vector<fs::path> found;  // sorted by name, independently of the file system
   int seen = 0;
   for (const auto& entry : fs::directory_iterator(folder, ignored)) {
     if (++seen > kMostNeighbours) break;
@@ -53,7 +52,7 @@ std::string lower_name(std::string name) {
   return name;
 }
 
-// The file whose name differs from `file` only in capital letters. Empty if there is none.
+// The file whose name differs from `file` only in capital letters; empty if there is none.
 fs::path with_other_capitals(const fs::path& file) {
   fs::path found = file.is_absolute() ? file.root_path() : fs::path(".");
   std::error_code ignored;
@@ -78,7 +77,7 @@ void add_once(std::vector<std::string>& words, const std::string& word) {
 
 }  // namespace
 
-// Empty if the package with this name does not exist.
+// The file that the name leads to; empty if its package does not exist.
 fs::path MeshPlaces::named_file(const std::string& name) const {
   if (name.starts_with("file://")) return name.substr(7);
   for (const std::string scheme : {"package://", "model://"}) {
@@ -99,7 +98,7 @@ fs::path MeshPlaces::named_file(const std::string& name) const {
         return found / rest;
       if (folder == folder.root_path()) break;
     }
-    // A package whose folder has another name, as copies and downloads have.
+    // Now packages whose folder has another name are searched, as copies and downloads have.
     above = 0;
     for (fs::path folder = first; above < kNeighbours && folder != folder.root_path();
          folder = folder.parent_path(), ++above)

@@ -16,14 +16,14 @@ class MeshPlaces {
   MeshPlaces(std::filesystem::path robot_file, std::vector<std::filesystem::path> packages)
       : robot_file_(std::move(robot_file)), packages_(std::move(packages)) {}
 
-  /// The file of a mesh that `link` names: relative to the robot's file, "file://", or
-  /// "package://NAME/..." and "model://NAME/...". A package is a folder of that name, or one whose
-  /// package.xml has it: among `packages` and the folders in them, else in the folder of the
-  /// robot's file and in the folders above it and beside those. A file whose name differs by
-  /// capitals alone is taken. Empty where there is no such file.
+  /// The file of a mesh that `link` names: relative to the robot's file, as "file://", or as
+  /// "package://NAME/..." and "model://NAME/...". A package is a folder of this name, or a folder
+  /// whose package.xml has this name. It is searched among `packages` and the folders in them, and
+  /// then in the folder of the robot's file, in the folders above it and beside those. A file whose
+  /// name differs only in capital letters is accepted. Empty if there is no such file.
   std::string find(const std::string& link, const std::string& name);
 
-  /// The folder "model://NAME" or "package://NAME". Empty if there is none.
+  /// The folder "model://NAME" or "package://NAME"; empty if there is none.
   std::filesystem::path folder(const std::string& name) const { return named_file(name); }
 
   /// Notes for a person: every mesh that was used although its name differs.
@@ -37,7 +37,7 @@ class MeshPlaces {
 
   std::filesystem::path robot_file_;
   std::vector<std::filesystem::path> packages_;
-  std::vector<std::string> missing_, renamed_;  ///< each once
+  std::vector<std::string> missing_, renamed_;  ///< each name once
 };
 
 }  // namespace ayumi

@@ -18,8 +18,9 @@ namespace {
 constexpr const char* kReaderName = "ayumi-mesh-reader";
 constexpr const char* kReaderVariable = "AYUMI_MESH_READER";
 
-// The file from which this code was loaded: the program, or a module that another program loaded.
-// Lines of /proc/self/maps: "begin-end access offset device inode   path".
+// The file from which this code was loaded: the program, or a module that another program has
+// loaded. It is found in /proc/self/maps, whose lines are "begin-end access offset device inode
+// path".
 fs::path file_of_this_library() {
   const auto here = reinterpret_cast<std::uintptr_t>(&file_of_this_library);
   std::istringstream maps(read_file("/proc/self/maps"));
@@ -42,7 +43,8 @@ std::vector<fs::path> places_without_variable() {
   try {
     fs::path above = file_of_this_library().parent_path();
     if (!above.empty()) places.push_back(above / kReaderName);
-    // As for bundled data: lib/python3/dist-packages/ayumi/... is four folders deep.
+    // Largest number of folders above this file that are searched, as for bundled data. Chosen:
+    // lib/python3/dist-packages/ayumi/... is four folders deep.
     constexpr int kDeepest = 5;
     for (int i = 0; i < kDeepest && above.has_relative_path(); ++i) {
       above = above.parent_path();

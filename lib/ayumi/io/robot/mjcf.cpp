@@ -81,7 +81,7 @@ const MjcfSchema& schema_of_mujoco() {
   return schema;
 }
 
-// MuJoCo's own format of meshes: four counts, vertices, faces.
+// Writes a mesh in MuJoCo's own format: four counts, vertices, faces.
 std::string msh_of(const std::vector<Eigen::Vector3f>& vertices,
                    const std::vector<std::array<std::uint32_t, 3>>& faces) {
   const std::array<int, 4> counts = {static_cast<int>(vertices.size()), 0, 0,
@@ -94,8 +94,8 @@ std::string msh_of(const std::vector<Eigen::Vector3f>& vertices,
   return bytes;
 }
 
-// A box whose centre and principal axes are those of its frame, in MuJoCo's order, so that MuJoCo
-// leaves a mesh where the model places it.
+// A mesh of a box whose centre and principal axes are those of its frame, in MuJoCo's order. With
+// it, MuJoCo leaves a mesh where the model places it.
 std::string probe() {
   const Eigen::Vector3f half(0.1f, 0.2f, 0.3f);
   std::vector<Eigen::Vector3f> vertices;
@@ -186,7 +186,7 @@ class MjcfReader {
   }
 
  private:
-  // Puts the vertices of a file in the place of an asset's probe.
+  // Replaces the probe of an asset by the vertices of its file.
   void use_true_mesh(const std::string& name, const MjcfMesh& mesh, const std::string& file,
                      Files& files) {
     std::vector<Eigen::Vector3f> vertices;
@@ -268,7 +268,7 @@ class MjcfReader {
     Isometry3d shift = Isometry3d::Identity();  // pose of the body's frame in the frame of its link
     std::string above = parent;
     Isometry3d placement = parent_shift * pose_at(m_->body_pos, m_->body_quat, body);
-    Vector3d anchor = Vector3d::Zero();  // place in the body's frame of what is placed next
+    Vector3d anchor = Vector3d::Zero();  // place of the next part in the body's frame
     int moving = 0;
     for (int i = first; i < first + count; ++i) {
       if (m_->jnt_type[i] == mjJNT_BALL)
@@ -288,7 +288,7 @@ class MjcfReader {
       joint.parent = above;
       joint.child = --left == 0 ? name : name + "/" + joint.name;
       joint.origin = placement * Eigen::Translation3d(at - anchor);
-      // The angle of the model counts from its reference: the frame is turned back by it.
+      // Angles of the model count from its reference, so the frame is turned back by it.
       if (slides)
         joint.origin = joint.origin * Eigen::Translation3d(-reference * axis);
       else
@@ -378,7 +378,7 @@ class MjcfReader {
       case mjGEOM_MESH:
         return mesh_of(geom, link, placed);
       default:
-        return false;  // a plane or a field belongs to the world
+        return false;  // a plane or a height field belongs to the world
     }
   }
 
@@ -485,7 +485,7 @@ class MjcfReader {
       servo.coulomb = joint->friction;
       if (position) {
         servo.kp = gear * gear * gain;
-        servo.kd = 0 - gear * gear * bias[2];  // 0, not -0
+        servo.kd = 0 - gear * gear * bias[2];  // gives 0 and not -0
         if (const auto gain = text_.velocity_gains.find(joint->name);
             gain != text_.velocity_gains.end())
           servo.kd = gear * gear * gain->second;

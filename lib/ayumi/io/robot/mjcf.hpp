@@ -1,8 +1,8 @@
 #pragma once
-// RobotDescription from MJCF, MuJoCo's own format. MuJoCo compiles the model, so that its rules
-// (default classes, frames, inertias from shapes) are the ones that hold, and the compiled tree is
-// read back. MuJoCo gets text that was read and cleaned here, and no file: meshes are placed by it
-// but read as those of other formats are. Included by io/*.cpp only.
+// Makes a RobotDescription from MJCF, MuJoCo's own format. MuJoCo compiles the model, so that its
+// own rules apply (default classes, frames, inertias from shapes), and the compiled tree is read
+// back. MuJoCo only gets text that was read and cleaned here, and no file: it places the meshes,
+// but they are read in the same way as those of other formats. Included by io/*.cpp only.
 
 #include <filesystem>
 #include <string>
@@ -12,9 +12,9 @@
 
 namespace ayumi {
 
-/// Bodies, joints, inertias, geoms, position actuators, force limits, joint equalities (as mimic
-/// joints), excluded contacts and the site of the inertial unit. `path` is for messages and for
-/// files that the model names. What cannot be kept is listed in `assumptions`. Throws
+/// Reads bodies, joints, inertias, geoms, position actuators, force limits, joint equalities (as
+/// mimic joints), excluded contacts and the site of the inertial unit. `path` is for messages and
+/// for files that the model names. What cannot be kept is listed in `assumptions`. Throws
 /// Error(bad_file) for text that is no MJCF, Error(bad_model) with MuJoCo's words for an impossible
 /// model, and Error(bad_file) with a remedy where Ayumi was built without MuJoCo.
 RobotDescription parse_mjcf(const std::string& bytes, const std::filesystem::path& path,

@@ -191,11 +191,12 @@ class Cleaner {
     }
     if (limits) return;
     if (!last) last = static_cast<TiXmlElement*>(root->InsertEndChild(TiXmlElement("compiler")));
-    // What MuJoCo does by default since version 3: a range that is stated holds.
+    // The default of MuJoCo since version 3: a range that is stated applies.
     last->SetAttribute("autolimits", "true");
   }
 
-  // Attributes by class, so that those that this MuJoCo does not know can be looked up.
+  // Collects the attributes of each class, so that attributes unknown to this version of MuJoCo can
+  // be looked up.
   void read_defaults(const TiXmlElement* parent, const std::string& above) {
     for (auto* each = parent->FirstChildElement("default"); each;
          each = each->NextSiblingElement("default")) {
@@ -208,7 +209,7 @@ class Cleaner {
     }
   }
 
-  // The attribute of an element, or else that of its class, or of the classes above.
+  // The attribute of an element, or else of its class, or of the classes above it.
   std::string found(const TiXmlElement* element, const char* attribute,
                     const std::string& child_class) const {
     if (const char* own = element->Attribute(attribute)) return own;
@@ -408,7 +409,8 @@ class Cleaner {
 
 }  // namespace
 
-// Lines "   element (*)   attribute attribute", continued by lines of attributes alone.
+// Reads lines " element (*) attribute attribute", which may be continued by lines with attributes
+// only.
 MjcfSchema mjcf_schema(const std::string& printed) {
   MjcfSchema schema;
   std::istringstream lines(printed);
@@ -421,7 +423,7 @@ MjcfSchema mjcf_schema(const std::string& printed) {
     if (all.size() >= 2 && all[1].size() == 3 && all[1].front() == '(') {
       element = all[0];
       first = 2;
-      if (element == "(world)body") {  // one line for both
+      if (element == "(world)body") {  // one line stands for both elements
         element = "body";
         schema["worldbody"];
       }

@@ -1,7 +1,7 @@
 #pragma once
-// The text of an MJCF model made ready for the MuJoCo at hand: included files stand in their place,
-// what does not describe the robot is left out, and so is what this MuJoCo does not know. Included
-// by io/*.cpp only.
+// Prepares the text of an MJCF model for the installed version of MuJoCo. Included files replace
+// the elements that include them. Everything that does not describe the robot is left out, and
+// everything that this version of MuJoCo does not know. Included by io/*.cpp only.
 
 #include <Eigen/Geometry>
 #include <filesystem>
@@ -16,7 +16,7 @@ namespace ayumi {
 /// Name of the file that stands for every mesh in the text.
 constexpr const char* kMjcfProbe = "probe.msh";
 
-/// A mesh asset, in place of which MuJoCo gets a probe.
+/// An asset that is a mesh. MuJoCo gets a probe in its place.
 struct MjcfMesh {
   std::string file;  ///< file as found in the mesh folder, or a URL
   Eigen::Vector3d scale = Eigen::Vector3d::Ones();
@@ -37,18 +37,18 @@ struct MjcfText {
   std::vector<std::string> notes;  ///< descriptions of everything that was left out
 };
 
-/// Elements, and the attributes of each, that a MuJoCo knows.
+/// The elements that a version of MuJoCo knows, with the attributes of each.
 using MjcfSchema = std::map<std::string, std::set<std::string>>;
 
-/// The schema in the words of mj_printSchema().
+/// The schema that mj_printSchema() printed.
 MjcfSchema mjcf_schema(const std::string& printed);
 
 /// Whether the file of a mesh that a body names exists.
 using MeshIsThere = std::function<bool(const std::string& body, const std::string& file)>;
 
-/// A primitive whose size follows from a mesh that is not there is left out. Throws Error(bad_file)
-/// with file and line for text that is no MJCF, for numbers that are none, and for included files
-/// that are missing or include each other.
+/// Prepares the text. A primitive whose size follows from a missing mesh is left out. Throws
+/// Error(bad_file) with file and line for a text that is not MJCF, for words that should be
+/// numbers, and for included files that are missing or include each other.
 MjcfText mjcf_text(const std::string& bytes, const std::filesystem::path& path,
                    const MjcfSchema& schema, const MeshIsThere& is_there);
 

@@ -19,11 +19,11 @@ namespace fs = std::filesystem;
 
 constexpr const char* kSidecarName = "robot.json";
 
-// The robot.json of a folder, or its only other robot. Empty if it has neither.
+// The robot.json of a folder, or the only other robot in it; empty if it has neither.
 fs::path file_in_folder(const fs::path& folder) {
   std::error_code ignored;
-  // Also where it is a named pipe or a link to nothing: read_file() says so, and the robot is not
-  // read without its sidecar.
+  // This also holds for a named pipe or a link to nothing: read_file() reports it, and the robot is
+  // not read without its sidecar.
   const fs::path sidecar = folder / kSidecarName;
   if (fs::exists(fs::symlink_status(sidecar, ignored)) && !fs::is_directory(sidecar, ignored))
     return sidecar;

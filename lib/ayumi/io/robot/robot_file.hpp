@@ -1,7 +1,7 @@
 #pragma once
-// Robots by name or by file: a folder robots/<name> with robot.json (the sidecar) and its URDF, a
-// sidecar alone, or a bare URDF whose soles, servos and home posture are then inferred. The sidecar
-// is specified in docs/formats.md, "Robot sidecar".
+// Robots by name or by file. A robot is a folder robots/<name> with robot.json (the sidecar) and
+// its URDF, a sidecar alone, or a bare URDF whose soles, servos and home posture are inferred. The
+// sidecar is specified in docs/formats.md, "Robot sidecar".
 
 #include <filesystem>
 #include <string>
@@ -12,17 +12,18 @@
 
 namespace ayumi {
 
-/// Folders that hold robots, searched in this order; each robot is a folder with a robot.json. And
-/// folders that hold the packages of meshes.
+/// Folders that are searched for robots in this order (each robot is a folder with a robot.json),
+/// and folders that hold the packages of meshes.
 struct RobotSearch {
   std::vector<std::filesystem::path> folders;
   std::vector<std::filesystem::path> packages = {};  ///< where "package://NAME/..." is looked for
 };
 
 struct LoadOptions {
-  bool meshes = false;     ///< fill MeshShape::mesh of visuals too; of collisions always
-  bool guess = true;       ///< fill in what the files do not state
-  Progress progress = {};  ///< is asked while meshes are read
+  /// Whether MeshShape::mesh of visuals is filled, too; that of collisions always is.
+  bool meshes = false;
+  bool guess = true;       ///< whether values are inferred that the files do not state
+  Progress progress = {};  ///< is called while meshes are read
 };
 
 struct RobotEntry {
@@ -33,10 +34,10 @@ struct RobotEntry {
 /// The robots in the search folders by name; an earlier folder hides a later one.
 std::vector<RobotEntry> find_robots(const RobotSearch& search);
 
-/// `name_or_path`: a name in the search folders, a folder, a robot.json, or a URDF. What was not
-/// stated but inferred is listed in `assumptions`. Throws Error(bad_file) when nothing is there or
-/// a file cannot be read, "file: /pointer: ..." for a sidecar that is not as specified,
-/// Error(bad_model) for an impossible robot.
+/// `name_or_path`: a name in the search folders, a folder, a robot.json, or a URDF. Inferred values
+/// are listed in `assumptions`. Throws Error(bad_file) when nothing is there or a file cannot be
+/// read, "file: /pointer: ..." for a sidecar that is not as specified, Error(bad_model) for an
+/// impossible robot.
 RobotDescription load_robot_description(const std::string& name_or_path,
                                         const RobotSearch& search = {},
                                         const LoadOptions& options = {});

@@ -34,26 +34,27 @@ using Points = std::vector<Vector3d>;
 
 constexpr double kOneDegree = std::numbers::pi / 180;
 
-// What is this near to the lowest point of a foot touches the ground [m]. Chosen: above the
-// rounding of meshes, below the rounded edges of feet. Half or twice: the sole of a foot with edges
-// of 5 mm radius changes by 1 mm.
+// A point that is at most this far above the lowest point of a foot touches the ground [m]. Chosen:
+// above the rounding of meshes, below the rounded edges of feet. With half or twice this height,
+// the sole of a foot with edges of 5 mm radius changes by 1 mm.
 constexpr double kTouching = 0.001;
 // Cosine of the largest angle by which an underside is turned to be level. Chosen: 45 deg, so that
 // the back of a heel is no sole.
 constexpr double kMostTilt = 0.7071;
 // Smallest distance of the feet [m]. Chosen: half of the distance of HOAP-1's feet (78 mm).
 constexpr double kApart = 0.02;
-// Difference of the heights of both feet, as a share of the robot's height. Chosen: below the
-// distance of an ankle from its sole.
+// Largest difference between the heights of both feet, as a share of the robot's height. Chosen:
+// below the distance of an ankle from its sole.
 constexpr double kSameHeight = 0.02;
 // Longest side of a sole [m]. Chosen: ten times HOAP-1's; a longer one is a mistake of the unit.
 constexpr double kLargestSole = 1.0;
 // Smallest area of a sole [m^2]. Chosen: 1 mm by 1 mm.
 constexpr double kSmallestSole = 1e-6;
-// Most corners of a sole. Chosen: each corner is a contact of the simulation; the removed corners
-// lie outside of what is left, by less than 2 % of the length of a round sole.
+// Largest number of corners of a sole. Chosen: each corner is a contact of the simulation; the
+// removed corners lie outside of what is left, by less than 2 % of the length of a round sole.
 constexpr size_t kMostCorners = 8;
-// Ratio of the ends of a foot, ahead of and behind its ankle, that tells the front. Chosen.
+// If one end of a foot is longer than the other one by this factor, measured from the ankle, it is
+// the front. Chosen.
 constexpr double kLongerEnd = 1.1;
 
 // Reach of the legs at home, in lengths of the straight leg, in the order in which they are tried.
@@ -64,8 +65,8 @@ constexpr std::array kReaches = {0.94, 0.92, 0.955, 0.90, 0.97, 0.87, 0.84};
 constexpr double kLimitRoom = 2 * kOneDegree;
 
 // Error at which a servo gives its full effort [rad]. Chosen: makers of torque-controlled humanoids
-// use up to 1 rad with torques from a policy, and hobby servos reach their torque at 0.02 to 0.1
-// rad.
+// use up to 1 rad with torques that a learned policy commands, and hobby servos reach their torque
+// at 0.02 to 0.1 rad.
 constexpr double kFullEffortError = 0.2;
 // Smallest kp of a joint of a leg, in m g z per rad. Derived: a robot that leans by e falls with
 // the moment m g z e, and both ankles together have to hold it many times over. Measured: the walk
@@ -79,16 +80,17 @@ constexpr double kDampingTime = 0.13;
 // Rotor inertia of a servo per effort [kg m^2 per N m]. Source: armature 0.01 to 0.025 kg m^2 for
 // 88 to 139 N m in published models of humanoids.
 constexpr double kInertiaPerEffort = 2e-4;
-// Effort of a joint of a leg, and of any other joint, in m g z, where none is stated. Source:
-// HOAP-1 0.21 to 0.31, DARwIn-OP 0.4, Unitree G1 0.37 to 0.59 in the legs.
+// Effort of a joint of a leg and of any other joint, in m g z, if none is stated. Source: HOAP-1
+// has 0.21 to 0.31, DARwIn-OP 0.4, and Unitree G1 0.37 to 0.59 in the legs.
 constexpr double kLegEffort = 0.4, kOtherEffort = 0.1;
 // Effort in m g z above which a limit is a placeholder. Chosen: ten times that of a strong leg.
 constexpr double kGreatestEffort = 5;
 // Speed above which a limit is a placeholder [rad/s]. Chosen: ten times that of a usual servo.
 constexpr double kGreatestSpeed = 60;
-// Share of the joints that have the same position limits where these are placeholders. Chosen.
+// If at least this share of the joints have the same position limits, these limits are
+// placeholders. Chosen.
 constexpr double kSameLimits = 0.8;
-// Fewest joints for a rule about all joints. Chosen.
+// Smallest number of joints for a rule about all joints. Chosen.
 constexpr size_t kManyJoints = 6;
 
 VectorXd zero_posture(const RobotModel& model) {
@@ -108,7 +110,8 @@ Points loaded_outline(const PlacedShape& placed) {
   }
 }
 
-// Points whose lowest ones are those of the shape. Round shapes touch in one point or in a line.
+// Points of a shape, of which the lowest ones are the lowest ones of the shape. Round shapes touch
+// in one point or in a line.
 Points points_above_ground(const PlacedShape& placed, const Isometry3d& link) {
   const Isometry3d pose = link * placed.pose;
   if (const auto* sphere = std::get_if<Sphere>(&placed.shape))
@@ -123,7 +126,8 @@ Points points_above_ground(const PlacedShape& placed, const Isometry3d& link) {
   return points;
 }
 
-// The shapes with which a body touches others, or else its visible shapes, in the root frame.
+// The points of the shapes with which a body touches others, or else of its visible shapes, in the
+// root frame.
 Points body_points(const RobotModel& model, const std::vector<Isometry3d>& poses, int body) {
   Points points;
   for (const bool collisions : {true, false}) {
@@ -148,7 +152,7 @@ double lowest_of(const Points& points) {
 
 struct Foot {
   int body = -1;
-  Points points;  // in the root frame, with every joint at 0
+  Points points;  // points in the root frame, with every joint at 0
   double lowest = std::numeric_limits<double>::infinity();
 };
 
@@ -178,9 +182,10 @@ int joints_above(const RobotModel& model, int body) {
   return count;
 }
 
-// The two lowest end bodies that are beside each other. A toe gives way to the foot that carries it
-// where that stands on more ground. None where an end body without any shape is lower and hangs on
-// as many joints as these: then the shapes of the feet are missing, and others are not feet.
+// The two lowest end bodies that are beside each other. If a foot stands on more ground than the
+// toe that it carries, the foot is taken and not the toe. There are no feet if an end body without
+// any shape is lower and has as many joints above it as these bodies: then the shapes of the feet
+// are missing, and other bodies are not feet.
 std::vector<Foot> find_feet(const RobotModel& model, const std::vector<Isometry3d>& poses) {
   std::vector<bool> leaf(model.bodies().size(), true);
   for (const Body& body : model.bodies())
@@ -232,7 +237,8 @@ std::string lower_case(std::string text) {
   return text;
 }
 
-// +1: the first of two names is the left one, -1: the right one, 0: they do not say.
+// +1: the first of the two names is the left one, -1: it is the right one, 0: the names do not say
+// it.
 int first_is_left(const std::string& first, const std::string& second) {
   const std::string a = lower_case(first), b = lower_case(second);
   const auto has = [](const std::string& name, const char* word) {
@@ -322,12 +328,13 @@ void find_facing(const RobotModel& model, RobotGuess& guess) {
 
 // ---- soles
 
-// Attitude that makes the side of the foot level on which it comes to rest under a load at this
-// place: the facet of the hull below it. A triangle around the place takes in the lowest point
-// below its plane, until none is left; the plane under the place only sinks.
+// The attitude in which the foot comes to rest on the ground under a load at this place. It makes
+// the facet of the hull below this place level. The facet is found by a triangle around the place,
+// which takes in the lowest point below its plane until there is none; under the place, this plane
+// can only sink.
 Eigen::Matrix3d settled(const Points& points, const Vector2d& load) {
   // Corners of the first triangle [m] and rounding of the height over a plane [m]. Definition: far
-  // outside of any foot, and far below what a sole is measured by.
+  // outside of any foot, and far below the accuracy with which a sole is measured.
   constexpr double kFar = 1e3, kRounding = 1e-9;
   constexpr int kMostTurns = 1000;
   std::array<Vector3d, 3> facet;
@@ -366,7 +373,8 @@ Eigen::Matrix3d settled(const Points& points, const Vector2d& load) {
   return Eigen::Matrix3d::Identity();
 }
 
-// The corner whose removal takes the least area goes first; what is left lies inside.
+// Removes the corners one by one, first the corner whose removal takes away the least area; what is
+// left lies inside.
 std::vector<Vector2d> thinned(std::vector<Vector2d> corners) {
   const auto cut = [&](size_t i) {
     const size_t n = corners.size();
@@ -390,8 +398,8 @@ SoleDescription sole_of(const RobotModel& model, const std::vector<Isometry3d>& 
   const Vector3d ankle = poses[foot.body].translation();
   Points level = points;
   for (Vector3d& point : level) point -= ankle;
-  // On the larger one of the sides on which the foot rests under its ankle or under its middle. A
-  // foot that stands level is not turned by the unevenness of its mesh.
+  // A foot can rest on the side under its ankle or on the side under its middle; the larger side is
+  // its sole. A foot that stands level is not turned by the unevenness of its mesh.
   Vector2d low = level[0].head<2>(), high = low;
   for (const Vector3d& point : level) {
     low = low.cwiseMin(point.head<2>());
@@ -416,7 +424,7 @@ SoleDescription sole_of(const RobotModel& model, const std::vector<Isometry3d>& 
     if (point.z() <= lowest + kTouching) touching.push_back(point.head<2>());
   SoleDescription sole;
   sole.link = link->name;
-  Isometry3d frame = Isometry3d::Identity();  // root frame
+  Isometry3d frame = Isometry3d::Identity();  // frame of the sole in the root frame
   frame.linear() = turn.transpose();
   frame.translation() = ankle + turn.transpose() * Vector3d(0, 0, lowest);
   sole.frame = (poses[foot.body] * link->pose).inverse() * frame;
@@ -485,7 +493,7 @@ void find_soles(RobotGuess& guess) {
 
 double leg_reach(const RobotModel& model, const RobotData& data, double* straight) {
   const auto& leg = model.leg(Side::left);
-  // The hip is where the last axis above the knee passes.
+  // The hip is the point where the last axis above the knee passes.
   const InverseKinematics ik(model, zero_posture(model));
   const int knee = ik.knee(Side::left);
   Vector3d hip = data.pose(model.dofs()[leg.front()].body).translation();
@@ -653,18 +661,18 @@ class ArmsBesideLegs {
   }
 
  private:
-  // Least distance of a moved arm from the trunk [m]. Source: the clearance below which the check
-  // warns (limits/clearance).
+  // Smallest distance of a moved arm from the trunk [m]. Source: the clearance below which the
+  // check warns (limits/clearance).
   static constexpr double kClearOfTrunk = 0.002;
   // Distance of an arm from the middle, in half distances of the soles, above which it is not part
   // of the trunk. Chosen: neck and waist are at 0, shoulders beside the hips or farther.
   static constexpr double kBesideTrunk = 0.25;
-  // Distance of the arms from the legs, in COG heights. Chosen: 17 mm on a robot of HOAP-1's size,
-  // within which its legs sway aside and its knees come forward in a walk. With it, humanoid30's
-  // arms go out by 10 deg, and GR001's by 5 deg.
+  // Distance of the arms from the legs, in COG heights. Chosen: 17 mm on a robot of HOAP-1's size;
+  // in a walk, its legs move aside and its knees come forward by less. With it, humanoid30's arms
+  // go out by 10 deg, and GR001's by 5 deg.
   static constexpr double kArmClearance = 0.07;
-  // The lower posture in which the arms are to be clear of the legs too, in COG heights below home.
-  // Chosen: the depth of a squat, and of the heights among which a walk is looked for.
+  // The lower posture in which the arms must also be clear of the legs, in COG heights below home.
+  // Chosen: the depth of a squat, and of the heights that a search for a walk tries.
   static constexpr double kLowered = 0.12;
 
   const RobotModel& model_;
@@ -684,7 +692,7 @@ std::map<int, double> arms_aside(const RobotModel& model) {
   // them with 10 to 25 deg of one shoulder joint.
   constexpr double kStep = 5 * kOneDegree, kMost = 60 * kOneDegree;
   constexpr int kJoints = 2;
-  // Of two joints that do the same, the first one is moved [m]. Definition: above rounding.
+  // If two joints have the same effect, the first one is moved [m]. Definition: above rounding.
   constexpr double kLeastGain = 1e-6;
   ArmsBesideLegs robot(model);
   std::map<int, double> moved;
@@ -726,7 +734,7 @@ bool find_home(RobotGuess& guess) {
   if (moved.empty()) return true;
   RobotGuess with_arms = guess;
   with_arms.robot.postures.erase("home");
-  with_arms.robot.assumptions.pop_back();  // the posture that was found first
+  with_arms.robot.assumptions.pop_back();  // the assumption about the posture that was found before
   std::vector<std::string> names;
   for (const auto& [dof, angle] : moved) {
     start[dof] += angle;
@@ -788,7 +796,7 @@ void find_servos(RobotGuess& guess) {
     const Dof& dof = model.dofs()[i];
     const JointDescription& joint = joint_of(model, i);
     const bool leg = is_of_leg(model, i);
-    // MJCF states servos and passive joints; of a motor it states all but the gains.
+    // MJCF states servos and passive joints; for a motor, it states everything except the gains.
     const auto stated = robot.servos.find(dof.name);
     if (stated != robot.servos.end() && (stated->second.kp > 0 || joint.effort <= 0)) continue;
     ++inferred;
@@ -798,7 +806,8 @@ void find_servos(RobotGuess& guess) {
       effort = (leg ? kLegEffort : kOtherEffort) * weight * (dof.prismatic ? 1 : z);
       ++estimated;
     }
-    const double unit = dof.prismatic ? z : 1;  // in [m] in place of radians
+    // Unit of the constants: metres in place of radians for a sliding joint.
+    const double unit = dof.prismatic ? z : 1;
     ServoDescription servo;
     servo.kp = effort / (kFullEffortError * unit);
     if (leg) servo.kp = std::max(servo.kp, kLegStiffness * weight * z / (unit * unit));
@@ -842,7 +851,8 @@ std::vector<std::string> hold_joints_without_mass(RobotDescription& robot) {
   for (const JointDescription& joint : robot.joints) above[joint.child] = &joint;
   for (const LinkDescription& link : robot.links) {
     const std::string* name = &link.name;
-    for (size_t steps = 0; steps <= robot.joints.size(); ++steps) {  // a loop is reported later
+    // A loop of joints is reported later.
+    for (size_t steps = 0; steps <= robot.joints.size(); ++steps) {
       mass[*name] += link.inertia.mass;
       const auto joint = above.find(*name);
       if (joint == above.end()) break;
@@ -982,8 +992,8 @@ std::string direction_in_words(const RobotModel& model, int dof) {
       return bends ? "positive bends the knee" : "positive straightens the knee";
     }
   }
-  // Motion of the centre of mass of what the joint carries, in the trunk's axes; where the axis
-  // passes through it, the turn itself.
+  // The motion of the centre of mass of the part that the joint carries, in the trunk's axes. If
+  // the axis passes through the centre of mass, it is the rotation itself.
   VectorXd moved = home;
   moved[dof] += 0.01;
   const std::vector<Isometry3d> after = body_poses(model, moved);

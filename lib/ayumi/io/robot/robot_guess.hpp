@@ -15,8 +15,8 @@ struct GuessReason {
   std::string why, check;
 };
 
-/// A value that stands in a URDF because the format wants one: "position limits", "speed limits" or
-/// "effort limits".
+/// A value that a URDF contains only because the format requires one: "position limits", "speed
+/// limits" or "effort limits".
 struct PlaceholderLimits {
   std::string what;
   std::string value;  ///< value as it is written, with its unit
@@ -26,7 +26,7 @@ struct PlaceholderLimits {
 /// A robot that guess_robot() has completed.
 struct RobotGuess {
   RobotDescription robot;
-  std::string facing = "x";  ///< of the URDF's root link; `robot` faces x
+  std::string facing = "x";  ///< direction in the URDF's root link; `robot` itself faces x
   GuessReason facing_reason, sole_reason, home_reason, servo_reason;
   std::vector<PlaceholderLimits> placeholders;
 };
@@ -44,12 +44,12 @@ struct RobotGuess {
 /// rad. What was inferred is added to `assumptions`.
 RobotGuess guess_robot(RobotDescription robot);
 
-/// Joints whose links weigh nothing cannot be moved by a motor's torque: they become fixed at 0,
-/// and `assumptions` says so. Returns their names.
+/// Makes joints whose links weigh nothing fixed at 0, because the torque of a motor cannot move
+/// them, and `assumptions` says so. Returns their names.
 std::vector<std::string> hold_joints_without_mass(RobotDescription& robot);
 
-/// Passive joints of at most 4 deg beside a driven joint with the same axis model the play of its
-/// gear, as some MJCF files do: they become fixed at 0, the servo gets this backlash, and
+/// Some MJCF files model the play of a gear by a passive joint of at most 4 deg beside a driven
+/// joint with the same axis. Such joints become fixed at 0, the servo gets this backlash, and
 /// `assumptions` says so. Returns their names.
 std::vector<std::string> hold_play_of_gears(RobotDescription& robot);
 
@@ -57,14 +57,16 @@ std::vector<std::string> hold_play_of_gears(RobotDescription& robot);
 std::vector<std::string> passive_joints(const RobotDescription& robot);
 
 /// The open points in addition to the guesses: joints without an actuator, and missing meshes, of
-/// which `most` are named. One sentence for each.
+/// which at most `most` are named. There is one sentence for each.
 std::vector<std::string> gaps_of_the_files(const RobotDescription& robot, size_t most);
 
-/// Limits that are placeholders. The same position limits on most joints, speeds above 60 rad/s,
-/// and efforts above five times m g z (mass, COG height) or the same on all joints.
+/// Limits that are placeholders: equal position limits on most joints, speeds above 60 rad/s,
+/// efforts that are equal on all joints, and efforts above five times m g z (with the mass m and
+/// the COG height z).
 std::vector<PlaceholderLimits> placeholder_limits(const RobotModel& model);
 
-/// "positive bends the knee": the motion of a joint by a positive angle, in the home posture.
+/// The motion of a joint by a positive angle in the home posture, such as "positive bends the
+/// knee".
 std::string direction_in_words(const RobotModel& model, int dof);
 
 }  // namespace ayumi

@@ -24,7 +24,8 @@ class SidecarOverlay {
  public:
   SidecarOverlay(MergedSidecar& under, const std::string& file) : under_(under), file_(file) {}
 
-  // `over` is at `place` of its own file, and `under` is at `pointer` of the merged document.
+  // Merges `over`, which is at `place` of its own file, into `under`, which is at `pointer` of the
+  // merged document.
   void merge(Json& under, const Json& over, const std::string& pointer, const std::string& place,
              const std::string& key = "") {
     if (under.is_object() && over.is_object()) {
@@ -81,7 +82,7 @@ void scale_numbers(Json& value, double factor) {
     for (auto& [key, member] : value.items()) scale_numbers(member, factor);
 }
 
-// A value in radians may override a value in degrees, and the reverse.
+// A value in radians may override a value in degrees, and a value in degrees one in radians.
 void use_units_of(const Json& over, Json& under) {
   const auto convert = [&](Json& from, Json& to, const std::string& key, double factor) {
     to[key] = from[key];

@@ -1,7 +1,7 @@
 #pragma once
-// Merges a sidecar with its base: {"base": "hoap1", ...} contains only what differs. Objects are
-// merged by key, the lists of groups are appended so that the later group counts, profiles are
-// merged by name, everything else is replaced. Included by io/*.cpp only.
+// Merges a sidecar with its base: {"base": "hoap1", ...} contains only the differences. Objects are
+// merged by key, profiles are merged by name, and the lists of groups are appended, so that the
+// later group counts. Everything else is replaced. Included by io/*.cpp only.
 
 #include <filesystem>
 #include <functional>
@@ -23,9 +23,9 @@ struct MergedSidecar {
 /// The file of a robot with this name. Throws Error if there is none.
 using FindRobot = std::function<std::filesystem::path(const std::string&)>;
 
-/// Reads `file` and its bases. A base is a path relative to the file that names it, or what `find`
-/// finds; a URDF is a sidecar without further keys. Throws Error(bad_file) for a file that is no
-/// sidecar, a base that does not exist, and bases in a circle.
+/// Reads `file` and its bases. A base is a path relative to the file that names it, or a name that
+/// `find` finds. A URDF counts as a sidecar without further keys. Throws Error(bad_file) for a file
+/// that is not a sidecar, for a base that does not exist, and for bases in a circle.
 MergedSidecar read_merged_sidecar(const std::filesystem::path& file, const FindRobot& find);
 
 }  // namespace ayumi

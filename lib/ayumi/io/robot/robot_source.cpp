@@ -33,8 +33,8 @@ std::string_view without_leading_blanks(std::string_view text) {
   return text;
 }
 
-// The name of the outermost element, after the declaration, comments and a document type in any
-// order. Empty if the text is not XML.
+// The name of the outermost element of an XML text; a declaration, comments and a document type may
+// stand before it in any order. Empty if the text is not XML.
 std::string outermost_element(std::string_view text) {
   while (true) {
     text = without_leading_blanks(text);
@@ -90,7 +90,7 @@ RobotFormat robot_format(const std::string& bytes, const fs::path& path) {
   if (extension == ".urdf" || extension == ".xacro") return RobotFormat::urdf;
   if (text.starts_with("{") || text.starts_with("//") || text.starts_with("/*"))
     return RobotFormat::sidecar;
-  // The first line of a body file that is not a remark.
+  // A body file shows itself in its first line that is not a remark.
   if (extension == ".body" || text.substr(0, 4096).find("ChoreonoidBody") != std::string_view::npos)
     return RobotFormat::body;
   if (extension == ".ztk" || text.substr(0, 4096).find("[roki::") != std::string_view::npos ||

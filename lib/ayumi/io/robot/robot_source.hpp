@@ -13,11 +13,11 @@ namespace ayumi {
 enum class RobotFormat { sidecar, urdf, mjcf, sdf, body, ztk };
 
 /// The format of a robot's file, recognized by its content. The name decides only if the content
-/// does not show the format. Throws Error(bad_file) for a file that is something else, saying what
-/// it is where that can be recognised.
+/// does not show the format. Throws Error(bad_file) for any other file, and says what the file is
+/// if this can be recognized.
 RobotFormat robot_format(const std::string& bytes, const std::filesystem::path& path);
 
-/// Links and joints of a file that is not a sidecar. `packages` are further folders with the
+/// The links and joints of a file that is not a sidecar. `packages` are further folders with the
 /// packages of meshes. Throws Error(bad_file) and Error(bad_model) as the readers of the formats
 /// do.
 RobotDescription parse_robot(const std::string& bytes, const std::filesystem::path& path,

@@ -31,7 +31,8 @@ using Eigen::Vector3d;
 // Position limits from which on a joint counts as unlimited. Source: the format's own default is
 // 1e16.
 constexpr double kUnlimited = 1e15;
-// Largest depth of models in each other, by nesting or inclusion. Chosen: robots have two or three.
+// Largest depth of models inside each other, by nesting or inclusion. Chosen: robots have two or
+// three.
 constexpr int kDeepestModel = 20;
 constexpr double kUnstatedMass = 1;  // [kg], [kg m^2]. Source: the format's defaults for a link.
 // Largest number of bytes of an included file. Chosen: text of a model takes kilobytes.
@@ -113,7 +114,7 @@ class SdfReader {
     const std::string text = required(root, "version");
     const std::vector<double> numbers =
         xml_numbers(path_.string(), root, "<sdf version>: ", text, 1);
-    // Version 1.10 and 1.11 come after 1.9.
+    // The versions 1.10 and 1.11 come after 1.9.
     const size_t dot = text.find('.');
     const double minor = dot == std::string::npos ? 0 : std::atof(text.c_str() + dot + 1);
     if (std::floor(numbers[0]) != 1 || minor < 4)
@@ -121,7 +122,7 @@ class SdfReader {
     return minor;
   }
 
-  // Joints, and the places where they mean links.
+  // Finds the numbers of joints, and of the places where joints name links.
   static std::pair<int, int> size_of(const TiXmlElement* model) {
     std::pair<int, int> size = {0, 0};
     for (auto* each = model->FirstChildElement(); each; each = each->NextSiblingElement()) {
@@ -252,7 +253,8 @@ class SdfReader {
     }
   }
 
-  // The element `place` has the pose: the model itself, or the <include> that names it.
+  // Adds a nested model. The element `place` has its pose: the model itself, or the <include> that
+  // names it.
   void add_nested(const TiXmlElement* model, const TiXmlElement* place, const std::string& name,
                   const std::string& scope, int depth) {
     const std::string inner = scope + name + "::";
@@ -466,7 +468,7 @@ class SdfReader {
     }
   }
 
-  // Pose of a part of a link, in the link's own frame.
+  // The pose of a part of a link, in the link's own frame.
   Isometry3d part_pose(const TiXmlElement* part, const LinkSource& source) {
     const Isometry3d pose = pose_of(part);
     const std::string named = xml_attribute(part->FirstChildElement("pose"), "relative_to", "");
@@ -528,7 +530,7 @@ class SdfReader {
       if (file.empty()) return;
       placed.shape = MeshShape{file, triple("scale", 1), {}};
     } else {
-      return;  // planes and fields belong to the world
+      return;  // planes and height fields belong to the world
     }
     if (const TiXmlElement* material = element->FirstChildElement("material"))
       if (const TiXmlElement* diffuse = material->FirstChildElement("diffuse")) {
@@ -543,7 +545,7 @@ class SdfReader {
 
   const fs::path& path_;
   MeshPlaces places_;
-  double version_ = 0;  // the number after "1."
+  double version_ = 0;  // the part of the version after "1."
   std::string file_, files_;
   RobotDescription robot_;
   std::map<std::string, Frame> frames_;

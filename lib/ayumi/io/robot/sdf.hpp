@@ -11,10 +11,10 @@
 
 namespace ayumi {
 
-/// The model of the file, or the one of its world with the most joints. `path` is for messages and
-/// for files that the model names. What cannot be kept is listed in `assumptions`. Throws
-/// Error(bad_file) "file:line: ..." for what is not SDF, for unknown frames and for frames in a
-/// circle, Error(bad_model) for an impossible robot.
+/// Reads the model of the file, or the model of its world with the most joints. `path` is for
+/// messages and for files that the model names. What cannot be kept is listed in `assumptions`.
+/// Throws Error(bad_file) "file:line: ..." for a text that is not SDF, for unknown frames and for
+/// frames in a circle, and Error(bad_model) for an impossible robot.
 RobotDescription parse_sdf(const std::string& bytes, const std::filesystem::path& path,
                            const std::vector<std::filesystem::path>& packages);
 

@@ -12,8 +12,9 @@ namespace ayumi {
 namespace {
 
 /// Limits of servo constants, which detect a wrong unit. Chosen: stiffness, inertia, torque and
-/// friction a hundred times those of a humanoid of 50 kg; a zero offset of 0.5 rad, beyond which a
-/// horn is on another tooth of its shaft. Delay and play: model/device_limits.hpp.
+/// friction may be a hundred times those of a humanoid of 50 kg; a zero offset of more than 0.5 rad
+/// would mean that a horn is on another tooth of its shaft. The limits of delay and play are in
+/// model/device_limits.hpp.
 constexpr double kMostStiffness = 1e7;  // [N m/rad]
 constexpr double kMostDamping = 1e6;    // [N m s/rad]
 constexpr double kMostInertia = 1e3;    // [kg m^2]
@@ -189,15 +190,15 @@ Motor read_bam(const JsonNode& node, ServoDescription& servo, std::string& bytes
   return {positive(root.at("kt"), kTorqueConstant), positive(root.at("R"), kResistance)};
 }
 
-// The voltage bounds the torque; with a gain in volts per radian it is also what the position loop
-// commands, and the motor's own back-EMF is its damping.
+// The voltage of a motor bounds its torque. If the gain is in volts per radian, the position loop
+// commands a voltage, and the motor's own back-EMF is its damping.
 void read_motor(const JsonNode& node, Motor motor, ServoDescription& servo) {
   node.only_keys({"torque_constant", "resistance", "voltage", "gain"});
   if (const auto constant = node.find("torque_constant"))
     motor.torque_constant = positive(*constant, kTorqueConstant);
   if (const auto resistance = node.find("resistance"))
     motor.resistance = positive(*resistance, kResistance);
-  if (motor.torque_constant == 0) node.at("torque_constant");  // complains
+  if (motor.torque_constant == 0) node.at("torque_constant");  // complains about the missing key
   if (motor.resistance == 0) node.at("resistance");
   const double voltage = positive(node.at("voltage"), kVoltage);
   servo.stall_torque = motor.torque_constant * voltage / motor.resistance;
@@ -216,7 +217,7 @@ void read_speed_loop(const JsonNode& group, ServoDescription& servo) {
   servo.kp = position * servo.kd;
 }
 
-/// Keys that state the same in two ways.
+/// Refuses a group in which two keys state the same quantity in two ways.
 void refuse_both(const JsonNode& group, const char* one, const char* other) {
   if (group.has(one) && group.has(other))
     group.complain("the group has both '" + std::string(one) + "' and '" + other +

@@ -48,7 +48,7 @@ bool is_among(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-// The joints of one group: {"joints": ["*_knee", "l_elbow"], ...}.
+// The joints of one group, such as {"joints": ["*_knee", "l_elbow"], ...}.
 std::vector<std::string> group_joints(const JsonNode& group, const RobotDescription& robot) {
   const std::vector<std::string> names = moving_joints(robot);
   std::vector<std::string> chosen;
@@ -168,7 +168,7 @@ void read_encoders(const JsonNode& node, RobotDescription& robot) {
   }
 }
 
-// {"LHipYaw": "l_hip_yaw"}: names of joints in files with motions.
+// Reads the names of joints in files with motions, such as {"LHipYaw": "l_hip_yaw"}.
 void read_aliases(const JsonNode& node, RobotDescription& robot) {
   const std::vector<std::string> names = moving_joints(robot);
   for (const auto& [alias, joint] : node.members()) {
@@ -181,7 +181,8 @@ void read_aliases(const JsonNode& node, RobotDescription& robot) {
   }
 }
 
-// ["interval", "2", "motors", "60", "R"]: the columns before and after those of the motors.
+// Reads the columns before and after those of the motors, such as ["interval", "2", "motors", "60",
+// "R"].
 void read_columns(const JsonNode& node, SequenceLayout& layout) {
   std::vector<std::string>* side = &layout.before;
   for (const JsonNode& item : node.items()) {
@@ -442,7 +443,7 @@ const std::vector<std::string> kKeys = {"$schema",
                                         "collision_ignore",
                                         "assumptions"};
 
-// A servo can round to counts only if the encoder has some.
+// A servo can round to counts only if its encoder has counts.
 void check_counts(const JsonNode& root, const RobotDescription& robot) {
   const auto check = [&](const char* key, const std::map<std::string, ServoDescription>& servos) {
     for (const auto& [joint, servo] : servos)

@@ -10,10 +10,11 @@
 
 namespace ayumi {
 
-/// The description of the robot whose sidecar is `file`: URDF first, then the bases of the sidecar,
-/// which `find` finds by name, then the sidecar over them. A URDF that is not where the sidecar
-/// says is looked for in `folders`, and in their urdf/; `packages` are further folders with the
-/// packages of its meshes. Throws Error(bad_file) "file: /pointer: what".
+/// The description of the robot whose sidecar is `file`. The URDF is read first, then the bases of
+/// the sidecar, which `find` finds by name, and then the sidecar, which overrides them. If a URDF
+/// is not where the sidecar says, it is searched in `folders` and in their subfolders urdf/.
+/// `packages` are further folders with the packages of its meshes. Throws Error(bad_file) "file:
+/// /pointer: what".
 RobotDescription read_sidecar(const std::filesystem::path& file,
                               const std::vector<std::filesystem::path>& folders,
                               const std::vector<std::filesystem::path>& packages,

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Keeps urdfdom's complaints from stderr. Its logger is global, hence the lock.
+// Keeps urdfdom's complaints from stderr. Its logger is global, so a lock is needed.
 class QuietLog : public console_bridge::OutputHandler {
  public:
   QuietLog() : lock_(mutex()) { console_bridge::useOutputHandler(this); }
@@ -121,7 +121,7 @@ class Converter {
     }
   }
 
-  // false: its mesh is missing, and the shape is left out.
+  // Returns false if the mesh is missing; then the shape is left out.
   template <typename Source>  // urdf::Visual or urdf::Collision
   bool place(const Source& source, const std::string& link, std::vector<PlacedShape>& shapes) {
     const std::optional<Shape> found = shape(*source.geometry, link);
@@ -155,7 +155,7 @@ class Converter {
   MeshPlaces& meshes_;
 };
 
-// urdfdom keeps links and joints in maps by name: put them back into the file's order.
+// Puts links and joints into the order of the file, because urdfdom keeps them in maps by name.
 template <typename Item>
 void sort_by_place(std::vector<Item>& items, const std::map<std::string, int>& place) {
   std::stable_sort(items.begin(), items.end(), [&](const Item& a, const Item& b) {

@@ -61,8 +61,8 @@ const std::vector<std::string> kJointTypes = {"fixed",     "revolute", "continuo
                                               "prismatic", "floating", "planar"};
 const std::vector<std::string> kGeometries = {"box", "sphere", "cylinder", "mesh"};
 
-// The elements that URDF, its simulators and its planners know inside of an element. A name that is
-// none of these, and near to one that Ayumi reads, is a misspelling.
+// The elements that URDF, its simulators and its planners know inside of an element. A name is a
+// misspelling if it is none of these and is similar to a name that Ayumi reads.
 struct KnownElements {
   const char* parent;
   std::vector<std::string> read, other;
@@ -107,7 +107,7 @@ class Checker {
       numbers(child, owner);
   }
 
-  // A misspelt element would be ignored with all that stands in it: every one of its kind is
+  // A misspelt element would be ignored with everything inside it. So all elements of its kind are
   // counted, and the first is named.
   void refuse_misspellings(const TiXmlElement* root) const {
     struct Misspelling {
@@ -226,7 +226,8 @@ class Checker {
         if (!(value > 0)) complain(kind, owner + std::string(extent) + " must be above 0");
   }
 
-  // urdfdom wants effort and velocity; 0 stands for "unstated" from here on.
+  // urdfdom requires effort and velocity. From here on, 0 means that the file does not state the
+  // value.
   void limits(TiXmlElement* element, const std::string& name, UrdfText& text) const {
     TiXmlElement* limit = element->FirstChildElement("limit");
     if (!limit) {

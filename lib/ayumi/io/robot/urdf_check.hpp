@@ -1,5 +1,5 @@
 #pragma once
-// The strict look at a URDF's XML before urdfdom reads it. Included by io/*.cpp only.
+// The strict check of a URDF's XML before urdfdom reads it. Included by io/*.cpp only.
 
 #include <map>
 #include <set>
@@ -7,17 +7,17 @@
 
 namespace ayumi {
 
-/// What the check found and urdfdom does not report.
+/// Results of the check that urdfdom does not report.
 struct UrdfText {
-  std::string xml;                         ///< repaired for urdfdom: unstated limits filled in
+  std::string xml;  ///< the text with unstated limits filled in, as urdfdom needs it
   std::map<std::string, int> link_place;   ///< place of each <link> in the file's order, by name
   std::map<std::string, int> joint_place;  ///< place of each <joint> in the file's order, by name
   std::set<std::string> unlimited;         ///< joints that state no position limits
 };
 
-/// Throws Error(bad_file) "file:line: what, remedy" for text that is not XML or not a URDF, unknown
-/// joint types and geometries, numbers that are no finite numbers, links and joints without name,
-/// and Error(bad_model) for wrong tree structure.
+/// Throws Error(bad_file) "file:line: what, remedy" for a text that is not XML or not a URDF, for
+/// unknown types of joints and geometries, for numbers that are not finite, and for links and
+/// joints without a name. Throws Error(bad_model) if links and joints are not a tree.
 UrdfText check_urdf(const std::string& bytes, const std::string& file);
 
 }  // namespace ayumi

@@ -15,10 +15,11 @@ namespace {
 constexpr int kDeepestXml = 200;
 
 // Largest number of attributes of an element. Chosen: URDF knows at most eight; TinyXML compares
-// all of an element with each other.
+// all attributes of an element with each other.
 constexpr int kMostAttributes = 100;
 
-// TinyXML descends by recursion: refuse text that nests deeper than any robot's.
+// TinyXML descends by recursion, so a text is refused if it is nested more deeply than any robot's
+// file.
 void refuse_deep_nesting(const std::string& bytes, const std::string& file,
                          const std::string& kind) {
   int depth = 0;
@@ -34,7 +35,7 @@ void refuse_deep_nesting(const std::string& bytes, const std::string& file,
   }
 }
 
-// A byte '=' outside a quotation stands for one attribute.
+// Each '=' outside quotation marks stands for one attribute.
 void refuse_many_attributes(const std::string& bytes, const std::string& file) {
   int line = 1, count = 0;
   char quote = 0;

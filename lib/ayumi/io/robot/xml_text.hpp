@@ -1,5 +1,5 @@
 #pragma once
-// XML from files that are not trusted, by TinyXML. Included by io/*.cpp only.
+// Reads XML from files that are not trusted, by TinyXML. Included by io/*.cpp only.
 
 #include <tinyxml.h>
 
@@ -9,7 +9,8 @@
 namespace ayumi {
 
 /// Parses `bytes`; `kind` ("a URDF") is for messages. Throws Error(bad_file) with file and line for
-/// what is not XML, nests deeper than any robot, or has an element with more attributes than any.
+/// a text that is not XML, that is nested more deeply than any robot's file, or that has an element
+/// with more attributes than any robot's file.
 void parse_xml(TiXmlDocument& document, const std::string& bytes, const std::string& file,
                const std::string& kind);
 
@@ -17,11 +18,11 @@ void parse_xml(TiXmlDocument& document, const std::string& bytes, const std::str
 [[noreturn]] void complain_xml(const std::string& file, const TiXmlElement* at,
                                const std::string& message);
 
-/// The attribute of an element, else `other`; also where there is no element.
+/// The attribute of an element, or `other` if it is missing or there is no element.
 std::string xml_attribute(const TiXmlElement* element, const char* name, const std::string& other);
 
-/// The `count` numbers in `text`, which stands in `at`; `place` begins the message. Throws
-/// Error(bad_file) for words that are no finite numbers, and for more or fewer of them.
+/// The `count` numbers in `text`, which stands in `at`; a message begins with `place`. Throws
+/// Error(bad_file) for words that are not finite numbers, and for another count of them.
 std::vector<double> xml_numbers(const std::string& file, const TiXmlElement* at,
                                 const std::string& place, const std::string& text, int count);
 

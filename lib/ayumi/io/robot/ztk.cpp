@@ -1,5 +1,5 @@
-// RoKi's frames: a link's frame is that of its joint, `frame` places it in the parent link (three
-// rows of rotation and position), and a joint turns about z, or slides along it. Angles are
+// Frames of RoKi: a link's frame is that of its joint, `frame` places it in the parent link (three
+// rows of rotation and position), and a joint turns about z or slides along it. Angles are in
 // degrees.
 #include "ayumi/io/robot/ztk.hpp"
 
@@ -46,7 +46,7 @@ struct ZtkField {
   size_t line = 0;
 };
 struct Section {
-  std::string tag;  // "roki::link"
+  std::string tag;  // tag of the section, such as "roki::link"
   std::vector<ZtkField> fields;
   size_t line = 0;
 
@@ -169,7 +169,7 @@ class ZtkReader {
     colors_[name_of(section)] = color;
   }
 
-  // Torque of a DC motor that stands still under its whole voltage.
+  // Computes the torque of a DC motor that stands still under its whole voltage.
   void read_motor(const Section& section) {
     const double voltage = std::max(std::abs(number_or(section, "maxvoltage", 0)),
                                     std::abs(number_or(section, "minvoltage", 0)));
@@ -278,7 +278,7 @@ class ZtkReader {
     part.triangles.push_back({first, first + 1, first + 2});
   }
 
-  // "mirror: left_foot y": that shape with its y turned round.
+  // Reads a line such as "mirror: left_foot y": the named shape with its y reversed.
   void read_mirrored(const Section& section, const ZtkField& mirror, PlacedShape placed) {
     const size_t blank = mirror.value.find(' ');
     const std::string of = mirror.value.substr(0, blank);
@@ -344,7 +344,7 @@ class ZtkReader {
         for (int j = 0; j < 3; ++j) joint.origin.linear()(i, j) = v[static_cast<size_t>(4 * i + j)];
         joint.origin.translation()[i] = v[static_cast<size_t>(4 * i + 3)];
       }
-      // Rounding to six digits. Chosen: a hundred times that.
+      // Largest error of a rotation matrix. Chosen: a hundred times the rounding to six digits.
       constexpr double kRotation = 1e-4;
       const Eigen::Matrix3d turn = joint.origin.linear();
       if (!((turn.transpose() * turn - Eigen::Matrix3d::Identity()).norm() < kRotation) ||
@@ -394,7 +394,7 @@ class ZtkReader {
   RobotDescription robot_;
 };
 
-// ---- Writing
+// ---- writing
 
 std::string vector_text(const Vector3d& v) {
   return "{ " + text::exact(v.x()) + ", " + text::exact(v.y()) + ", " + text::exact(v.z()) + " }";
@@ -422,7 +422,7 @@ class ZtkWriter {
     }
     for (const LinkDescription& link : robot_.links) {
       write_shapes(link, link.visuals);
-      // Meshes to look at are not always loaded, those of contacts are.
+      // Meshes for pictures are not always loaded, but meshes for contacts are.
       if (!shapes_.contains(link.name)) write_shapes(link, link.collisions);
     }
     // The order is: the root, the links that joints move, and the fixed links.
@@ -555,7 +555,7 @@ class ZtkWriter {
   std::set<std::string> moved_;  // joints in the order of the motion
   std::map<std::string, Eigen::Matrix3d>
       turns_;  // turns of links whose z is not the axis of their joint
-  std::map<std::string, std::string> names_;  // by the link's own name
+  std::map<std::string, std::string> names_;  // names by the link's own name
   std::map<std::string, std::vector<std::string>> shapes_;
   std::string text_;
 };

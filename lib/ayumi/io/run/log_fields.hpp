@@ -8,8 +8,8 @@
 
 namespace ayumi {
 
-// Calls visit(name, field) for every field of a sample, in file order. The one list behind column
-// names, writing and reading.
+// Calls visit(name, field) for every field of a sample, in file order. Column names, writing and
+// reading all use this list.
 template <typename Sample, typename Visit>
 void for_each_field(Sample& s, const Visit& visit) {
   visit("base", "m", s.state.base);
@@ -83,26 +83,27 @@ void for_each_field(Sample& s, const Visit& visit) {
   visit("work.joints", "J", s.work.joints);
 }
 
-/// One quantity of a log: a number, or several of one kind.
+/// One quantity of a log: a number, or several numbers of one kind.
 struct LogQuantity {
-  std::string name;                     ///< "theta", "cog", "fz"
-  std::vector<std::string> parts = {};  ///< "x", "qw", a joint; empty for a number
-  std::vector<std::string> units = {};  ///< of each column; "1" where it has none
+  std::string name;  ///< name such as "theta", "cog" or "fz"
+  /// Name of each part: "x", "qw", a joint; empty for a number.
+  std::vector<std::string> parts = {};
+  std::vector<std::string> units = {};  ///< unit of each column; "1" if it has none
 
   size_t columns() const { return units.size(); }
-  /// "cog.x[m]", "left.planned_contact"
+  /// Name of a column, such as "cog.x[m]" or "left.planned_contact".
   std::string column(size_t index) const;
 };
 
-/// The quantities of a sample with these joints.
+/// The quantities of a sample of a robot with these joints.
 std::vector<LogQuantity> log_quantities(const std::vector<std::string>& joints);
 
 /// For each column, the columns from which it nearly follows in the same row: angles follow from
-/// rates, torques from targets and angles, equal values from each other. The log is compressed with
-/// them.
+/// rates, torques from targets and angles, and equal values from each other. The compression of the
+/// log uses them.
 std::vector<std::vector<size_t>> log_sources(const std::vector<std::string>& joints);
 
-/// The values of all columns, 8 bytes each, behind `bytes`. Throws Error(internal) when a joint
+/// Appends the values of all columns to `bytes`, 8 bytes each. Throws Error(internal) if a joint
 /// vector has another size.
 void append_values(const SimulationSample& sample, size_t joints, std::string& bytes);
 

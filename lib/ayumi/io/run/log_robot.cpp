@@ -15,11 +15,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-// [m] Chosen: rounding is below 1e-12; another mass or length of a robot moves its COG by more. A
-// half or twice of it changes nothing.
+// Largest difference of the COG [m]. Chosen: rounding is below 1e-12, and another mass or length of
+// a robot moves its COG by more. Half or twice this bound changes nothing.
 constexpr double kSameRobot = 1e-6;
 
-// Chosen: rounding is below 1e-12. A half or twice of it changes nothing.
+// Largest difference of the length of a quaternion from 1. Chosen: rounding is below 1e-12. Half or
+// twice this bound changes nothing.
 constexpr double kUnitQuaternion = 1e-6;
 
 void require_attitudes(const SimulationSample& sample, double t, const std::string& source) {
@@ -34,11 +35,12 @@ void require_attitudes(const SimulationSample& sample, double t, const std::stri
 struct Carried {
   double begin = 0, end = 0;  // [s]
   int body = 0;
-  Vector3d point;  // frame of the body
+  Vector3d point;  // point in the frame of the body
   double mass = 0;
 };
 
-// A case of a study draws a robot whose masses and lengths the log does not have.
+// Whether the log is of a robot that a case of a study has drawn. The log does not contain the
+// masses and lengths of such a robot.
 bool is_of_drawn_robot(const SimulationLog& log) {
   return std::any_of(log.events.begin(), log.events.end(),
                      [](const SimulationEvent& event) { return event.kind == "case"; });
@@ -57,7 +59,7 @@ std::vector<Carried> carried_of(const RobotModel& model, const SimulationLog& lo
                "', which the robot '" + model.name() +
                "' does not have; name the robot of the run with --robot");
     const Link& on = model.links()[static_cast<size_t>(link)];
-    // What acts from the beginning acts while the robot comes to rest before it, too.
+    // A disturbance that acts from the beginning also acts while the robot comes to rest before it.
     list.push_back({d.at > 0 ? d.at : -1, d.at + d.duration, on.body, on.pose * payload->point,
                     payload->mass});
   }
@@ -91,7 +93,7 @@ void require_robot_of(const RobotModel& model, const SimulationLog& log,
     Vector3d moment = mass * data.cog;
     bool known = true;
     for (const Carried& load : carried) {
-      // The tick in which it comes or goes may have it or not.
+      // In the tick in which a load comes or goes, it may act or not.
       known &= std::abs(t - load.begin) > 1.5 * log.dt && std::abs(t - load.end) > 1.5 * log.dt;
       if (t < load.begin || t > load.end) continue;
       mass += load.mass;

@@ -1,5 +1,6 @@
 #pragma once
-// Whether a log is one of a robot: whoever draws a log or computes with it trusts this.
+// Checks whether a log belongs to a robot. Functions that draw a log or compute with it rely on
+// this.
 
 #include <string>
 
@@ -8,14 +9,14 @@
 
 namespace ayumi {
 
-/// Throws Error(bad_file), beginning with `source`, where the joints of the log are others than
-/// those of the robot, or in another order, or where an attitude is no rotation.
+/// Throws Error(bad_file), beginning with `source`, if the joints of the log are not those of the
+/// robot in the same order, or if an attitude is not a rotation.
 void require_postures_of(const RobotModel& model, const SimulationLog& log,
                          const std::string& source);
 
-/// The same, and where the COG of a sample is not that of the robot in this posture with the
-/// payloads that it carries: the log is of another robot, or was changed. The robot that a case of
-/// a study drew is not known, so there the COG is not compared.
+/// Also throws if the COG of a sample is not that of the robot in this posture with the payloads
+/// that it carries: then the log is of another robot, or was changed. The robot that a case of a
+/// study has drawn is not known, so its COG is not compared.
 void require_robot_of(const RobotModel& model, const SimulationLog& log, const std::string& source);
 
 }  // namespace ayumi

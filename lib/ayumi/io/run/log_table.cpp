@@ -20,7 +20,8 @@ using Eigen::Vector3d;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-// A joint vector is listed for revolute joints; a prismatic joint has another unit.
+// The unit of a joint vector, which is listed for revolute joints; a prismatic joint has another
+// unit.
 std::string unit_of(const std::string& revolute) {
   if (revolute == "rad") return "m";
   if (revolute == "rad/s") return "m/s";

@@ -1,6 +1,6 @@
 #pragma once
-// All that is known of a run as one table with a row per tick: the columns of its log, and what
-// follows from them.
+// Everything that is known about a run as one table with a row for each tick: the columns of its
+// log, and the quantities that follow from them.
 
 #include <string>
 #include <vector>
@@ -13,7 +13,7 @@ namespace ayumi {
 struct LogTable {
   std::vector<LogQuantity> quantities;  ///< in the order of the columns
   size_t columns = 0, rows = 0;
-  std::vector<double> values;  ///< row after row; nan where a quantity has no value
+  std::vector<double> values;  ///< values, row after row; nan where a quantity has no value
 
   double at(size_t row, size_t column) const { return values[row * columns + column]; }
   std::vector<std::string> column_names() const;

@@ -15,8 +15,8 @@ namespace ayumi {
 
 namespace {
 
-// [bytes] Rows that wait for the scratch file. Chosen: 14 s of HOAP-1 at 1 kHz, so that most runs
-// write none.
+// Number of bytes of rows that wait in memory before a scratch file is used [bytes]. Chosen: 14 s
+// of HOAP-1 at 1 kHz, so that most runs need no scratch file.
 constexpr size_t kWaitingBytes = size_t{32} << 20;
 
 }  // namespace

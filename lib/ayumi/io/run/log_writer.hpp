@@ -13,17 +13,18 @@
 
 namespace ayumi {
 
-/// Writes one log. The header, which stands at the beginning of the file, is known at the end only.
-/// So the blocks of samples first go to a scratch file. The file appears when it is complete.
+/// Writes one log. The header stands at the beginning of the file, but it is only known at the end.
+/// So the blocks of samples first go to a scratch file. The log file only appears when it is
+/// complete.
 class LogWriter {
  public:
-  /// The scratch file is made in `folder`, which is that of the log. Throws as ScratchFile.
+  /// The scratch file is made in `folder`, the folder of the log. Throws as ScratchFile.
   LogWriter(const std::filesystem::path& folder, const std::vector<std::string>& joints);
 
-  /// Throws Error(bad_file) when the disk is full.
+  /// Throws Error(bad_file) if the disk is full.
   void add(const SimulationSample& sample) { blocks_.add(sample); }
 
-  /// Writes the file `path`; nothing may be added after it. The samples of `about` do not count.
+  /// Writes the file `path`; nothing may be added afterwards. The samples of `about` are ignored.
   /// The bytes are those of write_log() with all samples. Throws as write_file_with(), and
   /// Interrupted.
   WrittenLog finish(SimulationLog about, const std::filesystem::path& path,
@@ -39,16 +40,16 @@ class LogWriter {
   size_t columns_;
 };
 
-/// The hash of a log that is not kept. Its rows are in a scratch file, because they are hashed
-/// after the header. The first block of them stays in memory: short logs need no file. Where no
+/// The hash of a log that is not kept. Its rows are kept in a scratch file, because they are hashed
+/// after the header. The first block of rows stays in memory, so short logs need no file. If no
 /// scratch file can be made, all rows stay in memory.
 class LogHash {
  public:
   /// `folder` is where the scratch file is made if it is needed.
   LogHash(std::filesystem::path folder, size_t joints);
-  /// Throws Error(bad_file) when the disk is full.
+  /// Throws Error(bad_file) if the disk is full.
   void add(const SimulationSample& sample);
-  /// Nothing may be added after it. The samples of `about` do not count.
+  /// Nothing may be added afterwards. The samples of `about` are ignored.
   WrittenLog finish(SimulationLog about);
 
  private:

@@ -2,8 +2,8 @@
 
 namespace ayumi {
 
-// Calls visit(key, text) for every field of a Provenance (const or not), in file order: the one
-// list behind reading and writing it in run.json and in the header of a log.
+// Calls visit(key, text) for every field of a Provenance (const or not), in file order. Both
+// run.json and the header of a log are read and written by this list.
 template <typename Value, typename Visit>
 void for_each_provenance(Value& p, const Visit& visit) {
   visit("robot", p.robot);

@@ -12,23 +12,25 @@
 
 namespace ayumi {
 
-/// verdict, profile, findings[], summary{}
+/// An object with the keys verdict, profile, findings[], summary{}.
 std::string check_json(const ConsistencyReport& report);
 
-/// joints[], cog{}, foot{}, zmp{}, fz{}
+/// An object with the keys joints[], cog{}, foot{}, zmp{}, fz{}.
 std::string motion_change_json(const MotionChange& change);
 
-/// {"total", "change", "safety", "parts": [{"what", "weight", "change"}]}.
+/// An object of the form {"total", "change", "safety", "parts": [{"what", "weight", "change"}]}.
 std::string weighted_change_json(const WeightedChange& change);
 
-/// status, moved{}, iterations, constraint_violation, reasons[], check{}
+/// An object with the keys status, moved{}, iterations, constraint_violation, reasons[], check{}.
 std::string repair_json(const RepairResult& result);
 
-/// controller, outcome, fell_at_s, max_tilt_rad, ..., steps, events[], log_hash
+/// An object with the keys controller, outcome, fell_at_s, max_tilt_rad, ..., steps, events[],
+/// log_hash.
 std::string simulation_json(const SimulationLog& log);
 std::string simulation_json(const WrittenLog& log);
 
-/// safe, ramp_s, hold_s, max_step_ratio, worst_joint, worst_at_s, ..., violations[]
+/// An object with the keys safe, ramp_s, hold_s, max_step_ratio, worst_joint, worst_at_s, ...,
+/// violations[].
 std::string safety_json(const SafetyReport& report);
 
 }  // namespace ayumi

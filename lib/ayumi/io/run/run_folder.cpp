@@ -22,7 +22,7 @@ constexpr const char* kReferenceFile = "reference.csv";
 constexpr const char* kPushedFile = "reference_pushed.csv";
 constexpr const char* kLightKey = "light";
 constexpr const char* kSealKey = "contents_sha256";
-// [bytes] Chosen: a log of half an hour at 1 kHz has less.
+// Largest size of a file of a run [bytes]. Chosen: a log of half an hour at 1 kHz is smaller.
 constexpr size_t kLargestRunFile = size_t{4} << 30;
 
 void make_folder(const fs::path& folder) {
@@ -65,7 +65,7 @@ OrderedJson summary_of(const RunFolder& run, const std::map<std::string, std::st
             {"controller", log.controller ? name_of(*log.controller) : ""},
             {"log_hash", hash}};
   };
-  std::map<std::string, OrderedJson> logs;  // in the order of their names
+  std::map<std::string, OrderedJson> logs;  // logs in the order of their names
   for (const auto& [name, log] : run.written) logs[name] = entry(name, log.about, log.log_hash);
   for (const auto& [name, log] : run.logs)
     if (!run.written.contains(name)) logs[name] = entry(name, log, log_hash(log));
@@ -97,7 +97,7 @@ std::string checked_bytes(const fs::path& folder, const JsonNode& files, const s
   return bytes;
 }
 
-// run.json, parsed, with its root.
+// The parsed run.json with its root.
 struct RunFile {
   explicit RunFile(const fs::path& folder)
       : path((folder / kRunFile).string()),

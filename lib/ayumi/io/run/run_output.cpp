@@ -13,8 +13,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Hidden folders in the target. One holds the run that is being made; the other holds the run that
-// it replaces, and is there only while a delivery is under way.
+// Hidden folders in the target. The first holds the run that is being made. The second holds the
+// run that is being replaced, and only exists during a delivery.
 constexpr const char* kStaging = ".ayumi_part";
 constexpr const char* kReplaced = ".ayumi_replaced";
 constexpr const char* kRunJson = "run.json";
@@ -24,14 +24,15 @@ bool is_there(const fs::path& path) {
   return fs::exists(fs::symlink_status(path, ignored));
 }
 
-// Whether this is a folder itself. A symbolic link to one may lead to files that no run has
-// written, for example in a folder that a stranger has packed.
+// Whether this is itself a folder. A symbolic link to a folder may lead to files that no run has
+// written, for example in a folder that another person has packed.
 bool is_own_folder(const fs::path& path) {
   std::error_code ignored;
   return fs::is_directory(fs::symlink_status(path, ignored));
 }
 
-// What is there under the name of a file of the run may be removed only where it is a file.
+// Throws if the name of a file of the run belongs to something else than a file, which must not be
+// removed.
 void require_own_file(const fs::path& path) {
   if (is_there(path)) require_file_target(path);
 }
@@ -54,9 +55,9 @@ std::vector<std::string> names_in(const fs::path& folder) {
   return names;
 }
 
-// The files of the run in the making that a delivery has already moved to their place: those that
-// the run.json in the staging folder lists and that are as it says. A file of the user under such a
-// name is another one.
+// The files of the new run that a delivery has already moved to their place: files that the
+// run.json in the staging folder lists, with the hash that it states. A file of the user with such
+// a name has another hash.
 std::vector<fs::path> delivered_files(const fs::path& target) {
   std::vector<fs::path> files;
   const fs::path staging = target / kStaging;
@@ -66,14 +67,14 @@ std::vector<fs::path> delivered_files(const fs::path& target) {
     if (name == kRunJson || is_there(staging / name)) continue;
     try {
       if (is_file_of_run(staging, target / name)) files.push_back(target / name);
-    } catch (const Error&) {  // the file is not there, or no file
+    } catch (const Error&) {  // the file does not exist, or is not a file
     }
   }
   return files;
 }
 
-// Where a delivery was not completed, what was there before it is there again. Where it was, what
-// it has replaced is removed.
+// If a delivery was not completed, brings back what was there before it. If it was completed,
+// removes what it has replaced.
 void undo_delivery(const fs::path& target) {
   std::error_code ignored;
   for (const char* name : {kStaging, kReplaced})
@@ -84,7 +85,7 @@ void undo_delivery(const fs::path& target) {
     for (const std::string& name : names_in(target / kReplaced))
       if (!is_there(target / name)) fs::rename(target / kReplaced / name, target / name, ignored);
     fs::remove(target / kReplaced,
-               ignored);  // the folder stays where a file of it could not go back
+               ignored);  // the folder stays if one of its files could not go back
   } else {
     fs::remove_all(target / kReplaced, ignored);
   }
@@ -134,7 +135,7 @@ RunOutput::~RunOutput() {
   try {
     std::error_code ignored;
     fs::remove_all(staging_, ignored);
-  } catch (const std::exception&) {  // there was no memory; the next run removes it
+  } catch (const std::exception&) {  // no memory was left; the next run removes the folder
   }
 }
 
@@ -144,7 +145,7 @@ void RunOutput::deliver() const {
   const std::set<std::string> previous = files_of_run_in(target_);
   try {
     fs::create_directory(replaced_);
-    // From here until run.json is moved there is no complete run in the folder.
+    // From here until run.json is moved, there is no complete run in the folder.
     if (previous.contains(kRunJson)) fs::rename(target_ / kRunJson, replaced_ / kRunJson);
     for (const std::string& name : previous)
       if (is_there(target_ / name)) fs::rename(target_ / name, replaced_ / name);

@@ -37,7 +37,7 @@ Finding finding_of(const JsonNode& node) {
   return f;
 }
 
-// A run of an older version may lack figures that were added since.
+// A run of an older version may lack figures that later versions have added.
 CheckSummary summary_of(const JsonNode& node) {
   CheckSummary summary;
   for (const FindingSpec* spec : summary_figures()) {
@@ -47,7 +47,7 @@ CheckSummary summary_of(const JsonNode& node) {
   return summary;
 }
 
-// A run of an older version does not have these.
+// A run of an older version does not have these places.
 FigurePlaces places_of(const JsonNode& check) {
   FigurePlaces places;
   const auto node = check.find("summary_at");

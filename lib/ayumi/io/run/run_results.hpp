@@ -1,6 +1,6 @@
 #pragma once
-// Verdicts read back from what the commands wrote: the sections of a run's run.json and the results
-// file of a push study.
+// Verdicts that are read back from the files that commands wrote: the sections of a run's run.json,
+// and the results file of a push study.
 
 #include <filesystem>
 #include <optional>
@@ -12,19 +12,20 @@
 
 namespace ayumi {
 
-/// What `repair` did.
+/// The result of `repair`.
 struct RepairNote {
   std::string status;           ///< "repaired", "infeasible", ...
-  double max_joint_change = 0;  ///< [rad]
-  double max_cog_change = 0;    ///< [m]
+  double max_joint_change = 0;  ///< largest change of a joint [rad]
+  double max_cog_change = 0;    ///< largest change of the COG [m]
   int iterations = 0;
   std::vector<std::string> reasons;
   struct Moved {
     std::string joint;
-    double most = 0, at = 0, begin = 0, end = 0;  ///< [rad], sliding joints [m]; [s]
+    /// Largest change [rad, sliding joints m], and times [s].
+    double most = 0, at = 0, begin = 0, end = 0;
   };
-  std::vector<Moved> joints = {};              ///< the most first
-  double margin_before = 0, margin_after = 0;  ///< least, of the ZMP [m]
+  std::vector<Moved> joints = {};              ///< joints, the largest change first
+  double margin_before = 0, margin_after = 0;  ///< smallest margin of the ZMP [m]
 };
 
 /// Whether the joint table may go to a robot.
@@ -32,7 +33,7 @@ struct ExportNote {
   bool safe = false;
   double max_step_ratio = 0;
   std::string worst_joint;
-  std::vector<std::string> violations;  ///< in words
+  std::vector<std::string> violations;  ///< violations in words
 };
 
 struct RunResults {
@@ -48,14 +49,14 @@ RunResults read_results(const RunFolder& run, const std::string& file);
 /// Largest survivable impulse at one phase from one direction under one controller.
 struct PushThreshold {
   std::string phase, controller;
-  double at = 0;                                 ///< [s]
-  double direction = 0;                          ///< [rad] about the world's z from x
-  double impulse = 0, open_loop = 0, bound = 0;  ///< [N s]
+  double at = 0;                                 ///< time [s]
+  double direction = 0;                          ///< direction from x about the world's z [rad]
+  double impulse = 0, open_loop = 0, bound = 0;  ///< impulses [N s]
   bool capped = false;                           ///< the study's largest push was survived
 };
 
-/// Thresholds of a file that `ayumi push -o` wrote ("ayumi.push/1"), in its order. Throws
-/// Error(bad_file).
+/// The thresholds in a file that `ayumi push -o` wrote ("ayumi.push/1"), in the order of the file.
+/// Throws Error(bad_file).
 std::vector<PushThreshold> read_push_thresholds(const std::filesystem::path& file);
 
 }  // namespace ayumi

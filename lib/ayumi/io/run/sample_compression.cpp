@@ -20,7 +20,7 @@ namespace ayumi {
 namespace {
 
 constexpr int kOrders = 5;   // Definition: n is 0 to 4
-constexpr int kRelated = 5;  // Definition: stands where a column is predicted from others
+constexpr int kRelated = 5;  // Definition: number for a column that is predicted from others
 
 // The last four values of a column, the last one first; before the first value there are zeros.
 using Past = std::array<double, 4>;
@@ -60,13 +60,13 @@ double float_at(std::string_view bytes, size_t index) {
   return value;
 }
 
-// What a related column is predicted by: for each source its value, its first and its second
-// difference, with a weight each.
+// The number of terms with a weight for each source: its value, its first and its second
+// difference.
 constexpr size_t kTerms = 3;  // Definition
 
 struct Relation {
   std::vector<std::uint32_t> sources;
-  std::vector<double> weights;  // kTerms for each source
+  std::vector<double> weights;  // kTerms weights for each source
 };
 
 using Column = std::vector<double>;
@@ -92,7 +92,7 @@ double prediction(const Relation& relation, const std::vector<Column>& columns, 
 
 // How the values of one column are predicted.
 struct Predictor {
-  int order = 0;  // kRelated: by `relation`
+  int order = 0;  // kRelated: predicted by `relation`
   Relation relation;
 
   double next(const std::vector<Column>& columns, size_t k, const Past& past) const {
@@ -119,14 +119,17 @@ std::uint64_t bits_of(const std::vector<std::uint64_t>& numbers) {
   return bits;
 }
 
-// The weights with which the sources come nearest to the steps of the column, by least squares over
-// one row of kFitRows. A relation holds to the last bits in most rows, and not at all where a motor
-// is at its peak torque or where the law changes. So the worst rows are left out, and the rest is
-// fitted again. Chosen: with twice as many rows in the fit, a log of the bundled walk is as large.
+// The weights with which the sources come nearest to the steps of the column. They are fitted by
+// least squares over one row of kFitRows. A relation holds to the last bits in most rows, and not
+// at all where a motor is at its peak torque or where the law changes. So the worst rows are left
+// out, and the rest is fitted again. Chosen: with twice as many rows in the fit, a log of the
+// bundled walk has the same size.
 constexpr size_t kFitRows = 7;
-constexpr int kFitRounds = 4;         // Chosen: 0.8 of the rows stay in each, at last half of them
-constexpr double kFitShare = 0.8;     // Chosen: as above
-constexpr size_t kRowsPerWeight = 4;  // Chosen: fewer rows would only be learned by heart
+// Chosen: 0.8 of the rows stay in each round, and half of them at last.
+constexpr int kFitRounds = 4;
+constexpr double kFitShare = 0.8;  // Chosen: as above
+// Chosen: weights of fewer rows would only reproduce them.
+constexpr size_t kRowsPerWeight = 4;
 
 Relation fitted_relation(const std::vector<Column>& columns, size_t c,
                          const std::vector<size_t>& sources) {
@@ -151,7 +154,7 @@ Relation fitted_relation(const std::vector<Column>& columns, size_t c,
         for (const double term : terms_at(columns[source], rows[r])) A(row, at++) = term;
       steps[row] = columns[c][rows[r]] - columns[c][rows[r] - 1];
     }
-    // Columns of one size: the weights have units.
+    // The columns are scaled to one size, because the weights have units.
     Eigen::VectorXd size = A.colwise().norm().transpose();
     size = (size.array() > 0).select(size, 1);
     A = A * size.cwiseInverse().asDiagonal();
@@ -230,7 +233,8 @@ std::string head_of(const std::vector<Predictor>& predictors) {
   return head;
 }
 
-// Reads what head_of() wrote, and moves `at` behind it. Empty when it is not a head of `columns`.
+// Reads the text that head_of() wrote, and moves `at` to its end. Empty if it is not a head for
+// `columns` columns.
 std::vector<Predictor> predictors_of(const std::string& plain, size_t columns, size_t& at) {
   std::vector<Predictor> predictors(columns);
   bool good = plain.size() >= columns;
@@ -264,13 +268,13 @@ std::vector<Predictor> predictors_of(const std::string& plain, size_t columns, s
   return predictors;
 }
 
-// Where byte `plane` (7 is the most significant one) of the first value of a column stands behind
-// the head.
+// The place after the head at which byte `plane` of the first value of a column stands (7 is the
+// most significant byte).
 size_t plane_begin(size_t plane, size_t column, size_t columns, size_t rows) {
   return ((7 - plane) * columns + column) * rows;
 }
 
-// [bytes] What head_of() can have at most: every column related to all others.
+// Largest size of the text of head_of() [bytes]: every column is related to all others.
 size_t largest_head(size_t columns) {
   return columns *
          (1 + sizeof(std::uint32_t) + columns * (sizeof(std::uint32_t) + kTerms * sizeof(double)));
@@ -286,7 +290,7 @@ std::string compress_samples(std::string rows, size_t columns, const ColumnSourc
   for (size_t c = 0; c < columns; ++c)
     for (size_t k = 0; k < count; ++k) values[c][k] = float_at(rows, k * columns + c);
   rows = {};
-  // The head is as long as the predictors need, and stands right before the planes.
+  // The head is as long as the predictors need, and stands directly before the planes.
   const size_t begin = largest_head(columns);
   std::string bytes(begin + columns * count * sizeof(double), '\0');
   std::vector<Predictor> predictors;

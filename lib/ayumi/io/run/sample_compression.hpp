@@ -17,22 +17,22 @@
 
 namespace ayumi {
 
-/// For each column, the columns from which it may be predicted; empty: none. No two columns may
-/// follow from each other, directly or through others.
+/// For each column, the columns from which it may be predicted; empty if there are none. No two
+/// columns may follow from each other, directly or through others.
 using ColumnSources = std::vector<std::vector<size_t>>;
 
-/// `rows` holds rows of `columns` floats, one after the other. Move it here: the function frees it
-/// early, and takes twice its memory at most.
+/// `rows` holds rows of `columns` floats, one after the other. Move it into the call: the function
+/// frees it early, and needs at most twice its memory.
 std::string compress_samples(std::string rows, size_t columns, const ColumnSources& sources = {});
 
 /// The `count` results of compress_samples() that stand one after the other in `bytes`. Throws
-/// Error(bad_file), beginning with `file`, when they are not: truncated, damaged, more or fewer.
-/// Each may still be of another size than expected.
+/// Error(bad_file), beginning with `file`, if they are truncated or damaged, or if there are more
+/// or fewer. Each may still have another size than expected.
 std::vector<std::string_view> sample_frames(std::string_view bytes, size_t count,
                                             const std::string& file);
 
-/// Returns the rows. Throws Error(bad_file), beginning with `file`, when `bytes` is not the whole
-/// result of compress_samples() for that many columns and rows.
+/// Returns the rows. Throws Error(bad_file), beginning with `file`, if `bytes` is not the whole
+/// result of compress_samples() for this number of columns and rows.
 std::string decompress_samples(std::string_view bytes, size_t columns, size_t rows,
                                const std::string& file);
 

@@ -6,7 +6,7 @@
 
 namespace ayumi {
 
-/// SHA-256 of `bytes` (FIPS 180-4), 64 hexadecimal digits.
+/// SHA-256 of `bytes` (FIPS 180-4) as 64 hexadecimal digits.
 std::string sha256(std::string_view bytes);
 
 }  // namespace ayumi

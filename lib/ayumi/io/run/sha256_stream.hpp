@@ -1,5 +1,5 @@
 #pragma once
-// SHA-256 of bytes that come one after the other, such as the lines of a long table.
+// SHA-256 of bytes that arrive one after the other, such as the lines of a long table.
 
 #include <memory>
 #include <string>
@@ -12,7 +12,7 @@ class Sha256Stream {
   Sha256Stream();
   ~Sha256Stream();
   void add(std::string_view bytes);
-  /// The hash of all bytes so far, as sha256() writes it. Nothing may be added after it.
+  /// The hash of all bytes so far, in the form of sha256(). Nothing may be added afterwards.
   std::string digits();
 
  private:

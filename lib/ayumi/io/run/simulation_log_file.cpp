@@ -28,14 +28,15 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "logs are little-endian");
 
 constexpr char kMagic[] = "AYUMILOG";
-constexpr std::uint32_t kPlain = 1;  // Definition: the version with rows as they are
+constexpr std::uint32_t kPlain = 1;  // Definition: the version with uncompressed rows
 // Definition: the version with compressed rows in one block. In version 2 no column is predicted
 // from others; it is read like this one.
 constexpr std::uint32_t kCompressed = 3;
 constexpr std::uint32_t kInBlocks = 4;  // Definition: the version with several blocks
 constexpr size_t kPrefix = 16;          // magic, version, header length
-constexpr size_t kChecksum = 4;         // of the header, where the rows are compressed
-// [bytes] Chosen: the samples of half an hour at 1 kHz have less.
+// Size of the header's checksum, which logs with compressed rows have.
+constexpr size_t kChecksum = 4;
+// Largest size of the samples of a log [bytes]. Chosen: half an hour at 1 kHz takes less.
 constexpr size_t kMostBytes = size_t{4} << 30;
 constexpr const char* kOutcomes[] = {"stands", "unsettled", "fell"};
 
@@ -115,7 +116,8 @@ void for_each_figure(Result& r, const Visit& visit) {
   visit("mean_contact_iterations", r.mean_contact_iterations);
 }
 
-// visit(key, share) for the place of every share; files from before it was known have none.
+// Calls visit(key, share) for the place of every share; files of versions that did not record it
+// have none.
 template <typename Result, typename Visit>
 void for_each_place(Result& r, const Visit& visit) {
   visit("max_speed_at", r.speed);
@@ -158,7 +160,8 @@ std::string header_of(const SimulationLog& log, size_t rows, const std::string& 
   OrderedJson header = {{"format", "ayumi.log/" + std::to_string(version_of_file)}};
   header.update(about_log(log));
   header["provenance"]["command_line"] = command_line;
-  // By name, the order in which they are read back: so a log that was read has the same hash.
+  // The gains are sorted by name. This is the order in which they are read back, so a log that was
+  // read has the same hash.
   header["gains"] = OrderedJson::object();
   for (const auto& [name, value] : std::map(log.gains.begin(), log.gains.end()))
     header["gains"][name] = value;
@@ -203,7 +206,7 @@ void read_header(const JsonNode& header, SimulationLog& log) {
   log.result = result_of(header.at("result"), log.joints);
 }
 
-// These checks let whatever reads a log trust its numbers.
+// These checks allow every reader of a log to trust its numbers.
 void require_finite(std::string_view values, size_t first_row,
                     const std::vector<std::string>& columns,
                     const std::function<void(const std::string&)>& stop) {
@@ -238,10 +241,11 @@ std::string plain_head(const SimulationLog& log, size_t rows, const std::string&
   return prefix_of(kPlain, header) + header;
 }
 
-// Rows that are converted at a time where a log is read or hashed. Chosen: they stay in the cache.
+// Number of rows that are converted at a time when a log is read or hashed. Chosen: they stay in
+// the cache.
 constexpr size_t kRowsAtATime = 64;
 
-// The rows of a log of version 1, some at a time.
+// Passes the rows of a log of version 1 on, a few at a time.
 void for_rows_of(const SimulationLog& log, const std::function<void(const std::string&)>& visit) {
   std::string rows;
   for (size_t k = 0; k < log.samples.size(); ++k) {
@@ -273,7 +277,7 @@ LogBlocks::LogBlocks(const std::vector<std::string>& joints, Write write)
       write_(std::move(write)) {}
 
 void LogBlocks::add(const SimulationSample& sample) {
-  // A further block begins only where it has a row: the last one is not empty.
+  // A further block only begins when there is a row for it, so the last block is not empty.
   if (rows_in_block_ == kLogBlockRows) write_block();
   if (block_.empty()) block_.reserve(kLogBlockRows * columns_ * sizeof(double));
   append_values(sample, joints_, block_);
@@ -376,7 +380,8 @@ SimulationLog parse_log(const std::string& bytes, const std::string& file) {
 
 bool is_log_file(const std::filesystem::path& path) {
   std::error_code error;
-  // Opening a pipe would wait, and so would reading some files of /proc, which state no size.
+  // To open a pipe would block, and so would the reading of some files of /proc, which state no
+  // size.
   if (!std::filesystem::is_regular_file(path, error)) return false;
   if (std::filesystem::file_size(path, error) < kPrefix || error) return false;
   std::ifstream file(path, std::ios::binary);

@@ -1,5 +1,5 @@
 #pragma once
-// What is known of a log whose samples are in a file, or were not kept.
+// The information about a log whose samples are in a file or were not kept.
 
 #include <string>
 
@@ -8,10 +8,10 @@
 namespace ayumi {
 
 struct WrittenLog {
-  SimulationLog about = {};    ///< without samples
-  size_t rows = 0;             ///< of its samples
-  std::string log_hash = {};   ///< of the whole log, as log_hash() states it
-  std::string file_hash = {};  ///< SHA-256 of the file; empty: there is none
+  SimulationLog about = {};    ///< the log without its samples
+  size_t rows = 0;             ///< number of its samples
+  std::string log_hash = {};   ///< hash of the whole log, as log_hash() computes it
+  std::string file_hash = {};  ///< SHA-256 of the file; empty: there is no file
 };
 
 }  // namespace ayumi

@@ -1,6 +1,6 @@
 #pragma once
-// A table of numbers with named columns and "# key: value" lines above: what joint tables are made
-// of, whichever text carries them.
+// A table of numbers with named columns, and with "# key: value" lines above. Joint tables of every
+// text format are read as such a table.
 
 #include <Eigen/Core>
 #include <map>
@@ -14,13 +14,14 @@ struct NumberTable {
   std::vector<std::string> columns;
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> values;
 
-  /// Index of a column; -1 when there is none.
+  /// Index of a column; -1 if there is none.
   int find(const std::string& column) const;
 };
 
-/// Comma-separated numbers under one head row; "#" lines before it. Blank lines are skipped. Throws
-/// Error(bad_file) "file:line: ..." for no head row, no data row, a repeated or empty column name,
-/// a row of another length, a cell that is not a finite number.
+/// Reads comma-separated numbers under one head row, with "#" lines before it. Blank lines are
+/// skipped. Throws Error(bad_file) "file:line: ..." if there is no head row or no data row, for a
+/// repeated or empty column name, for a row of another length, and for a cell that is not a finite
+/// number.
 NumberTable parse_csv(const std::string& bytes, const std::string& file);
 
 }  // namespace ayumi

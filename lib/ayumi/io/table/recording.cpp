@@ -22,23 +22,25 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// A step between two rows is no motion if the joint is faster than so many times its motor's limit.
-// Chosen: commands may step, and measured angles then move at most twice as fast as the motor's
-// limit.
+// A step between two rows is an error and not a motion if the joint is faster than this multiple of
+// its motor's limit. Chosen: commands may have steps, and measured angles then move at most twice
+// as fast as the motor's limit.
 constexpr double kJumpSpeed = 5;
 
 // The same speed where the robot's files give no limit [rad/s]. Chosen: five times that of quick
 // hobby servos.
 constexpr double kJumpRate = 50;
 
-// Steps of so few counts are never jumps. Chosen: two degrees of a coarse encoder are one step of
-// it.
+// Steps of at most this number of counts are never jumps. Chosen: a coarse encoder has one count
+// for two degrees.
 constexpr double kJumpCounts = 4;
 
-// A time step this far from the usual one, in parts of it, is a gap. Chosen: half a sample.
+// If a time step differs from the usual one by more than this share of it, there is a gap. Chosen:
+// half a sample.
 constexpr double kGap = 0.5;
 
-// Movement of a device without a joint that is no motion [counts]. Chosen: 0.05 degrees.
+// A device without a joint that moves by less than this does not move [counts]. Chosen: 0.05
+// degrees.
 constexpr double kStillCounts = 10;
 
 [[noreturn]] void complain(const std::string& file, const std::string& what) {
@@ -73,11 +75,11 @@ void require_one_line_end(const std::string& bytes, const std::string& file) {
   }
 }
 
-// Rows of numbers without names; `line` of each.
+// Rows of numbers without names; `line` is the line of each row.
 struct BareRows {
   std::vector<std::vector<double>> rows;
   std::vector<size_t> lines;
-  double dt = 0;  // [s]; 0: the file does not state it
+  double dt = 0;  // time from row to row [s]; 0: the file does not state it
 };
 
 std::vector<double> numbers_of(const std::vector<std::string_view>& cells, size_t begin, size_t end,
@@ -282,7 +284,8 @@ TimeColumn time_of(const NumberTable& table) {
   return {};
 }
 
-// Rows are numbered from the first data row, since the lines of a plain table are not known here.
+// Messages count the rows from the first data row on, because the lines of a plain table are not
+// known here.
 double interval_of(const NumberTable& table, const RecordingOptions& options,
                    const std::string& file) {
   const Index rows = table.values.rows();

@@ -1,6 +1,6 @@
 #pragma once
-// Recordings of a robot: the angles that it was sent, those that it measured, and its load cells
-// and IMU. HOAP files (counts without a head row) and tables with column names.
+// Recordings of a robot: the angles that were sent to it, the angles that it measured, and its load
+// cells and IMU. They are HOAP files (counts without a head row) or tables with column names.
 
 #include <string>
 
@@ -14,8 +14,8 @@ struct RecordingOptions {
   double rate = 0;       ///< rows per second if the file has no times [1/s]; 0: 1000
 };
 
-/// Joint angles: a HOAP sequence (interval, 2, counts, ...), rows of counts (one column for each
-/// device, further columns are 0), or a table with a head row: t[s] or time[s], and joints as
+/// Reads joint angles: a HOAP sequence (interval, 2, counts, ...), rows of counts (one column for
+/// each device, further columns are 0), or a table with a head row: t[s] or time[s], and joints as
 /// theta.<joint>[rad], <joint>, <joint>[rad], <joint>[deg] or <joint>[counts]; other columns are
 /// ignored. Throws Error(bad_file) "file:line: ..." or "file: column '...': ..." for text that is
 /// no such table, line ends of two kinds, values that are no numbers, gaps in time, jumps that no
@@ -27,13 +27,15 @@ AngleTable read_angles(const std::string& bytes, const std::string& file, const 
 /// Whether the first row of a file is numbers, as HOAP files are.
 bool is_bare_table(const std::string& bytes);
 
-/// Whether a file holds load cells or an IMU and no angles: named columns of these, or bare rows
-/// with more than two columns beyond the robot's devices where the sidecar says how to read them.
+/// Whether a file holds load cells or an IMU but no angles: it has named columns of these, or bare
+/// rows with more than two columns beyond the robot's devices, and the sidecar says how to read
+/// them.
 bool holds_sensors(const std::string& bytes, const std::string& file, const RobotModel& model);
 
-/// Load cells and IMU: rows of readings, which the sidecar's `load_cells`, `accelerometer` and
-/// `gyro` make forces and rates, or a table with a head row and the columns fz.left[N] and
-/// fz.right[N] (or left and right), acc.x[m/s^2], gyro.x[rad/s], .... Throws as read_angles().
+/// Reads load cells and IMU. They are rows of readings, which the sidecar's `load_cells`,
+/// `accelerometer` and `gyro` convert into forces and rates, or a table with a head row and the
+/// columns fz.left[N] and fz.right[N] (or left and right), acc.x[m/s^2], gyro.x[rad/s], .... Throws
+/// as read_angles().
 SensorTable read_sensors_table(const std::string& bytes, const std::string& file,
                                const RobotModel& model, const RecordingOptions& options = {});
 

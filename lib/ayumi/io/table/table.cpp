@@ -60,8 +60,8 @@ std::vector<double> cells_of(const ReferenceTrajectory& reference, size_t k) {
   return cells;
 }
 
-// Numbers in the form "1,2,3". JSON needs "-0.0" where CSV's "-0" already reads back as negative
-// zero.
+// Numbers in the form "1,2,3". Negative zero is "-0" in CSV, but JSON needs "-0.0" to read it back
+// as such.
 void append_cells(std::string& text, const std::vector<double>& cells, bool json) {
   for (size_t i = 0; i < cells.size(); ++i) {
     require(std::isfinite(cells[i]), "a table value is not finite");
@@ -70,7 +70,7 @@ void append_cells(std::string& text, const std::vector<double>& cells, bool json
   }
 }
 
-// Header values are one line: what is not plain text is quoted as in JSON.
+// A header value is one line; a value that is not plain text is quoted as in JSON.
 std::string header_value(const std::string& value) {
   const bool plain = value.find_first_of("\n\r\"\\") == std::string::npos &&
                      (value.empty() || (value.front() != ' ' && value.back() != ' '));
@@ -107,7 +107,7 @@ HeaderLines provenance_lines(const Provenance& p) {
           {"command_line", p.command_line}};
 }
 
-// The servo that the table was made for, where it is known.
+// The servo for which the table was made, if it is known.
 HeaderLines servo_lines(const TableServo& servo) {
   if (servo.content.empty()) return {};
   return {{"servo", servo.content},
@@ -116,8 +116,7 @@ HeaderLines servo_lines(const TableServo& servo) {
           {"servo_lag", servo.lag}};
 }
 
-// What a person has to know before a robot receives the table; most tables have nothing of the
-// kind.
+// What a person has to know before a robot receives the table; most tables have no such caution.
 HeaderLines caution_lines(const TableCaution& caution) {
   HeaderLines lines;
   if (!caution.disturbances.empty()) lines.emplace_back("disturbances", caution.disturbances);
@@ -166,7 +165,7 @@ Eigen::VectorXd theta_of(const NumberTable& table, Eigen::Index row, const std::
   return theta;
 }
 
-// What the head of a table says of the sequence that was imported.
+// Reads what the head of a table says about the sequence that was imported.
 void read_import(const std::map<std::string, std::string>& header,
                  const std::filesystem::path& table, DenseTable& dense) {
   const auto line = [&](const char* key) {

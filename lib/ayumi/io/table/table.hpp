@@ -1,6 +1,6 @@
 #pragma once
 // Joint tables that describe their content: ReferenceTrajectory as CSV and JSON
-// ("ayumi.reference/1"), and the sampled motions a pattern names. Columns and units as in
+// ("ayumi.reference/1"), and the sampled motions that a pattern names. Columns and units as in
 // docs/formats.md: t[s], theta.<joint>[rad], cog.x[m], zmp.x[m], fz[N], base.x[m], base.qw,
 // contact.left.
 
@@ -14,20 +14,21 @@
 
 namespace ayumi {
 
-/// "# key: value" lines, one head row, one row per tick; numbers read back to the same bits. The
-/// head describes the run of the table. Throws Error(internal) for a value that is not finite or a
-/// row with another number of joints.
+/// Writes "# key: value" lines, one head row, and one row for each tick; numbers read back to the
+/// same bits. The head describes the run of the table. Throws Error(internal) for a value that is
+/// not finite or a row with another number of joints.
 std::string reference_csv(const ReferenceTrajectory& reference, const TableCaution& caution = {});
 /// The same columns and rows as one JSON object.
 std::string reference_json(const ReferenceTrajectory& reference, const TableCaution& caution = {});
 
-/// The part of the head of a table that describes its run. Throws Error(bad_file) where the file is
-/// no table.
+/// The part of the head of a table that describes its run. Throws Error(bad_file) if the file is
+/// not a table.
 TableCaution read_table_caution(const std::filesystem::path& path);
 
-/// Reads what reference_csv or reference_json wrote; the first character says which of them. Throws
-/// Error(bad_file) naming file and line or pointer: another format, missing or unknown columns,
-/// ragged rows, times that are not k dt, quaternions that are not unit (1e-6), no rows.
+/// Reads the text of reference_csv or reference_json; the first character shows which one it is.
+/// Throws Error(bad_file) that names file and line or pointer for another format, missing or
+/// unknown columns, rows of unequal length, times that are not k dt, quaternions that are not unit
+/// (1e-6), and a table without rows.
 ReferenceTrajectory read_reference(const std::filesystem::path& path);
 
 /// Throws Error(bad_file) unless the table's joints are exactly `joints`, in this order.
@@ -38,9 +39,9 @@ void require_joints(const ReferenceTrajectory& reference, const std::vector<std:
 /// from the phases of the pattern, so contact columns are skipped. Time starts at 0 at a fixed
 /// rate. Throws Error(bad_file) as read_reference.
 DenseTable read_dense_table(const std::filesystem::path& path);
-/// Fingerprint of the angles of a table, which shows whether they have changed since the import.
+/// Fingerprint of the angles of a table. It shows whether they have changed since the import.
 std::string theta_sha256(const DenseTable& table);
-/// The text read_dense_table reads.
+/// The text that read_dense_table() reads.
 std::string dense_table_csv(const DenseTable& table, const TableCaution& caution = {});
 
 }  // namespace ayumi

@@ -19,39 +19,42 @@ inline const std::vector<std::string> kBaseColumns = {
     "base.x[m]", "base.y[m]", "base.z[m]", "base.qw", "base.qx", "base.qy", "base.qz"};
 inline const std::vector<std::string> kContactColumns = {"contact.left", "contact.right"};
 
-/// The name "theta.<joint>[rad]" of a joint's column, and the joint of such a name; empty when the
-/// column is not one.
+/// The name "theta.<joint>[rad]" of a joint's column, and the joint that such a name contains;
+/// empty if the column does not have such a name.
 std::string theta_column(const std::string& joint);
 std::string joint_of_column(const std::string& column);
 
-/// Where each group of columns stands in a table: first index, or -1 when it is absent. Throws
+/// The place of each group of columns in a table: its first index, or -1 if it is absent. Throws
 /// Error(bad_file) for an unknown column, for a group without all of its members, and without t[s].
 struct TableLayout {
   int time = -1, fz = -1;
   std::vector<std::string> joints;
-  std::vector<int> theta;                    ///< one index per joint
-  std::vector<int> cog, zmp, base, contact;  ///< one index per column of the group, or empty
+  std::vector<int> theta;  ///< index of the column of each joint
+  /// Index of each column of the group; empty if it is absent.
+  std::vector<int> cog, zmp, base, contact;
 };
 TableLayout layout_of(const NumberTable& table, const std::string& file);
 
-/// Whether theta is what servos receive: a reference table, or the header says theta: commands.
+/// Whether theta are servo targets: the table is a reference table, or its header says "theta:
+/// commands".
 bool holds_commands(const NumberTable& table);
 
-/// The text of a header line, which is quoted as in JSON where it is not plain.
+/// The text of a header line. It is quoted as in JSON if it is not plain text.
 std::string read_header_value(const std::string& text);
 
-/// What the header says of the run that the table is from ("disturbances", "unfit").
+/// The caution in the header about the run from which the table comes ("disturbances", "unfit").
 TableCaution caution_of(const NumberTable& table);
 
-/// dt of a table whose rows are k dt: the header's "dt", or else from the time column. Throws
-/// Error(bad_file) for a time that is not k dt, naming the row.
+/// The dt of a table whose rows are at k dt: the header's "dt", or else the step of the time
+/// column. Throws Error(bad_file) that names the row for a time that is not k dt.
 double tick_of(const NumberTable& table, const TableLayout& layout, const std::string& file);
 
-/// Base pose of a row; throws Error(bad_file) unless the quaternion is unit (1e-6).
+/// The base pose of a row. Throws Error(bad_file) if its quaternion is not unit (1e-6).
 BasePose base_of(const NumberTable& table, const TableLayout& layout, Eigen::Index row,
                  const std::string& file);
 
-/// Reads CSV or JSON ("columns", "data" and the other keys as header), as the first character says.
+/// Reads CSV or JSON (with "columns", "data" and the other keys as header); the first character
+/// shows which one it is.
 NumberTable number_table(const std::string& bytes, const std::string& file);
 NumberTable read_number_table(const std::filesystem::path& path);
 

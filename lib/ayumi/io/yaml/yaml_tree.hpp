@@ -1,6 +1,6 @@
 #pragma once
-// A YAML document as a tree in which a list of numbers takes eight bytes each: motions have
-// millions of them.
+// A YAML document as a tree in which each number of a list takes only eight bytes, because motions
+// have millions of them.
 
 #include <string>
 #include <string_view>
@@ -21,12 +21,12 @@ struct YamlNode {
 
   bool is_map() const { return kind == Kind::map; }
   bool is_list() const { return kind == Kind::list; }
-  /// Member of a map by one of its names; null when there is none.
+  /// The member of a map that has one of these names; null if there is none.
   const YamlNode* find(std::string_view key, std::string_view other = "") const;
 };
 
-/// Throws Error(bad_file) "file:line: ..." for text that is no YAML, for aliases, for a key twice
-/// in a map, and for more than one document.
+/// Throws Error(bad_file) "file:line: ..." for a text that is not YAML, for aliases, for a key that
+/// a map has twice, and for more than one document.
 YamlNode parse_yaml(const std::string& text, const std::string& file);
 
 }  // namespace ayumi

@@ -34,12 +34,12 @@ using Eigen::Map;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Definition: classes of unknowns that are eliminated alone; the others have a place >= 0 in the
-// band.
-constexpr int kSlack = -1;  // has a single neighbour
-constexpr int kRow = -2;    // has slacks and places as neighbours
+// Definition: classes of unknowns that are eliminated separately. The others have a place >= 0 in
+// the band.
+constexpr int kSlack = -1;  // it has a single neighbour
+constexpr int kRow = -2;    // its neighbours are slacks and places
 
-// The solve that runs on this thread. Definition.
+// The kernels of the solve that runs on this thread. Definition.
 thread_local const kernels::Kernels* kernels_in_use = &kernels::best_kernels();
 
 struct Nonzeros {
@@ -51,16 +51,17 @@ struct Nonzeros {
 };
 
 struct Band {
-  // Columns factored at once. Chosen: it changes the time of a factorization, not its result.
+  // Number of columns that are factored at once. Chosen: it changes the time of a factorization,
+  // but not its result.
   static constexpr int kPanel = 32;
-  int width = 1, places = 0;  // farthest entry below the diagonal; columns in use
+  int width = 1, places = 0;  // farthest entry below the diagonal; number of columns in use
   int columns() const { return (places + kPanel - 1) / kPanel * kPanel; }
   int length() const { return width + kPanel; }  // length of a stored column
   Index size() const { return static_cast<Index>(columns()) * length(); }
 };
 
-// Multipliers are the last unknowns. Of two neighbours that both look like rows, the first is a
-// variable and the second a multiplier.
+// Multipliers are the last unknowns. If two neighbours both look like rows, the first is a variable
+// and the second is a multiplier.
 std::vector<int> classes(int n, const Nonzeros& entries) {
   constexpr int kNone = -1, kMany = -2;  // Definition
   std::vector<int> neighbour(n, kNone), result(n, 0);
@@ -97,15 +98,15 @@ void for_sides(const Nonzeros& entries, const Use& use) {
   }
 }
 
-// Orders the places by the lowest unknown that each one meets in a row, which is the order of time
-// where the unknowns are in that order, and returns the band.
+// Orders the places by the lowest unknown that each of them meets in a row. This is the order of
+// time if the unknowns are in the order of time. Returns the band.
 Band place(int n, const Nonzeros& entries, std::vector<int>& place) {
   place = classes(n, entries);
   std::vector<int> low(n);
   std::iota(low.begin(), low.end(), 0);
   for (int i = 0; i < n; ++i)
     if (place[i] == kRow) low[i] = n;
-  auto take_lower = [&](int i, int j) {  // a row from its unknowns, an unknown from others
+  auto take_lower = [&](int i, int j) {  // a row takes it from its unknowns, an unknown from others
     if (place[i] != kSlack && place[j] >= 0) low[i] = std::min(low[i], j);
   };
   for_sides(entries, take_lower);
@@ -139,16 +140,17 @@ Band place(int n, const Nonzeros& entries, std::vector<int>& place) {
 
 // The target of every nonzero, as a sequence of integers:
 struct Plan {
-  std::vector<int> diagonal;  // unknown, nonzero
-  std::vector<int> links;     // slack, its neighbour, nonzero
-  std::vector<int> inner;     // lower place, upper place, nonzero
-  std::vector<int> groups;    // numbers of rows and places, the rows, the places, their nonzeros
-                              // place by place
+  std::vector<int> diagonal;  // pairs of an unknown and its nonzero
+  std::vector<int> links;     // triples of a slack, its neighbour, and the nonzero
+  std::vector<int> inner;     // triples of the lower place, the upper place, and the nonzero
+  // For each group: numbers of rows and places, the rows, the places, and their nonzeros place by
+  // place.
+  std::vector<int> groups;
 };
 
 Plan plan(int n, const Nonzeros& entries, const int* place) {
   Plan result;
-  std::vector<std::vector<std::pair<int, int>>> rows(n);  // place, nonzero
+  std::vector<std::vector<std::pair<int, int>>> rows(n);  // pairs of a place and its nonzero
   for (int k = 0; k < entries.count; ++k) {
     const int i = entries.row(k), j = entries.column(k);
     if (i == j)
@@ -189,7 +191,7 @@ struct Part {
   const int* end() const { return at + count; }
 };
 
-// Rows that meet the same places.
+// A group of rows that meet the same places.
 struct Group {
   int rows, places;
   const int *row, *place, *nonzero;
@@ -243,7 +245,8 @@ void eliminate_slacks(const Factors& f) {
   std::fill_n(f.pivot, f.n, 0.0);
   for (const int* e = f.diagonal.at; e != f.diagonal.end(); e += 2) f.pivot[e[0]] += f.values[e[1]];
   for (const int* e = f.inner.at; e != f.inner.end(); e += 3) f.at(e[0], e[1]) += f.values[e[2]];
-  std::vector<double> link(f.n, 0.0);  // of a slack to its neighbour; nonzeros may come in parts
+  // Nonzero between a slack and its neighbour, which may come in parts.
+  std::vector<double> link(f.n, 0.0);
   std::vector<int> neighbour(f.n, -1);
   for (const int* e = f.links.at; e != f.links.end(); e += 3) {
     link[e[0]] += f.values[e[2]];
@@ -256,7 +259,7 @@ void eliminate_slacks(const Factors& f) {
   for (int p = f.band.places; p < f.band.columns(); ++p) f.at(p, p) = 1;
 }
 
-// Lines of numbers for the kernels, each filled up to fours with zeros.
+// Lines of numbers for the kernels, each filled with zeros up to a multiple of four.
 struct Lines {
   std::vector<double> numbers;
   int length = 0;
@@ -268,7 +271,8 @@ struct Lines {
   double* line(int i) { return numbers.data() + static_cast<Index>(i) * length; }
 };
 
-// Columns of a symmetric product that are made at once. Chosen: they fit the first cache.
+// Number of columns of a symmetric product that are computed at once. Chosen: they fit into the
+// first cache.
 constexpr int kTogether = 8;
 
 // Calls use(j, column) for the columns j of the symmetric product of lines A and B; column[i - j]
@@ -285,9 +289,9 @@ void for_product(const kernels::Kernels& kernels, Lines& A, Lines& B, int depth,
   }
 }
 
-// Places that follow one another.
+// A run of consecutive places.
 struct Run {
-  int first, end;  // among the places of the group
+  int first, end;  // indices among the places of the group
 };
 
 // Fills the runs of places. Returns false if a place appears twice.
@@ -305,7 +309,7 @@ bool find_runs(const Group& g, std::vector<Run>& runs) {
   return once;
 }
 
-// Adds  -v v' / pivot  of every row.
+// Adds -v v' / pivot of every row.
 void eliminate_rows(const Factors& f) {
   const kernels::Kernels& kernels = *kernels_in_use;
   Lines lines, scaled;
@@ -328,7 +332,7 @@ void eliminate_rows(const Factors& f) {
       double* column = &f.at(0, g.place[j]);
       if (!once) {
         column[g.place[j]] += sum[0];
-        for (int i = j + 1; i < g.places; ++i)  // a nonzero in several parts meets itself
+        for (int i = j + 1; i < g.places; ++i)  // nonzeros in several parts count with both orders
           column[g.place[i]] += g.place[i] == g.place[j] ? 2 * sum[i - j] : sum[i - j];
         return;
       }
@@ -412,8 +416,8 @@ void solve_band(const Factors& f, VectorXd& x) {
   }
 }
 
-// ---- the interface. Entries of `info`: 0 outcome (0 good, -5 singular), 4 and 5 lengths of a and
-// iw, 14 the number of negative pivots.
+// ---- the interface. Entries of `info`: 0 is the outcome (0 good, -5 singular), 4 and 5 are the
+// lengths of a and iw, and 14 is the number of negative pivots.
 
 void analyse(int* n, int* nz, const int* rows, const int* columns, int*, int*, int* ikeep, int*,
              int* steps, int*, int*, double*, int* info, double*) {
@@ -429,7 +433,7 @@ void analyse(int* n, int* nz, const int* rows, const int* columns, int*, int*, i
   info[5] = 4 * (*n + *nz) + 8;
 }
 
-// Into `iw`, once after the analysis.
+// Writes the plan into `iw`, once after the analysis.
 void write_plan(int n, const Nonzeros& entries, int* ikeep, int* iw) {
   std::copy_n(ikeep, n + 2, iw);
   const Plan p = plan(n, entries, ikeep);
@@ -493,15 +497,17 @@ void solve(int* n, double* a, int*, int* iw, int*, double*, int*, double* rhs, i
 
 void set_defaults(int*, double*) {}
 
-// ---- who is served. Ipopt has one place for MA27 in the whole process. While a solve of Ayumi
-// runs it holds the functions below: on a thread that is in such a solve they lead to this solver,
-// on any other to the HSL library that Ipopt itself would have loaded.
+// ---- the callers that are served. Ipopt has one place for MA27 in the whole process. While a
+// solve of Ayumi runs, this place has the functions below: on a thread with such a solve, they lead
+// to this solver; on any other thread, they lead to the HSL library that Ipopt itself would have
+// loaded.
 
 thread_local bool serves_this_thread = false;
 
 constexpr int kNoOtherSolver = -99;  // Definition: INFO(1) without an HSL library; Ipopt gives up
 
-/// The functions of MA27 in the HSL library; null without one. Loaded once and never unloaded.
+/// The functions of MA27 in the HSL library; null without one. The library is loaded once and never
+/// unloaded.
 struct HslLibrary {
   ma27ad_t analyse = nullptr;
   ma27bd_t factor = nullptr;
@@ -565,8 +571,8 @@ Holders& holders() {
   return all;
 }
 
-// False where the place belongs to the host program: its functions cannot be read back from Ipopt,
-// so that they could not be restored either.
+// Returns false if the place belongs to the host program: its functions cannot be read back from
+// Ipopt, so they could not be restored either.
 bool hold_place() {
   Holders& all = holders();
   const std::scoped_lock lock(all.mutex);

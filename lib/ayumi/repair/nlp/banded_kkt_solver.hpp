@@ -20,11 +20,11 @@
 
 namespace ayumi {
 
-/// While it lives, Ipopt's linear solver "ma27" is this solver on the thread that made it.
-/// Thread-safe; scopes of one thread may be nested.
+/// While this object lives, Ipopt's linear solver "ma27" is this solver on the thread that made the
+/// object. It is thread-safe; scopes of one thread may be nested.
 class BandedKktScope {
  public:
-  /// `wanted` false: the scope does nothing. All kernels give the same bits.
+  /// If `wanted` is false, the scope does nothing. All kernels give the same bits.
   BandedKktScope(bool wanted, const kernels::Kernels& kernels);
   ~BandedKktScope();
   BandedKktScope(const BandedKktScope&) = delete;

@@ -21,9 +21,9 @@ namespace {
 
 VectorXd vector(const Number* values, Index n) { return Eigen::Map<const VectorXd>(values, n); }
 
-// Work for each nonzero of the Jacobian and the Hessian: to evaluate the constraints, a derivative,
-// and to solve the linear systems of an iteration. Measured: the shares of the time that a repair
-// takes for them.
+// Work for each nonzero of the Jacobian and the Hessian: for an evaluation of the constraints, for
+// a derivative, and for the linear systems of an iteration. Measured: the shares of the time that a
+// repair takes for them.
 constexpr double kWorkOfValues = 1, kWorkOfDerivatives = 2, kWorkOfIteration = 4;
 
 class Adapter : public Ipopt::TNLP {
@@ -204,11 +204,12 @@ void set_linear_solver(Ipopt::OptionsList& list, bool banded) {
   list.SetStringValue("linear_solver", banded ? "ma27" : "mumps");
   if (!banded) return;
   list.SetStringValue("linear_system_scaling", "none");
-  list.SetNumericValue("ma27_la_init_factor", 1);  // the solver asks for exactly what it needs
+  // The solver states exactly the memory that it needs.
+  list.SetNumericValue("ma27_la_init_factor", 1);
   list.SetNumericValue("ma27_liw_init_factor", 1);
 }
 
-// The start has multipliers. `push` keeps them, and the start, away from their bounds.
+// The start has multipliers. `push` is the distance that they and the start keep from their bounds.
 void start_with_multipliers(Ipopt::OptionsList& list, double push) {
   list.SetStringValue("warm_start_init_point", "yes");
   for (const char* name :
@@ -220,9 +221,9 @@ void start_with_multipliers(Ipopt::OptionsList& list, double push) {
 void set_options(Ipopt::OptionsList& list, const NlpOptions& options) {
   list.SetStringValue("sb", "yes");  // no banner: the library never prints
   list.SetIntegerValue("print_level", 0);
-  list.SetStringValue("option_file_name", "");  // nothing is read from the working directory
+  list.SetStringValue("option_file_name", "");  // no file is read from the working directory
   list.SetStringValue("hessian_approximation", "exact");
-  list.SetStringValue("nlp_scaling_method", "none");  // the problems come scaled
+  list.SetStringValue("nlp_scaling_method", "none");  // the problems are already scaled
   list.SetStringValue("mu_strategy", "monotone");
   list.SetNumericValue("mu_init", options.start_barrier);
   list.SetNumericValue("mu_linear_decrease_factor", repair_policy::solver::kBarrierFactor);

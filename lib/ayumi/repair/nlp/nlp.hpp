@@ -2,9 +2,9 @@
 // A nonlinear program as plain data and functions, and its solution by Ipopt (interior point,
 // filter line search; all options are set in code):
 //   min f(x)   lower <= x <= upper,   constraint_lower <= g(x) <= constraint_upper
-// Linear systems are solved by banded_kkt_solver.hpp, which Ipopt knows as MA27: see there what
-// this means for a host program that uses Ipopt itself. Programs with equality constraints, and all
-// programs of a host that has its own MA27, use MUMPS.
+// Linear systems are solved by banded_kkt_solver.hpp, which Ipopt knows as MA27; that file explains
+// what this means for a host program that uses Ipopt itself. Programs with equality constraints,
+// and all programs of a host that has its own MA27, use MUMPS.
 
 #include <Eigen/Core>
 #include <functional>
@@ -15,11 +15,12 @@
 
 namespace ayumi {
 
-/// Bounds at or beyond this mean "none". Source: Ipopt's option nlp_upper_bound_inf.
+/// Bounds at or beyond this mean that there is no bound. Source: Ipopt's option
+/// nlp_upper_bound_inf.
 inline constexpr double kNoBound = 1e19;
 
-/// Places of the nonzeros of a sparse matrix; the values come in the same order. Of a Hessian only
-/// the lower triangle is given.
+/// The places of the nonzeros of a sparse matrix; the values have the same order. For a Hessian,
+/// only the lower triangle is given.
 struct SparsePattern {
   std::vector<int> rows, columns;
   int size() const { return static_cast<int>(rows.size()); }
@@ -30,42 +31,44 @@ struct SparsePattern {
 };
 
 struct Nlp {
-  Eigen::VectorXd start, lower, upper;  ///< of the variables
+  Eigen::VectorXd start, lower, upper;  ///< start and bounds of the variables
   Eigen::VectorXd constraint_lower, constraint_upper;
-  /// Multipliers of the constraints near the solution, where they are known; else empty. Those of
-  /// the bounds of variables follow from the gradient.
+  /// Multipliers of the constraints near the solution if they are known, otherwise empty. The
+  /// multipliers of the variables' bounds follow from the gradient.
   Eigen::VectorXd start_multipliers;
   SparsePattern jacobian, hessian;
 
   std::function<double(const Eigen::VectorXd& x)> objective;
   std::function<void(const Eigen::VectorXd& x, Eigen::VectorXd& gradient)> gradient;
   std::function<void(const Eigen::VectorXd& x, Eigen::VectorXd& values)> constraints;
-  /// Values of dg/dx in the order of `jacobian`.
+  /// Computes the values of dg/dx in the order of `jacobian`.
   std::function<void(const Eigen::VectorXd& x, Eigen::VectorXd& values)> jacobian_values;
-  /// Values of scale * d2f/dx2 + sum multipliers_i * d2g_i/dx2 in the order of `hessian`; a
-  /// positive semidefinite approximation is allowed (Gauss-Newton).
+  /// Computes the values of scale * d2f/dx2 + sum multipliers_i * d2g_i/dx2 in the order of
+  /// `hessian`; a positive semidefinite approximation is allowed (Gauss-Newton).
   std::function<void(const Eigen::VectorXd& x, double scale, const Eigen::VectorXd& multipliers,
                      Eigen::VectorXd& values)>
       hessian_values;
 };
 
-/// The largest violation of a constraint by the start; negative where it is inside all of them.
+/// The largest violation of a constraint by the start; negative if it is inside all of them.
 double violation_at_start(const Nlp& nlp);
 
 struct NlpOptions {
   int max_iterations = repair_policy::rounds::kMostIterations;
-  /// Tolerance of the optimality conditions. A value below the default applies to complementarity
-  /// only, which says how far the limits push the solution away. The tolerance of the gradient is
-  /// the default.
+  /// Tolerance of the optimality conditions. A value below the default only applies to
+  /// complementarity, which determines how far the limits push the solution away. The tolerance of
+  /// the gradient is the default.
   double tolerance = repair_policy::solver::kTolerance;
   /// Initial barrier, and distance to which the start is pushed from its bounds; both are smaller
   /// for a warm start.
   double start_barrier = repair_policy::solver::kStartBarrier;
   double start_push = repair_policy::solver::kStartPush;
-  double constraint_tolerance = repair_policy::solver::kConstraintTolerance;  ///< of g, unscaled
+  /// Tolerance of g, unscaled.
+  double constraint_tolerance = repair_policy::solver::kConstraintTolerance;
   bool mumps = false;  ///< use MUMPS for the linear systems of every program
   bool plain_kernels =
-      false;  ///< solves linear systems without the widest vectors; the bits are the same
+      /// Solves linear systems without the widest vector instructions; the bits are the same.
+      false;
   /// The solution ends with the status iteration_limit when its work reaches this.
   double most_work = kNoBound;
   /// If not null, the point with the smallest violation is stored here, for work that is stopped.
@@ -77,7 +80,7 @@ enum class NlpStatus { solved, infeasible, iteration_limit, failed };
 struct NlpSolution {
   NlpStatus status = NlpStatus::failed;
   Eigen::VectorXd x;
-  Eigen::VectorXd multipliers;  ///< of the constraints
+  Eigen::VectorXd multipliers;  ///< multipliers of the constraints
   int iterations = 0;
   double objective = 0;
   double violation = 0;  ///< largest violation of a constraint or bound
@@ -89,7 +92,7 @@ struct NlpSolution {
   double solver_seconds = 0;    ///< processor time in Ipopt itself
 };
 
-/// Throws Interrupted when `progress` stops the work. `stage` names the work to `progress`.
+/// Throws Interrupted if `progress` stops the work. `stage` names the work for `progress`.
 NlpSolution solve(const Nlp& nlp, const NlpOptions& options = {}, const Progress& progress = {},
                   const std::string& stage = "solve");
 

@@ -18,8 +18,8 @@ std::vector<CarriedMass> payloads_of(const Task& task) {
   return masses;
 }
 
-// The result of a repair of the robot alone. If its motion does not bear the payloads, this is not
-// a repair, and the errors become the reasons.
+// The result of a repair of the robot alone. If its motion is not consistent with the payloads,
+// this is not a repair, and the errors become the reasons.
 RepairResult with_payload_errors(const Task& task, const CheckOptions& options,
                                  RepairResult result) {
   Task moved = task;

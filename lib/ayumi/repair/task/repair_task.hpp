@@ -7,9 +7,10 @@
 
 namespace ayumi {
 
-/// repair() of the motion of a task, which has to bear the payloads of its scenario, as the verdict
-/// of judge() demands. If the nearest motion of the robot alone does not bear them, the nearest
-/// motion of a robot that carries all of them all the time is tried. Throws as repair().
+/// repair() of the motion of a task, which has to be consistent with the payloads of its scenario,
+/// as the verdict of judge() requires. If the nearest motion of the robot alone is not consistent
+/// with them, the nearest motion of a robot that carries all of them all the time is tried. Throws
+/// as repair().
 RepairResult repair_task(const Task& task, const RepairOptions& options,
                          const Progress& progress = {});
 

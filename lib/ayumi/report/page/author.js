@@ -1,6 +1,6 @@
-// The live page of `ayumi author`: it shows the pattern that the server reads, and sends what the
-// author does with it. One time and one window of time hold for the picture, the timeline, the strip
-// and the curves.
+// The live page of `ayumi author`: it shows the pattern that the server reads, and sends the
+// author's changes to it. The picture, the timeline, the strip and the curves share one time and
+// one window of time.
 
 import { GLTFLoader } from "three/examples/jsm/loaders/GLTFLoader.js";
 import { Vector3 } from "three";
@@ -28,7 +28,7 @@ const motionWords = { plan: "the pattern", ghost: "last consistent", repair: "re
   open_loop: "run in open loop", closed_loop: "run with the control law" };
 const tabs = ["answers", "edit", "pose", "postures", "pushes", "text"];
 
-/// What a state has where the server says nothing of it.
+/// Values of a state for members that the server does not send.
 const nothing = { features: [], motions: ["plan"], findings: [], groups: [], phases: [], tracks: [], keyframes: [],
   disturbances: [], joints: [], handles: [], targets: [], postures: [], own_postures: [], strips: {},
   result: null, error: null, stale: false };
@@ -67,12 +67,13 @@ class Page {
 
   // ---- what the server knows
 
-  /// What the page has done itself it knows already.
+  /// Loads the state after a message of the server. The page already knows the changes that it has
+  /// made itself.
   hears(version) {
     if (this.loading || !(this.state?.version >= version)) this.load();
   }
 
-  /// The latest state; while one is on its way only one more is asked for.
+  /// Loads the latest state. While one is being loaded, at most one more is requested.
   load() {
     this.again = Boolean(this.loading);
     if (!this.loading)
@@ -117,12 +118,13 @@ class Page {
     document.documentElement.dataset.version = String(state.version);
   }
 
-  /// What is selected stays selected where things before it have come or gone.
+  /// Keeps the same thing selected if things before it were added or removed.
   follow(before, now) {
     const list = { phase: "phases", disturbance: "disturbances" }[this.selection?.kind];
     if (list) {
       const thing = before[list].find((one) => one.pointer === this.selection.pointer);
-      // Several disturbances may begin at one time: the same one of them.
+      // Several disturbances may begin at the same time. The selection stays on the same one of
+      // them.
       const at = (all) => all.filter((one) => thing && Math.abs(one.from - thing.from) < 5e-4);
       const there = at(now[list]);
       const same = now[list].length !== before[list].length && (there[at(before[list]).indexOf(thing)] ?? there.at(-1));
@@ -142,7 +144,7 @@ class Page {
       scenery: this.scenery };
   }
 
-  /// Which motion is shown and which is the ghost, of those that there are now.
+  /// Chooses the shown motion and the ghost among the motions that exist now.
   chooseMotions(state) {
     const there = state.motions;
     const fill = (select, names, wanted) => {
@@ -209,7 +211,7 @@ class Page {
     return this.previewed || sampleAt(this.motion, this.time);
   }
 
-  /// What the pattern has at a time, whatever is shown: new keys and edits are of the pattern.
+  /// The row of the pattern at a time, whatever is shown. New keys and edits change the pattern.
   planRow(t = this.time) {
     return this.showsPlan() && this.previewed ? this.previewed : sampleAt(this.plan, t);
   }
@@ -231,7 +233,8 @@ class Page {
     return byId("which").value === "plan";
   }
 
-  /// A change of the posture is one of the pattern, so the pattern is shown. True where it was not.
+  /// Shows the pattern, because a change of the posture changes the pattern. Returns true if it was
+  /// not shown before.
   async showPlan() {
     if (this.showsPlan()) return false;
     byId("which").value = "plan";
@@ -240,7 +243,7 @@ class Page {
     return true;
   }
 
-  /// The lanes of the strip for what is shown: of the pattern, a repaired motion, or a run.
+  /// The lanes of the strip for the shown motion: the pattern, a repaired motion, or a run.
   strip() {
     const { strips } = this.state, own = strips[byId("which").value];
     return { ...own ?? strips.plan ?? { lanes: [], dt: 0.01 }, own: Boolean(own) };
@@ -260,7 +263,7 @@ class Page {
     }
   }
 
-  /// Another posture than the motion's at this time, or the motion's again.
+  /// Shows another posture than that of the motion at this time, or the motion's posture again.
   preview(row) {
     if (!this.viewer) return;
     this.previewed = row;
@@ -300,7 +303,8 @@ class Page {
     cursor.style.setProperty("--tall", byId("time").scrollHeight + "px");
   }
 
-  /// Limbs in red where the finding that is looked at says so; grey where the motion is old.
+  /// Paints limbs red if the selected finding names them, and everything else grey if the motion is
+  /// old.
   paint() {
     const now = this.finding && this.time >= this.finding.begin - 0.05 && this.time <= this.finding.end + 0.05
       ? this.finding : null;
@@ -333,7 +337,8 @@ class Page {
     this.say(`${finding.message} at ${seconds(finding.at)}`);
   }
 
-  /// The camera goes near to what is wrong and keeps its side, from higher up for the soles.
+  /// Moves the camera near to the place of a finding without changing its side; soles are viewed
+  /// from higher up.
   bring(finding) {
     const { viewer } = this, size = viewer.config.height, bodies = this.bodiesOf(finding), center = new Vector3();
     for (const body of bodies) center.add(bodyOf(viewer.actors[0], body).getWorldPosition(new Vector3()));
@@ -350,7 +355,7 @@ class Page {
     viewer.draw();
   }
 
-  /// No finding is looked at any more: the camera goes back to where it was.
+  /// Ends the view of a finding: the camera moves back to its previous place.
   leaveFinding() {
     const { viewer } = this;
     this.finding = null;
@@ -366,7 +371,7 @@ class Page {
     return this.selection?.kind === thing.kind && this.selection.pointer === thing.pointer;
   }
 
-  /// The server knows which joint is the image of which.
+  /// The server knows which joint is the mirror image of which.
   async mirror(pointer) {
     const { status, value } = await this.server.ask("POST", "mirror", { pointer });
     if (status !== 200) return this.say(value.message || "The keyframe cannot be mirrored.");
@@ -429,7 +434,7 @@ class Page {
         : this.state.consistent ? "Nothing is wrong: the motion is consistent." : "")]);
   }
 
-  /// Findings by cause, as `ayumi check` groups them.
+  /// The findings by cause, as `ayumi check` groups them.
   groups() {
     const { findings, groups } = this.state;
     return groups.length ? groups : findings.map((one, i) => ({ worst: i, members: [i], places: one.where, consequences: [] }));
@@ -483,10 +488,10 @@ class Page {
     this.saying = setTimeout(() => { byId("said").textContent = ""; }, 6000);
   }
 
-  // ---- what the author does
+  // ---- actions of the author
 
-  /// True where the edit is in the file. Edits go one after the other, each on the text that the last
-  /// one has left.
+  /// Sends edits. Returns true if they are in the file. Edits are sent one after the other, each
+  /// for the text after the previous one.
   edit(edits) {
     const all = withUnits(this.document, edits, this.state.angle_unit);
     return this.post("edit", (hash) => ({ hash, edits: all }), all.some((one) => one.kind !== "set"));
@@ -499,7 +504,7 @@ class Page {
   post(path, bodyWith, moves) {
     const seen = this.state.version;
     const turn = this.writing.then(async () => {
-      // An edit that adds or removes an element changes the places of those behind it.
+      // An edit that adds or removes an element changes the places of later elements.
       if (this.movedSince > seen) {
         this.say("The file has just changed; please do this again.");
         return false;
@@ -611,7 +616,8 @@ class Page {
     });
   }
 
-  /// A press beside the keys sets the time; the wheel with Ctrl zooms, with Shift it moves the window.
+  /// A press beside the keys sets the time. The wheel zooms with Ctrl and moves the window with
+  /// Shift.
   connectTimeline() {
     const time = byId("time"), plotOf = (event) => event.target.closest?.(".plot");
     const timeAt = (event, plot) => {
@@ -646,7 +652,7 @@ class Page {
     const at = event.target, typing = at.matches?.("input:not([type=checkbox]):not([type=range]), select, textarea");
     if (!this.viewer || document.querySelector("dialog[open]")) return;
     const step = event.shiftKey ? 0.1 : 1 / this.viewer.config.rate, key = event.key;
-    // What was being typed is given up.
+    // What was being typed is discarded.
     if (key === "Escape" && byId("selected").contains(at)) {
       if (at.dataset.written !== undefined) at.value = at.dataset.written;
       this.timeline.focusSelected();
@@ -672,7 +678,7 @@ class Page {
 
 const page = new Page();
 
-// For trials of the page.
+// Access for tests of the page.
 window.ayumiAuthor = {
   page,
   position: (body) => {

@@ -1,10 +1,10 @@
-// Two versions of the pattern: the file has changed on disk since the page read it. Nothing is written
-// until the author has chosen.
+// Handles two versions of the pattern: the file has changed on disk since the page read it. Nothing
+// is written until the author has chosen one.
 
 import { byId, element } from "./dom.js";
 import { nearDifferences, sideBySide } from "./text_difference.js";
 
-/// "theirs", or "mine".
+/// Returns the choice of the author: "theirs" or "mine".
 export function chooseVersion({ theirs, mine }) {
   const rows = nearDifferences(sideBySide(theirs, mine));
   const cell = (words, other) => element("td", { class: words === null ? "none" : other }, words ?? "");

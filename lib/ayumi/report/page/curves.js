@@ -1,16 +1,16 @@
-// Curves over time of the quantities that the reader chooses; quantities of one unit share a panel.
+// Curves over time of the quantities that the reader chooses. Quantities of one unit share a panel.
 
 import { byId, element, fixed, refill, shape } from "./dom.js";
 import { rowAt } from "./series.js";
 
 const high = 84, top = 8, bottom = 6, letters = 10;
 const colors = ["#0b6fc2", "#c2570b", "#0a8754", "#9b2fae", "#b01e3c", "#6b6b00"];
-/// What an axis shows at least: smaller changes are noise of the computation.
+/// The smallest range of an axis; smaller changes are noise of the computation.
 const leastRange = { mm: 1, deg: 0.1, "deg/s": 1, N: 1, "N m": 0.01 };
 const axisWords = { x: "x (forward)", y: "y (left)", z: "z (up)" };
 
-/// What a column of the series is for a reader: { label, unit, scale, group }; null for what is not
-/// a curve.
+/// The properties of a column for a reader: { label, unit, scale, group }; null if it is not a
+/// curve.
 export function quantityOf(column) {
   if (column === "fz") return { label: "vertical force f_z", unit: "N", scale: 1, group: "Ground" };
   const [head, tail] = [column.slice(0, column.indexOf(".")), column.slice(column.indexOf(".") + 1)];
@@ -28,7 +28,7 @@ export function quantityOf(column) {
   return null;
 }
 
-/// Round values in [low, high], two to five.
+/// Two to five round values in [low, high].
 export function levels(low, high_) {
   const rough = (high_ - low) / 2 || 1, power = 10 ** Math.floor(Math.log10(rough));
   const step = [5, 2, 1].map((m) => m * power).find((s) => s <= rough * (1 + 1e-9));
@@ -49,7 +49,7 @@ export class Curves {
     });
   }
 
-  /// Curves that a finding is about come into view.
+  /// Shows the curves that a finding is about.
   bring(name) {
     if (!this.chosen.includes(name)) this.chosen.push(name);
     this.render();
@@ -103,7 +103,7 @@ export class Curves {
       element("div", { class: "label" }, ...chips), element("div", { class: "plot" }, svg)) };
   }
 
-  /// The motions that are drawn: what is shown, and the ghost with dashes.
+  /// The motions that are drawn: the shown one, and the ghost with dashes.
   motions() {
     const { motion, ghostMotion } = this.page;
     return ghostMotion ? [{ series: ghostMotion, dashes: "4 3" }, { series: motion, dashes: "" }]
@@ -141,7 +141,7 @@ export class Curves {
       const y = (value) => top + (high - top - bottom) * (most - value) / (most - low);
       for (const value of levels(low, most)) {
         inner.append(shape("line", { class: "level", x1: 0, x2: wide, y1: y(value), y2: y(value) }));
-        // Above its line, or below it where the picture ends.
+        // The label is above its line, or below it at the top of the picture.
         const place = y(value) < letters + 2 ? y(value) + letters : y(value) - 2;
         inner.append(shape("text", { class: "scale", x: 3, y: place }, `${value} ${list[0].unit}`));
       }

@@ -1,8 +1,9 @@
-// Elements of the page, made and found.
+// Functions that make and find elements of the page.
 
 export const byId = (id) => document.getElementById(id);
 
-/// element("button", { type: "button", onclick: f, "aria-label": "..." }, "text", child)
+/// Makes an element: element("button", { type: "button", onclick: f, "aria-label": "..." }, "text",
+/// child).
 export function element(tag, attributes = {}, ...children) {
   const made = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
@@ -22,13 +23,13 @@ export function shape(tag, attributes, ...children) {
   return made;
 }
 
-/// As toFixed, without a minus before zero.
+/// The same as toFixed, but without a minus before zero.
 export const fixed = (value, digits) => value.toFixed(digits).replace(/^-(0(\.0+)?)$/, "$1");
 
 export const seconds = (t) => t.toFixed(3).replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, "") + " s";
 
-/// Fills `parent` anew; what had the focus has it again where it is still there (by data-id), else what
-/// stands at its place or before it.
+/// Replaces the children of `parent`. The element with the focus gets it again if it still exists
+/// (by data-id); otherwise the element at its place or before it gets the focus.
 export function refill(parent, children) {
   const id = parent.contains(document.activeElement) ? document.activeElement.dataset.id : undefined;
   const place = [...parent.querySelectorAll("[data-id]")].indexOf(document.activeElement);

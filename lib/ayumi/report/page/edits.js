@@ -1,23 +1,24 @@
-// What the author does, as edits of the pattern's text: lists of { kind, pointer, value }. The server
-// writes them into the text and leaves everything else as it is.
+// The author's changes as edits of the pattern's text: lists of { kind, pointer, value }. The
+// server writes them into the text and leaves everything else as it is.
 
 import { token, valueAt } from "./fields.js";
 
-/// Times are written to the millisecond.
+/// A time rounded to the millisecond, as times are written.
 export const roundedTime = (t) => Number(t.toFixed(3));
 
 export const sameTime = (a, b) => Math.abs(a - b) < 5e-4;
 
-/// A number where the words are one, else the words: an expression or a name.
+/// A number if the words are one; otherwise the words, which are an expression or a name.
 export function written(words) {
   const text = words.trim();
   return text !== "" && Number.isFinite(Number(text)) ? Number(text) : text;
 }
 
-/// Members that say nothing when they are empty, or may not be empty.
+/// Members that have no meaning when they are empty, or must not be empty.
 const fleeting = ["weights", "repair", "world", "ground", "defaults", "controller", "uncertainty", "cog", "torso"];
 
-/// Without the value at a pointer, and without what would be left empty around it. `document` is the pattern as written.
+/// The edits that remove the value at a pointer, together with the members around it that would
+/// become empty. `document` is the pattern as written.
 export function removeValue(document, pointer) {
   for (;;) {
     const around = pointer.slice(0, pointer.lastIndexOf("/")), value = valueAt(document, around);
@@ -27,13 +28,15 @@ export function removeValue(document, pointer) {
   }
 }
 
-/// A time in a block that repeats stands for several times, so it is the author's to change. To an expression the server adds.
+/// Whether a time can be dragged. A time in a block that repeats stands for several times, so only
+/// the author changes it in the text. The server can change an expression by adding a number.
 export const canDrag = (value, thing = {}) => ["number", "string"].includes(typeof value) && !thing.repeated;
 
-/// The value that makes the time of a key or the end of a phase `time`: some count from the one before.
+/// The value that is written so that a key or the end of a phase is at `time`; some times count
+/// from the previous one.
 const timeValue = (time, base) => roundedTime(time - (base || 0));
 
-/// Times between which a keyframe may lie: its neighbours'.
+/// The times between which a keyframe may be moved: those of its neighbours.
 export function roomOfKey(keyframes, pointer) {
   const i = keyframes.findIndex((frame) => pointer.startsWith(frame.pointer + "/"));
   return [i > 0 ? keyframes[i - 1].time + 0.001 : 0,
@@ -50,7 +53,7 @@ export function moveKey(key, time) {
     ? [{ kind: "set", pointer: key.time_pointer, value: timeValue(time, key.time_base) }] : [];
 }
 
-/// The end of a phase, and with `along` the keyframes that stand at that end and may follow there.
+/// Moves the end of a phase. With `along`, also moves the keyframes at that end that can follow it.
 export function movePhase(state, index, time, along) {
   const phase = state.phases[index];
   if (!canDrag(phase.until_value, phase) || sameTime(phase.until, time)) return [];
@@ -65,7 +68,8 @@ export function movePhase(state, index, time, along) {
   return edits;
 }
 
-/// `value` under `name` in the keyframe at this time; a new keyframe where there is none.
+/// Puts `value` under `name` into the keyframe at this time, or into a new keyframe if there is
+/// none.
 export function putKey(keyframes, time, name, value) {
   const there = keyframes.find((frame) => sameTime(frame.time, time));
   if (there) return [{ kind: "set", pointer: `${there.pointer}/${name}`, value }];
@@ -74,39 +78,42 @@ export function putKey(keyframes, time, name, value) {
   const added = { kind: "insert", pointer: next ? outermost(next.pointer) : "/keyframes/-",
     value: { t: roundedTime(time), [name]: value } };
   if (!next) return [added];
-  // A block that repeats has no room for a key of one of its rounds.
+  // A block that repeats has no place for a key of only one of its rounds.
   if (next.repeated && (isRelative(next) || (before && outermost(before.pointer) === outermost(next.pointer))))
     return [];
   return [added, ...follow(next, roundedTime(time))];
 }
 
-/// One part of a track, as the angle of one joint, in the keyframe at this time, or in a new one.
+/// Puts one part of a track, such as the angle of one joint, into the keyframe at this time, or
+/// into a new one.
 export function putPart(keyframes, time, name, part, value) {
   const there = keyframes.find((frame) => sameTime(frame.time, time));
   return there ? [{ kind: "set", pointer: `${there.pointer}/${name}/${part}`, value }]
     : putKey(keyframes, time, name, { [part]: value });
 }
 
-/// A place of a hand or of the gaze in the keyframe at this time.
+/// Puts a place of a hand or of the gaze into the keyframe at this time.
 export function putTarget(keyframes, time, handle, place) {
   if (handle.gaze) return putKey(keyframes, time, "gaze", place);
   return putPart(keyframes, time, "hands", handle.link, place);
 }
 
-/// The item of the pattern's list that holds a keyframe: itself, or a block that repeats.
+/// The item of the pattern's list that contains a keyframe: itself, or a block that repeats.
 const outermost = (pointer) => pointer.split("/").slice(0, 3).join("/");
 
 const isRelative = (frame) => frame.time_pointer.endsWith("/after");
 
-/// A keyframe that counts from the one before it stays at its time when that one is at `base` now.
+/// Keeps the time of a keyframe that counts from the previous one, if the previous one is now at
+/// `base`.
 const follow = (frame, base) => frame && isRelative(frame) && canDrag(frame.time_value, frame)
   ? [{ kind: "set", pointer: frame.time_pointer, value: timeValue(frame.time, base) }] : [];
 
-/// Why no keyframe goes that a block which repeats counts its time from.
+/// The reason why a keyframe cannot be removed if a block that repeats counts its time from it.
 export const countedFrom = "A block that repeats counts its time from there, and would move with it. Change it in the text.";
 
-/// Without the keyframes with these pointers, each in all its rounds: what counts from one of them stays at
-/// its time. null where it cannot, because it stands in a block that repeats.
+/// The edits that remove the keyframes with these pointers, each in all its rounds. Keyframes that
+/// count from one of them keep their time. null if this is not possible because such a keyframe is
+/// in a block that repeats.
 function withoutFrames(keyframes, pointers) {
   const goes = (frame) => pointers.includes(frame.pointer);
   const edits = pointers.map((pointer) => ({ kind: "remove", pointer }));
@@ -123,14 +130,15 @@ function withoutFrames(keyframes, pointers) {
   return edits;
 }
 
-/// All of a keyframe in another one, which is at the time that was typed for it; null where both have
-/// the same key, or one stands in a block that repeats or is what such a block counts from. `document` is the
-/// pattern as written.
+/// The edits that put all of a keyframe into another one, which is at the time that the author has
+/// typed. null if both have the same key, if one is in a block that repeats, or if such a block
+/// counts from it. `document` is the pattern as written.
 export function joinKeyframe(state, document, frame, there) {
   if (frame.repeated || there.repeated) return null;
   const from = valueAt(document, frame.pointer), to = valueAt(document, there.pointer);
   if (!from || !to) return null;
-  // They hold for all values of a keyframe, so a key that brought its own would change the others.
+  // These members apply to all values of a keyframe, so those of the moved keyframe would change
+  // the other values.
   if (["interpolation", "weights"].some((name) => JSON.stringify(from[name]) !== JSON.stringify(to[name]))) return null;
   const edits = [];
   const isParts = (value) => value && typeof value === "object" && !Array.isArray(value);
@@ -145,8 +153,8 @@ export function joinKeyframe(state, document, frame, there) {
   return without && [...edits, ...without];
 }
 
-/// A key without its keyframe's other tracks; a keyframe with nothing else goes as a whole. null where a
-/// block that repeats would move with it.
+/// The edits that remove a key and keep the keyframe's other tracks. A keyframe that has nothing
+/// else is removed as a whole. null if a block that repeats would move with it.
 export function removeKey(state, key) {
   const frame = state.keyframes.find((one) => key.pointer.startsWith(one.pointer + "/"));
   const others = state.tracks.flatMap((track) => track.keys).filter((one) => one !== key &&
@@ -155,7 +163,8 @@ export function removeKey(state, key) {
   return [{ kind: "remove", pointer: key.pointer }];
 }
 
-/// What the motion has at a time (the trunk's attitude as roll, pitch and yaw about z, y, x), as the value of a key of that track.
+/// The value of the motion at a time, in the form of a key of this track. The trunk's attitude
+/// becomes roll, pitch and yaw about z, y, x.
 export function valueFromRow(track, row, columns, angleUnit) {
   const metres = (name) => Number(row[columns[name]].toFixed(4));
   if (track === "zmp") return [metres("zmp.x"), metres("zmp.y")];
@@ -172,7 +181,7 @@ export function valueFromRow(track, row, columns, angleUnit) {
   return kept.length ? Object.fromEntries(kept) : { pitch: 0 };
 }
 
-/// A phase is cut in two at a time within it; a phase with a swing stays whole.
+/// The edits that cut a phase in two at a time within it. A phase with a swing is not cut.
 export function splitPhase(phase, time) {
   if (phase.swing || !phase.support || phase.repeated) return [];
   if (time <= phase.from + 5e-4 || time >= phase.until - 5e-4) return [];
@@ -181,7 +190,7 @@ export function splitPhase(phase, time) {
   return [{ kind: "insert", pointer: phase.pointer, value: { until: roundedTime(time), support: phase.support } }, ...rest];
 }
 
-/// A swing that lands beside the other foot, with the lift that it has without one (docs/formats.md).
+/// Adds a swing that lands beside the other foot, with the default lift (docs/formats.md).
 export function addSwing(phase, foot) {
   return [{ kind: "set", pointer: phase.pointer + "/swing", value: { foot, step: { forward: 0, side: 0, turn: 0 }, lift: 0.02 } }];
 }
@@ -189,9 +198,9 @@ export function addSwing(phase, foot) {
 const gravity = 9.80665;
 const tenths = (value) => Number(value.toFixed(4));
 
-/// How long and how deep the COG moves on the ground before a flight of `length` s and after it: as
-/// deep as the quintic from rest to the lift-off of the parabola needs to rise all the way, and at
-/// most by a fifth of the height (about what legs that are nearly straight have).
+/// The time and the depth of the stoop of the COG before a flight of `length` s and after it. The
+/// quintic from rest to the lift-off of the parabola needs this depth to rise all the time. It is
+/// at most a fifth of the height, about the depth that nearly straight legs allow.
 function stoopOf(length, room, height) {
   const deepest = 0.2 * height;
   const time = Math.min(length, room / 4, -2 * length + Math.sqrt(4 * length ** 2 + 20 * deepest / gravity));
@@ -199,8 +208,9 @@ function stoopOf(length, room, height) {
 }
 
 /// Another support of a phase, as { edits } or { refused: why }. A flight follows a parabola, so
-/// "none" brings along the COG keys that are missing: at lift-off and touchdown, so low that the top of
-/// the parabola has the present height, a stoop before and after, and a phase to land in. `cogAt(t)` is the present COG { x, y, height }.
+/// "none" also adds missing COG keys and phases: keys at lift-off and touchdown, so low that the
+/// top of the parabola has the present height, a stoop before and after, and a phase for the
+/// landing. `cogAt(t)` is the present COG { x, y, height }.
 export function putSupport(state, document, index, support, cogAt) {
   const phase = state.phases[index], own = { kind: "set", pointer: phase.pointer + "/support", value: support };
   if (support !== "none") return { edits: [own] };
@@ -215,7 +225,7 @@ export function putSupport(state, document, index, support, cogAt) {
   const keyed = (part) => written.filter(({ cog }) => cog?.[part] !== undefined);
   const values = new Map();
   const put = (time, part, value) => {
-    // The edges of the flight count exactly, even where they are no full milliseconds.
+    // The times of the flight's ends are exact, even if they are not whole milliseconds.
     const t = time === phase.from || time === phase.until ? Number(time.toFixed(9)) : roundedTime(time);
     if (keyed(part).some((one) => sameTime(one.time, t))) return;
     values.set(t, { ...values.get(t), [part]: tenths(value) });
@@ -244,7 +254,8 @@ export function putSupport(state, document, index, support, cogAt) {
       : putKey(state.keyframes, time, "cog", value);
     if (!added.length) return inBlock;
     for (const one of added) if (one.kind === "insert") one.value.t = time;
-    // Of two new keyframes before one that counts from the one before it, the later one counts.
+    // If there are two new keyframes before one that counts from the previous one, it counts from
+    // the later one.
     for (const one of added) {
       const same = edits.findIndex((other) => other.kind === "set" && other.pointer === one.pointer);
       if (same >= 0) edits.splice(same, 1);
@@ -255,7 +266,7 @@ export function putSupport(state, document, index, support, cogAt) {
   return { edits, brought: [...values.keys()].sort((a, b) => a - b), landing: last };
 }
 
-/// What a phase of VIIP may be asked for, each with values to begin with (docs/formats.md).
+/// The goals that a phase of VIIP may have, each with initial values (docs/formats.md).
 export const goals = [
   { name: "none", words: "no goal: keys", value: null },
   { name: "step", words: "steps on the spot", value: () => ({ step: "in_place", steps: 4 }) },
@@ -272,19 +283,20 @@ export function goalOf(viip) {
   return goals.map((one) => one.name).find((name) => viip[name] !== undefined) ?? "velocity";
 }
 
-/// The keyframes inside a phase. VIIP allows none there.
+/// The keyframes inside a phase. VIIP does not allow any there.
 export function keysWithin(phase, keyframes) {
   return keyframes.filter(({ time }) => time > phase.from + 5e-4 && time < phase.until - 5e-4);
 }
 
-/// A goal that waits for an answer about its keyframes, as long as the same phase of the same text is
-/// selected; otherwise null.
+/// A goal that waits for the author's decision about its keyframes, as long as the same phase of
+/// the same text is selected; otherwise null.
 export function stillWanted(wanted, selection, text) {
   return wanted && selection?.kind === "phase" && selection.pointer === wanted.pointer && text === wanted.text ? wanted : null;
 }
 
-/// Another goal of VIIP for a phase, without those of `keyframes` that lie inside it, or keys again. The
-/// other values of the phase stay. null where a block that repeats would move with these keyframes.
+/// The edits that give a phase another goal of VIIP and remove those of `keyframes` that are inside
+/// it, or that go back to keys. The other values of the phase do not change. null if a block that
+/// repeats would move with these keyframes.
 export function putGoal(phase, name, angleUnit, keyframes = []) {
   const pointer = phase.pointer, goal = goals.find((one) => one.name === name);
   if (!goal.value)
@@ -296,18 +308,19 @@ export function putGoal(phase, name, angleUnit, keyframes = []) {
     { kind: "set", pointer: pointer + "/viip", value: goal.value(angleUnit) }];
 }
 
-/// A time of each round: what is written, and the length of the rounds before.
+/// A time in each round as an expression: the written time plus the length of the previous rounds.
 const inRounds = (value, length, count) => `${value} + ${length}*\${${count}}`;
 
-/// The keyframes that belong to a block from `from` to `until`: those up to its end, or, where each round
-/// `begins` with one, those from its beginning on.
+/// The keyframes that belong to a block from `from` to `until`: those up to its end or, if each
+/// round `begins` with a keyframe, those from its beginning on.
 const inBlock = (from, until, begins) => ({ time }) => begins ? time > from - 5e-4 && time < until - 5e-4 : time > from + 5e-4 && time < until + 5e-4;
 
-/// Those that are later than this block.
+/// The keyframes that are later than this block.
 const afterBlock = (until, begins) => ({ time }) => time >= until + (begins ? -5e-4 : 5e-4);
 
-/// All that comes after a phase comes later by `shift`: phases, keyframes (`isLater`), disturbances, and motions of
-/// the floor. A keyframe that counts from the one before it follows that one, if it moves (`after`).
+/// Moves everything after a phase by `shift`: phases, keyframes (`isLater`), disturbances, and
+/// motions of the floor. A keyframe that counts from the previous one follows it, if that one moves
+/// (`after`).
 function moveLater(state, document, last, shift, after, isLater) {
   const edits = [], { until } = state.phases[last], set = (pointer, value) => edits.push({ kind: "set", pointer, value });
   const refused = { refused: "A later block that repeats has times of its own. Change them in the text." };
@@ -330,20 +343,21 @@ function moveLater(state, document, last, shift, after, isLater) {
   return { edits };
 }
 
-/// Disturbances that stay in the first round of a block, in words; "" where there are none.
+/// In words, the disturbances that only act in the first round of a block; "" if there are none.
 function disturbancesWithin(state, from, until) {
   const times = state.disturbances.filter((one) => one.from >= from - 5e-4 && one.from < until - 5e-4).map((one) => `${one.from.toFixed(3)} s`);
   return times.length ? `The disturbance at ${times.join(" and at ")}` : "";
 }
 
-/// The phases from `first` to `last` and their keyframes as blocks that repeat, `times` rounds in all;
-/// what comes later comes later. { edits } or { refused: why }.
+/// Makes the phases from `first` to `last` and their keyframes blocks that repeat, with `times`
+/// rounds in all; later parts move. Returns { edits } or { refused: why }.
 export function repeatPhases(state, document, first, last, times) {
   const phases = state.phases.slice(first, last + 1), from = phases[0].from, until = phases.at(-1).until;
   const length = Number((until - from).toFixed(6)), shift = (times - 1) * length;
   const walks = phases.some(({ swing }) => swing), valueOf = (frame) => valueAt(document, frame.pointer) ?? {};
   const isPlaced = ({ zmp, cog, feet, hands, gaze }) => (zmp && typeof zmp !== "string") || cog?.x !== undefined || cog?.y !== undefined || feet || hands || gaze;
-  // Where the first round begins with a keyframe and ends without one, each round begins as the first one does.
+  // If the first round begins with a keyframe and ends without one, each round begins like the
+  // first.
   const frameAt = (time) => state.keyframes.find((frame) => !frame.repeated && sameTime(frame.time, time)), opening = frameAt(from);
   const begins = Boolean(opening) && !frameAt(until) && !(walks && isPlaced(valueOf(opening)));
   const frames = state.keyframes.filter(inBlock(from, until, begins));
@@ -374,20 +388,20 @@ export function repeatPhases(state, document, first, last, times) {
   return { edits, kept: disturbancesWithin(state, from, until) };
 }
 
-/// How often the block around a phase repeats: { pointer, rounds }.
+/// The number of rounds of the block around a phase: { pointer, rounds }.
 export function roundsOf(state, document, phase) {
   return { pointer: phase.pointer.split("/").slice(0, -2).join("/"), rounds: state.phases.filter((one) => one.pointer === phase.pointer).length };
 }
 
-/// Another number of rounds of the block around a phase and of the keyframes that repeat with it; what
-/// comes later moves. { edits } or { refused: why }.
+/// Changes the number of rounds of the block around a phase and of the keyframes that repeat with
+/// it; later parts move. Returns { edits } or { refused: why }.
 export function setRounds(state, document, phase, rounds) {
   const { pointer, rounds: now } = roundsOf(state, document, phase);
   if (!(rounds >= 1 && Number.isInteger(rounds))) return { refused: "The number of rounds is a whole number above 0." };
   if (pointer !== outermost(pointer)) return { refused: "This block is inside another block that repeats. Change its rounds in the text." };
   const own = state.phases.filter((one) => one.pointer.startsWith(pointer + "/")), from = own[0].from, until = own.at(-1).until;
   const repeats = (block) => JSON.stringify(valueAt(document, block)?.repeat), isOwn = (frame) => frame.repeated && repeats(outermost(frame.pointer)) === repeats(pointer);
-  // A key at the beginning may also be the last one of another block before.
+  // A key at the beginning may also be the last key of an earlier block.
   const inside = new Set(state.keyframes.filter((frame) => inBlock(from, until, false)(frame) && !sameTime(frame.time, until) && isOwn(frame)).map((frame) => outermost(frame.pointer)));
   const begins = state.keyframes.some((frame) => sameTime(frame.time, from) && inside.has(outermost(frame.pointer))), within = inBlock(from, until, begins);
   const frames = state.keyframes.filter(within), blocks = [...new Set(frames.map((frame) => outermost(frame.pointer)))];
@@ -402,7 +416,7 @@ export function setRounds(state, document, phase, rounds) {
   return { edits: [...[pointer, ...blocks].map((block) => ({ kind: "set", pointer: block + "/repeat", value: rounds })), ...moved.edits] };
 }
 
-/// A phase behind the last one, as long as it takes to look at.
+/// Adds a phase of 0.5 s after the last one.
 export function appendPhase(phases) {
   return [{ kind: "insert", pointer: "/phases/-",
     value: { until: roundedTime(phases.at(-1).until + 0.5), support: "both" } }];

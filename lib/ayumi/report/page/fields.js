@@ -1,16 +1,16 @@
-// Every value that an author may give to the whole pattern, a phase, a keyframe or a disturbance
-// (docs/formats.md), with what holds where it is not written. The page offers those that are
-// missing. A test compares this list with the schema of the pattern.
+// All values that an author may give to the whole pattern, a phase, a keyframe or a disturbance
+// (docs/formats.md), each with the value that applies if it is not written. The page offers the
+// missing ones. A test compares this list with the schema of the pattern.
 
 const interpolation = ["linear", "cubic", "minimum_jerk", "hold", "spline"];
 const field = (path, otherwise) => ({ path, otherwise });
 const turns = ["roll", "pitch", "yaw"];
 
-/// Weights that are written may be taken away.
+/// Weights that are written can be removed.
 const weighted = (path, written) => Object.keys(written ?? {}).map((joint) => ({ path: [...path, joint], otherwise: "1" }));
 
-/// What a member is, by the kind of thing: { path, otherwise, choices }. `value` is what is written
-/// there, `state` the page's state.
+/// The fields of each kind of thing: { path, otherwise, choices }. `value` is the written value,
+/// `state` is the page's state.
 export const fieldsOf = {
   pattern: (value, state) => [
     { path: ["name"], otherwise: "none" },
@@ -60,7 +60,7 @@ export const fieldsOf = {
   ],
 };
 
-/// The pattern of a text with comments; null where it is not JSON.
+/// The pattern in a text with comments; null if the text is not JSON.
 export function parsePattern(text) {
   const plain = (text || "").replace(/"(?:\\.|[^"\\])*"|\/\/[^\n]*|\/\*[\s\S]*?\*\//g,
     (part) => part[0] === '"' ? part : " ");
@@ -88,13 +88,13 @@ export function missingFields(kind, pointer, value, state) {
     .map((field) => ({ ...field, pointer: pointer + joined(field.path) }));
 }
 
-/// The optional field of its kind that the value at a pointer is, which may be taken away.
+/// The optional field to which the value at a pointer belongs, and which can be removed.
 export function optionalField(kind, pointer, value, state, at) {
   return fieldsOf[kind](value, state).find(({ path }) => pointer + joined(path) === at);
 }
 
-/// What a select offers, as [value, words]: what holds without the value, where it may be taken away; the
-/// choices; and what is written, where it is none of them.
+/// The choices of a select as [value, words]: the default if the value can be removed, the choices,
+/// and the written value if it is none of them.
 export function optionsOf(choices, written, field) {
   const names = choices.map(String), known = written === undefined || names.includes(String(written));
   return [...field ? [["", `(${field.otherwise})`]] : [], ...[...names, ...known ? [] : [String(written)]].map((one) => [one, one])];

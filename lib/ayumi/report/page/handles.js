@@ -1,6 +1,6 @@
-// Feet, hands, gaze, trunk and COG as points in the picture that can be dragged, the targets of keys
-// of hands and gaze, and pushes as arrows that are drawn there. The server answers with the posture
-// that brings the point to its place.
+// Points in the picture that can be dragged: feet, hands, gaze, trunk and COG, and the targets of
+// keys of hands and gaze. Also pushes, which are drawn there as arrows. The server answers a drag
+// with the posture that brings the point to its place.
 
 import { BufferGeometry, Line, LineBasicMaterial, Mesh, MeshBasicMaterial, OctahedronGeometry, Plane, Raycaster,
   SphereGeometry, Vector2, Vector3 } from "three";
@@ -8,7 +8,7 @@ import { byId, seconds } from "./dom.js";
 import { largerPart, nearAxis } from "./drag_parts.js";
 import { bodyOf } from "./viewer.js";
 
-const reach = 14;  // [px] around a point within which the pointer takes it
+const reach = 14;  // [px] distance from a point within which the pointer takes it
 const targetColor = 0x0a8f8f;
 
 export class Handles {
@@ -29,7 +29,7 @@ export class Handles {
     });
   }
 
-  /// The points of this robot.
+  /// Takes over the points of this robot.
   take(handles) {
     const same = JSON.stringify(handles);
     if (same === this.taken) return;
@@ -49,7 +49,8 @@ export class Handles {
     });
   }
 
-  /// The targets of the keys: an octahedron for each, and for the gaze a line from the head.
+  /// Shows the targets of the keys: an octahedron for each, and for the gaze also a line from the
+  /// head.
   takeTargets(targets) {
     const { viewer } = this.page, size = viewer.config.height;
     for (const { ball, line } of this.targets) {
@@ -71,13 +72,13 @@ export class Handles {
     });
   }
 
-  /// The way a limb points, from its joint to its end.
+  /// The direction of a limb, from its joint to its end.
   directionOf(handle) {
     const body = bodyOf(this.page.viewer.actors[0], handle.body);
     return body.localToWorld(new Vector3(...handle.point)).sub(body.getWorldPosition(new Vector3())).normalize();
   }
 
-  /// Where the point of a handle is, for a row of the motion.
+  /// The place of a handle's point in a row of the motion.
   placeOf(handle, row) {
     const { viewer } = this.page;
     if (handle.body === undefined) return viewer.vector("cog", row);
@@ -117,7 +118,7 @@ export class Handles {
     return best;
   }
 
-  /// Where the pointer's ray meets the plane; null where it does not.
+  /// The point at which the pointer's ray meets the plane; null if it does not.
   hit(event, plane) {
     const [x, y, wide, high] = this.pixels(event);
     this.raycaster.setFromCamera(new Vector2(2 * x / wide - 1, 1 - 2 * y / high), this.page.viewer.camera);
@@ -134,7 +135,8 @@ export class Handles {
     viewer.play(false);
     let drag = null, latest = null, ended = false;
     const begin = () => { drag = mark ? this.dragOf(mark, event) : this.arrowOf(event); };
-    // A drag changes the pattern, so that is shown first; the drag goes on from where its point is then.
+    // A drag changes the pattern, so the pattern is shown first; then the drag continues from the
+    // place of the point in the pattern.
     if (mark && !this.page.showsPlan())
       this.page.showPlan().then(() => {
         if (ended) return;
@@ -163,12 +165,12 @@ export class Handles {
     addEventListener("keydown", escape, true);
   }
 
-  /// The COG and the trunk change one thing sideways and another one up and down.
+  /// For the COG and the trunk, a drag sideways and a drag up or down change different things.
   isOneWay(handle) {
     return handle?.name === "cog" || handle?.name === "trunk";
   }
 
-  /// In the plane that faces the eye; with Shift upright only.
+  /// The drag is in the plane that faces the eye; with Shift, it is only upright.
   dragOf({ handle, target, ball }, event) {
     const { camera } = this.page.viewer, oneWay = !target && this.isOneWay(handle);
     const right = new Vector3(), up = new Vector3(), facing = new Vector3();
@@ -201,7 +203,7 @@ export class Handles {
     };
   }
 
-  /// An arrow from the COG in a level plane: the way and the size of a push.
+  /// An arrow from the COG in a level plane: the direction and the size of a push.
   arrowOf(event) {
     const { viewer } = this.page, cog = viewer.vector("cog", this.page.row());
     const plane = new Plane().setFromNormalAndCoplanarPoint(new Vector3(0, 0, 1), cog);

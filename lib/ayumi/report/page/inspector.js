@@ -1,4 +1,5 @@
-// What is selected on the timeline, with its values to be typed; and new keys at the cursor.
+// The values of the thing that is selected on the timeline, which can be typed, and new keys at the
+// cursor.
 
 import { byId, element, seconds } from "./dom.js";
 import { addSwing, appendPhase, countedFrom, goalOf, goals, joinKeyframe, keysWithin, putGoal, putKey, putPart, putSupport, putTarget, removeKey, removeValue, repeatPhases, roomOfKey, roundsOf, roundedTime, sameTime, setRounds, splitPhase, stillWanted, valueFromRow, written } from "./edits.js";
@@ -7,7 +8,7 @@ import { addField, addFloorMotion, addQuantity, addToGround, addUncertainPush, a
 import { sampleAt } from "./series.js";
 import { nameOfTrack } from "./timeline.js";
 
-/// Unit of a value by the names that lead to it. `document` is the pattern as written.
+/// The unit of a value, by the names on its path. `document` is the pattern as written.
 export function unitOf(path, angle, document) {
   const name = path.at(-1), track = path[0];
   if (track === "uncertainty") return unitOfUncertain(path, angle, document?.uncertainty?.[path[1]]?.[path[2]]);
@@ -27,7 +28,8 @@ export function unitOf(path, angle, document) {
     load: "N", viscous: "N m s/rad", margin: "m" }[name] || (track === "gyro" ? angle + "/s" : "");
 }
 
-/// Unit of a value of an uncertain quantity or push, `item`: of its numbers, not of weights and correlations.
+/// The unit of a value of an uncertain quantity or push, `item`. Numbers have it; weights and
+/// correlations do not.
 function unitOfUncertain(path, angle, item) {
   const [, list, , part] = path, inUnit = (unit = "") => unit.replace("angle", angle);
   if (list === "quantities") {
@@ -48,7 +50,7 @@ const words = { to: "lands", joint: "angle", zmp: "ZMP", cog: "COG", fz: "force"
 const zmpWords = { left: "Put it under the left foot", center: "Put it in the middle", right: "Put it under the right foot" };
 const wholes = ["cog", "torso", "feet", "posture", "swing", "viip", "defaults", "world", "parameters"];
 
-/// What a value is called, by the names that lead to it.
+/// The name of a value for people, by the names on its path.
 export function nameOf(path) {
   // The sides of a block or a patch: { "x": [from, to], "y": [from, to] }.
   if (["blocks", "patches"].includes(path[1]) && path.length === 5)
@@ -63,7 +65,7 @@ export function nameOf(path) {
     : words[name] || name).join(" ");
 }
 
-/// What a value is called among those of other tracks: "COG forward", "trunk pitch".
+/// The name of a value among those of other tracks: "COG forward", "trunk pitch".
 export function nameAmongOthers(path) {
   const track = { cog: "COG", torso: "trunk" }[path[0]];
   return path[0] === "fz" ? "vertical force" : track && path.length > 1 ? `${track} ${nameOf(path)}` : nameOf(path);
@@ -83,7 +85,7 @@ export class Inspector {
       const time = Number(event.target.value);
       if (Number.isFinite(time)) this.page.show(Math.max(0, time));
     });
-    // Enter moves the cursor and adds nothing.
+    // Enter moves the cursor and adds no key.
     byId("key-time").addEventListener("keydown", (event) => {
       if (event.key !== "Enter") return;
       event.preventDefault();
@@ -92,14 +94,14 @@ export class Inspector {
     byId("whole").addEventListener("click", () => this.page.select({ kind: "pattern", pointer: "" }));
   }
 
-  /// One input for each value of a JSON text; a change is an edit of that value alone, or what
-  /// `edits` makes of it.
+  /// One input for each value of a JSON text. A change is an edit of this value alone, or the edits
+  /// that `edits` makes of it.
   inputs(pointer, value, path, choices = {}, edits = null) {
     if (path[1] === "field" && Array.isArray(value) && Array.isArray(value[0])) return [this.grid(pointer, value, path)];
     if (value && typeof value === "object")
       return Object.entries(value).flatMap(([name, part]) => this.inputs(pointer + token(name),
         part, [...path, Array.isArray(value) ? Number(name) : name], choices, edits));
-    // Where the robot cannot do what is written, the shown motion is older than the text.
+    // If the robot cannot do what is written, the shown motion is older than the text.
     if (this.page.state.error) value = valueAt(this.page.document, pointer) ?? value;
     const unit = unitOf(path, this.page.state.angle_unit, this.page.document), last = path.at(-1);
     const name = nameOf(path);
@@ -129,7 +131,7 @@ export class Inspector {
   grid(pointer, rows, path) {
     if (rows.length * rows[0].length > 100)
       return element("p", { class: "soft" }, `${nameOf(path)}: ${rows.length} × ${rows[0].length} numbers, to be changed in the text`);
-    // Ahead is up and left is left, as in a picture from above.
+    // Up in the table is ahead and left is left, as in a picture from above.
     return element("table", { class: "grid" }, element("caption", {}, "Heights in m, seen from above: ahead is up"),
       element("tbody", {}, ...rows.map((row, i) => element("tr", {}, ...row.map((value, j) => {
         const [input] = this.inputs(`${pointer}/${i}/${j}`, value, ["world", "field", "height"]).map((one) => one.querySelector("input"));
@@ -138,7 +140,7 @@ export class Inspector {
       }).reverse())).reverse()));
   }
 
-  /// The thing of the text that the selection is in: { kind, pointer, value }.
+  /// The written thing to which the selection belongs: { kind, pointer, value }.
   written() {
     const { state, selection, document } = this.page;
     const frame = selection?.kind === "key" && state.keyframes.find((one) => selection.pointer.startsWith(one.pointer + "/"));
@@ -147,13 +149,14 @@ export class Inspector {
     return value && typeof value === "object" ? { kind, pointer, value } : null;
   }
 
-  /// The field at a pointer, if its value may be taken away.
+  /// The field at a pointer, if its value can be removed.
   optional(pointer) {
     const there = this.written();
     return there ? optionalField(there.kind, there.pointer, there.value, this.page.state, pointer) : undefined;
   }
 
-  /// What may be written there and is not, each with what holds without it.
+  /// The values that may be written here but are missing, each with the value that applies without
+  /// it.
   missing() {
     const there = this.written();
     if (!there || !this.page.can("edit")) return [];
@@ -186,14 +189,14 @@ export class Inspector {
       ...this.parameters(value.parameters ?? {}), ...this.uncertainty(value)].filter(Boolean);
   }
 
-  /// Items of a list that can be added and removed; `words` are those of one item.
+  /// Items of a list that can be added and removed; `words` name one item.
   items(path, words, inputs = (item, i, pointer) => this.inputs(pointer, item, [...path, i])) {
     const document = this.page.document, list = path.reduce((value, name) => value?.[name], document) ?? [];
     return list.flatMap((item, i) => [element("h4", {}, `${words} ${i + 1}`), ...inputs(item, i, `/${path.join("/")}/${i}`),
       this.button(() => removeItem(document, path, i), `Remove this ${words[0].toLowerCase()}${words.slice(1)}`, () => {}, `remove ${path.join(" ")} ${i}`)]);
   }
 
-  /// The button that adds an item, which then has the focus.
+  /// The button that adds an item. Then the item gets the focus.
   adder(path, edits, words) {
     const count = path.reduce((value, name) => value?.[name], this.page.document)?.length ?? 0;
     return this.button(edits, words, () => this.focusValues(`/${path.join("/")}/${count}/`));
@@ -205,7 +208,7 @@ export class Inspector {
       this.adder(["world", list], () => addToGround(list, value.world, this.page.solesAtStart()), { blocks: "Add a block to the ground", patches: "Add a patch of other friction" }[list])];
   }
 
-  /// The height field of the ground: one, with as many nodes as are wanted.
+  /// The height field of the ground. There is at most one, with any number of nodes.
   field(world) {
     if (!world?.field)
       return [this.button(() => addField(world, this.page.solesAtStart()), "Add a height field to the ground", () => this.focusValues("/world/field/"))];
@@ -252,7 +255,7 @@ export class Inspector {
       this.adder(["uncertainty", "pushes"], () => addUncertainPush(unit), "Add an uncertain push")];
   }
 
-  /// The weight of one more joint: a joint is chosen, and a number typed.
+  /// Adds the weight of one more joint: the author chooses a joint and types a number.
   weights(pointer, written, words, otherwise) {
     const others = this.page.state.joints.filter((one) => written?.[one.name] === undefined);
     if (!this.page.can("edit") || !others.length) return null;
@@ -268,7 +271,8 @@ export class Inspector {
     } }, element("span", {}, words), joint, number, element("button", { type: "submit" }, "Add"));
   }
 
-  /// The parameters, and a new one: what is typed elsewhere as ${name} has its value.
+  /// The parameters, and a field for a new one. Elsewhere, ${name} stands for the value of the
+  /// parameter.
   parameters(written) {
     const name = element("input", { type: "text", size: "10", required: true, pattern: "[A-Za-z_][A-Za-z0-9_]*", spellcheck: "false", autocomplete: "off",
       placeholder: "name", "aria-label": "Name of the new parameter" });
@@ -294,7 +298,8 @@ export class Inspector {
       .map(({ path, choices }) => [path.at(-1), choices]));
   }
 
-  /// A typed time: a key joins the keyframe that is there, and stays between its neighbours.
+  /// The edits for a typed time. The key joins a keyframe that is already at this time, and stays
+  /// between its neighbours.
   timeEdits(key, state) {
     return (next) => {
       if (typeof next !== "number") return [{ kind: "set", pointer: key.time_pointer, value: next }];
@@ -302,7 +307,7 @@ export class Inspector {
       const there = state.keyframes.find((one) => one !== frame && sameTime(one.time, time));
       const joined = there && joinKeyframe(state, this.page.document, frame, there);
       if (joined) {
-        // The places of keyframes change with the edit, so the key is looked for by its time after it.
+        // The edit changes the places of keyframes, so afterwards the key is searched by its time.
         const inside = key.pointer.slice(frame.pointer.length);
         this.page.edit(joined).then((written) => { if (written) this.selectNew(inside, there.time); });
         return null;
@@ -347,7 +352,8 @@ export class Inspector {
     this.moved();
   }
 
-  /// What was being typed when a new version came is still there; what went away leaves the focus here.
+  /// Restores what was being typed when a new version arrived. If the field has disappeared, this
+  /// box gets the focus.
   restore(box, id, typed) {
     const same = id && [...box.querySelectorAll("[data-id]")].find((one) => one.dataset.id === id);
     if (!same) return box.focus({ preventScroll: true });
@@ -355,13 +361,13 @@ export class Inspector {
     if (typed !== null) same.value = typed;
   }
 
-  /// The first value has the focus, or the first one below a pointer.
+  /// Gives the focus to the first value, or to the first one below a pointer.
   focusValues(pointer = "") {
     const values = [...byId("selected").querySelectorAll("input, select")];
     (values.find((one) => one.dataset.id?.startsWith(pointer)) ?? byId("selected")).focus();
   }
 
-  /// What was typed there is written, so the fields are free for the next one.
+  /// The typed text has been written, so the fields are cleared for the next one.
   emptied(ids) {
     const fields = ids.map((id) => [...byId("selected").querySelectorAll("input")].find((one) => one.dataset.id === id));
     for (const one of fields) if (one) one.value = "";
@@ -373,7 +379,7 @@ export class Inspector {
       onclick: () => this.page.edit(edits()).then((done) => { if (done) then(); }) }, words) : null;
   }
 
-  /// Without a key; says why where it has to stay.
+  /// Removes a key, or says why it has to stay.
   remove(key) {
     const edits = removeKey(this.page.state, key);
     return edits ? this.page.edit(edits) : this.page.say(countedFrom);
@@ -416,7 +422,8 @@ export class Inspector {
     return this.page.state.handles.find((one) => track.kind === "gaze" ? one.gaze : one.link === link);
   }
 
-  /// A target can be let go, be where the hand is now, and say where the hand points.
+  /// Buttons that release a target, place it where the hand is now, or give the direction in which
+  /// the hand points.
   targetButtons(key) {
     const handle = this.handleOf(key.track), set = (value) => [{ kind: "set", pointer: key.pointer, value }];
     const place = () => this.page.handles.placeOf(handle, this.page.row()).toArray().map(millimetre);
@@ -449,7 +456,7 @@ export class Inspector {
       this.repetition(phase, index)].filter(Boolean);
   }
 
-  /// Keys, or a goal that the control law VIIP carries out.
+  /// The choice between keys and a goal that the control law VIIP carries out.
   goal(phase, state) {
     if (phase.repeated || !this.page.can("edit")) return null;
     const now = goalOf(phase.support ? null : valueAt(this.page.document, phase.pointer + "/viip"));
@@ -466,13 +473,13 @@ export class Inspector {
       this.goalWithoutKeys(phase, state));
   }
 
-  /// A goal that the author has chosen for a phase with keys inside it; null lets the keys be.
+  /// Keeps a goal that the author has chosen for a phase with keys inside it; null leaves the keys.
   want(goal) {
     this.wanted = goal;
     this.render();
   }
 
-  /// VIIP plans the whole phase: with a goal, the keys inside it go.
+  /// VIIP plans the whole phase, so a goal removes the keys inside it.
   goalWithoutKeys(phase, state) {
     const within = keysWithin(phase, state.keyframes), { wanted } = this;
     if (!wanted) return null;
@@ -487,7 +494,7 @@ export class Inspector {
       `Remove ${within.length > 1 ? "these keyframes" : "this keyframe"}, and give the goal`, () => {}, phase.pointer + " goal without keys"));
   }
 
-  /// This phase and those before it, with their keys, several times.
+  /// Repeats this phase and the phases before it, with their keys.
   repetition(phase, index) {
     if (!this.page.can("edit")) return null;
     if (phase.repeated) return this.rounds(phase);
@@ -511,7 +518,7 @@ export class Inspector {
     });
   }
 
-  /// How often the block around a phase repeats.
+  /// The number of rounds of the block around a phase.
   rounds(phase) {
     const now = roundsOf(this.page.state, this.page.document, phase);
     const input = element("input", { type: "number", min: "1", max: "1000", step: "1", value: String(now.rounds) });
@@ -525,7 +532,8 @@ export class Inspector {
     return element("label", { class: "value" }, element("span", {}, "rounds of this block"), input, element("span", { class: "unit" }));
   }
 
-  /// A flight brings the COG keys that it needs along, or is refused with what is missing.
+  /// Changes the support. A flight also adds the COG keys that it needs, or it is refused and the
+  /// message says what is missing.
   support(index, next) {
     const { state, document, plan } = this.page;
     const cogAt = (time) => valueFromRow("cog", sampleAt(plan, time), plan.columns, state.angle_unit);
@@ -536,7 +544,8 @@ export class Inspector {
     return refused ? null : edits;
   }
 
-  /// On one foot, the other one may swing; where it lands is then typed, or dragged in the picture.
+  /// If the robot stands on one foot, the other one may swing. Its landing place is then typed, or
+  /// dragged in the picture.
   swingButtons(phase) {
     const pointer = phase.pointer + "/swing";
     if (phase.swing) return [this.button(() => [{ kind: "remove", pointer }], "Remove its swing")];
@@ -571,7 +580,8 @@ export class Inspector {
     if (chosen) select.value = chosen;
   }
 
-  /// A foot that is free gets a key where it is, and keys where its freedom begins and ends, as by a drag.
+  /// Gives a free foot a key at its place, and keys at the beginning and end of its freedom, as a
+  /// drag does.
   async addFootKey(handle) {
     await this.page.showPlan();
     const { state, time } = this.page, phase = state.phases.find((one) => time < one.until && !sameTime(time, one.until)) ?? state.phases.at(-1);
@@ -587,7 +597,7 @@ export class Inspector {
     if (!value.edits.length || await this.page.edit(value.edits)) this.selectNew("/feet/" + handle.foot, time);
   }
 
-  /// Where the robot cannot do what is written, the foot has the place of its key before.
+  /// If the robot cannot do what is written, the foot takes the place of its previous key.
   async copyFootKey(handle, time) {
     const { state, document } = this.page, keyOf = (frame) => valueAt(document, `${frame.pointer}/feet/${handle.foot}`);
     const before = state.keyframes.filter((frame) => frame.time < time && keyOf(frame) !== undefined).at(-1);
@@ -600,7 +610,7 @@ export class Inspector {
   async addKey() {
     const foot = this.page.state.handles.find((one) => byId("key-track").value === "foot " + one.name);
     if (foot) return this.addFootKey(foot);
-    // The place of a hand is that of the robot in the picture.
+    // The place of a hand is its place on the robot in the picture.
     if (byId("key-track").value.startsWith("target ")) await this.page.showPlan();
     const { state } = this.page, track = byId("key-track").value, time = this.page.time, row = this.page.planRow();
     const handle = state.handles.find((one) => track === "target " + one.name);
@@ -615,7 +625,7 @@ export class Inspector {
       : track === "cog height" ? "/cog" : joint ? "/joints" + token(track) : "/" + track, time);
   }
 
-  /// The key that has just been added is selected, with the focus in its first value.
+  /// Selects the key that has just been added, with the focus in its first value.
   selectNew(inside, time) {
     const frame = this.page.state.keyframes.find((one) => sameTime(one.time, time));
     if (!frame) return;

@@ -1,5 +1,5 @@
-// Check, repair, simulation, pushes and export: long work of the server, with its progress, and what
-// came out of it.
+// Check, repair, simulation, pushes and export: long work of the server, with its progress and its
+// results.
 
 import { byId, element, seconds } from "./dom.js";
 
@@ -40,8 +40,8 @@ export class Jobs {
       : `${job.kind}: ${job.error}`);
   }
 
-  /// A button that is switched off or goes away hands its focus on: from the one that began the work to
-  /// Cancel, and back when it ends.
+  /// A button that is switched off or disappears passes its focus on: from the button that started
+  /// the work to Cancel, and back at the end.
   show({ progress, text }) {
     const at = document.activeElement, begun = kinds.find((kind) => at === byId("job-" + kind));
     const within = at === byId("cancel");

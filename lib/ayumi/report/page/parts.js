@@ -1,51 +1,52 @@
-// Parts of a pattern that the page makes with sensible first values: what lies on the ground, motions
-// of the floor, disturbances other than pushes, weights of joints, and what is uncertain
+// Parts of a pattern that the page makes with sensible initial values: parts of the ground, motions
+// of the floor, disturbances other than pushes, weights of joints, and uncertain quantities
 // (docs/formats.md).
 
 import { removeValue, roundedTime } from "./edits.js";
 
 const inUnit = (degrees, unit) => unit === "deg" ? degrees : Number((degrees * Math.PI / 180).toFixed(4));
 
-/// Where the ground is free [m], ahead of all that lies on it and of the soles, whose corners at the start are
-/// `soles`; an expression counts as nothing.
+/// The x at which the ground is free [m]: ahead of everything on it, and of the soles, whose
+/// corners at the start are `soles`. Expressions are ignored.
 export function freeGround(world = {}, soles = []) {
   const number = (value) => Number.isFinite(value) ? value : -Infinity;
   const ends = [...world.blocks ?? [], ...world.patches ?? []].map((one) =>
     one.position ? number(one.position[0]) + number(one.radius) : number(one.x?.[1]));
   if (world.field) ends.push(number(world.field.origin?.[0]) + number(world.field.spacing) * (world.field.heights.length - 1));
-  // 20 mm of free ground before the toes, in steps of 50 mm.
+  // There are at least 20 mm of free ground before the toes, in steps of 50 mm.
   const toes = soles.map(([x]) => 0.05 * Math.ceil((x + 0.02) / 0.05 - 1e-6));
   return Number(Math.max(0.1, ...toes, ...ends).toFixed(4));
 }
 
-/// A block or a patch of the ground, ahead of the robot and of what lies there.
+/// Adds a block or a patch of the ground, ahead of the robot and of everything on the ground.
 export function addToGround(list, world, soles) {
   const from = freeGround(world, soles);
   const value = { x: [from, Number((from + 0.2).toFixed(4))], y: [-0.2, 0.2], ...list === "blocks" ? { height: 0.005 } : { friction: 0.4 } };
   return [{ kind: "insert", pointer: `/world/${list}/-`, value }];
 }
 
-/// A field of low waves that is level at its edges.
+/// Adds a field of low waves that is level at its edges.
 export function addField(world, soles) {
   const nodes = 7, wave = (i, j) => Number((0.002 * Math.sin(Math.PI * i / (nodes - 1)) * Math.abs(Math.sin(Math.PI * j / 3))).toFixed(4));
   const heights = Array.from({ length: nodes }, (_, i) => Array.from({ length: nodes }, (_, j) => wave(i, j)));
   return [{ kind: "set", pointer: "/world/field", value: { origin: [freeGround(world, soles), -0.15], spacing: 0.05, heights } }];
 }
 
-/// One more row ahead (along x) or column to the left (along y) of a field, as high as the last one.
+/// Adds one more row ahead (along x) or one more column to the left (along y) of a field, with the
+/// heights of the last one.
 export function growField(field, along) {
   if (along === "x") return [{ kind: "insert", pointer: "/world/field/heights/-", value: field.heights.at(-1) }];
   return field.heights.map((row, i) => ({ kind: "insert", pointer: `/world/field/heights/${i}/-`, value: row.at(-1) }));
 }
 
-/// A tilt of the whole floor there and back.
+/// A tilt of the whole floor and back.
 const tilt = (unit) => ({ shape: "half_sine", duration: 1, pitch: inUnit(2, unit) });
 
 export function addFloorMotion(time, unit) {
   return [{ kind: "insert", pointer: "/world/motion/-", value: { at: roundedTime(time), ...tilt(unit) } }];
 }
 
-/// Another shape of a motion: only a sine has a frequency.
+/// Changes the shape of a motion; only a sine has a frequency.
 export function putShape(pointer, motion, shape) {
   const set = { kind: "set", pointer: pointer + "/shape", value: shape };
   if (shape === "sine" && motion.frequency === undefined) return [set, { kind: "set", pointer: pointer + "/frequency", value: 1 }];
@@ -55,7 +56,7 @@ export function putShape(pointer, motion, shape) {
 
 export const shapes = ["ramp", "half_sine", "sine"];
 
-/// The first joint that turns; an offset of one that slides would be a length.
+/// The first joint that turns, because an offset of a sliding joint would be a length.
 const turning = (joints) => joints.find((one) => !one.prismatic) ?? joints[0];
 
 /// Disturbances other than pushes, each with what it has besides its time.
@@ -80,11 +81,11 @@ const around = (share) => ({ uniform: [Number((1 - share).toFixed(4)), 1 + share
 const within = (most) => ({ uniform: [-most, most] });
 const upTo = (most) => ({ uniform: [0, most] });
 
-/// What a distribution is called.
+/// The names of distributions for people.
 export const distributions = ["uniform", "normal", "truncated", "choice"];
 
-/// What may be uncertain, each with a range to begin with and the unit of its values ("angle" is that of the
-/// pattern); factors and coefficients have none.
+/// The quantities that may be uncertain, each with an initial range and the unit of its values
+/// ("angle" is that of the pattern); factors and coefficients have no unit.
 export const quantities = [
   { what: "mass", words: "masses of the links (factor)", value: () => ({ each: true, ...around(0.05) }) },
   { what: "inertia", words: "inertias of the links (factor)", value: () => ({ each: true, ...around(0.1) }) },
@@ -118,22 +119,24 @@ export function addQuantity(what, unit) {
   return [{ kind: "insert", pointer: "/uncertainty/quantities/-", value: { what, ...one.value(unit), source: assumed } }];
 }
 
-/// A push of half of what the robot can capture, from four sides, in a phase of the walk.
+/// Adds a push from four sides in a phase of the walk, with half of the impulse that the robot can
+/// capture.
 export function addUncertainPush(unit) {
   const choice = [0, 90, 180, 270].map((degrees) => inUnit(degrees, unit));
   return [{ kind: "insert", pointer: "/uncertainty/pushes/-",
     value: { unit: "B", size: 0.5, direction: { choice, source: assumed }, time: "phases", duration: 0.02 } }];
 }
 
-/// Without an item of a list. A list that would be empty goes as a whole, and what holds nothing else, too.
+/// The edits that remove an item of a list. A list that would become empty is removed as a whole,
+/// together with members that contain nothing else.
 export function removeItem(document, path, index) {
   const [part, list] = path;
   if (document[part][list].length > 1) return [{ kind: "remove", pointer: `/${part}/${list}/${index}` }];
   return removeValue(document, `/${part}/${list}`);
 }
 
-/// What has an angle where a pattern may have one: the way to a part of the text, without the items of lists.
-/// Of a list, the last number of a foothold [x, y, z, yaw] is one.
+/// The paths to the angles of a pattern, without the items of lists. In a list, the last number of
+/// a foothold [x, y, z, yaw] is an angle.
 const angleWays = [
   /^postures\/[^/]+\/[^/]+$/,
   /^start\/(left|right)\/(3|rpy\/\d)$/,
@@ -146,14 +149,16 @@ const angleWays = [
 ];
 const lists = /^(phases|keyframes|motion|scenario|quantities|pushes)$/;
 
-/// Whether a value at a place of the pattern is an angle. `what` is that of the uncertain quantity that it is in.
+/// Whether a value at a place of the pattern is an angle. `what` is the kind of the uncertain
+/// quantity that contains it.
 function isAngle(path, what) {
   if (path[0] === "uncertainty" && path[1] === "quantities")
     return /^angle/.test(quantities.find((one) => one.what === what)?.unit) && distributions.includes(path[3]);
   return angleWays.some((way) => way.test(path.filter((name, i) => !(lists.test(path[i - 1]) && /^(\d+|-)$/.test(name))).join("/")));
 }
 
-/// The edits, and where a pattern without a unit of angles gets its first angle, the unit of the page.
+/// The edits. If a pattern without a unit of angles gets its first angle, they also write the unit
+/// of the page.
 export function withUnits(document, edits, unit) {
   if (!document || document.units?.angle !== undefined) return edits;
   const holdsAngle = (value, path, what) => value && typeof value === "object"

@@ -1,5 +1,5 @@
-// The posture at the time of the cursor: sliders of the joints, and places of feet, hands, trunk and
-// COG. The picture shows what is asked for; it is written into the pattern as a key.
+// The posture at the time of the cursor: sliders of the joints, and places of feet, hands, trunk
+// and COG. The picture shows the requested posture, which is written into the pattern as a key.
 
 import { byId, element, fixed, seconds } from "./dom.js";
 
@@ -73,7 +73,7 @@ export class Pose {
     for (const { joint, row } of this.rows || []) row.hidden = !joint.name.toLowerCase().includes(wanted);
   }
 
-  /// Sliders and places follow the motion, except what is being typed.
+  /// Makes the sliders and places follow the motion, except a value that is being typed.
   moved(row) {
     if (byId("tab-pose").hidden) return;
     const columns = this.page.motion.columns;
@@ -104,7 +104,8 @@ export class Pose {
     if (to.every(Number.isFinite)) this.ask({ drag: byId("handle").value, to });
   }
 
-  /// One question at a time; while one is on its way only the latest of the others is kept.
+  /// Asks the server. Only one question is sent at a time; while it is being answered, only the
+  /// latest further question is kept.
   async ask(wanted) {
     this.asked = wanted;
     byId("pose-buttons").hidden = false;
@@ -118,7 +119,8 @@ export class Pose {
         if (!this.asked) break;
         this.answer = status === 200 ? value : null;
         byId("pose-words").textContent = status === 200 ? value.message || "" : value.message || "The server cannot make this change. Please reload the page.";
-        // A drag is looked at in the picture, so what it cannot do is said there.
+        // The author looks at the picture during a drag, so the message about what is impossible is
+        // shown there.
         if (sent.drag || sent.target) this.page.say(byId("pose-words").textContent);
         if (this.answer?.row) this.page.preview(Float32Array.from(this.answer.row));
       }
@@ -137,7 +139,7 @@ export class Pose {
     if (!kept) this.page.preview(null);
   }
 
-  /// Back to the motion as it is written.
+  /// Shows the motion as it is written again.
   drop() {
     this.forget();
     this.page.preview(null);

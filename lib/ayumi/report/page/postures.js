@@ -1,4 +1,5 @@
-// Named postures: captured from the motion, as they are or mirrored, and put on a key.
+// Named postures: they are captured from the motion, either as they are or mirrored, and put on a
+// key.
 
 import { byId, element, seconds } from "./dom.js";
 import { putKey } from "./edits.js";
@@ -15,7 +16,7 @@ export class Postures {
   async capture(mirror) {
     const name = byId("posture-name").value.trim();
     if (!name) return;
-    // Of a run, the joints are those that are shown.
+    // For a run, the captured joints are those that are shown.
     const columns = this.page.motion.columns, row = this.page.row();
     const joints = this.page.showsPlan() ? {} : Object.fromEntries(this.page.state.joints.map((one) => [one.name, row[columns["q." + one.name]]]));
     const { status, value } = await this.page.server.ask("POST", "posture",

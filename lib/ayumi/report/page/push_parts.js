@@ -1,6 +1,6 @@
-// Pushes in words, and as arrows of the picture.
+// Pushes in words, and as arrows in the picture.
 
-/// A disturbance in words, without its time: "impulse of 2 N s on cog towards 180 degrees".
+/// A disturbance in words without its time, such as "impulse of 2 N s on cog towards 180 degrees".
 export function wordsOfPush({ type, text, size, unit, link, direction }) {
   if (size === undefined) return text;
   const [x, y, z] = direction || [0, 0, 0], turn = Math.round(Math.atan2(y, x) * 180 / Math.PI);
@@ -8,7 +8,7 @@ export function wordsOfPush({ type, text, size, unit, link, direction }) {
   return `${type} of ${Number(size.toPrecision(6))} ${unit} on ${link}${way}`;
 }
 
-/// The pushes at the COG as the picture draws them.
+/// The pushes at the COG in the form in which the picture draws them.
 export const arrowsOf = (disturbances) => disturbances.filter((one) => one.direction && one.link === "cog" && one.type !== "torque")
   .map(({ from, until, direction }) => ({ begin: from, end: until, from_cog: [0, 0, 0],
     direction: direction.map((x) => x / Math.hypot(...direction)) }));

@@ -8,8 +8,9 @@ import { wordsOfPush } from "./push_parts.js";
 
 const units = { impulse: "N s", force: "N" };
 
-/// An arrow as long as half of the robot is tall stands for a push that changes the COG's velocity by
-/// 0.3 m/s, about the largest that a robot on level ground survives; a force acts for `duration`.
+/// The size of the push for an arrow. An arrow as long as half of the robot's height stands for a
+/// push that changes the COG's velocity by 0.3 m/s, about the largest push that a robot on level
+/// ground survives. A force acts for `duration`.
 export function sizeOfArrow(length, height, weight, type, duration) {
   const impulse = 0.3 * (weight / 9.80665) * length / (0.5 * height);
   const size = type === "impulse" ? impulse : impulse / Math.max(0.001, duration);
@@ -43,7 +44,7 @@ export class Pushes {
     this.page.say(on ? "Drag an arrow in the picture, away from the robot's COG. Escape ends the drawing." : "");
   }
 
-  /// While an arrow is drawn; `done` when it is let go.
+  /// Called while an arrow is drawn; `done` is true when it is released.
   drawn(way, done) {
     const { config } = this.page.viewer, type = byId("push-type").value;
     const size = sizeOfArrow(way.length(), config.height, config.weight, type, Number(byId("push-duration").value));
@@ -63,7 +64,7 @@ export class Pushes {
       duration: Number(byId("push-duration").value), size: Number(byId("push-size").value), direction }));
   }
 
-  /// Another disturbance, which is then shown with its values.
+  /// Adds another disturbance, and then shows it with its values.
   async addOther() {
     const { page } = this, { length } = page.state.disturbances;
     if (await page.edit(addOther(byId("other-type").value, page.time, page.state)))

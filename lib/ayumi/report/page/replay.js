@@ -1,5 +1,5 @@
-// The replay of a report: the viewer with the data of the page, one time for the scene, the scrub bar
-// and the cursors in the plots.
+// The replay of a report: the viewer with the data of the page. The scene, the scrub bar and the
+// cursors in the plots share one time.
 
 import { Vector3 } from "three";
 import { GLTFLoader } from "three/examples/jsm/loaders/GLTFLoader.js";
@@ -47,7 +47,7 @@ function drawCursors() {
 }
 
 const cursors = drawCursors();
-/// Three digits, whole numbers above.
+/// A number with three digits, or a whole number if it is larger.
 const digits = (value) => fixed(value, Math.abs(value) < 9.995 ? 2 : Math.abs(value) < 99.95 ? 1 : 0);
 const millimetres = (value) => digits(1000 * value);
 const place = (name, row, axes) => axes.map((axis) => millimetres(row[columns[name + "." + axis]]))

@@ -1,5 +1,6 @@
-// The robot's bodies placed by a row of a motion: the pose of the base and the values of the joints,
-// by the tree that the page's state describes. Painted bodies stand out from the rest.
+// Places the robot's bodies by a row of a motion: by the pose of the base and the values of the
+// joints, with the tree that the page's state describes. Painted bodies have another colour than
+// the rest.
 
 import { Color, MeshLambertMaterial, Quaternion, Vector3 } from "three";
 
@@ -46,7 +47,7 @@ export class Rig {
     });
   }
 
-  /// Bodies in `wrong` in red; the others grey where the motion is older than the text.
+  /// Paints the bodies in `wrong` red, and the others grey if the motion is older than the text.
   paint(wrong, old) {
     for (const { mesh, body, material } of this.meshes)
       mesh.material = wrong.includes(body) ? paints.wrong : old ? paints.old : material;

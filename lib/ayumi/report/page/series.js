@@ -1,12 +1,12 @@
-// The run's quantities over time, as one table of rows whose first column is the time; and the
-// convex hull that makes soles a support polygon.
+// The quantities of a run over time, as one table of rows whose first column is the time, and the
+// convex hull that makes a support polygon of the soles.
 
 export function clampTime({ table, width, rows }, t) {
   const first = table[0], last = table[(rows - 1) * width];
   return Math.min(last, Math.max(first, Number.isFinite(t) ? t : first));
 }
 
-/// Index of the last row not after t.
+/// The index of the last row that is not after t.
 function indexAt({ table, width, rows }, t) {
   let low = 0, high = rows - 1;
   while (low < high) {
@@ -22,7 +22,8 @@ export function rowAt(series, t) {
   return series.table.subarray(start, start + series.width);
 }
 
-/// Row at t, between two rows their mix; names that end in _planned are as in the row before.
+/// The row at t, interpolated between two rows; columns whose names end in _planned keep the value
+/// of the earlier row.
 export function sampleAt(series, t) {
   const at = clampTime(series, t), index = indexAt(series, at), { table, width, columns } = series;
   const a = table.subarray(index * width, (index + 1) * width);
@@ -34,7 +35,7 @@ export function sampleAt(series, t) {
   return row;
 }
 
-/// Corners of the hull seen from above, counter-clockwise; points are [x, y, z].
+/// The corners of the hull seen from above, counter-clockwise; points are [x, y, z].
 export function convexHull(points) {
   const sorted = [...points].sort((a, b) => a[0] - b[0] || a[1] - b[1]);
   const turn = (o, a, b) => (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0]);

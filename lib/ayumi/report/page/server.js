@@ -1,8 +1,8 @@
-// The server of the live page: what it knows and what it can be asked for. All addresses are relative
-// to the page's, whose first part is the secret token.
+// The server of the live page: what it knows and what it can be asked. All addresses are relative
+// to the page's address, whose first part is the secret token.
 
 export class Server {
-  /// `hooks`: state(version), job(news), lost(), found().
+  /// `hooks` are the functions state(version), job(news), lost() and found().
   constructor(hooks) {
     this.hooks = hooks;
   }
@@ -33,7 +33,7 @@ export class Server {
     try {
       value = await answer.json();
     } catch {
-      // An empty answer says all by its status.
+      // An empty answer has no other information than its status.
     }
     return { status: answer.status, value };
   }

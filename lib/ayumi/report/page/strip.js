@@ -6,7 +6,7 @@ import { colorOf, heightOf, strain, worstIn } from "./strip_colors.js";
 const worded = (lane, value) => value === null || value === undefined ? "no value"
   : fixed(value, lane.digits ?? 1) + " " + lane.unit;
 
-/// The name, and where the motion is nearest to the limit, in words.
+/// The name of the lane and, in words, where the motion is nearest to the limit.
 function summary(lane, dt) {
   const worst = worstIn(lane, dt, 0, Infinity);
   if (!worst) return `${lane.name}: no value`;

@@ -1,7 +1,7 @@
-// How near a quantity is to its limit, as a colour and as a height, so that the strip can also be
-// read without colours.
+// Shows how near a quantity is to its limit, as a colour and as a height, so that the strip can
+// also be read without colours.
 
-/// 0 where the value is comfortably good, 1 at the limit, above 1 beyond it; null without a value.
+/// 0 at the warning or better, 1 at the limit, and above 1 beyond it; null without a value.
 export function strain(lane, value) {
   if (value === null || value === undefined || Number.isNaN(value)) return null;
   const span = Math.abs(lane.limit - lane.warn) || 1e-12;
@@ -10,7 +10,8 @@ export function strain(lane, value) {
 
 const stops = [[47, 143, 111], [226, 174, 42], [211, 106, 26], [190, 24, 24]];
 
-/// Good is one colour, from the warning to the limit it goes to orange, beyond the limit it is red.
+/// Good values have one colour. From the warning to the limit, the colour changes to orange; beyond
+/// the limit it is red.
 export function colorOf(share) {
   if (share === null) return "transparent";
   if (share > 1) return `rgb(${stops[3]})`;
@@ -19,13 +20,14 @@ export function colorOf(share) {
   return `rgb(${mixed})`;
 }
 
-/// Share of the lane's height that is filled: a half where all is good, all of it beyond the limit.
+/// The share of the lane's height that is filled: 0.4 for good values, up to 0.75 at the limit, and
+/// all of it beyond the limit.
 export function heightOf(share) {
   if (share === null) return 0;
   return share > 1 ? 1 : 0.4 + 0.35 * Math.max(0, share);
 }
 
-/// The most strained sample with a time in [from, to), at least the one at `from`.
+/// The worst sample with a time in [from, to); the interval contains at least the sample at `from`.
 export function worstIn(lane, dt, from, to) {
   const first = Math.max(0, Math.min(lane.values.length - 1, Math.round(from / dt)));
   const end = Math.max(first + 1, Math.min(lane.values.length, Math.ceil(to / dt)));

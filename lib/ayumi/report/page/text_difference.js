@@ -1,7 +1,8 @@
-// Lines of two texts side by side, for the choice between two versions of a file.
+// The lines of two texts side by side, for the choice between two versions of a file.
 
-/// [{ left, right, same }]; null where one side has no line. Beyond `most` lines in the part that
-/// differs, the two parts are put beside each other without a search for common lines.
+/// Returns a list of { left, right, same }; a side without a line is null. If the part that differs
+/// has more than `most` lines, its two sides are put beside each other without a search for common
+/// lines.
 export function sideBySide(left, right, most = 1500) {
   const a = left.split("\n"), b = right.split("\n");
   let head = 0;
@@ -24,7 +25,8 @@ function middle(a, b, most) {
     pair(a, b);
     return rows;
   }
-  // Length of the longest common part of what follows line i of a and line j of b.
+  // The length of the longest common part of the lines after line i of a and those after line j of
+  // b.
   const width = b.length + 1, longest = new Uint16Array((a.length + 1) * width);
   for (let i = a.length - 1; i >= 0; --i)
     for (let j = b.length - 1; j >= 0; --j)
@@ -47,7 +49,7 @@ function middle(a, b, most) {
   return rows;
 }
 
-/// Only the lines near a difference; a gap of equal lines is one row { gap: number of lines }.
+/// Only the lines near a difference; a gap of equal lines becomes one row { gap: number of lines }.
 export function nearDifferences(rows, around = 3) {
   const near = rows.map(() => false);
   rows.forEach((row, i) => {

@@ -1,7 +1,7 @@
 // The window of time that the timeline, the strip and the curves show together. Places are shares of
 // the width, from 0 at the left to 1 at the right.
 
-const shortest = 0.05;  // [s] that the window shows at least
+const shortest = 0.05;  // [s] shortest time that the window shows
 
 export class TimeAxis {
   constructor(duration = 1) {
@@ -10,7 +10,8 @@ export class TimeAxis {
     this.to = duration;
   }
 
-  /// Another duration: the whole stays the whole, a part stays where it is as far as it can.
+  /// Takes over another duration. A window that shows the whole still shows the whole; a part keeps
+  /// its place as far as possible.
   stretch(duration) {
     const whole = this.from <= 0 && this.to >= this.duration;
     this.duration = Math.max(shortest, duration);
@@ -28,7 +29,7 @@ export class TimeAxis {
     this.show(about - (about - this.from) / factor, about + (this.to - about) / factor);
   }
 
-  /// The window is moved so that t is in it.
+  /// Moves the window so that t is in it.
   reveal(t) {
     const span = this.to - this.from;
     if (t < this.from || t > this.to) this.show(t - span / 2, t + span / 2);
@@ -42,7 +43,7 @@ export class TimeAxis {
     return this.from + share * (this.to - this.from);
   }
 
-  /// Round times, at most `most` in the window.
+  /// Round times in the window, `most` at most.
   ticks(most) {
     const rough = (this.to - this.from) / Math.max(1, most);
     const power = 10 ** Math.floor(Math.log10(rough));
@@ -55,7 +56,7 @@ export class TimeAxis {
   }
 }
 
-/// t, or the nearest of `candidates` where one is within `tolerance`.
+/// The nearest of `candidates` if one is within `tolerance` of t, otherwise t.
 export function snapped(t, candidates, tolerance) {
   let best = t, distance = tolerance;
   for (const candidate of candidates)

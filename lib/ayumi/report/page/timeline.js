@@ -9,7 +9,7 @@ const supportWords = { both: "both", left: "left", right: "right", none: "flight
 const trackWords = { zmp: "ZMP", cog: "COG", fz: "Vertical force", torso: "Trunk",
   trunk: "Trunk", posture: "Posture", weights: "Weights" };
 
-/// The least round step that a pixel of the timeline tells apart [s].
+/// The smallest round step that is at least as long as a pixel of the timeline [s].
 export const roundStep = (perPixel) => [0.001, 0.01, 0.1].find((step) => step >= perPixel) ?? 1;
 
 export const nameOfTrack = (track) => trackWords[track.name] ||
@@ -66,7 +66,7 @@ export class Timeline {
     return `left:${left.toFixed(3)}%;width:${Math.max(0, right - left).toFixed(3)}%`;
   }
 
-  /// Pixels that a duration takes.
+  /// The number of pixels that a duration takes.
   wide(duration) {
     return duration / (this.page.axis.to - this.page.axis.from) * (byId("ruler").clientWidth || 600);
   }
@@ -128,13 +128,13 @@ export class Timeline {
     return this.lane(name, parts, "track");
   }
 
-  /// The thing of the timeline that is selected has the focus.
+  /// Gives the focus to the selected thing of the timeline.
   focusSelected() {
     byId("time").querySelector(".plot > [aria-pressed=true]")?.focus();
   }
 
-  /// The Tab key stops at one thing of a lane, the arrow keys go from one to the next, and Enter goes to
-  /// the values of what it selects.
+  /// The Tab key stops at one thing of each lane, the arrow keys go from one thing to the next, and
+  /// Enter goes to the values of the selected thing.
   onestop(parts) {
     const first = parts.find((part) => part.getAttribute("aria-pressed") === "true") || parts[0];
     for (const part of parts) {
@@ -158,7 +158,7 @@ export class Timeline {
     }
   }
 
-  /// A posture that is dropped on a key becomes the posture of its keyframe.
+  /// If a posture is dropped on a key, it becomes the posture of its keyframe.
   dropPosture(mark, key) {
     mark.addEventListener("dragover", (event) => {
       if (!event.dataTransfer.types.includes("text/ayumi-posture")) return;
@@ -219,7 +219,8 @@ export class Timeline {
     return this.lane("Findings", parts, "events");
   }
 
-  /// Drag by pointer, or Ctrl and the arrow keys (with Shift by 1 ms), which are written after a rest.
+  /// Makes a thing movable by dragging, or by Ctrl and the arrow keys (with Shift by 1 ms). A move
+  /// by keys is written after a short pause.
   movable(mark, { time, room, edits, together }) {
     let shown = time, timer = 0;
     const { version } = this.page.state;
@@ -235,7 +236,7 @@ export class Timeline {
       this.dragged = null;
       byId("time-tip").hidden = true;
       mark.classList.remove("dragged");
-      // The file has other places now: what is dragged may be another thing there.
+      // The file has changed, so that what is dragged may be another thing now.
       const changed = this.page.state.version !== version;
       if (write && changed) this.page.say("The file changed while you dragged, so nothing was written. Please drag again.");
       const list = write && !changed ? edits(shown) : [];
@@ -274,7 +275,7 @@ export class Timeline {
         mark.removeEventListener("lostpointercapture", cancel);
         removeEventListener("keydown", escape, true);
         if (!begun) return;
-        // The click that ends a drag selects nothing.
+        // The click that ends a drag does not select anything.
         const swallow = (event) => event.stopImmediatePropagation();
         mark.addEventListener("click", swallow, { capture: true, once: true });
         setTimeout(() => mark.removeEventListener("click", swallow, true));
@@ -290,7 +291,7 @@ export class Timeline {
     });
     mark.addEventListener("keydown", (event) => {
       const way = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
-      // A move that is not written yet is taken back, and nothing before it.
+      // Takes back a move that is not written yet, and nothing before it.
       const back = event.key === "Escape" || (event.ctrlKey && !event.shiftKey && event.key.toLowerCase() === "z");
       if (back && timer) {
         clearTimeout(timer);
@@ -308,14 +309,15 @@ export class Timeline {
     });
   }
 
-  /// A time that was pointed at: that of a key or the end of a phase nearby, else a round one.
+  /// The time at which the author points: that of a nearby key or end of a phase, otherwise a round
+  /// time.
   pointed(t, perPixel) {
     const { state } = this.page, step = roundStep(perPixel);
     const near = snapped(t, [...state.phases.map((phase) => phase.until), ...state.keyframes.map((frame) => frame.time)], 4 * perPixel);
     return near !== t ? near : roundedTime(Math.round(t / step) * step);
   }
 
-  /// Times that a dragged thing snaps to.
+  /// Times to which a dragged thing snaps.
   times() {
     const { state, time } = this.page;
     return [time, ...state.phases.map((phase) => phase.until),

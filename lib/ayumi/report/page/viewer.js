@@ -1,6 +1,6 @@
 // The robot in 3-D, moved through time, with marks of the motion's quantities: COG, ZMP, support
-// polygon, foot forces, pushes. A page gives it a motion and decides which marks are shown; the
-// report's replay and the authoring page both use it.
+// polygon, foot forces, pushes. A page gives it a motion and decides which marks are shown. Both
+// the report's replay and the authoring page use it.
 
 import {
   AmbientLight, AnimationMixer, BufferAttribute, BufferGeometry, CircleGeometry, Color,
@@ -23,7 +23,7 @@ function disc(inner, outer, color) {
   return mark;
 }
 
-/// Along its own y axis, from 0 to 1 when its length is 1.
+/// An arrow along its own y axis, from 0 to 1 when its length is 1.
 function arrow(color) {
   const material = new MeshBasicMaterial({ color, depthTest: false, transparent: true });
   const shaft = new Mesh(new CylinderGeometry(1, 1, 1, 12).translate(0, 0.5, 0), material);
@@ -33,8 +33,8 @@ function arrow(color) {
   return Object.assign(mark, { shaft, head });
 }
 
-/// Lines of a grid over -reach..reach, cut at every crossing: some renderers lose a line that
-/// begins behind the eye, and then only its nearest piece goes.
+/// The lines of a grid over -reach..reach, cut at every crossing. Some renderers lose a line that
+/// begins behind the eye; then only the nearest piece is lost.
 function grid(reach, spacing) {
   const ends = [], count = Math.round(reach / spacing);
   const cuts = Array.from({ length: 2 * count + 1 }, (_, i) => (i - count) * spacing);
@@ -74,7 +74,7 @@ function onGround({ normal, origin }, p, lift) {
   return below.addScaledVector(normal, lift);
 }
 
-/// Names may be changed on loading; the number of the body is not.
+/// Names may be changed on loading, but the number of the body is not.
 export function bodyOf(actor, number) {
   let found = null;
   actor.root.traverse((part) => { if (part.userData.body === number) found = part; });
@@ -83,12 +83,12 @@ export function bodyOf(actor, number) {
 
 // ---- scene
 
-/// A motion is { config, series, scenery }: what a page's JSON says of it, its rows (series.js) and
-/// the triangles that stand on the ground.
+/// A motion is { config, series, scenery }: its description in the page's JSON, its rows
+/// (series.js) and the triangles of the ground.
 export class Viewer {
-  /// `gltf` is the robot, with the colour for ghosts of it; its animations, if it has any, are the
-  /// motion and its ghosts. `hooks`: shown(mark) says whether a mark is drawn, moved(time, row, push)
-  /// and played(on) tell the page.
+  /// `gltf` is the robot, with the colour for its ghosts. Its animations, if it has any, are the
+  /// motion and its ghosts. `hooks` are functions: shown(mark) says whether a mark is drawn;
+  /// moved(time, row, push) and played(on) inform the page.
   constructor(stage, motion, gltf, hooks) {
     this.time = 0;
     this.playing = false;
@@ -106,7 +106,7 @@ export class Viewer {
     this.last = series.table[(series.rows - 1) * series.width];
   }
 
-  /// Another motion of the same robot in the place of the one that is shown.
+  /// Shows another motion of the same robot in place of the present one.
   replace(motion) {
     this.take(motion);
     this.scene.remove(this.floor);
@@ -152,7 +152,7 @@ export class Viewer {
     this.scene.add(m.cog, m.zmp, m.reference, m.support, m.push, ...m.forces);
   }
 
-  /// Grid, what stands on it and what comes up from it, in the floor's frame.
+  /// The grid, and everything that is on it or rises from it, in the floor's frame.
   ground() {
     const ground = this.floor = new Group(), plane = new Group();
     this.grid = new Group().add(grid(3, 0.1), grid(10, 1));
@@ -193,7 +193,7 @@ export class Viewer {
     const { position, quaternion } = this.floorAt(row);
     this.floor.position.copy(position);
     this.floor.quaternion.copy(quaternion);
-    // The grid comes along in steps that do not show.
+    // The grid moves with the robot in steps that are not visible.
     const under = this.vector("cog", row).sub(position).applyQuaternion(quaternion.clone().invert());
     this.grid.position.set(Math.round(under.x), Math.round(under.y), 0);
     for (const { mesh, begin, end, rise } of this.bumps) {
@@ -203,7 +203,7 @@ export class Viewer {
     }
   }
 
-  /// The robot moved by an animation of its glTF file.
+  /// Adds the robot, moved by an animation of its glTF file.
   addActor(model, clip, ghost) {
     const mixer = new AnimationMixer(model), action = mixer.clipAction(clip);
     action.setLoop(LoopOnce);
@@ -217,7 +217,7 @@ export class Viewer {
     });
   }
 
-  /// The robot moved by a function of time. glTF's y becomes the world's z again.
+  /// Adds the robot, moved by a function of time. glTF's y becomes the world's z again.
   addMoved(name, model, ghost, move) {
     const actor = { name, ghost, move, root: new Group() };
     actor.root.rotation.x = Math.PI / 2;
@@ -227,12 +227,13 @@ export class Viewer {
       if (!part.isMesh) return;
       part.castShadow = !ghost;
       if (!ghost) return;
-      // A ghost lies a little behind where it is: what coincides with it is seen, without speckle.
+      // A ghost is drawn slightly behind its place, so that parts that coincide with it are visible
+      // without flickering.
       const behind = { polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 400,
         transparent: true };
       part.material = new MeshLambertMaterial({ color: this.ghostColor, opacity: 0.4, ...behind });
       part.renderOrder = 2;
-      // Its depth comes first, so that only its nearest surface shines through.
+      // The depth of the ghost is drawn first, so that only its nearest surface is visible.
       const depth = new Mesh(part.geometry, new MeshBasicMaterial({ colorWrite: false, ...behind }));
       depth.renderOrder = 1;
       depths.push([part, depth]);
@@ -274,7 +275,7 @@ export class Viewer {
     fit();
   }
 
-  /// Frame of the floor: as it stands, or as a row says where it moves.
+  /// The frame of the floor: its fixed frame, or the frame in a row if the floor moves.
   floorAt(row) {
     const at = (name) => row[this.columns["floor." + name]];
     if (this.columns["floor.x"] === undefined)
@@ -284,7 +285,8 @@ export class Viewer {
       quaternion: new Quaternion(at("qx"), at("qy"), at("qz"), at("qw")).normalize() };
   }
 
-  /// The plane that marks lie on: the ground, or the level above it of the higher foot in contact.
+  /// The plane on which marks are drawn: the ground, or the level above it of the higher foot in
+  /// contact.
   planeAt(row) {
     const floor = this.floorAt(row);
     const normal = new Vector3(0, 0, 1).applyQuaternion(floor.quaternion);
@@ -325,7 +327,7 @@ export class Viewer {
     return onGround(this.planeAt(row), this.vector("cog", row), 0.48 * this.config.height);
   }
 
-  /// Everything at time t: robot, ghosts, marks, camera, plots, controls.
+  /// Shows everything at time t: robot, ghosts, marks, camera, plots, controls.
   show(t) {
     const before = this.focus(sampleAt(this.series, this.time));
     this.time = clampTime(this.series, t);
@@ -359,7 +361,7 @@ export class Viewer {
       this.vector(side + "_force", row), 0.5 * size / this.config.weight));
     this.placeSupport(row, plane);
     for (const mark of m.forces) mark.visible = mark.visible && this.hooks.shown("forces");
-    // In flight there is no ZMP, although the row holds the last.
+    // In flight there is no ZMP, although the row still has the last one.
     const planned = ["left", "right"].some((side) => row[this.columns[side + "_planned"]] > 0.5);
     m.zmp.visible = row[this.columns.fz] > 0 && this.hooks.shown("zmp");
     m.reference.visible = planned && this.hooks.shown("ref-zmp");
@@ -399,7 +401,7 @@ export class Viewer {
     m.area.geometry.setIndex(fan);
   }
 
-  /// Shows the marks that the page wants and the ghosts of these names.
+  /// Shows the marks that the page wants, and the ghosts with these names.
   switchMarks(ghosts) {
     const m = this.marks;
     m.cog.visible = this.hooks.shown("cog");
@@ -407,7 +409,7 @@ export class Viewer {
     this.show(this.time);
   }
 
-  /// One picture for all that changes until the browser shows the next one.
+  /// Draws one picture for all changes until the browser shows the next picture.
   draw() {
     this.frame ??= requestAnimationFrame(() => this.paint());
   }

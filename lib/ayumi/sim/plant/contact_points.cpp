@@ -19,7 +19,8 @@ using Eigen::Vector3d;
 namespace {
 
 /// Penetration of a body that rests on four of its points [m]. Chosen: almost rigid, and far above
-/// the rounding of positions at 10 m (2e-15 m). Figures change by less than 5 % from half to twice.
+/// the rounding of positions at 10 m (2e-15 m). Between half and twice the value, figures change by
+/// less than 5 %.
 constexpr double kStaticSink = 1e-7;
 
 /// Points of a collision shape that may touch the ground, in the frame of the link.
@@ -52,8 +53,8 @@ std::vector<ContactPoint> touch_points(const PlacedShape& placed) {
   return points;
 }
 
-/// Whether the sole lies between the ground and a point of the link above the foot's body when the
-/// robot stands at home: an ankle whose shape is nearly as low as the foot does not touch the
+/// Whether the foot's sole lies between the ground and a point of the link above the foot when the
+/// robot stands at home. An ankle whose shape is nearly as low as the foot does not touch the
 /// ground when the leg leans.
 class ShieldedByFoot {
  public:
@@ -149,7 +150,7 @@ void corner_weights(const std::vector<Vector2d>& polygon, const Vector2d& p,
   double sum = 0;
   for (size_t i = 0; i < n; ++i) {
     double w = area(polygon[(i + n - 1) % n], polygon[i], polygon[(i + 1) % n]);
-    for (size_t j = 0; j < n; ++j)  // sides that do not end at corner i
+    for (size_t j = 0; j < n; ++j)  // for all sides that do not end at corner i
       if (j != i && (j + 1) % n != i) w *= std::max(0.0, area(polygon[j], polygon[(j + 1) % n], p));
     weights[i] = w;
     sum += w;

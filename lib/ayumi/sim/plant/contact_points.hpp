@@ -1,6 +1,6 @@
 #pragma once
 // The points of a robot that may touch the ground: the corners of its soles and of its collision
-// shapes, each with its spring.
+// shapes. Each has its spring.
 
 #include <Eigen/Dense>
 #include <vector>
@@ -12,35 +12,35 @@ namespace ayumi {
 /// A point of a body, or the lowest point of a sphere or circle around it, with its spring.
 struct ContactPoint {
   int body = 0;
-  Eigen::Vector3d position;  ///< body frame [m]
+  Eigen::Vector3d position;  ///< position in the body frame [m]
   double radius = 0;         ///< radius of the sphere around it [m]
-  /// Radius of a circle around it whose lowest point touches: an end of a cylinder that rolls [m].
-  /// A level circle has no lowest point; other points then carry the cylinder.
+  /// The radius of a circle around it whose lowest point touches, which is the end of a rolling
+  /// cylinder [m]. A level circle has no lowest point; other points then carry the cylinder.
   double rim = 0;
-  Eigen::Vector3d axis = Eigen::Vector3d::Zero();  ///< axis of the circle, body frame
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();  ///< axis of the circle in the body frame
   double stiffness = 0;                            ///< [N/m]
-  double damping_time = 0;                         ///< damping / stiffness [s]
-  int side = -1, vertex = -1;                      ///< Side of the sole; -1: no sole
+  double damping_time = 0;                         ///< ratio of damping to stiffness [s]
+  int side = -1, vertex = -1;  ///< Side of the sole, and its vertex; -1: not a sole
 };
 
-/// Consecutive points of one body and a sphere that contains them, body frame.
+/// Consecutive points of one body, and a sphere that contains them, in the body frame.
 struct PointGroup {
   int body = 0, first = 0, count = 0;
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   double radius = 0;
 };
 
-/// The points of the soles (left, right, in the order of their polygons), then those of the
-/// collision shapes of all links that are not part of a foot: corners of boxes, centres of spheres,
-/// ends of capsules, eight corners and the rim of each end of a cylinder, and vertices of meshes
-/// (of large meshes those farthest out in 90 directions). Points of the link above a foot that the
-/// sole shields from the ground at home are left out.
+/// The points of the soles (left, then right, in the order of their polygons), then the points of
+/// the collision shapes of all links that are not part of a foot: corners of boxes, centres of
+/// spheres, ends of capsules, eight corners and the rim of each end of a cylinder, and vertices of
+/// meshes (of large meshes those farthest out in 90 directions). Points of the link above a foot
+/// that the sole shields from the ground at home are left out.
 std::vector<ContactPoint> contact_points(const RobotModel& model);
 
-/// Stiffness of a contact point of a body that is no sole: almost rigid [N/m].
+/// The stiffness of a contact point of a body that is not a sole: almost rigid [N/m].
 double body_stiffness(const RobotModel& model);
-/// Damping over stiffness of such a point [s]. Chosen: four steps of 1 ms, so that an impact of a
-/// body is inelastic. Figures change by less than 5 % from half to twice.
+/// Ratio of damping to stiffness of such a point [s]. Chosen: four steps of 1 ms, so that an impact
+/// of a body is inelastic. Between half and twice the value, figures change by less than 5 %.
 constexpr double kBodyDamping = 0.004;
 
 std::vector<PointGroup> group_points(const std::vector<ContactPoint>& points);

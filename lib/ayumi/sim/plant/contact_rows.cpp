@@ -27,7 +27,7 @@ ContactRows::ContactRows(const RobotModel& model, const TreeCholesky& factor, si
       chain_lines_[body].push_back(factor.depth(factor.place_of(6 + model.bodies()[b].dof)));
     }
   const auto columns = static_cast<size_t>(model.velocity_count());
-  const size_t usual = std::min<size_t>(points, 16);  // the corners of both soles
+  const size_t usual = std::min<size_t>(points, 16);  // usually the corners of both soles
   solver_.resize(static_cast<int>(usual));
   J_.resize(usual * 4 * columns);
   Y_.resize(J_.size());
@@ -175,7 +175,7 @@ bool ContactRows::take_springs(const RobotData& data, const TreeCholesky& factor
     Eigen::Map<Vector3d> u(&rates_change_[3 * i]);
     u += shift_[i];
     if (impulse(i)[0] > 0) {
-      u *= -1 / compliance_[i];  // now the impulse
+      u *= -1 / compliance_[i];  // this is now the impulse
       if (!(u[0] > 0 && inside_cone(u, solver_.friction()[i]))) return false;
     } else {
       solution.residual = std::max(solution.residual, -u[0]);
@@ -222,7 +222,7 @@ void ContactRows::fill_problem(const RobotData& data, const TreeCholesky& factor
     A.diagonal().segment<3>(3 * static_cast<Eigen::Index>(i)).array() += compliance_[i];
 }
 
-// The part of A that two blocks make. `other` was filled before, or is the same block.
+// The part of A for two blocks. `other` was filled before, or is the same block.
 void ContactRows::couple(const Block& block, const Block& other, const RobotData& data,
                          const TreeCholesky& factor) {
   auto A = solver_.A();
@@ -253,7 +253,7 @@ void ContactRows::couple(const Block& block, const Block& other, const RobotData
     }
 }
 
-// Rows of a block times a vector of the places on its path.
+// The rows of a block times a vector of the places on its path.
 Eigen::Map<const VectorXd> ContactRows::times_path(const Block& block, const double* rows,
                                                    const VectorXd& x, const RobotData& data,
                                                    const TreeCholesky& factor) {
@@ -267,7 +267,7 @@ Eigen::Map<const VectorXd> ContactRows::times_path(const Block& block, const dou
   return {product_.data(), block.width};
 }
 
-// J times a velocity, three rates per contact.
+// J times a velocity: three rates for each contact.
 void ContactRows::multiply(const RobotData& data, const TreeCholesky& factor,
                            const VectorXd& velocity, std::vector<double>& rates) {
   for (int k = 0; k < velocity.size(); ++k) placed_[k] = velocity[factor.column_at(k)];

@@ -1,8 +1,8 @@
 #pragma once
-// The contacts of a step, as springs in its matrix where all that press stick, else as a problem
-// for the ContactSolver: Jacobians J of the contact points, Y = L^-T J' with the factor L of the
-// step's matrix, the Delassus matrix A = Y' Y + compliance and the right side b.
-// docs/theory_plant.md, (P2) and (P3).
+// The contacts of a step. If all pressing contacts stick, they are springs in the matrix of the
+// step; otherwise they are a problem for the ContactSolver: Jacobians J of the contact points, Y =
+// L^-T J' with the factor L of the step's matrix, the Delassus matrix A = Y' Y + compliance and the
+// right side b. docs/theory_plant.md, (P2) and (P3).
 
 #include <Eigen/Dense>
 #include <vector>
@@ -15,41 +15,42 @@ namespace ayumi {
 
 class ContactRows {
  public:
-  /// Reserves room for the corners of both soles, `points` being the robot's number of points.
+  /// Reserves memory for the corners of both soles. `points` is the robot's number of points.
   ContactRows(const RobotModel& model, const TreeCholesky& factor, size_t points);
 
-  /// Jacobians, compliances, gaps and friction of the contacts of a step of `dt` [s]. `before` is
-  /// the generalised velocity at its start.
+  /// Computes Jacobians, compliances, gaps and friction of the contacts of a step of `dt` [s].
+  /// `before` is the generalised velocity at its start.
   void set(const std::vector<ActiveContact>& contacts, const RobotData& data,
            const TreeCholesky& factor, const Eigen::VectorXd& before, double dt);
 
-  /// Whether every contact that pressed last pressed inside its cone, on the ground.
+  /// Whether every contact that pressed in the last solve was on the ground and inside its cone.
   bool all_stick() const;
 
-  /// Puts these contacts, as they were in the last solve, into the rows of the step's matrix as
-  /// springs that pull both ways, and into the right side `x` in the order of places. The others
-  /// stay open.
+  /// Adds these contacts, as they were in the last solve, to the rows of the step's matrix as
+  /// springs that push and pull, and to the right side `x` in the order of places. The other
+  /// contacts stay open.
   void add_springs(const RobotData& data, const TreeCholesky& factor, std::vector<double>& matrix,
                    Eigen::VectorXd& x);
 
-  /// Takes the impulses of the springs, `change` being the solved change of velocity in the order
-  /// of places. False, and the impulses are as before, where a contact does not obey its law.
+  /// Takes over the impulses of the springs. `change` is the solved change of velocity in the order
+  /// of places. If a contact does not obey its law, returns false and leaves the impulses as
+  /// before.
   bool take_springs(const RobotData& data, const TreeCholesky& factor,
                     const Eigen::VectorXd& change, ContactSolution& solution);
 
-  /// Solves the contacts with the factor L of the step's matrix. `x` holds L^-T times the right
+  /// Solves the contacts with the factor L of the step's matrix. `x` contains L^-T times the right
   /// side of the free motion, in the order of places, and receives L^-T J' times the impulses.
   ContactSolution solve(const RobotData& data, const TreeCholesky& factor, Eigen::VectorXd& x);
 
-  /// Impulses of the last solve, contact axes [N s].
+  /// The impulses of the last solve in contact axes [N s].
   Eigen::Vector3d impulse(size_t contact) const {
     return solver_.impulse().segment<3>(3 * static_cast<Eigen::Index>(contact));
   }
-  /// Velocities of the contact points before the step, contact axes [m/s].
+  /// The velocities of the contact points before the step, in contact axes [m/s].
   Eigen::Vector3d rate_before(size_t contact) const {
     return Eigen::Map<const Eigen::Vector3d>(&rates_before_[3 * contact]);
   }
-  /// Velocities after the step, as of the last set_rates() [m/s].
+  /// The velocities after the step, as the last set_rates() computed them [m/s].
   Eigen::Vector3d rate(size_t contact) const {
     return Eigen::Map<const Eigen::Vector3d>(&rates_[3 * contact]);
   }
@@ -59,16 +60,16 @@ class ContactRows {
   }
 
  private:
-  /// Consecutive contacts of one body. Where links touch each other, two blocks describe the same
-  /// contacts, one for each body. The rows of a block stand side by side, three per contact and
-  /// filled up to a multiple of four, one line for each place on the path to the body.
+  /// Consecutive contacts of one body. If links touch each other, two blocks describe the same
+  /// contacts, one for each body. The rows of a block stand side by side: three for each contact,
+  /// filled up to a multiple of four, with one line for each place on the path to the body.
   struct Block {
     int body = 0;
     int last = 0;                 // last place that moves the body
     double sign = 1;              // -1 for the body that is pushed back
-    size_t first = 0, count = 0;  // contacts
-    int width = 0;                // doubles per line
-    size_t begin = 0;             // in J_ and Y_
+    size_t first = 0, count = 0;  // first contact and number of contacts
+    int width = 0;                // number of doubles in a line
+    size_t begin = 0;             // beginning of the block in J_ and Y_
   };
 
   void find_blocks(const std::vector<ActiveContact>& contacts, const TreeCholesky& factor);
@@ -87,14 +88,14 @@ class ContactRows {
   void multiply(const RobotData& data, const TreeCholesky& factor, const Eigen::VectorXd& velocity,
                 std::vector<double>& rates);
 
-  std::vector<std::vector<int>> chain_bodies_, chain_lines_;  // by body: path to the root
-  size_t count_ = 0;                                          // contacts
+  std::vector<std::vector<int>> chain_bodies_, chain_lines_;  // for each body, its path to the root
+  size_t count_ = 0;                                          // number of contacts
   std::vector<Block> blocks_;
-  bool linked_ = false;  // some contacts are between links of the robot
+  bool linked_ = false;  // whether some contacts are between links of the robot
   std::vector<double> J_, Y_;
-  std::vector<double> compliance_;            // by contact [1/kg]
-  std::vector<Eigen::Vector3d> shift_;        // by contact: J v + gap terms - ground velocity [m/s]
-  std::vector<double> rates_before_, rates_;  // three per contact [m/s]
+  std::vector<double> compliance_;      // compliance of each contact [1/kg]
+  std::vector<Eigen::Vector3d> shift_;  // for each contact: J v + gap terms - ground velocity [m/s]
+  std::vector<double> rates_before_, rates_;  // three for each contact [m/s]
   ContactSolver solver_;
   // Workspace.
   std::vector<double> gram_, product_, springs_, pull_, rates_change_;

@@ -25,22 +25,22 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Rounding limits of double precision (1.1e-16). They decide only when an iteration ends or which
-// formula is used next to the cone; the solver's tolerance decides the result.
+// Limits of the rounding of double precision (1.1e-16). They only decide when an iteration ends or
+// which formula is used next to the cone; the solver's tolerance decides the result.
 
 /// Relative distance from the cone at which the equation of a slide is solved. Chosen: 100 times
-/// the rounding. Figures change by less than 5 % from half to twice.
+/// the rounding. Between half and twice the value, figures change by less than 5 %.
 constexpr double kConeRounding = 1e-14;
-/// Impulse that is added to mu l_n there, so that the limit is not 0 for an open contact [N s].
-/// Chosen: 1e-9 of the impulse of a weight of 1 N in a step of 1 ms. No measured case changes from
-/// half to twice (constants.md).
+/// Impulse that is added to mu l_n in this equation, so that the limit is not 0 for an open contact
+/// [N s]. Chosen: 1e-9 of the impulse of a weight of 1 N in a step of 1 ms. No measured case
+/// changes between half and twice the value (constants.md).
 constexpr double kNoImpulse = 1e-12;
 /// Tangential speed below which a contact on the cone sticks, where the direction of the slip is
-/// lost to rounding [m/s]. Chosen: 1/100 of kContactTolerance. No measured case changes from half
-/// to twice (constants.md).
+/// lost to rounding [m/s]. Chosen: 1/100 of kContactTolerance. No measured case changes between
+/// half and twice the value (constants.md).
 constexpr double kNoSlip = 1e-12;
-/// Steps of the equation of a slide. Chosen: bisection of a bracket alone takes 60. No measured
-/// case changes from half to twice (constants.md).
+/// Largest number of steps for the equation of a slide. Chosen: bisection of a bracket alone takes
+/// 60. No measured case changes between half and twice the value (constants.md).
 constexpr int kMaxSlideSteps = 100;
 
 // u_n = 0 gives l_n as a function of l_t. The tangential rows then have the reduced matrix
@@ -60,7 +60,7 @@ Vector3d slide(const Matrix3d& D, const Vector3d& r, double mu) {
     const Vector2d t = -inverse * c, dt = -inverse * t;
     const double n = -(r[0] + dtn.dot(t)) / dnn, dn = -dtn.dot(dt) / dnn, size = t.norm();
     l << n, t;
-    const double outside = size - mu * n;  // of the cone
+    const double outside = size - mu * n;  // distance outside the cone
     if (std::abs(outside) <= kConeRounding * (mu * std::abs(n) + kNoImpulse)) break;
     (outside > 0 ? low : high) = s;
     double next = low;
@@ -78,7 +78,7 @@ Vector3d slide(const Matrix3d& D, const Vector3d& r, double mu) {
   return l;
 }
 
-/// D^-1 r for a symmetric positive definite D.
+/// Computes D^-1 r for a symmetric positive definite D.
 Vector3d solve_three(const Matrix3d& D, const Vector3d& r) {
   const double a = 1 / D(0, 0), l10 = a * D(1, 0), l20 = a * D(2, 0);
   const double b = 1 / (D(1, 1) - l10 * D(1, 0)), e = D(2, 1) - l20 * D(1, 0), l21 = b * e;
@@ -96,7 +96,7 @@ Vector3d solve_one(const Matrix3d& D, const Vector3d& r, double mu) {
   return slide(D, r, mu);
 }
 
-/// Distance of a contact with impulse l and shifted velocity u from its law [m/s].
+/// The distance of a contact with impulse l and shifted velocity u from its law [m/s].
 double off_by(const Matrix3d& D, const Vector3d& l, const Vector3d& u, double mu) {
   if (l[0] > 0 && inside_cone(l, mu)) return u.cwiseAbs().maxCoeff();
   if (l.isZero(0)) return std::max(-u[0], 0.0);
@@ -107,8 +107,8 @@ double off_by(const Matrix3d& D, const Vector3d& l, const Vector3d& u, double mu
                    D.diagonal().maxCoeff() * std::abs(along - mu * normal)});
 }
 
-/// x <- G^-1 x by elimination with partial pivoting, in place; m rows, column-major. False when G
-/// is singular.
+/// Solves x <- G^-1 x in place by elimination with partial pivoting; G is column-major with m rows.
+/// Returns false if G is singular.
 bool eliminate(double* G, double* x, int m) {
   for (int k = 0; k < m; ++k) {
     int pivot = k;
@@ -125,7 +125,7 @@ bool eliminate(double* G, double* x, int m) {
     for (int j = k + 1; j < m; ++j) {
       const double factor = G[k + m * j];
       if (factor == 0) continue;
-      double* __restrict target = G + m * j;  // not the column
+      double* __restrict target = G + m * j;  // the column that is changed
       for (int i = k + 1; i < m; ++i) target[i] -= factor * column[i];
     }
     for (int i = k + 1; i < m; ++i) x[i] -= x[k] * column[i];
@@ -151,13 +151,14 @@ void ContactSolver::resize(int n) {
 }
 
 // One Gauss-Seidel sweep with the relaxation factor `share`. Returns the largest change of a
-// shifted velocity of the sweep without relaxation.
+// shifted velocity that the sweep would make without relaxation.
 double ContactSolver::sweep(Vector l, double share) {
   double change = 0;
   const Matrix matrix = A();
   const Vector offset = b();
   for (int i = 0; i < n_; ++i) {
-    const auto rows = matrix.middleCols<3>(3 * i);  // symmetric: columns are contiguous
+    // Columns are contiguous, and the matrix is symmetric.
+    const auto rows = matrix.middleCols<3>(3 * i);
     const Matrix3d D = rows.middleRows<3>(3 * i);
     const Vector3d old = l.segment<3>(3 * i);
     Vector3d r = offset.segment<3>(3 * i) - D * old;
@@ -169,8 +170,9 @@ double ContactSolver::sweep(Vector l, double share) {
   return change;
 }
 
-// Tests each contact against its law with the impulses of the others held. A contact that misses it
-// by more than `tolerance` takes its own solution. Returns the largest distance from a law [m/s].
+// Tests each contact against its law while the impulses of the others are constant. A contact that
+// deviates by more than `tolerance` gets the solution for itself alone. Returns the largest
+// distance from a law [m/s].
 double ContactSolver::correct(Vector l, double tolerance) {
   const Matrix matrix = A();
   Vector u(store_[6].data(), 3 * n_);
@@ -194,8 +196,8 @@ bool ContactSolver::sticks(int i, const Vector3d& l, const Vector3d& u) const {
          u.tail<2>().squaredNorm() < kNoSlip * kNoSlip;
 }
 
-// Newton step on the contacts that are closed in impulse(); writes the candidate. False when the
-// matrix is singular.
+// One Newton step for the contacts that are closed in impulse(). Writes the candidate. Returns
+// false if the matrix is singular.
 bool ContactSolver::newton_step() {
   const Matrix matrix = A();
   const Vector l = impulse();
@@ -228,7 +230,7 @@ bool ContactSolver::newton_step() {
   return next.allFinite();
 }
 
-// Where all contacts stick the matrix is that of the problem: symmetric and positive definite.
+// If all contacts stick, the matrix is that of the problem: symmetric and positive definite.
 bool ContactSolver::stick_together(int rows) {
   const Matrix matrix = A();
   const int stride = (rows + 3) / 4 * 4;
@@ -275,8 +277,8 @@ bool ContactSolver::stick_and_slide(int rows) {
   return eliminate(store_[4].data(), store_[5].data(), rows);
 }
 
-// Newton steps from the last step's impulses while each one reduces the distance from the laws.
-// Restores these impulses when the steps do not reach the tolerance. Returns the remaining
+// Makes Newton steps from the last step's impulses while each one reduces the distance from the
+// laws. Restores these impulses if the steps do not reach the tolerance. Returns the remaining
 // distance.
 double ContactSolver::newton_alone(int& sweeps, double tolerance) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
@@ -314,8 +316,9 @@ ContactSolution ContactSolver::solve(double tolerance, int max_iterations) {
       change = candidate_change;
       continue;
     }
-    // Relaxation breaks cycles of sweeps. Chosen: 1 for 30 sweeps, which solve almost every
-    // problem, then 0.6 and from 100 sweeps on 0.25; the last of four sweeps is without relaxation.
+    // Relaxation breaks cycles of sweeps. Chosen: 1 for the first 30 sweeps, which solve almost
+    // every problem, then 0.6, and 0.25 from 100 sweeps on; the last of four sweeps has no
+    // relaxation.
     const double share = sweeps < 30 ? 1.0 : sweeps < 100 ? 0.6 : 0.25;
     for (int i = 0; i < 4 && change > tolerance; ++i, ++sweeps)
       change = sweep(impulse(), i < 3 ? share : 1.0);

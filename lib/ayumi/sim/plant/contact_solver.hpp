@@ -23,25 +23,25 @@ struct ContactProblem {
 };
 
 struct ContactSolution {
-  int iterations = 0;   ///< sweeps and Newton steps
+  int iterations = 0;   ///< number of sweeps and Newton steps
   double residual = 0;  ///< largest change of a shifted velocity in the last sweep or test [m/s]
 };
 
 /// The solver stops when a sweep or a test changes no shifted velocity by more than this [m/s].
-/// Chosen: over a walk of 10 s, errors of this size add up to 1 nm. Figures change by less than 5 %
-/// from half to twice.
+/// Chosen: over a walk of 10 s, errors of this size add up to 1 nm. Between half and twice the
+/// value, figures change by less than 5 %.
 constexpr double kContactTolerance = 1e-10;
-/// Sweeps after which the solver gives up and reports its residual. Chosen: 300 random problems of
-/// up to eight contacts (contact_solver_test) converge with fewer. Figures change by less than 5 %
-/// from half to twice.
+/// Number of sweeps after which the solver stops and reports its residual. Chosen: 300 random
+/// problems of up to eight contacts (contact_solver_test) converge with fewer. Between half and
+/// twice the value, figures change by less than 5 %.
 constexpr int kMaxContactSweeps = 500;
 
-/// Relative distance from the cone from which on an impulse is inside it. Chosen: far above the
-/// rounding at which the equation of a slide is solved, so that an impulse on the cone is not
-/// inside it. No measured case changes from half to twice (constants.md).
+/// Relative distance from the cone from which on an impulse counts as inside it. Chosen: far above
+/// the rounding at which the equation of a slide is solved, so that an impulse on the cone is not
+/// inside it. No measured case changes between half and twice the value (constants.md).
 constexpr double kConeMargin = 1e-9;
 
-/// True when the impulse of a closed contact is inside the cone by more than rounding.
+/// Whether the impulse of a closed contact is inside the cone by more than rounding.
 inline bool inside_cone(const Eigen::Vector3d& l, double mu) {
   const double most = mu * l[0] * (1 - kConeMargin);
   return l.tail<2>().squaredNorm() < most * most;
@@ -52,7 +52,8 @@ inline bool inside_cone(const Eigen::Vector3d& l, double mu) {
 /// problem.
 class ContactSolver {
  public:
-  /// Room for n contacts; matrices and vectors below have 3n rows until the next resize().
+  /// Reserves memory for n contacts. The matrices and vectors below have 3n rows until the next
+  /// resize().
   void resize(int n);
 
   using Matrix = Eigen::Map<Eigen::MatrixXd>;
@@ -60,9 +61,10 @@ class ContactSolver {
   int size() const { return n_; }
   Matrix A() { return Matrix(store_[0].data(), 3 * n_, 3 * n_); }
   Vector b() { return Vector(store_[1].data(), 3 * n_); }
-  Vector impulse() { return Vector(store_[2].data(), 3 * n_); }  ///< guess, then solution [N s]
+  /// Initial guess, and then the solution [N s].
+  Vector impulse() { return Vector(store_[2].data(), 3 * n_); }
   Eigen::Map<const Eigen::VectorXd> impulse() const { return {store_[2].data(), 3 * n_}; }
-  std::vector<double>& friction() { return friction_; }  ///< n
+  std::vector<double>& friction() { return friction_; }  ///< one for each contact
   const std::vector<double>& friction() const { return friction_; }
 
   ContactSolution solve(double tolerance = kContactTolerance,
@@ -79,7 +81,8 @@ class ContactSolver {
 
   const kernels::Kernels* kernels_ = &kernels::best_kernels();
   int n_ = 0;
-  // A, b, impulse, candidate, Newton matrix, Newton right side, velocities, first impulse.
+  // The vectors A, b, impulse, candidate, Newton matrix, Newton right side, velocities, first
+  // impulse.
   std::array<std::vector<double>, 8> store_;
   std::vector<double> friction_;
   std::vector<int> closed_;

@@ -1,7 +1,7 @@
-// A gap g that closes at the rate v is worth a contact when g + 3 h v < kContactMargin: gravity and
-// servos can raise the approach within a step of length h, and three steps of the present approach
-// leave room for that. Groups of points, whole robots and pairs of bodies are excluded first by
-// lower bounds of their gaps, so that limbs in the air cost little.
+// A gap g that closes at the rate v becomes a contact if g + 3 h v < kContactMargin. Gravity and
+// servos can increase the speed of approach within a step of length h, and three steps with the
+// present speed leave room for that. Groups of points, whole robots and pairs of bodies are
+// excluded first by lower bounds of their gaps, so that limbs in the air cost little time.
 #include "ayumi/sim/plant/contacts.hpp"
 
 #include <algorithm>
@@ -18,34 +18,37 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// A gap that may close within a step [m]. It bounds the work of the solver and no force: a contact
-/// that stays open gets the impulse 0. Chosen: 50 times the free fall within three steps of 1 ms.
-/// Half: less than 5 %; twice: viip jump, slip 1.3 to 0.743 mm.
+/// A gap that may close within a step [m]. It bounds the work of the solver, but no force: a
+/// contact that stays open gets the impulse 0. Chosen: 50 times the free fall within three steps of
+/// 1 ms. With half of the value, figures change by less than 5 %; with twice, the slip of the case
+/// "viip jump" changes from 1.3 to 0.743 mm.
 constexpr double kContactMargin = 1e-3;
 
 /// Tilt below which a circle has no lowest point [rad]. Chosen: on a rim of 0.1 m, a tilt of 1 mrad
 /// lifts the far side by 0.2 mm; eight fixed points on the rim carry a cylinder that is more
-/// upright. No measured case changes from half to twice (constants.md).
+/// upright. No measured case changes between half and twice the value (constants.md).
 constexpr double kLevelTilt = 1e-3;
 
-/// Steps of the present approach that a gap has to outlast to be no contact. Chosen: gravity and
-/// servos can raise the approach within a step. Figures change by less than 5 % from half to twice.
+/// Number of steps with the present speed of approach in which a gap must stay open, so that it is
+/// not a contact. Chosen: gravity and servos can raise the approach within a step. Between half and
+/// twice the value, figures change by less than 5 %.
 constexpr double kStepsAhead = 3;
 
 /// Gap within which edges and nodes of the ground are tested against shapes and soles [m]. Chosen:
-/// it holds the margin and a closing speed of 0.7 m/s over kStepsAhead steps of 1 ms. No measured
-/// case changes from half to twice (constants.md).
+/// it is sufficient for the margin plus a closing speed of 0.7 m/s over kStepsAhead steps of 1 ms.
+/// No measured case changes between half and twice the value (constants.md).
 constexpr double kEdgeReach = 3 * kContactMargin;
 
-// Keys of contacts that are not ContactPoints. Definition: the ranges do not overlap for 1024
-// blocks, 2^24 nodes of the height field, and the pairs of LinkContacts.
+// Keys of contacts that do not belong to a ContactPoint. Definition: the ranges do not overlap for
+// 1024 blocks, 2^24 nodes of the height field, and the pairs of LinkContacts.
 constexpr long kInnerKeys = 1l << 40;    // points between the corners of one sole
-constexpr long kEdgeKeys = 1l << 32;     // edges of the ground against shapes; times 4096
+constexpr long kEdgeKeys = 1l << 32;     // edges of the ground that touch shapes, times 4096
 constexpr long kTipKeys = 1l << 31;      // among these, nodes of the height field
-constexpr long kTipsOfShape = 1l << 26;  // nodes per shape
-constexpr long kLinkKeys = 1l << 60;     // links against links
+constexpr long kTipsOfShape = 1l << 26;  // nodes for each shape
+constexpr long kLinkKeys = 1l << 60;     // contacts between links
 
-/// Contact axes: the normal, a tangent near x (near y where the normal is near x), their product.
+/// The axes of a contact: the normal, a tangent near x (near y if the normal is near x), and their
+/// cross product.
 void set_contact_axes(const Vector3d& normal, ActiveContact& contact) {
   Vector3d along = Vector3d::UnitX() - normal.x() * normal;
   if (along.squaredNorm() < 0.01) along = Vector3d::UnitY() - normal.y() * normal;
@@ -55,7 +58,7 @@ void set_contact_axes(const Vector3d& normal, ActiveContact& contact) {
   contact.to_contact.row(2) = normal.cross(along);
 }
 
-/// True when a gap of a body's point near `contact` stays open in the steps ahead.
+/// Whether the gap of a body's point near `contact` stays open in the next steps.
 bool stays_open(double gap, int body, const ActiveContact& contact, const RobotData& data,
                 double dt) {
   const Vector3d approach = point_velocity(data, body, contact.position) - contact.ground_velocity;
@@ -153,7 +156,8 @@ void ContactSet::collect_points(const PointGroup& group, const RobotData& data, 
     Vector3d center = data.base_position + (data.position[group.body] + R * point.position);
     if (point.rim > 0) {
       const Vector3d across = R * point.axis, up = ground_.normal();
-      const Vector3d out = across.dot(up) * across - up;  // downwards, in the plane of the circle
+      // Direction downwards in the plane of the circle.
+      const Vector3d out = across.dot(up) * across - up;
       if (out.squaredNorm() < kLevelTilt * kLevelTilt) continue;
       center += point.rim / out.norm() * out;
     }
@@ -215,8 +219,9 @@ void ContactSet::collect_under_sole(const PointGroup& group, const RobotData& da
   }
 }
 
-// Edges and corners of blocks and nodes of the height field against faces and edges of the shapes
-// that are not feet. collect_points() has tested the corners of these shapes against the ground.
+// Tests edges and corners of blocks and nodes of the height field against faces and edges of the
+// shapes that are not feet. collect_points() has already tested the corners of these shapes against
+// the ground.
 void ContactSet::collect_edges(const RobotData& data, double dt) {
   for (size_t i = 0; i < is_foot_.size(); ++i) {
     const int body = static_cast<int>(i);
@@ -285,7 +290,7 @@ void ContactSet::collect_links(const RobotData& data, double dt) {
   }
 }
 
-// Contacts of the last step give their impulse and deflection to the contact with the same key.
+// A contact of the last step gives its impulse and deflection to the contact with the same key.
 void ContactSet::keep_impulses() {
   const auto by_key = [](const ActiveContact& a, const ActiveContact& b) { return a.key < b.key; };
   if (!std::is_sorted(active_.begin(), active_.end(), by_key))

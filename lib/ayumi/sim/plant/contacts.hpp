@@ -11,23 +11,25 @@
 
 namespace ayumi {
 
-/// A point that touches, or may touch before the step ends.
+/// A point that touches, or that may touch before the step ends.
 struct ActiveContact {
-  long key = 0;  ///< number of the point, the same in each step: the index of the ContactPoint, or
-                 ///< a larger number where edges, nodes of the height field or links touch
-  int body = 0;  ///< body that is pushed along the normal
+  /// Number of the point, the same in each step: the index of the ContactPoint, or a larger number
+  /// for edges, nodes of the height field and links.
+  long key = 0;
+  ///< a larger number where edges, nodes of the height field or links touch
+  int body = 0;                     ///< body that is pushed along the normal
   int other = -1;                   ///< body that is touched; -1: the ground
-  int side = -1;                    ///< Side of the sole, -1 for a body that is no sole
-  int vertex = -1;                  ///< corner of the sole; -1: between its corners, or no sole
+  int side = -1;                    ///< Side of the sole; -1 for a body that is not a sole
+  int vertex = -1;                  ///< corner of the sole; -1: between its corners, or not a sole
   double stiffness = 0;             ///< [N/m]
-  double damping_time = 0;          ///< damping / stiffness [s]
+  double damping_time = 0;          ///< ratio of damping to stiffness [s]
   double gap = 0;                   ///< gap along the normal, negative inside [m]
-  Eigen::Vector3d position;         ///< world [m]
-  Eigen::Matrix3d to_contact;       ///< rows: normal, first and second tangent, world axes
-  Eigen::Vector3d ground_velocity;  ///< world [m/s]
+  Eigen::Vector3d position;         ///< position in the world [m]
+  Eigen::Matrix3d to_contact;       ///< rows: normal, first and second tangent, in world axes
+  Eigen::Vector3d ground_velocity;  ///< velocity of the ground in the world [m/s]
   double friction = 0;              ///< coefficient of friction
   Eigen::Vector3d impulse =
-      Eigen::Vector3d::Zero();  ///< impulse of the last step, contact axes [N s]
+      Eigen::Vector3d::Zero();  ///< impulse of the last step in contact axes [N s]
   Eigen::Vector2d deflection =
       Eigen::Vector2d::Zero();  ///< deflection of the tangential spring [m]
 };
@@ -39,35 +41,37 @@ class ContactSet {
   Ground& ground() { return ground_; }
   const Ground& ground() const { return ground_; }
 
-  size_t point_count() const { return points_.size(); }  ///< points of the robot
+  size_t point_count() const { return points_.size(); }  ///< number of points of the robot
 
   /// The contacts of the present step, in the order of their keys. Contacts of one body, or of one
   /// pair of bodies, are consecutive.
   std::vector<ActiveContact>& active() { return active_; }
   const std::vector<ActiveContact>& active() const { return active_; }
 
-  /// Forgets impulses, deflections and distances: the robot was moved elsewhere.
+  /// Removes impulses, deflections and distances, because the robot was moved elsewhere.
   void reset();
 
   /// Finds the contacts of a step of `dt` [s] from the positions and velocities in `data`. A
   /// contact that was active in the last step keeps its impulse and deflection.
   void collect(const RobotData& data, double dt);
 
-  /// Brings back the contacts before the last collect().
+  /// Restores the contacts from before the last collect().
   void undo_collect() { active_.swap(previous_); }
 
   /// Removes the contacts that are still above the ground and have not pressed so far.
   void remove_arriving();
 
-  /// The point of the robot that touches; null where an edge, a node of the field or a link does.
+  /// The point of the robot that touches; null if it is an edge, a node of the height field or a
+  /// link.
   const ContactPoint* point_of(const ActiveContact& contact) const {
     return contact.key < static_cast<long>(points_.size())
                ? &points_[static_cast<size_t>(contact.key)]
                : nullptr;
   }
 
-  /// Whether the robot can turn about this contact: a point of the robot, or of the ground under a
-  /// sole, that stays in its place while the robot turns. A sphere and a rim roll instead.
+  /// Whether the robot can turn about this contact. This is so for a point of the robot, or of the
+  /// ground under a sole, that stays in its place while the robot turns. A sphere and a rim roll
+  /// instead.
   bool is_pivot(const ActiveContact& contact) const;
 
  private:
@@ -84,11 +88,12 @@ class ContactSet {
   Ground ground_;
   std::vector<ContactPoint> points_;
   std::vector<PointGroup> groups_;
-  double widest_ = 0;  // largest distance of a point's far side from its body's origin [m]
+  // Largest distance of the far side of a point's sphere from its body's origin [m].
+  double widest_ = 0;
   LinkContacts links_;
   double link_friction_ = 0,
-         link_stiffness_ = 0;  // of contacts of links with each other and with edges
-  std::vector<char> is_foot_;  // by body
+         link_stiffness_ = 0;  // stiffness of contacts between links, and of links with edges
+  std::vector<char> is_foot_;  // whether a body is a foot
   std::vector<ActiveContact> active_, previous_;
   // Workspace of collect().
   Eigen::Matrix3d level_;  // contact axes on the plane

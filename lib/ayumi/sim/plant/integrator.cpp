@@ -23,19 +23,19 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// Contacts that are closer to each other are one point of the pivot [m]. Chosen: far below the
-/// distance of two corners of a sole and far above the rounding of positions. No measured case
-/// changes from half to twice (constants.md).
+/// Contacts that are closer to each other than this count as one point of the pivot [m]. Chosen:
+/// far below the distance of two corners of a sole and far above the rounding of positions. No
+/// measured case changes between half and twice the value (constants.md).
 constexpr double kOnePoint = 1e-6;
 
-/// Contacts lie on a line when their distance from it is a smaller fraction of its length. Chosen:
-/// 0.01 mm for an edge of 0.1 m; contacts that lie farther off leave the robot no turn. Figures
-/// change by less than 5 % from half to twice.
+/// Contacts lie on a line if their distance from it is less than this fraction of its length.
+/// Chosen: 0.01 mm for an edge of 0.1 m; contacts that lie farther off leave the robot no turn.
+/// Between half and twice the value, figures change by less than 5 %.
 constexpr double kStraight = 1e-4;
 
-/// A part of a step that is shorter than this fraction of the step is not integrated on its own.
-/// Chosen: in 0.02 ms of 1 ms a point that falls at 1 m/s moves by 0.02 mm, which is not worth a
-/// solve of its own. Figures change by less than 5 % from half to twice.
+/// A part of a step that is shorter than this fraction of the step is not integrated separately.
+/// Chosen: in 0.02 ms of 1 ms, a point that falls at 1 m/s moves by 0.02 mm, which does not justify
+/// a separate solve. Between half and twice the value, figures change by less than 5 %.
 constexpr double kShortestPart = 0.02;
 
 }  // namespace
@@ -55,7 +55,7 @@ void Integrator::set_load(const RobotModel& robot, StepSystem& system) {
   system.set_posture(data_);
 }
 
-// The pivot is one point or one line of points of the robot that press on the ground.
+// Finds the pivot: one point or one line of the robot's points that press on the ground.
 void Integrator::find_pivot(const ContactSet& contacts) {
   pivot_.freedom = 0;
   const Vector3d* first = nullptr;
@@ -119,13 +119,13 @@ double Integrator::time_of_landing(const StepSystem& system, const ContactSet& c
     landing = true;
     if (approach > 0) time = std::min(time, contact.gap / approach);
   }
-  // A point that only gravity brings down within the step lands at its end.
+  // A point that only gravity brings down within the step lands at the end of the step.
   if (landing) time = std::min(time, (1 - kShortestPart) * dt);
   return landing && time > kShortestPart * dt ? time : dt;
 }
 
-// The tangential springs end where their points are. A turn moves these by more than rate times
-// step.
+// The tangential springs end where their points are. In a turn, the points move by more than rate
+// times step.
 void Integrator::follow_points(double dt, const StepSystem& system, ContactSet& contacts) const {
   for (size_t i = 0; i < contacts.active().size(); ++i) {
     ActiveContact& contact = contacts.active()[i];
@@ -145,8 +145,8 @@ void Integrator::advance(const RobotModel& robot, double dt, StepSystem& system,
   const Vector3d cog = data_.cog;
   const Eigen::VectorXd& velocity = system.velocity();
   find_pivot(contacts);
-  // About a pivot the displacement is that of the mean rate too: without half of the turn that
-  // gravity and pushes add within the step.
+  // The displacement about a pivot is also that of the mean rate, so half of the rate that gravity
+  // and pushes add within the step is left out.
   const Vector3d lag = pivot_.freedom > 0
                            ? Vector3d(0.5 * dt * turn_about_pivot(robot, system, system.external()))
                            : Vector3d::Zero();
@@ -158,7 +158,7 @@ void Integrator::advance(const RobotModel& robot, double dt, StepSystem& system,
           .normalized();
   update_positions(robot, state_, data_);
   system.set_posture(data_);
-  // The momentum of the joints alone, first about the base origin, then about the COG.
+  // First the momentum of the joints alone about the base origin, then about the COG.
   Momentum joints;
   for (int j = 0; j < n; ++j) {
     const double* unit = system.momentum_of_joint(j);
@@ -173,9 +173,9 @@ void Integrator::advance(const RobotModel& robot, double dt, StepSystem& system,
       system.locked_inertia(robot, data_).llt().solve(momentum_.angular - joints.angular);
   state_.base_angular_velocity = w;
   state_.base_velocity = cog_velocity - joints.linear / mass - w.cross(c);
-  // With gravity and pushes alone the force is constant and the displacement is that of the mean
-  // velocity, so that the COG of a flight is on its parabola. Contacts are solved for the velocity
-  // at the end of the step.
+  // With only gravity and pushes, the force is constant and the displacement is that of the mean
+  // velocity, so that the COG of a flight stays on its parabola. Contacts are solved for the
+  // velocity at the end of the step.
   Vector3d displacement = dt * cog_velocity;
   if (contacts.active().empty()) displacement -= 0.5 * dt / mass * system.external().linear;
   if (pivot_.freedom > 0) displacement -= lag.cross(cog - pivot_.point);

@@ -14,27 +14,29 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Pieces of the torque's bound that a servo may follow in one solve after the first. Chosen: as
-/// many as the chain has left; the first is right unless the rate crosses a corner within the step.
+/// Largest number of pieces of the torque's bound that a servo may follow in one solve after the
+/// first. Chosen: as many as are left; the first is right unless the rate crosses a corner of the
+/// bound within the step.
 constexpr int kBoundChanges = 3;
 
-/// Joint rate up to which dry friction acts as a steep viscous friction, which is how it sticks
-/// [rad/s, m/s]. Chosen: a joint under a load below its dry friction creeps by less than 0.06
-/// deg/s. No measured case changes from half to twice (constants.md).
+/// Joint rate up to which dry friction acts as a steep viscous friction [rad/s, m/s]. In this way,
+/// it sticks. Chosen: a joint under a load below its dry friction creeps by less than 0.06 deg/s.
+/// No measured case changes between half and twice the value (constants.md).
 constexpr double kStickRate = 1e-3;
 
-/// Stiffness and damping of an end stop, in those of the joint's servo. Chosen: a servo that pushes
-/// against its stop with its full torque passes it by 1/20 of the servo's error. Figures change by
-/// less than 5 % from half to twice.
+/// Stiffness and damping of an end stop, as multiples of those of the joint's servo. Chosen: a
+/// servo that pushes against its stop with its full torque passes it by 1/20 of the servo's error.
+/// Between half and twice the value, figures change by less than 5 %.
 constexpr double kStopStiffness = 20.0;
 
-/// Penetration of a passive slide's end stop under the robot's weight, times kStopStiffness [m].
-/// Chosen: the stop then yields by 0.05 mm. No measured case changes from half to twice
-/// (constants.md).
+/// Penetration of a passive sliding joint's end stop under the robot's weight, times kStopStiffness
+/// [m]. Chosen: the stop then yields by 0.05 mm. No measured case changes between half and twice
+/// the value (constants.md).
 constexpr double kStopSink = 0.001;
 
-/// Damping over stiffness of a passive joint's end stop [s]. Chosen: 20 steps of 1 ms, so that the
-/// joint does not bounce. No measured case changes from half to twice (constants.md).
+/// Ratio of damping to stiffness of a passive joint's end stop [s]. Chosen: 20 steps of 1 ms, so
+/// that the joint does not bounce. No measured case changes between half and twice the value
+/// (constants.md).
 constexpr double kStopDampingTime = 0.02;
 
 }  // namespace
@@ -71,7 +73,8 @@ JointLaws::JointLaws(const RobotModel& model, const ActuatorLimits& limits)
     joint.back_emf = servo.back_emf;
     joint.speed_command = servo.speed_command_limit;
     joint.needs_friction = servo.stribeck_rate > 0 || !(servo.load == LoadFriction{});
-    // A joint without a motor has an end stop too; that of a hinge has 20 weights times 1 m/rad.
+    // A joint without a motor also has an end stop; the stop of a hinge has 20 weights times 1
+    // m/rad.
     const double weight = model.mass() * kGravity;
     const double passive = dof.prismatic ? weight / kStopSink : weight;
     joint.stop = kStopStiffness * (servo.kp > 0 ? servo.kp : passive);
@@ -118,9 +121,9 @@ void JointLaws::set(const VectorXd& targets, const std::vector<JointFault>& faul
   }
 }
 
-// A motor that moves is expected to continue sliding. Within a solve a joint that has left its
-// servo's law or the flank of its gear does not return, and friction that was expected to slide
-// sticks once at most.
+// A motor that moves is expected to continue sliding. Within a solve, a joint that has left its
+// servo's law or the flank of its gear does not return to it, and friction that was expected to
+// slide sticks at most once.
 void JointLaws::start(const VectorXd& theta, const double* rate, double dt) {
   for (size_t j = 0; j < joints_.size(); ++j) {
     Joint& joint = joints_[j];
@@ -159,8 +162,8 @@ JointLaws::Impulse JointLaws::motor_impulse(const Joint& joint, double phi, doub
   return out;
 }
 
-// The motor behind a gear obeys rotor (dphi+ - dphi) = motor's impulse - gear's impulse; solved for
-// dphi+, the gear's impulse on the joint depends on dtheta+ alone.
+// The motor behind a gear obeys rotor (dphi+ - dphi) = motor's impulse - gear's impulse. Solved for
+// dphi+, the gear's impulse on the joint only depends on dtheta+.
 void JointLaws::solve_motor(Joint& joint, double theta, double dt, Impulse& on_joint) const {
   const Impulse motor = motor_impulse(joint, joint.phi, dt);
   joint.mesh = joint.slope = 0;
@@ -201,9 +204,9 @@ void JointLaws::add(const VectorXd& theta, const double* rate, double dt, double
   }
 }
 
-// A servo that passes the bound of its torque first follows the piece that holds at the rate before
-// the step, then the one at the solved rate. The rate that the servo's own law asks for is of no
-// use here: far from its target that is a rate which no motor reaches, where the bound is zero.
+// A servo that passes the bound of its torque first follows the piece of the bound at the rate
+// before the step, and then the piece at the solved rate. The rate that the servo's own law gives
+// cannot be used: far from the target, no motor reaches this rate, and the bound there is zero.
 bool JointLaws::check_bound(Joint& joint, size_t j, double dphi) {
   torque_[static_cast<Eigen::Index>(j)] =
       joint.direction * joint.bound.torque - joint.bound.slope * dphi;
@@ -215,8 +218,8 @@ bool JointLaws::check_bound(Joint& joint, size_t j, double dphi) {
   return true;
 }
 
-/// Whether torque_range() at this rate surely holds the torque: no speed limit and no voltage bends
-/// the bound. Most servos are there in most steps.
+/// Whether torque_range() at this rate certainly contains the torque: neither a speed limit nor a
+/// voltage bends the bound there. This is so for most servos in most steps.
 bool JointLaws::far_from_bounds(const Joint& joint, double torque, double dphi) {
   if (!(std::abs(torque) <= joint.most && std::abs(dphi) <= joint.fastest)) return false;
   if (joint.stall <= 0) return true;
@@ -256,11 +259,11 @@ bool JointLaws::check_gear(Joint& joint, double theta, double rate, double dphi,
                   : play < -joint.half_play ? Flank::low
                                             : Flank::none;
   else if (joint.flank == Flank::high ? impulse < 0 : impulse > 0)
-    joint.flank = Flank::none;  // teeth push and do not pull
+    joint.flank = Flank::none;  // teeth can push, but cannot pull
   return joint.gear_changed = joint.flank != before;
 }
 
-// Friction that drives the motor sticks.
+// Friction that would drive the motor sticks instead.
 bool JointLaws::check_friction(Joint& joint, double dphi) {
   if (joint.coulomb <= 0) return false;
   if (joint.sliding && joint.slip_torque * dphi > 0 && !joint.stuck) {
@@ -274,8 +277,8 @@ bool JointLaws::check_friction(Joint& joint, double dphi) {
   return true;
 }
 
-// A joint changes one law at a time: the rate of a motor that was wrongly taken to stick says
-// nothing of its servo, and that of a servo beyond its limits nothing of its gear.
+// A joint only changes one law at a time: if a motor was wrongly assumed to stick, its rate says
+// nothing about its servo, and the rate of a servo beyond its limits says nothing about its gear.
 bool JointLaws::check(const VectorXd& theta, const double* rate, double dt) {
   bool changed = false;
   for (size_t j = 0; j < joints_.size(); ++j) {

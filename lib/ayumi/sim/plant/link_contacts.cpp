@@ -61,7 +61,7 @@ const std::vector<LinkTouch>& LinkContacts::find(const RobotData& data, double n
     const Vector3d v = data.velocity[i] + w.cross(data.rotation[i] * center_[i]);
     square = std::max(square, v.squaredNorm() + radius_[i] * radius_[i] * w.squaredNorm());
   }
-  const double speed = std::sqrt(2 * square);  // at least |v| + r |w| of each
+  const double speed = std::sqrt(2 * square);  // at least |v| + r |w| of each body
   // The last step moved the bodies with their present speeds; the next steps may be faster.
   moved_ += 2 * speed * last_dt_;
   last_dt_ = dt;
@@ -80,7 +80,7 @@ const std::vector<LinkTouch>& LinkContacts::find(const RobotData& data, double n
   return touches_;
 }
 
-// The clearance of a pair, or a lower bound of it where both are larger than `reach`.
+// The clearance of a pair, or a lower bound of it if both are larger than `reach`.
 double LinkContacts::apart(const Pair& pair, const RobotData& data, double reach) {
   const Isometry3d A = data.pose(pair.a), B = data.pose(pair.b);
   double nearest = std::numeric_limits<double>::infinity();

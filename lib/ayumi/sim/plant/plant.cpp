@@ -37,7 +37,7 @@ void Plant::set_state(const RobotState& state) {
   joints_.reset(state);
 }
 
-// What is carried becomes part of the links: the dynamics know one robot only.
+// Loads become part of the links, so that the dynamics only know one robot.
 void Plant::load(const std::vector<CarriedMass>& payloads) {
   if (payloads == carried_) return;
   carried_ = payloads;
@@ -53,8 +53,8 @@ const StepReport& Plant::step(const VectorXd& targets, const StepInput& input, d
   contacts_.ground().set(input);
   clear_report();
   solve(input, dt);
-  // Where a robot that pivots lands within the step, the step is taken in two parts: up to the
-  // landing, and from there on.
+  // If a pivoting robot lands within the step, the step is made in two parts: up to the landing,
+  // and from there on.
   const double landing = integrator_.time_of_landing(system_, contacts_, dt);
   if (landing < dt) {
     contacts_.undo_collect();
@@ -70,8 +70,8 @@ const StepReport& Plant::step(const VectorXd& targets, const StepInput& input, d
   return report_;
 }
 
-// Velocity and contact impulses of a step or of a part of it. In a part that ends in a landing the
-// points that land are left out.
+// The velocity and the contact impulses of a step or of a part of it. In a part that ends with a
+// landing, the landing points are left out.
 void Plant::solve(const StepInput& input, double dt, bool landing) {
   const RobotState& state = integrator_.state();
   RobotData& data = integrator_.data();
@@ -104,8 +104,8 @@ void Plant::clear_report() {
 }
 
 // Takes the solution over `dt` into the report, whose forces are means over `whole`, and into the
-// state. Impulse times the mean of the rates before and after is exactly the change of kinetic
-// energy that the impulse makes.
+// state. An impulse times the mean of the rates before and after it is exactly the change of
+// kinetic energy that it makes.
 void Plant::finish(double dt, double whole) {
   report_.torque += dt / whole * joints_.torque();
   for (size_t j = 0; j < limited_.size(); ++j)
@@ -127,7 +127,7 @@ void Plant::finish(double dt, double whole) {
 void Plant::report_contacts(double whole) {
   for (const ActiveContact& contact : contacts_.active()) {
     const bool touching = contact.impulse[0] > 0;
-    if (contact.other >= 0) {  // within the robot
+    if (contact.other >= 0) {  // a contact within the robot
       if (touching && report_.self_contact[0] < 0)
         report_.self_contact = {contact.body, contact.other};
       continue;

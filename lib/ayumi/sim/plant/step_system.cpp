@@ -43,7 +43,7 @@ void StepSystem::set_posture(RobotData& data) {
 }
 
 Matrix3d StepSystem::locked_inertia(const RobotModel& robot, const RobotData& data) const {
-  Matrix3d locked;  // about the base origin
+  Matrix3d locked;  // inertia about the base origin
   for (int i = 0; i < 3; ++i) {
     const double* row = mass_.data() + factor_.row_begin(factor_.place_of(3 + i));
     for (int j = 0; j <= i; ++j) locked(i, j) = locked(j, i) = row[3 + j];
@@ -134,8 +134,8 @@ bool StepSystem::solve_once(JointLaws& joints, const RobotData& data, const Vect
   return true;
 }
 
-// change_ holds the right side, then L^-T times it, then also the impulses of the contacts, then
-// v+ - v.
+// change_ contains the right side at first, then L^-T times it, then also the impulses of the
+// contacts, and finally v+ - v.
 bool StepSystem::solve_change(const RobotData& data, Contacts contacts) {
   std::vector<double>& system = factor_.rows();
   system = mass_;

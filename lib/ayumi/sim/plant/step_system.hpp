@@ -14,14 +14,14 @@
 
 namespace ayumi {
 
-/// Inertia about a point at the distance `r` [m] from the centre of mass, from the inertia about
-/// the centre of mass; the reverse with a negative mass (Steiner's theorem).
+/// The inertia about a point at the distance `r` [m] from the centre of mass, computed from the
+/// inertia about the centre of mass; with a negative mass, the reverse (Steiner's theorem).
 Eigen::Matrix3d parallel_axis(const Eigen::Matrix3d& inertia, double mass,
                               const Eigen::Vector3d& r);
 
 class StepSystem {
  public:
-  /// `points`: number of contact points of the robot, for which room is reserved.
+  /// `points` is the number of contact points of the robot, for which memory is reserved.
   StepSystem(const RobotModel& model, const ActuatorLimits& actuators, size_t points);
 
   /// Fills the mass matrix, rotors included, of the posture in `data`.
@@ -33,19 +33,20 @@ class StepSystem {
     return mass_.data() + factor_.row_begin(factor_.place_of(6 + j));
   }
 
-  /// Inertia about the COG with the joints locked [kg m^2].
+  /// The inertia about the COG with the joints locked [kg m^2].
   Eigen::Matrix3d locked_inertia(const RobotModel& robot, const RobotData& data) const;
 
   /// Starts the step of `dt` [s] with gravity, Coriolis and centrifugal forces. `robot` includes
-  /// what it carries.
+  /// its loads.
   void begin(const RobotModel& robot, const RobotState& state, RobotData& data, double dt);
 
-  /// Adds forces from outside; to be called once, after begin().
+  /// Adds forces from outside. Must be called once, after begin().
   void push(const RobotModel& model, const std::vector<ExternalWrench>& wrenches,
             const RobotData& data, double dt);
 
-  /// Writes the equation in axes turned by `half_turn` (world from these axes): gravity and the
-  /// frames of the contacts with the ground turn back, the robot's numbers stay.
+  /// Writes the equation in axes that are turned by `half_turn` (world from these axes). Gravity
+  /// and the frames of the contacts with the ground are turned back; the numbers of the robot do
+  /// not change.
   void turn(const Eigen::Matrix3d& half_turn, const RobotModel& robot, const RobotData& data,
             std::vector<ActiveContact>& contacts, double dt);
 
@@ -55,11 +56,11 @@ class StepSystem {
     contact_count_ = contacts.size();
   }
 
-  /// Solves for velocity() and the impulses of the contacts, as often as a joint reaches a limit.
-  /// False when the mass matrix is not positive definite.
+  /// Solves for velocity() and the impulses of the contacts, again each time a joint reaches a
+  /// limit. Returns false if the mass matrix is not positive definite.
   bool solve(JointLaws& joints, const RobotData& data, const Eigen::VectorXd& theta, double dt);
 
-  /// Generalised velocity before and after the step, in the turned axes.
+  /// The generalised velocity before and after the step, in the turned axes.
   const Eigen::VectorXd& before() const { return before_; }
   const Eigen::VectorXd& velocity() const { return velocity_; }
   const double* joint_rates_before() const { return before_.data() + 6; }
@@ -72,17 +73,17 @@ class StepSystem {
   void take_impulses(std::vector<ActiveContact>& contacts, const RobotData& data, double dt,
                      double& work);
 
-  /// Work of the forces from outside in this step [J].
+  /// The work of the forces from outside in this step [J].
   double work_from_outside() const { return 0.5 * outside_.dot(before_ + velocity_); }
 
-  /// A vector of the turned axes in the world.
+  /// A vector of the turned axes in world axes.
   Eigen::Vector3d in_world(const Eigen::Vector3d& v) const {
     return turned_ ? Eigen::Vector3d(half_turn_ * v) : v;
   }
   void end_turn() { turned_ = false; }
 
-  /// Momentum that the robot gets from outside in this step, about the COG: gravity and pushes
-  /// after push(); the caller adds the contacts.
+  /// The momentum about the COG that the robot gets from outside in this step: from gravity and
+  /// pushes after push(); the caller adds the contacts.
   Momentum& external() { return external_; }
   const Momentum& external() const { return external_; }
 
@@ -95,15 +96,15 @@ class StepSystem {
   bool solve_change(const RobotData& data, Contacts contacts);
 
   TreeCholesky factor_;
-  std::vector<double> mass_;            // rows of the mass matrix with rotors
-  std::vector<size_t> joint_diagonal_;  // in these rows, by dof
-  Eigen::VectorXd rotor_;               // of motors without a gear of their own [kg m^2, kg]
+  std::vector<double> mass_;            // rows of the mass matrix, including rotors
+  std::vector<size_t> joint_diagonal_;  // places of the joints' diagonal in these rows, by dof
+  Eigen::VectorXd rotor_;               // inertia of motors without a gear [kg m^2, kg]
   ContactRows rows_;
   size_t contact_count_ = 0;
   ContactSolution solution_;
   Eigen::VectorXd before_, velocity_;  // generalised velocity [m/s, rad/s]
   Eigen::VectorXd impulse_,
-      outside_;  // generalised impulse: without joints and contacts, of pushes
+      outside_;  // generalised impulses: without joints and contacts, and of the pushes
   Momentum external_;
   bool turned_ = false;
   Eigen::Matrix3d half_turn_;

@@ -24,7 +24,7 @@ void MujocoPlant::Impl::place_floor() {
   set_quaternion(d->mocap_quat + 4 * mocap, Quaterniond(ground.pose().linear()));
 }
 
-// MuJoCo uses the larger friction of two geoms. The geoms of the ground have none, and each ball or
+// MuJoCo uses the larger friction of two geoms. The geoms of the ground have none, so each ball or
 // plate gets the friction of the ground at its place.
 void MujocoPlant::Impl::set_friction() {
   const Eigen::Isometry3d to_ground = ground.pose().inverse();

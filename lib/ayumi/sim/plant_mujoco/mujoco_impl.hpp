@@ -1,5 +1,5 @@
 #pragma once
-// Members of the MuJoCo plant. Private to plant_mujoco.
+// The members of the MuJoCo plant. This file is private to plant_mujoco.
 
 #include <array>
 #include <optional>
@@ -88,7 +88,7 @@ struct MujocoPlant::Impl {
   void share_among_cells(int side, const Eigen::Vector3d& at, const Eigen::Vector3d& force);
   const RobotModel& moving() const { return loaded ? *loaded : *model; }
 
-  int steps;  // MuJoCo's steps per step of the plant
+  int steps;  // number of MuJoCo's steps in a step of the plant
   const RobotModel* model;
   ActuatorLimits limits;
   World world;
@@ -96,7 +96,7 @@ struct MujocoPlant::Impl {
   std::vector<ContactPoint> points;
   MujocoModel m{nullptr, mj_deleteModel};
   MujocoData d{nullptr, mj_deleteData};
-  bool bumps = false;               // the model has geoms for bumps
+  bool bumps = false;               // whether the model has geoms for bumps
   std::vector<int> velocity, body;  // MuJoCo's index of each dof and body
   std::vector<int> gear;            // index of the joint of each dof's gear; -1: none
   std::vector<int> point_of;  // by geom: number of the point; -1: the ground; -2 - side: a plate
@@ -104,10 +104,10 @@ struct MujocoPlant::Impl {
   int floor_id = 0;
   std::optional<RobotModel> loaded;
   std::vector<CarriedMass> carried;
-  FloorPose floor;            // its pose in the last step
+  FloorPose floor;            // pose of the floor in the last step
   std::vector<double> rates;  // by geom: rate at which a bump rises [m/s]
   TargetDelay delay;
-  Eigen::VectorXd motor_torque, external;  // on each dof in MuJoCo's last step [N m]
+  Eigen::VectorXd motor_torque, external;  // torque on each dof in MuJoCo's last step [N m]
   RobotState state;
   RobotData data{*model};
   StepReport report;

@@ -31,11 +31,11 @@ constexpr double kDepth = 0.2;
 /// Width of the ground around a height field that dips below the plane [m]. Chosen: longer than any
 /// run of a humanoid.
 constexpr double kWide = 50;
-/// Up to this number, all points of a body are kept. Chosen: the corners of four boxes; bodies with
-/// more are meshes.
+/// If a body has at most this number of points, all of them are kept. Chosen: the corners of four
+/// boxes; bodies with more points are meshes.
 constexpr size_t kFewPoints = 32;
-/// Most contacts and rows of constraints at once. Chosen: every point of a robot of 20 bodies that
-/// lies on the ground.
+/// Largest numbers of contacts and of rows of constraints at once. Chosen: every point of a robot
+/// of 20 bodies that lies on the ground.
 constexpr int kMostContacts = 600, kMostRows = 4000;
 constexpr const char* kUnderBall = "' contype='2' conaffinity='1'/>";
 constexpr const char* kUnderPlate = "' contype='8' conaffinity='4'/>";
@@ -141,7 +141,7 @@ std::string floor_text(const World& world, bool bumps) {
   return out + "</body>";
 }
 
-// The bottom of the ball at a sole's corner is at the corner's height while the sole is flat.
+// While the sole is flat, the bottom of the ball at its corner is at the corner's height.
 std::string point_text(const RobotModel& model, const ContactPoint& point, size_t i) {
   const double radius = std::max(point.radius, kBall);
   Vector3d center = point.position;
@@ -167,8 +167,8 @@ std::string plate_text(const Sole& sole, int side) {
 }
 
 /// Models a gear with backlash or stiffness as a second joint behind the motor's. The flanks are
-/// the limits of its range, whose stiffness and damping MuJoCo takes per unit of inertia; the
-/// rotor's is by far the smaller of the two that meet there.
+/// the limits of its range. MuJoCo takes their stiffness and damping per unit of inertia; of the
+/// two inertias that meet there, the rotor's is by far the smaller.
 std::string gear_text(const Body& body, const ServoDescription& servo) {
   if (!mujoco_has_gear(servo)) return {};
   std::string out = "<joint name='gear" + std::to_string(body.dof) + "' type='" +
@@ -225,8 +225,9 @@ std::string servo_text(const ActuatorLimits& limits, int j) {
   return out + "/>";
 }
 
-// MuJoCo prints warnings and appends them to a file in the working folder; a full buffer of
-// contacts is the one that can occur, and the simulation then goes on with those it holds.
+// MuJoCo prints warnings and appends them to a file in the working folder. The only one that can
+// occur is about a full buffer of contacts, and the simulation then continues with the contacts in
+// the buffer.
 void ignore_warning(const char*) {}
 
 MujocoModel compile(const std::string& robot, const std::string& xml) {

@@ -1,5 +1,5 @@
 #pragma once
-// The robot and its ground as a model of MuJoCo. Private to plant_mujoco.
+// The robot and its ground as a model of MuJoCo. This file is private to plant_mujoco.
 
 #include <mujoco/mujoco.h>
 
@@ -35,17 +35,17 @@ inline bool mujoco_has_gear(const ServoDescription& servo) {
   return servo.kp > 0 && servo.has_gear();
 }
 
-/// The index of a named object; -1 when there is none.
+/// The index of a named object; -1 if there is none.
 int mujoco_id(const mjModel* m, mjtObj type, const std::string& name);
 
-/// Keeps, of bodies with many points (as meshes have), only the points farthest out in 26
+/// For a body with many points (as meshes have), only keeps the points that are farthest out in 26
 /// directions, because MuJoCo moves and compares each point in each step.
 std::vector<ContactPoint> outermost_points(const std::vector<ContactPoint>& points);
 
 void set_inertia(const Inertia& inertia, int body, mjModel* m);
 /// The geom of a part of bump `i`: 0..7 are the rods of its edges, 8 is its cylinder.
 int bump_geom(const mjModel* m, int i, int part);
-/// Places bump `i`, or removes it when `bump` is null.
+/// Places bump `i`, or removes it if `bump` is null.
 void set_bump(const RisingDisc* bump, int i, mjModel* m);
 
 }  // namespace ayumi

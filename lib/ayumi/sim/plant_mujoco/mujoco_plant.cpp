@@ -1,5 +1,5 @@
-// Servos: torque = clamp(kp (target - theta)) - kd dtheta, with the damping as implicit joint
-// damping. The angular velocity of MuJoCo's free joint is in body axes.
+// The torque of a servo is clamp(kp (target - theta)) - kd dtheta, with the damping as implicit
+// joint damping. The angular velocity of MuJoCo's free joint is in body axes.
 #include "ayumi/sim/plant_mujoco/mujoco_plant.hpp"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// The input after the time t of the step has passed.
+/// The input after the first `t` [s] of the step have passed.
 StepInput later(StepInput input, double t) {
   if (input.floor) {
     FloorPose& floor = *input.floor;
@@ -101,7 +101,8 @@ void MujocoPlant::Impl::read_state() {
   state.base_angular_velocity = state.base.attitude * Eigen::Map<const Vector3d>(d->qvel + 3);
   for (int j = 0; j < model->dof_count(); ++j) {
     const int column = velocity[static_cast<size_t>(j)];
-    state.theta[j] = d->qpos[column + 1];  // positions have one number more: the quaternion
+    // Positions have one more number: the quaternion has four.
+    state.theta[j] = d->qpos[column + 1];
     state.dtheta[j] = d->qvel[column];
     const int play = gear[static_cast<size_t>(j)];
     if (play < 0) continue;
@@ -119,8 +120,8 @@ void MujocoPlant::Impl::apply(const ExternalWrench& w) {
   Eigen::Map<Vector3d>(d->xfrc_applied + 6 * id + 3) += w.torque + (point - at).cross(w.force);
 }
 
-// As in Plant, a motor cannot push a joint beyond its speed limit, nor beyond what its voltage
-// gives.
+// As in Plant, a motor cannot push a joint beyond its speed limit, or with more torque than its
+// voltage allows.
 void MujocoPlant::Impl::limit_torques() {
   for (int j = 0; j < model->dof_count(); ++j) {
     if (!m->actuator_forcelimited[j]) continue;
@@ -131,8 +132,8 @@ void MujocoPlant::Impl::limit_torques() {
   }
 }
 
-// Adds the work at the mean rates of the step. MuJoCo does not separate contacts, end stops and dry
-// friction.
+// Adds the work at the mean rates of the step. MuJoCo does not distinguish contacts, end stops and
+// dry friction.
 void MujocoPlant::Impl::account(double dt) {
   const auto of = [&](const mjtNum* v) { return Eigen::Map<const VectorXd>(v, m->nv); };
   mean = 0.5 * (before + of(d->qvel));
@@ -208,8 +209,8 @@ void MujocoPlant::Impl::take_joints(const VectorXd& targets, const StepInput& in
                input.joints.empty() ? JointFault{} : input.joints[static_cast<size_t>(j)]);
 }
 
-// Evaluates the law in this step of MuJoCo; what depends on the state is taken at the start of the
-// step.
+// Evaluates the law in this step of MuJoCo. Quantities that depend on the state are taken at the
+// start of the step.
 void MujocoPlant::Impl::take_servo(int j, double target, const JointFault& fault) {
   const ServoDescription& servo = limits.servo[static_cast<size_t>(j)];
   const int column = velocity[static_cast<size_t>(j)];
@@ -228,8 +229,8 @@ void MujocoPlant::Impl::take_servo(int j, double target, const JointFault& fault
   m->dof_damping[column] = servo.viscous + fault.viscous;
 }
 
-// Torques on the rotors in the step of `h` [s] that has just ended: of the motors, and of all that
-// is neither motor nor friction.
+// The torques on the rotors in the step of `h` [s] that has just ended: those of the motors, and
+// all others except friction.
 void MujocoPlant::Impl::find_loads(double h) {
   for (int j = 0; j < model->dof_count(); ++j) {
     const int column = velocity[static_cast<size_t>(j)];

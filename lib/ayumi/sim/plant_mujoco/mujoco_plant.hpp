@@ -1,6 +1,7 @@
 #pragma once
-// The same robot, servos and soles in MuJoCo with the interface of Plant: an independent reference
-// for Ayumi's own integrator. The same points touch the ground: corners of soles and shapes.
+// The same robot, servos and soles in MuJoCo with the interface of Plant. It is an independent
+// reference for Ayumi's own integrator. The same points touch the ground: corners of soles and
+// shapes.
 
 #include <memory>
 
@@ -10,11 +11,10 @@
 
 namespace ayumi {
 
-/// MuJoCo's steps per step of the plant. MuJoCo finds contact forces before it damps joints
-/// implicitly, as if the servo torques at the start of the step lasted. Where kd h is larger than
-/// the rotor inertia (twice as large on HOAP-1 at 1 ms), a force that changes as fast as in a jump
-/// makes the soles chatter.
-/// Chosen: with 4 steps, kd h is half of the rotor inertia.
+/// Number of MuJoCo's steps in a step of the plant. MuJoCo finds contact forces before it damps
+/// joints implicitly, as if the servo torques at the start of the step lasted. If kd h is larger
+/// than the rotor inertia (twice as large on HOAP-1 at 1 ms), a force that changes as fast as in a
+/// jump makes the soles chatter. Chosen: with 4 steps, kd h is half of the rotor inertia.
 constexpr int kMujocoSteps = 4;
 
 class MujocoPlant {
@@ -33,7 +33,8 @@ class MujocoPlant {
   const RobotData& data() const;
   void set_state(const RobotState& state);
 
-  /// As Plant::step(). Throws Error(bad_pattern) for more than kMujocoBumps bumps at once.
+  /// Advances like Plant::step(). Throws Error(bad_pattern) for more than kMujocoBumps bumps at
+  /// once.
   const StepReport& step(const Eigen::VectorXd& targets, const StepInput& input, double dt);
 
  private:
