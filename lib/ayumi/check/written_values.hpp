@@ -39,6 +39,8 @@ struct WrittenValue {
   bool has_sign() const;
   /// "0.9 m", "30 deg": `value` as the author of this pattern writes it.
   std::string text(const Pattern& pattern, double value) const;
+  /// The share nearest to this one at which pull() leads to a value as text() writes it.
+  double written_share(const Pattern& pattern, double share) const;
   /// Multiplies all its numbers.
   void scale(Pattern& pattern, double factor) const;
   /// Puts all its numbers at this share of the way from what would be there without them.
