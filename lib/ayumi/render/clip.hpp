@@ -37,7 +37,7 @@ struct ClipOptions {
   double speed = 1;                ///< seconds of the run per second of the clip
   double begin = 0;                ///< first instant shown [s]
   double end = -1;                 ///< last; negative: of the run [s]
-  double at = 0;                   ///< instant of a single picture [s]
+  std::optional<double> at;        ///< instant of a single picture [s]; none: telling_instant()
   std::string title;               ///< first words of the caption; empty: the pattern's name
   int threads = 1;                 ///< renderers at work; the bytes do not depend on it
   std::string encoder = "ffmpeg";  ///< program

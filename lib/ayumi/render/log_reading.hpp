@@ -57,7 +57,8 @@ struct FlightRecord {
 std::vector<FlightRecord> flights(const SimulationLog& log);
 
 /// The instant worth showing first: shortly after the first push, without one the fall, then the
-/// middle of the first flight, else that of the run [s].
+/// middle of the first flight, else the posture with the largest change of a joint since the start;
+/// if no joint moves, the middle of the run [s].
 double telling_instant(const SimulationLog& log);
 
 /// `count` instants worth showing [s], in the order of time: begin and end, pushes, the fall, the
