@@ -47,7 +47,8 @@ async function namesEverything(tab) {
   expect(unnamed.length === 0, "without a name: " + unnamed.join(" "));
   const reached = await tab.run(`return [...document.querySelectorAll("button, input, select")]
     .filter((e) => e.getClientRects().length && e.tabIndex < 0 && e.getAttribute("role") !== "tab" &&
-      [...e.parentElement.querySelectorAll("button")].filter((other) => other.tabIndex === 0).length !== 1).length;`);
+      [...(e.closest(".lane") ? document.getElementById("time").querySelectorAll(".lane .plot > button")
+        : e.parentElement.querySelectorAll("button"))].filter((other) => other.tabIndex === 0).length !== 1).length;`);
   expect(reached === 0, reached + " controls that the keyboard does not reach");
 }
 
@@ -73,7 +74,7 @@ async function editsByKeyboard(tab) {
 
 /// Real presses of keys alone: the focus is never lost, and never goes where nobody sent it.
 async function keepsTheFocus(tab) {
-  const keys = { Tab: "\uE004", Enter: "\uE007", Escape: "\uE00C", Right: "\uE014", Left: "\uE012" };
+  const keys = { Tab: "\uE004", Enter: "\uE007", Escape: "\uE00C", Right: "\uE014", Left: "\uE012", Up: "\uE013", Down: "\uE015" };
   const press = (name) => tab.act([{ type: "key", id: "keyboard", actions: ["keyDown", "keyUp"].map((type) => ({ type, value: keys[name] ?? name })) }]);
   const at = () => tab.run(`const e = document.activeElement;
     return e === document.body ? "nothing" : (e.closest("#selected") ? "values: " : e.closest("#time") ? "timeline: " : "") + (e.dataset.id ?? e.id);`);
@@ -82,10 +83,20 @@ async function keepsTheFocus(tab) {
   expect(await at() === "timeline: /keyframes/1/zmp", "an arrow key stays on the timeline: " + await at());
   const head = await tab.run("return document.querySelector('#selected h3').textContent");
   expect(head.endsWith(`at ${data().keyframes[1].t} s`), "and selects: " + head);
+  let lanes = 0;
+  for (; lanes < 20 && (await at()).startsWith("timeline: /keyframes/"); ++lanes) await press("Up");
+  expect((await at()).startsWith("timeline: /phases/"), "an arrow key goes to the lane above: " + await at());
+  for (; lanes > 0; --lanes) await press("Down");
+  expect(await at() === "timeline: /keyframes/1/zmp", "and back to the same time: " + await at());
   await press("Enter");
   expect((await at()).startsWith("values: /keyframes/1"), "Enter goes to the values: " + await at());
   await press("Escape");
   expect(await at() === "timeline: /keyframes/1/zmp", "Escape goes back: " + await at());
+  await tab.run("document.querySelector('[data-id=\"/phases/1\"]').click()");
+  const units = await tab.run(`return [...document.querySelectorAll("#selected label")]
+    .map((l) => [l.textContent, l.querySelector(".unit")?.textContent.trim()])
+    .filter(([words, unit]) => unit && !words.endsWith(" " + unit)).map(([words]) => words);`);
+  expect(units.length === 0, "names that run into their units: " + units.join("; "));
   // A move that is taken back before it is written leaves what was written before.
   const written = text();
   await tab.run("document.querySelector(arguments[0]).focus()", keySelector(1));
