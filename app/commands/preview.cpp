@@ -265,8 +265,11 @@ void add_picture_options(Command& command, PreviewOptions& options) {
       ->capture_default_str();
   command.add_option("--to", clip.end,
                      "Time of the motion at which the clip ends [s] (default: the end).");
-  command.add_option("--at", clip.at, "Time of the picture, if the file is a single picture [s].")
-      ->capture_default_str();
+  command.add_option(
+      "--at", clip.at,
+      "Time of the picture, if the file is a single picture [s] (default: just after "
+      "the first push, the fall, the first flight, or where the posture differs most "
+      "from the one at the start).");
   command.add_option("--strip", options.strip, "Number of snapshots side by side in a .png.")
       ->check(whole_number_within(1, 400));
   command
@@ -341,6 +344,7 @@ void add_preview(Command& app, Context& context) {
   command->footer(
       "Examples:\n"
       "  ayumi preview out/ -o walk.mp4\n"
+      "  ayumi preview bow.json -o bow.png\n"
       "  ayumi preview out/ --log open_loop --view side -o fall.mp4\n"
       "  ayumi preview out/ --at 2.35 --hide trails,forces -o push.png\n"
       "  ayumi preview out/ --from 2 --to 3 --speed 0.2 --ghost command -o slow.webm\n"

@@ -1,6 +1,8 @@
 // node author_bench.mjs AYUMI CHROMEDRIVER PATTERN [SAVES]: the times from saving a pattern, of which
-// one value changes each time, to the findings of `ayumi author` and to the picture of its page in
-// headless Chromium, beside the time of a whole `ayumi check` of the same file. Works on a copy.
+// one value changes each time, to the findings of `ayumi author`, to the page that has taken them, and
+// to its picture in headless Chromium, beside the time of a whole `ayumi check` of the same file. Works
+// on a copy. The browser draws in software: where other programs take the cores, its next frame alone
+// may wait for seconds, while the page has long taken the motion.
 
 import { execFileSync, spawn } from "node:child_process";
 import { mkdtempSync, readFileSync, renameSync, rmSync, writeFileSync } from "node:fs";
@@ -41,13 +43,14 @@ try {
   await tab.load(address);
   await until(() => tab.run("return document.documentElement.dataset.author === 'ready'"), 60);
   // The frame after the one that shows a new version is drawn when the version is on the screen.
-  await tab.run(`window.shown = {};
+  await tab.run(`window.shown = {}; window.taken = {};
     new MutationObserver(() => {
       const version = document.documentElement.dataset.version;
+      window.taken[version] = Date.now();
       requestAnimationFrame(() => requestAnimationFrame(() => { window.shown[version] = Date.now(); }));
     }).observe(document.documentElement, { attributeFilter: ["data-version"] });`);
   const state = async () => (await fetch(address + "state")).json();
-  const findings = [], picture = [], check = [];
+  const findings = [], taken = [], picture = [], check = [];
   for (let i = 1; i <= Number(saves); ++i) {
     const { version } = await state();
     await wait(300);
@@ -58,6 +61,7 @@ try {
     findings.push(Date.now() - begin);
     const at = await until(() => tab.run(`return window.shown[${now.version}]`));
     if (!at) throw new Error("the page shows no new version");
+    taken.push(await tab.run(`return window.taken[${now.version}]`) - begin);
     picture.push(at - begin);
     const checked = Date.now();
     try {
@@ -69,6 +73,7 @@ try {
   }
   console.log(`${(await state()).duration.toFixed(1)} s of motion, ${saves} saves`);
   row("save to findings", findings);
+  row("save to page", taken);
   row("save to picture", picture);
   row("check, whole process", check);
   console.log(`findings / check         ${(median(findings) / median(check)).toFixed(2)}`);

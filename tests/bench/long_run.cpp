@@ -18,6 +18,7 @@
 
 #include "ayumi/author/edit/edit.hpp"
 #include "ayumi/base/error.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
 #include "ayumi/math/rotation.hpp"

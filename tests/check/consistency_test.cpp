@@ -9,6 +9,7 @@
 #include "ayumi/demand/contact_plan.hpp"
 #include "ayumi/demand/motion_demand.hpp"
 #include "ayumi/io/run/results_json.hpp"
+#include "ayumi/model/gravity.hpp"
 #include "tests/support/check_report.hpp"
 #include "tests/support/faults.hpp"
 #include "tests/support/limited_biped.hpp"

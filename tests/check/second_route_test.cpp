@@ -13,6 +13,7 @@
 #include "ayumi/demand/ground_demand.hpp"
 #include "ayumi/demand/motion_demand.hpp"
 #include "ayumi/math/polygon.hpp"
+#include "ayumi/math/rotation.hpp"
 #include "ayumi/motion/differentiate.hpp"
 #include "tests/support/plain_motion.hpp"
 #include "tests/support/random_robot.hpp"

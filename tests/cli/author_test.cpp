@@ -7,6 +7,7 @@
 #include <csignal>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <thread>
 
 #include "ayumi/base/file.hpp"
@@ -117,6 +118,11 @@ class Server {
   int port_ = 0;
   std::string root_;
 };
+
+/// The edit that sets one value.
+OrderedJson set(const std::string& pointer, const OrderedJson& value) {
+  return {{{"kind", "set"}, {"pointer", pointer}, {"value", value}}};
+}
 
 /// A connection on which nothing is sent.
 class Connection {
@@ -271,6 +277,16 @@ TEST_F(AuthorServer, FollowsTheFileAndNamesTheLineOfAnError) {
   EXPECT_TRUE(state["consistent"].get<bool>());
 }
 
+TEST_F(AuthorServer, AnErrorOfTheWholeFileHasNoLine) {
+  const Server server(file);
+  const std::string without = R"({ "format": "ayumi.pattern/1", "robot": "hoap1" })";
+  save(without);
+  const OrderedJson state =
+      server.state_when([&](const OrderedJson& now) { return now["text"] == without; });
+  ASSERT_FALSE(state["error"].is_null());
+  EXPECT_FALSE(state["error"].contains("line")) << state["error"].dump();
+}
+
 TEST_F(AuthorServer, ShowsTheLastOfManyQuickSaves) {
   const Server server(file);
   std::string last;
@@ -307,6 +323,32 @@ TEST_F(AuthorServer, WritesEditsIntoTheTextAndTakesThemBack) {
   EXPECT_EQ(contents(file), replaced("\"t\": 0.71", "\"t\": 0.75"));
   EXPECT_EQ(server.edit({{{"kind", "remove"}, {"pointer", "/keyframes/99"}}}).first, 422);
   EXPECT_EQ(contents(file), replaced("\"t\": 0.71", "\"t\": 0.75"));
+}
+
+TEST_F(AuthorServer, AfterEditsItShowsWhatAServerShowsThatStartsAnew) {
+  shorten();
+  const Server server(file);
+  std::mt19937 random(7);
+  const auto between = [&](double low, double high) {
+    return std::round(1e4 * (low + (high - low) * static_cast<double>(random()) / 4294967295.0)) /
+           1e4;
+  };
+  for (int i = 0; i < 8; ++i) {
+    const OrderedJson edits = {i % 4 == 0   ? set("/keyframes/1/t", between(0.5, 0.7))
+                               : i % 4 == 1 ? set("/defaults/cog_height", between(0.2, 0.225))
+                               : i % 4 == 2
+                                   ? set("/world/friction", between(0.02, 0.8))
+                                   : set("/keyframes/1/joints/r_shoulder_pitch", between(60, 120))};
+    ASSERT_EQ(server.edit(edits).first, 200) << edits.dump();
+    const Server anew(file);
+    const OrderedJson now = server.state(), expected = anew.state();
+    ASSERT_TRUE(expected["error"].is_null()) << expected["error"].dump();
+    for (const char* const part :
+         {"text", "consistent", "reason", "findings", "groups", "tracks", "phases"})
+      EXPECT_EQ(now[part].dump(), expected[part].dump()) << part << " after " << edits.dump();
+    EXPECT_EQ(now["strips"]["plan"].dump(), expected["strips"]["plan"].dump());
+    EXPECT_EQ(server.get("series?which=plan"), anew.get("series?which=plan"));
+  }
 }
 
 // What the page shows is computed with the parameters of the command line, and so is the text that
@@ -364,9 +406,6 @@ TEST_F(AuthorServer, AdvisesTheButtonOfTheRepair) {
 // have can be changed.
 TEST_F(AuthorServer, RefusesEditsThatMakeThePatternUnreadable) {
   const Server server(file);
-  const auto set = [](const std::string& pointer, const OrderedJson& value) -> OrderedJson {
-    return {{{"kind", "set"}, {"pointer", pointer}, {"value", value}}};
-  };
   const auto can_edit = [](const OrderedJson& state) {
     return state["features"].dump().find("\"edit\"") != std::string::npos;
   };

@@ -6,6 +6,7 @@
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/dynamics/zmp.hpp"
+#include "ayumi/math/rotation.hpp"
 #include "tests/support/limited_biped.hpp"
 #include "tests/support/random_robot.hpp"
 #include "tests/support/walk.hpp"

@@ -5,6 +5,7 @@
 #include "ayumi/dynamics/cog_jacobian.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/dynamics/tree_dynamics.hpp"
+#include "ayumi/math/rotation.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "tests/support/random_robot.hpp"
 

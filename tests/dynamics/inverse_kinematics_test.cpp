@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/math/rotation.hpp"
 #include "tests/support/biped.hpp"
 #include "tests/support/random_robot.hpp"
 

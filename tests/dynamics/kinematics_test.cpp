@@ -7,6 +7,7 @@
 #include "ayumi/dynamics/cog_jacobian.hpp"
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
+#include "ayumi/math/rotation.hpp"
 #include "tests/support/random_robot.hpp"
 
 namespace ayumi {

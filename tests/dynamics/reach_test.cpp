@@ -6,6 +6,7 @@
 #include <set>
 
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/math/rotation.hpp"
 #include "tests/support/limited_biped.hpp"
 #include "tests/support/random_robot.hpp"
 

@@ -9,6 +9,7 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
+#include "ayumi/render/log_reading.hpp"
 #include "tests/render/box_robot.hpp"
 
 namespace ayumi {
@@ -142,6 +143,13 @@ TEST_F(Clip, ASinglePictureShowsItsInstant) {
   options.at = 0.5;
   write_clip(model, log, folder / "a.png", options);
   EXPECT_EQ(read_file(folder / "a.png"), encode_png(ClipRenderer(model, log, options).frame(0.5)));
+}
+
+TEST_F(Clip, ASinglePictureWithoutATimeShowsWhatHappens) {
+  write_clip(model, log, folder / "a.png", options);
+  const double t = telling_instant(log);
+  EXPECT_NEAR(t, 0.55, 1e-12) << "after the push";
+  EXPECT_EQ(read_file(folder / "a.png"), encode_png(ClipRenderer(model, log, options).frame(t)));
 }
 
 TEST_F(Clip, CaptionAndMarksCanBeSwitchedOff) {

@@ -48,11 +48,30 @@ TEST(LogReading, ThePushOrTheFallIsWorthShowing) {
   for (SimulationSample& sample : log.samples) sample.push_force.setZero();
   EXPECT_NEAR(telling_instant(log), 0.8, 1e-12);
   log.result.outcome = Outcome::stands;
-  EXPECT_NEAR(telling_instant(log), 0.5, 1e-12);
+  EXPECT_NEAR(telling_instant(log), 0.262, 1e-12) << "the neck's first end";
   const std::vector<double> times = telling_instants(log, 3);
   ASSERT_EQ(times.size(), 3u);
   EXPECT_EQ(times.front(), 0);
   EXPECT_EQ(times.back(), 1);
+}
+
+// A bow: at its end the robot stands as at its start, elsewhere.
+TEST(LogReading, ThePostureFarthestFromTheStartIsWorthShowing) {
+  SimulationLog log = test::box_run(test::box_robot());
+  for (size_t k = 0; k < log.samples.size(); ++k) {
+    SimulationSample& sample = log.samples[k];
+    const double t = k * log.dt;
+    sample.push_force.setZero();
+    sample.cog.x() += t;
+    sample.state.theta =
+        Eigen::Vector2d(0.3, t < 0.2 || t > 0.4 ? 0 : std::min(0.25, t - 0.2) * -2.0);
+  }
+  EXPECT_NEAR(telling_instant(log), 0.4, 1e-12);
+  for (SimulationSample& sample : log.samples)
+    sample.state.theta[1] = std::max(-0.3, sample.state.theta[1]);
+  EXPECT_NEAR(telling_instant(log), 0.35, 1e-12) << "held from here on";
+  for (SimulationSample& sample : log.samples) sample.state.theta[1] *= 0.1;
+  EXPECT_NEAR(telling_instant(log), 0.5, 1e-12) << "hardly moves";
 }
 
 TEST(LogReading, FlightsAreWorthShowing) {

@@ -11,6 +11,7 @@
 #include "ayumi/demand/motion_demand.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/dynamics/self_collision.hpp"
+#include "ayumi/math/rotation.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/motion/differentiate.hpp"
 #include "ayumi/repair/correction_problem.hpp"

@@ -6,6 +6,7 @@
 
 #include "ayumi/check/consistency.hpp"
 #include "ayumi/io/robot/robot_file.hpp"
+#include "ayumi/math/rotation.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "tests/support/limited_biped.hpp"
 #include "tests/support/random_robot.hpp"

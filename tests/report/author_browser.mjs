@@ -47,7 +47,8 @@ async function namesEverything(tab) {
   expect(unnamed.length === 0, "without a name: " + unnamed.join(" "));
   const reached = await tab.run(`return [...document.querySelectorAll("button, input, select")]
     .filter((e) => e.getClientRects().length && e.tabIndex < 0 && e.getAttribute("role") !== "tab" &&
-      [...e.parentElement.querySelectorAll("button")].filter((other) => other.tabIndex === 0).length !== 1).length;`);
+      [...(e.closest(".lane") ? document.getElementById("time").querySelectorAll(".lane .plot > button")
+        : e.parentElement.querySelectorAll("button"))].filter((other) => other.tabIndex === 0).length !== 1).length;`);
   expect(reached === 0, reached + " controls that the keyboard does not reach");
 }
 
@@ -73,7 +74,7 @@ async function editsByKeyboard(tab) {
 
 /// Real presses of keys alone: the focus is never lost, and never goes where nobody sent it.
 async function keepsTheFocus(tab) {
-  const keys = { Tab: "\uE004", Enter: "\uE007", Escape: "\uE00C", Right: "\uE014", Left: "\uE012" };
+  const keys = { Tab: "\uE004", Enter: "\uE007", Escape: "\uE00C", Right: "\uE014", Left: "\uE012", Up: "\uE013", Down: "\uE015" };
   const press = (name) => tab.act([{ type: "key", id: "keyboard", actions: ["keyDown", "keyUp"].map((type) => ({ type, value: keys[name] ?? name })) }]);
   const at = () => tab.run(`const e = document.activeElement;
     return e === document.body ? "nothing" : (e.closest("#selected") ? "values: " : e.closest("#time") ? "timeline: " : "") + (e.dataset.id ?? e.id);`);
@@ -82,10 +83,20 @@ async function keepsTheFocus(tab) {
   expect(await at() === "timeline: /keyframes/1/zmp", "an arrow key stays on the timeline: " + await at());
   const head = await tab.run("return document.querySelector('#selected h3').textContent");
   expect(head.endsWith(`at ${data().keyframes[1].t} s`), "and selects: " + head);
+  let lanes = 0;
+  for (; lanes < 20 && (await at()).startsWith("timeline: /keyframes/"); ++lanes) await press("Up");
+  expect((await at()).startsWith("timeline: /phases/"), "an arrow key goes to the lane above: " + await at());
+  for (; lanes > 0; --lanes) await press("Down");
+  expect(await at() === "timeline: /keyframes/1/zmp", "and back to the same time: " + await at());
   await press("Enter");
   expect((await at()).startsWith("values: /keyframes/1"), "Enter goes to the values: " + await at());
   await press("Escape");
   expect(await at() === "timeline: /keyframes/1/zmp", "Escape goes back: " + await at());
+  await tab.run("document.querySelector('[data-id=\"/phases/1\"]').click()");
+  const units = await tab.run(`return [...document.querySelectorAll("#selected label")]
+    .map((l) => [l.textContent, l.querySelector(".unit")?.textContent.trim()])
+    .filter(([words, unit]) => unit && !words.endsWith(" " + unit)).map(([words]) => words);`);
+  expect(units.length === 0, "names that run into their units: " + units.join("; "));
   // A move that is taken back before it is written leaves what was written before.
   const written = text();
   await tab.run("document.querySelector(arguments[0]).focus()", keySelector(1));
@@ -371,8 +382,8 @@ async function dragsInTime(tab) {
 
 async function showsFindings(tab) {
   const good = text();
-  const wrong = data(), i = wrong.keyframes.findIndex((frame) => frame.t > 3.7);
-  wrong.keyframes[i].zmp = [0.12, 0.085];
+  const wrong = data(), i = wrong.keyframes.findIndex((frame) => frame.t > 2);
+  wrong.keyframes[i].zmp = [0.06, 0.07];
   await tab.after(() => save(JSON.stringify(wrong, null, 1)));
   const seen = await tab.run(`
     const findings = window.ayumiAuthor.page.state.findings;
@@ -530,7 +541,7 @@ async function works(tab) {
 
 /// A repair is shown as a ghost and can be taken; a run is shown in the pattern's place.
 async function showsResults(tab) {
-  const good = text(), wrong = data(), i = wrong.keyframes.findIndex((frame) => frame.t > 3.7);
+  const good = text(), wrong = data(), i = wrong.keyframes.findIndex((frame) => frame.t > 2);
   wrong.keyframes[i].joints = { l_elbow: -170 };
   await tab.after(() => save(JSON.stringify(wrong, null, 1)));
   await tab.click("#job-repair");
@@ -621,6 +632,11 @@ async function followsTheFile(driver_, tab) {
   const other = await openPage(driver_, 820, 1100);
   await other.shoot("narrow.png");
   expect(await other.run("return document.documentElement.scrollWidth") <= 820, "nothing sticks out at 820 px");
+  await other.tool("Emulation.setEmulatedMedia", { features: [{ name: "prefers-color-scheme", value: "dark" }] });
+  await other.shoot("dark.png");
+  const ground = await other.run("return getComputedStyle(document.body).backgroundColor");
+  expect(Math.max(...ground.match(/\d+/g).map(Number)) < 60, "the dark page is dark: " + ground);
+  await other.coarsen();
   await tab.after(() => tab.run("window.ayumiAuthor.page.edit([{ kind: 'set', pointer: '/keyframes/0/zmp', value: 'left' }]);"));
   expect(await until(() => other.run("return window.ayumiAuthor.page.state.tracks[0].keys[0].value === 'left'")), "the other page follows");
   await tab.after(() => tab.click("#undo"));
@@ -632,10 +648,6 @@ async function followsTheFile(driver_, tab) {
   for (const one of [tab, other])
     expect(await until(() => one.run("return window.ayumiAuthor.page.state.text.includes('save 99')"), 60), "the last of a hundred saves is shown");
   save(JSON.stringify(good, null, 1));
-  await other.tool("Emulation.setEmulatedMedia", { features: [{ name: "prefers-color-scheme", value: "dark" }] });
-  await other.shoot("dark.png");
-  const ground = await other.run("return getComputedStyle(document.body).backgroundColor");
-  expect(Math.max(...ground.match(/\d+/g).map(Number)) < 60, "the dark page is dark: " + ground);
   await quiet(other);
   await other.end();
 }

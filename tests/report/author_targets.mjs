@@ -115,11 +115,12 @@ async function worksNarrow(tab) {
   }
   await tab.shoot("targets_narrow.png");
   await tab.run("document.getElementById('marks').open = false;");
-  await tab.size(1280, 800);
+  await tab.coarsen();
 }
 
 async function twoPages(driver_, tab) {
   const other = await openPage(driver_, 820, 1100);
+  await other.coarsen();
   await tab.after(() => tab.run(`${page} page.edit([{ kind: "set", pointer: "/keyframes/0/cog/y", value: 0.01 }]);`));
   expect(await until(() => other.run(`${page} return page.state.tracks.find((one) => one.name === "cog").keys[0].value.y === 0.01`)), "the other page follows");
   await other.after(() => other.click("#undo"));

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "ayumi/math/rotation.hpp"
 #include "tests/support/random_robot.hpp"
 
 namespace ayumi {

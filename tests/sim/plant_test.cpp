@@ -4,6 +4,7 @@
 
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
+#include "ayumi/math/rotation.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "tests/support/block.hpp"
 #include "tests/support/random_robot.hpp"

@@ -211,7 +211,9 @@ class Search {
     TrialOutcome at_limit = without;
     int within = 0;
     for (int i = 0; i < kMostBisections && within < kBisections; ++i) {
-      const double share = 0.5 * (possible + impossible);
+      // Of a value that can be written as it is named.
+      const double share = value.written_share(pattern_, 0.5 * (possible + impossible));
+      if (share <= possible || share >= impossible) break;
       const TrialOutcome outcome =
           trials_.after(pattern_, [&](Pattern& p) { value.pull(p, share); });
       const bool worse = is_better(without, outcome, measure);

@@ -1,6 +1,7 @@
 #include "ayumi/check/written_values.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -374,6 +375,16 @@ std::string WrittenValue::text(const Pattern& pattern, double value) const {
       break;
   }
   return text::brief(value);
+}
+
+double WrittenValue::written_share(const Pattern& pattern, double share) const {
+  const double unit = quantity == Quantity::angle && pattern.degrees ? std::numbers::pi / 180 : 1;
+  const WrittenNumber& number = numbers.front();
+  const double way = number.value - number.neutral;
+  const std::string written = text::brief((number.neutral + share * way) / unit);
+  double rounded = 0;
+  std::from_chars(written.data(), written.data() + written.size(), rounded);
+  return way == 0 ? share : (unit * rounded - number.neutral) / way;
 }
 
 void WrittenValue::scale(Pattern& pattern, double factor) const {

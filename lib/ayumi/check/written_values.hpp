@@ -40,6 +40,8 @@ struct WrittenValue {
   bool has_sign() const;
   /// "0.9 m", "30 deg": `value` as the author of this pattern writes it.
   std::string text(const Pattern& pattern, double value) const;
+  /// The share nearest to this one at which pull() leads to a value as text() writes it.
+  double written_share(const Pattern& pattern, double share) const;
   /// Multiplies all numbers of the value.
   void scale(Pattern& pattern, double factor) const;
   /// Moves all numbers of the value to this share of the way from what would be there without them.

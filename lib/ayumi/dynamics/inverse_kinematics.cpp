@@ -267,6 +267,28 @@ void InverseKinematics::bend_straight_legs(RobotData& data) {
   update_positions(*model_, state, data);
 }
 
+namespace {
+
+// The error of the posture that `data` holds. The attitude of the trunk counts where legs lack
+// joints.
+template <class Residual>
+void fill_residual(const RobotModel& model, const PostureTarget& target, const RobotData& data,
+                   bool lacking, Residual& e) {
+  for (const Side side : kSides) {
+    const int s = static_cast<int>(side);
+    const Eigen::Isometry3d sole = sole_pose(model, data, side);
+    e.foot[s].template head<3>() = target.feet[s].translation() - sole.translation();
+    e.foot[s].template tail<3>() =
+        log_rotation(Eigen::Quaterniond(target.feet[s].linear() * sole.linear().transpose()));
+  }
+  e.cog = target.cog - data.cog;
+  if (lacking)
+    e.trunk = log_rotation(
+        Eigen::Quaterniond(target.trunk * data.rotation[model.trunk_body()].transpose()));
+}
+
+}  // namespace
+
 double InverseKinematics::Residual::largest() const {
   return std::max(
       {foot[0].cwiseAbs().maxCoeff(), foot[1].cwiseAbs().maxCoeff(), cog.cwiseAbs().maxCoeff()});
@@ -277,17 +299,7 @@ InverseKinematics::Residual InverseKinematics::residual(const PostureTarget& tar
                                                         RobotData& data) const {
   update_positions(*model_, state, data);
   Residual e;
-  for (const Side side : kSides) {
-    const int s = static_cast<int>(side);
-    const Eigen::Isometry3d sole = sole_pose(*model_, data, side);
-    e.foot[s].head<3>() = target.feet[s].translation() - sole.translation();
-    e.foot[s].tail<3>() =
-        log_rotation(Eigen::Quaterniond(target.feet[s].linear() * sole.linear().transpose()));
-  }
-  e.cog = target.cog - data.cog;
-  if (lacking_)
-    e.trunk = log_rotation(
-        Eigen::Quaterniond(target.trunk * data.rotation[model_->trunk_body()].transpose()));
+  fill_residual(*model_, target, data, lacking_, e);
   return e;
 }
 
@@ -459,17 +471,24 @@ void InverseKinematics::damped(const PostureTarget& target, RobotState& state,
     return lacking_ ? kSwingingWeight + (1 - kSwingingWeight) * target.hold[s] : 1.0;
   };
   const std::array<double, 2> firm = {weight(0), weight(1)};
-  const auto stack = [&](const Residual& e) {
-    VectorXd r(rows);
-    r.head<15>() << firm[0] * e.foot[0], firm[1] * e.foot[1], kCogWeight * e.cog;
-    if (lacking_) r.tail<3>() = trunk * e.trunk;
-    return r;
+  VectorXd r(rows), after(rows);
+  const auto stack = [&](const Residual& e, VectorXd& all) {
+    all.head<15>() << firm[0] * e.foot[0], firm[1] * e.foot[1], kCogWeight * e.cog;
+    if (lacking_) all.tail<3>() = trunk * e.trunk;
   };
   Residual e = residual(target, state, data);
-  double lambda = 1e-6;
-  for (int iteration = 0; iteration < 200 && stack(e).cwiseAbs().maxCoeff() > kNewtonTolerance;
+  // A leaning trunk is kept as the initial guess.
+  if (lacking_ && e.trunk.norm() > kLargestJointStep) {
+    set_attitude(target, state, data);
+    e = residual(target, state, data);
+  }
+  stack(e, r);
+  double lambda = 1e-6, before = 0;  // the longest step of a joint before
+  MatrixXd J(rows, base + n), H(base + n, base + n);
+  RobotState trial = state;
+  for (int iteration = 0; iteration < 200 && r.cwiseAbs().maxCoeff() > kNewtonTolerance;
        ++iteration) {
-    MatrixXd J = MatrixXd::Zero(rows, base + n);
+    J.setZero();
     for (int s = 0; s < 2; ++s) {
       J.block<3, 3>(6 * s, 0) = firm[s] * Eigen::Matrix3d::Identity();
       J.block(6 * s, base, 6, n) = firm[s] * leg_jacobian(data, kSides[s], joints);
@@ -489,19 +508,23 @@ void InverseKinematics::damped(const PostureTarget& target, RobotState& state,
       const Eigen::Matrix3d turn = skew(e.trunk);
       J.block<3, 3>(15, 3) = trunk * (Eigen::Matrix3d::Identity() + turn / 2 + turn * turn / 12);
     }
-    const VectorXd r = stack(e), down = J.transpose() * r;
+    VectorXd down = J.transpose() * r;
     for (Eigen::Index i = 0; i < n; ++i) {
       const Dof& dof = model_->dofs()[joints[i]];
       const double theta = state.theta[joints[i]];
-      if ((theta >= dof.upper && down[base + i] > 0) || (theta <= dof.lower && down[base + i] < 0))
+      if ((theta >= dof.upper && down[base + i] > 0) ||
+          (theta <= dof.lower && down[base + i] < 0)) {
         J.col(base + i).setZero();
+        down[base + i] = 0;
+      }
     }
-    MatrixXd H = J.transpose() * J;
+    H.setZero();
+    H.selfadjointView<Eigen::Lower>().rankUpdate(J.transpose());
     H.diagonal().array() += lambda * (lacking_ ? kRollWeight * kRollWeight : 1.0);
-    VectorXd d = solve_symmetric(H, VectorXd(J.transpose() * r));
+    VectorXd d = solve_symmetric(H, down);  // reads the lower half
     const double longest = d.tail(base + n - 3).cwiseAbs().maxCoeff();
     if (longest > kLargestJointStep) d *= kLargestJointStep / longest;
-    RobotState trial = state;
+    trial = state;
     trial.base.position += d.head<3>();
     if (lacking_)
       trial.base.attitude =
@@ -510,14 +533,19 @@ void InverseKinematics::damped(const PostureTarget& target, RobotState& state,
     for (Eigen::Index i = 0; i < n; ++i) trial.theta[joints[i]] += d[base + i];
     limit(trial.theta);
     const Residual next = residual(target, trial, data);
-    const double gain = r.squaredNorm() - stack(next).squaredNorm();
-    // If soles cannot reach their places, a residual remains and the steps vanish.
-    const bool ends = lacking_ && longest < kLastStep;
+    stack(next, after);
+    const double gain = r.squaredNorm() - after.squaredNorm();
+    // If soles cannot reach their places, a residual remains and the steps vanish. Each step is
+    // shorter than the one before by about the same factor, so the next one is foretold.
+    const bool ends = lacking_ && std::min(longest, longest / before * longest) < kLastStep;
+    before = longest;
     if (gain > 0) {
       state = trial;
       e = next;
       lambda = std::max(1e-14, 0.2 * lambda);
-      if (ends || gain < 1e-14 * r.squaredNorm()) break;
+      const bool settled = gain < 1e-14 * r.squaredNorm();
+      r = after;
+      if (ends || settled) break;
     } else if (ends) {
       residual(target, state, data);
       break;
@@ -535,9 +563,7 @@ PostureSolution InverseKinematics::solve(const PostureTarget& target, RobotState
   const auto tolerance = [&](double hold) {
     return lacking_ ? lacking_tolerance(hold) : kAcceptedResidual;
   };
-  // The trunk still leans; this posture is kept as the initial guess.
-  if (!lacking_ || residual(target, state, data).trunk.norm() > kLargestJointStep)
-    set_attitude(target, state, data);
+  if (!lacking_) set_attitude(target, state, data);
   std::array<double, 2> now;
   if (square_) solution.reached = newton(target, state, data, solution.error, now);
   if (!solution.reached) {
@@ -547,7 +573,8 @@ PostureSolution InverseKinematics::solve(const PostureTarget& target, RobotState
       state.base.position = target.cog - (data.cog - data.base_position);
     }
     damped(target, state, data);
-    const Residual e = residual(target, state, data);
+    Residual e;
+    fill_residual(*model_, target, data, lacking_, e);
     solution.error = e.largest();
     solution.lean = e.trunk.norm();
     solution.reached = e.cog.cwiseAbs().maxCoeff() <= tolerance(1);

@@ -21,6 +21,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/render/encoder.hpp"
 #include "ayumi/render/hidden_parts.hpp"
+#include "ayumi/render/log_reading.hpp"
 #include "ayumi/render/robot_look.hpp"
 #include "ayumi/render/simplify.hpp"
 
@@ -58,9 +59,10 @@ void check(const RobotModel& model, const SimulationLog& log, const ClipOptions&
   need(options.end < 0 || options.end >= options.begin,
        "the last time, " + text::exact(options.end) + " s, is before the first time, " +
            text::exact(options.begin) + " s");
-  need(options.at >= 0 && options.at <= last + 1e-9,
-       "the time of the picture, " + text::exact(options.at) + " s, is outside the run (0 to " +
-           text::brief(last) + " s)");
+  const double at = options.at.value_or(0);
+  need(at >= 0 && at <= last + 1e-9, "the time of the picture, " + text::exact(at) +
+                                         " s, is outside the run (0 to " + text::brief(last) +
+                                         " s)");
 }
 
 double robot_height(const std::vector<BodySurface>& surface, const RobotModel& model,
@@ -659,7 +661,7 @@ ClipSummary write_clip(const RobotModel& model, const SimulationLog& log, const 
   const RenderOptions& picture = options.picture;
   if (path.extension() == ".png") {
     ClipRenderer renderer(model, log, options);
-    write_png(path, renderer.frame(options.at));
+    write_png(path, renderer.frame(options.at ? *options.at : telling_instant(log)));
     return {1, picture.width, picture.height, options.fps, renderer.notes()};
   }
   const double end = options.end < 0 ? duration(log) : std::min(options.end, duration(log));

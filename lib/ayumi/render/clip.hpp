@@ -39,7 +39,7 @@ struct ClipOptions {
   double speed = 1;                ///< seconds of the run per second of the clip
   double begin = 0;                ///< first instant shown [s]
   double end = -1;                 ///< last instant shown [s]; if negative, the end of the run
-  double at = 0;                   ///< instant of a single picture [s]
+  std::optional<double> at;        ///< instant of a single picture [s]; if empty, telling_instant()
   std::string title;               ///< first words of the caption; if empty, the pattern's name
   int threads = 1;                 ///< number of renderers at work; the bytes do not depend on it
   std::string encoder = "ffmpeg";  ///< name of the program

@@ -182,6 +182,23 @@ double difference(const SimulationLog& log, double a, double b) {
   return most;
 }
 
+/// The first time at which a joint has moved farthest since the start [s]; the middle where none
+/// moves. The place does not count: a walk goes farthest at its end, in the posture of its start.
+double most_changed_at(const SimulationLog& log) {
+  // Postures that differ by less are one that is held [rad]. Chosen: above rounding.
+  constexpr double kSame = 1e-6;
+  const Eigen::VectorXd& start = log.samples.front().state.theta;
+  double most = kSeenMove, at = 0.5 * duration(log);
+  if (start.size() == 0) return at;
+  for (size_t k = 1; k < log.samples.size(); ++k) {
+    const double moved = (log.samples[k].state.theta - start).cwiseAbs().maxCoeff();
+    if (moved <= most + kSame) continue;
+    most = moved;
+    at = static_cast<double>(k) * log.dt;
+  }
+  return at;
+}
+
 /// The smallest difference between the posture at t and the postures at these times.
 double news_at(const SimulationLog& log, double t, const std::vector<double>& times) {
   double least = INFINITY;
@@ -428,7 +445,7 @@ double telling_instant(const SimulationLog& log) {
   const double last = duration(log);
   if (!pushed.empty()) return std::min(last, pushed.front().begin + 0.25);
   if (log.result.outcome == Outcome::fell) return std::min(last, log.result.fell_at);
-  return flown.empty() ? 0.5 * last : 0.5 * (flown.front().begin + flown.front().end);
+  return flown.empty() ? most_changed_at(log) : 0.5 * (flown.front().begin + flown.front().end);
 }
 
 std::vector<double> telling_instants(const SimulationLog& log, int count) {

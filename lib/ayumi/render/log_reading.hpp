@@ -59,7 +59,8 @@ struct FlightRecord {
 std::vector<FlightRecord> flights(const SimulationLog& log);
 
 /// The instant that is most worth showing [s]: shortly after the first push; if there is none, the
-/// fall; if there is none, the middle of the first flight, and otherwise that of the run.
+/// fall; if there is none, the middle of the first flight, and otherwise the posture with the
+/// largest change of a joint since the start. If no joint moves, it is the middle of the run.
 double telling_instant(const SimulationLog& log);
 
 /// `count` instants worth showing [s], in the order of time. They are: begin and end, pushes, the

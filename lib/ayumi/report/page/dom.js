@@ -37,8 +37,5 @@ export function refill(parent, children) {
   if (id === undefined) return;
   const there = [...parent.querySelectorAll("[data-id]")];
   const same = there.find((one) => one.dataset.id === id) ?? there[Math.min(place, there.length - 1)];
-  if (!same) return;
-  for (const one of same.parentElement.children) if (one.tabIndex === 0 && same.tabIndex < 0) one.tabIndex = -1;
-  if (same.tabIndex < 0) same.tabIndex = 0;
-  same.focus({ preventScroll: true });
+  same?.focus({ preventScroll: true });
 }

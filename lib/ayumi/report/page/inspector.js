@@ -124,7 +124,7 @@ export class Inspector {
       }
     });
     return [element("label", { class: "value" }, element("span", {}, name), input,
-      element("span", { class: "unit" }, options ? "" : unit))];
+      element("span", { class: "unit" }, options || !unit ? "" : " " + unit))];
   }
 
   /// The heights of a field as a table of numbers; a field with too many of them stays in the text.
@@ -173,7 +173,7 @@ export class Inspector {
       });
       const name = there.kind === "keyframe" ? nameAmongOthers(path) : nameOf(path);
       return element("label", { class: "value missing" }, element("span", {}, name), input,
-        element("span", { class: "unit" }, choices ? "" : unitOf(path, this.page.state.angle_unit)));
+        element("span", { class: "unit" }, choices ? "" : " " + unitOf(path, this.page.state.angle_unit)));
     })];
   }
 

@@ -30,7 +30,7 @@ export class Timeline {
   }
 
   lane(name, contents, kind) {
-    this.onestop(contents);
+    this.walkable(contents);
     const plot = element("div", { class: "plot" }, ...contents);
     return element("div", { class: "lane " + kind, role: "group", "aria-label": name },
       element("div", { class: "label", title: name }, name), plot);
@@ -50,6 +50,9 @@ export class Timeline {
     if (state.disturbances.length) rest.push(this.disturbances(state));
     rest.push(this.findings(state));
     refill(byId("lane-events"), rest);
+    this.stopAt(this.things().find((part) => part === document.activeElement) ||
+      this.things().find((part) => part.getAttribute("aria-pressed") === "true") ||
+      this.things().find((part) => part.dataset.id === this.stop) || this.things()[0]);
   }
 
   renderRuler() {
@@ -133,12 +136,35 @@ export class Timeline {
     byId("time").querySelector(".plot > [aria-pressed=true]")?.focus();
   }
 
-  /// The Tab key stops at one thing of each lane, the arrow keys go from one thing to the next, and
+  /// All things of all lanes, from the top.
+  things() {
+    return ["lane-phases", "lane-tracks", "lane-events"].flatMap((id) => [...byId(id).querySelectorAll(".plot > button")]);
+  }
+
+  /// The Tab key stops at one thing of the timeline.
+  stopAt(thing) {
+    if (!thing) return;
+    for (const part of this.things()) part.tabIndex = part === thing ? 0 : -1;
+    this.stop = thing.dataset.id;
+  }
+
+  /// The thing of the next lane above (-1) or below (1) that is nearest to a place.
+  beside(part, way, place) {
+    const plots = [...new Set(this.things().map((one) => one.parentElement))];
+    const away = (one) => Math.max(0, one.offsetLeft - place, place - one.offsetLeft - one.offsetWidth);
+    return [...plots[plots.indexOf(part.parentElement) + way]?.children ?? []]
+      .reduce((best, one) => !best || away(one) < away(best) ? one : best, null);
+  }
+
+  /// The arrow keys go from one thing to the next in its lane and to the lanes above and below, and
   /// Enter goes to the values of the selected thing.
-  onestop(parts) {
-    const first = parts.find((part) => part.getAttribute("aria-pressed") === "true") || parts[0];
+  walkable(parts) {
     for (const part of parts) {
-      part.tabIndex = part === first ? 0 : -1;
+      part.tabIndex = -1;
+      part.addEventListener("focus", () => {
+        this.stopAt(part);
+        this.column = null;
+      });
       part.addEventListener("keydown", (event) => {
         if (event.key === "Enter" && part.hasAttribute("aria-pressed") && !event.ctrlKey) {
           event.preventDefault();
@@ -146,14 +172,16 @@ export class Timeline {
           this.page.inspector.focusValues();
           return;
         }
-        if (event.ctrlKey || !["ArrowLeft", "ArrowRight"].includes(event.key)) return;
+        if (event.ctrlKey || !/^Arrow/.test(event.key)) return;
         event.preventDefault();
-        const next = event.key === "ArrowRight" ? part.nextElementSibling : part.previousElementSibling;
+        // Up and down stay at the place at which they began.
+        const way = { ArrowUp: -1, ArrowDown: 1 }[event.key], column = this.column ?? part.offsetLeft + part.offsetWidth / 2;
+        const next = way ? this.beside(part, way, column)
+          : event.key === "ArrowRight" ? part.nextElementSibling : part.previousElementSibling;
         if (!next) return;
-        part.tabIndex = -1;
-        next.tabIndex = 0;
         next.focus();
         if (next.classList.contains("key")) next.click();
+        if (way) this.column = column;
       });
     }
   }
