@@ -107,7 +107,8 @@ std::vector<std::vector<std::string>> table_below(const fs::path& page,
     for (std::string cell; std::getline(stream, cell, '|');) cells.push_back(trimmed(cell));
     rows.push_back(cells);
   }
-  if (rows.size() > 2) rows.erase(rows.begin(), rows.begin() + 2);  // the head and its rule
+  // The head of the table and the rule below it are removed.
+  if (rows.size() > 2) rows.erase(rows.begin(), rows.begin() + 2);
   return rows;
 }
 

@@ -43,7 +43,7 @@ TEST(WalkPattern, AlternatesFeetAndClosesThem) {
   for (size_t i = 1; i < swings.size(); ++i) EXPECT_EQ(swings[i].foot, other(swings[i - 1].foot));
   EXPECT_NEAR(swings[0].to.position.x(), 0.03, 1e-12);
   EXPECT_NEAR(swings[3].to.position.x(), 0.12, 1e-12);
-  EXPECT_NEAR(swings[4].to.position.x(), 0.12, 1e-12);  // beside the last foothold
+  EXPECT_NEAR(swings[4].to.position.x(), 0.12, 1e-12);  // the foot lands beside the last foothold
   EXPECT_NEAR(swings[3].to.position.y(), 0.05, 1e-12);
   EXPECT_NEAR(swings[4].to.position.y(), -0.05, 1e-12);
 }

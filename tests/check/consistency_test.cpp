@@ -186,7 +186,7 @@ TEST(Consistency, MeanTorqueOfAWindowShorterThanTheMotion) {
 
 TEST(Consistency, StanceFootSlips) {
   CommandSeries series = good_walk();
-  const double at = middle_of_step(2);  // on the left foot
+  const double at = middle_of_step(2);  // the robot stands on the left foot
   RobotData data(limited_biped());
   for (size_t k = 0; k < series.samples.size(); ++k) {
     CommandSample& s = series.samples[k];

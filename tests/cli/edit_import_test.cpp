@@ -175,9 +175,9 @@ TEST_F(Edit, TheCycleOfAWalkIsRepeated) {
   const Json once = looped("once.json", {"--times", "1"}, 0);
   const Json thrice = looped("thrice.json", {"--times", "3"}, 0);
   const double cycle = double(once["cycle_s"][1]) - double(once["cycle_s"][0]);
-  EXPECT_NEAR(cycle, 1.1, 1e-9);  // two periods
+  EXPECT_NEAR(cycle, 1.1, 1e-9);  // the cycle lasts two periods
   EXPECT_NEAR(double(thrice["duration_s"]), double(once["duration_s"]) + 2 * cycle, 1e-9);
-  EXPECT_NEAR(double(once["displacement_m"][0]), 0.06, 1e-6);  // two strides
+  EXPECT_NEAR(double(once["displacement_m"][0]), 0.06, 1e-6);  // the cycle moves by two strides
   EXPECT_LT(double(once["gap"]["feet_m"]), 1e-6);
   EXPECT_EQ(thrice["check"]["verdict"], "consistent");
   EXPECT_EQ(whole["verdict"], "consistent");

@@ -364,7 +364,8 @@ TEST_F(Export, AChangedImportedSequenceIsComputed) {
       0);
   std::string table = contents(folder.path() / "i.csv");
   const size_t angle = table.find(',', table.rfind('\n', table.size() - 2)) + 1;
-  table.replace(angle, table.find(',', angle) - angle, "0.01");  // r_hip_yaw in the last row
+  // The angle of r_hip_yaw in the last row is changed.
+  table.replace(angle, table.find(',', angle) - angle, "0.01");
   write(folder.path() / "i.csv", table);
   const Output output =
       ayumi({"i.json", "--format", "hoap", "-o", "b.csv", "--force-unsafe", "--json"});

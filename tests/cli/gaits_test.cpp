@@ -62,7 +62,7 @@ TEST(Gaits, ALibraryOfTwoCellsHasAllItsParts) {
     const std::string npz = contents(folder / "lib" / cycle["npz"].get<std::string>());
     for (const char* name : {"fps.npy", "joint_names.npy", "body_names.npy", "joint_vel.npy"})
       EXPECT_NE(npz.find(name), std::string::npos) << name;
-    std::string knee;  // four bytes for each character
+    std::string knee;  // each character takes four bytes
     for (const char c : std::string("l_knee")) knee += std::string{c, 0, 0, 0};
     EXPECT_NE(npz.find(knee), std::string::npos);
     const Output checked =

@@ -75,7 +75,7 @@ TEST_F(Replay, JumpsAreClampedAndFallsAreFound) {
   const Json clamp = Json::parse(jump.out).at("clamps").at(0);
   EXPECT_EQ(clamp.at("kind"), "speed");
   EXPECT_NEAR(clamp.at("change_rad"), 943 / 209.0 * 3.14159265 / 180, 1e-6);
-  write(folder / "lean.csv", rows(4, 14, 4500));  // both ankles by 21 degrees
+  write(folder / "lean.csv", rows(4, 14, 4500));  // both ankles are turned by 21 degrees
   const Output lean = ayumi({"replay", "lean.csv", "--robot", "hoap1", "-o", "out", "--json"});
   EXPECT_EQ(lean.exit_code, 1) << lean.err << lean.out;
   EXPECT_EQ(Json::parse(lean.out).at("plants").at("ayumi").at("outcome"), "fell");

@@ -326,7 +326,7 @@ TEST(SweepCommand, OneClearLineForBadInput) {
   // The same holds for a refused file of another version, which differs in the head of the
   // database.
   std::string later = good;
-  later.replace(60, 4, std::string("\0\0\0\2", 4));  // PRAGMA user_version
+  later.replace(60, 4, std::string("\0\0\0\2", 4));  // this is PRAGMA user_version
   write(s.folder / "later.db", later);
   expect(s.run({"sweep", "status", "later.db"}), 3, "the results have version 2 of the format");
   for (const char* const file : {"good.db", "later.db"})

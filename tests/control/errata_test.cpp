@@ -43,7 +43,7 @@ TEST_F(Errata, Equation3IsAVelocityRelation) {
   const int hand = static_cast<int>(model.bodies().size()) - 1;
   auto angular_velocity = [&](double t) {
     RobotState s = state;
-    s.theta += t * state.dtheta;  // constant joint rates, the base at rest
+    s.theta += t * state.dtheta;  // joint rates are constant, and the base is at rest
     update_velocities(model, s, data);
     return data.angular_velocity[static_cast<size_t>(hand)];
   };

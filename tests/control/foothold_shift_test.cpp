@@ -197,7 +197,8 @@ Outcomes pushed(double at, const Vector3d& direction, double impulse, double ste
 
 TEST(FootholdShift, ForwardPushIsSteppedOut) {
   const Outcomes fixed = pushed(3.37, {1, 0, 0}, 3.0, 0);
-  const Outcomes stepped = pushed(3.37, {1, 0, 0}, 3.0, 1);  // 1.4 times the capture bound
+  // The push is 1.4 times the capture bound.
+  const Outcomes stepped = pushed(3.37, {1, 0, 0}, 3.0, 1);
   EXPECT_EQ(fixed.result.outcome, Outcome::fell);
   EXPECT_EQ(stepped.result.outcome, Outcome::stands);
   EXPECT_LT(fixed.stride, 0.031);

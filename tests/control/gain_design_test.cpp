@@ -100,7 +100,7 @@ TEST(GainDesign, SlowestModeIsThatOfTheSteppedLoop) {
 
 TEST(GainDesign, PolesGiveKAndD) {
   const DtadParams p = gains_from_poles({-1, 0}, {-0.25, 0});
-  EXPECT_DOUBLE_EQ(*p.k, 1.25);  // 1 + q
+  EXPECT_DOUBLE_EQ(*p.k, 1.25);  // this is 1 + q
   EXPECT_DOUBLE_EQ(*p.d, 1.25);
   const DtadParams pair = gains_from_poles({-1, 0.5}, {-1, -0.5});
   EXPECT_DOUBLE_EQ(*pair.k, 2.25);

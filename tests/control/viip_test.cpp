@@ -60,7 +60,7 @@ TEST(Viip, TheSpringDependsOnTheFeetThatBear) {
 // of turning_acceleration() the ZMP stays under the COG.
 TEST(Viip, ATurningBodyKeepsItsZmp) {
   const double mass = 6.5, z = 0.22, weight = mass * kGravity;
-  const Eigen::Vector3d rate(0.3, -0.2, 0);  // L' [N m]
+  const Eigen::Vector3d rate(0.3, -0.2, 0);  // rate of change L' [N m]
   const Eigen::Vector2d a = turning_acceleration(rate, mass, z);
   // The moment of the ground about the COG is (zmp - cog) x f = L'.
   const Eigen::Vector3d force(mass * a.x(), mass * a.y(), weight), arm(0, 0, -z);

@@ -84,7 +84,7 @@ TEST(CollisionScan, NothingIsMeasuredAgainWhereNothingMoves) {
     EXPECT_EQ(clearance, before);
     ++notes;
   });
-  EXPECT_EQ(notes, 51 * collisions.pairs().size());  // every 20 ms
+  EXPECT_EQ(notes, 51 * collisions.pairs().size());  // there is a note every 20 ms
 }
 
 }  // namespace

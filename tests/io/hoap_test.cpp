@@ -42,7 +42,8 @@ ReferenceTrajectory sway() {
 TEST(Hoap, MotorsStandInDeviceOrder) {
   ReferenceTrajectory table = sway();
   table.rows.resize(1);
-  table.rows[0].theta = Eigen::Vector3d(10, 20, -5) * kDegree;  // devices 3, 1, 2
+  // The devices have the order 3, 1, 2.
+  table.rows[0].theta = Eigen::Vector3d(10, 20, -5) * kDegree;
   EXPECT_EQ(hoap_csv(test::bus_robot(), table), "1,2,-4180,-1045,2090,R,R,R\n");
 }
 
@@ -241,7 +242,7 @@ TEST(Hoap, ReadsRealSequences) {
   const HoapFile sequence = parse_hoap(read_file(path), path.string(), robot);
   EXPECT_EQ(sequence.tick_ms, 1);
   EXPECT_EQ(sequence.layout.name, "HOAP-3");
-  EXPECT_NEAR(sequence.rows[0].values[2] / 209.0, 17.7, 0.05);  // hip pitch
+  EXPECT_NEAR(sequence.rows[0].values[2] / 209.0, 17.7, 0.05);  // the hip pitch
   EXPECT_NEAR(sequence.rows[0].values[3] / 209.0, 45.6, 0.05);  // the knee
   const std::string again = hoap_csv(robot, hoap_targets(robot, sequence));
   EXPECT_EQ(again.substr(0, again.find('\n')),

@@ -78,7 +78,7 @@ TEST(Mesh, ReadsColoursOfObjMaterials) {
 
 TEST(Mesh, ReadsBinaryStlAndRefusesACutOne) {
   std::string bytes(84, '\0');
-  bytes[80] = 1;  // one triangle
+  bytes[80] = 1;  // the file has one triangle
   const float numbers[12] = {0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0};
   bytes.append(reinterpret_cast<const char*>(numbers), sizeof numbers);
   bytes.append(2, '\0');

@@ -274,8 +274,8 @@ TEST(Mjcf, IsReadAsMujocoCompilesIt) {
   EXPECT_EQ(joint("d").mimic, "b");
   EXPECT_EQ(joint("d").mimic_multiplier, -2);
   EXPECT_EQ(joint("d").mimic_offset, 0.1);
-  EXPECT_EQ(joint("a").effort, 8);  // the force range at the joint
-  EXPECT_EQ(joint("b").effort, 9);  // actuatorfrcrange of its class
+  EXPECT_EQ(joint("a").effort, 8);  // it is the force range at the joint
+  EXPECT_EQ(joint("b").effort, 9);  // it is the actuatorfrcrange of its class
   EXPECT_EQ(joint("b").damping, 0.5);
   const ServoDescription& servo = robot.servos.at("a");
   EXPECT_EQ(servo.kp, 80);

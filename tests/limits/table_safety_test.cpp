@@ -37,9 +37,9 @@ TEST(ExportSafety, RampLeavesThePostureAndArrivesAtRest) {
   ASSERT_EQ(safe.table.rows.size(), 2000u + 10 + 500);
   const auto a = [&](size_t k) { return safe.table.rows[k].theta[0] / kDegree; };
   EXPECT_NEAR(a(0), 10, 1e-12);
-  EXPECT_NEAR(a(1), 10, 1e-6);     // starts at rest
+  EXPECT_NEAR(a(1), 10, 1e-6);     // it starts at rest
   EXPECT_NEAR(a(1000), 20, 1e-9);  // it is half way at half of the time
-  EXPECT_NEAR(a(1999), 30, 1e-6);  // arrives at rest
+  EXPECT_NEAR(a(1999), 30, 1e-6);  // it arrives at rest
   EXPECT_EQ(a(2000), a(2509));
   // Peak speed of the minimum jerk: 1.875 distance / duration.
   EXPECT_NEAR((a(1001) - a(999)) / 0.002, 1.875 * 20 / 2.0, 1e-3);

@@ -25,7 +25,7 @@ struct Sampling {
   double (*own)(double);
   long double (*exact)(long double);
   double from, to;
-  double most;  ///< largest error [units of the last place]
+  double most;  ///< largest error, in units of the last place
 };
 std::ostream& operator<<(std::ostream& out, const Sampling& s) { return out << s.name; }
 

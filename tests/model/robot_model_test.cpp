@@ -191,7 +191,7 @@ TEST(RobotModel, PosturesLeaveOtherJointsAtZero) {
 TEST(RobotModel, LetsABareFrameBetweenTwoAxesBeMassless) {
   RobotDescription robot = biped();
   robot.links[1].inertia = {};
-  robot.links[1].has_inertial = false;  // l_thigh, no shape, the shank beyond it
+  robot.links[1].has_inertial = false;  // l_thigh has no shape, and the shank is beyond it
   EXPECT_DOUBLE_EQ(RobotModel(robot).mass(), 5.0);
   robot.links[1].collisions.emplace_back();
   EXPECT_THROW(RobotModel{robot}, Error);

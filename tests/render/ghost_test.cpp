@@ -76,7 +76,7 @@ TEST(Ghost, AnotherRunOfTheSameRobotOnly) {
 }
 
 TEST(Heat, RisesTowardsTheNearestLimit) {
-  const RobotModel model = box_robot();  // joints to 2 rad, 5 rad/s, 5 N m
+  const RobotModel model = box_robot();  // limits are 2 rad, 5 rad/s and 5 N m
   SimulationSample s = box_run(model).samples.front();
   s.state.theta.setZero();
   s.state.dtheta = s.torque = Eigen::VectorXd::Zero(model.dof_count());

@@ -94,7 +94,8 @@ TEST(LogReading, FlightsAreWorthShowing) {
       << "the flight itself";
   EXPECT_EQ(instant_text(log, 0.65), "apex");
   EXPECT_EQ(instant_text(log, 0.61), "");
-  for (size_t k = 0; k < log.samples.size(); ++k)  // highest a fifth of the flight after lift-off
+  // The COG is highest a fifth of the flight after lift-off.
+  for (size_t k = 0; k < log.samples.size(); ++k)
     log.samples[k].cog.z() -= 4.905 * std::pow(k * log.dt - 0.62, 2);
   std::string all;
   for (const double t : telling_instants(log, 4)) all += std::to_string(t) + " ";

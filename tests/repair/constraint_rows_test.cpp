@@ -224,7 +224,8 @@ TEST_P(ConstraintRows, NumbersAreThoseOfTheCheck) {
       } else if (kind == "normal_force") {
         EXPECT_NEAR(rows[0], light, 1e-12);
       } else if (kind == "friction") {
-        const double size = all.limit_share * 0.3 * 0.98 * light - rows[0];  // rounded by 1e-4
+        // The tip is rounded by 1e-4.
+        const double size = all.limit_share * 0.3 * 0.98 * light - rows[0];
         if (use.has_zmp) raise("friction", std::sqrt(size * size - 1e-8) / (0.3 * light));
       } else if (kind == "torsional_friction") {
         const double yaw = std::abs(rows[1] - rows[0]) / 2;

@@ -41,7 +41,7 @@ TEST(Landing, OffsetIsAlongThePlacesAxes) {
   const double reach = std::hypot(0.056, 0.0315);
   EXPECT_NEAR(offset[0], 0.003, 1e-12);
   EXPECT_NEAR(offset[1], 0.004, 1e-12);
-  EXPECT_NEAR(offset[2], 0.01 * reach, 3e-7);  // the sine of that angle
+  EXPECT_NEAR(offset[2], 0.01 * reach, 3e-7);  // it is the sine of that angle
   EXPECT_NEAR(offset[3], 0, 1e-12);
   EXPECT_NEAR(offset[4], 0.02 * reach, 3e-7);
 }

@@ -285,8 +285,8 @@ TEST(Edges, APlankLiesOnTwoRidgesOfAField) {
   field.origin = {-0.3, -0.1};
   field.spacing = 0.01;
   field.heights = Eigen::MatrixXd::Zero(61, 21);
-  field.heights.row(20).setConstant(0.05);  // x = -0.1
-  field.heights.row(35).setConstant(0.05);  // x = 0.05
+  field.heights.row(20).setConstant(0.05);  // this ridge is at x = -0.1
+  field.heights.row(35).setConstant(0.05);  // this ridge is at x = 0.05
   world.fields = {field};
   Plank plank(world);
   Plant& plant = plank.plant;

@@ -373,7 +373,7 @@ TEST(ServoVoltage, BrakesBeyondTheNoLoadSpeed) {
     for (const double sign : {1.0, -1.0}) {
       Rig rig(joint);
       for (int k = 0; k < 1500; ++k) rig.step(sign * 100, sign * 3);
-      EXPECT_NEAR(rig.rate(), sign * 10, 0.01);  // (2 + 3) / 0.5
+      EXPECT_NEAR(rig.rate(), sign * 10, 0.01);  // the rate is (2 + 3) / 0.5
       EXPECT_NEAR(rig.step(sign * 100, sign * 3).torque[0], -sign * 3, 0.01);
     }
   }
