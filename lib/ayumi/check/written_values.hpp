@@ -17,8 +17,9 @@ enum class Quantity { length, angle, force, ratio };
 /// One number in the pattern.
 struct WrittenNumber {
   std::function<double&(Pattern&)> in;
-  double value = 0;    ///< [m, rad, N, 1]
-  double neutral = 0;  ///< what would be there without it, in the same unit
+  double value = 0;        ///< [m, rad, N, 1]
+  double neutral = 0;      ///< what would be there without it, in the same unit
+  std::string place = {};  ///< JSON pointer of its phase or keyframe; "": that of its value
 };
 
 /// One value of the author: a number, or a number that is repeated. Keys that hold a value name it
@@ -39,11 +40,15 @@ struct WrittenValue {
   bool has_sign() const;
   /// "0.9 m", "30 deg": `value` as the author of this pattern writes it.
   std::string text(const Pattern& pattern, double value) const;
+  /// Where its other numbers are, which a change of the value changes too: " here and in
+  /// /keyframes/3"; "" where it is one line of the file.
+  std::string elsewhere() const;
   /// The share nearest to this one at which pull() leads to a value as text() writes it.
   double written_share(const Pattern& pattern, double share) const;
   /// Multiplies all its numbers.
   void scale(Pattern& pattern, double factor) const;
-  /// Puts all its numbers at this share of the way from what would be there without them.
+  /// Gives all its numbers one value, at this share of the way of the first of them from what would
+  /// be there without it; at 0, each becomes what would be there without them.
   void pull(Pattern& pattern, double share) const;
 };
 
