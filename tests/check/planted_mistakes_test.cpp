@@ -592,6 +592,132 @@ TEST(PlantedMistakes, EveryKeyOfALevelFootIsNamed) {
       << found;
 }
 
+std::string texts_of(const std::vector<Mistake>& mistakes) {
+  std::string all;
+  for (const Mistake& mistake : mistakes) all += mistake.text() + "\n";
+  return all;
+}
+
+CheckOptions strong_options(const Pattern& pattern) {
+  CheckOptions options = options_of(pattern);
+  options.profile = pattern.profile;
+  return options;
+}
+
+bool is_consistent(const Pattern& pattern, const CheckOptions& options) {
+  return check_consistency(small(), sample(small(), pattern), options).consistent;
+}
+
+/// The flight and all that follows as a message says it.
+void shorten_flight(Pattern& pattern, const std::smatch& says) {
+  const double earlier = std::stod(says[2]), end = pattern.phases[1].until;
+  EXPECT_NEAR(end - pattern.phases[0].until - std::stod(says[1]), earlier, 1e-9);
+  for (Keyframe& key : pattern.keyframes)
+    if (key.t > end - 1e-9) key.t -= earlier;
+  for (Phase& phase : pattern.phases)
+    if (phase.until > end - 1e-9) phase.until -= earlier;
+}
+
+const std::regex& flight_words() {
+  static const std::regex words(
+      "/phases/1: the flight lasts 0.1[56] s, in which the robot rises by [0-9]+ mm; with a flight "
+      "of ([0-9.]+) s, and all that follows ([0-9.]+) s earlier, the pattern is consistent");
+  return words;
+}
+
+TEST(PlantedMistakes, AShorterFlightIsNamedForAHopThatIsTooHigh) {
+  Pattern pattern = hop_with(
+      {{0.5, 0.245}, {1.15, 0.195}, {1.4, 0.23}, {1.56, 0.23}, {1.75, 0.195}, {2.6, 0.245}});
+  pattern.phases[0].until = 1.4;
+  pattern.phases[1].until = 1.56;
+  pattern.phases[2].until = 3.2;
+  const CheckOptions options = strong_options(pattern);
+  const std::string found = texts_of(likely_mistakes(small(), pattern, options));
+  std::smatch flight;
+  ASSERT_TRUE(std::regex_search(found, flight, flight_words())) << found;
+  shorten_flight(pattern, flight);
+  EXPECT_TRUE(is_consistent(pattern, options)) << found;
+}
+
+// A slow stoop, and legs that are too straight at both ends of the flight: what is named is enough,
+// to the letter.
+TEST(PlantedMistakes, AllThatIsNamedForAHopIsEnough) {
+  Pattern pattern =
+      hop_with({{0.5, 0.245}, {1.2, 0.2}, {1.5, 0.235}, {1.65, 0.235}, {1.85, 0.2}, {2.8, 0.245}});
+  const CheckOptions options = strong_options(pattern);
+  const std::string found = texts_of(likely_mistakes(small(), pattern, options));
+  std::smatch stoop, height, flight;
+  ASSERT_TRUE(std::regex_search(found, stoop, std::regex("/keyframes/1: .*with t = ([0-9.]+) s")))
+      << found;
+  pattern.keyframes[1].t = std::stod(stoop[1]);
+  ASSERT_TRUE(std::regex_search(
+      found, height,
+      std::regex("/keyframes/2: the COG height is 0.235 m; with values from [0-9.]+ m to ([0-9.]+) "
+                 "m here and in /keyframes/3, ")))
+      << found;
+  pattern.keyframes[2].cog_height = pattern.keyframes[3].cog_height = std::stod(height[1]);
+  if (std::regex_search(found, flight, flight_words())) shorten_flight(pattern, flight);
+  EXPECT_TRUE(is_consistent(pattern, options)) << found;
+}
+
+// The range of a value ends where the table for the robot ends it, at a number as it is printed.
+TEST(PlantedMistakes, TheEndOfARangeIsEnoughToTheLetter) {
+  Pattern pattern = hop_with(
+      {{0.5, 0.245}, {1.35, 0.2}, {1.5, 0.229}, {1.65, 0.235}, {1.732, 0.2}, {2.8, 0.245}});
+  const CheckOptions options = strong_options(pattern);
+  const std::string found = texts_of(likely_mistakes(small(), pattern, options));
+  std::smatch range;
+  ASSERT_TRUE(std::regex_search(
+      found, range,
+      std::regex("^/keyframes/3: the COG height is 0.235 m; with values from [0-9.]+ m to "
+                 "([0-9.]+) m, the pattern is consistent\n$")))
+      << found;
+  pattern.keyframes[3].cog_height = std::stod(range[1]);
+  EXPECT_TRUE(is_consistent(pattern, options)) << found;
+}
+
+// Two keys that hold one value: a change of it concerns both, which the message says.
+TEST(PlantedMistakes, EveryKeyThatAChangeConcernsIsNamed) {
+  Pattern bow;
+  bow.robot = "hoap1";
+  bow.degrees = true;
+  bow.phases = {{.until = 5, .swing = {}}};
+  for (const auto& [t, pitch] : {std::pair(0.4, 0), {1.6, 45}, {2.6, 45}, {4.0, 0}}) {
+    key_at(bow, t).torso = Eigen::Vector3d(0, pitch * kDegree, 0);
+    bow.keyframes.back().zmp = ZmpKey{ZmpKey::Place::center};
+  }
+  const std::string found = texts_of(likely_mistakes(small(), bow, options_of(bow)));
+  std::smatch pitch;
+  ASSERT_TRUE(std::regex_search(
+      found, pitch,
+      std::regex("/keyframes/1: the pitch of the trunk is 45 deg; with values up to ([0-9.]+) deg "
+                 "here and in /keyframes/2, the pattern is consistent")))
+      << found;
+  bow.keyframes[1].torso->y() = bow.keyframes[2].torso->y() = std::stod(pitch[1]) * kDegree;
+  EXPECT_TRUE(is_consistent(bow, options_of(bow))) << found;
+}
+
+// Steps to the right with a quarter turn, a little too far to the side. Without the step to the
+// side, the feet collide, and without most of the turn, the steps are possible too.
+TEST(PlantedMistakes, TheLeastChangeOfTwoValuesIsNamed) {
+  Pattern pattern = quarter_turn(0.25);
+  for (Phase& phase : pattern.phases) {
+    if (!phase.swing) continue;
+    const bool right = phase.swing->foot == Side::left;
+    phase.support = right ? Support::left : Support::right;
+    phase.swing->foot = right ? Side::right : Side::left;
+    if (right) phase.swing->step = RelativeStep{.side = -0.02, .turn = -30 * kDegree};
+  }
+  for (Keyframe& key : pattern.keyframes)
+    if (key.zmp->place != ZmpKey::Place::center)
+      key.zmp->place =
+          key.zmp->place == ZmpKey::Place::left ? ZmpKey::Place::right : ZmpKey::Place::left;
+  const std::vector<Mistake> found = likely_mistakes(small(), pattern, options_of(pattern));
+  ASSERT_FALSE(found.empty());
+  EXPECT_NE(found.front().words.find("the right foot's step side is -0.02 m"), std::string::npos)
+      << found.front().text();
+}
+
 // The first key of an arm has the angle of home, as it should; the fault is in the next key.
 TEST(PlantedMistakes, AKeyThatHoldsTheHomePostureIsNotNamed) {
   Pattern raise;

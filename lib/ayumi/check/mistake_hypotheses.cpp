@@ -174,6 +174,7 @@ class Hypotheses::Maker {
     std::vector<Hypothesis> made;
     cog_height(made);
     if (pattern_.table || pattern_.correction) return made;
+    shorter_flights(made);
     // The COG sways less where the steps are quicker.
     const std::vector<double> usual = {1.25, 1.6, 2.0, 3.0, 5.0},
                               slight = {1.03, 0.9, 1.1, 0.8, 1.25};
@@ -1347,6 +1348,45 @@ class Hypotheses::Maker {
                        "without keys of " + words + " (the COG then follows the ZMP)"},
                       [key_of = key_of](Pattern& p) {
                         for (Keyframe& key : p.keyframes) (key.*key_of).reset();
+                      }});
+    }
+  }
+
+  // The length of a flight says how high the robot rises, and how fast it is at both ends.
+  void shorter_flights(std::vector<Hypothesis>& made) const {
+    struct Flight {
+      double begin, end, factor;
+    };
+    // The robot rises by half at the last.
+    for (const double share : {0.9, 0.8, 0.7}) {
+      std::vector<Flight> flights;
+      size_t first = 0;
+      double lasts = 0, shorter = 0;  // the first flight [s]
+      for (size_t i = 0; i < pattern_.phases.size(); ++i) {
+        if (pattern_.phases[i].support != Support::none) continue;
+        const double begin = begin_of(i), end = pattern_.phases[i].until;
+        const double now = std::round(1e3 * share * (end - begin)) / 1e3;  // as it is written
+        if (flights.empty()) {
+          first = i;
+          lasts = end - begin;
+          shorter = now;
+        }
+        flights.push_back({begin, end, now / (end - begin)});
+      }
+      if (flights.empty() || shorter <= 0) return;
+      const bool one = flights.size() == 1;
+      made.push_back({Rank::pace,
+                      {phase_place(first),
+                       (one ? "the flight lasts " : "the first flight lasts ") + seconds(lasts) +
+                           ", in which the robot rises by " +
+                           text::fixed(1e3 * kGravity * lasts * lasts / 8, 0) + " mm",
+                       one ? "with a flight of " + seconds(shorter) + ", and all that follows " +
+                                 seconds(lasts - shorter) + " earlier"
+                           : "with " + text::brief(share) +
+                                 " times the length of every flight, and all that follows earlier"},
+                      [this, flights](Pattern& p) {
+                        for (auto flight = flights.rbegin(); flight != flights.rend(); ++flight)
+                          p = stretched(model_, p, flight->begin, flight->end, flight->factor);
                       }});
     }
   }

@@ -147,7 +147,13 @@ class Search {
                        return a.suspicion(model_) > b.suspicion(model_);
                      });
     if (suspects.size() > kTriedValues) suspects.resize(kTriedValues);
-    if (!look_at_best(suspects, 0) || !enough(Rank::amount)) look_at_best(suspects, kHalfWay);
+    // A value of which little may remain is seldom the one at fault; another one may do with half.
+    const auto is_mild = [](const Candidate& c) {
+      return c.outcome.good() && c.hypothesis.rank <= Rank::amount &&
+             c.hypothesis.change < 1 - kGrossShare;
+    };
+    if (!look_at_best(suspects, 0) || std::none_of(tried_.begin(), tried_.end(), is_mild))
+      look_at_best(suspects, kHalfWay);
     demote_slips();
   }
 
@@ -182,7 +188,7 @@ class Search {
     for (size_t i = 0; i < suspects.size(); ++i) {
       if (without[i].errors == 0) continue;
       if (suspects[i].has_sign() && signs.size() < kTriedSigns)
-        signs.push_back(sign_of(suspects[i], ""));
+        signs.push_back(sign_of(suspects[i], suspects[i].elsewhere()));
       if (suspects[i].suspicion(model_) > kGrossSuspicion) tenths.push_back(tenth_of(suspects[i]));
     }
     test(std::move(signs));
@@ -209,17 +215,31 @@ class Search {
                double least) {
     double possible = least, impossible = 1;
     TrialOutcome at_limit = without;
-    int within = 0;
-    for (int i = 0; i < kMostBisections && within < kBisections; ++i) {
-      // Of a value that can be written as it is named.
-      const double share = value.written_share(pattern_, 0.5 * (possible + impossible));
-      if (share <= possible || share >= impossible) break;
-      const TrialOutcome outcome =
-          trials_.after(pattern_, [&](Pattern& p) { value.pull(p, share); });
-      const bool worse = is_better(without, outcome, measure);
-      (worse ? impossible : possible) = share;
-      if (!worse) at_limit = outcome;
-      if (possible > 0) ++within;
+    const auto bisect = [&](const auto& outcome_at) {
+      int within = 0;
+      for (int i = 0; i < kMostBisections && within < kBisections; ++i) {
+        // Of a value that can be written as it is named.
+        const double share = value.written_share(pattern_, 0.5 * (possible + impossible));
+        if (share <= possible || share >= impossible) break;
+        const TrialOutcome outcome = outcome_at(share);
+        const bool worse = is_better(without, outcome, measure);
+        (worse ? impossible : possible) = share;
+        if (!worse) at_limit = outcome;
+        if (possible > 0) ++within;
+      }
+    };
+    const auto at = [&](double share) {
+      return [&value, share](Pattern& p) { value.pull(p, share); };
+    };
+    bisect([&](double share) { return trials_.after(pattern_, at(share)); });
+    // The table for the robot, which quick trials do not see, may end the range earlier.
+    const auto exactly = [&](double share) { return trials_.exactly(pattern_, at(share)); };
+    if (at_limit.good() && !trials_.exact() && possible > least && !exactly(possible).good() &&
+        exactly(least).good()) {
+      impossible = possible;
+      possible = least;
+      at_limit = without;
+      bisect(exactly);
     }
     const WrittenNumber& number = value.numbers.front();
     const double limit = number.neutral + possible * (number.value - number.neutral);
@@ -229,8 +249,9 @@ class Search {
     if (std::abs(number.value - limit) < kLeastMistake * value.unit(model_)) return;
     const double from = number.neutral + least * (number.value - number.neutral);
     const std::string range =
-        least > 0 ? "from " + value.text(pattern_, from) + " to " + value.text(pattern_, limit)
-                  : up_to;
+        (least > 0 ? "from " + value.text(pattern_, from) + " to " + value.text(pattern_, limit)
+                   : up_to) +
+        value.elsewhere();
     tried_.push_back({{Rank::amount,
                        {value.place, written, "with values " + range},
                        // The errors that remain are those after the smallest change, because an
@@ -245,7 +266,7 @@ class Search {
     const bool other_sign =
         limit / number.value < kNoShare && std::abs(number.value) < value.unit(model_);
     if (value.has_sign())
-      slips.push_back(sign_of(value, ", or with values " + up_to,
+      slips.push_back(sign_of(value, ", or with values " + range,
                               value.across ? Rank::slip
                               : other_sign ? Rank::exchange
                                            : Rank::sign));
@@ -255,7 +276,7 @@ class Search {
       slips.push_back({Rank::slip,
                        {value.place, written,
                         why + " (" + value.text(pattern_, factor * number.value) +
-                            "), or with values " + up_to + ","},
+                            "), or with values " + range + ","},
                        [value, factor](Pattern& p) { value.scale(p, factor); }});
     };
     // The smallest change comes first.
@@ -280,7 +301,7 @@ class Search {
     return {Rank::slip,
             {value.place, value.words + " is " + value.text(pattern_, number),
              "with the decimal point one place further left (" +
-                 value.text(pattern_, 0.1 * number) + "),"},
+                 value.text(pattern_, 0.1 * number) + ")" + value.elsewhere() + ","},
             [value](Pattern& p) { value.scale(p, 0.1); }};
   }
 
@@ -331,10 +352,11 @@ class Search {
       for (const Candidate& c : tried_)
         if (helps(c, measure) && is_believable(c)) sorted.push_back(c);
     }
-    // Another sign or another digit counts as intended only if no errors remain.
+    // Another sign, another digit or another pace counts as intended only if no errors remain.
     const auto is_guess = [](const Candidate& c) { return c.hypothesis.change == kGuessed; };
     for (Candidate& c : sorted)
-      if ((c.hypothesis.rank == Rank::sign || c.hypothesis.rank == Rank::slip) &&
+      if ((c.hypothesis.rank == Rank::sign || c.hypothesis.rank == Rank::slip ||
+           c.hypothesis.rank == Rank::pace) &&
           !c.outcome.good()) {
         c.hypothesis.rank = Rank::amount;
         c.hypothesis.change = kGuessed;

@@ -107,7 +107,8 @@ class Reader {
       } else if (track.rest) {
         neutral = *track.rest;
       }
-      made.numbers.push_back({track.numbers[i].in, value(track.numbers[i]), neutral});
+      made.numbers.push_back(
+          {track.numbers[i].in, value(track.numbers[i]), neutral, track.numbers[i].place});
     }
     found_.push_back(std::move(made));
   }
@@ -377,6 +378,21 @@ std::string WrittenValue::text(const Pattern& pattern, double value) const {
   return text::brief(value);
 }
 
+std::string WrittenValue::elsewhere() const {
+  // Places that are listed. Chosen: more would hide the value.
+  constexpr size_t kListed = 3;
+  std::vector<std::string> others;
+  for (const WrittenNumber& number : numbers) {
+    const bool known = std::find(others.begin(), others.end(), number.place) != others.end() ||
+                       number.place.empty() || number.place == place;
+    if (!known) others.push_back(number.place);
+  }
+  if (others.empty()) return "";
+  if (others.size() > kListed)
+    return " here and in the " + std::to_string(others.size()) + " other places that have it";
+  return " here and in " + text::join(others, ", ");
+}
+
 double WrittenValue::written_share(const Pattern& pattern, double share) const {
   const double unit = quantity == Quantity::angle && pattern.degrees ? std::numbers::pi / 180 : 1;
   const WrittenNumber& number = numbers.front();
@@ -392,8 +408,10 @@ void WrittenValue::scale(Pattern& pattern, double factor) const {
 }
 
 void WrittenValue::pull(Pattern& pattern, double share) const {
+  const WrittenNumber& first = numbers.front();
+  const double all = first.neutral + share * (first.value - first.neutral);
   for (const WrittenNumber& number : numbers)
-    number.in(pattern) = number.neutral + share * (number.value - number.neutral);
+    number.in(pattern) = share == 0 ? number.neutral : all;
 }
 
 std::vector<WrittenValue> written_values(const RobotModel& model, const Pattern& pattern) {

@@ -19,6 +19,8 @@ struct WrittenNumber {
   std::function<double&(Pattern&)> in;
   double value = 0;    ///< value [m, rad, N, 1]
   double neutral = 0;  ///< the value of the track without this number, in the same unit
+  /// JSON pointer of the phase or keyframe of the number; if empty, it is that of the value.
+  std::string place = {};
 };
 
 /// One value of the author: a number, or a number that is repeated. Keys that hold a value contain
@@ -40,11 +42,15 @@ struct WrittenValue {
   bool has_sign() const;
   /// "0.9 m", "30 deg": `value` as the author of this pattern writes it.
   std::string text(const Pattern& pattern, double value) const;
+  /// Where its other numbers are, which a change of the value changes too: " here and in
+  /// /keyframes/3"; "" where it is one line of the file.
+  std::string elsewhere() const;
   /// The share nearest to this one at which pull() leads to a value as text() writes it.
   double written_share(const Pattern& pattern, double share) const;
   /// Multiplies all numbers of the value.
   void scale(Pattern& pattern, double factor) const;
-  /// Moves all numbers of the value to this share of the way from what would be there without them.
+  /// Gives all numbers of the value one value, at this share of the way of the first of them from
+  /// what would be there without it. At 0, each becomes what would be there without it.
   void pull(Pattern& pattern, double share) const;
 };
 
