@@ -33,9 +33,6 @@ class CollisionModel {
   /// apart than `skip`, that bound is returned instead.
   double clearance(const Pair& pair, const RobotData& data, double skip) const;
 
-  /// The nearest points of a pair; needs update_positions().
-  Closest closest(const Pair& pair, const RobotData& data) const;
-
  private:
   std::vector<std::vector<PlacedCollider>> shapes_;  ///< by body
   std::vector<Pair> pairs_;
