@@ -100,6 +100,7 @@ void add_global_options(CLI::App& app, Command& command_line, Context& context) 
       ->check(whole_number_within(0, 1024).description(""))
       ->type_name("N");
   command_line.add_option("--seed", context.seed, "Seed of noise and random choices.")
+      ->check(seed_number())
       ->type_name("N");
   app.add_option_function<std::string>(
          "--describe",

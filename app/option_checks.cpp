@@ -2,8 +2,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <sstream>
+#include <system_error>
 
 #include "ayumi/base/text.hpp"
 
@@ -38,6 +41,18 @@ ValueCheck whole_number_within(int least, int most) {
                 : "'" + word + "' is not a whole number from " + least_text + " to " + most_text;
   };
   return {complaint, "INT in [" + least_text + " - " + most_text + "]"};
+}
+
+ValueCheck seed_number() {
+  const auto complaint = [](const std::string& word) -> std::string {
+    std::uint64_t value = 0;
+    const char* const end = word.data() + word.size();
+    const auto [stop, error] = std::from_chars(word.data(), end, value);
+    return stop == end && error == std::errc()
+               ? ""
+               : "'" + word + "' is not a whole number from 0 to " + std::to_string(UINT64_MAX);
+  };
+  return {complaint, ""};
 }
 
 ValueCheck one_of(const std::vector<std::string>& words) {

@@ -13,6 +13,8 @@ ValueCheck number_within(double least, double most);
 
 /// Accepts a whole number from `least` to `most`.
 ValueCheck whole_number_within(int least, int most);
+/// A whole number from 0 to 2^64 - 1. CLI11 alone takes -1 and 2^64 for the largest one.
+ValueCheck seed_number();
 
 /// Accepts one of these words. The message of CLI::IsMember would have braces.
 ValueCheck one_of(const std::vector<std::string>& words);

@@ -2,12 +2,13 @@
 # Runs tests under the tools that see what a test alone does not. All must be clean. It takes hours;
 # .ci/sanitize runs a part.
 #
-#   tests/sanitizers.sh [asan] [tsan] [valgrind] [tidy]     no name: all of them
+#   tests/sanitizers.sh [asan] [tsan] [valgrind] [clang] [tidy]     no name: all of them
 #
 # asan      the whole suite under the address, undefined-behaviour and leak sanitizers
 # tsan      what uses threads under the thread sanitizer
 # valgrind  a short set under memcheck, which sees what is used before it is set
-# tidy      clang-tidy over every source
+# clang     lib and app without a warning of clang 14
+# tidy      lib and app without a finding of clang-tidy; tidy=COMMIT: the sources changed since then
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 jobs=$(nproc)
@@ -45,16 +46,31 @@ run_valgrind() {
   done
 }
 
-run_tidy() {
-  cmake --preset tidy >/dev/null
-  cmake --build build/tidy --parallel "$jobs"
+# Warnings need no optimization.
+run_clang() {
+  cmake --preset clang -B build/clang-warnings -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 \
+    -DAYUMI_BUILD_TESTS=OFF -DAYUMI_WARNINGS_AS_ERRORS=ON >/dev/null
+  cmake --build build/clang-warnings --parallel "$jobs"
 }
 
-[[ $# -gt 0 ]] || set -- asan tsan valgrind tidy
+run_tidy() {
+  local sources="$PWD/(lib|app)/"
+  if [[ -n $1 ]]; then
+    sources=$(git diff --name-only --diff-filter=d "$1" -- 'lib/*.cpp' 'app/*.cpp' | paste -sd '|')
+    [[ -n $sources ]] || return 0
+  fi
+  # By clang, which knows all options, and each source alone, so that a finding has its own place.
+  cmake --preset clang -B build/tidy -DAYUMI_UNITY=OFF -DAYUMI_PRECOMPILE=OFF \
+    -DAYUMI_BUILD_TESTS=OFF >/dev/null
+  run-clang-tidy-14 -quiet -j "$jobs" -p build/tidy "$sources"
+}
+
+[[ $# -gt 0 ]] || set -- asan tsan valgrind clang tidy
 for tool in "$@"; do
   case $tool in
-    asan | tsan | valgrind | tidy) "run_$tool" ;;
-    *) sed -n '2,10s/^# \{0,1\}//p' "$0"; exit 2 ;;
+    asan | tsan | valgrind | clang) "run_$tool" ;;
+    tidy | tidy=*) run_tidy "$(cut -s -d= -f2 <<<"$tool")" ;;
+    *) sed -n '2,13s/^# \{0,1\}//p' "$0"; exit 2 ;;
   esac
   echo "$tool: clean"
 done

@@ -71,6 +71,9 @@ class AuthorRequests::Router {
   /// Whether the request comes from a page of this server: it knows the secret, and the browser
   /// does not say that a page of another origin made it.
   bool allows(const Request& request) const {
+    // Of two headers of one name, only the first would be read.
+    if (request.get_header_value_count("Host") > 1 || request.get_header_value_count("Origin") > 1)
+      return false;
     const std::string host = request.get_header_value("Host");
     if (host != kLoopbackAddress + (":" + port_) && host != "localhost:" + port_) return false;
     if (request.has_header("Origin")) {

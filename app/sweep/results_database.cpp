@@ -3,9 +3,11 @@
 #include <sqlite3.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "ayumi/base/counted.hpp"
@@ -23,9 +25,14 @@ namespace {
 
 /// Mark in the head of the file, "AYUM", by which other programs recognize it. Definition.
 constexpr int kApplication = 0x4159554d;
-/// Version of the tables. Definition: it increases with every change that an older program cannot
-/// read.
+/// Version of the tables and views. Definition: another number with every change of their SQL,
+/// because a file with others is refused.
 constexpr int kDatabaseFormat = 1;
+/// Longest text or row in a file [bytes]. Definition: a study file of 64 MiB, and room for the
+/// rest.
+constexpr int kLongestText = 65 << 20;
+constexpr const char* kNoResults =
+    "this file does not hold results of ayumi sweep, or the file is damaged; choose another name";
 /// Time for which a reader waits for a writer [ms]. Chosen: a commit takes some ms.
 constexpr int kLockPatience = 10000;
 
@@ -114,6 +121,62 @@ std::string sql_text(const std::string& text) {
   return quoted + "'";
 }
 
+namespace {
+
+/// What describes the study, and the shards.
+constexpr const char* kHeadTables =
+    "CREATE TABLE about (key TEXT PRIMARY KEY, value TEXT) WITHOUT ROWID;"
+    "CREATE TABLE inputs (place INTEGER PRIMARY KEY, kind TEXT, name TEXT, sha256 TEXT);"
+    "CREATE TABLE axes (place INTEGER PRIMARY KEY, name TEXT, type TEXT);"
+    "CREATE TABLE figures (place INTEGER PRIMARY KEY, name TEXT, type TEXT);"
+    "CREATE TABLE shards (shard TEXT PRIMARY KEY) WITHOUT ROWID;";
+
+/// The table of the cases, and the views.
+std::string case_tables(const SweepHead& head) {
+  std::string columns = "\"case\" INTEGER PRIMARY KEY";
+  for (size_t i = 0; i < head.axes.size(); ++i)
+    columns += ", " + sql_name(head.axes[i]) + " " + head.axis_types[i];
+  columns += ", error TEXT";
+  for (const ResultColumn& column : head.columns)
+    columns += ", " + sql_name(column.name) + " " + column.type;
+  std::string sql = "CREATE TABLE cases (" + columns + ");";
+  std::string rates;
+  for (size_t i = 0; i < head.axes.size(); ++i)
+    rates += (i ? " UNION ALL " : "") + std::string("SELECT ") + std::to_string(i) + " AS place, " +
+             sql_text(head.axes[i]) + " AS axis, " + sql_name(head.axes[i]) +
+             " AS value, COUNT(outcome) AS runs, TOTAL(outcome = 'fell') AS falls, "
+             "TOTAL(outcome = 'unsettled') AS unsettled, COUNT(error) AS errors, "
+             "TOTAL(outcome <> 'stands') / COUNT(outcome) AS failure_rate FROM cases GROUP BY " +
+             sql_name(head.axes[i]);
+  std::string extremes;
+  for (const ResultColumn& c : head.columns) {
+    if (c.type != "REAL") continue;
+    for (const char* what : {"min", "avg", "max"})
+      extremes += ", " + std::string(what) + "(" + sql_name(c.name) + ") AS " +
+                  sql_name((std::string(what) == "avg" ? "mean" : what) + ("_" + c.name));
+  }
+  bool judged = false;
+  for (const ResultColumn& c : head.columns) judged = judged || c.name == "consistent";
+  sql +=
+      "CREATE VIEW summary AS SELECT (SELECT CAST(value AS INTEGER) FROM about WHERE key = "
+      "'cases') AS cases, COUNT(*) AS done, COUNT(error) AS errors, "
+      "CAST(SUM(outcome = 'stands') AS INTEGER) AS stands, "
+      "CAST(SUM(outcome = 'fell') AS INTEGER) AS falls, "
+      "CAST(SUM(outcome = 'unsettled') AS INTEGER) AS unsettled, "
+      "CAST(SUM(outcome <> 'stands') AS INTEGER) AS failures, "
+      "TOTAL(outcome <> 'stands') / COUNT(outcome) AS failure_rate, " +
+      std::string(judged ? "CAST(TOTAL(consistent = 0) AS INTEGER)" : "NULL") + " AS inconsistent" +
+      extremes +
+      " FROM cases;"
+      "CREATE VIEW failed AS SELECT * FROM cases WHERE error IS NOT NULL OR outcome <> 'stands';"
+      "CREATE VIEW worst AS SELECT * FROM cases WHERE severity IS NOT NULL ORDER BY severity DESC, "
+      "\"case\";";
+  if (!rates.empty()) sql += "CREATE VIEW rates AS " + rates + ";";
+  return sql;
+}
+
+}  // namespace
+
 std::string SweepHead::fingerprint() const {
   std::string all = version + "\n" + seed + "\n" + std::to_string(cases) + "\n";
   for (const SweepInput& input : inputs)
@@ -152,9 +215,7 @@ void ResultsDatabase::complain(const std::string& doing) const {
         "kept. Make room "
         "and run the same command again to go on";
   else if (code == SQLITE_NOTADB || code == SQLITE_CORRUPT)
-    why =
-        "this file does not hold results of ayumi sweep, or the file is damaged; choose another "
-        "name";
+    why = kNoResults;
   else if (code == SQLITE_BUSY)
     why = "another program is writing to this file; wait until that program has ended";
   fail(ErrorCode::bad_file, {file_.string()}, doing + ": " + why);
@@ -170,6 +231,8 @@ void ResultsDatabase::open(int flags) {
     complain("the file cannot be opened");
   sqlite3_busy_timeout(database_, kLockPatience);
   sqlite3_extended_result_codes(database_, 0);
+  sqlite3_limit(database_, SQLITE_LIMIT_LENGTH, kLongestText);
+  sqlite3_db_config(database_, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
 }
 
 ResultsDatabase::ResultsDatabase(const fs::path& file, Mode mode) : file_(file) {
@@ -211,23 +274,9 @@ void ResultsDatabase::close() {
 void ResultsDatabase::make_tables() {
   execute("PRAGMA journal_mode = WAL");
   execute("PRAGMA synchronous = NORMAL");
-  std::string columns = "\"case\" INTEGER PRIMARY KEY";
-  for (size_t i = 0; i < head_.axes.size(); ++i)
-    columns += ", " + sql_name(head_.axes[i]) + " " + head_.axis_types[i];
-  columns += ", error TEXT";
-  for (const ResultColumn& column : head_.columns)
-    columns += ", " + sql_name(column.name) + " " + column.type;
-  std::string sql =
-      "BEGIN IMMEDIATE;"
-      "PRAGMA application_id = " +
-      std::to_string(kApplication) + "; PRAGMA user_version = " + std::to_string(kDatabaseFormat) +
-      "; CREATE TABLE about (key TEXT PRIMARY KEY, value TEXT) WITHOUT ROWID;"
-      "CREATE TABLE inputs (place INTEGER PRIMARY KEY, kind TEXT, name TEXT, sha256 TEXT);"
-      "CREATE TABLE axes (place INTEGER PRIMARY KEY, name TEXT, type TEXT);"
-      "CREATE TABLE figures (place INTEGER PRIMARY KEY, name TEXT, type TEXT);"
-      "CREATE TABLE shards (shard TEXT PRIMARY KEY) WITHOUT ROWID;"
-      "CREATE TABLE cases (" +
-      columns + ");";
+  std::string sql = "BEGIN IMMEDIATE; PRAGMA application_id = " + std::to_string(kApplication) +
+                    "; PRAGMA user_version = " + std::to_string(kDatabaseFormat) + ";" +
+                    kHeadTables + case_tables(head_);
   const std::pair<const char*, std::string> about[] = {{"format", "ayumi.sweep/1"},
                                                        {"name", head_.name},
                                                        {"study_file", head_.study_file},
@@ -242,45 +291,50 @@ void ResultsDatabase::make_tables() {
     sql += "INSERT INTO inputs VALUES (" + std::to_string(i) + ", " +
            sql_text(head_.inputs[i].kind) + ", " + sql_text(head_.inputs[i].name) + ", " +
            sql_text(head_.inputs[i].sha256) + ");";
-  std::string rates;
-  for (size_t i = 0; i < head_.axes.size(); ++i) {
+  for (size_t i = 0; i < head_.axes.size(); ++i)
     sql += "INSERT INTO axes VALUES (" + std::to_string(i) + ", " + sql_text(head_.axes[i]) + ", " +
            sql_text(head_.axis_types[i]) + ");";
-    rates += (i ? " UNION ALL " : "") + std::string("SELECT ") + std::to_string(i) + " AS place, " +
-             sql_text(head_.axes[i]) + " AS axis, " + sql_name(head_.axes[i]) +
-             " AS value, COUNT(outcome) AS runs, TOTAL(outcome = 'fell') AS falls, "
-             "TOTAL(outcome = 'unsettled') AS unsettled, COUNT(error) AS errors, "
-             "TOTAL(outcome <> 'stands') / COUNT(outcome) AS failure_rate FROM cases GROUP BY " +
-             sql_name(head_.axes[i]);
-  }
-  std::string extremes;
-  for (size_t i = 0; i < head_.columns.size(); ++i) {
-    const ResultColumn& c = head_.columns[i];
-    sql += "INSERT INTO figures VALUES (" + std::to_string(i) + ", " + sql_text(c.name) + ", " +
-           sql_text(c.type) + ");";
-    if (c.type != "REAL") continue;
-    for (const char* what : {"min", "avg", "max"})
-      extremes += ", " + std::string(what) + "(" + sql_name(c.name) + ") AS " +
-                  sql_name((std::string(what) == "avg" ? "mean" : what) + ("_" + c.name));
-  }
-  bool judged = false;
-  for (const ResultColumn& c : head_.columns) judged = judged || c.name == "consistent";
-  sql +=
-      "CREATE VIEW summary AS SELECT (SELECT CAST(value AS INTEGER) FROM about WHERE key = "
-      "'cases') AS cases, COUNT(*) AS done, COUNT(error) AS errors, "
-      "CAST(SUM(outcome = 'stands') AS INTEGER) AS stands, "
-      "CAST(SUM(outcome = 'fell') AS INTEGER) AS falls, "
-      "CAST(SUM(outcome = 'unsettled') AS INTEGER) AS unsettled, "
-      "CAST(SUM(outcome <> 'stands') AS INTEGER) AS failures, "
-      "TOTAL(outcome <> 'stands') / COUNT(outcome) AS failure_rate, " +
-      std::string(judged ? "CAST(TOTAL(consistent = 0) AS INTEGER)" : "NULL") + " AS inconsistent" +
-      extremes +
-      " FROM cases;"
-      "CREATE VIEW failed AS SELECT * FROM cases WHERE error IS NOT NULL OR outcome <> 'stands';"
-      "CREATE VIEW worst AS SELECT * FROM cases WHERE severity IS NOT NULL ORDER BY severity DESC, "
-      "\"case\";";
-  if (!rates.empty()) sql += "CREATE VIEW rates AS " + rates + ";";
+  for (size_t i = 0; i < head_.columns.size(); ++i)
+    sql += "INSERT INTO figures VALUES (" + std::to_string(i) + ", " +
+           sql_text(head_.columns[i].name) + ", " + sql_text(head_.columns[i].type) + ");";
   execute(sql + "COMMIT");
+}
+
+// A file from a stranger may have views that never end in the place of tables, or triggers that
+// change what is written. Whatever has or belongs to one of Ayumi's names must be as Ayumi makes
+// it.
+void ResultsDatabase::require_made_by(const std::string& sql) const {
+  sqlite3* made = nullptr;
+  const int opened = sqlite3_open_v2(":memory:", &made, SQLITE_OPEN_READWRITE, nullptr);
+  const std::unique_ptr<sqlite3, int (*)(sqlite3*)> closed(made, sqlite3_close);
+  if (opened != SQLITE_OK ||
+      sqlite3_exec(made, sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK)
+    fail(ErrorCode::bad_file, {file_.string()}, kNoResults);
+  const auto schema_of = [&](sqlite3* database) {
+    std::vector<std::array<std::string, 4>> list;  // name, its table, kind, SQL
+    Statement statement(database,
+                        "SELECT lower(name), lower(tbl_name), type, sql FROM sqlite_master");
+    if (!statement.good()) complain("the file cannot be read");
+    while (statement.step())
+      list.push_back({statement.text(0), statement.text(1), statement.text(2), statement.text(3)});
+    if (!statement.done()) complain("the file cannot be read");
+    return list;
+  };
+  const auto wanted = schema_of(made), found = schema_of(database_);
+  const auto contains = [](const auto& list, const auto& which) {
+    return std::any_of(list.begin(), list.end(), which);
+  };
+  for (const auto& own : wanted)
+    if (!contains(found, [&](const auto& each) { return each == own; }))
+      fail(ErrorCode::bad_file, {file_.string()},
+           "the " + own[2] + " '" + own[0] +
+               "' is not as ayumi sweep makes it; choose another name");
+  for (const auto& each : found)
+    if (!contains(wanted, [&](const auto& own) { return own == each; }) &&
+        contains(wanted, [&](const auto& own) { return own[0] == each[0] || own[0] == each[1]; }))
+      fail(ErrorCode::bad_file, {file_.string()},
+           "ayumi sweep did not make the " + each[2] + " '" + each[0] + "' of the table '" +
+               each[1] + "'; remove it, or choose another name");
 }
 
 void ResultsDatabase::read_head() {
@@ -298,6 +352,7 @@ void ResultsDatabase::read_head() {
          "the results have version " + std::to_string(format) +
              " of the format, but this program has " + std::to_string(kDatabaseFormat) +
              "; use the version of Ayumi that wrote the results");
+  require_made_by(kHeadTables);
   const auto rows = [&](const std::string& sql, const auto& take) {
     Statement statement(database_, sql);
     if (!statement.good()) complain("the file cannot be read");
@@ -311,7 +366,12 @@ void ResultsDatabase::read_head() {
     if (key == "study") head_.study_text = value;
     if (key == "version") head_.version = value;
     if (key == "seed") head_.seed = value;
-    if (key == "cases") head_.cases = std::atol(value.c_str());
+    if (key == "cases") {
+      head_.cases = std::atol(value.c_str());
+      if (std::to_string(head_.cases) != value || head_.cases < 0 ||
+          head_.cases > SweepStudy::kMostCases)
+        fail(ErrorCode::bad_file, {file_.string()}, kNoResults);
+    }
   });
   rows("SELECT kind, name, sha256 FROM inputs ORDER BY place", [&](const Statement& row) {
     head_.inputs.push_back({row.text(0), row.text(1), row.text(2)});
@@ -323,6 +383,12 @@ void ResultsDatabase::read_head() {
   rows("SELECT name, type FROM figures ORDER BY place", [&](const Statement& row) {
     head_.columns.push_back({row.text(0), row.text(1)});
   });
+  std::vector<std::string> types = head_.axis_types;
+  for (const ResultColumn& column : head_.columns) types.push_back(column.type);
+  for (const std::string& type : types)
+    if (type != "TEXT" && type != "REAL" && type != "INTEGER")
+      fail(ErrorCode::bad_file, {file_.string()}, kNoResults);
+  require_made_by(kHeadTables + case_tables(head_));
 }
 
 void ResultsDatabase::require_study(const SweepHead& asked, const std::string& remedy) const {

@@ -107,6 +107,8 @@ class ResultsDatabase {
   [[noreturn]] void complain(const std::string& doing) const;
   void read_head();
   void make_tables();
+  /// Throws Error(bad_file), naming it, where a table or view differs from that of this SQL.
+  void require_made_by(const std::string& sql) const;
 
   std::filesystem::path file_;
   SweepHead head_;

@@ -193,6 +193,9 @@ TEST_F(AuthorServer, AnswersOnlyItsOwnPage) {
   EXPECT_EQ(status(state, {{"Origin", "null"}}), 403);
   EXPECT_EQ(status(state, {{"Host", "example.org"}}), 403);
   EXPECT_EQ(status(state, {{"Host", "example.org:" + std::to_string(server.port())}}), 403);
+  EXPECT_EQ(status(state, {{"Origin", own}, {"Origin", "http://example.org"}}), 403);
+  const std::string host = own.substr(own.find("127"));
+  EXPECT_EQ(status(state, {{"Host", host}, {"Host", "example.org"}}), 403);
   for (const char* const path : {"nothing", "../walk.json", "walk.json", "%2e%2e/%2e%2e/etc/passwd",
                                  "series?which=/etc/passwd", "series"})
     EXPECT_NE(status(server.root() + path), 200) << path;

@@ -2,6 +2,7 @@
 // stops, and one clear line for bad input.
 
 #include <signal.h>
+#include <sqlite3.h>
 
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -44,6 +45,14 @@ struct Sweep {
     return contents(folder / (database + ".csv"));
   }
 };
+
+void execute(const fs::path& file, const std::string& sql) {
+  sqlite3* database = nullptr;
+  EXPECT_EQ(sqlite3_open(file.c_str(), &database), SQLITE_OK);
+  EXPECT_EQ(sqlite3_exec(database, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK)
+      << sql << ": " << sqlite3_errmsg(database);
+  sqlite3_close(database);
+}
 
 std::string read_csv(const Sweep& s, const std::string& database) {
   fs::remove(s.folder / "read.csv");
@@ -180,11 +189,8 @@ TEST(SweepCommand, RetryForgetsOnlyCasesThatItRuns) {
 TEST(SweepCommand, MergeNamesTheFilesThatDiffer) {
   const Sweep s;
   ASSERT_EQ(s.sweep({"-o", "a.db"}).exit_code, 0);
-  const std::string all = contents(s.folder / "a.db");
-  std::string other = all;
-  for (size_t i = other.find("stands"); i != std::string::npos; i = other.find("stands", i + 1))
-    other[i + 5] = 'S';  // the change is also in the views, which only count
-  write(s.folder / "b.db", other);
+  fs::copy(s.folder / "a.db", s.folder / "b.db");
+  execute(s.folder / "b.db", "UPDATE cases SET outcome = 'standS' WHERE outcome = 'stands'");
   const Output merged = s.run({"sweep", "merge", "a.db", "b.db", "-o", "m.db"});
   EXPECT_EQ(merged.exit_code, 3);
   EXPECT_NE(merged.err.find(" differs from the result in m.db; nothing of b.db was merged"),
@@ -332,6 +338,59 @@ TEST(SweepCommand, OneClearLineForBadInput) {
   for (const char* const file : {"good.db", "later.db"})
     for (const char* const part : {"-wal", "-shm"})
       EXPECT_FALSE(fs::exists(s.folder / (std::string(file) + part))) << file;
+}
+
+// The tables and views of a file from a stranger are Ayumi's own, or the file is refused: a view
+// may have no end, and a trigger may change the results that are written.
+TEST(SweepCommand, OnlyItsOwnTablesAreRead) {
+  const Sweep s;
+  s.write_study(R"({"value.impulse": [0.1, 0.2]})");
+  ASSERT_EQ(s.sweep({"-o", "good.db"}).exit_code, 0);
+  const std::string good = contents(s.folder / "good.db");
+  const auto changed = [&](const std::string& sql) {
+    write(s.folder / "odd.db", good);
+    execute(s.folder / "odd.db", sql);
+  };
+  const std::string endless =
+      " AS WITH RECURSIVE c(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM c) SELECT x";
+  const std::pair<std::string, std::string> refused[] = {
+      {"DROP TABLE about; CREATE VIEW about" + endless + " AS key, '' AS value FROM c",
+       "the table 'about' is not as ayumi sweep makes it"},
+      {"DROP TABLE axes; CREATE VIEW axes" + endless + " AS place, '' AS name, '' AS type FROM c",
+       "the table 'axes' is not as"},
+      {"ALTER TABLE cases RENAME TO old; CREATE VIEW Cases AS SELECT * FROM old",
+       "the table 'cases' is not as"},
+      {"DROP VIEW summary; CREATE VIEW summary AS SELECT 2 AS cases, 2 AS done, 2 AS stands",
+       "the view 'summary' is not as"},
+      {"ALTER TABLE cases ADD COLUMN more AS (hex(zeroblob(100000000)))",
+       "the table 'cases' is not as"},
+      {"CREATE TRIGGER t AFTER INSERT ON cases BEGIN UPDATE cases SET outcome = 'stands'; END",
+       "ayumi sweep did not make the trigger 't' of the table 'cases'; remove it"},
+      {"UPDATE axes SET type = 'REAL); CREATE TABLE more (x'", "does not hold results"},
+      {"UPDATE about SET value = '-5' WHERE key = 'cases'", "does not hold results"},
+      {"UPDATE about SET value = '9223372036854775807' WHERE key = 'cases'",
+       "does not hold results"},
+      {"UPDATE about SET value = zeroblob(70000000) WHERE key = 'name'", "too big"}};
+  for (const auto& [sql, message] : refused) {
+    changed(sql);
+    const std::string before = contents(s.folder / "odd.db");
+    for (const std::vector<std::string>& words :
+         {std::vector<std::string>{"sweep", "status", "odd.db"},
+          {"sweep", "study.json", "-o", "odd.db"},
+          {"sweep", "merge", "good.db", "odd.db"}}) {
+      const Output out = s.run(words);
+      EXPECT_EQ(out.exit_code, 3) << sql << out.out;
+      EXPECT_NE(out.err.find("odd.db: "), std::string::npos) << out.err;
+      EXPECT_NE(out.err.find(message), std::string::npos) << out.err;
+    }
+    EXPECT_TRUE(contents(s.folder / "odd.db") == before) << sql;
+  }
+  EXPECT_TRUE(contents(s.folder / "good.db") == good);
+  // What somebody keeps beside them is no concern of the program.
+  changed("CREATE TABLE notes (text); CREATE VIEW slow AS SELECT severity FROM cases");
+  const Output out = s.run({"sweep", "status", "odd.db"});
+  EXPECT_EQ(out.exit_code, 0) << out.err;
+  EXPECT_NE(out.out.find("2 of 2 cases"), std::string::npos) << out.out;
 }
 
 // The file may not grow beyond a limit, as on a full disk: everything that was committed stays.

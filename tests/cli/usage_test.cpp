@@ -230,6 +230,8 @@ TEST_F(Usage, ValuesThatAreNoNumbersAreUsageErrors) {
       {"simulate", "-q", pattern, "-o", "new", "--gain", "q=inf"},
       {"edit", "retime", "-q", pattern, "--scale", "NaN", "-o", "new.json"},
       {"check", "-q", pattern, "--tolerance", "friction=nan"},
+      {"simulate", "-q", pattern, "--seed", "-1"},
+      {"simulate", "-q", pattern, "--seed", "18446744073709551616"},
       {"push", "-q", pattern, "--times", "nan"},
       {"tune", "-q", pattern, "--times", "nan"},
       {"gains", "hoap1", "--poles", "nan,-2"}};

@@ -77,6 +77,8 @@ TEST(JsonReader, NamesASlipInWordsAboutTheText) {
        "f.json:2:2: the text ends too early; missing: ] for the [ of line 1, then }"},
       {"/* x", "f.json:1:1: this comment has no end: */ is missing"},
       {"{\"a\": \"\xff\"}", "f.json:1:8: the text is not in the encoding UTF-8 here"},
+      {std::string("\xff\xfe{\0}\0", 6), "f.json: this is UTF-16 text; save it as UTF-8"},
+      {std::string("\xfe\xff\0{\0}", 6), "f.json: this is UTF-16 text; save it as UTF-8"},
   };
   for (const auto& [text, words] : slips)
     EXPECT_TRUE(parse_error(text).starts_with(words)) << text << "\n" << parse_error(text);

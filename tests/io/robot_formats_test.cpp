@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <variant>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/dynamics/inverse_dynamics.hpp"
@@ -512,6 +514,276 @@ TEST(Sdf, FramesPosesAndNestedModels) {
   EXPECT_NE(error("<link name='l'/>", "2.0").find("version 2.0"), std::string::npos);
 }
 
+// Every kind of shape, its colour and its place, the sensor, joints of two axes and one that
+// follows another.
+TEST(Sdf, ShapesSensorsAndJointsOfTwoAxes) {
+  const std::string mass = "<inertial><mass>1</mass></inertial>";
+  const auto visual = [](const std::string& geometry, const std::string& more = "") {
+    return "<visual name='v'><pose>0 0 0.5 0 0 0</pose><geometry>" + geometry + "</geometry>" +
+           more + "</visual>";
+  };
+  const RobotDescription robot = parse_robot(
+      "<sdf version='1.9'><model name='r'><link name='base'>" + mass +
+          visual("<box><size>1 2 3</size></box>",
+                 "<material><diffuse>0.5\t0.25  0\n1</diffuse></material>") +
+          visual("<sphere><radius>0.1</radius></sphere>",
+                 "<material><diffuse>1  0 0</diffuse></material>") +
+          visual("<cylinder><radius>0.1</radius><length>0.4</length></cylinder>") +
+          visual("<capsule><radius>0.2</radius><length>0.3</length></capsule>") +
+          visual("<ellipsoid><radii>0.1 0.2 0.3</radii></ellipsoid>") +
+          visual("<plane><normal>0 0 1</normal></plane>") +
+          "<sensor name='s' type='imu'><pose>0.1 0.2 0.3 0 0 0</pose></sensor></link>"
+          "<link name='head'/>"
+          "<link name='arm'><pose>0 1 0 0 0 0</pose>" +
+          mass + "</link><link name='other'>" + mass +
+          "</link><joint name='neck' type='universal'><parent>base</parent><child>head</child>"
+          "<axis><xyz>0 0 1</xyz><limit><lower>-1</lower><upper>1</upper></limit></axis>"
+          "<axis2><xyz>0 1 0</xyz><limit><lower>-inf</lower><upper>inf</upper></limit></axis2>"
+          "</joint><joint name='shoulder' type='prismatic'><parent>base</parent><child>arm</child>"
+          "<axis><xyz>0 1 0</xyz><limit><lower>0</lower><upper>0.2</upper><velocity>2</velocity>"
+          "</limit><dynamics><damping>3</damping><friction>4</friction></dynamics></axis></joint>"
+          "<joint name='follower' type='continuous'><parent>base</parent><child>other</child>"
+          "<axis><xyz>1 0 0</xyz><mimic joint='shoulder'><multiplier>2</multiplier>"
+          "<offset>0.5</offset><reference>0.1</reference></mimic></axis></joint></model></sdf>",
+      "r.sdf", {});
+  const auto& shapes = robot.links.at(0).visuals;
+  ASSERT_EQ(shapes.size(), 5u);  // planes belong to the world
+  EXPECT_EQ(std::get<Box>(shapes[0].shape).size, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(shapes[0].color, Eigen::Vector4f(0.5f, 0.25f, 0, 1));
+  EXPECT_EQ(shapes[0].pose.translation(), Eigen::Vector3d(0, 0, 0.5));
+  EXPECT_EQ(shapes[1].color, Eigen::Vector4f(1, 0, 0, 1));
+  EXPECT_EQ(std::get<Sphere>(shapes[1].shape).radius, 0.1);
+  EXPECT_EQ(std::get<Cylinder>(shapes[2].shape).length, 0.4);
+  EXPECT_EQ(std::get<Capsule>(shapes[3].shape).radius, 0.2);
+  float reach = 0;
+  for (const MeshPart& part : std::get<MeshShape>(shapes[4].shape).mesh.parts)
+    for (const Eigen::Vector3f& v : part.vertices) reach = std::max(reach, v.z());
+  EXPECT_NEAR(reach, 0.3, 1e-3);
+  EXPECT_EQ(robot.sensors.imu_link, "base");
+  EXPECT_EQ(robot.sensors.imu_position, Eigen::Vector3d(0.1, 0.2, 0.3));
+  EXPECT_EQ(robot.joints.size(), 4u);
+  const auto joint = [&](const std::string& name) {
+    return *std::find_if(robot.joints.begin(), robot.joints.end(),
+                         [&](const JointDescription& each) { return each.name == name; });
+  };
+  EXPECT_EQ(joint("neck").upper, 1);
+  EXPECT_EQ(joint("neck_2").type, JointType::continuous);
+  EXPECT_EQ(joint("neck_2").axis, Eigen::Vector3d::UnitY());
+  EXPECT_EQ(joint("shoulder").type, JointType::prismatic);
+  EXPECT_EQ(joint("shoulder").damping, 3);
+  EXPECT_EQ(joint("shoulder").velocity, 2);
+  EXPECT_EQ(joint("follower").mimic, "shoulder");
+  EXPECT_EQ(joint("follower").mimic_multiplier, 2);
+  EXPECT_NEAR(joint("follower").mimic_offset, 0.3, 1e-15);
+  const std::vector<std::string>& notes = robot.assumptions;
+  EXPECT_NE(std::find(notes.begin(), notes.end(),
+                      "links without <inertial> weigh 1 kg, as SDF says: head"),
+            notes.end());
+  EXPECT_EQ(RobotModel(robot).dof_count(), 3);
+}
+
+TEST(Sdf, IncludedModels) {
+  const TemporaryFolder folder;
+  folder.write("hand/model.config",
+               "<model><name>hand</name><sdf version='1.9'> hand.sdf </sdf></model>");
+  folder.write("hand/hand.sdf",
+               "<sdf version='1.9'><model name='hand'><link name='palm'><pose>0 0 1 0 0 0</pose>"
+               "<inertial><mass>2</mass></inertial></link></model></sdf>");
+  const auto read = [&](const std::string& include) {
+    const auto file = folder.write(
+        "r.sdf",
+        "<sdf version='1.9'><model name='r'><link name='base'><inertial><mass>1</mass></inertial>"
+        "</link>" +
+            include +
+            "<joint name='wrist' type='revolute'><parent>base</parent><child>left::palm</child>"
+            "<axis><xyz>0 0 1</xyz></axis></joint></model></sdf>");
+    return load_robot(file.string(), {}, {.guess = false});
+  };
+  const RobotModel robot = read(
+      "<include><uri>hand</uri><name>left</name>"
+      "<pose>1 0 0 0 0 0</pose></include>");
+  RobotData data(robot);
+  update_positions(robot, robot.rest_state(), data);
+  EXPECT_TRUE(link_pose(robot, data, robot.find_link("left::palm"))
+                  .translation()
+                  .isApprox(Eigen::Vector3d(1, 0, 1), 1e-12));
+  EXPECT_NEAR(robot.mass(), 3, 1e-12);
+  const auto error = [&](const std::string& include) {
+    try {
+      read(include);
+    } catch (const Error& e) {
+      return std::string(e.what());
+    }
+    return std::string("no error");
+  };
+  EXPECT_NE(error("<include/>").find("<include> has no <uri>"), std::string::npos);
+  EXPECT_NE(error("<include><uri>foot</uri></include>").find("the included model foot"),
+            std::string::npos);
+  EXPECT_NE(error("<include><uri>r.sdf</uri></include>").find("more than 20 levels deep"),
+            std::string::npos);
+}
+
+TEST(Sdf, WrongModelsAreRefusedInOneLine) {
+  const std::string link = "<link name='a'><inertial><mass>1</mass></inertial>",
+                    other = "</link><link name='b'/>";
+  const auto joint = [](const std::string& kind, const std::string& inside) {
+    return "<joint name='j' type='" + kind + "'>" + inside + "</joint>";
+  };
+  const std::string ends = "<parent>a</parent><child>b</child>";
+  const auto shape = [&](const std::string& geometry) {
+    return link + "<collision name='c'><geometry>" + geometry + "</geometry></collision>" + other +
+           joint("revolute", ends + "<axis/>");
+  };
+  const std::pair<std::string, std::string> wrong[] = {
+      {link + other + joint("ball", ends), "the type 'ball' is not supported"},
+      {link + other + joint("revolute", ends), "joint j has no <axis>"},
+      {link + other + joint("revolute", "<parent>a</parent>"), "joint j has no <child>"},
+      {link + other + joint("revolute", "<parent>a</parent><child>c</child><axis/>"),
+       "there is no link 'c'"},
+      {link + other + "<link/>", "<link> has no attribute 'name'"},
+      {link + other + "<frame name='a'/>", "the name 'a' is given twice"},
+      {link + "<pose rotation_format='quat_xyzw'>0 0 0 0 0 0 0</pose>" + other,
+       "the quaternion of the pose is zero"},
+      {shape("<sphere><radius>0</radius></sphere>"), "needs a <radius> above 0"},
+      {shape("<box><size>1 -1 1</size></box>"), "link a: a shape has the negative size -1 m"}};
+  for (const auto& [inside, part] : wrong) {
+    std::string words = "no error";
+    try {
+      parse_robot("<sdf version='1.9'><model name='r'>" + inside + "</model></sdf>", "r.sdf", {});
+    } catch (const Error& error) {
+      words = error.what();
+    }
+    EXPECT_TRUE(words.starts_with("r.sdf:")) << words;
+    EXPECT_NE(words.find(part), std::string::npos) << words;
+  }
+  EXPECT_THROW(parse_robot("<sdf version='1.9'><world name='w'/></sdf>", "r.sdf", {}), Error);
+}
+
+// A chain of frames is followed without recursion.
+TEST(Sdf, VeryManyFramesInAChain) {
+  constexpr int kFrames = 90000;
+  std::string frames;
+  for (int i = 0; i < kFrames; ++i)
+    frames += "<frame name='f" + std::to_string(i) + "'><pose relative_to='f" +
+              std::to_string(i + 1) + "'>0 0 0.001 0 0 0</pose></frame>";
+  const RobotDescription robot = parse_robot(
+      "<sdf version='1.9'><model name='r'><link name='base'/><link name='tip'><pose "
+      "relative_to='f0'/></link><joint name='j' type='revolute'><parent>base</parent><child>tip"
+      "</child><axis><xyz>0 0 1</xyz></axis></joint><frame name='f" +
+          std::to_string(kFrames) + "'/>" + frames + "</model></sdf>",
+      "r.sdf", {});
+  EXPECT_NEAR(robot.joints.at(0).origin.translation().z(), 1e-3 * kFrames, 1e-6);
+}
+
+// Following a chain of joints that mimic each other took the third power of their number.
+TEST(RobotFormats, AChainOfMimicJointsIsShort) {
+  const auto words_for = [](int joints) {
+    const std::string inside =
+        "'><inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/>"
+        "</inertial></link>";
+    std::string urdf = "<robot name='r'><link name='l0" + inside;
+    for (int i = 1; i <= joints; ++i) {
+      const std::string n = std::to_string(i);
+      urdf += "<link name='l" + n + inside + "<joint name='j" + n +
+              "' type='continuous'><parent link='l0'/><child link='l" + n + "'/>" +
+              (i < joints ? "<mimic joint='j" + std::to_string(i + 1) + "'/>" : std::string()) +
+              "</joint>";
+    }
+    try {
+      from_text(urdf + "</robot>", "r.urdf");
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string("read");
+  };
+  EXPECT_EQ(words_for(21), "read");
+  EXPECT_NE(words_for(23).find("joint j1: this joint mimics another one through "
+                               "more than 20 joints"),
+            std::string::npos)
+      << words_for(23);
+}
+
+// More links than any robot has would take hours.
+TEST(RobotFormats, TooManyLinksAreRefused) {
+  std::string sdf = "<sdf version='1.9'><model name='r'>",
+              body = "format: ChoreonoidBody\nlinks:\n", ztk = "[roki::chain]\nname: r\n",
+              mjcf = "<mujoco><worldbody>";
+  for (int i = 0; i <= 1000; ++i) {
+    const std::string name = "l" + std::to_string(i);
+    sdf += "<link name='" + name + "'/>";
+    body += " - {name: " + name + "}\n";
+    ztk += "[roki::link]\nname: " + name + "\n";
+    mjcf += "<body name='" + name + "'><joint/><geom size='0.1'/></body>";
+  }
+  std::vector<std::pair<std::string, std::string>> files = {
+      {sdf + "</model></sdf>", "r.sdf"}, {body, "r.body"}, {ztk, "r.ztk"}};
+  if (has_mujoco()) files.emplace_back(mjcf + "</worldbody></mujoco>", "r.xml");
+  for (const auto& [text, file] : files) {
+    std::string words = "no error";
+    try {
+      parse_robot(text, file, {});
+    } catch (const Error& error) {
+      words = error.what();
+    }
+    EXPECT_TRUE(words.starts_with(file)) << words;
+    EXPECT_NE(words.find("more than 1000 links; simplify the robot"), std::string::npos) << words;
+  }
+}
+
+// Shapes of every kind, colours, the sensor, axes and ranges in each of their ways.
+TEST(ChoreonoidBody, ShapesSensorsAxesAndRanges) {
+  const RobotDescription robot = parse_robot(R"(format: ChoreonoidBody
+format_version: 2.0
+angle_unit: radian
+name: r
+links:
+  - name: base
+    mass: 1
+    elements:
+      - { type: AccelerationSensor, translation: [0.1, 0.2, 0.3] }
+      - type: Shape
+        translation: [0, 0, 0.5]
+        geometry: { type: Box, size: [1, 2, 3] }
+        appearance: { material: { diffuse: [0.5, 0.25, 0], transparency: 0.5 } }
+      - { type: Visual, shape: { geometry: { type: Sphere, radius: 0.1 } } }
+      - { type: Collision, shape: { geometry: { type: Capsule, radius: 0.1, height: 0.4 } } }
+      - { type: Shape, rotation: [[1, 0, 0, 1.5707963267948966], [0, 0, 1, 0]], geometry: { type: Cylinder, radius: 0.1, height: 0.4 } }
+      - { type: Shape, geometry: { type: Cone, radius: 0.1, height: 0.4 } }
+      - type: Shape
+        geometry: { type: IndexedFaceSet, coordinate: [0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0], coordIndex: [0, 1, 2, 3, -1] }
+  - { name: a, parent: base, joint_type: revolute, joint_axis: -Y, joint_range: 0.5, joint_id: 1, max_joint_velocity: 3 }
+  - { name: b, parent: a, joint_type: revolute, joint_axis: +x, joint_range: [unlimited, unlimited], joint_id: 0 }
+  - { name: c, parent: b, joint_type: slide, joint_axis: [0, 0, 2], joint_range: [-0.1, 0.2], joint_effort_range: [-5, 7], joint_id: 1.0e+300 }
+)",
+                                             "r.body", {});
+  const LinkDescription& base = robot.links.at(0);
+  EXPECT_EQ(robot.sensors.imu_link, "base");
+  EXPECT_EQ(robot.sensors.imu_position, Eigen::Vector3d(0.1, 0.2, 0.3));
+  ASSERT_EQ(base.visuals.size(), 4u);
+  EXPECT_EQ(std::get<Box>(base.visuals[0].shape).size, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(base.visuals[0].color, Eigen::Vector4f(0.5f, 0.25f, 0, 0.5f));
+  EXPECT_EQ(base.visuals[0].pose.translation(), Eigen::Vector3d(0, 0, 0.5));
+  EXPECT_TRUE(std::holds_alternative<Sphere>(base.visuals[1].shape));
+  // Cylinders lie along y there; turned about x, this one stands.
+  EXPECT_LT((base.visuals[2].pose.linear().col(2).cwiseAbs() - Eigen::Vector3d::UnitZ()).norm(),
+            1e-12);
+  EXPECT_EQ(std::get<MeshShape>(base.visuals[3].shape).mesh.parts.at(0).triangles.size(), 2u);
+  ASSERT_EQ(base.collisions.size(), 4u);
+  EXPECT_TRUE(std::holds_alternative<Capsule>(base.collisions[1].shape));
+  EXPECT_EQ(robot.joints.at(0).axis, Eigen::Vector3d(0, -1, 0));
+  EXPECT_EQ(robot.joints.at(0).lower, -0.5);
+  EXPECT_EQ(robot.joints.at(0).velocity, 3);
+  EXPECT_EQ(robot.joints.at(1).axis, Eigen::Vector3d(1, 0, 0));
+  EXPECT_EQ(robot.joints.at(1).type, JointType::continuous);
+  EXPECT_EQ(robot.joints.at(2).upper, 0.2);
+  EXPECT_EQ(robot.joints.at(2).effort, 7);
+  EXPECT_EQ(robot.joint_order, (std::vector<std::string>{"b", "a", "c"}));
+  const std::vector<std::string>& notes = robot.assumptions;
+  EXPECT_NE(std::find(notes.begin(), notes.end(),
+                      "shapes that Ayumi does not support are left out: Cone of base"),
+            notes.end());
+}
+
 TEST(ChoreonoidBody, WrongBodiesAreRefusedInOneLine) {
   const std::string head = "format: ChoreonoidBody\nformat_version: 1.0\nlinks:\n";
   const auto error = [&](const std::string& text) {
@@ -533,6 +805,30 @@ TEST(ChoreonoidBody, WrongBodiesAreRefusedInOneLine) {
   has(error(head + "  - { name: a, mass: '1,5' }\n"), "'1,5' is not a finite number");
   has(error(head + "  - { name: a, mass: 1\n"), "not YAML");
   has(error("format: ChoreonoidBody\n"), "no list of links");
+  has(error("- a\n"), "must be a map");
+  has(error("format: Robot\nlinks:\n - {name: a}\n"), "must have format: ChoreonoidBody");
+  has(error("format: ChoreonoidBody\nangleUnit: turn\nlinks:\n - {name: a}\n"),
+      "angle_unit is 'turn'");
+  has(error(head + "  - { name: a, mass: 1, centerOfMass: 2 }\n"), "a list of 3 numbers is needed");
+  has(error(head + "  - { name: a, mass: 1, centerOfMass: [1, 2] }\n"),
+      "3 numbers are needed, found 2");
+  const std::string joint = head + "  - { name: a }\n  - { name: b, parent: a, ";
+  has(error(joint + "joint_type: revolute, joint_axis: W }\n"), "the axis 'W' is not one of X");
+  has(error(joint + "joint_type: revolute, joint_id: 3 }\n  - { name: c, parent: b, joint_type: "
+                    "revolute, joint_id: 3 }\n"),
+      "have the same joint_id 3");
+  const auto shape = [&](const std::string& geometry) {
+    return error(head + "  - { name: a, elements: [ { type: Shape, geometry: " + geometry +
+                 " } ] }\n");
+  };
+  has(shape("{ type: Sphere }"), "link a: the Sphere has no radius");
+  has(shape("{ type: Cylinder, radius: 0, height: 1 }"), "the radius must be above 0");
+  has(shape("{ type: IndexedFaceSet }"), "needs lists 'coordinate' and 'coordIndex'");
+  has(shape("{ type: IndexedFaceSet, coordinate: [0, 0, 0], coordIndex: [0, 7] }"),
+      "corner 7 does not exist");
+  has(shape("{ type: IndexedFaceSet, coordinate: [0, 0, 0], coordIndex: [0, 0, 0] }"),
+      "has no triangle");
+  has(shape("Box"), "a geometry must be a map");
   has(error(head + "  - { name: a }\n  - { name: b, parent: a, joint_type: ball }\n"), "'ball'");
   // The file has aliases inside aliases.
   std::string bomb = "format: ChoreonoidBody\na0: &a0 { Shape: {} }\n";

@@ -29,23 +29,6 @@ VectorXd bias_force(const RobotModel& model, const RobotState& state, RobotData&
   return inverse_dynamics(model, state, VectorXd::Zero(model.velocity_count()), data);
 }
 
-namespace {
-
-SpatialInertia body_inertia(const Body& body, const Matrix3d& R, const Vector3d& com) {
-  SpatialInertia result;
-  const double m = body.inertia.mass;
-  result.mass = m;
-  result.moment = m * com;
-  result.inertia = R * body.inertia.about_com * R.transpose();
-  result.inertia.diagonal().array() += m * com.squaredNorm();
-  result.inertia -= m * com * com.transpose();
-  // R I R^T is symmetric only up to rounding, but the mass matrix has to be exactly symmetric.
-  result.inertia = 0.5 * (result.inertia + result.inertia.transpose()).eval();
-  return result;
-}
-
-}  // namespace
-
 void mass_matrix(const RobotModel& model, RobotData& data, MatrixXd& M) {
   M.setZero(model.velocity_count(), model.velocity_count());
   data.kernels->mass_entries(data.tree(), data.bodies(),
@@ -73,14 +56,6 @@ Momentum centroidal_momentum(const RobotModel& model, const RobotData& data) {
                  bodies[i].inertia.mass * (data.com[i] - data.cog_offset).cross(v - data.dcog);
   }
   return h;
-}
-
-Matrix3d locked_inertia(const RobotModel& model, const RobotData& data) {
-  Matrix3d total = Matrix3d::Zero();
-  const std::vector<Body>& bodies = model.bodies();
-  for (size_t i = 0; i < bodies.size(); ++i)
-    total += body_inertia(bodies[i], data.rotation[i], data.com[i] - data.cog_offset).inertia;
-  return total;
 }
 
 }  // namespace ayumi

@@ -39,8 +39,4 @@ struct Momentum {
 /// The momentum of the whole robot about its COG. Needs update_velocities().
 Momentum centroidal_momentum(const RobotModel& model, const RobotData& data);
 
-/// Inertia of the whole robot about its COG with the joints locked, world axes [kg m^2]. Needs
-/// update_positions().
-Eigen::Matrix3d locked_inertia(const RobotModel& model, const RobotData& data);
-
 }  // namespace ayumi

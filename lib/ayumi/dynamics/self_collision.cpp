@@ -83,20 +83,4 @@ double CollisionModel::clearance(const Pair& pair, const RobotData& data, double
   return nearest;
 }
 
-Closest CollisionModel::closest(const Pair& pair, const RobotData& data) const {
-  Closest nearest;
-  nearest.clearance = std::numeric_limits<double>::infinity();
-  const Eigen::Isometry3d A = data.pose(pair.a), B = data.pose(pair.b);
-  for (const PlacedCollider& a : shapes_[pair.a]) {
-    const Eigen::Isometry3d pose_a = A * a.pose;
-    for (const PlacedCollider& b : shapes_[pair.b]) {
-      const Eigen::Isometry3d pose_b = B * b.pose;
-      if (clearance_bound(a.collider, pose_a, b.collider, pose_b) >= nearest.clearance) continue;
-      const Closest here = ayumi::closest(a.collider, pose_a, b.collider, pose_b);
-      if (here.clearance < nearest.clearance) nearest = here;
-    }
-  }
-  return nearest;
-}
-
 }  // namespace ayumi

@@ -34,9 +34,6 @@ class CollisionModel {
   /// distance is returned instead. Needs update_positions().
   double clearance(const Pair& pair, const RobotData& data, double skip) const;
 
-  /// The nearest points of a pair. Needs update_positions().
-  Closest closest(const Pair& pair, const RobotData& data) const;
-
  private:
   std::vector<std::vector<PlacedCollider>> shapes_;  ///< shapes by body
   std::vector<Pair> pairs_;

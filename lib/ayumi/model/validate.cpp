@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <variant>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
@@ -36,6 +37,10 @@ std::string twice(const std::vector<std::string>& names) {
   return "";
 }
 
+// Longest chain of joints of which each mimics the next. Chosen: fingers have two or three; each
+// step is a search among all joints.
+constexpr size_t kLongestMimicChain = 20;
+
 void validate_inertia(const RobotDescription& robot, const LinkDescription& link) {
   const std::string where = "link " + link.name;
   const Inertia& inertia = link.inertia;
@@ -58,6 +63,24 @@ void validate_inertia(const RobotDescription& robot, const LinkDescription& link
                   "its inertia tensor has the negative principal moment " +
                       text::brief(principal.minCoeff()) +
                       " kg m^2, which no body can have; check the products of inertia");
+}
+
+// A flat shape is possible.
+void validate_shapes(const RobotDescription& robot, const LinkDescription& link) {
+  for (const auto* shapes : {&link.visuals, &link.collisions})
+    for (const PlacedShape& placed : *shapes) {
+      double least = 0;
+      if (const auto* const box = std::get_if<Box>(&placed.shape)) least = box->size.minCoeff();
+      if (const auto* const sphere = std::get_if<Sphere>(&placed.shape)) least = sphere->radius;
+      if (const auto* const rod = std::get_if<Cylinder>(&placed.shape))
+        least = std::min(rod->radius, rod->length);
+      if (const auto* const rod = std::get_if<Capsule>(&placed.shape))
+        least = std::min(rod->radius, rod->length);
+      if (least < 0)
+        complain_urdf(robot, "link " + link.name,
+                      "a shape has the negative size " + text::exact(least) +
+                          " m; give its size as a positive number");
+    }
 }
 
 void validate_joint_numbers(const RobotDescription& robot, const JointDescription& joint) {
@@ -95,9 +118,14 @@ void validate_mimic(const RobotDescription& robot, const JointDescription& joint
                     "this joint mimics the joint '" + driver->mimic + "', which does not exist" +
                         text::suggestion(driver->mimic, joint_names(robot)));
     driver = &*next;
-    if (steps > robot.joints.size())
+    if (driver == &joint)
       complain_urdf(robot, where,
                     "this joint mimics itself through other joints; break the circle");
+    if (steps > kLongestMimicChain)
+      complain_urdf(robot, where,
+                    "this joint mimics another one through more than " +
+                        std::to_string(kLongestMimicChain) +
+                        " joints; name the joint that moves by itself");
   }
   if (driver->type == JointType::fixed || driver->type == JointType::floating)
     complain_urdf(robot, where,
@@ -127,11 +155,19 @@ void complain_sidecar(const RobotDescription& robot, const std::string& inside,
   complain(robot, robot.sidecar_file, inside, message);
 }
 
+std::string too_many(const std::string& what) {
+  return "the robot has more than " + std::to_string(kMostLinks) + " " + what +
+         "; simplify the robot";
+}
+
 void validate_links(const RobotDescription& robot) {
   if (robot.links.empty()) complain_urdf(robot, "", "the robot has no link; add one");
   const std::string name = twice(link_names(robot));
   if (!name.empty()) complain_urdf(robot, "link " + name, "two links have this name; rename one");
-  for (const LinkDescription& link : robot.links) validate_inertia(robot, link);
+  for (const LinkDescription& link : robot.links) {
+    validate_inertia(robot, link);
+    validate_shapes(robot, link);
+  }
 }
 
 void validate_joints(const RobotDescription& robot) {

@@ -12,6 +12,12 @@ namespace ayumi {
 /// Largest mass [kg] and length [m] of a robot. Chosen: a larger value is in a wrong unit.
 inline constexpr double kLargestMass = 1e6;
 inline constexpr double kLargestLength = 1e4;
+/// Largest number of links of a robot, and of joints. Chosen: humanoids with hands have about a
+/// hundred; the tree of the robot descends a chain of links by recursion, and some steps take the
+/// square of their number.
+inline constexpr size_t kMostLinks = 1000;
+/// What a reader says when there are more "links" or "joints", before the work with them grows.
+std::string too_many(const std::string& what);
 /// Shortest and longest servo period [s]. Chosen: a thousandth of the shortest period and a hundred
 /// times the longest period of known servos; another value is in a wrong unit. With the shortest
 /// period, a motion of half a second has the largest number of steps that sampling accepts.
@@ -24,7 +30,7 @@ inline constexpr double kShortestServoPeriod = 1e-7, kLongestServoPeriod = 10;
 [[noreturn]] void complain_sidecar(const RobotDescription& robot, const std::string& inside,
                                    const std::string& message);
 
-/// Checks names, finite numbers, masses and inertia tensors of all links.
+/// Checks names, finite numbers, masses, inertia tensors and sizes of shapes of all links.
 void validate_links(const RobotDescription& robot);
 
 /// Checks names, ends, axes, limits and mimic targets of all joints.

@@ -128,6 +128,8 @@ Json parse_json(const std::string& bytes, const std::string& file, ErrorCode cod
   const bool blank =
       std::all_of(bytes.begin(), bytes.end(), [](unsigned char c) { return std::isspace(c); });
   if (blank) fail(code, {file}, "the file is empty; it must hold JSON");
+  if (bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff"))
+    fail(code, {file}, "this is UTF-16 text; save it as UTF-8");
   Json document;
   DocumentBuilder builder(document);
   try {

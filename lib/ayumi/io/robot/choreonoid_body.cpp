@@ -64,6 +64,7 @@ class BodyReader {
     const YAML::Node links = member(root, "links", "links");
     if (!links || !links.IsSequence() || links.size() == 0)
       complain(root, "the body has no list of links");
+    if (links.size() > kMostLinks) complain(links, too_many("links"));
     for (const YAML::Node& link : links) read_link(link);
     order_joints();
     if (const YAML::Node extra = member(root, "extra_joints", "extraJoints"); extra && extra.size())
@@ -193,7 +194,7 @@ class BodyReader {
       const double unit = joint.type == JointType::revolute ? angle_ : 1;
       read_range(node, unit, joint);
       if (const YAML::Node id = member(node, "joint_id", "jointId"); id && number(id) >= 0)
-        ids_.emplace_back(static_cast<int>(number(id)), joint.name);
+        ids_.emplace_back(number(id), joint.name);
       if (!joint.has_limits && joint.type == JointType::revolute)
         joint.type = JointType::continuous;
     }
@@ -373,7 +374,7 @@ class BodyReader {
       for (size_t k = 2; k < face.size(); ++k) {
         const Vector3d &a = points[face[0]], &b = points[face[k - 1]], &c = points[face[k]];
         const Vector3d normal = (b - a).cross(c - a).normalized();
-        if (!normal.allFinite()) continue;
+        if (!(normal.squaredNorm() > 0.5)) continue;  // of no area
         const auto first = static_cast<std::uint32_t>(part.vertices.size());
         for (const Vector3d& p : {a, b, c}) {
           part.vertices.push_back(p.cast<float>());
@@ -422,8 +423,7 @@ class BodyReader {
       if (ids_[i].first == ids_[i - 1].first)
         fail(ErrorCode::bad_file, {path_.string()},
              "the joints " + ids_[i - 1].second + " and " + ids_[i].second +
-                 " have the same joint_id " + std::to_string(ids_[i].first) +
-                 "; give each its own");
+                 " have the same joint_id " + text::exact(ids_[i].first) + "; give each its own");
     if (ids_.size() != moving) return;  // not all joints have an id
     for (const auto& [id, name] : ids_) robot_.joint_order.push_back(name);
   }
@@ -432,7 +432,7 @@ class BodyReader {
   MeshPlaces places_;
   double angle_ = 1;  // the file's unit of angles [rad]
   RobotDescription robot_;
-  std::vector<std::pair<int, std::string>> ids_;
+  std::vector<std::pair<double, std::string>> ids_;
   std::set<std::string> left_out_;
   int elements_ = 0;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <list>
 #include <map>
 #include <numbers>
@@ -210,22 +211,34 @@ class SdfReader {
       complain(at, "the name '" + name + "' is given twice");
   }
 
-  // Pose of a frame in the robot, with every joint at 0.
-  Isometry3d resolved(const std::string& name, const TiXmlElement* at) {
+  Frame& frame_of(const std::string& name, const TiXmlElement* at) {
     const auto found = frames_.find(name);
-    if (found == frames_.end()) {
-      std::vector<std::string> known;
-      for (const auto& [each, frame] : frames_) known.push_back(each);
-      complain(at, "there is no frame '" + name + "'" + text::suggestion(name, known));
+    if (found != frames_.end()) return found->second;
+    std::vector<std::string> known;
+    for (const auto& [each, frame] : frames_) known.push_back(each);
+    complain(at, "there is no frame '" + name + "'" + text::suggestion(name, known));
+  }
+
+  // Pose of a frame in the robot, with every joint at 0. Without recursion, because a file may have
+  // very many frames in a chain.
+  Isometry3d resolved(const std::string& name, const TiXmlElement* at) {
+    std::vector<Frame*> chain = {&frame_of(name, at)};
+    std::string reached = name;
+    while (!chain.back()->relative_to.empty()) {
+      Frame& frame = *chain.back();
+      if (frame.open) complain(frame.at, "the frames form a circle at '" + reached + "'");
+      frame.open = true;
+      reached = frame.relative_to;
+      chain.push_back(&frame_of(reached, frame.at));
     }
-    Frame& frame = found->second;
-    if (frame.relative_to.empty()) return frame.pose;
-    if (frame.open) complain(frame.at, "the frames form a circle at '" + name + "'");
-    frame.open = true;
-    frame.pose = resolved(frame.relative_to, frame.at) * frame.pose;
-    frame.open = false;
-    frame.relative_to.clear();
-    return frame.pose;
+    Isometry3d pose = chain.back()->pose;
+    for (auto frame = std::next(chain.rbegin()); frame != chain.rend(); ++frame) {
+      pose = pose * (*frame)->pose;
+      (*frame)->pose = pose;
+      (*frame)->open = false;
+      (*frame)->relative_to.clear();
+    }
+    return pose;
   }
 
   void read_model(const TiXmlElement* model, const std::string& scope, int depth) {
@@ -239,6 +252,7 @@ class SdfReader {
         const std::string name = scope + required(each, "name");
         add_frame(name, each, relative_to(each, scope, own));
         links_.push_back({name, scope, each});
+        if (links_.size() > kMostLinks) complain(each, too_many("links"));
       } else if (kind == "joint") {
         read_joint(each, scope);
       } else if (kind == "frame") {
@@ -268,8 +282,9 @@ class SdfReader {
     frames_[key] = {Isometry3d::Identity(), "", model, false};
     const Isometry3d offset = resolved(inner + placed, place);
     const Isometry3d outer = resolved(scope + name, place) * offset.inverse();
-    for (auto& [each, frame] : frames_)
-      if (each.starts_with(inner) && frame.relative_to.empty()) frame.pose = outer * frame.pose;
+    for (auto inside = frames_.lower_bound(inner);
+         inside != frames_.end() && inside->first.starts_with(inner); ++inside)
+      if (Frame& frame = inside->second; frame.relative_to.empty()) frame.pose = outer * frame.pose;
   }
 
   void include(const TiXmlElement* element, const std::string& scope, int depth) {
@@ -321,6 +336,7 @@ class SdfReader {
     }
     add_frame(joint.name, element, relative_to(element, scope, joint.child));
     joints_.push_back(joint);
+    if (joints_.size() > kMostLinks) complain(element, too_many("joints"));
   }
 
   // A joint may name a frame that is attached to a link.
@@ -438,11 +454,13 @@ class SdfReader {
 
   // A link of the robot has the frame of the joint that carries it.
   Isometry3d link_frame(const std::string& link) {
-    for (const JointSource& joint : joints_)
-      if (joint.parent != "world" && joint.child != "world" &&
-          link_of(joint.child, joint.element) == link)
-        return resolved(joint.name, joint.element);
-    return resolved(link, nullptr);
+    if (carriers_.empty())
+      for (const JointSource& joint : joints_)
+        if (joint.parent != "world" && joint.child != "world")
+          carriers_.emplace(link_of(joint.child, joint.element), &joint);
+    const auto carrier = carriers_.find(link);
+    if (carrier == carriers_.end()) return resolved(link, nullptr);
+    return resolved(carrier->second->name, carrier->second->element);
   }
 
   void make_links() {
@@ -551,6 +569,7 @@ class SdfReader {
   std::map<std::string, Frame> frames_;
   std::vector<LinkSource> links_;
   std::vector<JointSource> joints_;
+  std::map<std::string, const JointSource*> carriers_;  // by link, the first joint that has it
   std::vector<std::string> massless_;
   std::list<TiXmlDocument> included_;
 };

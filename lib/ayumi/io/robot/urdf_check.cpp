@@ -20,10 +20,6 @@ namespace {
 constexpr const char* kXacro =
     "this is a xacro file; expand it with `xacro FILE > robot.urdf` of ROS, and use robot.urdf";
 
-// Largest number of links of a robot. Chosen: humanoids with hands have about a hundred; urdfdom
-// and the tree of the robot descend a chain of links by recursion, and some steps take the square
-// of their number.
-constexpr size_t kMostLinks = 1000;
 // A numeric attribute and how many numbers it holds.
 struct NumericAttribute {
   const char* element;  // "*" means any element
@@ -285,10 +281,9 @@ UrdfText check_urdf(const std::string& bytes, const std::string& file) {
   tree.urdf_file = file;
   for (auto* each = root->FirstChildElement(); each; each = each->NextSiblingElement()) {
     if (each->ValueStr() == "link") checker.link(each, tree, text);
-    if (tree.links.size() > kMostLinks)
-      checker.complain(each, "the robot has more than " + std::to_string(kMostLinks) +
-                                 " links; simplify the robot");
     if (each->ValueStr() == "joint") checker.joint(each, tree, text);
+    if (tree.links.size() > kMostLinks) checker.complain(each, too_many("links"));
+    if (tree.joints.size() > kMostLinks) checker.complain(each, too_many("joints"));
     if (each->ValueStr() == "material") checker.numbers(each, "material: ");
   }
   validate_links(tree);

@@ -75,7 +75,10 @@ class ZtkReader {
     for (const Section& section : sections_)
       if (section.tag == "zeo::shape") read_shape(section);
     for (const Section& section : sections_)
-      if (section.tag == "roki::link") read_link(section);
+      if (section.tag == "roki::link") {
+        if (robot_.links.size() == kMostLinks) complain(section.line, too_many("links"));
+        read_link(section);
+      }
     if (robot_.links.empty()) complain(1, "there is no [roki::link]; a chain of RoKi is needed");
     if (!left_out_.empty())
       robot_.assumptions.push_back("shapes that Ayumi does not support are left out: " +
