@@ -47,9 +47,6 @@ OrderedJson author_structure(const Pattern& pattern, const OrderedJson& document
 /// What the strip of the page shows of a motion or a run of the task: { lanes, dt }.
 OrderedJson author_strip(const Task& task, const StabilitySeries& stability);
 
-/// A slash and a key as they stand in a JSON pointer.
-std::string pointer_token(const std::string& key);
-
 /// The item of the pattern's list that holds a phase or keyframe: itself, or a block that repeats.
 std::string outermost(const std::string& pointer);
 

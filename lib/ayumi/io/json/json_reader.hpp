@@ -26,9 +26,6 @@ struct JsonPlace {
 /// is not listed stands below the place of the nearest value around it.
 using JsonPlaces = std::map<std::string, JsonPlace>;
 
-/// A key in the form that it has in a JSON pointer.
-std::string json_pointer_token(const std::string& key);
-
 /// One value of a JSON document together with its place. Cheap to copy; the document outlives it.
 class JsonNode {
  public:
