@@ -8,6 +8,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/check/consistency.hpp"
+#include "ayumi/check/mistake_trials.hpp"
 #include "ayumi/control/gain_design.hpp"
 #include "ayumi/limits/amount_text.hpp"
 #include "ayumi/limits/limit.hpp"
@@ -24,6 +25,14 @@ namespace {
 // sampling a walk of 12 s at kCoarse takes 0.05 s and a full check takes 0.5 s, so a search ends
 // within ten seconds; on 14 robots and 69 variants of them, the longest search took 8 s.
 constexpr int kMostSampled = 90, kMostChecked = 8;
+// Length of the motions after which the search does not go on from the nearest trial [s]. A motion
+// that is checked or simulated counts several times. Chosen: a look takes 13 ms for a second of
+// motion, so that a search ends within ten seconds.
+constexpr double kMostWork = 600;
+constexpr double kWorkOfCheck = 4, kWorkOfRun = 5;
+// Shares of the range of a dial by which its value is moved: the first and the last one. Chosen:
+// the last one is the smallest move for which the errors of a walk can be told apart.
+constexpr double kFirstMove = 0.25, kLastMove = 0.03;
 // Largest number of motions that are simulated. Chosen: a walk of 12 s takes 0.3 to 1 s.
 constexpr int kMostSimulated = 5;
 // Sample period of the first check [s]. Chosen: only postures are judged, 45 of them in a swing of
@@ -38,15 +47,23 @@ std::string text_of(const Finding& finding) {
   return kind_place_and_time(finding) + ": " + finding.hint;
 }
 
-// The error in the postures of a motion; "" if there is none.
-std::string wrong_posture(const RobotModel& model, const Pattern& pattern) {
-  const ConsistencyReport report =
-      check_consistency(model, sample(model, pattern, {.dt = kCoarse}));
+// A quick look at a motion.
+struct Look {
+  std::string posture;  // the error in its postures; "" if there is none
+  double beyond = 0;    // the sum of the shares by which it exceeds limits
+};
+
+Look look_at(const RobotModel& model, const Pattern& pattern) {
+  ConsistencyReport report = check_consistency(model, sample(model, pattern, {.dt = kCoarse}));
+  std::erase_if(report.findings, [](const Finding& finding) {
+    return finding.kind != FindingKind::table_position && needs_servo_period(finding.kind);
+  });
+  Look look{"", total_violation(report)};
   for (const Finding& finding : report.findings)
-    if (finding.severity == Severity::error &&
+    if (look.posture.empty() && finding.severity == Severity::error &&
         (is_of_posture(finding) || finding.kind == FindingKind::table_position))
-      return text_of(finding);
-  return "";
+      look.posture = text_of(finding);
+  return look;
 }
 
 // The errors of a motion: the first one, and the one that exceeds its limit most.
@@ -111,79 +128,210 @@ std::string end_in_simulation(const RobotModel& model, const Pattern& pattern) {
   return log.result.outcome == Outcome::fell ? outcome_text(log) : "";
 }
 
+namespace {
+
+class MotionSearch {
+ public:
+  MotionSearch(const RobotModel& model, const std::vector<Dial>& dials,
+               const std::function<Pattern(const std::vector<double>&)>& make,
+               const Progress& progress, bool simulated)
+      : model_(model), dials_(dials), make_(make), progress_(progress), simulated_(simulated) {}
+
+  SearchResult run() {
+    try_lists();
+    if (!result_.found && accepted_.empty() && !result_.limit.empty()) go_on_from_nearest();
+    if (!result_.found && !accepted_.empty()) {
+      result_.found = true;
+      result_.values = accepted_;
+    }
+    return result_;
+  }
+
+ private:
+  using Values = std::vector<double>;
+
+  // Whether the check accepts a motion, and the robot stands in a simulation. "" where it does.
+  std::string wrong_with(const Pattern& pattern, const Values& values) {
+    ++checked_;
+    work_ += kWorkOfCheck * pattern.duration();
+    const Wrong motion = wrong_motion(model_, pattern);
+    if (!motion.worst.empty() && motion.severity < nearest_) {
+      nearest_ = motion.severity;
+      result_.nearest = motion.worst;
+      result_.nearest_values = values;
+    }
+    if (!motion.first.empty() || !simulated_) return motion.first;
+    ++runs_;
+    work_ += kWorkOfRun * pattern.duration();
+    const std::string falls = end_in_simulation(model_, pattern);
+    if (!falls.empty() && result_.falls.empty()) {
+      result_.falls = falls;
+      accepted_ = values;
+    }
+    return falls;
+  }
+
+  void note_trial() {
+    ++result_.tried;
+    report(progress_, {"look for a motion that passes",
+                       std::min(1.0, result_.tried / double(kMostSampled)), ""});
+  }
+
+  void take(const Values& values) {
+    result_.found = true;
+    result_.values = values;
+    result_.falls.clear();
+  }
+
+  void try_lists() {
+    // Places of the other dials where postures passed, but not speeds, torques or ZMP: another
+    // posture does not mend that.
+    std::set<std::vector<size_t>> hopeless;
+    for (const std::vector<size_t>& places : nearest_first(dials_)) {
+      std::vector<size_t> others;
+      for (size_t i = 0; i < dials_.size(); ++i)
+        if (!dials_[i].posture) others.push_back(places[i]);
+      if (hopeless.contains(others)) continue;
+      Values values;
+      for (size_t i = 0; i < dials_.size(); ++i) values.push_back(dials_[i].values[places[i]]);
+      std::string wrong;
+      try {
+        Pattern pattern = make_(values);
+        pattern.file.clear();
+        const Look look = look_at(model_, pattern);
+        work_ += pattern.duration();
+        wrong = look.posture;
+        if (wrong.empty()) {
+          wrong = wrong_with(pattern, values);
+          if (!wrong.empty()) hopeless.insert(others);
+        }
+        // At the servo's own period, more may be wrong.
+        note_look(values, look.beyond > 0 ? look.beyond : nearest_);
+      } catch (const Error& error) {
+        if (!cannot_be_done(error)) throw;
+        wrong = error.what();
+        if (result_.tried == 0) result_.refused = true;
+      }
+      note_trial();
+      if (result_.tried == 1) {
+        result_.values = values;
+        result_.limit = wrong;
+      }
+      if (wrong.empty()) return take(values);
+      if (result_.tried == kMostSampled || checked_ == kMostChecked || runs_ == kMostSimulated)
+        return;
+    }
+  }
+
+  void note_look(const Values& values, double beyond) {
+    if (beyond >= least_beyond_) return;
+    least_beyond_ = beyond;
+    start_ = values;
+  }
+
+  // A motion with these values, where it can be made and was not looked at before. Returns whether
+  // it comes nearer than all others.
+  bool looks_nearer(const Values& values) {
+    if (!looked_at_.insert(values).second) return false;
+    try {
+      Pattern pattern = make_(values);
+      pattern.file.clear();
+      double beyond = look_at(model_, pattern).beyond;
+      work_ += pattern.duration();
+      note_trial();
+      if (beyond == 0) {
+        if (wrong_with(pattern, values).empty()) {
+          take(values);
+          return true;
+        }
+        if (!accepted_.empty()) return true;
+        beyond = nearest_;
+      }
+      if (beyond >= least_beyond_) return false;
+      note_look(values, beyond);
+      return true;
+    } catch (const Error& error) {
+      if (!cannot_be_done(error)) throw;
+      note_trial();
+      return false;
+    }
+  }
+
+  bool succeeded() const { return result_.found || !accepted_.empty(); }
+  bool ended() const { return succeeded() || work_ > kMostWork; }
+
+  // Moves one value after the other as long as this comes nearer, then two at once, and then by
+  // half as much.
+  void go_on_from_nearest() {
+    if (start_.empty()) return;
+    for (double share = kFirstMove; share >= kLastMove && !ended(); share /= 2)
+      while (move_one(share) || move_two(share)) {
+      }
+    if (succeeded()) return;
+    try {
+      Pattern pattern = make_(start_);
+      pattern.file.clear();
+      if (wrong_with(pattern, start_).empty()) take(start_);
+    } catch (const Error& error) {
+      if (!cannot_be_done(error)) throw;
+    }
+  }
+
+  bool move_one(double share) {
+    bool nearer = false;
+    for (size_t i = 0; i < dials_.size(); ++i)
+      for (const double way : {-share, share})
+        while (!ended() && looks_nearer(moved(start_, i, way))) nearer = true;
+    return nearer && !ended();
+  }
+
+  bool move_two(double share) {
+    for (size_t i = 0; i < dials_.size(); ++i)
+      for (size_t j = 0; j < i; ++j)
+        for (const double one : {-share, share})
+          for (const double other : {-share, share}) {
+            if (ended()) return false;
+            if (looks_nearer(moved(moved(start_, i, one), j, other))) return !ended();
+          }
+    return false;
+  }
+
+  Values moved(Values values, size_t i, double share) const {
+    const Dial& dial = dials_[i];
+    if (dial.most <= dial.least) return values;
+    const double to = dial.meant(values[i]) + share * (dial.most - dial.least);
+    values[i] = std::clamp(dial.step * std::round(to / dial.step), dial.least, dial.most);
+    return values;
+  }
+
+  const RobotModel& model_;
+  const std::vector<Dial>& dials_;
+  const std::function<Pattern(const Values&)>& make_;
+  const Progress& progress_;
+  bool simulated_;
+  SearchResult result_;
+  int checked_ = 0, runs_ = 0;
+  double nearest_ = HUGE_VAL;  // severity of the worst error of the nearest motion
+  Values accepted_;            // by the check, but the robot falls
+  double least_beyond_ = HUGE_VAL;
+  Values start_;  // of the motion with this sum
+  std::set<Values> looked_at_;
+  double work_ = 0;  // of motion [s]
+};
+
+}  // namespace
+
 SearchResult search_motion(const RobotModel& model, const std::vector<Dial>& dials,
                            const std::function<Pattern(const std::vector<double>&)>& make,
                            const Progress& progress, bool simulated) {
-  SearchResult result;
-  int checked = 0, runs = 0;
-  // Severity of the worst error of the motion that is nearest to passing.
-  double nearest = HUGE_VAL;
-  // Indices of the other dials for which the postures passed, but not speeds, torques or ZMP.
-  // Another posture does not correct these.
-  std::set<std::vector<size_t>> hopeless;
-  std::vector<double> accepted;
-  for (const std::vector<size_t>& places : nearest_first(dials)) {
-    std::vector<size_t> others;
-    for (size_t i = 0; i < dials.size(); ++i)
-      if (!dials[i].posture) others.push_back(places[i]);
-    if (hopeless.contains(others)) continue;
-    std::vector<double> values;
-    for (size_t i = 0; i < dials.size(); ++i) values.push_back(dials[i].values[places[i]]);
-    std::string wrong;
-    try {
-      Pattern pattern = make(values);
-      pattern.file.clear();
-      wrong = wrong_posture(model, pattern);
-      if (wrong.empty()) {
-        ++checked;
-        const Wrong motion = wrong_motion(model, pattern);
-        wrong = motion.first;
-        if (!motion.worst.empty() && motion.severity < nearest) {
-          nearest = motion.severity;
-          result.nearest = motion.worst;
-          result.nearest_values = values;
-        }
-        if (wrong.empty() && simulated) {
-          ++runs;
-          wrong = end_in_simulation(model, pattern);
-          if (!wrong.empty() && result.falls.empty()) {
-            result.falls = wrong;
-            accepted = values;
-          }
-        }
-        if (!wrong.empty()) hopeless.insert(others);
-      }
-    } catch (const Error& error) {
-      if (!cannot_be_done(error)) throw;
-      wrong = error.what();
-      if (result.tried == 0) result.refused = true;
-    }
-    ++result.tried;
-    report(progress, {"look for a motion that passes", result.tried / double(kMostSampled), ""});
-    if (result.tried == 1) {
-      result.values = values;
-      result.limit = wrong;
-    }
-    if (wrong.empty()) {
-      result.found = true;
-      result.values = values;
-      result.falls.clear();
-      return result;
-    }
-    if (result.tried == kMostSampled || checked == kMostChecked || runs == kMostSimulated) break;
-  }
-  if (!accepted.empty()) {
-    result.found = true;
-    result.values = accepted;
-  }
-  return result;
+  return MotionSearch(model, dials, make, progress, simulated).run();
 }
 
 bool postures_pass(const RobotModel& model, const std::function<Pattern()>& make) {
   try {
     Pattern pattern = make();
     pattern.file.clear();
-    return wrong_posture(model, pattern).empty();
+    return look_at(model, pattern).posture.empty();
   } catch (const Error& error) {
     if (!cannot_be_done(error)) throw;
     return false;
@@ -194,7 +342,8 @@ std::string changed_values(const std::vector<Dial>& dials, const std::vector<dou
   std::vector<std::string> changed;
   for (size_t i = 0; i < dials.size(); ++i)
     if (values[i] != dials[i].values.front())
-      changed.push_back(dials[i].name + " " + text::brief(values[i]) + " " + dials[i].unit);
+      changed.push_back(dials[i].name + " " + text::brief(values[i]) +
+                        (dials[i].unit.empty() ? "" : " " + dials[i].unit));
   return text::join(changed, ", ");
 }
 

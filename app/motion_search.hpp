@@ -17,6 +17,12 @@ struct Dial {
   std::string unit;
   std::vector<double> values;  ///< the default first, then values with increasing distance from it
   bool posture = false;        ///< whether it changes postures, but hardly speeds and torques
+  /// The range and the step of values in between, which are tried if none of the list passes. A
+  /// fixed value has no such range.
+  double least = 0, most = 0, step = 0;
+  double stands_for = 0;  ///< the value that is meant by 0
+
+  double meant(double value) const { return value == 0 ? stands_for : value; }
 };
 
 struct SearchResult {
@@ -26,8 +32,8 @@ struct SearchResult {
   std::string limit;     ///< the error with the default values; "" if there is none
   bool refused = false;  ///< whether the robot cannot do the default values at all
   std::string falls;     ///< the end of the found motion in a simulation; "" if the robot stands
-  /// If nothing was found: the error of the motion that is nearest to passing, among those whose
-  /// postures pass; "" if there is no such motion.
+  /// If nothing was found: the error of the motion that is nearest to passing, among those that
+  /// are checked in full; "" if there is no such motion.
   std::string nearest;
   std::vector<double> nearest_values;  ///< values of the dials of this motion
 };
@@ -37,11 +43,13 @@ struct SearchResult {
 std::string end_in_simulation(const RobotModel& model, const Pattern& pattern);
 
 /// Tries the values of the dials, those nearest to the defaults first, until the check accepts the
-/// motion for a profile of the robot. `make` returns the pattern for values of the dials; it may
-/// throw Error(bad_pattern) or Error(usage) for values that the robot cannot do. The number of
-/// trials is bounded, not their time, so that the same input gives the same result. With
-/// `simulated`, the result is the first accepted motion after which the robot stands in a
-/// simulation. If it falls in all simulated motions, the result is the first accepted motion.
+/// motion for a profile of the robot. If none of them passes, the search goes on from the trial
+/// that is nearest to passing: it moves one value after the other, or two at once, and keeps
+/// changes that come nearer. `make` returns the pattern for values of the dials; it may throw
+/// Error(bad_pattern) or Error(usage) for values that the robot cannot do. The number of trials is
+/// bounded, not their time, so that the same input gives the same result. With `simulated`, the
+/// result is the first accepted motion after which the robot stands in a simulation. If it falls in
+/// all simulated motions, the result is the first accepted motion.
 SearchResult search_motion(const RobotModel& model, const std::vector<Dial>& dials,
                            const std::function<Pattern(const std::vector<double>&)>& make,
                            const Progress& progress = {}, bool simulated = false);

@@ -5,6 +5,7 @@
 #include <future>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/json_pointer.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/check/finding_groups.hpp"
 #include "ayumi/check/stability_series.hpp"
@@ -191,14 +192,14 @@ OrderedJson tracks_json(const Written& text) {
       if (key == "posture" && value.is_string()) add(key, key, "/posture", value);
       if (key == "joints" || (key == "posture" && value.is_object()))
         for (const auto& [joint, angle] : value.items())
-          add("joint " + joint, "joint", "/" + key + pointer_token(joint), angle);
+          add("joint " + joint, "joint", "/" + key + "/" + json_pointer_token(joint), angle);
       if (key == "feet")
         for (const auto& [side, foot] : value.items())
-          add(side + " foot", "foot", "/feet" + pointer_token(side), foot);
+          add(side + " foot", "foot", "/feet/" + json_pointer_token(side), foot);
       if (key == "hands")
         for (const auto& [link, target] : value.items())
           add(link == "left" || link == "right" ? link + " hand" : "link " + link, "hand",
-              "/hands" + pointer_token(link), target);
+              "/hands/" + json_pointer_token(link), target);
       if (key == "gaze") add(key, key, "/gaze", value);
     }
   }
@@ -394,10 +395,6 @@ std::string outermost(const std::string& pointer) {
   return pointer.substr(0, pointer.find('/', pointer.find('/', 1) + 1));
 }
 
-std::string pointer_token(const std::string& key) {
-  return (nlohmann::json::json_pointer() / key).to_string();
-}
-
 std::shared_ptr<const AuthorMotion> author_motion(const std::string& text, const NamedRobot& robot,
                                                   const AuthorSetting& setting,
                                                   const Progress& progress) {
@@ -516,7 +513,7 @@ std::vector<AuthorTarget> targets_of(const AuthorMotion& motion) {
     for (size_t k = frames.size(); --k > i;)
       if (named(frames[k])) target.until = frames[k].t;
     target.pointer = pointer_of_keyframe(motion.task.pattern, i) +
-                     (gaze ? "/gaze" : "/hands" + pointer_token(link));
+                     (gaze ? "/gaze" : "/hands/" + json_pointer_token(link));
     const bool hand = link == "left" || link == "right";
     target.label = gaze ? "gaze" : hand ? link + " hand" : "link " + link;
     for (const AuthorHandle& handle : handles)

@@ -47,9 +47,6 @@ OrderedJson author_structure(const Pattern& pattern, const OrderedJson& document
 /// The strip of the page for a motion or a run of the task: { lanes, dt }.
 OrderedJson author_strip(const Task& task, const StabilitySeries& stability);
 
-/// The key with a slash before it, in the form that a JSON pointer has.
-std::string pointer_token(const std::string& key);
-
 /// The item of the pattern's list that contains a phase or keyframe: itself, or the block that
 /// repeats it.
 std::string outermost(const std::string& pointer);

@@ -7,6 +7,7 @@
 
 #include "ayumi/author/edit/edit.hpp"
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/json_pointer.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/demand/ground_demand.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
@@ -120,7 +121,7 @@ class KeyEdits {
   void set_members(const OrderedJson& members, const std::string& place,
                    std::vector<PatternEdit>& edits) const {
     for (const auto& [name, value] : members.items()) {
-      const std::string pointer = place + pointer_token(name);
+      const std::string pointer = place + "/" + json_pointer_token(name);
       const OrderedJson::json_pointer at(pointer);
       const bool there = motion_.document.contains(at);
       if (value.is_object() && there && motion_.document.at(at).is_object())
@@ -674,7 +675,7 @@ class Drag {
       if (std::abs(key.t - wish_.time) > kSameTime || !there || !there->position) continue;
       set_target(motion_,
                  pointer_of_keyframe(pattern, i) +
-                     (gaze ? "/gaze" : "/hands" + pointer_token(handle_.link)),
+                     (gaze ? "/gaze" : "/hands/" + json_pointer_token(handle_.link)),
                  place, edits);
       return edits;
     }
@@ -860,7 +861,7 @@ std::vector<PatternEdit> captured(const AuthorMotion& motion, double time, const
   for (int dof = 0; dof < robot.dof_count(); ++dof)
     posture[robot.dofs()[static_cast<size_t>(dof)].name] =
         in_unit(motion, robot.dofs()[static_cast<size_t>(dof)], shown[dof]);
-  return {{PatternEdit::Kind::set, "/postures" + pointer_token(name), posture.dump()}};
+  return {{PatternEdit::Kind::set, "/postures/" + json_pointer_token(name), posture.dump()}};
 }
 
 namespace {
@@ -875,9 +876,9 @@ void difference(const OrderedJson& from, const OrderedJson& to, const std::strin
                 const OrderedJson& written, std::vector<PatternEdit>& edits) {
   for (const auto& [name, value] : from.items())
     if (!to.contains(name) && written.contains(name))
-      edits.push_back({PatternEdit::Kind::remove, pointer + pointer_token(name), ""});
+      edits.push_back({PatternEdit::Kind::remove, pointer + "/" + json_pointer_token(name), ""});
   for (const auto& [name, value] : to.items()) {
-    const std::string place = pointer + pointer_token(name);
+    const std::string place = pointer + "/" + json_pointer_token(name);
     if (from.contains(name) && from[name] == value) continue;
     const bool inside = value.is_object() && from.contains(name) && from[name].is_object() &&
                         written.contains(name) && written[name].is_object();

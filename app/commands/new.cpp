@@ -72,6 +72,13 @@ void add_common(Command& command, NewOptions& options) {
 
 double rounded(double value, double unit) { return unit * std::round(value / unit); }
 
+// The largest movement of the ZMP inwards, of half the width of a sole. Chosen: the ZMP then stays
+// on the sole.
+constexpr double kMostInwards = 0.9;
+// The least value of a dial that is tried in between, of the least in its list. Chosen: what is
+// less is hardly the motion that was asked for.
+constexpr double kLeastShare = 0.6;
+
 Dial dial(const char* name, const char* unit, double value, double step, bool open,
           const std::vector<double>& shares) {
   Dial result{name, unit, {value}};
@@ -79,35 +86,24 @@ Dial dial(const char* name, const char* unit, double value, double step, bool op
     const double other = rounded(share * value, step);
     if (open && value != 0 && other != result.values.back()) result.values.push_back(other);
   }
+  if (result.values.size() > 1) {
+    const auto [least, most] = std::minmax_element(result.values.begin(), result.values.end());
+    result.least = rounded(kLeastShare * *least, step);
+    result.most = *most;
+    result.step = step;
+  }
   return result;
 }
 
 // A dial for COG heights around the generator's own height, which is written as 0.
-Dial height_dial(const RobotModel& model, double given) {
-  Dial result = dial("--cog-height", "m", starting_height(model), 1e-3, given == 0,
-                     {0.97, 1.02, 0.94, 0.91, 0.88});
+Dial height_dial(const RobotModel& model, double given,
+                 const std::vector<double>& shares = {0.97, 1.02, 0.94, 0.91, 0.88}) {
+  Dial result = dial("--cog-height", "m", starting_height(model), 1e-3, given == 0, shares);
+  if (result.most > 0) result.least = *std::min_element(result.values.begin(), result.values.end());
+  result.stands_for = starting_height(model);
   result.values.front() = given;
   result.posture = true;
   return result;
-}
-
-// The joints of the legs that no motor moves, in words; "" if there are none. They cannot carry a
-// robot.
-std::string legs_without_motors(const RobotModel& model) {
-  const ActuatorLimits& limits = model.limits();
-  std::vector<std::string> names;
-  for (const Side side : {Side::left, Side::right})
-    for (const int dof : model.leg(side)) {
-      const auto at = static_cast<size_t>(dof);
-      const std::string& name = model.dofs()[at].name;
-      if (limits.has_servo[at] && limits.servo[at].kp <= 0 &&
-          std::find(names.begin(), names.end(), name) == names.end())
-        names.push_back(name);
-    }
-  return names.empty()
-             ? ""
-             : ". These joints of the legs have no motor (kp of their servo is 0): " +
-                   text::join(names, ", ") + "; if they have one, state kp in the sidecar";
 }
 
 // The values of the dials with which the robot can do the motion, or the defaults if there are
@@ -126,8 +122,7 @@ std::vector<double> values_that_pass(const Context& context, const RobotModel& m
     context.print("the check accepts this motion" + (changed.empty() ? "" : " with " + changed) +
                   ", but the robot falls in a simulation: " + result.falls + "; " +
                   std::to_string(result.tried) +
-                  " trials found no values that keep the robot standing" +
-                  legs_without_motors(model) + "\n");
+                  " trials found no values that keep the robot standing\n");
   else if (result.found)
     context.print(
         "the default values ask too much of " + model.name() + ". First error: " + result.limit +
@@ -165,14 +160,15 @@ void fit_steps(const Context& context, const RobotModel& model, const NewOptions
   // this.
   const bool lacking = InverseKinematics(model, model.posture()).lacks_joints();
   Dial inwards{"--zmp-inwards", "m", {w.zmp_inwards}};
-  if (lacking && w.zmp_inwards == 0)
-    for (const double share : {0.9, 0.7})
-      inwards.values.push_back(rounded(share * half_sole_width(model), 1e-3));
+  if (w.zmp_inwards == 0) {
+    inwards.most = rounded(kMostInwards * half_sole_width(model), 1e-3);
+    inwards.step = 1e-3;
+    if (lacking) inwards.values = {0, inwards.most, rounded(0.7 * half_sole_width(model), 1e-3)};
+  }
   Dial height = height_dial(model, w.cog_height);
   if (lacking) {
-    height =
-        dial("--cog-height", "m", starting_height(model), 1e-3, w.cog_height == 0, {0.91, 0.88});
-    height.values.front() = w.cog_height;
+    height = height_dial(model, w.cog_height, {0.91, 0.88});
+    height.posture = false;  // lower, their knees need less torque
   }
   const std::vector<double> paces =
       lacking ? std::vector{0.34, 0.55, 0.42, 0.75} : std::vector{1.25, 1.6, 0.8, 2.2};
@@ -181,11 +177,23 @@ void fit_steps(const Context& context, const RobotModel& model, const NewOptions
            [](WalkParameters&p, double v) { p.period = v; }},
       shift{inwards, [](WalkParameters&p, double v) { p.zmp_inwards = v; }},
       rise{dial("--lift", "m", w.lift, 1e-3, !options.lift, {0.75, 0.5}),
-           [](WalkParameters&p, double v) { p.lift = v; }};
+           [](WalkParameters&p, double v) { p.lift = v; }},
+      both{dial("--double-support", "", w.double_support, 0.01,
+                w.double_support == WalkParameters{}.double_support, {1.7, 0.6}),
+           [](WalkParameters&p, double v) { p.double_support = v; }};
   // Among trials with equally large changes, those that change the last dials come first.
   std::vector<WalkDial> turned = lacking ? std::vector{length, pace, shift, stature}
                                          : std::vector{stature, length, pace, shift};
-  if (lifts && !lacking) turned.insert(turned.begin() + 1, rise);
+  const bool lists_lift = lifts && !lacking;
+  if (lists_lift) turned.insert(turned.begin() + 1, rise);
+  // The list of the others is the default alone: they turn where none of the lists is enough.
+  std::vector<WalkDial> others = {both};
+  if (!lists_lift) others.push_back(rise);
+  for (WalkDial& each : others) {
+    each.dial.values.resize(1);
+    each.dial.step /= 2;  // a low step is a few millimetres high
+    turned.push_back(each);
+  }
   std::vector<Dial> dials;
   for (const WalkDial& each : turned) dials.push_back(each.dial);
   const auto with = [&](const std::vector<double>& values) {
@@ -193,7 +201,7 @@ void fit_steps(const Context& context, const RobotModel& model, const NewOptions
     for (size_t i = 0; i < turned.size(); ++i) turned[i].set(walk, values[i]);
     // Quick steps are low, because the acceleration of the foot for the same lift grows with 1/T^2.
     if (lacking && !options.lift)
-      walk.lift = rounded(w.lift * std::min(1.0, walk.period / w.period), 5e-4);
+      walk.lift = std::min(walk.lift, rounded(w.lift * walk.period / w.period, 5e-4));
     return walk;
   };
   const double lift = w.lift;

@@ -10,6 +10,7 @@
 #include "ayumi/author/edit/edit.hpp"
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
+#include "ayumi/base/json_pointer.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/json/json_depth.hpp"
 #include "ayumi/io/pattern/pattern_edit.hpp"
@@ -152,11 +153,7 @@ std::string angles_text(const RobotModel* model, const Angles& angles) {
 
 // ---- the library
 
-std::string pointer_of(const std::string& name) {
-  std::string token;
-  for (const char c : name) token += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);
-  return "/postures/" + token;
-}
+std::string pointer_of(const std::string& name) { return "/postures/" + json_pointer_token(name); }
 
 // The text of a new library, or the author's own text with one more posture; every other byte
 // stays.

@@ -12,6 +12,7 @@
 #include "ayumi/model/gravity.hpp"
 #include "tests/support/check_report.hpp"
 #include "tests/support/faults.hpp"
+#include "tests/support/hoap1.hpp"
 #include "tests/support/limited_biped.hpp"
 #include "tests/support/walk.hpp"
 
@@ -253,6 +254,28 @@ TEST(Consistency, MotionZmpLeavesTheSupport) {
   const Finding& f = find(r, "support_margin");
   EXPECT_LT(f.worst, 0);
   EXPECT_EQ(f.worst, r.summary[FindingKind::support_margin]);
+}
+
+// Its stated peak torque is no help where kp of its servo is 0.
+TEST(Consistency, AJointWithoutAMotorGivesNoTorque) {
+  RobotDescription limp = hoap1().description();
+  limp.servos.at("l_knee").kp = limp.servos.at("l_knee").kd = 0;
+  for (ActuatorProfile& profile : limp.profiles) profile.servos.clear();
+  const RobotModel model(limp);
+  EXPECT_EQ(error_kinds(check_consistency(hoap1(), standing(hoap1(), 0.2))),
+            std::set<std::string>{});
+  const ConsistencyReport r = check_consistency(model, standing(model, 0.2));
+  EXPECT_EQ(error_kinds(r), std::set<std::string>{"joint_torque"}) << print(r);
+  const Finding& f = find(r, "joint_torque");
+  EXPECT_EQ(f.where, "l_knee");
+  EXPECT_NE(f.hint.find("l_knee has no motor"), std::string::npos) << f.hint;
+  // A joint that bears nothing needs none.
+  RobotDescription wrist = hoap1().description();
+  wrist.servos.at("l_elbow").kp = wrist.servos.at("l_elbow").kd = 0;
+  for (ActuatorProfile& profile : wrist.profiles) profile.servos.clear();
+  wrist.servos.at("l_elbow").coulomb = 1;
+  const RobotModel dry(wrist);
+  EXPECT_EQ(error_kinds(check_consistency(dry, standing(dry, 0.2))), std::set<std::string>{});
 }
 
 TEST(Consistency, JumpBetweenTwoSamples) {

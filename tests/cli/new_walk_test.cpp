@@ -34,15 +34,37 @@ TEST(NewWalk, StairsAreWrittenForTheProfileThatClimbsThem) {
   EXPECT_NE(check.out.find("(`export --format hoap` judges by these motors)"), std::string::npos);
 }
 
-TEST(NewWalk, LegsWithoutMotorsAreNamedWhereTheRobotFalls) {
+TEST(NewWalk, LegsWithoutMotorsAreNamed) {
   Folder folder;
   write(folder.path() / "limp" / "robot.json", R"({"format": "ayumi.robot/1", "base": "hoap1",
     "servos": [{"joints": ["l_knee", "r_knee"], "kp": 0, "kd": 0}]})");
   const Output out = made(folder, {"--robot", "limp", "--steps", "2"});
-  EXPECT_NE(out.out.find(
-                "These joints of the legs have no motor (kp of their servo is 0): l_knee, r_knee"),
-            std::string::npos)
+  EXPECT_NE(out.out.find("profile hoap1 is too weak: the motion needs "), std::string::npos)
       << out.out << out.err;
+  // The soft profiles state servos of their own.
+  const Output check = run_program({"check", "-q", "--profile", "hoap1", "w.json"}, folder.path());
+  EXPECT_EQ(check.exit_code, 1) << check.err;
+  EXPECT_NE(check.out.find("_knee has no motor (kp of its servo is 0)"), std::string::npos)
+      << check.out;
+}
+
+// Weak hips pass with none of the listed heights, lengths and times: the ZMP must stay farther
+// inwards, which no list of this robot has.
+TEST(NewWalk, TheSearchGoesOnFromTheNearestTrial) {
+  Folder folder;
+  std::string profiles;
+  for (const char* name : {"hoap1", "hoap1-strong", "hoap1-soft", "hoap1-strong-soft"})
+    profiles += (profiles.empty() ? "" : ", ") + std::string(R"({"name": ")") + name +
+                R"(", "limits": [{"joints": ["l_hip_roll", "r_hip_roll"], "peak_torque": 2.4,
+                                  "continuous_torque": 2.4}]})";
+  write(folder.path() / "weak" / "robot.json",
+        R"({"format": "ayumi.robot/1", "base": "hoap1", "profiles": [)" + profiles + "]}");
+  const Output out = made(folder, {"--robot", "weak", "--steps", "2"});
+  EXPECT_EQ(out.exit_code, 0) << out.err;
+  EXPECT_NE(out.out.find(" trials, these values were found: "), std::string::npos) << out.out;
+  EXPECT_NE(out.out.find("--zmp-inwards "), std::string::npos) << out.out;
+  const Output check = run_program({"check", "-q", "w.json"}, folder.path());
+  EXPECT_EQ(check.exit_code, 0) << check.out;
 }
 
 TEST(NewWalk, OnTheLevelItIsTheRobotsOwn) {

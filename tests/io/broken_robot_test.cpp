@@ -246,7 +246,7 @@ TEST(BrokenRobot, WrongSidecars) {
             "robot.json: /joint_order: the joint 'r_hip' is missing; add it");
   EXPECT_EQ(sidecar_error(", \"profiles\": [{\"name\": \"a\", \"limits\": [{\"joints\": [\"*\"], "
                           "\"speed\": 0}]}]"),
-            "robot.json: profile 'a': the speed of 'l_hip' is 0; it must be above 0");
+            "robot.json: /profiles: profile 'a': the speed of 'l_hip' is 0; it must be above 0");
   const TemporaryFolder folder;
   folder.write("robot.json", sidecar(""));
   EXPECT_EQ(message_of(folder, "robot.json"),

@@ -157,6 +157,12 @@ TEST_P(UnreadableMotions, AreRefusedInOneLineOrReadAsTheyWere) {
       EXPECT_EQ(outcome_of(format(), bytes).message,
                 "folder/m.dat:1: this is UTF-16 text; save it as UTF-8");
   }
+  // A file that was written twice is no motion of the first part alone.
+  const Outcome twice = outcome_of(format(), good + good);
+  if (twice.message.empty())
+    EXPECT_GT(twice.motion.motion.theta.rows(), whole.motion.motion.theta.rows());
+  else
+    expect_one_line(twice.message, "twice");
   const auto [begin, end] = middle_number(good);
   const auto with = [&](const std::string& word) {
     return good.substr(0, begin) + word + good.substr(end);

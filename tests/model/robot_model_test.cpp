@@ -337,11 +337,13 @@ TEST(RobotModel, NamesNumbersThatTheSidecarCannotHave) {
     });
   };
   EXPECT_EQ(in_profile([](auto& p) { p.thermal_window = 0; }),
-            "robot.json: profile 'strong': thermal_window must be above 0 s");
-  EXPECT_EQ(in_profile([](auto& p) { p.speed["l_knee"] = 0; }),
-            "robot.json: profile 'strong': the speed of 'l_knee' is 0; it must be above 0");
+            "robot.json: /profiles: profile 'strong': thermal_window must be above 0 s");
+  EXPECT_EQ(
+      in_profile([](auto& p) { p.speed["l_knee"] = 0; }),
+      "robot.json: /profiles: profile 'strong': the speed of 'l_knee' is 0; it must be above 0");
   EXPECT_EQ(in_profile([](auto& p) { p.peak_torque["l_kne"] = 1; }),
-            "robot.json: profile 'strong': 'l_kne' is not a moving joint of the robot; did you "
+            "robot.json: /profiles: profile 'strong': 'l_kne' is not a moving joint of the robot; "
+            "did you "
             "mean 'l_knee'?");
 }
 
@@ -383,7 +385,8 @@ TEST(RobotModel, RefusesServosThatAreTooLargeForIt) {
   };
   EXPECT_EQ(
       with(&ServoDescription::rotor_inertia, 100),
-      "robot.json: profile 'urdf': joint l_knee: rotor_inertia 100 kg m^2 is too large for a "
+      "robot.json: /servos: profile 'urdf': joint l_knee: rotor_inertia 100 kg m^2 is too large "
+      "for a "
       "robot of 6 kg and 0.475 m; the largest allowed value is 1.35 kg m^2. Check the unit of "
       "the constant, and the masses of the links");
   for (const auto constant :
@@ -391,13 +394,14 @@ TEST(RobotModel, RefusesServosThatAreTooLargeForIt) {
         &ServoDescription::kd, &ServoDescription::viscous})
     EXPECT_NE(with(constant, 9e6).find("is too large for a robot of 6 kg"), std::string::npos);
   EXPECT_EQ(with(&ServoDescription::rotor_inertia, 0.01), "no error");
-  EXPECT_NE(error_of([](RobotDescription& robot) {
-              robot.profiles.resize(2);
-              robot.profiles[0].name = "first";
-              robot.profiles[1].name = "second";
-              robot.profiles[1].servos["r_hip"].coulomb = 100;
-            }).find("robot.json: profile 'second': joint r_hip: coulomb 100 N m is too large"),
-            std::string::npos);
+  EXPECT_NE(
+      error_of([](RobotDescription& robot) {
+        robot.profiles.resize(2);
+        robot.profiles[0].name = "first";
+        robot.profiles[1].name = "second";
+        robot.profiles[1].servos["r_hip"].coulomb = 100;
+      }).find("robot.json: /profiles: profile 'second': joint r_hip: coulomb 100 N m is too large"),
+      std::string::npos);
   // For a sliding joint, the bound is the mass of the whole robot.
   EXPECT_NE(
       error_of([](RobotDescription& robot) {

@@ -46,6 +46,15 @@ TEST(SampleErrors, UnknownJoint) {
                {"walk.json: /keyframes/1", "l_shouldr", "did you mean 'l_shoulder'"});
 }
 
+// A place is a JSON pointer, in which a slash within a name is "~1".
+TEST(SampleErrors, PostureWithASlashInItsName) {
+  expect_words(message_of([](Pattern& p) {
+                 p.postures["low/left"]["l_shouldr"] = 0.1;
+                 p.keyframes[1].posture = "low/left";
+               }),
+               {"walk.json: /postures/low~1left/l_shouldr: "});
+}
+
 TEST(SampleErrors, JointThatDoesNotMove) {
   expect_words(message_of([](Pattern& p) { p.keyframes[1].joints["waist"] = 0.1; }),
                {"/keyframes/1", "waist", "does not move"});

@@ -11,6 +11,7 @@
 #include "ayumi/author/generate/pattern_builder.hpp"
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/json_pointer.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/check/mistake_search.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
@@ -140,7 +141,8 @@ class Suspicions {
       for (const auto& [joint, angle] : pattern_.keyframes[i].joints)
         look(key_place(i), joint, angle);
     for (const auto& [name, joints] : pattern_.postures)
-      for (const auto& [joint, angle] : joints) look("/postures/" + name, joint, angle);
+      for (const auto& [joint, angle] : joints)
+        look("/postures/" + json_pointer_token(name), joint, angle);
     say(found, Finds::several_in_a_place);
   }
 

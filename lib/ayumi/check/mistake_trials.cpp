@@ -39,13 +39,6 @@ constexpr double kSlightShare = 0.25, kSlightLength = 0.015, kSlightForce = 0.05
 // motion.
 constexpr int kFirstErrors = 2;
 
-// Findings about the table at the servo's own period, which a quick trial does not have.
-bool needs_servo_period(FindingKind kind) {
-  return kind == FindingKind::table_step || kind == FindingKind::table_position ||
-         kind == FindingKind::table_rest || kind == FindingKind::servo_step ||
-         kind == FindingKind::motor_acceleration;
-}
-
 bool is_slight(const RobotModel& model, const Finding& f) {
   const double beyond = std::abs(f.worst - f.limit);
   const double leg = leg_length(model), weight = model.mass() * kGravity;
@@ -59,6 +52,12 @@ bool is_slight(const RobotModel& model, const Finding& f) {
 }
 
 }  // namespace
+
+bool needs_servo_period(FindingKind kind) {
+  return kind == FindingKind::table_step || kind == FindingKind::table_position ||
+         kind == FindingKind::table_rest || kind == FindingKind::servo_step ||
+         kind == FindingKind::motor_acceleration;
+}
 
 Trials::Trials(const RobotModel& model, const Pattern& pattern, const CheckOptions& options,
                const Progress& progress, int most)

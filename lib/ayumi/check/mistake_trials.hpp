@@ -18,6 +18,10 @@ namespace ayumi {
 // have.
 inline constexpr int kUnsampled = std::numeric_limits<int>::max();
 
+/// Whether findings of a kind are about the table at the servo's own period, so that they mean
+/// nothing at coarser steps of time.
+bool needs_servo_period(FindingKind kind);
+
 struct Window {
   double begin = 0, end = 0;
 };

@@ -10,6 +10,7 @@
 
 #include "ayumi/author/generate/pattern_builder.hpp"
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/json_pointer.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/math/elementary.hpp"
 #include "ayumi/model/gravity.hpp"
@@ -325,7 +326,7 @@ class Reader {
     for (const auto& [name, joints] : pattern_.postures)
       for (const auto& entry : joints)
         if (const int dof = model_.find_dof(entry.first); dof >= 0)
-          alone("/postures/" + name, entry.first, quantity_of(dof), home[dof],
+          alone("/postures/" + json_pointer_token(name), entry.first, quantity_of(dof), home[dof],
                 [name = name, joint = entry.first](Pattern& p) -> double& {
                   return p.postures.at(name).at(joint);
                 });

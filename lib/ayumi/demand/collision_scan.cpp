@@ -1,6 +1,7 @@
 #include "ayumi/demand/collision_scan.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -32,6 +33,13 @@ struct BodySphere {
   double radius = 0;
 };
 
+/// Where the sphere of a body is, and how it moves until the next coarse sample.
+struct BodyPlace {
+  Eigen::Vector3d center;  ///< world [m]
+  double shift = 0;        ///< of the centre [m]
+  double turn = 0;         ///< at least the angle of the turn [rad]
+};
+
 std::vector<BodySphere> body_spheres(const RobotModel& model, const CollisionModel& collisions) {
   std::vector<BodySphere> spheres(model.bodies().size());
   for (size_t body = 0; body < spheres.size(); ++body) {
@@ -60,7 +68,8 @@ class ClearanceScan {
         exact_(exact),
         coarse_(coarse_samples(series)),
         spheres_(body_spheres(model, collisions)),
-        data_(model) {
+        data_(model),
+        lines_(collisions.pairs().size()) {
     place_bodies();
     measure_coarsely();
     measure_finely();
@@ -84,50 +93,127 @@ class ClearanceScan {
   // Movement of two bodies relative to each other below which they count as one rigid part [m].
   // Chosen: above the rounding of poses, and a thousandth of the smallest tolerance.
   static constexpr double kStill = 1e-9;
+  static constexpr double kNotMeasured = -1;
 
   int pairs() const { return static_cast<int>(collisions_.pairs().size()); }
 
   void place_bodies() {
-    poses_.resize(coarse_.size());
-    for (size_t c = 0; c < coarse_.size(); ++c) {
-      update_positions(model_, series_.samples[coarse_[c]].state, data_);
-      for (int body = 0; body < static_cast<int>(spheres_.size()); ++body)
-        poses_[c].push_back(data_.pose(body));
-    }
     const int n = static_cast<int>(coarse_.size());
-    way_.resize(std::max(n - 1, 0), pairs());
+    const int bodies = static_cast<int>(spheres_.size());
+    poses_.resize(coarse_.size());
+    places_.resize(coarse_.size());
+    for (int c = 0; c < n; ++c) {
+      update_positions(model_, series_.samples[coarse_[c]].state, data_);
+      for (int body = 0; body < bodies; ++body) {
+        poses_[c].push_back(data_.pose(body));
+        places_[c].push_back({poses_[c][body] * spheres_[body].center, 0, 0});
+      }
+    }
     for (int c = 0; c + 1 < n; ++c)
-      for (int p = 0; p < pairs(); ++p) way_(c, p) = way_of(p, static_cast<size_t>(c));
+      for (int body = 0; body < bodies; ++body) {
+        BodyPlace& here = places_[c][body];
+        here.shift = (places_[c + 1][body].center - here.center).norm();
+        here.turn = angle_between(poses_[c][body].linear(), poses_[c + 1][body].linear());
+      }
+    way_ = Eigen::MatrixXd::Constant(std::max(n - 1, 0), pairs(), kNotMeasured);
+  }
+
+  // A turn by an angle moves a point by less than the angle times its distance; the chord of the
+  // rotation matrices is sqrt(8) sin(angle/2), and angle/2 at most pi/2 times its sine.
+  static double angle_between(const Eigen::Matrix3d& before, const Eigen::Matrix3d& after) {
+    return std::numbers::pi * (after - before).norm() / std::sqrt(8.0);
   }
 
   // Largest movement of any point of the second body, seen from the first body, until the next
   // coarse sample.
-  double way_of(int pair, size_t c) const {
+  double way(int c, int pair) {
+    double& way = way_(c, pair);
+    if (way != kNotMeasured) return way;
     const CollisionModel::Pair& bodies = collisions_.pairs()[pair];
-    const Eigen::Isometry3d before =
-        poses_[c][bodies.a].inverse(Eigen::Isometry) * poses_[c][bodies.b];
-    const Eigen::Isometry3d after =
-        poses_[c + 1][bodies.a].inverse(Eigen::Isometry) * poses_[c + 1][bodies.b];
-    const BodySphere& sphere = spheres_[bodies.b];
-    // A turn by an angle moves a point by less than the angle times its distance. The chord of the
-    // rotation matrices is sqrt(8) sin(angle/2), and angle/2 is at most pi/2 times its sine.
-    const double angle =
-        std::numbers::pi * (after.linear() - before.linear()).norm() / std::sqrt(8.0);
-    return (after * sphere.center - before * sphere.center).norm() + angle * sphere.radius;
+    std::array<Eigen::Vector3d, 2> center;
+    std::array<Eigen::Matrix3d, 2> attitude;
+    for (int i = 0; i < 2; ++i) {
+      const Eigen::Isometry3d &a = poses_[c + i][bodies.a], &b = poses_[c + i][bodies.b];
+      center[i] = a.linear().transpose() * (places_[c + i][bodies.b].center - a.translation());
+      attitude[i] = a.linear().transpose() * b.linear();
+    }
+    way = (center[1] - center[0]).norm() +
+          angle_between(attitude[0], attitude[1]) * spheres_[bodies.b].radius;
+    return way;
+  }
+
+  // A bound of way() that costs less: the movements of both bodies seen from the ground. `gap` is
+  // the distance of their spheres at the coarse sample c.
+  double way_bound(int c, const CollisionModel::Pair& bodies, double gap) const {
+    const BodyPlace &a = places_[c][bodies.a], &b = places_[c][bodies.b];
+    const double ra = spheres_[bodies.a].radius, rb = spheres_[bodies.b].radius;
+    return a.shift + a.turn * (gap + ra + 2 * rb) + b.shift + b.turn * rb;
+  }
+
+  double sphere_gap(int c, const CollisionModel::Pair& bodies) const {
+    return (places_[c][bodies.b].center - places_[c][bodies.a].center).norm() -
+           spheres_[bodies.a].radius - spheres_[bodies.b].radius;
   }
 
   // The movement between two samples next to a coarse sample. The movement of the neighbouring
   // samples counts, too, because a body may turn back in between.
-  double way_around(int c, int pair) const {
+  template <typename WayOf>
+  double most_around(int c, const WayOf& way_of) const {
     const int first = std::max(c - 1, 0),
-              last = std::min<int>(c + 1, static_cast<int>(way_.rows()) - 1);
+              last = std::min(c + 1, static_cast<int>(coarse_.size()) - 2);
     double most = 0;
-    for (int k = first; k <= last; ++k) most = std::max(most, way_(k, pair));
+    for (int k = first; k <= last; ++k) most = std::max(most, way_of(k));
     return most;
+  }
+  double way_around(int c, int pair) {
+    return most_around(c, [&](int k) { return way(k, pair); });
+  }
+
+  // Whether the spheres alone show that a pair is neither near at a coarse sample nor beside it.
+  bool is_far(int c, const CollisionModel::Pair& bodies, double gap) const {
+    if (gap < wanted()) return false;
+    return gap -
+               2 * most_around(c,
+                               [&](int k) {
+                                 return way_bound(k, bodies, k == c ? gap : sphere_gap(k, bodies));
+                               }) >=
+           wanted();
   }
 
   /// Clearances below this value must be exact.
   double wanted() const { return std::max(exact_, least_); }
+
+  // Clearance of a pair. Lower bounds are enough above `reach` [m], and above near_. The direction
+  // along which two shapes were nearest when they were last measured still separates them well.
+  double measured(int pair, const Eigen::Isometry3d& pose_a, const Eigen::Isometry3d& pose_b,
+                  double reach) {
+    const CollisionModel::Pair& bodies = collisions_.pairs()[pair];
+    double nearest = std::numeric_limits<double>::infinity();
+    size_t next = 0;
+    std::vector<Eigen::Vector3d>& lines = lines_[static_cast<size_t>(pair)];
+    for (const auto& a : collisions_.shapes(bodies.a)) {
+      const Eigen::Isometry3d A = pose_a * a.pose;
+      for (const auto& b : collisions_.shapes(bodies.b)) {
+        const Eigen::Isometry3d B = pose_b * b.pose;
+        if (lines.size() == next) lines.push_back(Eigen::Vector3d::Zero());
+        Eigen::Vector3d& line = lines[next++];
+        double here = clearance_bound(a.collider, A, b.collider, B);
+        if (here >= nearest) continue;
+        if (here <= near_) {
+          here = line.isZero(0)
+                     ? -std::numeric_limits<double>::infinity()
+                     : clearance_along(pose_a.linear() * line, a.collider, A, b.collider, B);
+          if (here <= reach) {
+            const Closest closest = ayumi::closest(a.collider, A, b.collider, B);
+            line = pose_a.linear().transpose() * closest.normal;
+            here = closest.clearance;
+          }
+        }
+        nearest = std::min(nearest, here);
+      }
+    }
+    return nearest;
+  }
 
   void measure_coarsely() {
     const int n = static_cast<int>(coarse_.size());
@@ -135,21 +221,24 @@ class ClearanceScan {
     std::vector<double> bound(static_cast<size_t>(pairs()), -1);
     std::vector<char> known(static_cast<size_t>(pairs()), 0);
     for (int c = 0; c < n; ++c) {
-      update_positions(model_, series_.samples[coarse_[c]].state, data_);
       for (int p = 0; p < pairs(); ++p) {
+        const CollisionModel::Pair& bodies = collisions_.pairs()[p];
         double& here = bound[static_cast<size_t>(p)];
-        const double moved = c > 0 ? way_(c - 1, p) : 0;
-        if (c > 0 && moved < kStill && known[static_cast<size_t>(p)]) {
-          clearance_(c, p) = here;
-          continue;
-        }
-        here -= moved;
-        // The neighbours of the smallest clearance must be exact too.
-        const double reach = n > 1 ? 2 * way_around(std::min(c, n - 2), p) : 0;
-        known[static_cast<size_t>(p)] = c == 0 || here - reach < wanted();
-        if (known[static_cast<size_t>(p)]) {
-          here = collisions_.clearance(collisions_.pairs()[p], data_, near_);
-          least_ = std::min(least_, here);
+        char& is_known = known[static_cast<size_t>(p)];
+        const bool still = c > 0 && is_known && way(c - 1, p) < kStill;
+        const double gap = sphere_gap(c, bodies);
+        if (!still && is_far(c, bodies, gap)) {
+          here = gap;
+          is_known = 0;
+        } else if (!still) {
+          if (c > 0) here -= way(c - 1, p);
+          // The neighbours of the smallest clearance must be exact too.
+          const double reach = wanted() + (n > 1 ? 2 * way_around(std::min(c, n - 2), p) : 0);
+          is_known = c == 0 || here < reach;
+          if (is_known) {
+            here = measured(p, poses_[c][bodies.a], poses_[c][bodies.b], reach);
+            least_ = std::min(least_, here);
+          }
         }
         clearance_(c, p) = here;
       }
@@ -157,7 +246,7 @@ class ClearanceScan {
   }
 
   // Whether a pair may have a clearance between two coarse samples that must be known.
-  bool hides(int c, int p) const {
+  bool hides(int c, int p) {
     const int n = static_cast<int>(coarse_.size());
     const double here = clearance_(c, p), next = clearance_(c + 1, p);
     const bool minimum =
@@ -177,9 +266,11 @@ class ClearanceScan {
       if (hidden.empty()) continue;
       for (int k = coarse_[c] + 1; k < coarse_[c + 1]; ++k) {
         update_positions(model_, series_.samples[k].state, data_);
-        for (const int p : hidden)
+        for (const int p : hidden) {
+          const CollisionModel::Pair& bodies = collisions_.pairs()[p];
           fine_[static_cast<size_t>(p)].emplace_back(
-              k, collisions_.clearance(collisions_.pairs()[p], data_, near_));
+              k, measured(p, data_.pose(bodies.a), data_.pose(bodies.b), wanted()));
+        }
       }
     }
   }
@@ -191,7 +282,11 @@ class ClearanceScan {
   std::vector<int> coarse_;
   std::vector<BodySphere> spheres_;
   RobotData data_;
-  std::vector<std::vector<Eigen::Isometry3d>> poses_;  // poses by coarse sample and body
+  // The last separating directions by pair and pair of shapes, in the frame of the first body.
+  std::vector<std::vector<Eigen::Vector3d>> lines_;
+  // Poses and movements by coarse sample and body.
+  std::vector<std::vector<Eigen::Isometry3d>> poses_;
+  std::vector<std::vector<BodyPlace>> places_;
   Eigen::MatrixXd way_, clearance_;  // path lengths and clearances by coarse sample and pair [m]
   double least_ = std::numeric_limits<double>::infinity();
   // For each pair, samples with their clearances.

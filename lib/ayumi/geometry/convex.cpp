@@ -40,8 +40,8 @@ Vector3d farthest(const ConvexCore& core, const Isometry3d& pose, const Vector3d
            *std::max_element(core.points.begin(), core.points.end(),
                              [&](const auto& p, const auto& q) { return p.dot(d) < q.dot(d); });
   Vector3d p(sign(d.x()) * core.half.x(), sign(d.y()) * core.half.y(), sign(d.z()) * core.half.z());
-  const double radial = elementary::hypot(d.x(), d.y());
-  if (core.disc > 0 && radial > 0) {
+  const double radial = core.disc > 0 ? elementary::hypot(d.x(), d.y()) : 0;
+  if (radial > 0) {
     p.x() += core.disc * d.x() / radial;
     p.y() += core.disc * d.y() / radial;
   }
@@ -77,6 +77,7 @@ class Few {
   const T& operator[](size_t i) const { return items_[i]; }
   T& operator[](size_t i) { return items_[i]; }
   void push_back(const T& item) { items_[size_++] = item; }
+  void shrink(size_t n) { size_ = n; }
   void assign(size_t n, const T& item) {
     for (size_ = 0; size_ < n;) push_back(item);
   }
@@ -120,29 +121,36 @@ bool nearest_inside(const Few<Vertex>& v, const std::array<int, 4>& pick, Few<do
   return true;
 }
 
-// Reduces `simplex` to the part that is nearest to the origin.
-void reduce(Simplex& simplex) {
+// Reduces `simplex` to the part that is nearest to the origin. `newest`: only parts with the last
+// vertex count. In the search for the nearest point, the others were looked at before.
+void reduce(Simplex& simplex, bool newest = false) {
   const auto count = static_cast<int>(simplex.vertices.size());
-  Simplex best;
+  std::array<int, 4> best = {};
+  Few<double> weights;
   double least = std::numeric_limits<double>::infinity();
-  for (int mask = 1; mask < (1 << count); ++mask) {
+  for (int mask = newest ? 1 << (count - 1) : 1; mask < (1 << count); ++mask) {
     std::array<int, 4> pick = {};
     int n = 0;
     for (int i = 0; i < count; ++i)
       if (mask & (1 << i)) pick[n++] = i;
-    Simplex part;
-    const bool inside = n == 1   ? nearest_inside<1>(simplex.vertices, pick, part.weights)
-                        : n == 2 ? nearest_inside<2>(simplex.vertices, pick, part.weights)
-                        : n == 3 ? nearest_inside<3>(simplex.vertices, pick, part.weights)
-                                 : nearest_inside<4>(simplex.vertices, pick, part.weights);
-    if (!inside) continue;
-    for (int i = 0; i < n; ++i) part.vertices.push_back(simplex.vertices[pick[i]]);
-    const double distance = part.sum(&Vertex::d).squaredNorm();
+    Few<double> inside;
+    const bool is_inside = n == 1   ? nearest_inside<1>(simplex.vertices, pick, inside)
+                           : n == 2 ? nearest_inside<2>(simplex.vertices, pick, inside)
+                           : n == 3 ? nearest_inside<3>(simplex.vertices, pick, inside)
+                                    : nearest_inside<4>(simplex.vertices, pick, inside);
+    if (!is_inside) continue;
+    Vector3d nearest = Vector3d::Zero();
+    for (int i = 0; i < n; ++i) nearest += inside[i] * simplex.vertices[pick[i]].d;
+    const double distance = nearest.squaredNorm();
     if (distance >= least) continue;
     least = distance;
-    best = std::move(part);
+    best = pick;
+    weights = inside;
   }
-  simplex = std::move(best);
+  // The picked vertices are in ascending order, so that none is overwritten before it is copied.
+  for (size_t i = 0; i < weights.size(); ++i) simplex.vertices[i] = simplex.vertices[best[i]];
+  simplex.vertices.shrink(weights.size());
+  simplex.weights = weights;
 }
 
 struct Face {
@@ -316,7 +324,7 @@ ConvexPair convex_pair(const ConvexCore& a, const Isometry3d& pose_a, const Conv
     if (square - nearest.dot(w.d) <= kGjkTolerance * square) break;
     Simplex grown = simplex;
     grown.vertices.push_back(w);
-    reduce(grown);
+    reduce(grown, true);
     const Vector3d next = grown.sum(&Vertex::d);
     if (!(next.squaredNorm() < square)) break;  // rounding prevents further progress
     simplex = std::move(grown);

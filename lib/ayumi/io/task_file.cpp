@@ -29,7 +29,9 @@ Task load_task(Pattern pattern, const TaskOptions& options, const Progress& prog
       return load_robot(name, options.robots, {.meshes = options.meshes, .progress = progress});
     } catch (const Error& error) {
       if (!options.robot.empty() || error.code() != ErrorCode::bad_file) throw;
-      fail(error.code(), in_file(pattern, "/robot"), error.what());
+      const SourcePlace names = in_file(pattern, "/robot");
+      throw Error(error.code(), text_of(names) + ": " + error.what(),
+                  error.place().empty() ? names : error.place());
     }
   }();
   return load_task(std::move(pattern), {std::move(robot), name}, options.profile, progress,

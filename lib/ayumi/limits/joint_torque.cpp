@@ -2,11 +2,15 @@
 // dynamics and the ground wrench shared between the feet, plus the rotor's inertia, viscous and
 // Coulomb friction of the servo (demand/ground_demand.hpp, motor_torques()). Stribeck and
 // load-dependent friction are not included, nor the torque that is lost with speed at a voltage.
-// Near the beginning and end of a flight, accelerations have no meaning, so torques are not judged
-// there.
+// A joint without a motor (kp of its servo is 0) gives no torque, whatever its files state as its
+// peak. Near the beginning and end of a flight, accelerations have no meaning, so torques are not
+// judged there.
+#include <algorithm>
+
 #include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/limits/judged_motion.hpp"
 #include "ayumi/limits/row_site.hpp"
+#include "ayumi/model/gravity.hpp"
 
 namespace ayumi {
 
@@ -15,13 +19,36 @@ namespace {
 // Largest share of the peak torque. Definition: the data sheet states the largest torque.
 constexpr double kWholeTorque = 1;
 
+// Torque that a joint without a motor bears beside its stated dry friction: the weight of the robot
+// times this lever [m]. Chosen: a limp hand hangs and swings freely, and the joints of a leg that
+// stands on bent knees need 20 times as much. No measured case changes from half to twice, because
+// the robots there have motors in all joints.
+constexpr double kLimpLever = 1e-3;
+
+// Where no joint has a motor, nobody stated the motors.
+bool lacks_motor(const ActuatorLimits& limits, int dof) {
+  const auto at = static_cast<size_t>(dof);
+  return limits.has_servo[at] && limits.servo[at].kp <= 0 &&
+         std::any_of(limits.servo.begin(), limits.servo.end(),
+                     [](const ServoDescription& servo) { return servo.kp > 0; });
+}
+
+// Infinite where nothing is known.
+double peak_of(const JudgedMotion& motion, int dof) {
+  const double peak = motion.limits.peak_torque[dof];
+  if (!lacks_motor(motion.limits, dof)) return peak;
+  const double friction = motion.limits.servo[static_cast<size_t>(dof)].coulomb;
+  return std::min(peak, std::max(friction, kLimpLever * motion.model.mass() * kGravity));
+}
+
 void judge_joint_torques(JudgedMotion& motion, const JudgedSample& s) {
   const double most = motion.tolerance(FindingKind::joint_torque);
   if (!s.known) return;
   for (int i = 0; i < motion.model.dof_count(); ++i) {
-    const double limit = motion.limits.peak_torque[i], torque = s.demand.torque[i];
+    const double limit = peak_of(motion, i), torque = s.demand.torque[i];
     if (!std::isfinite(limit)) continue;
     const double ratio = std::abs(torque) / limit;
+    if (ratio <= most && lacks_motor(motion.limits, i)) continue;  // no share of a motor's torque
     motion.raise(FindingKind::joint_torque, ratio, s.k, i);
     if (ratio > most) motion.add(FindingKind::joint_torque, i, s.k, torque, most * limit, ratio);
   }
@@ -66,6 +93,10 @@ const char* torque_unit(const JudgedMotion& motion, const Violation& v) {
 
 Advice torque_advice(const JudgedMotion& motion, const FindingWindow& window) {
   const Violation& v = window.worst;
+  if (lacks_motor(motion.limits, v.item))
+    return motion.model.dofs()[v.item].name +
+           " has no motor (kp of its servo is 0), but the motion needs one there; if the joint has "
+           "a motor, state kp in the sidecar";
   return "lower the load on " + motion.model.dofs()[v.item].name +
          ": if the inertia is the cause, " +
          slow_down_text(std::sqrt(std::abs(v.value / v.limit))) +

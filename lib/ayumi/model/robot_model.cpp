@@ -334,7 +334,8 @@ int RobotModel::find_link(const std::string& link_name) const {
 
 const Sole& RobotModel::sole(Side side) const {
   if (!has_soles())
-    complain_sidecar(description_, "", "the robot has no soles; give /soles/left and /soles/right");
+    complain_sidecar(description_, "/soles",
+                     "the robot has no soles; give /soles/left and /soles/right");
   return soles_[static_cast<int>(side)];
 }
 
@@ -348,7 +349,7 @@ const ActuatorLimits& RobotModel::limits(const std::string& profile) const {
   for (const ActuatorLimits& limits : limits_)
     if (limits.name == profile) return limits;
   complain_sidecar(
-      description_, "",
+      description_, "/profiles",
       "no actuator profile '" + profile + "'; known: " + text::join(profile_names(), ", "));
 }
 

@@ -36,6 +36,17 @@ std::string place_of(const RobotModel& model, const ActuatorLimits& limits, int 
          ": ";
 }
 
+// Where the constants of a joint stand: with the profile where this has its own, else with the
+// robot.
+const char* pointer_of(const RobotDescription& robot, const std::string& profile,
+                       const std::string& joint) {
+  const bool own =
+      std::any_of(robot.profiles.begin(), robot.profiles.end(), [&](const ActuatorProfile& each) {
+        return each.name == profile && each.servos.contains(joint);
+      });
+  return own ? "/profiles" : "/servos";
+}
+
 }  // namespace
 
 double stretched_length(const RobotModel& model) {
@@ -85,7 +96,9 @@ void require_servos_that_fit(const RobotModel& model) {
         if (robot.sidecar_file.empty())
           complain_urdf(robot, "", message);
         else
-          complain_sidecar(robot, "", message);
+          complain_sidecar(
+              robot, pointer_of(robot, limits.name, model.dofs()[static_cast<size_t>(j)].name),
+              message);
       }
     }
   }

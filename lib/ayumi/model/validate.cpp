@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/json_pointer.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/math/eigenvalues.hpp"
 
@@ -260,12 +261,13 @@ namespace {
 // Checks the names of a map from joints to anything.
 template <typename Value>
 void known_joints(const RobotDescription& robot, const std::string& pointer,
-                  const std::map<std::string, Value>& map, const std::vector<std::string>& names) {
+                  const std::map<std::string, Value>& map, const std::vector<std::string>& names,
+                  const std::string& owner = "") {
   for (const auto& [name, value] : map)
     if (!contains(names, name))
-      complain_sidecar(
-          robot, pointer,
-          "'" + name + "' is not a moving joint of the robot" + text::suggestion(name, names));
+      complain_sidecar(robot, pointer,
+                       owner + "'" + name + "' is not a moving joint of the robot" +
+                           text::suggestion(name, names));
 }
 
 void known_link(const RobotDescription& robot, const std::string& pointer,
@@ -276,12 +278,13 @@ void known_link(const RobotDescription& robot, const std::string& pointer,
                      "the link '" + name + "' does not exist" + text::suggestion(name, names));
 }
 
-void positive(const RobotDescription& robot, const std::string& what,
+void positive(const RobotDescription& robot, const std::string& pointer, const std::string& what,
               const std::map<std::string, double>& values) {
   for (const auto& [name, value] : values)
     if (!(value > 0))
       complain_sidecar(
-          robot, "", what + " of '" + name + "' is " + text::exact(value) + "; it must be above 0");
+          robot, pointer,
+          what + " of '" + name + "' is " + text::exact(value) + "; it must be above 0");
 }
 
 // Largest number of corners of a sole. Each corner is a contact of the simulation, whose time grows
@@ -337,7 +340,8 @@ void validate_servos(const RobotDescription& robot) {
   for (const auto& [name, servo] : robot.servos)
     if (!(servo.kp >= 0 && servo.kd >= 0 && servo.rotor_inertia >= 0 && servo.viscous >= 0 &&
           servo.coulomb >= 0))
-      complain_sidecar(robot, "/servos/" + name, "servo constants cannot be negative");
+      complain_sidecar(robot, "/servos/" + json_pointer_token(name),
+                       "servo constants cannot be negative");
 }
 
 }  // namespace
@@ -353,18 +357,18 @@ void validate_sidecar(const RobotDescription& robot, const std::vector<std::stri
   validate_servos(robot);
   known_joints(robot, "/encoders", robot.encoders, names);
   known_joints(robot, "/control/joint_weight", robot.control.joint_weight, names);
-  positive(robot, "/control/joint_weight: the weight", robot.control.joint_weight);
+  positive(robot, "/control/joint_weight", "the weight", robot.control.joint_weight);
   for (const ActuatorProfile& profile : robot.profiles) {
-    const std::string pointer = "profile '" + profile.name + "'";
+    const std::string pointer = "/profiles", owner = "profile '" + profile.name + "': ";
     for (const auto& [what, values] :
-         {std::pair(": the speed", &profile.speed),
-          std::pair(": the peak torque", &profile.peak_torque),
-          std::pair(": the continuous torque", &profile.continuous_torque)}) {
-      known_joints(robot, pointer, *values, names);
-      positive(robot, pointer + what, *values);
+         {std::pair("the speed", &profile.speed),
+          std::pair("the peak torque", &profile.peak_torque),
+          std::pair("the continuous torque", &profile.continuous_torque)}) {
+      known_joints(robot, pointer, *values, names, owner);
+      positive(robot, pointer, owner + what, *values);
     }
     if (!(profile.thermal_window > 0))
-      complain_sidecar(robot, pointer, "thermal_window must be above 0 s");
+      complain_sidecar(robot, pointer, owner + "thermal_window must be above 0 s");
   }
   if (!robot.trunk_link.empty()) known_link(robot, "/trunk_link", robot.trunk_link);
   if (!robot.sensors.imu_link.empty())

@@ -100,8 +100,9 @@ CommandSeries apply_correction(const RobotModel& model, const CommandSeries& ser
   for (const std::string& joint : track.joints) {
     dofs.push_back(model.find_dof(joint));
     if (dofs.back() < 0)
-      fail_unknown_name({}, "correction: the robot '" + model.name() + "' has no joint '" + joint +
-                                "'" + text::suggestion(joint, model.dof_names()));
+      fail_unknown_name({"", "/correction"}, "the robot '" + model.name() + "' has no joint '" +
+                                                 joint + "'" +
+                                                 text::suggestion(joint, model.dof_names()));
   }
   CommandSeries result = series;
   result.kept.reset();

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/json_pointer.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 
@@ -49,7 +50,8 @@ std::map<std::string, double> posture_joints(const RobotModel& model, const Patt
   const auto own = pattern.postures.find(name);
   if (own != pattern.postures.end()) {
     for (const auto& [joint, angle] : own->second) {
-      const SourcePlace where = in_file(pattern, "/postures/" + name + "/" + joint);
+      const SourcePlace where = in_file(
+          pattern, "/postures/" + json_pointer_token(name) + "/" + json_pointer_token(joint));
       find_joint(model, joint, where);
       if (!std::isfinite(angle))
         fail(ErrorCode::bad_pattern, where, "the angle is not a finite number");

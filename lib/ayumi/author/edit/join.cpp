@@ -456,7 +456,7 @@ Pattern chained(const RobotModel& model, const MotionPart& first, const MotionPa
   if (over > 0) result.phases.push_back(both_feet_until(later));
   Keyframe at_start = keys_at(model, two, 0, one);
   for (const std::string& joint : one.weights)
-    at_start.weights[joint] = model.joint_weight()[find_joint(model, joint, {"", "weights"})];
+    at_start.weights[joint] = model.joint_weight()[find_joint(model, joint, {"", "/weights"})];
   for (const auto& [link, led] : two.hands) at_start.hands[link] = {};
   if (two.gaze) at_start.gaze = LinkTarget{};
   move_key(shift, at_start);

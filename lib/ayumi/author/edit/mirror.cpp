@@ -6,6 +6,7 @@
 
 #include "ayumi/author/edit/edit.hpp"
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/json_pointer.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/motion/pattern_context.hpp"
 
@@ -104,7 +105,8 @@ class Mirror {
 
   Pattern whole() {
     Pattern result = pattern_;
-    for (auto& [name, joints] : result.postures) joints = of(joints, "/postures/" + name);
+    for (auto& [name, joints] : result.postures)
+      joints = of(joints, "/postures/" + json_pointer_token(name));
     std::set<std::string> named = {pattern_.default_posture};
     for (const Keyframe& key : pattern_.keyframes)
       if (key.posture) named.insert(*key.posture);

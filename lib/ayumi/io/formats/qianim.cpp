@@ -75,6 +75,10 @@ MotionFile read_qianim(const MotionInput& source) {
     source.refuse(static_cast<size_t>(std::max(document.ErrorRow(), 0)),
                   std::string("this is not valid XML: ") + document.ErrorDesc() +
                       "; the file may be truncated");
+  if (const TiXmlElement* second = document.RootElement()->NextSiblingElement())
+    source.refuse(static_cast<size_t>(second->Row()),
+                  "a second <" + second->ValueStr() +
+                      "> begins here, but a file has one; cut the file before this line");
   double rate = kUsualFrames;
   std::vector<Curve> curves;
   find_curves(source, *document.RootElement(), rate, curves);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/json_pointer.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/json/json_depth.hpp"
 #include "ayumi/io/json/json_slip.hpp"
@@ -117,12 +118,6 @@ class DocumentBuilder : public nlohmann::json_sax<Json> {
 };
 
 }  // namespace
-
-std::string json_pointer_token(const std::string& key) {
-  std::string text;
-  for (const char c : key) text += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);
-  return text;
-}
 
 Json parse_json(const std::string& bytes, const std::string& file, ErrorCode code) {
   const bool blank =

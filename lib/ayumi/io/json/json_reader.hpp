@@ -27,9 +27,6 @@ struct JsonPlace {
 /// is not listed stands below the place of the nearest value around it.
 using JsonPlaces = std::map<std::string, JsonPlace>;
 
-/// A key in the form that it has in a JSON pointer.
-std::string json_pointer_token(const std::string& key);
-
 /// One value of a JSON document together with its place. It is cheap to copy, and the document must
 /// outlive it.
 class JsonNode {

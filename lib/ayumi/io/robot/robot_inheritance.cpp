@@ -5,6 +5,7 @@
 #include <set>
 
 #include "ayumi/base/file.hpp"
+#include "ayumi/base/json_pointer.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/robot/robot_source.hpp"
 
