@@ -30,20 +30,21 @@ export const save = (words) => {
 };
 export const data = () => JSON.parse(text());
 
+/// A quarter as many pixels in each direction, with the same layout: a machine without a graphics card draws them in less time.
+const coarse = 0.25;
 /// A page with what the trials need.
 export async function openPage(driver_, width, height) {
   const tab = await driver_.open(`${width},${height}`);
   tab.size = (w, h, deviceScaleFactor = 1) => tab.tool("Emulation.setDeviceMetricsOverride",
     { width: w, height: h, deviceScaleFactor, mobile: false });
-  /// From here on a quarter as many pixels in each direction, with the same layout, fewer still in the robot's picture, and
-  /// shadows that stay as they are: a machine without a graphics card draws them in less time.
+  /// From here on still fewer pixels in the robot's picture, and shadows that stay as they are.
   tab.coarsen = async () => {
-    await tab.size(width, height, 0.25);
+    await tab.size(width, height, coarse);
     await tab.run(`const { renderer } = window.ayumiAuthor.page.viewer;
       renderer.setPixelRatio(devicePixelRatio / 4);
       renderer.shadowMap.autoUpdate = false;`);
   };
-  await tab.size(width, height);
+  await tab.size(width, height, shots ? 1 : coarse);
   await tab.load(address);
   const state = await until(() => tab.run("return document.documentElement.dataset.author"), 60);
   expect(state === "ready", "the page says " + state);
