@@ -138,9 +138,9 @@ TEST(NewWalk, NamesTheWalkThatComesNearest) {
   ASSERT_EQ(run_program({"init", "-q", robot.string(), "-o", "duck"}, folder.path()).exit_code, 0);
   const Output out = made(folder, {"--robot", "duck"});
   EXPECT_EQ(out.exit_code, 3);
-  EXPECT_NE(out.out.find("The combination that comes nearest has --period"), std::string::npos)
+  EXPECT_NE(out.out.find("The combination that comes nearest has --stride"), std::string::npos)
       << out.out;
-  EXPECT_NE(out.out.find("Its limit is joint_torque"), std::string::npos) << out.out;
+  EXPECT_NE(out.out.find("Its limit is support_margin"), std::string::npos) << out.out;
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "w.json"));
 }
 
