@@ -32,6 +32,7 @@ export const data = () => JSON.parse(text());
 
 /// A quarter as many pixels in each direction, with the same layout: a machine without a graphics card draws them in less time.
 const coarse = 0.25;
+
 /// A page with what the trials need.
 export async function openPage(driver_, width, height) {
   const tab = await driver_.open(`${width},${height}`);
