@@ -261,10 +261,12 @@ void AuthorSession::refresh() {
     const bool here = at.file == setting_.file.string();
     next->error = {{"message", without_file(error.what(), setting_.file)}, {"pointer", pointer}};
     if (here && at.line > 0) (*next->error)["line"] = at.line;
-    // An error of the whole file, or of a part that is missing in it, has no line.
-    const size_t value = nearest_value(text, pointer).begin;
-    if (here && at.line == 0 && value != nearest_value(text, "").begin)
-      (*next->error)["line"] = line_at(text, value);
+    // An error of the whole file, or of a part that is missing in it, has no line. A text that is
+    // not JSON has no pointer.
+    if (here && at.line == 0 && !pointer.empty()) {
+      const size_t value = nearest_value(text, pointer).begin;
+      if (value != nearest_value(text, "").begin) (*next->error)["line"] = line_at(text, value);
+    }
   }
   if (next->error) {
     try {

@@ -290,6 +290,20 @@ TEST_F(AuthorServer, AnErrorOfTheWholeFileHasNoLine) {
   EXPECT_FALSE(state["error"].contains("line")) << state["error"].dump();
 }
 
+TEST_F(AuthorServer, GoesOnAfterATextThatIsNoJson) {
+  const Server server(file);
+  const std::string good = contents(file), broken = replaced("\"phases\"", "phases");
+  const auto shown = [&](const std::string& text) {
+    save(text);
+    return server.state_when([&](const OrderedJson& now) { return now["text"] == text; });
+  };
+  const auto line = 1 + std::count(good.begin(), good.begin() + good.find("\"phases\""), '\n');
+  EXPECT_EQ(shown(broken)["error"]["line"], line);
+  for (const char* const text : {"", "x", "{", "[]", "{} {}"})
+    EXPECT_FALSE(shown(text)["error"].is_null()) << text;
+  EXPECT_TRUE(shown(good)["error"].is_null());
+}
+
 TEST_F(AuthorServer, ShowsTheLastOfManyQuickSaves) {
   const Server server(file);
   std::string last;
