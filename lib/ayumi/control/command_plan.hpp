@@ -12,7 +12,8 @@ namespace ayumi {
 
 class CommandPlan {
  public:
-  /// Starts with the first sample, as sampled. The series must outlive this object and its copies.
+  /// The command as sampled, from the first sample on. The series must outlive this object and its
+  /// copies.
   explicit CommandPlan(const CommandSeries& series);
 
   double dt() const { return series_->dt; }  ///< time of one tick [s]

@@ -77,7 +77,7 @@ class Footsteps {
   GroundPose beside(const GroundPose& center, Side side) const;
 
   double period_, growth_, recovery_, inset_, half_width_;
-  double largest_error_;  // largest error of position that is taken back [m]
+  double largest_error_;  // largest error of position that the steps correct [m]
   GroundPose center_;     // place of the middle of the feet on the path
 };
 

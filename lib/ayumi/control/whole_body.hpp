@@ -69,7 +69,7 @@ std::vector<std::string> limit_notes(const RobotModel& model, const Resolution& 
 
 /// Memory that resolve() uses again in each call.
 struct ResolverWork {
-  /// The task as it is; with reduced rows; without the fixed joints.
+  /// The task as it is; with reduced rows; without the joints that are held at a limit.
   StackedTask task, softened, moving;
   StackedTask::Rows weighted;
   StackedTask::Vector left;  // residual of the task
