@@ -107,8 +107,8 @@ MatrixXd anchored_velocity_map(const RobotModel& model, const RobotData& data, S
   return with_joints(base);
 }
 
-// The normal equations of the minimum of the sum over the feet of |v + w x p + linear|^2 + L^2 |w +
-// angular|^2.
+// The normal equations of the minimum of the sum over the feet of
+//   |v + w x p + linear|^2 + L^2 |w + angular|^2.
 MatrixXd both_feet_velocity_map(const RobotModel& model, const RobotData& data) {
   constexpr double kSquare = kSoleTurnLength * kSoleTurnLength;
   Eigen::Matrix<double, 6, 6> A = Eigen::Matrix<double, 6, 6>::Zero();

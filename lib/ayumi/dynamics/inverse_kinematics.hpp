@@ -11,8 +11,8 @@
 namespace ayumi {
 
 struct PostureTarget {
+  /// Poses of the soles, by Side.
   std::array<Eigen::Isometry3d, 2> feet = {Eigen::Isometry3d::Identity(),
-                                           /// Poses of the soles, by Side.
                                            Eigen::Isometry3d::Identity()};
   Eigen::Vector3d cog = Eigen::Vector3d::Zero();        ///< world position of the COG [m]
   Eigen::Matrix3d trunk = Eigen::Matrix3d::Identity();  ///< attitude of the trunk in the world
