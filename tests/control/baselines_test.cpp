@@ -94,7 +94,8 @@ TEST(PreviewControl, FollowsAStepAsTheBestInputsDo) {
     return Vector3d(x[0] + tick * x[1] + 0.5 * tick * tick * x[2] + tick * tick * tick / 6 * u,
                     x[1] + tick * x[2] + 0.5 * tick * tick * u, x[2] + tick * u);
   };
-  // Errors and costs are linear in the changes of the input.
+  // The ZMP errors and the weighted changes of the input, whose squares are the cost, are linear in
+  // the changes of the input.
   Eigen::MatrixXd response = Eigen::MatrixXd::Zero(2 * steps, steps);
   VectorXd free = VectorXd::Zero(2 * steps);
   for (int k = 1; k <= steps; ++k) free[k - 1] = -reference(k);
