@@ -1,5 +1,5 @@
 // The baselines that DTAD is compared with: preview gains, foot-guided control and the program of
-// steps, each against a closed form or a second route.
+// steps, each compared with a closed form or with another computation.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -84,7 +84,7 @@ TEST(PreviewControl, DefaultEffortIsTheirsWithoutDimension) {
   EXPECT_NEAR(DtadParams().preview_horizon, 1.6 * omega, 0.1);
 }
 
-// The optimal inputs for a step of the ZMP follow by a second route: least squares over all inputs.
+// The optimal inputs for a step of the ZMP are computed again by least squares over all inputs.
 TEST(PreviewControl, FollowsAStepAsTheBestInputsDo) {
   const double tick = 0.1, effort = 1e-3;
   const int steps = 220, step_at = 110;

@@ -1,5 +1,4 @@
-// Servos are compared with a second route: closed forms, and the same joint integrated in steps of
-// 2 us.
+// Servos are compared with closed forms, and with the same joint integrated in steps of 2 us.
 
 #include "ayumi/sim/servo.hpp"
 
