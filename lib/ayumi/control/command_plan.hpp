@@ -63,7 +63,7 @@ class CommandPlan {
     std::array<Eigen::Isometry3d, 2> rest = {Eigen::Isometry3d::Identity(),
                                              Eigen::Isometry3d::Identity()};
     std::array<double, 2> share = {1, 1};  ///< share of `rest` that still applies, for each foot
-    /// Offset of COG and ZMP, which is taken back slowly [m].
+    /// Offset of COG and ZMP, which is slowly reduced to zero [m].
     Eigen::Vector3d cog = Eigen::Vector3d::Zero();
     long since = 0;  ///< tick at which the offset began
     bool moved = false;

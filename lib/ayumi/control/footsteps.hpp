@@ -49,8 +49,8 @@ class Footsteps {
  public:
   /// `feet` are the soles at the start, `period` is the duration of a step [s], and `growth` is the
   /// growth of the DCM during a step. `recovery` is the share of an error of position that the next
-  /// foothold takes back. `inset` is the distance of the nominal ZMP from a sole's centre towards
-  /// the other foot [m].
+  /// foothold corrects. `inset` is the distance of the nominal ZMP from a sole's centre towards the
+  /// other foot [m].
   Footsteps(const RobotModel& model, const std::array<Eigen::Isometry3d, 2>& feet, double period,
             double growth, double recovery, double inset = 0);
 

@@ -60,7 +60,7 @@ struct CorrectionSpec {
   double sole_position =
       repair_policy::stance::kPosition;               ///< half the band of a sole's position [m]
   double sole_angle = repair_policy::stance::kAngle;  ///< half the band of a sole's attitude [rad]
-  double sole_at_knots = repair_policy::stance::kShareAtKnots;  ///< share of that band at knots
+  double sole_at_knots = repair_policy::stance::kShareAtKnots;  ///< share of these bands at knots
   double clearance = repair_policy::clearance::kKept;  ///< smallest distance between bodies [m]
 
   // These are soft goals beyond the check.

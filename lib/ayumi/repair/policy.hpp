@@ -95,9 +95,9 @@ inline constexpr int kMostPerError = 12;
 /// limit are put beside it. Chosen. No measured case changes between half and twice the value
 /// (constants.md). Test: none.
 inline constexpr double kActive = 1e-3;
-/// The same for friction, as a share of the available friction. Reason: the cone curves. With half
-/// of the value, the number of iterations of the case "grip" changes from 95 to 107; with twice,
-/// figures change by less than 5 %. Test: none.
+/// Value of kActive for rows of friction, as a share of the available friction. Reason: the cone
+/// curves. With half of the value, the number of iterations of the case "grip" changes from 95 to
+/// 107; with twice, figures change by less than 5 %. Test: none.
 inline constexpr double kActiveFriction = 0.05;
 /// Number of such points from one collocation point to the next. Chosen. With half of the value,
 /// the number of iterations of the case "knee" changes from 62 to 73; with twice, the number of
@@ -167,9 +167,10 @@ namespace stance {
 /// deviate by 0.1 mm from each other, the load moves from one foot to the other, and a walk with a
 /// wider band fell in open loop. Test: Repair.SlippingFootStandsStill (only below 1 mm).
 inline constexpr double kPosition = 2e-4;
-/// The same as an angle [rad]. Derived: 0.2 mm at 0.1 m. Test: none.
+/// Half the band in which a standing sole keeps its attitude [rad]. Derived: 0.2 mm at 0.1 m. Test:
+/// none.
 inline constexpr double kAngle = 2e-3;
-/// Share of that band at the knots. Reason: the spline is exact at the knots and deviates between
+/// Share of these bands at the knots. Reason: the spline is exact at the knots and deviates between
 /// them. Measured with the band. With half of the value, the missing safety of the case "sway"
 /// changes from 0.296 to 0.167; with twice, the change of the case "early" changes from 0.0359 to
 /// 0.0231. Test: none.
@@ -365,8 +366,9 @@ inline constexpr double kFreeAround = 0.5;
 /// and a start with less violation is a warm start (scaled violation). Chosen. No measured case
 /// changes between half and twice the value (constants.md). Test: none.
 inline constexpr double kNearlyMet = 1e-3;
-/// The same bound if the multipliers of the last program are known. Measured: the second program on
-/// slippery ground, which starts with 2.6e-3, takes 5 iterations instead of 11. Test: none.
+/// Value of kNearlyMet if the multipliers of the last program are known. Measured: the second
+/// program on slippery ground, which starts with 2.6e-3, takes 5 iterations instead of 11. Test:
+/// none.
 inline constexpr double kNearKnown = 1e-2;
 /// Largest scaled violation with which a program counts as solved. Derived: ten times the solver's
 /// tolerance. Test: Repair.* (constraint_violation).

@@ -41,7 +41,7 @@ struct ViipParams {
   double least_step_time = 0.75;  ///< [soonest] smallest time that is left to such an earlier step
   /// [inside] distance of the nominal ZMP from the sole's centre towards the other foot.
   double zmp_inset = 0.05;
-  double recovery = 0.5;  ///< [hold] share of a foot's error that the next step takes back
+  double recovery = 0.5;  ///< [hold] share of a foot's error that the next step corrects
   bool feedback = true;   ///< if false, only the reference pendulum moves, as a demonstration
   bool landings = true;   ///< if false, a foot lands when its time is over, as a demonstration
 };
