@@ -343,8 +343,8 @@ TEST(ServoGear, IsASpringInSeriesWithTheServo) {
   EXPECT_NEAR(rig.step(0.2, -3).torque[0], 3, 1e-6);
 }
 
-// On the way to a far target, the torque is the stall torque at rest. The final speed is stall /
-// back-EMF, and a straight line lies between.
+// On the way to a far target, the torque is the stall torque at rest. The last speed, without a
+// torque, is stall / back-EMF, and a straight line lies between.
 TEST(ServoVoltage, BoundsTheTorqueByALineOverTheSpeed) {
   ServoDescription servo{.kp = 1000, .kd = 1, .rotor_inertia = 0.01};
   servo.stall_torque = 2;

@@ -23,8 +23,8 @@ JointDrive joint_drive(const ActuatorLimits& actuators);
 double friction_torque(const JointDrive& drive, int dof, double rate);
 double friction_slope(const JointDrive& drive, int dof, double rate);
 
-/// The torque that the motors must give beyond the tree's force, by dof [N m]: rotor ddq +
-/// friction.
+/// The torque that the motors must give beyond the tree's force, by dof [N m]:
+///   rotor ddq + friction.
 Eigen::VectorXd drive_torque(const JointDrive& drive, const Eigen::VectorXd& dtheta,
                              const Eigen::VectorXd& ddtheta);
 

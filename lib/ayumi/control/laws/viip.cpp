@@ -85,8 +85,9 @@ constexpr double kLandingBiasLimit = 0.015;
 constexpr double kSlopeTime = 6.6;
 
 // Time constant of the low pass of the vertical push that the load cells measure, without the lag
-// of the servos [s]. Derived: with a low pass T and a force that is late by d, the loop obeys T s =
-// -exp(-s d), which is stable for d < T pi/2. Sensors may be 10 ms late.
+// of the servos [s]. Derived: with a low pass T and a force that is late by d, the loop obeys
+//   T s = -exp(-s d),
+// which is stable for d < T pi/2. Sensors may be 10 ms late.
 constexpr double kPushFilterTime = 0.010;
 
 // The longest lag of a servo of the legs [s].
