@@ -22,8 +22,9 @@ std::string painted_verdict(const ConsistencyReport& report);
 /// and then checks again.
 inline constexpr int kMostGroups = 10;
 
-/// Entries such as " error support_margin left foot, 1.200-1.350 s, worst at 1.280 s: -9.8 mm,
-/// limit 0.0 mm", each with its hint.
+/// Entries such as
+///   "  error    support_margin  left foot, at 1.280 s: -9.8 mm, limit 0.0 mm",
+/// or with "1.200-1.350 s, worst at 1.280 s" for a window, each with its hint.
 std::vector<AnswerPart> finding_parts(const ConsistencyReport& report, const RobotModel& model,
                                       Shown shown);
 

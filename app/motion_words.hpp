@@ -19,7 +19,8 @@ std::string margin_words(double margin);
 std::string motion_words(const RobotModel& model, const MotionChange& change,
                          const ConsistencyReport& before, const ConsistencyReport& after);
 
-/// A line such as " weighted change of base and joints 0.17, cost of missing safety 0.003".
+/// A line such as
+///   "  weighted change of base and joints 0.17, cost of missing safety 0.003".
 std::string cost_words(const WeightedChange& cost);
 
 struct MotionPlot {

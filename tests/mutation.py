@@ -27,7 +27,8 @@ import sys
 import time
 
 SOURCE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-# The test programs that cover a room. Those that are most likely to notice a fault come first.
+# The test programs that cover a room (a folder of lib/ayumi). Those that are most likely to notice
+# a fault come first.
 TESTS = {
     "check": ["check_tests", "limits_tests"],
     "control": ["control_tests", "sim_tests"],

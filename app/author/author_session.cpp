@@ -232,8 +232,8 @@ bool AuthorSession::robot_changed() const {
   });
 }
 
-// `reading_` must be locked by the caller, except for the first time. The times are read before the
-// bytes, so that a save in between is noticed at the next check.
+// The caller must hold `reading_`, except at the first call. The modification times are read before
+// the contents, so that a save in between is noticed at the next check.
 void AuthorSession::refresh() {
   const bool new_robot = robot_ && robot_changed();
   seen_ = stamps();

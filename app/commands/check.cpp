@@ -263,7 +263,8 @@ std::string time_of_day() {
   return words;
 }
 
-// The change of the number of errors, such as " 3 errors, now 1".
+// The change of the number of errors after two spaces, such as
+//   "  3 errors, now 1".
 std::string change_words(std::optional<int> before, int now) {
   if (!before) return "  " + text::counted(now, "error");
   if (*before == now) return "  " + text::counted(now, "error") + ", as before";

@@ -362,8 +362,8 @@ SafeTable judged(const ExportOptions& options, const Source& source, const std::
   return safe;
 }
 
-/// The profiles of the robot whose motors could carry out an unsafe table. The motor board's own
-/// limit of counts per tick is ignored here.
+/// The other profiles of the robot with which its motors could carry out a table that is unsafe
+/// with the chosen profile. The motor board's own limit of counts per ms is ignored.
 std::vector<std::string> sufficient_profiles(ExportOptions options, const Source& source) {
   const std::string profile = options.safety.profile;
   options.safety.counts_per_ms = 1e9;

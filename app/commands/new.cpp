@@ -647,7 +647,7 @@ void new_stand(const Context& context, const NewOptions& options) {
 // consistent.
 void new_excite(const Context& context, const NewOptions& options) {
   const RobotModel model = load_robot(options.robot, robot_search(context));
-  const double given = rounded(100 * options.scale, 1e-3);  // the scale of a dial [%]
+  const double given = rounded(100 * options.scale, 1e-3);  // the scale as the value of a dial [%]
   const Dial amplitudes =
       dial("amplitudes of", "%", given, 0.1, true, {0.8, 0.64, 0.512, 0.41, 0.328, 0.262});
   const double usual = default_cog_height(model, excite_pattern(model, options.scale));

@@ -62,8 +62,8 @@ class GaitMaker {
   /// Number of steps at the beginning of a walk that depend on its start, and of steps at its end
   /// that depend on this end.
   int memory(double period) const;
-  /// The same number at the beginning, rounded up to an even number, so that each cycle begins with
-  /// the same foot.
+  /// memory() rounded up to an even number: the number of steps before the first cycle. Each cycle
+  /// then begins with the same foot.
   int lead(double period) const;
 
  private:

@@ -68,7 +68,7 @@ def angles(pattern, factor):
 
 
 def angle_key(pattern):
-    """The first key of arm joints that are not near zero, and its joints."""
+    """The first key with a joint angle beyond 20 deg, and the angles of this key."""
     for key in pattern["keyframes"]:
         joints = key.get("joints") or key.get("posture")
         if isinstance(joints, dict) and max(map(abs, joints.values()), default=0) > 20:

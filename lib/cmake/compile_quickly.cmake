@@ -3,9 +3,9 @@
 # AYUMI_PRECOMPILE: the headers that nearly every source includes (Eigen, the standard library, and
 #   those that a target names) are parsed once for each level of optimization, because g++ optimizes
 #   what a precompiled header brings as the header was made.
-# AYUMI_UNITY: several sources of a room are compiled as one. A build from nothing takes about a
-#   third of the time; after a change of one source its whole group is compiled, and after a new
-#   source its room. The preset for daily work switches it off.
+# AYUMI_UNITY: several sources of a room (a folder of lib/ayumi) are compiled as one. A build from
+#   nothing takes about a third of the time; after a change of one source its whole group is
+#   compiled, and after a new source its room. The preset for daily work switches it off.
 # Rooms that run in a loop (each tick of a simulation, each iteration of a repair) are compiled with
 #   -O3. Warm ones, which call them and judge what they return, or draw, are compiled with -O1: check,
 #   repair, push and retime take the same time. Cold ones read, write and talk to the user; with -Og

@@ -110,7 +110,7 @@ BENCHMARK_CAPTURE(clip, quality, true)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
 
-/// The peak memory of a process that draws a clip of this length.
+/// The peak memory of a process that draws a clip of the walk, repeated this many times.
 void memory(benchmark::State& run) {
   Walk walk;
   const std::vector<SimulationSample> once = walk.log.samples;

@@ -1,6 +1,6 @@
-// The clearance of the check by a second route: points all over the bodies of one robot part, and
-// the distance of each from the shapes of the other part in closed form, all placed by homogeneous
-// matrices.
+// The clearance of the check is computed again by other means: points all over the bodies of one
+// robot part, and the distance of each from the shapes of the other part in closed form, all placed
+// by homogeneous matrices.
 
 #include <gtest/gtest.h>
 

@@ -157,7 +157,7 @@ TEST(Consistency, MotorTooWeak) {
   EXPECT_EQ(find(r, "continuous_torque").severity, Severity::warning);
 }
 
-// The sums of squares are kept for one window only. The second route sums each window separately.
+// The sums of squares are kept for one window only. The test sums each window separately.
 TEST(Consistency, MeanTorqueOfAWindowShorterThanTheMotion) {
   RobotDescription d = limited_biped_description();
   d.profiles[0].thermal_window = 0.3;

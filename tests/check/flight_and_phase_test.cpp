@@ -1,5 +1,5 @@
-// Consequences of flights that are not free, and of phases that are not those of the motion: one
-// finding stays an error, and a second fault beside it stays one too.
+// A flight without free fall, or a phase at the wrong time, gives one error; findings that follow
+// from it are warnings. A second fault beside it is an error, too.
 
 #include <gtest/gtest.h>
 
@@ -230,7 +230,8 @@ TEST(Consequence, OfAPhaseThatHasMovedOnStairs) {
   }
 }
 
-// The keys move feet that a shifted phase says carry the robot: the check reports it.
+// A phase is shifted, so that it says that feet carry the robot while the keys move them. The check
+// reports this.
 TEST(Consequence, OfAFlightWithFootKeysThatEndsEarly) {
   JumpParameters jump = jump_defaults(hoap1());
   jump.forward = 0.02;

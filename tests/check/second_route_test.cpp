@@ -1,7 +1,7 @@
-// Every figure of the check by a second route: plain sums over the links with fourth-order
-// differences of their poses in time (plain_motion.hpp), virtual work for torques, and corners of
-// soles by homogeneous matrices. Motions are disturbed by waves in all joints, so that no figure is
-// zero.
+// Every figure of the check is computed again by other means: plain sums over the links with
+// fourth-order differences of their poses in time (plain_motion.hpp), virtual work for torques, and
+// corners of soles by homogeneous matrices. Motions are disturbed by waves in all joints, so that
+// no figure is zero.
 
 #include <gtest/gtest.h>
 

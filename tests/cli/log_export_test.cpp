@@ -87,7 +87,7 @@ TEST_F(LogExport, CsvHasAllColumnsOfTheLog) {
   for (const auto& name : logged) EXPECT_TRUE(table.contains(name)) << name;
 }
 
-// Quantities that follow from the columns of the log are computed by a second route.
+// Quantities that follow from the columns of the log are computed again.
 TEST_F(LogExport, DerivedColumnsFollowFromTheOthers) {
   ASSERT_EQ(ayumi({"run", "--format", "csv-log", "-o", "derived.csv"}).exit_code, 0);
   auto table = columns("derived.csv");

@@ -128,8 +128,8 @@ TEST_P(NewKinds, ATurnAndAWaveAreConsistent) {
   }
 }
 
-// Before, the message for a robot that finds no walk only said that its legs do not reach, which no
-// option mends.
+// If no walk is found, the message names the one that comes nearest and its limit. That the legs do
+// not reach would not tell the user which option to change.
 TEST(NewWalk, NamesTheWalkThatComesNearest) {
   const std::filesystem::path robot =
       AYUMI_SOURCE_DIR "/../shared/data/open_duck_mini_v2/open_duck_mini_v2.xml";

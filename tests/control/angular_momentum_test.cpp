@@ -1,5 +1,5 @@
-// The angular momentum task: A_G by a second route, the moment that it gives, its bounds, and its
-// return.
+// The angular momentum task: A_G compared with another computation, the moment that the task gives,
+// its bounds, and its return.
 #include "ayumi/control/angular_momentum.hpp"
 
 #include <gtest/gtest.h>

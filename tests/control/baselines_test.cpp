@@ -1,5 +1,5 @@
 // The baselines that DTAD is compared with: preview gains, foot-guided control and the program of
-// steps, each against a closed form or a second route.
+// steps, each compared with a closed form or with another computation.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -84,7 +84,7 @@ TEST(PreviewControl, DefaultEffortIsTheirsWithoutDimension) {
   EXPECT_NEAR(DtadParams().preview_horizon, 1.6 * omega, 0.1);
 }
 
-// The optimal inputs for a step of the ZMP follow by a second route: least squares over all inputs.
+// The optimal inputs for a step of the ZMP are computed again by least squares over all inputs.
 TEST(PreviewControl, FollowsAStepAsTheBestInputsDo) {
   const double tick = 0.1, effort = 1e-3;
   const int steps = 220, step_at = 110;
@@ -94,7 +94,8 @@ TEST(PreviewControl, FollowsAStepAsTheBestInputsDo) {
     return Vector3d(x[0] + tick * x[1] + 0.5 * tick * tick * x[2] + tick * tick * tick / 6 * u,
                     x[1] + tick * x[2] + 0.5 * tick * tick * u, x[2] + tick * u);
   };
-  // Errors and costs are linear in the changes of the input.
+  // The ZMP errors and the weighted changes of the input, whose squares are the cost, are linear in
+  // the changes of the input.
   Eigen::MatrixXd response = Eigen::MatrixXd::Zero(2 * steps, steps);
   VectorXd free = VectorXd::Zero(2 * steps);
   for (int k = 1; k <= steps; ++k) free[k - 1] = -reference(k);

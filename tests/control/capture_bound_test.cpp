@@ -50,8 +50,8 @@ TEST(CaptureBound, StandingIsTheDistanceToTheEdge) {
   }
 }
 
-// With the left foot for T and then the right foot for ever, h(n) = (1 - e^-wT) h_left(n) + e^-wT
-// h_right(n).
+// With the left foot for T and then the right foot for ever,
+//   h(n) = (1 - e^-wT) h_left(n) + e^-wT h_right(n).
 TEST(CaptureBound, OneKnownStep) {
   const RobotModel model = test::biped();
   CommandSeries series;

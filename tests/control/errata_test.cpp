@@ -101,8 +101,8 @@ TEST_F(Errata, Equations6And7CountTheRootMass) {
   EXPECT_GT((printed - differences).cwiseAbs().maxCoeff(), 1e-2);
 }
 
-/// The distance of the COG from its command after `time`, if it starts at rest 10 mm away, under z
-/// = cmd z - K delta + sign D ddelta, delta = cmd x - x.
+/// The distance of the COG from its command after `time`, if it starts at rest 10 mm away, under
+///   z = cmd z - K delta + sign D ddelta,  delta = cmd x - x.
 double after(double time, double K, double D, double sign) {
   const LevelPendulum pendulum;
   const double dt = 1e-4;

@@ -105,7 +105,7 @@ TEST(Footsteps, ErrorOfPlaceFadesByTheShareAsked) {
   off.position += Vector2d(0.01, 0.005);
   const PlannedStep step = steps.step({}, Side::left, off, 4, Vector2d::Zero());
   EXPECT_LT((step.landing.position - Vector2d(0.007, -0.05 + 0.0035)).norm(), 1e-12);
-  // An error beyond the part that is taken back moves the path instead.
+  // An error beyond the part that the steps correct moves the path instead.
   off.position.x() += 1;
   steps.meet(Side::left, off);
   const PlannedStep far = steps.step({}, Side::left, off, 4, Vector2d::Zero());

@@ -1,4 +1,4 @@
-// (1)-(13): consequences of a foot that stays where it is.
+// Tests of (1)-(13): velocities and Jacobians of a robot whose foot stays where it is.
 
 #include "ayumi/dynamics/kinematics.hpp"
 

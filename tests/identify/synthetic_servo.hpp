@@ -94,7 +94,8 @@ inline Eigen::VectorXd simulated_angles(const SyntheticServo& servo, double seco
   return theta;
 }
 
-/// The recording by an encoder of `count` [rad] with noise of that standard deviation [rad].
+/// The recording of `theta` by an encoder with the resolution `count` [rad] and with noise of the
+/// standard deviation `noise` [rad].
 inline RecordedMotion recorded(const Eigen::VectorXd& theta, double noise, double count,
                                std::uint64_t seed, const std::function<double(double)>& command) {
   RecordedMotion motion;

@@ -1,5 +1,5 @@
-// Motions in the formats of other programs: round trips, recognition, mapping of joints, and one
-// line for files that cannot be read.
+// Motions in the formats of other programs: round trips, recognition and mapping of joints. A file
+// that cannot be read gives a message of one line.
 
 #include "ayumi/io/formats/motion_formats.hpp"
 

@@ -215,8 +215,8 @@ TEST_F(PatternWriter, WritingAndReadingIsTheIdentity) {
   }
 }
 
-// The robot's folder is inside the folder of the pattern or beside it: its name alone would mean a
-// bundled robot.
+// The robot's folder is the folder of the pattern, or beside or below it: its name alone would mean
+// a bundled robot.
 TEST_F(PatternWriter, TheFolderOfARobotStaysAPath) {
   fs::create_directories(folder_ / "robots" / "mine");
   Pattern pattern = read(kTwoSteps);

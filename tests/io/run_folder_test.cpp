@@ -112,7 +112,7 @@ std::string parse_message(const std::string& bytes) {
 TEST(SimulationLogFile, EveryFieldSurvives) {
   const SimulationLog log = random_log(1);
   const SimulationLog back = parse_log(log_bytes(log), "x.bin");
-  // Second route: a few fields are compared one by one, and the whole by its bytes.
+  // A few fields are compared one by one, and the whole by its bytes.
   ASSERT_EQ(back.samples.size(), log.samples.size());
   EXPECT_EQ(back.samples[7].state.base.attitude.coeffs(),
             log.samples[7].state.base.attitude.coeffs());

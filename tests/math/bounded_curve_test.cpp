@@ -35,7 +35,7 @@ TEST(BoundedCog, StepZmp) {
   }
 }
 
-// Second route: the solution satisfies x'' = w2 (x - z) by differences, also with a varying w2.
+// The differences of the solution satisfy x'' = w2 (x - z), also with a varying w2.
 TEST(BoundedCog, MeetsThePendulumLaw) {
   const double h = 0.005;
   const int n = 600;

@@ -31,7 +31,7 @@ std::ostream& operator<<(std::ostream& out, const Sampling& s) { return out << s
 
 class Elementary : public testing::TestWithParam<Sampling> {};
 
-// The C library's functions with more digits are the second route.
+// The results are compared with the C library's functions with more digits.
 TEST_P(Elementary, IsRightToTheLastPlace) {
   const Sampling& s = GetParam();
   Random random(1);

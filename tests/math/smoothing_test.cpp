@@ -52,7 +52,7 @@ TEST(Smoothing, RoundsCornersAsFarAsTheBandGoes) {
   EXPECT_GT(most, 16 * 16 / (16.0 * 21));  // no curve inside the band can bend less
 }
 
-// The conditions of an optimum by a second route: no feasible change makes it better.
+// The result is an optimum: no feasible change makes it better.
 TEST(Smoothing, NoChangeWithinTheBandIsBetter) {
   VectorXd x(120);
   for (int k = 0; k < 120; ++k) x[k] = std::round(30 * std::sin(0.05 * k)) + (k % 17 == 0 ? 3 : 0);

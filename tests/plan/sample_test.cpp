@@ -118,7 +118,7 @@ TEST(Sample, VelocitiesAndAccelerationsAreDerivatives) {
     const VectorXd difference = (b.state.velocity() - a.state.velocity()) / (2 * series.dt);
     EXPECT_LT((difference - now.acceleration).cwiseAbs().maxCoeff(),
               0.05 + 0.02 * now.acceleration.cwiseAbs().maxCoeff());
-    // The rate of the COG by the floating Jacobian is a second route to the same number.
+    // The rate of the COG is computed again, by the floating Jacobian.
     update_velocities(model, now.state, data);
     EXPECT_LT((data.dcog - now.dcog).norm(), 1e-5);
   }

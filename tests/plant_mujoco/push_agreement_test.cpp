@@ -1,6 +1,6 @@
 // The same pushes in both plants: the robot stands or falls in both, and if they differ, the push
-// is near the threshold. The whole set of 100 runs is only made on demand: plant_mujoco_tests
-// --gtest_also_run_disabled_tests --gtest_filter=*Hundred*
+// is near the threshold. The whole set of 100 runs is only made on demand:
+//   plant_mujoco_tests --gtest_also_run_disabled_tests --gtest_filter=*Hundred*
 
 #include <gtest/gtest.h>
 

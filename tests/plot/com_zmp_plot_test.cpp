@@ -319,7 +319,8 @@ TEST(Loci, LandingForcesAreDrawnToTheirTop) {
     EXPECT_FALSE(text.ends_with(" N")) << text << ": nothing lands";
 }
 
-// A lift-off is soon followed by a landing: before, the value of the first was under the second.
+// A landing soon follows a lift-off. In an earlier version, the value of the lift-off was drawn
+// under that of the landing.
 TEST(Loci, ValuesOfForcesStandBesideTheCurves) {
   TwoRuns runs;
   SimulationLog log = runs.standing;

@@ -144,7 +144,7 @@ TEST(Ghost, HasNoSpeckleWhereItCoincides) {
   }
 }
 
-/// A box of this colour, and one of an eighth of its edge.
+/// A box of the colour `large`, and one of an eighth of its edge and of the colour `small`.
 std::vector<BodySurface> two_boxes(const Eigen::Vector4f& large, const Eigen::Vector4f& small) {
   std::vector<BodySurface> robot(2);
   robot[0].closed = tessellate(Box{Eigen::Vector3d::Constant(0.4)}, large);

@@ -43,7 +43,7 @@ struct View {
   }
 };
 
-// The second route uses rays of single pixels.
+// The picture is compared with rays of single pixels.
 TEST(GroundPicture, ShowsThePlaneWhereRaysMeetIt) {
   int shown = 0, hidden = 0;
   for (const Vector3d& eye : {Vector3d(2, -2, 1), Vector3d(1.5, 0.2, 0.35), Vector3d(0.1, 0, 3)})
@@ -122,7 +122,7 @@ TEST(GroundPicture, IsAllSkySeenFromBelowOnEdgeOrWithoutGround) {
   }
 }
 
-// The second route computes every pixel separately, with the formulas written once more.
+// Every pixel is computed again separately, with the formulas written once more.
 TEST(GroundPicture, IsWhatEachPixelShows) {
   const auto lines = [](double p, double footprint, double spacing, double width) {
     const double away = std::abs(p / spacing - std::round(p / spacing)) * spacing;

@@ -71,7 +71,7 @@ TEST(HiddenParts, WhatHidesMustBeConvexOpaqueAndOfTheSameBody) {
   expect_all_stays(robot);
 }
 
-// The second route compares pictures from all sides.
+// Pictures from all sides are compared with and without the hidden parts.
 TEST(HiddenParts, PicturesAreTheSame) {
   const RobotModel model =
       load_robot(std::string(AYUMI_SOURCE_DIR) + "/robots/hoap1", {}, {.meshes = true});

@@ -61,8 +61,8 @@ TEST(PlanarYuv, PixelsStayInTheirPlaces) {
             (std::vector<std::uint8_t>{122, 128, 128, 128, 156, 128, 128, 128}));
 }
 
-// The second route uses pictures of two pixels a side, which do not have eight pixels to be
-// converted at once.
+// The bytes are compared with those of pictures of two pixels a side, which do not have eight
+// pixels to be converted at once.
 TEST(PlanarYuv, EightPixelsAtOnceGiveTheSameBytes) {
   std::mt19937 random(11);
   std::uniform_int_distribution<int> byte(0, 255);

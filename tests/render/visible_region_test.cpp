@@ -75,7 +75,7 @@ TEST(VisibleRegion, StaysInThePictureAndTakesItWholeForWhatIsBehindTheCamera) {
   EXPECT_EQ(behind.pixels().height, kHeight);
 }
 
-// The second route uses points inside the body, each at its pixel.
+// The tiles are compared with points inside the body, each at its pixel.
 TEST(CoveredTiles, HoldsEveryPointOfABodyAndLeavesMuchOut) {
   const Camera camera = camera_at({1.2, -1, 0.7});
   const PixelBox part{20, 10, 280, 180};

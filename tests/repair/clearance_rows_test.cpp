@@ -71,8 +71,8 @@ RobotModel shapely_arms() {
 
 }  // namespace
 
-// Second route: a ball around the point is compared with the box by the general distance of two
-// shapes.
+// The distance of a point from a box is compared with the general distance of two shapes: the box
+// and a ball around the point.
 TEST(ClearanceRows, PointFromBoxIsThatOfASmallBall) {
   Random random(3);
   const Vector3d half(0.05, 0.03, 0.01);

@@ -277,7 +277,7 @@ TEST(CorrectionProblem, SupportRowsAreTheMarginOfTheCheck) {
   }
 }
 
-// The second route to the objective is the integral as a fine sum over the track itself.
+// The objective is compared with the integral, computed as a fine sum over the track itself.
 TEST(CorrectionProblem, ObjectiveIsTheIntegral) {
   const CommandSeries series = walk(limited_biped(), short_walk());
   CorrectionSpec spec;

@@ -104,7 +104,7 @@ async function keepsTheFocus(tab) {
     ["keyDown", "z"], ["keyUp", "z"], ["keyUp", "\uE009"]].map(([type, value]) => ({ type, value })) }]);
   await wait(900);
   expect(text() === written, "Ctrl+Z takes back a move that is not written");
-  // What is added has the focus, and what is removed leaves it in the panel.
+  // Something that is added gets the focus. If it is removed, the focus stays in the panel.
   const buttonTo = (words) => tab.run("[...document.querySelectorAll('#selected button')].find((b) => b.textContent === arguments[0]).focus()", words);
   await tab.click("#whole");
   await buttonTo("Add a block to the ground");

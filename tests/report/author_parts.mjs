@@ -161,8 +161,8 @@ test("a flight brings along the COG keys that it needs, or says what is missing"
   assert.equal(landing, false);
   assert.deepEqual(brought, [0.82, 1.18, 1.3, 1.42, 1.54, 1.9]);
   assert.deepEqual(list[0], { kind: "set", pointer: "/phases/1/support", value: "none" });
-  // The parabola rises by g T^2 / 8. From rest to the lift-off at g T / 2 within T, the quintic rises
-  // all the way from g T^2 / 4 below.
+  // The parabola rises by g T^2 / 8. Before it, the quintic takes the COG within T from rest to the
+  // lift-off speed g T / 2. It only rises, and begins g T^2 / 4 below the lift-off.
   assert.deepEqual(list.slice(1, 4), [
     { kind: "insert", pointer: "/keyframes/1", value: { t: 0.82, cog: { height: 0.24 } } },
     { kind: "insert", pointer: "/keyframes/1", value: { t: 1.18, cog: { height: 0.187 } } },

@@ -116,7 +116,8 @@ TEST(Landing, StopsBouncingInOneStep) {
   }
 }
 
-/// A foot plate with a body on an ankle hinge about y, which is `lever` ahead of it [m].
+/// A foot plate with a body on an ankle hinge about y; the body's centre of mass is `lever` ahead
+/// of the hinge [m].
 RobotDescription leaning_description(double mass, double lever) {
   RobotDescription d = test::block_description({0.3, 0.1, 0.02}, 1.0);
   LinkDescription body;

@@ -119,8 +119,7 @@ TEST(Ground, PatchesHaveTheirOwnFriction) {
   }
 }
 
-// A height field that is an inclined plane is a slope, which gives a second route to the same
-// slide.
+// A height field that is an inclined plane is a slope: a block slides on it as on the slope.
 TEST(Ground, AnInclinedFieldIsASlope) {
   const double angle = 0.3, mu = 0.15;
   const World world = test::inclined_field(angle, mu);

@@ -1,5 +1,4 @@
-// Servos are compared with a second route: closed forms, and the same joint integrated in steps of
-// 2 us.
+// Servos are compared with closed forms, and with the same joint integrated in steps of 2 us.
 
 #include "ayumi/sim/servo.hpp"
 
@@ -344,8 +343,8 @@ TEST(ServoGear, IsASpringInSeriesWithTheServo) {
   EXPECT_NEAR(rig.step(0.2, -3).torque[0], 3, 1e-6);
 }
 
-// On the way to a far target, the torque is the stall torque at rest, the speed ends at stall /
-// back-EMF, and a straight line lies between.
+// On the way to a far target, the torque is the stall torque at rest. The last speed, without a
+// torque, is stall / back-EMF, and a straight line lies between.
 TEST(ServoVoltage, BoundsTheTorqueByALineOverTheSpeed) {
   ServoDescription servo{.kp = 1000, .kd = 1, .rotor_inertia = 0.01};
   servo.stall_torque = 2;

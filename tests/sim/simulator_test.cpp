@@ -146,7 +146,8 @@ TEST(Simulator, RefusesAnUnknownLinkWhenTheScenarioIsReplaced) {
   }
 }
 
-// Second route: the COG of the logged posture, with the noise of sensors and under a push.
+// The COG is computed again from the logged posture and must be the logged one, with sensor noise
+// and under a push.
 TEST(Simulator, ALogRowHasPostureAndBaseOfOneTick) {
   Stand stand;
   stand.options.scenario = {Stand::push(0.8)};

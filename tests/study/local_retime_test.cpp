@@ -113,8 +113,10 @@ TEST(LocalRetime, RowsAreThoseOfInverseDynamics) {
   EXPECT_GT(compared["table_step"], 1000);
 }
 
-// One joint turns from rest to rest by an angle L with a largest acceleration a: it takes 2 sqrt(L
-// / a), whatever the course of the given motion is; the smoothing adds 36 ms.
+// One joint turns from rest to rest by an angle L with a largest acceleration a: whatever the
+// course of the given motion is, it takes
+//   2 sqrt(L / a),
+// and the smoothing adds 36 ms.
 TEST(LocalRetime, OneJointTakesItsBangBangTime) {
   const double angle = 1, most = 8;
   LocalRetimeOptions options;

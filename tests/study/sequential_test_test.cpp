@@ -78,7 +78,7 @@ TEST(SequentialTest, ErrorIsBoundedOverAllLooks) {
     }
 }
 
-// The probability of a certificate follows from counting made-up studies, as a second route.
+// The probability of a certificate is compared with a count over made-up studies.
 TEST(SequentialTest, PowerAgreesWithMadeUpStudies) {
   const SequentialTest test(0.05, 0.95, 590);
   ayumi::Random random(3);

@@ -65,8 +65,9 @@ inline FaultyPattern motion(Dice& dice) {
   return made;
 }
 
-/// The size of a bump of this width whose largest speed is this. Derived: that of cos^4(pi s) is 3
-/// sqrt(3) / 4 pi.
+/// The size of a bump of this width whose largest speed is this. Derived: the largest speed of
+/// cos^4(pi s) is
+///   3 sqrt(3) / 4 pi.
 inline double size_of(double speed, double width) {
   return speed * width / (3 * std::sqrt(3.0) / 4 * M_PI);
 }

@@ -80,8 +80,8 @@ inline void add_arm(RobotDescription& d, const std::string& p, double y) {
                                    Vector3d::UnitX(), -2, 2));
 }
 
-/// The robot has 16 joints and 6.16 kg. In the home posture, knees are bent by 0.8 rad and the COG
-/// is near the middle of the soles.
+/// The robot has 16 joints and a mass of 6.2 kg. In the home posture, the knees are bent by 0.8 rad
+/// and the COG is near the middle of the soles.
 inline RobotDescription limited_biped_description() {
   RobotDescription d;
   d.name = "biped";

@@ -26,8 +26,8 @@ RobotDescription random_tree(unsigned seed, int links, bool mimic = true);
 /// and joints out of order.
 RobotDescription odd_tree(unsigned seed, int links);
 
-/// The same tree with its mimic joints set free, and the map between the two: theta of the free
-/// tree = G theta + offset.
+/// The same tree with its mimic joints set free, and the map between the two:
+///   theta of the free tree = G theta + offset.
 struct FreedTree {
   explicit FreedTree(const RobotModel& tied);
   static RobotDescription freed(RobotDescription d);

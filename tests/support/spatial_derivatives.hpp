@@ -77,7 +77,7 @@ inline Vector6d screw(const Body& body, const RobotData& data, size_t i) {
   return body.prismatic ? spatial(s, Vector3d::Zero()) : spatial(data.position[i].cross(s), s);
 }
 
-/// The second route to TreeDynamics::inverse_derivatives().
+/// The result of TreeDynamics::inverse_derivatives(), computed in another way for comparison.
 inline void spatial_derivatives(const RobotModel& model, const RobotState& state,
                                 const VectorXd& acceleration, RobotData& data,
                                 InverseDynamicsDerivatives& derivatives) {

@@ -59,10 +59,11 @@ struct Effect {
 };
 
 enum class Order {
-  by_time,               ///< the causes in order of time
-  by_severity,           ///< the worst cause first
-  worst_of_each_motion,  ///< the worst cause first; between two rests, only one cause has effects
-  by_effect              ///< each effect follows from its first cause
+  by_time,      ///< the causes in order of time
+  by_severity,  ///< the worst cause first
+  /// The worst cause first; between two rests of the motion, only the worst cause has effects.
+  worst_of_each_motion,
+  by_effect  ///< each effect follows from its first cause
 };
 
 struct Rule {

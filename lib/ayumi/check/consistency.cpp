@@ -122,7 +122,8 @@ ConsistencyReport report_of(JudgedMotion& motion) {
   ConsistencyReport report;
   report.profile = motion.limits.name;
   report.summary = motion.summary;
-  for (const FindingSpec* spec : summary_figures())  // no value: never near the limit
+  // Without a value, nothing was near the limit.
+  for (const FindingSpec* spec : summary_figures())
     if (spec->figure.least && !std::isfinite(report.summary[spec->kind]))
       report.summary[spec->kind] = 0;
   // Without collision shapes on both legs, no clearance is known, and nothing was checked.

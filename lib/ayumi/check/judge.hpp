@@ -10,7 +10,8 @@ namespace ayumi {
 struct Judgement {
   /// Report on the motion; its `consistent` is the verdict on motion and goals.
   ConsistencyReport report;
-  /// Whether the motion itself has no errors. If it has some, a repair can remove them.
+  /// Whether the motion itself has no errors. If it has some, they are errors that a repair can try
+  /// to remove.
   bool motion_consistent = true;
   ActuatorNeed motion_need;  ///< what the profile lacks for the motion
   ActuatorNeed goal_need;    ///< what the profile lacks for the goals

@@ -33,8 +33,8 @@ class Hypotheses {
   enum class Kind {
     units,
     times,
-    irregular,  ///< phases that differ from similar ones in the same pattern, or contradict another
-                ///< part
+    /// Parts that differ from similar ones in the same pattern, or contradict another part.
+    irregular,
     exchanges,
     missing,
     nearer,

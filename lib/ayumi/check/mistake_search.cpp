@@ -218,7 +218,7 @@ class Search {
     const auto bisect = [&](const auto& outcome_at) {
       int within = 0;
       for (int i = 0; i < kMostBisections && within < kBisections; ++i) {
-        // Of a value that can be written as it is named.
+        // The nearest share whose value can be written as the message names it.
         const double share = value.written_share(pattern_, 0.5 * (possible + impossible));
         if (share <= possible || share >= impossible) break;
         const TrialOutcome outcome = outcome_at(share);

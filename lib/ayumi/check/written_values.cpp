@@ -21,8 +21,8 @@ namespace ayumi {
 
 namespace {
 
-// Two numbers that differ by less than this are the same, in any unit. Definition: the conversion
-// of degrees and of rounded limits leaves this.
+// Two numbers whose difference is smaller than this count as equal, in any unit. Reason: the
+// conversion of degrees and the rounding of limits cause smaller differences.
 constexpr double kSame = 1e-6;
 
 using In = std::function<double&(Pattern&)>;

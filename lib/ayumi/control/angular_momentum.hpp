@@ -35,8 +35,8 @@ class AngularMomentumTask {
 
   /// One tick of dt [s]. `moment` is dL about the COG in world axes [N m]; its vertical part is not
   /// used. `data` has the positions of the reference, `commanded` has the joints of the plan [rad],
-  /// and `tilt` is the tilt of the plan's trunk about the world's x and y axes [rad]. omega =
-  /// sqrt(g / z) [1/s] is the unit of the rate at which the turn returns.
+  /// and `tilt` is the tilt of the plan's trunk about the world's x and y axes [rad]. The unit of
+  /// the rate at which the turn returns is omega = sqrt(g / z) [1/s].
   const UpperBodyTurn& update(const Eigen::Vector3d& moment, const RobotData& data,
                               const Eigen::VectorXd& commanded, const Eigen::Vector2d& tilt,
                               double omega, double dt);

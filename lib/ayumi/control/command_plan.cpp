@@ -19,8 +19,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Time over which an offset of the COG is taken back [s]. Chosen: five time constants 1/omega of
-// HOAP-1, so the ZMP moves by little more than the offset itself; a shorter blend moves it more.
+// Time over which an offset of the COG is reduced to zero [s]. Chosen: five time constants 1/omega
+// of HOAP-1, so the ZMP moves by little more than the offset itself; a shorter blend moves it more.
 // With half of the value, the ZMP error of the case "handover" changes from 0.365 to 1.13 mm; with
 // twice, to 0.162 mm.
 constexpr double kCogBlend = 0.8;

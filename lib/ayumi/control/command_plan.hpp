@@ -12,7 +12,8 @@ namespace ayumi {
 
 class CommandPlan {
  public:
-  /// Starts with the first sample, as sampled. The series must outlive this object and its copies.
+  /// The command as sampled, from the first sample on. The series must outlive this object and its
+  /// copies.
   explicit CommandPlan(const CommandSeries& series);
 
   double dt() const { return series_->dt; }  ///< time of one tick [s]
@@ -62,7 +63,7 @@ class CommandPlan {
     std::array<Eigen::Isometry3d, 2> rest = {Eigen::Isometry3d::Identity(),
                                              Eigen::Isometry3d::Identity()};
     std::array<double, 2> share = {1, 1};  ///< share of `rest` that still applies, for each foot
-    /// Offset of COG and ZMP, which is taken back slowly [m].
+    /// Offset of COG and ZMP, which is slowly reduced to zero [m].
     Eigen::Vector3d cog = Eigen::Vector3d::Zero();
     long since = 0;  ///< tick at which the offset began
     bool moved = false;

@@ -1,10 +1,11 @@
 // Delta = cmd - measured. For a body that obeys (14), (18) gives
 //   s^2 + omega^2 D s + omega^2 (K - 1) = 0,
-// so that K > 1 and D > 0 bring the COG back. For the poles -omega and -q omega, K = 1 + q and D =
-// (1 + q)/omega: cmdZ - K Dx - D Ddx = cmdZ + (1 + q)(dcm - cmd dcm). With the printed sign, + D
-// Ddx, the error grows. In (26) and (27), a spring kappa = K_Pz/m with gravity compensated keeps
-// dz^2/2 + kappa z^2/2, so the speed at its middle is z_d sqrt(kappa): sqrt(2 g z_H) for a push,
-// the falling speed for a landing.
+// so that K > 1 and D > 0 bring the COG back. For the poles -omega and -q omega,
+//   K = 1 + q,  D = (1 + q)/omega:  cmdZ - K Dx - D Ddx = cmdZ + (1 + q)(dcm - cmd dcm).
+// The error grows with the printed sign, which is + D Ddx.
+// In (26) and (27), a spring kappa = K_Pz/m with gravity compensated keeps dz^2/2 + kappa z^2/2, so
+// the speed at its middle is z_d sqrt(kappa): sqrt(2 g z_H) for a push, the falling speed for a
+// landing.
 #include "ayumi/control/feedback.hpp"
 
 #include <algorithm>

@@ -11,8 +11,9 @@
 namespace ayumi {
 
 /// The ratio of the ZMP's deviation from the plan to the DCM's deviation that brings the DCM back
-/// in exactly the time T, with the smallest integral of the squared ZMP deviation: 2 / (1 - exp(-2
-/// omega T)). For an infinite time, it is 2.
+/// in exactly the time T, with the smallest integral of the squared ZMP deviation:
+///   2 / (1 - exp(-2 omega T)).
+/// For an infinite time, it is 2.
 double foot_guided_gain(double omega, double time);
 
 class FootGuided {

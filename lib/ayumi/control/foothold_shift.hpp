@@ -30,8 +30,7 @@ CommandSample command_between(const CommandSeries& series, double phase);
 void command_between(const CommandSeries& series, double phase, CommandSample& command);
 
 struct FootholdParams {
-  /// Share of the DCM error that the supports cannot remove and footholds remove; 0 switches this
-  /// off.
+  /// Share of the DCM error left by the supports that the footholds remove; 0 switches this off.
   double share = 0;
   double time_scale_limit = 2.5;  ///< fastest clock of the pattern, at least 1
   /// Footholds and clock are chosen by the program of control/step_program, which answers every

@@ -49,8 +49,8 @@ class Footsteps {
  public:
   /// `feet` are the soles at the start, `period` is the duration of a step [s], and `growth` is the
   /// growth of the DCM during a step. `recovery` is the share of an error of position that the next
-  /// foothold takes back. `inset` is the distance of the nominal ZMP from a sole's centre towards
-  /// the other foot [m].
+  /// foothold corrects. `inset` is the distance of the nominal ZMP from a sole's centre towards the
+  /// other foot [m].
   Footsteps(const RobotModel& model, const std::array<Eigen::Isometry3d, 2>& feet, double period,
             double growth, double recovery, double inset = 0);
 
@@ -77,7 +77,7 @@ class Footsteps {
   GroundPose beside(const GroundPose& center, Side side) const;
 
   double period_, growth_, recovery_, inset_, half_width_;
-  double largest_error_;  // largest error of position that is taken back [m]
+  double largest_error_;  // largest error of position that the steps correct [m]
   GroundPose center_;     // place of the middle of the feet on the path
 };
 

@@ -50,8 +50,8 @@ struct GainWishes {
 };
 
 /// The gains of a robot with this omega. K and D follow from the poles. ka = share / (1 - share),
-/// because the ZMP of a stiff robot is [(x - cmdddx / w2) + ka refZ] / (1 + ka). ks = kd = 1 /
-/// (omega T), a double pole at -1 / T. Throws Error(usage) that names the value that is not
+/// because the ZMP of a stiff robot is [(x - cmdddx / w2) + ka refZ] / (1 + ka). A double pole at
+/// -1 / T gives ks = kd = 1 / (omega T). Throws Error(usage) that names the value that is not
 /// possible.
 DtadParams design_gains(double omega, const GainWishes& wishes, DtadParams params = {});
 

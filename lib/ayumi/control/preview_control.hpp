@@ -22,7 +22,8 @@ struct PreviewGains {
   /// K and D omega with which the ZMP reacts to the COG and its speed after the jerk has followed:
   /// the slower two poles of the closed loop are those of x'' = x - K x - D x'.
   Eigen::Vector2d zmp = Eigen::Vector2d::Zero();
-  Eigen::VectorXd preview;  ///< gains of j = 1, 2, ...; all later ticks have the last gain
+  /// Gains of j = 1, 2, ...; the last one contains those of all later ticks.
+  Eigen::VectorXd preview;
   /// The matrices of the Riccati equation that the gains solve, for (e, change of the state): A, B,
   /// Q, R, P.
   Eigen::Matrix4d A, Q, P;

@@ -24,7 +24,8 @@ inline double ground_of(const std::array<Eigen::Isometry3d, 2>& feet) {
 /// have changed.
 class SupportRegion {
  public:
-  /// The result is valid until the next call. Allocates nothing after its largest polygon.
+  /// The result is valid until the next call. Allocates nothing once it has met its largest
+  /// polygon.
   const ConvexPolygon& update(const RobotModel& model, const std::array<Eigen::Isometry3d, 2>& feet,
                               Support support, double margin);
 

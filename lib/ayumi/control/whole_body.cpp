@@ -1,10 +1,10 @@
-// (22): of all joint rates that give the COG its reference velocity and do the task, J_U x = u, the
-// ones nearest to the commanded rates in the norm W; (23) is the solution. A law without commanded
-// rates (VIIP) has (28)(29), the same with the bias 0. Here the bias also pulls the joints towards
-// the posture that is commanded, or held.
-// The anchored sole moves with the plan (at rest in stance), so the floating velocity is
-// V = map dtheta + rigid(anchor motion). Angular rows are scaled by a length so that the damping
-// treats them like metres.
+// Solves (22): among all joint rates that do the task J_U x = u and give the COG its reference
+// velocity, it takes those nearest to the commanded rates in the norm W. (23) is the solution. A
+// law without commanded rates (VIIP) uses (28)(29), which is the same problem with the bias 0. Here
+// the bias also pulls the joints towards the posture that is commanded, or held.
+// The anchored sole moves with the plan (at rest in stance), so the velocity of the floating base
+// is V = map dtheta + rigid(anchor motion), where the map belongs to a sole at rest. Angular rows
+// are scaled by a length so that the damping treats them like metres.
 // A joint at a limit takes rates away. Then the COG height gives way first, the trunk's attitude
 // next: their rows are scaled down, so that the damping outweighs them. Feet and horizontal COG,
 // which keep the robot upright, come last: only then the whole motion becomes slower.

@@ -69,7 +69,7 @@ std::vector<std::string> limit_notes(const RobotModel& model, const Resolution& 
 
 /// Memory that resolve() uses again in each call.
 struct ResolverWork {
-  /// The task as it is; with reduced rows; without the fixed joints.
+  /// The task as it is; with reduced rows; without the joints that are held at a limit.
   StackedTask task, softened, moving;
   StackedTask::Rows weighted;
   StackedTask::Vector left;  // residual of the task
@@ -104,7 +104,8 @@ struct AnkleLaw {
   double compliance = 0;
   /// Time after which a lasting tilt counts as that of the ground [s]; 0 if this never happens.
   double slope_time = 0;
-  /// The same time for a foot whose centre of pressure is inside its sole [s]; 0 for slope_time.
+  /// Value of `slope_time` for a foot whose centre of pressure is inside its sole [s]. With 0, this
+  /// foot has `slope_time`, too.
   double contact_tilt_time = 0;
 };
 

@@ -16,9 +16,8 @@ namespace ayumi {
 struct ContactInterval {
   int first = 0, last = 0;
   bool contact = false;
-  Eigen::Isometry3d sole =
-      /// Pose at which the foot stands while in contact, in the world.
-      Eigen::Isometry3d::Identity();
+  /// Pose at which the foot stands while in contact, in the world.
+  Eigen::Isometry3d sole = Eigen::Isometry3d::Identity();
 };
 
 /// The whole series cut into alternating intervals, in order of time.

@@ -6,8 +6,8 @@
 //   -J_F + [(p_G - p_F) x] J_wF = -s_j x (p_F - p_j) - s_j x (p_G - p_F) = -s_j x (p_G - p_j),
 // which is minus the velocity of the COG as a point of the foot. The other columns stay as they
 // are. For a prismatic joint, s_j replaces every product s_j x r. Written with matrices, (13) is
-// J_G = J_cq - J_cb J_Fb^-1 J_Fq with the floating Jacobians of COG and foot: that product is the
-// second route of the tests.
+// J_G = J_cq - J_cb J_Fb^-1 J_Fq with the floating Jacobians of COG and foot: the tests compute
+// that product for comparison.
 #include "ayumi/dynamics/cog_jacobian.hpp"
 
 #include "ayumi/dynamics/inverse_dynamics.hpp"
@@ -107,8 +107,8 @@ MatrixXd anchored_velocity_map(const RobotModel& model, const RobotData& data, S
   return with_joints(base);
 }
 
-// The normal equations of the minimum of the sum over the feet of |v + w x p + linear|^2 + L^2 |w +
-// angular|^2.
+// The normal equations of the minimum of the sum over the feet of
+//   |v + w x p + linear|^2 + L^2 |w + angular|^2.
 MatrixXd both_feet_velocity_map(const RobotModel& model, const RobotData& data) {
   constexpr double kSquare = kSoleTurnLength * kSoleTurnLength;
   Eigen::Matrix<double, 6, 6> A = Eigen::Matrix<double, 6, 6>::Zero();

@@ -477,7 +477,7 @@ void InverseKinematics::damped(const PostureTarget& target, RobotState& state,
     if (lacking_) all.tail<3>() = trunk * e.trunk;
   };
   Residual e = residual(target, state, data);
-  // A leaning trunk is kept as the initial guess.
+  // A trunk far from its target attitude is no good initial guess: it gets this attitude.
   if (lacking_ && e.trunk.norm() > kLargestJointStep) {
     set_attitude(target, state, data);
     e = residual(target, state, data);

@@ -11,8 +11,8 @@
 namespace ayumi {
 
 struct PostureTarget {
+  /// Poses of the soles, by Side.
   std::array<Eigen::Isometry3d, 2> feet = {Eigen::Isometry3d::Identity(),
-                                           /// Poses of the soles, by Side.
                                            Eigen::Isometry3d::Identity()};
   Eigen::Vector3d cog = Eigen::Vector3d::Zero();        ///< world position of the COG [m]
   Eigen::Matrix3d trunk = Eigen::Matrix3d::Identity();  ///< attitude of the trunk in the world
@@ -42,11 +42,11 @@ struct PostureSolution {
 /// slipping soles.
 inline constexpr double kLackingTolerance = 1.5e-3;
 
-/// The same for a sole in the middle of its swing, which carries nothing. Between lift-off and the
-/// middle of the swing, both are blended as PostureTarget::hold says. Chosen: a third of the lift
-/// of the smallest robots, so that the sole stays clear of the ground. With half of the value,
-/// steps of Open Duck Mini in 0.25 s are refused (they miss by 2.7 mm); twice the value was not
-/// measured.
+/// Value of kLackingTolerance for a sole in the middle of its swing, which carries nothing. Between
+/// lift-off and the middle of the swing, the two values are blended as PostureTarget::hold says.
+/// Chosen: a third of the lift of the smallest robots, so that the sole stays clear of the ground.
+/// With half of the value, steps of Open Duck Mini in 0.25 s are refused (they miss by 2.7 mm);
+/// twice the value was not measured.
 inline constexpr double kSwingingTolerance = 5e-3;
 
 /// Distance by which a sole that is held with this firmness may miss its place [m, rad].

@@ -17,13 +17,14 @@ struct JointDrive {
 /// The drives of these servos.
 JointDrive joint_drive(const ActuatorLimits& actuators);
 
-/// The torque that friction takes from each dof, and its derivative by the rate: viscous dq +
-/// coulomb clamp(dq / stick_rate, -1, 1).
+/// The torque that friction takes from each dof,
+///   viscous dq + coulomb clamp(dq / stick_rate, -1, 1),
+/// and its derivative by the rate.
 double friction_torque(const JointDrive& drive, int dof, double rate);
 double friction_slope(const JointDrive& drive, int dof, double rate);
 
-/// The torque that the motors must give beyond the tree's force, by dof: rotor ddq + friction [N
-/// m].
+/// The torque that the motors must give beyond the tree's force, by dof [N m]:
+///   rotor ddq + friction.
 Eigen::VectorXd drive_torque(const JointDrive& drive, const Eigen::VectorXd& dtheta,
                              const Eigen::VectorXd& ddtheta);
 

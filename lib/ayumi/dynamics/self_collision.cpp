@@ -10,7 +10,7 @@ namespace ayumi {
 
 namespace {
 
-// Distance in the home posture below which bodies that are only a few joints apart [m] are taken
+// Distance in the home posture [m] below which bodies up to kHousingJoints joints apart are taken
 // for housings of one compound joint, made to pass each other. Chosen: a hip or an ankle has up to
 // three axes, whose housings nearly touch.
 constexpr double kHousingGap = 0.005;

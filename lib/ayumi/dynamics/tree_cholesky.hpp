@@ -1,6 +1,6 @@
 #pragma once
-// Factorisation of a matrix with the sparsity of the mass matrix: M = L' L, where L(i, j) is not
-// zero only if j is an ancestor of i, without fill-in (R. Featherstone, Rigid Body Dynamics
+// Factorisation of a matrix with the sparsity of the mass matrix: M = L' L, where L(i, j) can be
+// nonzero only if j is i or an ancestor of i, without fill-in (R. Featherstone, Rigid Body Dynamics
 // Algorithms, 6.5). If mimic joints tie branches together, all dofs form one chain and the factor
 // is dense.
 

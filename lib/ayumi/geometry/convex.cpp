@@ -242,7 +242,7 @@ class Polytope {
   // number of faces would grow without limit. In this case, only faces count that are seen from a
   // larger distance. Returns false if there is no simple rim.
   bool replace_visible(int top) {
-    // Distances from which points are seen [m].
+    // Distances of the vertex from the plane of a face beyond which it sees the face [m].
     for (const double seen_from : {1e-13, 1e-11, 1e-9}) {
       const auto rim = rim_of_visible(top, seen_from);
       if (rim.empty() || !is_simple(rim)) continue;

@@ -14,7 +14,8 @@ inline constexpr double kQuickLoad = 5;
 
 /// How the robot is supported while it moves.
 enum class RobotStand {
-  feet,  ///< it stands or walks on level ground, as the joint angles show
+  /// It stands or walks on level ground; its motion and its support follow from the joint angles.
+  feet,
   fixed  ///< its root is held upright and at rest, for a robot on a stand or without feet
 };
 

@@ -23,7 +23,7 @@ struct TaskOptions {
 Task load_task(const std::filesystem::path& pattern, const TaskOptions& options = {},
                const Progress& progress = {});
 
-/// The same for a pattern that has been read already.
+/// Makes the task of a pattern that has been read already.
 Task load_task(Pattern pattern, const TaskOptions& options = {}, const Progress& progress = {});
 
 /// A robot with the name by which it was loaded.
@@ -32,7 +32,7 @@ struct NamedRobot {
   std::string name;
 };
 
-/// The same for a robot that has been loaded already, whatever robot the pattern names.
+/// Makes the task with a robot that has been loaded already, whatever robot the pattern names.
 Task load_task(Pattern pattern, NamedRobot robot, const std::string& profile,
                const Progress& progress = {}, int threads = 0);
 

@@ -1,8 +1,8 @@
 // Coulomb: a sole does not slide while the force along the ground stays inside the round cone,
 //   f_t = |(f_x, f_y)| <= mu f_n,
-// with (f_x, f_y, f_n) the demanded ground force in the axes of the support plane. The ratio f_t /
-// (mu f_n) is the share of the cone that the motion uses; mu times this ratio is the friction
-// coefficient that it needs.
+// with (f_x, f_y, f_n) the demanded ground force in the axes of the support plane. The share of the
+// cone that the motion uses is f_t / (mu f_n); mu times this share is the friction coefficient that
+// it needs.
 #include "ayumi/limits/friction.hpp"
 
 #include <algorithm>

@@ -51,9 +51,8 @@ struct RowSettings {
   std::vector<int> near_pairs;           ///< pairs of bodies that are watched
   std::vector<bool> locked;              ///< locked joints by dof; empty if there is none
   std::array<bool, 2> locked_feet = {};  ///< feet that keep their paths, by Side
-  bool swing_goals =
-      /// Whether low soles should be level and over their places, and the others high enough.
-      true;
+  /// Whether low soles should be level and over their places, and the others high enough.
+  bool swing_goals = true;
   bool own_roughness = true;  ///< whether a joint may accelerate as much as in the given motion
   double watched_share =
       0;  ///< share of a limit that a watched sample must exceed for the limit to have rows
@@ -67,9 +66,9 @@ struct RowSettings {
   // Values for single limits, which are named by their files.
   struct {
     double least = 0, safe = 0;  ///< margins inside the support [m]
-    /// Margin that is wanted near a margin below `least`; not less than `safe` [m].
+    /// Margin that is wanted near a margin below `least`; not less than `least` [m].
     double mended = 0;
-    double safe_around = 0;  ///< time around a small margin in which `safe` is wanted [s]
+    double safe_around = 0;  ///< time around a margin below `least` in which `mended` is wanted [s]
     double own_share = 0;    ///< share of its own margin that a motion keeps elsewhere
   } support;
   struct {

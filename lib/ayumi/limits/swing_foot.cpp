@@ -75,7 +75,7 @@ Eigen::Matrix<double, 5, 6> offset_rows(const RobotModel& model, Side side,
 struct Landing {
   Isometry3d place;
   Eigen::Matrix<double, 5, 6> offset;  // rows of offset_rows()
-  double factor = 0;                   // k [1/m]
+  double factor = 0;                   // factor on the squared height [1/m]
 
   Vector3d normal() const { return place.linear().col(2); }
 

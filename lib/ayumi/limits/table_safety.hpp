@@ -118,8 +118,8 @@ Eigen::MatrixXi encoder_counts(const RobotModel& model, const ReferenceTrajector
 /// profile's speed limit; infinite for joints without an encoder.
 Eigen::VectorXd count_step_limits(const RobotModel& model, double dt, const SafetyOptions& options);
 
-/// The same for every joint in [rad] or [m]. For a joint without an encoder, only the profile's
-/// speed limit counts.
+/// The largest step in a tick of every joint in [rad] or [m]. For a joint without an encoder, only
+/// the profile's speed limit counts.
 Eigen::VectorXd largest_steps(const RobotModel& model, double dt, const SafetyOptions& options);
 
 }  // namespace ayumi

@@ -53,7 +53,7 @@ void judge_torsion(JudgedMotion& motion, const JudgedSample& s) {
 // (arm f_n -+ n_z) / (m g) >= 0, where n_z = w_5 + (w_3 f_x + w_4 f_y) / f_n is the yaw moment
 // about the ZMP and the arm is mu r, kept as it is in the latest iterate.
 struct TurnRows {
-  double arm = 0;    // lever of the friction force [m]
+  double arm = 0;    // mu r [m]
   double scale = 0;  // 1 / (m g)
 
   VectorXd value(const Vector6d& w) const {

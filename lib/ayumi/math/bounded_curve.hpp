@@ -19,9 +19,10 @@ struct RestToRest {
 };
 
 /// The bounded solution that also has x' = 0 at both ends. A bounded motion anticipates: it moves
-/// at t = 0 when the ZMP moves soon afterwards. The ZMP is therefore changed by begin * bump(t) +
-/// end * bump(T - t), which is close to the smallest possible change, and zero where the ZMP rests
-/// long enough at both ends.
+/// at t = 0 when the ZMP moves soon afterwards. The ZMP is therefore changed by
+///   begin * bump(t) + end * bump(T - t),
+/// which is close to the smallest possible change, and zero where the ZMP rests long enough at both
+/// ends.
 RestToRest rest_to_rest_cog(const Eigen::VectorXd& z, const Eigen::VectorXd& w2, double h);
 
 }  // namespace ayumi

@@ -23,8 +23,8 @@ template <typename T>
   const T s = a + b, part = s - a;
   return {s, (a - (s - part)) + (b - part)};
 }
-template <typename T>
 // The sum is exact if |a| >= |b|.
+template <typename T>
 [[gnu::always_inline]] inline Pair<T> quick_sum(const T& a, const T& b) {
   const T s = a + b;
   return {s, b - (s - a)};

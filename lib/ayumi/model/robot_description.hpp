@@ -82,7 +82,7 @@ struct ServoDescription {
   /// Dry friction at rest beyond `coulomb` [N m]; at the rate v it is s times as large, with
   /// s = exp(-(|v| / stribeck_rate)^stribeck_exponent).
   double stribeck_torque = 0;
-  /// Rate at which the Stribeck part has decayed [rad/s]; 0 for no Stribeck effect.
+  /// Rate in the decay above [rad/s], at which s is 1/e; 0 for no Stribeck effect.
   double stribeck_rate = 0;
   double stribeck_exponent = 2;  ///< exponent of the decay [1]
   LoadFriction load = {};

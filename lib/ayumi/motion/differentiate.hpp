@@ -15,8 +15,8 @@ namespace ayumi {
 /// otherwise it continues as a cubic.
 void fill_rates(std::vector<CommandSample>& samples, double dt, bool rest_ends);
 
-/// The same for the samples from `first` to before `end`. Different threads may fill different
-/// samples at once.
+/// Fills the rates of the samples from `first` to before `end`. Different threads may fill
+/// different samples at once.
 void fill_rates(std::vector<CommandSample>& samples, int first, int end, double dt, bool rest_ends);
 
 /// The ZMP at the height of `sample.zmp` and the ground force that the full model needs. If the
@@ -24,7 +24,8 @@ void fill_rates(std::vector<CommandSample>& samples, int first, int end, double 
 GroundReaction full_model_reaction(const RobotModel& model, const CommandSample& sample,
                                    RobotData& data);
 
-/// The same for many samples, equal up to rounding and much faster. `dynamics` is that of `model`.
+/// The results of full_model_reaction() for many samples, equal up to rounding and computed much
+/// faster. `dynamics` belongs to `model`.
 void full_model_reactions(const RobotModel& model, std::span<const CommandSample> samples,
                           TreeDynamics& dynamics, std::vector<GroundReaction>& reactions);
 

@@ -26,11 +26,11 @@ enum class LawStage {
 /// does not use are 0. Places are in the plan frame [m]; accelerations are in m/s^2.
 struct LawTerms {
   LawStage stage = LawStage::replay;
-  /// The ZMP of (18)(19) that is planned, within the support, and the one that is wanted, before
-  /// the nearest point of the support is taken.
+  /// `planned_zmp` is the planned ZMP, inside the support. `wanted_zmp` is the result of (18)(19),
+  /// before it is moved to the nearest point of the support.
   Eigen::Vector3d planned_zmp = Eigen::Vector3d::Zero(), wanted_zmp = Eigen::Vector3d::Zero();
-  /// Gains of (18)(19) [1], [s]; for VIIP, the derivative of the wanted ZMP by the DCM, and this /
-  /// omega.
+  /// Gains of (18)(19) [1], [s]. For VIIP: the derivative of the wanted ZMP by the DCM, and this
+  /// derivative divided by omega.
   double K = 0, D = 0;
   /// Measured ZMP after its low-pass filter.
   Eigen::Vector3d filtered_zmp = Eigen::Vector3d::Zero();

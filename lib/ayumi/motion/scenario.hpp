@@ -34,7 +34,7 @@ struct Payload {
   double mass = 0;                                  ///< mass of the load [kg]
 };
 
-/// A change of the coefficient of friction of the whole ground, its patches included.
+/// A new coefficient of friction of the whole ground, its patches included.
 struct FrictionChange {
   double friction = 0;
 };

@@ -24,9 +24,9 @@ inline constexpr double kSwingMargin = 0.08;
 /// Pose of the sole frame at a foothold.
 Eigen::Isometry3d pose_of(const Foothold& foothold);
 
-/// Footholds at t = 0: those of the pattern. Without them, those of its default posture on z = 0,
-/// with the middle of both sole frames at the origin (or relative to the given foot if one is
-/// given).
+/// Footholds at t = 0: those of the pattern. If it gives none, they come from its default posture:
+/// on z = 0, with the middle of both sole frames at the origin. If it gives one, the other foot has
+/// its place in the default posture relative to the given one.
 std::array<Eigen::Isometry3d, 2> start_feet(const RobotModel& model, const Pattern& pattern);
 
 class FootPlan {

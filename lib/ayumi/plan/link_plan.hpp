@@ -106,8 +106,7 @@ class LinkPlan {
   void add_target(const std::string& name, bool gaze, const std::vector<bool>& solved);
   void fill_tracks(Target& target) const;
   void put_in_group(Target target);
-  // Both functions only move the bodies of the group's path. The rest of `data` must already belong
-  // to the state.
+  // Only moves the bodies of the group's path. The rest of `data` must already belong to the state.
   std::vector<Aim> aims_at(const Group& group, double t, const Eigen::VectorXd& keyed,
                            const RobotState& state, RobotData& data, bool directions) const;
   // Only moves the bodies of the group's path. The rest of `data` must already belong to the state.

@@ -9,7 +9,7 @@
 
 namespace ayumi {
 
-/// "[0.1, -0.039, 0]" in metres, rounded to the micrometre, with zero without a sign.
+/// "[0.1, -0.039, 0]" in metres, rounded to the micrometre; a zero has no minus sign.
 inline std::string place_text(const Eigen::Vector3d& place) {
   const auto number = [](double value) {
     return text::brief(std::round(1e6 * value) * 1e-6 + 0.0);

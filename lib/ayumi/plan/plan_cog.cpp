@@ -1,7 +1,7 @@
 // The pendulum law (14)(15) gives a first COG. The ZMP of the full model differs from its command,
-// because legs and arms have angular momentum, and the trunk where it leans. The bounded solution
-// of the error e = cmd z - full z is added to the COG in each pass; the error that remains comes
-// from the change of the limbs' motion.
+// because legs and arms, and a trunk that leans, have angular momentum. In each pass, the bounded
+// solution of (14)(15) for the ZMP error e = cmd z - full z is added to the COG; the error that
+// remains comes from the change of the limbs' motion.
 #include <algorithm>
 #include <cmath>
 #include <mutex>

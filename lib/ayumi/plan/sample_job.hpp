@@ -95,7 +95,7 @@ void continue_posture(const Extrapolation& postures, CommandSample& sample);
 PostureSolution solve_posture(const SampleJob& job, double t, const Eigen::Matrix3d& trunk,
                               CommandSample& sample, RobotData& data);
 
-/// Whether a phase has no support.
+/// Whether any phase has no support.
 bool flies(const SampleJob& job);
 
 /// Fraction of the weight below which the ground force is too small for a ZMP to correct, (17).
@@ -121,7 +121,7 @@ struct CogPlan {
   Eigen::Vector3d cog_at(double t) const;
   /// The commanded ZMP: that of the keys, with the bumps that a start from rest needs.
   Eigen::Vector3d zmp_at(double t) const;
-  /// The attitude of the trunk in the pattern, turned around flights.
+  /// The attitude `asked` of the trunk, with the turn that is added in and near flights.
   Eigen::Matrix3d turned(double t, const Eigen::Matrix3d& asked) const;
 };
 

@@ -81,8 +81,9 @@ Vector3d project(const Camera& camera, int width, int height, const Vector3d& po
 }
 
 // Let D be the distance, b how much nearer a point is, and k the tangent of half the view. A point
-// is within the picture if |r - shift| <= k (D - b). Both edges touch a point if D is the span of r
-// + k b and r - k b over 2 k.
+// is within the picture if
+//   |r - shift| <= k (D - b).
+// Both edges touch a point if D is the span of r + k b and r - k b over 2 k.
 Framing framing(const Camera& camera, double aspect, const std::vector<Vector3d>& offsets,
                 double share) {
   const bool parallel = camera.parallel_height > 0;
@@ -105,9 +106,9 @@ Framing framing(const Camera& camera, double aspect, const std::vector<Vector3d>
   };
   for (const int axis : {0, 1}) {
     const Eigen::Vector2d at_zero = edges(axis, 0);
-    const double gained = parallel ? share * (axis == 0 ? aspect : 1.0)
-                                   // Gain for each metre of distance.
-                                   : 2 * k[static_cast<size_t>(axis)];
+    // Gain of the picture for each metre of distance, or of height in a parallel view.
+    const double gained =
+        parallel ? share * (axis == 0 ? aspect : 1.0) : 2 * k[static_cast<size_t>(axis)];
     result.distance = std::max(result.distance, (at_zero[0] - at_zero[1]) / gained);
   }
   result.right = edges(0, result.distance).mean();

@@ -79,7 +79,7 @@ class ClipRenderer {
   ClipRenderer(const RobotModel& model, const SimulationLog& log, const ClipOptions& options,
                std::shared_ptr<const ClipShape> shape);
   Image frame(double t);
-  /// The same picture as a part of the clip; its legend is that of all pictures of the clip.
+  /// The picture of frame() as a part of the clip; all pictures of the clip have one legend.
   Image clip_frame(double t);
   /// The next frame takes the memory of this one, which nobody needs any more.
   void reuse(Image frame) { renderer_.reuse(std::move(frame)); }

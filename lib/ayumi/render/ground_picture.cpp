@@ -14,9 +14,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kFade =
-    // Distance at which the ground becomes the horizon, in distances of the camera from its target.
-    4.5;
+// Distance at which the ground becomes the horizon, in distances of the camera from its target.
+constexpr double kFade = 4.5;
 constexpr float kShadowStrength = 0.42f;
 constexpr std::array<float, 3> kHorizonColor = {0.877f, 0.893f, 0.907f};
 constexpr std::array<float, 3> kZenithColor = {0.735f, 0.798f, 0.867f};

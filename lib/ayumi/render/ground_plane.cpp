@@ -27,8 +27,9 @@ GroundRectangle ground_rectangle(const Eigen::Isometry3d& frame, const Eigen::Al
   return ground;
 }
 
-// With p measured from the plane's origin, the map is p -> ((p - s (n.p)/(n.s)) . u - center) /
-// reach, and the same for v.
+// With p measured from the plane's origin, the map is
+//   p -> ((p - s (n.p)/(n.s)) . u - center) / reach,
+// and the same for v.
 Eigen::Matrix4d flattening(const GroundRectangle& plane, const Vector3d& sun) {
   const Eigen::Matrix3d fall =
       Eigen::Matrix3d::Identity() - sun * plane.normal.transpose() / plane.normal.dot(sun);

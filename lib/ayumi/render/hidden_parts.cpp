@@ -13,10 +13,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-// How far a corner may be outside a plane of its own part, as a share of the part's size, and half
-// of how far a hidden corner must be inside. Chosen: a part of 200 pixels is then convex to 0.04
-// pixels. With half of the value, round parts whose corners have six digits are not convex; with
-// twice, it is 0.08 pixels.
+// Largest distance of a corner outside a plane of its own part, as a share of the part's size. A
+// hidden corner must be inside by twice this distance. Chosen: a part of 200 pixels is then convex
+// to 0.04 pixels. With half of the value, round parts whose corners have six digits are not convex;
+// with twice, it is 0.08 pixels.
 constexpr double kFlat = 2e-4;
 // Largest product of planes and corners of a part that is examined. Chosen: that of a part of 1,150
 // triangles. With twice the value, heavy meshes take longer to examine; with half, finely divided

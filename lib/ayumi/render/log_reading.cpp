@@ -42,7 +42,8 @@ std::vector<FlightRecord> stretches(const SimulationLog& log, const std::array<b
 struct Candidate {
   double t = 0;       ///< time [s]
   double weight = 0;  ///< for postures, the size of the move [rad]; events have a higher weight
-  bool looks_like_another = false;  ///< it is near others, but worth a picture nevertheless
+  /// Whether its posture is similar to another one, but is worth a picture nevertheless.
+  bool looks_like_another = false;
 };
 
 // Weights of events. They are above that of every posture, because a joint moves by less than 10
@@ -66,9 +67,8 @@ void add_turns(const std::vector<double>& values, double dt, size_t first, doubl
   size_t low = 0, high = 0, from = 0;  // the extremes since the last turn, and that turn
   int direction = 0;
   const auto turn = [&](size_t at) {
-    const double move =
-        // Limited to a value below the weight of every event.
-        std::min(10.0, std::abs(values[at] - values[from]));
+    // Limited to a value below the weight of every event.
+    const double move = std::min(10.0, std::abs(values[at] - values[from]));
     size_t reached = from;
     while (reached < at && std::abs(values[reached] - values[at]) > kReached * move) ++reached;
     // The place where the move began was already shown.

@@ -8,9 +8,13 @@
 
 #include "ayumi/base/error.hpp"
 
-// With R, G, B in 0..255 and L = 0.2126 R + 0.7152 G + 0.0722 B, Y = 16 + 219/255 L, Cb = 128 +
-// 224/255 (B - L) / 1.8556, and Cr = 128 + 224/255 (R - L) / 1.5748. They are computed in whole
-// numbers with the unit 2^16; for the sum of four pixels, the unit is 2^18.
+// With R, G, B in 0..255:
+//   L = 0.2126 R + 0.7152 G + 0.0722 B,
+//   Y = 16 + 219/255 L,
+//   Cb = 128 + 224/255 (B - L) / 1.8556,
+//   Cr = 128 + 224/255 (R - L) / 1.5748.
+// Y, Cb and Cr are computed in whole numbers with the unit 2^16; for the sum of four pixels, the
+// unit is 2^18.
 
 namespace ayumi {
 namespace {

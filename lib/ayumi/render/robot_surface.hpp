@@ -38,7 +38,7 @@ std::vector<const Triangles*> parts_of(const BodySurface& body);
 
 /// The frames of the bodies in the world, one per body.
 std::vector<Eigen::Isometry3d> body_poses(const RobotModel& model, const RobotState& state);
-/// The same for many states: `data` is a workspace of the model.
+/// The frames, for calls with many states: `data` is a workspace of the model.
 std::vector<Eigen::Isometry3d> body_poses(const RobotModel& model, const RobotState& state,
                                           RobotData& data);
 

@@ -35,8 +35,8 @@ void main() {
 }
 )";
 
-// The same with a picture instead of the colour. This is a separate program, because for software
-// renderers a sampler costs time even if it is not used.
+// The shader above with a picture instead of the colour. It is a separate program, because for
+// software renderers a sampler costs time even if it is not used.
 inline constexpr const char* kTextureInput = R"(
 in vec2 place;
 uniform sampler2D picture;

@@ -8,10 +8,10 @@
 #include "ayumi/base/key_numbers.hpp"
 
 // Each vertex moves to the mean of the vertices in its cell, and triangles whose corners share a
-// cell are removed. A removed triangle has no part in the boundary, so that a closed surface stays
-// closed: each of its edges has as many triangles on one side as on the other. Within a cell,
-// vertices that look towards different sides of a cube keep normals of their own, so that edges
-// stay edges.
+// cell are removed. A removed triangle has no area, so that a closed surface stays closed: at each
+// edge of the surface, as many triangles run through it in one direction as in the other. Within a
+// cell, vertices that look towards different sides of a cube keep normals of their own, so that
+// edges stay edges.
 
 namespace ayumi {
 namespace {

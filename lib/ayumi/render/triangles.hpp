@@ -35,7 +35,7 @@ struct IndexRange {
 void append(Triangles& target, const Triangles& part,
             const Eigen::Isometry3d& pose = Eigen::Isometry3d::Identity());
 
-/// The same triangles, in which vertices that are equal to the bit have become one.
+/// The triangles of `surface`, in which vertices that are equal to the bit have become one.
 Triangles welded(const Triangles& surface);
 
 /// The surface of a box, sphere, cylinder or capsule in its own frame. Throws Error(internal) for a

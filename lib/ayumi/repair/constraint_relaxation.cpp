@@ -67,8 +67,8 @@ Nlp relaxed(const Nlp& nlp, const Slacks& relaxation) {
   if (nlp.start_multipliers.size() > 0) {
     soft.start_multipliers.resize(m + extra);
     soft.start_multipliers << nlp.start_multipliers, VectorXd::Zero(extra);
-    for (Eigen::Index i = 0; i < extra;
-         ++i) {  // only lower bounds below 0 and upper bounds above 0 count
+    // Multipliers of lower bounds are below 0, and those of upper bounds are above 0.
+    for (Eigen::Index i = 0; i < extra; ++i) {
       double& first = soft.start_multipliers[layout->twice[i]];
       soft.start_multipliers[m + i] = std::max(0.0, first);
       first = std::min(0.0, first);

@@ -51,9 +51,8 @@ struct CorrectionSpec {
   bool at_check_limits = false;  ///< if true, every limit is exactly that of the check
   double joint_margin =
       repair_policy::kFirstBackoff.joint_position;  ///< distance inside soft limits [rad]
-  double limit_share = repair_policy::kFirstBackoff
-                           /// Shares of the limits of speed, torque and friction that may be used.
-                           .limit_share;
+  /// Share of the limits of speed, torque and friction that may be used.
+  double limit_share = repair_policy::kFirstBackoff.limit_share;
   double zmp_margin =
       repair_policy::zmp::kLeastMargin;  ///< smallest ZMP margin inside the support [m]
   double least_normal_force =
@@ -61,12 +60,12 @@ struct CorrectionSpec {
   double sole_position =
       repair_policy::stance::kPosition;               ///< half the band of a sole's position [m]
   double sole_angle = repair_policy::stance::kAngle;  ///< half the band of a sole's attitude [rad]
-  double sole_at_knots = repair_policy::stance::kShareAtKnots;  ///< share of that band at knots
+  double sole_at_knots = repair_policy::stance::kShareAtKnots;  ///< share of these bands at knots
   double clearance = repair_policy::clearance::kKept;  ///< smallest distance between bodies [m]
 
   // These are soft goals beyond the check.
-  double safe_margin =
-      0;  ///< wanted margin of the ZMP if the motion's own margin is below the smallest [m]
+  /// Wanted margin of the ZMP if the motion's own margin is below the smallest allowed one [m].
+  double safe_margin = 0;
   bool swing_goals =
       true;  ///< low soles are level and over their places, and the others are high enough
   double dcm_slack = repair_policy::dcm::kSlack;  ///< half the band of the DCM [m]
@@ -83,10 +82,8 @@ struct CorrectionSpec {
   std::vector<ActiveLimit> active;         ///< limits that get rows at single samples
   std::vector<const CommandSeries*> seen;  ///< earlier results, the latest one last
 
-  int threads =
-      /// Number of threads for functions and derivatives; 0 for all cores; results do not depend on
-      /// it.
-      0;
+  /// Number of threads for functions and derivatives; 0 for all cores. Results do not depend on it.
+  int threads = 0;
 };
 
 }  // namespace ayumi

@@ -28,10 +28,8 @@ void add_pose(const RobotModel& model, Side side, const PoseCurvature& w, const 
     for (size_t b = a; b < columns.size(); ++b) {
       const int i = columns[a], j = columns[b];
       double both = pose_curvature(w, J, i, j);
-      if (i >= 3 && j < 6)
-        both = 0.5 *
-               // The base has three rotations, which act at the same time.
-               (both + pose_curvature(w, J, j, i));
+      // The base has three rotations, which act at the same time.
+      if (i >= 3 && j < 6) both = 0.5 * (both + pose_curvature(w, J, j, i));
       both += w.square * rise[i] * rise[j];
       sum(i, j) += both;
       if (i != j) sum(j, i) += both;

@@ -1,7 +1,7 @@
 // The wrench (f, n) of a foot about the base origin adds -ratio (a . n - a . (p x f)) to the torque
-// of a joint between base and sole, with a the joint's axis and p its position from that origin. A
-// small rotation w of everything below the joint, about a point at distance r from p, changes a .
-// m, m = n - p x f, by
+// of a joint between base and sole, with a the joint's axis and p its position from that origin.
+// With m = n - p x f, a small rotation w of everything below the joint, about a point from which p
+// is at r, changes the product a . m by
 //   w . (a x m - (a . r) f + (r . f) a),
 // and a . f of a sliding joint by w . (a x f). The sharing of the wrench between two feet depends
 // on the ZMP alone and is piecewise smooth; its slope is taken by differences within a piece.
@@ -50,7 +50,9 @@ std::array<Eigen::Matrix<double, 6, 9>, 2> sharing_slope(const RobotModel& model
   return slope;
 }
 
-// The gradient with respect to a small rotation about a point at distance `r` from the joint.
+// The gradient of the moment `m` or, for a sliding joint, of the force `f` along the joint's axis
+// with respect to a small rotation about a point; `r` is the place of the joint relative to this
+// point.
 Vector3d by_rotation(const Body& body, const Vector3d& axis, const Vector3d& r, const Vector3d& m,
                      const Vector3d& f) {
   if (body.prismatic) return axis.cross(f);

@@ -2,9 +2,10 @@
 // Every tuning parameter of the repair, in one place: value, unit, reason, source, and the test
 // that would fail if it changed. Sources: a "Derived" value follows from another figure, a
 // "Measured" value comes from a trial, and a "Chosen" value is a judgement. If a trial showed the
-// effects of half and twice a value, these are stated. "Test: none" means that no assertion is
-// known to depend on the value; then the numbers of repaired patterns can change while no test
-// fails. Tests are named suite.case of tests/repair, unless another folder is given.
+// effects of half and twice a value, these are stated. In them, "missing safety" is the robustness
+// part of the cost (WeightedChange::safety). "Test: none" means that no assertion is known to
+// depend on the value; then the numbers of repaired patterns can change while no test fails. Tests
+// are named suite.case of tests/repair, unless another folder is given.
 //
 // Times suit a robot of HOAP-1's height (omega = sqrt(g / z) of about 6 1/s, so 0.5 s is 3/omega);
 // they do not scale with the robot yet.
@@ -32,9 +33,9 @@ inline constexpr double kInFlight = 8;
 /// succeeds).
 inline constexpr double kInFaultyFlight = 20;
 /// Number of knots in a window in which a foot slips. Reason: to keep a sole in its place, the
-/// correction must equal the whole slip. Measured: with coarser knots, the change of one turning
-/// walk was 80 times as large. With half of the value, the missing safety of the case "slip"
-/// changes from 0 to 0.577; with twice, to 0.0101. Test: none.
+/// correction must equal the whole slip. Measured: with coarser knots, the legs gave way, and the
+/// change of one turning walk was 80 times as large. With half of the value, the missing safety of
+/// the case "slip" changes from 0 to 0.577; with twice, to 0.0101. Test: none.
 inline constexpr double kInSlip = 10;
 /// Number of samples between two knots at which the spacing is no longer halved. Chosen: finer
 /// knots follow the rounding of differences. No measured case changes between half and twice the
@@ -94,9 +95,9 @@ inline constexpr int kMostPerError = 12;
 /// limit are put beside it. Chosen. No measured case changes between half and twice the value
 /// (constants.md). Test: none.
 inline constexpr double kActive = 1e-3;
-/// The same for friction, as a share of the available friction. Reason: the cone curves. With half
-/// of the value, the number of iterations of the case "grip" changes from 95 to 107; with twice,
-/// figures change by less than 5 %. Test: none.
+/// Value of kActive for rows of friction, as a share of the available friction. Reason: the cone
+/// curves. With half of the value, the number of iterations of the case "grip" changes from 95 to
+/// 107; with twice, figures change by less than 5 %. Test: none.
 inline constexpr double kActiveFriction = 0.05;
 /// Number of such points from one collocation point to the next. Chosen. With half of the value,
 /// the number of iterations of the case "knee" changes from 62 to 73; with twice, the number of
@@ -166,9 +167,10 @@ namespace stance {
 /// deviate by 0.1 mm from each other, the load moves from one foot to the other, and a walk with a
 /// wider band fell in open loop. Test: Repair.SlippingFootStandsStill (only below 1 mm).
 inline constexpr double kPosition = 2e-4;
-/// The same as an angle [rad]. Derived: 0.2 mm at 0.1 m. Test: none.
+/// Half the band in which a standing sole keeps its attitude [rad]. Derived: 0.2 mm at 0.1 m. Test:
+/// none.
 inline constexpr double kAngle = 2e-3;
-/// Share of that band at the knots. Reason: the spline is exact at the knots and deviates between
+/// Share of these bands at the knots. Reason: the spline is exact at the knots and deviates between
 /// them. Measured with the band. With half of the value, the missing safety of the case "sway"
 /// changes from 0.296 to 0.167; with twice, the change of the case "early" changes from 0.0359 to
 /// 0.0231. Test: none.
@@ -177,8 +179,8 @@ inline constexpr double kShareAtKnots = 0.1;
 /// With half of the value, the change of the case "early" changes from 0.0359 to 0.0646; with
 /// twice, to 0.00515. Test: none.
 inline constexpr double kToleranceShare = 0.2;
-/// Share of the check's tolerance that a corner may rise or sink as the sole turns. Chosen. With
-/// half of the value, the missing safety of the case "sway" changes from 0.296 to 0.186; with
+/// Share of the check's tolerance by which a corner may rise or sink as the sole turns. Chosen.
+/// With half of the value, the missing safety of the case "sway" changes from 0.296 to 0.186; with
 /// twice, nothing changes. Test: none.
 inline constexpr double kCornerShare = 0.6;
 /// Time after landing and before lift-off in which a sole may keep the deviation from its place
@@ -263,10 +265,10 @@ inline constexpr double kWrongPlanAround = 0.3;
 }  // namespace dcm
 
 namespace flight {
-/// The motion's own error of free fall in flight is kept up to this share of the check's limit; a
-/// larger one is removed completely. Chosen. With half of the value, the missing safety of the case
-/// "flight" changes from 0.00462 to 0.0067; with twice, to 0.0143. Test: JumpRepair.* (that the
-/// repair succeeds).
+/// The force and the moment that the motion itself needs in flight are each kept up to this share
+/// of the check's limit; a larger one is removed completely. Chosen. With half of the value, the
+/// missing safety of the case "flight" changes from 0.00462 to 0.0067; with twice, to 0.0143. Test:
+/// JumpRepair.* (that the repair succeeds).
 inline constexpr double kOwnShare = 0.85;
 /// Half the band as a share of the check's limit, divided among three axes. Chosen. With half of
 /// the value, the missing safety of the case "flight" changes from 0.00462 to 0.0317; with twice,
@@ -364,11 +366,12 @@ inline constexpr double kFreeAround = 0.5;
 /// and a start with less violation is a warm start (scaled violation). Chosen. No measured case
 /// changes between half and twice the value (constants.md). Test: none.
 inline constexpr double kNearlyMet = 1e-3;
-/// The same bound if the multipliers of the last program are known. Measured: the second program on
-/// slippery ground, which starts with 2.6e-3, takes 5 iterations instead of 11. Test: none.
+/// Value of kNearlyMet if the multipliers of the last program are known. Measured: the second
+/// program on slippery ground, which starts with 2.6e-3, takes 5 iterations instead of 11. Test:
+/// none.
 inline constexpr double kNearKnown = 1e-2;
-/// Scaled violation of a solved program. Derived: ten times the solver's tolerance. Test: Repair.*
-/// (constraint_violation).
+/// Largest scaled violation with which a program counts as solved. Derived: ten times the solver's
+/// tolerance. Test: Repair.* (constraint_violation).
 inline constexpr double kMet = 1e-6;
 /// Largest number of iterations of the first program. Reason: finer knots may help more than
 /// further iterations. Measured: a thrown knee changed nothing in the last 60 of 100. No measured
@@ -405,11 +408,12 @@ inline constexpr double kTolerance = 1e-7, kLeastTolerance = 1e-9, kMostToleranc
 /// Share of the way back to the passing motion at which the next program starts. Chosen. Between
 /// half and twice the value, figures change by less than 5 %. Test: none.
 inline constexpr double kStartBack = 0.1;
-/// Shares of the way that are tried back instead of another solution: the first and the largest;
-/// each is ten times the one before. Chosen: a step of a thousandth of the way back changes the
-/// weighted change by at most a thousandth of the difference between the two motions, because it is
-/// convex. It saves a program of ten iterations (friction 0.10 on a walk of 4.3 s). Test:
-/// LeastChange.* (a step back costs more than the smallest change).
+/// Shares of the way back to the passing motion that are tried before the program is solved once
+/// more: the first and the largest; each is ten times the one before. Chosen: a step of a
+/// thousandth of the way back changes the weighted change by at most a thousandth of the difference
+/// between the two motions, because it is convex. It saves a program of ten iterations (friction
+/// 0.10 on a walk of 4.3 s). Test: LeastChange.* (the motion after going back costs more than the
+/// smallest change).
 inline constexpr double kFirstBack = 1e-6, kMostBack = 1e-3, kBackFactor = 10;
 /// ZMP margin without robustness, inside the edge [m]. Derived: kRounding of 1 mm. Test: none.
 inline constexpr double kZmpMargin = kRounding * 1e-3;
@@ -482,9 +486,9 @@ inline constexpr double kFactorStep = 0.01;
 /// Number of samples around a window that are judged with it. Derived: differences use two
 /// neighbours. Test: none.
 inline constexpr long kSamplesAround = 2;
-/// Amounts of different units that count as much as a limit that is exceeded by its whole value.
-/// Chosen: 1 cm, 10 N, 0.1 of any other unit. No measured case changes between half and twice the
-/// value (constants.md). Test: none.
+/// Amounts of a violation in m, in N and in other units that count as much as a value of twice its
+/// limit. Chosen: 1 cm, 10 N, 0.1 of any other unit. No measured case changes between half and
+/// twice the value (constants.md). Test: none.
 inline constexpr double kLength = 0.01, kForce = 10, kOther = 0.1;
 }  // namespace infeasible
 
@@ -499,7 +503,7 @@ inline constexpr double kMoved = 1e-6;
 /// No measured case changes between half and twice the value (constants.md). Test:
 /// MotionChange.NamesJointsTimesAndQuantities.
 inline constexpr double kChangeShare = 0.1;
-/// Factor for the number of decimals of a control point in a file. Derived: kRounding has six
+/// Factor of rounding a control point in a file: nine decimals. Derived: kRounding has six
 /// decimals. Test: none.
 inline constexpr double kWritten = 1e9;
 }  // namespace report

@@ -30,7 +30,8 @@ namespace ayumi {
 /// Random control points: joints and base rotation are within +-size [rad], the base within a tenth
 /// of it [m].
 struct RandomStart {
-  double size = 0;  ///< size of the track with which the search starts; with 0, it starts as usual
+  /// Bound of the random control points [rad]; with 0, the search starts as usual.
+  double size = 0;
   std::uint64_t seed = 0;
 };
 
@@ -51,7 +52,8 @@ struct RepairOptions {
   Trust trust = Trust::posture;
   /// Factor on the robustness cost; 0 for the smallest change that passes the check.
   double safety = 1;
-  bool keep_partial = false;  ///< whether a stopped repair concludes with the best point so far
+  /// Whether a stopped repair concludes with the point of the smallest violation so far.
+  bool keep_partial = false;
   double knot_spacing = repair_policy::knots::kSpacing;  ///< distance of the B-splines' knots [s]
   /// The wanted distance of the ZMP from the support edge if the motion has less [m]; without a
   /// value: safe_margin().

@@ -21,7 +21,7 @@ struct ChangePart {
 };
 
 struct WeightedChange {
-  double change = 0;              ///< the sum [s]
+  double change = 0;              ///< the sum of the formula above [s]
   double safety = 0;              ///< robustness cost (robustness_cost.hpp) [s]
   std::vector<ChangePart> parts;  ///< parts that are not 0, the largest first
   double total() const { return change + safety; }

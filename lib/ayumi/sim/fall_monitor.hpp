@@ -38,9 +38,9 @@ class FallMonitor {
   bool observe(double t, const CommandSample& command, const SimulationSample& sample,
                const RobotData& truth, const StepReport& report, double dt);
 
-  /// The same for the verdict only. The result then only has the outcome with its time, the largest
-  /// tilt and the figures of the end. Only the COG and the true ZMP with its force are read from
-  /// `sample`.
+  /// Takes one control tick for the verdict only. The result then only has the outcome with its
+  /// time, the largest tilt and the figures of the end. Only the COG and the true ZMP with its
+  /// force are read from `sample`.
   bool observe_verdict(double t, const CommandSample& command, const SimulationSample& sample,
                        const RobotData& truth, const StepReport& report, double dt);
 

@@ -14,7 +14,7 @@ std::string words_of(const std::vector<Disturbance>& scenario);
 /// tilt)" or "the run did not settle". Empty if the robot stands at the end.
 std::string unfit_words(const SimulationLog& log);
 
-/// Both cautions of a run.
+/// The words of words_of() and of unfit_words() for a run.
 TableCaution caution_of(const SimulationLog& log);
 
 }  // namespace ayumi

@@ -24,8 +24,8 @@ struct PlantKind {
 };
 
 /// Servo targets that replace those of the control law in each tick. The arguments are the targets
-/// that the law would send at `t` [s], the estimate that it had, and its plan. The size of
-/// `targets` must not change [rad, m]. Copies of a simulator share the state of the function.
+/// that the law would send at `t` [s], the estimate that it had, and its plan. The result must have
+/// the size of `targets` [rad, m]. Copies of a simulator share the state of the function.
 using TargetFunction = std::function<Eigen::VectorXd(
     double t, const Estimate& estimate, const CommandSample& plan, const Eigen::VectorXd& targets)>;
 

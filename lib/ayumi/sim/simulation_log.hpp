@@ -91,13 +91,13 @@ struct SimulationResult {
   double zmp_amplitude = 0;
   double zmp_frequency = 0;    ///< frequency of this oscillation [Hz]
   double flight = 0;           ///< time without ground contact [s]
-  double apex = 0;             ///< height of the COG above its command [m]
+  double apex = 0;             ///< largest height of the COG above its command [m]
   int steps = 0;               ///< number of touchdowns
   JointShare speed = {};       ///< the largest joint speed as a share of its limit
   JointShare torque = {};      ///< the largest applied torque as a share of its limit
-  double max_penetration = 0;  ///< penetration of a sole vertex [m]
-  double max_slip = 0;         ///< slip of a supporting foot while it is planned in contact [m]
-  double max_contact_residual = 0;  ///< residual of the contact solve [m/s]
+  double max_penetration = 0;  ///< largest penetration of a sole vertex [m]
+  double max_slip = 0;  ///< largest slip of a supporting foot while it is planned in contact [m]
+  double max_contact_residual = 0;  ///< largest residual of the contact solve [m/s]
   int max_contact_iterations = 0;
   double mean_contact_iterations = 0;
 };

@@ -110,9 +110,8 @@ class Simulator {
   bool counts_targets_;    // servos receive whole counts of their encoders
   Eigen::VectorXd counts_;  // counts per rad, for counts_targets_; 0 if they are unknown
   Measurement corrected_;   // readings minus encoder_offset_
-  Eigen::VectorXd
-      // Offsets that were estimated while the robot stands [rad, m]; empty if none was found.
-      encoder_offset_;
+  // Offsets that were estimated while the robot stands [rad, m]; empty if none was found.
+  Eigen::VectorXd encoder_offset_;
   CommandSample plan_;  // plan of the last tick that is done
   StepReport report_;
   Eigen::Vector3d zmp_ = Eigen::Vector3d::Zero();

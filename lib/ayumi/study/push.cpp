@@ -320,8 +320,9 @@ void Study::run_baselines(size_t controller, bool standing) {
   }
 }
 
-// VIIP chooses its footholds, so that there are no planned ones. The bound is then the distance to
-// the nearest edge of the support at the start of the pattern, the same for every direction.
+// VIIP chooses its footholds, so that there are no planned ones. The bound is then m omega times
+// the distance of the ZMP to the nearest edge of the support at the start of the pattern [N s], the
+// same for every direction.
 double Study::standing_edge_bound() const {
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kEdgeDirections; ++i) {

@@ -20,8 +20,8 @@ class RecordedRun {
   /// edge of the set, and infinite if this tick was not recorded.
   double deviation(const Simulator& run) const;
 
-  /// The same deviation of the DCM and the tilts alone, which decide whether the robot stands. A
-  /// landing that comes a moment earlier or later moves the ZMP far during this moment.
+  /// The part of deviation() for the DCM and the tilts alone, which decide whether the robot
+  /// stands. A landing that comes a moment earlier or later moves the ZMP far during this moment.
   double drift(const Simulator& run) const;
 
   /// Whether that state is in the set, or in a smaller set if `share` is below 1. It is false if

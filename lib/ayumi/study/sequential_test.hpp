@@ -47,8 +47,8 @@ class SequentialTest {
   std::vector<long> plan_;
 };
 
-/// The number of runs without a failure that certifies: the smallest n with (1 - failure)^n <= 1 -
-/// confidence.
+/// The number of runs without a failure that certifies: the smallest n with
+///   (1 - failure)^n <= 1 - confidence.
 long failure_free_runs(double failure, double confidence);
 
 }  // namespace ayumi

@@ -70,7 +70,8 @@ double least_of(UncertainKind kind) {
   return info(kind).least;
 }
 
-/// The largest value that a quantity of this kind can have: that of a sidecar.
+/// The largest value that a quantity of this kind can have: the largest one that a robot's sidecar
+/// may state, or infinity.
 double most_of(UncertainKind kind) {
   if (kind == UncertainKind::servo_delay) return kMostServoDelay;
   if (kind == UncertainKind::backlash) return kMostServoPlay;

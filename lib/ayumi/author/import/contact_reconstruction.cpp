@@ -190,7 +190,7 @@ class Grounding {
     }
   }
 
-  // Weight of the right foot in the base's pose.
+  // Share of the right foot in the interpolation of the base's pose, from 0 to 1.
   double share(size_t run, int k) const {
     const auto single = [&](size_t r) { return runs_[r].support == Support::right ? 1.0 : 0.0; };
     const bool before = run > 0, after = run + 1 < runs_.size();

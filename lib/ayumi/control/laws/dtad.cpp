@@ -7,10 +7,11 @@
 //           + sat(damp w (dxhat - dxref))
 //   zd'   = (zhat - refZ - zd) / Tw                                accepted offset
 //   dxref += dt ddx; theta from (22)(23); xref is read back from the posture.
-// The term with ka is the part of (14) that the reference lacks: w2 (x - refZ) is wanted, and w2 (x
-// - zhat) is what the ground gives. It is zero if the ZMP is where it should be. This is the
-// short-term absorption. The term with damp damps the rocking of the robot on soles and servos that
-// yield, which the late answer of the term with ka drives (docs/theory.md, "Late sensors").
+// The term with ka is the part of (14) that the reference lacks. By (14), w2 (x - refZ) is the
+// wanted acceleration, and the ground gives w2 (x - zhat). The term is zero if the ZMP is where it
+// should be. This is the short-term absorption. The term with damp damps the rocking of the robot
+// on soles and servos that yield, which the late answer of the term with ka drives (docs/theory.md,
+// "Late sensors").
 #include "ayumi/control/laws/dtad.hpp"
 
 #include <algorithm>

@@ -41,8 +41,7 @@ struct DtadParams {
   /// [momentum] moment that trunk and arms provide, as a multiple of the moment that corresponds to
   /// a wanted ZMP outside the support; 0 switches this off.
   double momentum_gain = 6;
-  /// [step] share of the error that the supports cannot remove and footholds answer; 0 switches
-  /// this off.
+  /// [step] share of the error left by the supports that the footholds answer; 0 switches this off.
   double step_share = 0;
   double time_scale_limit = 2.5;  ///< [hurry] fastest clock of a pattern with moving footholds
   bool literal = false;  ///< (14) integrated as printed, with D's sign corrected: a demonstration
@@ -71,7 +70,7 @@ inline bool has_dtad_gains(ControllerKind kind) {
   return kind == ControllerKind::dtad || is_baseline(kind);
 }
 
-/// The defaults, which the robot's sidecar overrides, and then the pattern's gains. Throws
+/// The defaults, overridden first by the robot's sidecar and then by the pattern's gains. Throws
 /// Error(usage) that names an unknown gain, for K <= 1 or D <= 0, for q together with k and d, or
 /// for a value out of range.
 DtadParams dtad_params(const RobotModel& model, const ControllerSpec& spec);
@@ -125,8 +124,8 @@ class Dtad {
   std::shared_ptr<const Eigen::MatrixXd> torque_lead_;
   ReferenceBody body_;
   AngularMomentumTask momentum_;
-  std::optional<PreviewControl> preview_;  // preview control of the baselines that preview the ZMP
-  CogMotion previewed_;                    // its motion in this tick
+  std::optional<PreviewControl> preview_;  // for the baseline `preview` only
+  CogMotion previewed_;                    // COG motion of the preview control in this tick
   std::optional<FootGuided> guide_;
   SupportRegion region_;
   Eigen::VectorXd offsets_;  // offsets of the servo targets for ankles and torque [rad]

@@ -1,5 +1,5 @@
-// For the axis x (and y likewise), with hats for measured values, r for the reference, dcm = x +
-// dx/w, and Pi for the nearest point of the support region:
+// For the axis x (and y likewise), with hats for measured values, r for the reference, Pi for the
+// nearest point of the support region, and dcm = x + dx/w:
 //   standing  Z(dcm) = Pi[xd + (1 + q)(dcm - xd - vd/w)]              (18)(19)
 //   stepping  Z(dcm) = Pi[(dcm_e - dcm E) / (1 - E)],  E = exp(w T) to the landing, dcm_e = p + b
 //   reffz = m (kz w)^2 (zd - zr) + 2 dz m kz w (vd - dzr) + m g       (24), (25) with the mass
@@ -69,8 +69,9 @@ constexpr double kStepLandingAfter = 0.6;
 constexpr double kStepTimeScaleLimit = 4;
 
 // Share of the difference between a landing error and the known bias that is taken over at each
-// landing. Chosen: the bias is known after three steps, and a single push changes it by half of its
-// error. Between half and twice the value, figures change by less than 5 %.
+// landing. Chosen: the bias is known after three steps, and a single push changes it by half of the
+// landing error that the push causes. Between half and twice the value, figures change by less than
+// 5 %.
 constexpr double kBiasShare = 0.5;
 
 // Largest landing bias, as a multiple of z: 3.3 mm on HOAP-1. Chosen: twice the error that lagging
@@ -84,8 +85,9 @@ constexpr double kLandingBiasLimit = 0.015;
 constexpr double kSlopeTime = 6.6;
 
 // Time constant of the low pass of the vertical push that the load cells measure, without the lag
-// of the servos [s]. Derived: with a low pass T and a force that is late by d, the loop obeys T s =
-// -exp(-s d), which is stable for d < T pi/2. Sensors may be 10 ms late.
+// of the servos [s]. Derived: with a low pass T and a force that is late by d, the loop obeys
+//   T s = -exp(-s d),
+// which is stable for d < T pi/2. Sensors may be 10 ms late.
 constexpr double kPushFilterTime = 0.010;
 
 // The longest lag of a servo of the legs [s].

@@ -17,8 +17,9 @@ namespace ayumi {
 /// in units of the COG height z. The names in files and on the command line are those in brackets.
 /// docs/theory.md, "VIIP", explains the origin of the values.
 struct ViipParams {
-  double pole_ratio = 0.75;    ///< [q] second pole of the standing regulator
-  double goal_lag = 0.3;       ///< [goal] time constant of each of two lags of a displacement
+  double pole_ratio = 0.75;  ///< [q] second pole of the standing regulator
+  /// [goal] time constant of each of the two low passes of a displacement goal.
+  double goal_lag = 0.3;
   double zmp_gain = 1;         ///< [ka] short-term loop on the measured ZMP
   double velocity_leak = 3;    ///< [av] pull of the reference velocity to the measured one
   double position_leak = 1;    ///< [ax] pull of the reference COG to the measured one
@@ -40,12 +41,12 @@ struct ViipParams {
   double least_step_time = 0.75;  ///< [soonest] smallest time that is left to such an earlier step
   /// [inside] distance of the nominal ZMP from the sole's centre towards the other foot.
   double zmp_inset = 0.05;
-  double recovery = 0.5;  ///< [hold] share of a foot's error that the next step takes back
+  double recovery = 0.5;  ///< [hold] share of a foot's error that the next step corrects
   bool feedback = true;   ///< if false, only the reference pendulum moves, as a demonstration
   bool landings = true;   ///< if false, a foot lands when its time is over, as a demonstration
 };
 
-/// The defaults, which the robot's sidecar overrides, and then the pattern's gains. Throws
+/// The defaults, overridden first by the robot's sidecar and then by the pattern's gains. Throws
 /// Error(usage) that names an unknown gain or a value out of range; dz must obey (25).
 ViipParams viip_params(const RobotModel& model, const ControllerSpec& spec);
 
@@ -86,8 +87,8 @@ class Viip {
   Viip(const RobotModel& model, const ActuatorLimits& limits, const ViipParams& params, double dt,
        const Handover& start, const CommandSample& held);
 
-  /// Sets the goal from the coming tick on, for `ticks` ticks. Steps without a number end in time,
-  /// and a velocity ends after these ticks.
+  /// Sets the goal for `ticks` ticks, from the coming tick on. A step goal without a number of
+  /// steps makes as many steps as fit into this time. A velocity ends after it.
   void set_goal(const ViipGoal& goal, long ticks);
 
   double omega() const { return omega_; }  ///< sqrt(g / z) of the held posture [1/s]

@@ -56,8 +56,8 @@ constexpr double kStoopReached = 0.01;
 constexpr double kStoopLean = 1.2;
 
 // sqrt(K_Pz / m) after the landing, as a multiple of omega. Chosen: the COG is back at ref z_G
-// within 0.6 s. With half of the value, the ZMP error of the case "viip jump" changes from 3.39 to
-// 4 mm; with twice, figures change by less than 5 %.
+// within the 0.6 s that the acceptance test requires. With half of the value, the ZMP error of the
+// case "viip jump" changes from 3.39 to 4 mm; with twice, figures change by less than 5 %.
 constexpr double kSettleRate = 2.2;
 
 // Ground force that counts as zero [N], and the time for which it must last [s]. Measured with the

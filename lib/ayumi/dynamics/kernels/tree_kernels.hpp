@@ -91,13 +91,13 @@ struct Kernels {
   void (*inverse_wide)(const Tree&, const Job&);
   void (*forward_wide)(const Tree&, const Job&);
   void (*sine_cosine)(const double* angle, double* sine, double* cosine, int count);
-  // These work on one state in world axes. `moment` is the sum of m com, and `momentum` the linear
-  // momentum.
+  // The next functions work on one state in world axes. `moment` is the sum of m com, and
+  // `momentum` the linear momentum.
   void (*positions)(const Tree&, const Job&, const Bodies&, double* moment);
   void (*velocities)(const Tree&, const Job&, const Bodies&, double* momentum);
   void (*mass_entries)(const Tree&, const Bodies&, const Layout&, double* M);
   void (*newton_euler)(const Tree&, const Job&, const Bodies&);
-  // These work on small matrices; they are described in tree_kernels_factor.hpp.
+  // The next functions work on small matrices; they are described in tree_kernels_factor.hpp.
   bool (*factor)(const Paths&, double* rows, double* inverse);
   void (*solve_path)(const Paths&, const double* rows, const double* inverse, int last, int width,
                      double* Y);

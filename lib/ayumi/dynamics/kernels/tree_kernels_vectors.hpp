@@ -1,7 +1,7 @@
 // Part of tree_kernels_body.hpp: vectors and turns of scalars T, sines and cosines, and joints.
 
 // The function is declared here, because its header has inline functions, which would be compiled
-// here for processors that not everyone has.
+// here for a processor that the user may not have.
 namespace ayumi::elementary {
 double sin(double x);
 double cos(double x);

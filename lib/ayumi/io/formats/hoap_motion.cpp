@@ -1,7 +1,7 @@
 // Real sequence files are not clean tables. They have two kinds of line ends, blanks around cells,
-// "-0", words for hobby servos in the place of requests, and commands to single devices between the
-// rows. Recordings of robots and files of other programs have no intervals, and their values are
-// counts or radians.
+// "-0", requests in the columns in which other files have words for hobby servos, and commands to
+// single devices between the rows. Recordings of robots and files of other programs have no
+// intervals, and their values are counts or radians.
 #include "ayumi/io/formats/hoap_motion.hpp"
 
 #include <algorithm>
@@ -72,7 +72,7 @@ void say_largest_step(const HoapFile& sequence, std::vector<std::string>& filled
 
 /// The joints whose angles leave their position limits in some row.
 std::vector<std::string> beyond_limits(const RobotModel& model, const Eigen::MatrixXd& theta) {
-  // Tolerance [rad]. Chosen: rounding of decimals; no knee shows it.
+  // Tolerance [rad]. Chosen: rounding of decimals; no knee bends by so little.
   constexpr double kSlack = 1e-6;
   std::vector<std::string> names;
   for (int j = 0; j < model.dof_count(); ++j) {

@@ -28,7 +28,7 @@ std::string zip_of(const std::vector<NamedFile>& files);
 /// An array that was read.
 struct NpyArray {
   std::vector<size_t> shape;
-  std::vector<double> numbers;     ///< numbers of a numeric array, in the order of C
+  std::vector<double> numbers;     ///< numbers of a numeric array, the last index fastest (C order)
   std::vector<std::string> words;  ///< words of an array of strings
   std::string refused = {};        ///< reason why the content was not read; "" if it was read
 };

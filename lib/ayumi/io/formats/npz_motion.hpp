@@ -11,9 +11,9 @@ std::string recognize_tracking_npz(const MotionInput& source);
 MotionFile read_tracking_npz(const MotionInput& source);
 /// The names of joints and bodies are written beside the arrays of the format.
 std::vector<WrittenFile> write_tracking_npz(const RobotModel& model, const MotionFile& motion);
-/// The same archive without the first and the last row, which only serve to compute the rates of
-/// their neighbours. It is for the rows of a cycle, for which the rows before and after it are
-/// known.
+/// The archive of `motion` without the first and the last row, which only serve to compute the
+/// rates of their neighbours. The function is for the rows of a cycle if the rows before and after
+/// the cycle are known.
 std::string tracking_npz_within(const RobotModel& model, const MotionFile& motion);
 
 std::string recognize_gmr_npz(const MotionInput& source);

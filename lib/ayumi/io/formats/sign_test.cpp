@@ -41,7 +41,7 @@ std::vector<SignTest> sign_tests(const RobotModel& model, double dt) {
   for (int j = 0; j < model.dof_count(); ++j) {
     const Dof& dof = model.dofs()[static_cast<size_t>(j)];
     const auto at = static_cast<size_t>(j);
-    // A passive joint.
+    // Passive joints have no test.
     if (model.limits().has_servo[at] && model.limits().servo[at].kp <= 0) continue;
     SignTest test;
     test.dof = j;

@@ -12,9 +12,10 @@ namespace ayumi {
 
 struct SignTest {
   int dof = 0;
-  std::string name;         ///< name of its file, without extension: "04_r_knee"
-  double from = 0, to = 0;  ///< angles at the beginning and at the end [rad], of sliding joints [m]
-  ReferenceTrajectory table;  ///< postures only; no ground supports the robot
+  std::string name;  ///< name of its file, without extension: "04_r_knee"
+  /// Home angle, and angle to which the joint moves before it returns [rad], of sliding joints [m].
+  double from = 0, to = 0;
+  ReferenceTrajectory table;  ///< plain postures without a servo lead; no ground supports the robot
 };
 
 /// One test for every joint with a motor, in the order of the devices (or of the joints if there

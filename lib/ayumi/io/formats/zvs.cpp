@@ -30,7 +30,7 @@ std::vector<std::string_view> tokens_of(std::string_view line) {
 }
 
 // The moving joints of the robot whose file is beside the motion, in the order of their values. If
-// there is such a robot but its joints do not fit, `notes` says why.
+// there is such a robot but it cannot be read or its joints do not fit, `notes` says why.
 std::vector<std::string> joints_beside(const MotionInput& source, size_t width,
                                        std::vector<std::string>& notes) {
   const std::optional<std::string> bytes = source.beside(".ztk");

@@ -9,7 +9,7 @@ namespace ayumi {
 /// The uncertainty as a study file, which can be written and edited.
 std::string assumed_study_text(const RobotModel& robot);
 
-/// The same uncertainty after reading. Its file name says that it is assumed.
+/// The uncertainty of assumed_study_text() after reading. Its file name says that it is assumed.
 Study assumed_study(const RobotModel& robot);
 
 }  // namespace ayumi

@@ -1,5 +1,7 @@
-// Recursive descent: sum = product {(+|-) product}; product = factor {(*|/) factor}; factor =
-// -factor | ( sum ) | ${name} | number | pi | function ( sum {, sum} ).
+// Recursive descent:
+//   sum = product {(+|-) product}
+//   product = factor {(*|/) factor}
+//   factor = -factor | ( sum ) | ${name} | number | pi | function ( sum {, sum} )
 #include "ayumi/io/pattern/expression.hpp"
 
 #include <algorithm>

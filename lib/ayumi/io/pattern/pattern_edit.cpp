@@ -246,9 +246,8 @@ std::string shifted_expression(const std::string& expression, double change) {
     if (read.ec == std::errc() && read.ptr == end && binary && expression[begin] != '-') {
       if (expression[sign] == '-') number = -number;
       head = expression.substr(0, before + 1);
-      spaces = expression.substr(before + 1,
-                                 // The text has the form in which the author writes the expression.
-                                 sign - before - 1);
+      // The blanks around the sign stay as the author writes them.
+      spaces = expression.substr(before + 1, sign - before - 1);
       spaces_after = expression.substr(sign + 1, begin - sign - 1);
     } else {
       number = 0;

@@ -202,9 +202,9 @@ void each_item(const JsonNode& list, const std::string& name, PatternScope& scop
 // Chosen: half of ten.
 constexpr double kGrossTime = 5;
 
-// The end of a message about times that do not increase, such as "; /keyframes/4 may be meant at
-// 2.3 s". It names the earlier time if this time would be in order without a slip of the keyboard,
-// or else the later time. `before` is the time before both.
+// The end of a message about times that do not increase. If the previous time would be in order
+// without a slip of the keyboard, it names that time; otherwise it asks for a time later than `t`,
+// and proposes one if `t` can have such a slip. `before` is the time before both.
 std::string meant_time(double before, double previous, const std::string& place_of_previous,
                        double t, const std::string& otherwise) {
   // If a time is only a little too late, its decimal point is not in a wrong place.

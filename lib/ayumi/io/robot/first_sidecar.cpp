@@ -42,7 +42,8 @@ std::string rounded_text(double value, int digits) {
   return text::exact(std::round(value * unit) / unit + 0.0);
 }
 
-// Lines of at most `width` characters, each after " // ".
+// The sentence as comment lines of at most `width` characters, each with `indent` and "// " before
+// its words.
 std::string remark(const std::string& sentence, const std::string& indent = "  ") {
   constexpr size_t width = 96;
   std::string lines, line;

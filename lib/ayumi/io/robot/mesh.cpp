@@ -34,8 +34,8 @@ constexpr size_t kLongestCompanionName = 4096;
 constexpr std::chrono::milliseconds kPause(50);
 // Largest number of bytes of a refusal. Chosen: a line or two of a message for people.
 constexpr size_t kLongestRefusal = 400;
-// Number of bytes in which an answer is received. Chosen: an answer that states a large size but
-// then ends takes no memory for this size.
+// Size of the pieces in which an answer is received [bytes]. Chosen: an answer that states a large
+// size but then ends takes no memory for this size.
 constexpr size_t kAnswerPiece = size_t{4} << 20;
 
 // Environment variables that the reader receives. The archive of the program has its own shared

@@ -409,8 +409,9 @@ class Cleaner {
 
 }  // namespace
 
-// Reads lines " element (*) attribute attribute", which may be continued by lines with attributes
-// only.
+// Reads lines such as
+//   "   element (*)   attribute attribute",
+// which may be continued by lines with attributes only.
 MjcfSchema mjcf_schema(const std::string& printed) {
   MjcfSchema schema;
   std::istringstream lines(printed);

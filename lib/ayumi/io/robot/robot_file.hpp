@@ -42,7 +42,7 @@ RobotDescription load_robot_description(const std::string& name_or_path,
                                         const RobotSearch& search = {},
                                         const LoadOptions& options = {});
 
-/// The same as a validated model.
+/// The robot of load_robot_description() as a validated model.
 RobotModel load_robot(const std::string& name_or_path, const RobotSearch& search = {},
                       const LoadOptions& options = {});
 

@@ -14,8 +14,8 @@ namespace ayumi {
 /// Error(bad_file) "file:line: ..." for what is no chain, Error(bad_model) for an impossible robot.
 RobotDescription parse_ztk(const std::string& bytes, const std::filesystem::path& path);
 
-/// The same robot for RoKi: its links have the order of the joints, as .zvs files have it. A link
-/// that a joint moves has the joint's name, and its z is along the joint's axis. Meshes become
+/// The text of `robot` for RoKi: its links have the order of the joints, as .zvs files have it. A
+/// link that a joint moves has the joint's name, and its z is along the joint's axis. Meshes become
 /// triangles. What RoKi cannot represent (mimic joints) is left out.
 std::string ztk_text(const RobotDescription& robot, const std::vector<std::string>& joint_order);
 

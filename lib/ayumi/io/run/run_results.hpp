@@ -21,7 +21,8 @@ struct RepairNote {
   std::vector<std::string> reasons;
   struct Moved {
     std::string joint;
-    /// Largest change [rad, sliding joints m], and times [s].
+    /// Largest change [rad], for sliding joints [m], its time, and the beginning and end of the
+    /// change [s].
     double most = 0, at = 0, begin = 0, end = 0;
   };
   std::vector<Moved> joints = {};              ///< joints, the largest change first

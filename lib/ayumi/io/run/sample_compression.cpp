@@ -120,10 +120,10 @@ std::uint64_t bits_of(const std::vector<std::uint64_t>& numbers) {
 }
 
 // The weights with which the sources come nearest to the steps of the column. They are fitted by
-// least squares over one row of kFitRows. A relation holds to the last bits in most rows, and not
-// at all where a motor is at its peak torque or where the law changes. So the worst rows are left
-// out, and the rest is fitted again. Chosen: with twice as many rows in the fit, a log of the
-// bundled walk has the same size.
+// least squares over one out of every kFitRows rows. A relation holds to the last bits in most
+// rows, and not at all where a motor is at its peak torque or where the law changes. So the worst
+// rows are left out, and the rest is fitted again. Chosen: with twice as many rows in the fit, a
+// log of the bundled walk has the same size.
 constexpr size_t kFitRows = 7;
 // Number of rounds of a fit. Chosen: 0.8 of the rows stay in each round, and half of them at last.
 constexpr int kFitRounds = 4;

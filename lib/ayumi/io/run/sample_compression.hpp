@@ -6,10 +6,11 @@
 // Some columns nearly follow from others in the same row: an angle from its rate, a torque from the
 // angle and its target. If the caller names these sources s, the prediction may also be
 //   a + sum of u s + v (s - s') + w (s - 2 s' + s'')
-// with weights u, v, w by least squares, which are written too. Value and prediction, as integers
-// in the order of the floats, differ by a small integer. Its bytes are written plane by plane, the
-// most significant byte of all values first, and compressed by zstd. Each column has the prediction
-// with the shortest differences.
+// with weights u, v, w by least squares, which are written too. Value and prediction are mapped to
+// integers that have the same order by size as the floats. Their difference is a small integer. The
+// bytes of the differences are written plane by plane, the most significant byte of all values
+// first, and compressed by zstd. Each column has the prediction whose differences need the fewest
+// bytes.
 
 #include <string>
 #include <string_view>

@@ -51,14 +51,14 @@ class LogBlocks {
 
 /// The part of the file before its samples. There are `rows` samples; those of `about` are ignored.
 std::string log_head(const SimulationLog& about, size_t rows);
-/// The same part of the file whose SHA-256 is log_hash().
+/// The part before the samples of the file whose SHA-256 is log_hash().
 std::string hashed_log_head(const SimulationLog& about, size_t rows);
 
 /// The bytes of the file. Throws Error(internal) if a sample's joint vectors do not have the size
 /// of `joints`.
 std::string log_bytes(const SimulationLog& log);
 
-/// The same log as a file of version 1.
+/// The bytes of the log as a file of version 1.
 std::string plain_log_bytes(const SimulationLog& log);
 
 /// Reads all versions. Throws Error(bad_file) that names the file if it is not a log, has another

@@ -57,8 +57,8 @@ std::optional<ImportedKeys> read_key_poses(const std::string& bytes, const std::
 ImportedMotion read_motion_rows(const std::string& bytes, const std::string& file,
                                 const RobotModel& model, const ImportOptions& options = {});
 
-/// The same rows as postures: if the file holds commands, the servos' lead is removed. Then angles
-/// are smoothed within the limit of ImportOptions::smooth.
+/// The rows of read_motion_rows() as postures: if the file holds commands, the servos' lead is
+/// removed. Then angles are smoothed within the limit of ImportOptions::smooth.
 ImportedMotion read_motion(const std::string& bytes, const std::string& file,
                            const RobotModel& model, const ImportOptions& options = {});
 

@@ -18,7 +18,7 @@ namespace ayumi {
 /// same bits. The head describes the run of the table. Throws Error(internal) for a value that is
 /// not finite or a row with another number of joints.
 std::string reference_csv(const ReferenceTrajectory& reference, const TableCaution& caution = {});
-/// The same columns and rows as one JSON object.
+/// The columns and rows of reference_csv() as one JSON object.
 std::string reference_json(const ReferenceTrajectory& reference, const TableCaution& caution = {});
 
 /// The part of the head of a table that describes its run. Throws Error(bad_file) if the file is

@@ -66,9 +66,8 @@ struct NlpOptions {
   /// Tolerance of g, unscaled.
   double constraint_tolerance = repair_policy::solver::kConstraintTolerance;
   bool mumps = false;  ///< use MUMPS for the linear systems of every program
-  bool plain_kernels =
-      /// Solves linear systems without the widest vector instructions; the bits are the same.
-      false;
+  /// Solves linear systems without the widest vector instructions; the bits are the same.
+  bool plain_kernels = false;
   /// The solution ends with the status iteration_limit when its work reaches this.
   double most_work = kNoBound;
   /// If not null, the point with the smallest violation is stored here, for work that is stopped.

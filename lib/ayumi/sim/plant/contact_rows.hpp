@@ -1,8 +1,9 @@
 #pragma once
 // The contacts of a step. If all pressing contacts stick, they are springs in the matrix of the
-// step; otherwise they are a problem for the ContactSolver: Jacobians J of the contact points, Y =
-// L^-T J' with the factor L of the step's matrix, the Delassus matrix A = Y' Y + compliance and the
-// right side b. docs/theory_plant.md, (P2) and (P3).
+// step; otherwise they are a problem for the ContactSolver, with the Jacobians J of the contact
+// points, the factor L of the step's matrix, the right side b and the Delassus matrix A:
+//   Y = L^-T J',  A = Y' Y + compliance.
+// docs/theory_plant.md, (P2) and (P3).
 
 #include <Eigen/Dense>
 #include <vector>
@@ -61,8 +62,9 @@ class ContactRows {
 
  private:
   /// Consecutive contacts of one body. If links touch each other, two blocks describe the same
-  /// contacts, one for each body. The rows of a block stand side by side: three for each contact,
-  /// filled up to a multiple of four, with one line for each place on the path to the body.
+  /// contacts, one for each body. A block is stored transposed: it has one line for each place
+  /// (velocity) on the path to the body. A line has three numbers for each contact and is filled up
+  /// to a multiple of four.
   struct Block {
     int body = 0;
     int last = 0;                 // last place that moves the body

@@ -125,7 +125,8 @@ bool eliminate(double* G, double* x, int m) {
     for (int j = k + 1; j < m; ++j) {
       const double factor = G[k + m * j];
       if (factor == 0) continue;
-      double* __restrict target = G + m * j;  // the column that is changed
+      // A column other than `column`: the two do not overlap.
+      double* __restrict target = G + m * j;
       for (int i = k + 1; i < m; ++i) target[i] -= factor * column[i];
     }
     for (int i = k + 1; i < m; ++i) x[i] -= x[k] * column[i];

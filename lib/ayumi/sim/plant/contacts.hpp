@@ -16,7 +16,6 @@ struct ActiveContact {
   /// Number of the point, the same in each step: the index of the ContactPoint, or a larger number
   /// for edges, nodes of the height field and links.
   long key = 0;
-  ///< a larger number where edges, nodes of the height field or links touch
   int body = 0;    ///< body that is pushed along the normal
   int other = -1;  ///< body that is touched; -1 for the ground
   int side = -1;   ///< Side of the sole; -1 for a body that is not a sole
@@ -92,8 +91,8 @@ class ContactSet {
   // Largest distance of the far side of a point's sphere from its body's origin [m].
   double widest_ = 0;
   LinkContacts links_;
-  double link_friction_ = 0,
-         link_stiffness_ = 0;  // stiffness of contacts between links, and of links with edges
+  // Friction and stiffness of contacts between links, and of links with edges.
+  double link_friction_ = 0, link_stiffness_ = 0;
   std::vector<char> is_foot_;  // whether a body is a foot
   std::vector<ActiveContact> active_, previous_;
   // Workspace of collect().
