@@ -38,12 +38,13 @@ export async function openPage(driver_, width, height) {
   const tab = await driver_.open(`${width},${height}`);
   tab.size = (w, h, deviceScaleFactor = 1) => tab.tool("Emulation.setDeviceMetricsOverride",
     { width: w, height: h, deviceScaleFactor, mobile: false });
-  /// From here on still fewer pixels in the robot's picture, and shadows that stay as they are.
+  /// From here on still fewer pixels in the robot's picture, and no shadows.
   tab.coarsen = async () => {
     await tab.size(width, height, coarse);
-    await tab.run(`const { renderer } = window.ayumiAuthor.page.viewer;
+    await tab.run(`const { renderer, scene } = window.ayumiAuthor.page.viewer;
       renderer.setPixelRatio(devicePixelRatio / 4);
-      renderer.shadowMap.autoUpdate = false;`);
+      renderer.shadowMap.enabled = false;
+      scene.traverse(({ material }) => { if (material) material.needsUpdate = true; });`);
   };
   await tab.size(width, height, shots ? 1 : coarse);
   await tab.load(address);

@@ -71,7 +71,7 @@ async function typesTargets(tab) {
   const select = () => tab.click(`[data-id="/keyframes/${i}/hands/left"]`);
   await select();
   const named = await tab.run(`return [...document.querySelectorAll("#selected label.value")].map((e) => e.textContent);`);
-  expect(["position forwardm", "position leftm", "position upm"].every((words) => named.includes(words)), "names and units: " + named);
+  expect(["position forward m", "position left m", "position up m"].every((words) => named.includes(words)), "names and units: " + named);
   const wanted = Number((before.keyframes[i].hands.left[2] + 0.01).toFixed(4));
   await tab.after(() => tab.type(`#selected [data-id="/keyframes/${i}/hands/left/2"]`, wanted));
   expect(data().keyframes[i].hands.left[2] === wanted, "a typed place: " + JSON.stringify(data().keyframes[i]));
