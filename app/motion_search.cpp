@@ -150,8 +150,9 @@ class MotionSearch {
  private:
   using Values = std::vector<double>;
 
-  // Whether the check accepts a motion, and the robot stands in a simulation. "" where it does.
-  std::string wrong_with(const Pattern& pattern, const Values& values) {
+  // The errors of a motion, and its fall in a simulation. Nothing is wrong with it if `first` is
+  // "".
+  Wrong wrong_with(const Pattern& pattern, const Values& values) {
     ++checked_;
     work_ += kWorkOfCheck * pattern.duration();
     const Wrong motion = wrong_motion(model_, pattern);
@@ -160,7 +161,7 @@ class MotionSearch {
       result_.nearest = motion.worst;
       result_.nearest_values = values;
     }
-    if (!motion.first.empty() || !simulated_) return motion.first;
+    if (!motion.first.empty() || !simulated_) return motion;
     ++runs_;
     work_ += kWorkOfRun * pattern.duration();
     const std::string falls = end_in_simulation(model_, pattern);
@@ -168,7 +169,7 @@ class MotionSearch {
       result_.falls = falls;
       accepted_ = values;
     }
-    return falls;
+    return {falls, "", 0};
   }
 
   void note_trial() {
@@ -184,8 +185,8 @@ class MotionSearch {
   }
 
   void try_lists() {
-    // Places of the other dials where postures passed, but not speeds, torques or ZMP: another
-    // posture does not mend that.
+    // Indices of the other dials for which the postures passed, but not speeds, torques or ZMP.
+    // Another posture does not correct these.
     std::set<std::vector<size_t>> hopeless;
     for (const std::vector<size_t>& places : nearest_first(dials_)) {
       std::vector<size_t> others;
@@ -200,13 +201,16 @@ class MotionSearch {
         pattern.file.clear();
         const Look look = look_at(model_, pattern);
         work_ += pattern.duration();
+        double beyond = look.beyond;
         wrong = look.posture;
         if (wrong.empty()) {
-          wrong = wrong_with(pattern, values);
+          const Wrong motion = wrong_with(pattern, values);
+          wrong = motion.first;
           if (!wrong.empty()) hopeless.insert(others);
+          // At the servo's own period, more may be wrong than at a look.
+          if (beyond == 0) beyond = motion.severity;
         }
-        // At the servo's own period, more may be wrong.
-        note_look(values, look.beyond > 0 ? look.beyond : nearest_);
+        note_look(values, beyond);
       } catch (const Error& error) {
         if (!cannot_be_done(error)) throw;
         wrong = error.what();
@@ -229,8 +233,8 @@ class MotionSearch {
     start_ = values;
   }
 
-  // A motion with these values, where it can be made and was not looked at before. Returns whether
-  // it comes nearer than all others.
+  // Looks at the motion with these values, if it can be made and was not looked at before. Returns
+  // whether it is nearer to passing than all others.
   bool looks_nearer(const Values& values) {
     if (!looked_at_.insert(values).second) return false;
     try {
@@ -240,12 +244,13 @@ class MotionSearch {
       work_ += pattern.duration();
       note_trial();
       if (beyond == 0) {
-        if (wrong_with(pattern, values).empty()) {
+        const Wrong motion = wrong_with(pattern, values);
+        if (motion.first.empty()) {
           take(values);
           return true;
         }
         if (!accepted_.empty()) return true;
-        beyond = nearest_;
+        beyond = motion.severity;
       }
       if (beyond >= least_beyond_) return false;
       note_look(values, beyond);
@@ -260,8 +265,8 @@ class MotionSearch {
   bool succeeded() const { return result_.found || !accepted_.empty(); }
   bool ended() const { return succeeded() || work_ > kMostWork; }
 
-  // Moves one value after the other as long as this comes nearer, then two at once, and then by
-  // half as much.
+  // Moves one value after the other, and then two at once, as long as this comes nearer to passing;
+  // then it does the same with moves of half the size.
   void go_on_from_nearest() {
     if (start_.empty()) return;
     for (double share = kFirstMove; share >= kLastMove && !ended(); share /= 2)
@@ -271,7 +276,7 @@ class MotionSearch {
     try {
       Pattern pattern = make_(start_);
       pattern.file.clear();
-      if (wrong_with(pattern, start_).empty()) take(start_);
+      if (wrong_with(pattern, start_).first.empty()) take(start_);
     } catch (const Error& error) {
       if (!cannot_be_done(error)) throw;
     }
@@ -311,12 +316,12 @@ class MotionSearch {
   bool simulated_;
   SearchResult result_;
   int checked_ = 0, runs_ = 0;
-  double nearest_ = HUGE_VAL;  // severity of the worst error of the nearest motion
-  Values accepted_;            // by the check, but the robot falls
-  double least_beyond_ = HUGE_VAL;
-  Values start_;  // of the motion with this sum
+  double nearest_ = HUGE_VAL;       // severity of the worst error of the nearest motion
+  Values accepted_;                 // values that the check accepts, but with which the robot falls
+  double least_beyond_ = HUGE_VAL;  // smallest sum of shares by which a motion exceeds limits
+  Values start_;                    // values of this motion
   std::set<Values> looked_at_;
-  double work_ = 0;  // of motion [s]
+  double work_ = 0;  // length of the motions that were worked on [s]
 };
 
 }  // namespace

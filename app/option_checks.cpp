@@ -48,9 +48,12 @@ ValueCheck seed_number() {
     std::uint64_t value = 0;
     const char* const end = word.data() + word.size();
     const auto [stop, error] = std::from_chars(word.data(), end, value);
-    return stop == end && error == std::errc()
-               ? ""
-               : "'" + word + "' is not a whole number from 0 to " + std::to_string(UINT64_MAX);
+    if (stop != end || error != std::errc())
+      return "'" + word + "' is not a whole number from 0 to " + std::to_string(UINT64_MAX);
+    // The option itself would read such a number as an octal one.
+    return word.size() > 1 && word[0] == '0'
+               ? "'" + word + "' begins with 0; write " + std::to_string(value)
+               : "";
   };
   return {complaint, ""};
 }

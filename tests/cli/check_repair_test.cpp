@@ -620,7 +620,8 @@ TEST_F(CheckRepair, WishesOfTheFile) {
            {R"({"lock": {"windows": [[90, 91]]}})", "after the end of the motion at"},
            {R"({"lock": {"keyframes": [21]}})",
             "21 is not the number of a keyframe; keyframes are numbered from 0 to 20"},
-           {R"({"weights": {"l_kne": 2}})", "/repair/weights/l_kne: the robot"}}) {
+           {R"({"weights": {"l_kne": 2}})", "/repair/weights/l_kne: the robot"},
+           {R"({"weights": {"l/kne": 2}})", "/repair/weights/l~1kne: the robot"}}) {
     with_wishes(wishes);
     const Output wrong = ayumi({"repair", "outside.json", "-o", "out.json"});
     EXPECT_EQ(wrong.exit_code, 3) << wishes;

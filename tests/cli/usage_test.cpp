@@ -231,6 +231,7 @@ TEST_F(Usage, ValuesThatAreNoNumbersAreUsageErrors) {
       {"edit", "retime", "-q", pattern, "--scale", "NaN", "-o", "new.json"},
       {"check", "-q", pattern, "--tolerance", "friction=nan"},
       {"simulate", "-q", pattern, "--seed", "-1"},
+      {"simulate", "-q", pattern, "--seed", "010"},
       {"simulate", "-q", pattern, "--seed", "18446744073709551616"},
       {"push", "-q", pattern, "--times", "nan"},
       {"tune", "-q", pattern, "--times", "nan"},

@@ -14,6 +14,7 @@
 #include "ayumi/author/generate/pattern_builder.hpp"
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/json_pointer.hpp"
 #include "ayumi/base/number_slips.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/math/elementary.hpp"
@@ -826,7 +827,7 @@ class Hypotheses::Maker {
       const Keyframe& key = pattern_.keyframes[i];
       for (const auto& [name, target] : key.hands)
         look(i, name == "left" || name == "right" ? "the " + name + " hand" : name,
-             "/hands/" + name, target,
+             "/hands/" + json_pointer_token(name), target,
              [i, name = name](Pattern& p) -> LinkTarget& { return p.keyframes[i].hands.at(name); });
       if (key.gaze)
         look(i, "the gaze", kGaze, *key.gaze,

@@ -133,7 +133,8 @@ class InverseKinematics {
   std::array<double, 2> forward_ = {0, 0};
   Eigen::VectorXd start_;
   double largest_bend_rate_ = 0;  ///< largest change of the determinants below per radian
-  /// Sign of the leg Jacobian's determinant on the right side of the knee.
+  /// Determinants of the leg Jacobians in the reference posture, by Side. Legs that bend the right
+  /// way have determinants with these signs.
   std::array<double, 2> bend_ = {0, 0};
 };
 

@@ -126,7 +126,8 @@ void validate_mimic(const RobotDescription& robot, const JointDescription& joint
       complain_urdf(robot, where,
                     "this joint mimics another one through more than " +
                         std::to_string(kLongestMimicChain) +
-                        " joints; name the joint that moves by itself");
+                        " joints, or these mimic each other in a circle; name the joint that moves "
+                        "by itself");
   }
   if (driver->type == JointType::fixed || driver->type == JointType::floating)
     complain_urdf(robot, where,

@@ -1,6 +1,7 @@
 #include "ayumi/motion/repair_preferences.hpp"
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/json_pointer.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/motion/pattern_context.hpp"
 
@@ -12,7 +13,8 @@ void require_repair_preferences(const RobotModel& model, const Pattern& pattern)
     find_joint(model, preferences.joints[i],
                in_file(pattern, "/repair/lock/joints/" + std::to_string(i)));
   for (const auto& entry : preferences.weights)
-    find_joint(model, entry.first, in_file(pattern, "/repair/weights/" + entry.first));
+    find_joint(model, entry.first,
+               in_file(pattern, "/repair/weights/" + json_pointer_token(entry.first)));
   const double end = pattern.duration();
   for (size_t i = 0; i < preferences.windows.size(); ++i)
     if (preferences.windows[i].first > end)

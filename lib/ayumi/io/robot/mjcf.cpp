@@ -168,7 +168,8 @@ class MjcfReader {
     compiled_ = compile(path_, files);
     weigh(std::move(files));
     m_ = compiled_.get();
-    for (const auto& [count, what] : {std::pair{m_->nbody, "links"}, {m_->njnt, "joints"}})
+    // The first body is the world.
+    for (const auto& [count, what] : {std::pair{m_->nbody - 1, "links"}, {m_->njnt, "joints"}})
       if (static_cast<size_t>(count) > kMostLinks)
         fail(ErrorCode::bad_model, {path_.string()}, too_many(what));
     robot_.name = m_->names[0] ? std::string(m_->names) : path_.stem().string();
