@@ -13,7 +13,9 @@ ValueCheck number_within(double least, double most);
 
 /// Accepts a whole number from `least` to `most`.
 ValueCheck whole_number_within(int least, int most);
-/// A whole number from 0 to 2^64 - 1. CLI11 alone takes -1 and 2^64 for the largest one.
+
+/// Accepts a whole number from 0 to 2^64 - 1 that does not begin with 0. CLI11 alone takes -1 and
+/// 2^64 for the largest one, and reads 010 as an octal number.
 ValueCheck seed_number();
 
 /// Accepts one of these words. The message of CLI::IsMember would have braces.

@@ -46,7 +46,9 @@ struct NewOptions {
   int viip_steps = 0;
   std::optional<double> stride, period, lift, side, depth, hold, length, height;
   std::optional<double> angle_deg;
-  bool gives_double_support = false, gives_zmp_inwards = false;  // whether these are given
+  const Option *double_support = nullptr, *zmp_inwards = nullptr;  // options of walks
+
+  static bool is_given(const Option* option) { return option && option->count() > 0; }
   SeatParameters seat;
   BowParameters bow;
   WaveParameters wave;
@@ -161,7 +163,7 @@ void fit_steps(const Context& context, const RobotModel& model, const NewOptions
   // this.
   const bool lacking = InverseKinematics(model, model.posture()).lacks_joints();
   Dial inwards{"--zmp-inwards", "m", {w.zmp_inwards}};
-  if (!options.gives_zmp_inwards) {
+  if (!NewOptions::is_given(options.zmp_inwards)) {
     inwards.most = rounded(kMostInwards * half_sole_width(model), 1e-3);
     inwards.step = 1e-3;
     if (lacking) inwards.values = {0, inwards.most, rounded(0.7 * half_sole_width(model), 1e-3)};
@@ -179,8 +181,8 @@ void fit_steps(const Context& context, const RobotModel& model, const NewOptions
       shift{inwards, [](WalkParameters&p, double v) { p.zmp_inwards = v; }},
       rise{dial("--lift", "m", w.lift, 1e-3, !options.lift, {0.75, 0.5}),
            [](WalkParameters&p, double v) { p.lift = v; }},
-      both{dial("--double-support", "", w.double_support, 0.01, !options.gives_double_support,
-                {1.7, 0.6}),
+      both{dial("--double-support", "", w.double_support, 0.01,
+                !NewOptions::is_given(options.double_support), {1.7, 0.6}),
            [](WalkParameters&p, double v) { p.double_support = v; }};
   // Among trials with equally large changes, those that change the last dials come first.
   std::vector<WalkDial> turned = lacking ? std::vector{length, pace, shift, stature}
@@ -695,20 +697,21 @@ void add_gait(Command& command, NewOptions& options) {
              "S");
   add_scaled(command, "--lift", options.lift, "Height of the swinging sole [m]",
              WalkParameters().lift, "M");
-  command
-      .add_option("--double-support", options.walk.double_support,
-                  "Share of the period in which both feet are on the ground.")
-      ->each([&options](const std::string&) { options.gives_double_support = true; })
-      ->capture_default_str()
-      ->type_name("SHARE");
+  options.double_support =
+      command
+          .add_option("--double-support", options.walk.double_support,
+                      "Share of the period in which both feet are on the ground.")
+          ->capture_default_str()
+          ->type_name("SHARE");
   add_height(command, options.walk.cog_height);
-  command
-      .add_option("--zmp-inwards", options.walk.zmp_inwards,
-                  "Distance by which the ZMP is moved from the middle of the standing sole towards "
-                  "the other foot [m]. With a larger distance the COG sways less.")
-      ->each([&options](const std::string&) { options.gives_zmp_inwards = true; })
-      ->capture_default_str()
-      ->type_name("M");
+  options.zmp_inwards =
+      command
+          .add_option(
+              "--zmp-inwards", options.walk.zmp_inwards,
+              "Distance by which the ZMP is moved from the middle of the standing sole towards "
+              "the other foot [m]. With a larger distance the COG sways less.")
+          ->capture_default_str()
+          ->type_name("M");
   command.add_option("--first", options.first, "Foot that swings first.")
       ->check(one_of({"left", "right"}))
       ->capture_default_str();

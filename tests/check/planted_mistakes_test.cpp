@@ -660,6 +660,47 @@ TEST(PlantedMistakes, AllThatIsNamedForAHopIsEnough) {
   EXPECT_TRUE(is_consistent(pattern, options)) << found;
 }
 
+// The named change of a hop passes quick trials, but cannot be sampled at the servo's period.
+TEST(PlantedMistakes, AChangeThatCannotBeSampledIsNotNamed) {
+  Pattern pattern = hop_with(
+      {{0.5, 0.245}, {1.28, 0.203}, {1.5, 0.23}, {1.65, 0.239}, {1.756, 0.2}, {2.8, 0.245}});
+  key_at(pattern, 0.5).zmp = ZmpKey{ZmpKey::Place::center};
+  pattern.phases[2].until = 3.2;
+  const std::string found = texts_of(likely_mistakes(small(), pattern, strong_options(pattern)));
+  EXPECT_FALSE(found.empty());
+  EXPECT_EQ(found.find("2147483647"), std::string::npos) << found;
+}
+
+// Two keys hold one value, and what would be there without them differs. A change that is named for
+// both is enough if both get the named value.
+TEST(PlantedMistakes, WhatIsNamedForTwoKeysWasTriedForBoth) {
+  for (const auto& [high, low] : {std::pair(135.0, -78.0), {120.0, -60.0}, {140.0, 10.0}}) {
+    Pattern pattern;
+    pattern.robot = "hoap1";
+    pattern.degrees = true;
+    pattern.phases = {{.until = 4, .swing = {}}};
+    for (const auto& [t, angle] :
+         {std::pair(0.0, 7.0), {1.0, 7.0}, {1.57, high}, {1.98, high}, {2.12, low}})
+      key_at(pattern, t).joints["l_shoulder_pitch"] = angle * kDegree;
+    pattern.keyframes.front().zmp = ZmpKey{ZmpKey::Place::center};
+    for (const Mistake& mistake : likely_mistakes(small(), pattern, options_of(pattern))) {
+      std::smatch value;
+      const std::string text = mistake.text();
+      if (!std::regex_search(
+              text, value,
+              std::regex(
+                  "l_shoulder_pitch is .*; with values (?:up|down) to (-?[0-9.]+) deg here and "
+                  "in /keyframes/3, the pattern is consistent$")))
+        continue;
+      Pattern mended = pattern;
+      for (const int key : {2, 3})
+        mended.keyframes[static_cast<size_t>(key)].joints["l_shoulder_pitch"] =
+            std::stod(value[1]) * kDegree;
+      EXPECT_TRUE(is_consistent(mended, options_of(mended))) << text;
+    }
+  }
+}
+
 // The range of a value ends where the table for the robot ends it, at a number as it is printed.
 TEST(PlantedMistakes, TheEndOfARangeIsEnoughToTheLetter) {
   Pattern pattern = hop_with(

@@ -21,11 +21,17 @@ const Finding* worst(const ConsistencyReport& report, FindingKind kind) {
   return found;
 }
 
-std::vector<std::string> missing(const ConsistencyReport& report) {
+std::vector<std::string> missing(const RobotModel& model, const ConsistencyReport& report) {
   std::vector<std::string> parts;
   for (const FindingSpec* spec : actuator_findings()) {
     const Finding* f = worst(report, spec->kind);
     if (!f) continue;
+    const int dof = dof_of(*f);
+    if (dof >= 0 && model.limits(report.profile).lacks_motor(dof)) {
+      parts.push_back("a motor at " + f->where + ", which has none (kp of its servo is 0), at " +
+                      text::fixed(f->at, 2) + " s");
+      continue;
+    }
     const ShownUnit unit = shown_unit(f->unit, f->in_degrees);
     parts.push_back(text::brief(std::abs(f->worst) * unit.scale, 3) + " " + unit.name +
                     spec->actuator.after + " at " + f->where + " at " + text::fixed(f->at, 2) +
@@ -37,13 +43,14 @@ std::vector<std::string> missing(const ConsistencyReport& report) {
 ActuatorNeed need_of(const RobotModel& model, const CommandSeries& series,
                      const CheckOptions& options, const ConsistencyReport& report) {
   ActuatorNeed need;
-  const std::vector<std::string> parts = missing(report);
+  const std::vector<std::string> parts = missing(model, report);
   if (parts.empty()) return need;
   for (const std::string& name : model.profile_names()) {
     if (name == report.profile) continue;
     CheckOptions other = options;
     other.profile = name;
-    if (missing(check_consistency(model, series, other)).empty()) need.sufficient.push_back(name);
+    if (missing(model, check_consistency(model, series, other)).empty())
+      need.sufficient.push_back(name);
   }
   need.text = "profile " + report.profile + " is too weak: the motion needs " +
               text::join(parts, ", ") + "; " +

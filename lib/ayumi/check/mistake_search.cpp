@@ -158,11 +158,16 @@ class Search {
   }
 
   // Whether one of the values is at fault. Each value is pulled to `share` of the way from its
-  // neutral value to itself.
+  // neutral value to itself; at 0 it is left out.
   bool look_at_best(const std::vector<WrittenValue>& suspects, double share) {
     std::vector<Mend> mends;
     for (const WrittenValue& value : suspects)
-      mends.push_back([&value, share](Pattern& p) { value.pull(p, share); });
+      mends.push_back([&value, share](Pattern& p) {
+        if (share == 0)
+          value.leave_out(p);
+        else
+          value.pull(p, share);
+      });
     const std::vector<TrialOutcome> without = trials_.after(pattern_, mends);
     const auto fewer = [&](const TrialOutcome& o) { return is_better(o, found_, Measure::errors); };
     const bool by_errors = std::any_of(without.begin(), without.end(), fewer);
@@ -240,6 +245,13 @@ class Search {
       possible = least;
       at_limit = without;
       bisect(exactly);
+    }
+    // Nothing of the value is possible: then the message names what would be there without it,
+    // which has to be enough as it is written, for all numbers of the value.
+    if (possible == 0) {
+      possible = value.written_share(pattern_, 0);
+      at_limit = trials_.after(pattern_, at(possible));
+      if (is_better(without, at_limit, measure)) return;
     }
     const WrittenNumber& number = value.numbers.front();
     const double limit = number.neutral + possible * (number.value - number.neutral);
@@ -400,6 +412,14 @@ std::string result_words(const TrialOutcome& before, const TrialOutcome& after) 
   return text::remaining(after.errors, before.errors, "error");
 }
 
+// The result of a change that has no errors in a quick trial, at the servo's period.
+std::string words_at_period(const TrialOutcome& before, const TrialOutcome& after) {
+  if (after.good()) return result_words(before, after);
+  return "only " + text::counted(after.errors, "error") +
+         (after.of_table ? " of the table for the robot " : " at the servo's period ") +
+         (after.errors == 1 ? "remains" : "remain");
+}
+
 // Whether a phase or a keyframe is one of several rounds of a block, which have one text in the
 // file: a change of another round is the same line again.
 bool is_repeated(const Pattern& pattern, const std::string& place) {
@@ -450,19 +470,23 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
              std::any_of(result.found.begin(), result.found.end(), is_here);
     });
     if (best.empty()) break;
+    // A quick trial does not see all that is wrong at the servo's period.
+    std::vector<bool> looked_closer;
+    std::vector<Candidate> possible;
     for (Candidate& c : best) {
-      if (c.outcome.good() && !trials.exact()) {
-        c.outcome = trials.exactly(current, c.hypothesis.mend);
-        c.hypothesis.says.instead =
-            before_result(c.hypothesis.says.instead) +
-            (c.outcome.good() ? result_words(found, c.outcome)
-                              : "only " + text::counted(c.outcome.errors, "error") +
-                                    " of the table for the robot " +
-                                    (c.outcome.errors == 1 ? "remains" : "remain"));
-      } else {
-        c.hypothesis.says.instead =
-            before_result(c.hypothesis.says.instead) + result_words(found, c.outcome);
-      }
+      const bool closer = c.outcome.good() && !trials.exact();
+      if (closer) c.outcome = trials.exactly(current, c.hypothesis.mend);
+      if (c.outcome.errors == kUnsampled) continue;
+      looked_closer.push_back(closer);
+      possible.push_back(std::move(c));
+    }
+    best = std::move(possible);
+    if (best.empty()) break;
+    for (size_t i = 0; i < best.size(); ++i) {
+      Candidate& c = best[i];
+      c.hypothesis.says.instead =
+          before_result(c.hypothesis.says.instead) +
+          (looked_closer[i] ? words_at_period(found, c.outcome) : result_words(found, c.outcome));
       c.hypothesis.says.enough = c.outcome.good();
       // The changes of the previous rounds are also needed.
       if (round > 0) c.hypothesis.says.instead += " (together with the change named before)";

@@ -89,13 +89,14 @@ TrialOutcome Trials::of(const Pattern& pattern, bool exact) const {
     const ConsistencyReport report =
         check_consistency(model_, sample(model_, pattern, {.dt = dt, .threads = 1}), options);
     outcome.errors = outcome.findings = 0;
-    outcome.slight = true;
+    outcome.slight = outcome.of_table = true;
     for (const Finding& f : report.findings) {  // errors are in order of time
       if (!exact && needs_servo_period(f.kind)) continue;
       if (f.severity != Severity::error && f.cause < 0) continue;
       ++outcome.findings;
       outcome.slight = outcome.slight && is_slight(model_, f);
       if (f.severity != Severity::error) continue;
+      outcome.of_table = outcome.of_table && needs_servo_period(f.kind);
       if (outcome.errors++ < kFirstErrors) outcome.windows.push_back({f.begin, f.end});
     }
   } catch (const Error& error) {

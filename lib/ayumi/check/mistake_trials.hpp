@@ -33,6 +33,7 @@ struct TrialOutcome {
   std::vector<Window> windows = {};
 
   bool table_alone = false;  ///< a quick trial has none of these errors
+  bool of_table = false;     ///< all errors are about the table for the robot
   bool slight = false;       ///< all errors and what follows from them are slight
 
   bool good() const { return errors == 0; }

@@ -411,8 +411,11 @@ void WrittenValue::scale(Pattern& pattern, double factor) const {
 void WrittenValue::pull(Pattern& pattern, double share) const {
   const WrittenNumber& first = numbers.front();
   const double all = first.neutral + share * (first.value - first.neutral);
-  for (const WrittenNumber& number : numbers)
-    number.in(pattern) = share == 0 ? number.neutral : all;
+  for (const WrittenNumber& number : numbers) number.in(pattern) = all;
+}
+
+void WrittenValue::leave_out(Pattern& pattern) const {
+  for (const WrittenNumber& number : numbers) number.in(pattern) = number.neutral;
 }
 
 std::vector<WrittenValue> written_values(const RobotModel& model, const Pattern& pattern) {

@@ -50,8 +50,10 @@ struct WrittenValue {
   /// Multiplies all numbers of the value.
   void scale(Pattern& pattern, double factor) const;
   /// Gives all numbers of the value one value, at this share of the way of the first of them from
-  /// what would be there without it. At 0, each becomes what would be there without it.
+  /// what would be there without it.
   void pull(Pattern& pattern, double share) const;
+  /// Gives each number of the value what would be there without it.
+  void leave_out(Pattern& pattern) const;
 };
 
 /// All numbers of phases, keyframes, postures, start and ground, except times. If the feet of a

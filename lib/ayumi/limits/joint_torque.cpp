@@ -25,18 +25,10 @@ constexpr double kWholeTorque = 1;
 // the robots there have motors in all joints.
 constexpr double kLimpLever = 1e-3;
 
-// Where no joint has a motor, nobody stated the motors.
-bool lacks_motor(const ActuatorLimits& limits, int dof) {
-  const auto at = static_cast<size_t>(dof);
-  return limits.has_servo[at] && limits.servo[at].kp <= 0 &&
-         std::any_of(limits.servo.begin(), limits.servo.end(),
-                     [](const ServoDescription& servo) { return servo.kp > 0; });
-}
-
 // Infinite where nothing is known.
 double peak_of(const JudgedMotion& motion, int dof) {
   const double peak = motion.limits.peak_torque[dof];
-  if (!lacks_motor(motion.limits, dof)) return peak;
+  if (!motion.limits.lacks_motor(dof)) return peak;
   const double friction = motion.limits.servo[static_cast<size_t>(dof)].coulomb;
   return std::min(peak, std::max(friction, kLimpLever * motion.model.mass() * kGravity));
 }
@@ -48,7 +40,7 @@ void judge_joint_torques(JudgedMotion& motion, const JudgedSample& s) {
     const double limit = peak_of(motion, i), torque = s.demand.torque[i];
     if (!std::isfinite(limit)) continue;
     const double ratio = std::abs(torque) / limit;
-    if (ratio <= most && lacks_motor(motion.limits, i)) continue;  // no share of a motor's torque
+    if (ratio <= most && motion.limits.lacks_motor(i)) continue;  // no share of a motor's torque
     motion.raise(FindingKind::joint_torque, ratio, s.k, i);
     if (ratio > most) motion.add(FindingKind::joint_torque, i, s.k, torque, most * limit, ratio);
   }
@@ -93,7 +85,7 @@ const char* torque_unit(const JudgedMotion& motion, const Violation& v) {
 
 Advice torque_advice(const JudgedMotion& motion, const FindingWindow& window) {
   const Violation& v = window.worst;
-  if (lacks_motor(motion.limits, v.item))
+  if (motion.limits.lacks_motor(v.item))
     return motion.model.dofs()[v.item].name +
            " has no motor (kp of its servo is 0), but the motion needs one there; if the joint has "
            "a motor, state kp in the sidecar";

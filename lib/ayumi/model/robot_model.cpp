@@ -17,6 +17,13 @@
 
 namespace ayumi {
 
+bool ActuatorLimits::lacks_motor(int dof) const {
+  const auto at = static_cast<size_t>(dof);
+  return has_servo[at] && servo[at].kp <= 0 &&
+         std::any_of(servo.begin(), servo.end(),
+                     [](const ServoDescription& other) { return other.kp > 0; });
+}
+
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();

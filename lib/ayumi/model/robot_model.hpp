@@ -52,6 +52,10 @@ struct ActuatorLimits {
   std::vector<ServoDescription> servo;
   /// Whether the files give the joint a servo; a servo with kp = 0 is passive.
   std::vector<bool> has_servo;
+
+  /// Whether the files say that the joint has no motor: its servo has kp = 0, and that of another
+  /// joint has not. If no joint has a motor, the files do not state the motors.
+  bool lacks_motor(int dof) const;
 };
 
 struct Link {

@@ -164,6 +164,7 @@ std::string too_many(const std::string& what) {
 
 void validate_links(const RobotDescription& robot) {
   if (robot.links.empty()) complain_urdf(robot, "", "the robot has no link; add one");
+  if (robot.links.size() > kMostLinks) complain_urdf(robot, "", too_many("links"));
   const std::string name = twice(link_names(robot));
   if (!name.empty()) complain_urdf(robot, "link " + name, "two links have this name; rename one");
   for (const LinkDescription& link : robot.links) {
@@ -173,6 +174,7 @@ void validate_links(const RobotDescription& robot) {
 }
 
 void validate_joints(const RobotDescription& robot) {
+  if (robot.joints.size() > kMostLinks) complain_urdf(robot, "", too_many("joints"));
   const std::vector<std::string> links = link_names(robot);
   const std::string name = twice(joint_names(robot));
   if (!name.empty()) complain_urdf(robot, "joint " + name, "two joints have this name; rename one");
