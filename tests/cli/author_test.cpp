@@ -351,11 +351,11 @@ TEST_F(AuthorServer, AfterEditsItShowsWhatAServerShowsThatStartsAnew) {
            1e4;
   };
   for (int i = 0; i < 8; ++i) {
-    const OrderedJson edits = {i % 4 == 0   ? set("/keyframes/1/t", between(0.5, 0.7))
-                               : i % 4 == 1 ? set("/defaults/cog_height", between(0.2, 0.225))
-                               : i % 4 == 2
-                                   ? set("/world/friction", between(0.02, 0.8))
-                                   : set("/keyframes/1/joints/r_shoulder_pitch", between(60, 120))};
+    const OrderedJson edits = i % 4 == 0   ? set("/keyframes/1/t", between(0.5, 0.7))
+                              : i % 4 == 1 ? set("/defaults/cog_height", between(0.2, 0.225))
+                              : i % 4 == 2
+                                  ? set("/world/friction", between(0.02, 0.8))
+                                  : set("/keyframes/1/joints/r_shoulder_pitch", between(60, 120));
     ASSERT_EQ(server.edit(edits).first, 200) << edits.dump();
     const Server anew(file);
     const OrderedJson now = server.state(), expected = anew.state();

@@ -21,7 +21,7 @@ namespace ayumi {
 
 namespace {
 
-// Two numbers whose difference is smaller than this count as equal, in any unit. Reason: the
+// Two numbers whose difference is smaller than this count as equal, in any unit. Chosen: the
 // conversion of degrees and the rounding of limits cause smaller differences.
 constexpr double kSame = 1e-6;
 
