@@ -636,7 +636,7 @@ async function followsTheFile(driver_, tab) {
   await other.shoot("dark.png");
   const ground = await other.run("return getComputedStyle(document.body).backgroundColor");
   expect(Math.max(...ground.match(/\d+/g).map(Number)) < 60, "the dark page is dark: " + ground);
-  await other.coarsen();
+  await other.drawNoMore();
   await tab.after(() => tab.run("window.ayumiAuthor.page.edit([{ kind: 'set', pointer: '/keyframes/0/zmp', value: 'left' }]);"));
   expect(await until(() => other.run("return window.ayumiAuthor.page.state.tracks[0].keys[0].value === 'left'")), "the other page follows");
   await tab.after(() => tab.click("#undo"));
@@ -657,7 +657,7 @@ try {
   driving = await startDriver(driver, shots);
   const tab = await openPage(driving, 1280, 800);
   await runTrials(tab, [looks]);
-  await tab.coarsen();
+  await tab.drawNoMore();
   await runTrials(tab, [namesEverything, editsByKeyboard, keepsTheFocus, addsPhasesAndKeys, addsKeysOfFeet, makesWhatIsNotThere, makesEveryPart,
     writesOptionalValues, movesKeysByTyping, locksWhatIsOld, dragsInTime, showsFindings, keepsBothVersions,
     poses, postures, pushesTheRobot, works, showsResults, keepsWhatIsBeingTyped, showsNoDeadControls]);

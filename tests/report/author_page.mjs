@@ -30,23 +30,23 @@ export const save = (words) => {
 };
 export const data = () => JSON.parse(text());
 
-/// A quarter as many pixels in each direction, with the same layout: a machine without a graphics card draws them in less time.
-const coarse = 0.25;
+/// Where nobody looks at pictures, a quarter as many pixels in each direction, with the same layout: a machine without a graphics
+/// card draws them in less time.
+const deviceScaleFactor = shots ? 1 : 0.25;
 
 /// A page with what the trials need.
 export async function openPage(driver_, width, height) {
   const tab = await driver_.open(`${width},${height}`);
-  tab.size = (w, h, deviceScaleFactor = 1) => tab.tool("Emulation.setDeviceMetricsOverride",
-    { width: w, height: h, deviceScaleFactor, mobile: false });
-  /// From here on still fewer pixels in the robot's picture, and no shadows.
-  tab.coarsen = async () => {
-    await tab.size(width, height, coarse);
-    await tab.run(`const { renderer, scene } = window.ayumiAuthor.page.viewer;
-      renderer.setPixelRatio(devicePixelRatio / 4);
-      renderer.shadowMap.enabled = false;
-      scene.traverse(({ material }) => { if (material) material.needsUpdate = true; });`);
+  tab.size = (w, h) => tab.tool("Emulation.setDeviceMetricsOverride", { width: w, height: h, deviceScaleFactor, mobile: false });
+  /// From here on the robot's parts are placed, but not drawn, which takes most of the time of a machine without a graphics card.
+  tab.drawNoMore = async () => {
+    if (shots) return;
+    await tab.run(`window.ayumiAuthor.page.viewer.renderer.render = (scene, camera) => {
+        scene.updateMatrixWorld();
+        camera.updateMatrixWorld();
+      };`);
   };
-  await tab.size(width, height, shots ? 1 : coarse);
+  await tab.size(width, height);
   await tab.load(address);
   const state = await until(() => tab.run("return document.documentElement.dataset.author"), 60);
   expect(state === "ready", "the page says " + state);

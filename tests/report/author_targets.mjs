@@ -115,12 +115,12 @@ async function worksNarrow(tab) {
   }
   await tab.shoot("targets_narrow.png");
   await tab.run("document.getElementById('marks').open = false;");
-  await tab.coarsen();
+  await tab.size(1280, 800);
 }
 
 async function twoPages(driver_, tab) {
   const other = await openPage(driver_, 820, 1100);
-  await other.coarsen();
+  await other.drawNoMore();
   await tab.after(() => tab.run(`${page} page.edit([{ kind: "set", pointer: "/keyframes/0/cog/y", value: 0.01 }]);`));
   expect(await until(() => other.run(`${page} return page.state.tracks.find((one) => one.name === "cog").keys[0].value.y === 0.01`)), "the other page follows");
   await other.after(() => other.click("#undo"));
@@ -153,7 +153,7 @@ try {
   driving = await startDriver(driver, shots);
   const tab = await openPage(driving, 1280, 800);
   await runTrials(tab, [showsTargets]);
-  await tab.coarsen();
+  await tab.drawNoMore();
   await runTrials(tab, [dragsTargets]);
   await onAShortMotion(tab, [dragsWhatFollows, typesTargets]);
   await runTrials(tab, [worksNarrow]);
