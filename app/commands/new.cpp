@@ -46,9 +46,13 @@ struct NewOptions {
   int viip_steps = 0;
   std::optional<double> stride, period, lift, side, depth, hold, length, height;
   std::optional<double> angle_deg;
-  const Option *double_support = nullptr, *zmp_inwards = nullptr;  // options of walks
+  // Options of all kinds of walks.
+  std::vector<const Option*> double_support, zmp_inwards;
 
-  static bool is_given(const Option* option) { return option && option->count() > 0; }
+  static bool is_given(const std::vector<const Option*>& options) {
+    return std::any_of(options.begin(), options.end(),
+                       [](const Option* option) { return option->count() > 0; });
+  }
   SeatParameters seat;
   BowParameters bow;
   WaveParameters wave;
@@ -697,21 +701,21 @@ void add_gait(Command& command, NewOptions& options) {
              "S");
   add_scaled(command, "--lift", options.lift, "Height of the swinging sole [m]",
              WalkParameters().lift, "M");
-  options.double_support =
+  options.double_support.push_back(
       command
           .add_option("--double-support", options.walk.double_support,
                       "Share of the period in which both feet are on the ground.")
           ->capture_default_str()
-          ->type_name("SHARE");
+          ->type_name("SHARE"));
   add_height(command, options.walk.cog_height);
-  options.zmp_inwards =
+  options.zmp_inwards.push_back(
       command
           .add_option(
               "--zmp-inwards", options.walk.zmp_inwards,
               "Distance by which the ZMP is moved from the middle of the standing sole towards "
               "the other foot [m]. With a larger distance the COG sways less.")
           ->capture_default_str()
-          ->type_name("M");
+          ->type_name("M"));
   command.add_option("--first", options.first, "Foot that swings first.")
       ->check(one_of({"left", "right"}))
       ->capture_default_str();
