@@ -470,23 +470,15 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
              std::any_of(result.found.begin(), result.found.end(), is_here);
     });
     if (best.empty()) break;
-    // A quick trial does not see all that is wrong at the servo's period.
-    std::vector<bool> looked_closer;
     std::vector<Candidate> possible;
     for (Candidate& c : best) {
-      const bool closer = c.outcome.good() && !trials.exact();
-      if (closer) c.outcome = trials.exactly(current, c.hypothesis.mend);
+      // A quick trial does not see all that is wrong at the servo's period.
+      const bool looked_closer = c.outcome.good() && !trials.exact();
+      if (looked_closer) c.outcome = trials.exactly(current, c.hypothesis.mend);
       if (c.outcome.errors == kUnsampled) continue;
-      looked_closer.push_back(closer);
-      possible.push_back(std::move(c));
-    }
-    best = std::move(possible);
-    if (best.empty()) break;
-    for (size_t i = 0; i < best.size(); ++i) {
-      Candidate& c = best[i];
       c.hypothesis.says.instead =
           before_result(c.hypothesis.says.instead) +
-          (looked_closer[i] ? words_at_period(found, c.outcome) : result_words(found, c.outcome));
+          (looked_closer ? words_at_period(found, c.outcome) : result_words(found, c.outcome));
       c.hypothesis.says.enough = c.outcome.good();
       // The changes of the previous rounds are also needed.
       if (round > 0) c.hypothesis.says.instead += " (together with the change named before)";
@@ -495,10 +487,12 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
         return e.place == c.hypothesis.says.place && e.written == c.hypothesis.says.written;
       });
       result.found.push_back(c.hypothesis.says);
+      possible.push_back(std::move(c));
     }
+    if (possible.empty()) break;
     Pattern mended = current;
-    best.front().hypothesis.mend(mended);
-    const TrialOutcome left = best.front().outcome;
+    possible.front().hypothesis.mend(mended);
+    const TrialOutcome left = possible.front().outcome;
     if (left.table_alone) trials.make_exact();
     current = std::move(mended);
     found = left;

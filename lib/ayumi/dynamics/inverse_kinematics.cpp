@@ -538,7 +538,7 @@ void InverseKinematics::damped(const PostureTarget& target, RobotState& state,
     // If soles cannot reach their places, a residual remains and the steps vanish. Each step is
     // shorter than the one before by about the same factor, so the next one is foretold.
     const bool ends = lacking_ && std::min(longest, longest / before * longest) < kLastStep;
-    before = gain > 0 ? longest : 0;  // the next step is foretold after steps that helped only
+    before = gain > 0 ? longest : 0;  // only a step that helped foretells the next one
     if (gain > 0) {
       state = trial;
       e = next;
