@@ -267,28 +267,6 @@ void InverseKinematics::bend_straight_legs(RobotData& data) {
   update_positions(*model_, state, data);
 }
 
-namespace {
-
-// The error of the posture that `data` holds. The attitude of the trunk counts where legs lack
-// joints.
-template <class Residual>
-void fill_residual(const RobotModel& model, const PostureTarget& target, const RobotData& data,
-                   bool lacking, Residual& e) {
-  for (const Side side : kSides) {
-    const int s = static_cast<int>(side);
-    const Eigen::Isometry3d sole = sole_pose(model, data, side);
-    e.foot[s].template head<3>() = target.feet[s].translation() - sole.translation();
-    e.foot[s].template tail<3>() =
-        log_rotation(Eigen::Quaterniond(target.feet[s].linear() * sole.linear().transpose()));
-  }
-  e.cog = target.cog - data.cog;
-  if (lacking)
-    e.trunk = log_rotation(
-        Eigen::Quaterniond(target.trunk * data.rotation[model.trunk_body()].transpose()));
-}
-
-}  // namespace
-
 double InverseKinematics::Residual::largest() const {
   return std::max(
       {foot[0].cwiseAbs().maxCoeff(), foot[1].cwiseAbs().maxCoeff(), cog.cwiseAbs().maxCoeff()});
@@ -298,8 +276,23 @@ InverseKinematics::Residual InverseKinematics::residual(const PostureTarget& tar
                                                         const RobotState& state,
                                                         RobotData& data) const {
   update_positions(*model_, state, data);
+  return residual(target, data);
+}
+
+InverseKinematics::Residual InverseKinematics::residual(const PostureTarget& target,
+                                                        const RobotData& data) const {
   Residual e;
-  fill_residual(*model_, target, data, lacking_, e);
+  for (const Side side : kSides) {
+    const int s = static_cast<int>(side);
+    const Eigen::Isometry3d sole = sole_pose(*model_, data, side);
+    e.foot[s].head<3>() = target.feet[s].translation() - sole.translation();
+    e.foot[s].tail<3>() =
+        log_rotation(Eigen::Quaterniond(target.feet[s].linear() * sole.linear().transpose()));
+  }
+  e.cog = target.cog - data.cog;
+  if (lacking_)
+    e.trunk = log_rotation(
+        Eigen::Quaterniond(target.trunk * data.rotation[model_->trunk_body()].transpose()));
   return e;
 }
 
@@ -573,8 +566,7 @@ PostureSolution InverseKinematics::solve(const PostureTarget& target, RobotState
       state.base.position = target.cog - (data.cog - data.base_position);
     }
     damped(target, state, data);
-    Residual e;
-    fill_residual(*model_, target, data, lacking_, e);
+    const Residual e = residual(target, data);
     solution.error = e.largest();
     solution.lean = e.trunk.norm();
     solution.reached = e.cog.cwiseAbs().maxCoeff() <= tolerance(1);

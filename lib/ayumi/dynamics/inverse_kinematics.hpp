@@ -106,6 +106,9 @@ class InverseKinematics {
     bool carries = false;  ///< this body carries the sole
   };
   Residual residual(const PostureTarget& target, const RobotState& state, RobotData& data) const;
+  /// The residual of the posture that `data` holds. The attitude of the trunk is part of it if legs
+  /// lack joints.
+  Residual residual(const PostureTarget& target, const RobotData& data) const;
   bool newton(const PostureTarget& target, RobotState& state, RobotData& data, double& error,
               std::array<double, 2>& legs_bend) const;
   void damped(const PostureTarget& target, RobotState& state, RobotData& data) const;
