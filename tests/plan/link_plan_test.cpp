@@ -276,6 +276,56 @@ TEST(LinkPlan, SaysByHowMuchAHandIsOutOfReach) {
   EXPECT_NE(message.find("in the frame of the trunk; move the target"), std::string::npos);
 }
 
+// Places around the trunk that the arm cannot reach, with joints at their limits. A random search
+// among the postures of the arm finds none that puts the hand nearer than the message says.
+TEST(LinkPlan, AHandComesAsNearToAPlaceOutOfReachAsItsJointsAllow) {
+  const RobotModel& model = hoap1();
+  const int body = hand_body(model, Side::left);
+  const std::vector<int> dofs = limb_dofs(model, body);
+  std::mt19937 random(23);
+  int out_of_reach = 0;
+  for (int round = 0; round < 24; ++round) {
+    std::uniform_real_distribution<double> forward(-0.1, 0.2), left(-0.15, 0.25), up(-0.1, 0.25);
+    const Vector3d goal{forward(random), left(random), up(random)};
+    Pattern pattern = standing(2);
+    at(pattern, 0).zmp = ZmpKey{ZmpKey::Place::center};
+    at(pattern, 1).hands["left"] = place(goal, LinkTarget::Frame::trunk);
+    std::string message;
+    try {
+      sample(model, pattern, {.dt = 0.01});
+    } catch (const Error& error) {
+      message = error.what();
+    }
+    const size_t found = message.find("t = 1.000 s: the left hand is out of reach by ");
+    if (found == std::string::npos) continue;
+    ++out_of_reach;
+    const double said = 1e-3 * std::stod(message.substr(message.find("reach by ", found) + 9));
+    double nearest = 1;
+    for (int start = 0; start < 4; ++start) {
+      RobotState best = random_arm(model, body, random, 0.5);
+      double distance = (hand_at(model, best, body).in_trunk - goal).norm();
+      std::normal_distribution<double> change(0, 1);
+      for (double width = 0.6; width > 1e-3; width *= 0.97)
+        for (int trial = 0; trial < 4; ++trial) {
+          RobotState tried = best;
+          for (const int dof : dofs) {
+            const Dof& joint = model.dofs()[static_cast<size_t>(dof)];
+            tried.theta[dof] =
+                std::clamp(tried.theta[dof] + width * change(random), joint.lower, joint.upper);
+          }
+          const double there = (hand_at(model, tried, body).in_trunk - goal).norm();
+          if (there < distance) {
+            distance = there;
+            best = tried;
+          }
+        }
+      nearest = std::min(nearest, distance);
+    }
+    EXPECT_LT(said, nearest + 1e-3) << "a random search comes nearer: " << message;
+  }
+  EXPECT_GT(out_of_reach, 8);
+}
+
 // On the way to a key in the world, the trunk may be elsewhere than at the time of the key. A
 // target that is only within reach of the bent trunk is not reported as far out of reach.
 TEST(LinkPlan, DoesNotMeasureTheReachOfATrunkThatIsOnItsWay) {
