@@ -58,8 +58,8 @@ Pattern sway_pattern(const RobotModel& model, const SwayParameters& parameters);
 /// Half of the width of the narrower sole [m].
 double half_sole_width(const RobotModel& model);
 
-/// COG height at which generated patterns begin: the home posture's, lower where its legs are
-/// straight [m].
+/// COG height at which generated patterns begin [m]: that of the home posture, or less if its legs
+/// are straight.
 double starting_height(const RobotModel& model);
 
 /// The COG moves down and up over both feet.
