@@ -37,7 +37,7 @@ struct BodySphere {
 struct BodyPlace {
   Eigen::Vector3d center;  ///< world [m]
   double shift = 0;        ///< of the centre [m]
-  double turn = 0;         ///< at least the angle of the turn [rad]
+  double turn = 0;         ///< upper bound of the angle of the turn [rad]
 };
 
 std::vector<BodySphere> body_spheres(const RobotModel& model, const CollisionModel& collisions) {
@@ -119,7 +119,7 @@ class ClearanceScan {
   }
 
   // A turn by an angle moves a point by less than the angle times its distance; the chord of the
-  // rotation matrices is sqrt(8) sin(angle/2), and angle/2 at most pi/2 times its sine.
+  // rotation matrices is sqrt(8) sin(angle/2), and angle/2 is at most pi/2 times its sine.
   static double angle_between(const Eigen::Matrix3d& before, const Eigen::Matrix3d& after) {
     return std::numbers::pi * (after - before).norm() / std::sqrt(8.0);
   }

@@ -53,15 +53,15 @@ RunOn swing_run_on(const RobotModel& model, const CommandSeries& series, Side si
                    const ContactInterval& contact, bool lands);
 
 /// Height at which a swing may continue, as a share of the height by which a supporting sole may
-/// float. Chosen: a fifth finds 60 ms of a slow swing (0.06 mm), and generated walks have 1e-12 m
-/// (docs/attribution.md, "Contacts that begin in the air"). No measured case changes between half
-/// and twice the value (constants.md).
+/// float. Chosen: with a fifth (0.06 mm), a contact that begins 60 ms before the end of a slow
+/// swing is found, and generated walks are 1e-12 m high there (docs/attribution.md, "Contacts that
+/// begin in the air"). No measured case changes between half and twice the value (constants.md).
 inline constexpr double kRunOnShare = 0.2;
 
 /// How long a foot stays in the place of `contact` after the planned end of the contact [samples],
-/// if the following swing begins at all. It is computed from the times at which the sole is 0.01
-/// and 0.08 mm off its place, as if its distance grew with the cube of time. Slower starts give a
-/// larger number, and quicker ones a smaller one, even below 0.
+/// or 0 if the foot does not move by 0.08 mm in the following swing. It is computed from the times
+/// at which the sole is 0.01 and 0.08 mm off its place, as if its distance grew with the cube of
+/// time. Slower starts give a larger number, and quicker ones a smaller one, even below 0.
 double samples_after_contact(const RobotModel& model, const CommandSeries& series, Side side,
                              const ContactInterval& contact, const ContactInterval& swing);
 

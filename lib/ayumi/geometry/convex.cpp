@@ -121,8 +121,9 @@ bool nearest_inside(const Few<Vertex>& v, const std::array<int, 4>& pick, Few<do
   return true;
 }
 
-// Reduces `simplex` to the part that is nearest to the origin. `newest`: only parts with the last
-// vertex count. In the search for the nearest point, the others were looked at before.
+// Reduces `simplex` to the part that is nearest to the origin. With `newest`, only parts that
+// contain the last vertex are examined, because the search for the nearest point has examined the
+// other parts before.
 void reduce(Simplex& simplex, bool newest = false) {
   const auto count = static_cast<int>(simplex.vertices.size());
   std::array<int, 4> best = {};
