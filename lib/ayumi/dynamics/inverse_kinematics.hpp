@@ -132,7 +132,8 @@ class InverseKinematics {
   std::array<int, 2> knees_ = {-1, -1};
   /// Bodies of the joints across the trunk below the knees.
   std::array<int, 2> knee_feet_ = {-1, -1};
-  std::array<int, 2> knee_hips_ = {-1, -1};  ///< bodies of those above the knees
+  std::array<int, 2> knee_hips_ = {-1, -1};  ///< bodies of the joints across the trunk above the
+                                             ///< knees
   std::array<double, 2> forward_ = {0, 0};
   Eigen::VectorXd start_;
   double largest_bend_rate_ = 0;  ///< largest change of the determinants below per radian
