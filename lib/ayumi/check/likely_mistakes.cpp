@@ -33,7 +33,7 @@ constexpr double kLongestStand = 1000;
 // A COG below this share of its height at home is nearer to the ground than folded legs allow.
 // Chosen: the deepest squat of HOAP-1 is at 0.6.
 constexpr double kLowestCog = 0.3;
-// A foot lands beside the other one on its own side of it, or on the other side by less than this
+// A foot that lands on the wrong side of the other foot by less than this does not cross the legs
 // [m]. Chosen: half the width of a small sole, so that a tightrope walk is no mistake.
 constexpr double kCrossing = 0.02;
 // A foot key this far above the other sole lifts the COG noticeably [m]. Chosen: a sole that clears

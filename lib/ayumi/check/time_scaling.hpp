@@ -10,8 +10,8 @@ namespace ayumi {
 /// demand too large and time scaling cannot help.
 bool broken_by_jump(const JudgedMotion& motion, int sample);
 
-/// Whether one pace removes both violations. If the path is discontinuous there, no pace removes
-/// them. In this case the violation is attributed to the speed, unless the violation is the
+/// Whether one pace removes both violations. If the path is discontinuous near the effect, no pace
+/// removes them. In this case the effect is attributed to the speed, unless the effect is the
 /// discontinuity itself.
 bool slower_pace_removes(JudgedMotion& motion, const Violation& cause, const Violation& effect);
 

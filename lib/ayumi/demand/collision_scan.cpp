@@ -169,7 +169,8 @@ class ClearanceScan {
     return most_around(c, [&](int k) { return way(k, pair); });
   }
 
-  // Whether the spheres alone show that a pair is neither near at a coarse sample nor beside it.
+  // Whether the spheres alone show that a pair is near neither at a coarse sample nor between this
+  // sample and its neighbours.
   bool is_far(int c, const CollisionModel::Pair& bodies, double gap) const {
     if (gap < wanted()) return false;
     return gap -

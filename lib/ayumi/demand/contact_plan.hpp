@@ -43,7 +43,8 @@ ContactPlan contact_plan(const CommandSeries& series);
 /// The continuation of a swing beyond the beginning or end of a contact: a foot that lands later,
 /// or lifts off earlier, than the phases say.
 struct RunOn {
-  /// Height of the sole's centre over its place at that time, if it is still moving [m].
+  /// Height of the sole's centre over its place at that beginning or end, if the sole is still
+  /// moving [m].
   double height = 0;
   int samples = 0;  ///< number of samples until it has practically come to its place
 };
@@ -66,7 +67,7 @@ double samples_after_contact(const RobotModel& model, const CommandSeries& serie
                              const ContactInterval& contact, const ContactInterval& swing);
 
 /// Whether the differences that give the rates of sample k mix support and flight. There, the
-/// acceleration jumps, and the demand on the ground is unknown.
+/// acceleration is discontinuous, and the demand on the ground is unknown.
 bool at_flight_edge(const CommandSeries& series, int k);
 
 }  // namespace ayumi

@@ -29,7 +29,7 @@ struct StepGoal {
   double turn = 0;                                     ///< turn to the left [rad/s]
 };
 
-/// A jump of stoop, lift-off, flight, touchdown and settling, repeated `times` times.
+/// A jump that consists of stoop, lift-off, flight, touchdown and settling, repeated `times` times.
 struct JumpGoal {
   /// The event that ends the spring of (26): the COG passes ref z_G, or f_z is zero.
   enum class Release { ref_z, spring };
