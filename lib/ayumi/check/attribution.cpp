@@ -1,11 +1,11 @@
-// Data feed each other in one direction: the angle of a joint makes poses, poses and time make
-// rates, rates make forces, and the command is compared with all of them. A finding is a
-// consequence if a finding upstream, at the same place in the motion, is sufficient to cause it.
-// One function, execute(), applies the rules in their order. It takes the open errors of the rule's
-// cause one after the other, in the order that the rule names. Another open error becomes a
-// consequence if three conditions hold: its kind is one of the rule's effects, its window overlaps
-// the interval of this effect, and it passes the condition of this effect. An error is open as long
-// as it is not a consequence of another error.
+// Quantities depend on each other in one direction: joint angles determine poses, poses and time
+// determine rates, rates determine forces, and the command is compared with all of them. A finding
+// is a consequence if a finding earlier in this chain, at the same place in the motion, is
+// sufficient to cause it. One function, execute(), applies the rules in their order. It takes the
+// open errors of the rule's cause one after the other, in the order that the rule names. Another
+// open error becomes a consequence if three conditions hold: its kind is one of the rule's effects,
+// its window overlaps the interval of this effect, and it passes the condition of this effect. An
+// error is open as long as it is not a consequence of another error.
 #include "ayumi/check/attribution.hpp"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ namespace {
 
 // ---- the parts of a rule
 
-/// The findings of a motion while causes are looked for.
+/// The findings of a motion during the search for their causes.
 struct Scene {
   JudgedMotion& motion;
   std::vector<FindingWindow>& windows;
@@ -47,7 +47,7 @@ struct Where {
   std::vector<Interval> (*of)(const Scene&, int i);
 };
 
-/// Whether j follows from i, whose interval it touches.
+/// Whether finding j, which touches the interval of finding i, is a consequence of i.
 struct Condition {
   const char* words;
   bool (*holds)(Scene&, int i, int j, const Interval& interval);

@@ -31,7 +31,7 @@ void judge_samples(JudgedMotion& motion) {
 }
 
 // Judges the samples. At the same time, the limits that depend on the commands alone are computed;
-// then follow the limits that need the whole motion.
+// the limits that need the whole motion are computed afterwards.
 void judge(JudgedMotion& motion, int threads) {
   std::vector<const Limit*> ahead;
   for (const Limit* limit : limits())

@@ -15,8 +15,8 @@ struct Interval {
 };
 
 /// Number of samples on either side whose rates and accelerations are wrong because the angle of a
-/// joint is discontinuous. Derived: rates and accelerations are fitted over two samples to either
-/// side (motion/differentiate.hpp), and a discontinuity lies between two samples.
+/// joint is discontinuous. Derived: rates and accelerations are differences over two samples to
+/// either side (motion/differentiate.hpp), and a discontinuity lies between two samples.
 inline constexpr int kDifferenceReach = 3;
 
 /// The window with `pad` samples on either side.

@@ -70,7 +70,7 @@ class Suspicions {
   Suspicions(const RobotModel& model, const Pattern& pattern) : model_(model), pattern_(pattern) {
     try {
       if (model.has_soles()) feet_.emplace(model, pattern);
-    } catch (const Error&) {  // the phases themselves are wrong, which their own message says
+    } catch (const Error&) {  // the phases themselves are wrong; their own message says so
     }
   }
 

@@ -34,7 +34,7 @@ std::vector<Mistake> impossible_values(const RobotModel& model, const Pattern& p
 std::vector<Mistake> doubtful_values(const RobotModel& model, const Pattern& pattern);
 
 /// The changes that would make the pattern consistent or, if there is none, its impossible values.
-/// Samples and checks the pattern some fifty times, which takes a few seconds, and at most 300
+/// Samples and checks the pattern about fifty times, which takes a few seconds, and at most 300
 /// times; if this bound ended the search, the last mistake says so. `progress` may stop it.
 std::vector<Mistake> likely_mistakes(const RobotModel& model, const Pattern& pattern,
                                      const CheckOptions& options, const Progress& progress = {});

@@ -242,8 +242,8 @@ class Hypotheses::Maker {
                         }});
   }
 
-  // The phases were stretched and the keyframes were left as they were, or the keyframes were
-  // stretched and the phases were left.
+  // Perhaps only the phases or only the keyframes were stretched in time: tries one factor for the
+  // times of all keyframes.
   void stretched_keys(std::vector<Hypothesis>& made) const {
     const auto& keys = pattern_.keyframes;
     const auto fitting = [&](double factor) {

@@ -515,8 +515,8 @@ double LinkPlan::minimize(const Group& group, const std::vector<Aim>& aims, cons
     if (longest > kLongestStep) way *= kLongestStep / longest;
     const VectorXd before = q;
     q = (q + way).cwiseMax(low).cwiseMin(high);
-    // If the target is farther away than the limb is long, the residual cannot serve as multiplier,
-    // because the limb cannot reach the target.
+    // The multiplier is limited, because the residual of a target that the limb cannot reach is too
+    // large for it.
     for (Term& term : terms)
       if (term.weight > 0) {
         term.multiplier = term.weight * (term.off + term.columns * (q - before));
@@ -621,8 +621,7 @@ void LinkPlan::complain(const Group& group, double t, const std::vector<Aim>& ai
   const Anchor& key = next == target.anchors.end() ? target.anchors.back() : *next;
   const bool under_way = next != target.anchors.end() && key.t > t + kSameMoment;
   const bool in_trunk = key.target && key.target->frame == LinkTarget::Frame::trunk;
-  // If the trunk moves until then, it is not known here what the limb reaches at the time of the
-  // key.
+  // If the trunk moves until the time of the key, it is not known here what the limb reaches then.
   const bool trunk_waits = in_trunk || !trunk_moves(*pattern_, t, key.t);
   const bool only_way = under_way && !trunk_waits;
   if (only_way && t < forgiven_before_ - kSameMoment) return;

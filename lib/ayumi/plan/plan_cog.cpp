@@ -33,9 +33,9 @@ constexpr double kGridStep = 0.005;
 /// sole, and 1/10 of what the check reports in its figures. Between half and twice the value,
 /// figures change by less than 5 %.
 constexpr double kZmpGoal = 1e-4;
-/// Largest number of passes. Chosen: each pass reduces the error to a fraction, and passes end
-/// earlier when two in a row do not. No measured case changes between half and twice the value
-/// (constants.md).
+/// Largest number of passes. Chosen: each pass reduces the error to a fraction, and the passes end
+/// earlier if two in a row do not reduce it. No measured case changes between half and twice the
+/// value (constants.md).
 constexpr int kMostIterations = 12;
 
 constexpr const char* kStage = "solve the COG";

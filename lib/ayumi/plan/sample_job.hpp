@@ -129,7 +129,7 @@ struct CogPlan {
 /// full model.
 CogPlan plan_cog(const SampleJob& job);
 
-/// Computes the commanded ZMP and f_z of a sample whose COG has its rates.
+/// Computes the commanded ZMP and f_z of a sample whose COG rates are already known.
 void put_ground_commands(const SampleJob& job, const CogPlan& plan, double t,
                          CommandSample& sample);
 

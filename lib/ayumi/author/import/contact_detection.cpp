@@ -242,9 +242,9 @@ double cog_outside(const RobotModel& model, const RawMotion& motion, const Soles
   return -ConvexPolygon(model.sole(static_cast<Side>(foot)).polygon).margin(cog.head<2>());
 }
 
-// One foot alone carries the robot for a moment only if the COG is near this foot; otherwise the
-// ZMP would be far outside of the sole. A short support by one foot for which this does not hold is
-// added to the adjacent double support, or otherwise to the longer one of its neighbours.
+// One foot alone can carry the robot for a short time only if the COG is near this foot; otherwise
+// the ZMP would be far outside of the sole. A short support by one foot for which this does not
+// hold is added to the adjacent double support, or otherwise to the longer one of its neighbours.
 std::vector<Support> without_doubtful_moments(const RobotModel& model, const RawMotion& motion,
                                               const Soles& soles, std::vector<Support> supports) {
   // Duration up to which a support by one foot is doubtful [s]. Chosen: a quarter of the single
