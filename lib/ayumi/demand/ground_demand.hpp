@@ -1,7 +1,7 @@
 #pragma once
 // The demands of a planned motion on the ground, the motors and the feet, and their distance from
-// what was commanded. Each quantity is only computed here: the report evaluates it, and the
-// nonlinear program constrains it.
+// what was commanded. Each quantity is computed here but not judged: the report evaluates it, and
+// the nonlinear program constrains it.
 
 #include <Eigen/Dense>
 #include <array>

@@ -29,9 +29,9 @@ constexpr std::array<Side, 2> kSides = {Side::left, Side::right};
 // small enough for accelerations, which are differences at 1 kHz.
 constexpr double kNewtonTolerance = 1e-13;
 
-// Length of a step after which Newton stops without looking at the residual [m, rad]. Derived: a
-// step of s leaves at most (6 s)^2 / 2 times the length of a leg in metres, which is below
-// kNewtonTolerance for legs up to 50 m.
+// Length of a step after which Newton stops without another computation of the residual [m, rad].
+// Derived: a step of s leaves at most (6 s)^2 / 2 times the length of a leg in metres, which is
+// below kNewtonTolerance for legs up to 50 m.
 constexpr double kLastNewtonStep = 1e-8;
 
 // Residual that is accepted if rounding keeps it above kNewtonTolerance [m, rad]. Chosen: far below
@@ -69,8 +69,8 @@ constexpr double kLastStep = 1e-10;
 // degrees.
 constexpr double kAcross = 0.7;
 
-// Range that a knee needs on its human side [rad]. Chosen: half of kStartBend; a knee with less
-// stays nearly straight, and its robot is built to bend the other way.
+// Range that a knee needs on its human side [rad]. Chosen: half of kStartBend; a knee with a
+// smaller range stays nearly straight, and its robot is built to bend the other way.
 constexpr double kStartBend = 0.3, kKneeRoom = 0.15;
 
 // Bend of a knee that a walk with bent legs needs [rad]. Chosen: 50 degrees for standing and 20 for

@@ -54,7 +54,7 @@ struct ActuatorLimits {
   std::vector<bool> has_servo;
 
   /// Whether the files say that the joint has no motor: its servo has kp = 0, and the servo of at
-  /// least one other joint has a larger kp. If no joint has a motor, the files do not state the
+  /// least one other joint has a kp above 0. If no joint has a motor, the files do not state the
   /// motors.
   bool lacks_motor(int dof) const;
 };

@@ -37,7 +37,7 @@ std::string place_of(const RobotModel& model, const ActuatorLimits& limits, int 
 }
 
 // The place of a joint's constants: in the profile if it has constants of its own for this joint,
-// otherwise with the servos of the robot.
+// otherwise among the servos of the robot.
 const char* pointer_of(const RobotDescription& robot, const std::string& profile,
                        const std::string& joint) {
   const bool own =

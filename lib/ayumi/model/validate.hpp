@@ -21,7 +21,7 @@ inline constexpr size_t kMostLinks = 1000;
 std::string too_many(const std::string& what);
 /// Shortest and longest servo period [s]. Chosen: a thousandth of the shortest period and a hundred
 /// times the longest period of known servos; another value is in a wrong unit. With the shortest
-/// period, a motion of half a second has the largest number of steps that sampling accepts.
+/// period, a motion of 0.4 s has the largest number of steps that sampling accepts (4e6).
 inline constexpr double kShortestServoPeriod = 1e-7, kLongestServoPeriod = 10;
 
 /// Throws Error(bad_model) "urdf file: message".

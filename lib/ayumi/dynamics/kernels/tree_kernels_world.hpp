@@ -4,8 +4,8 @@
 //   a_i = a_p + alpha_p x r + w_p x (w_p x r),    f = m (a_c + g z),
 //   n = I alpha + w x I w + c x f,                tau = s . (n_subtree - p x f_subtree).
 // A prismatic joint adds s ddq + 2 w_p x s dq to a_i instead of the angular terms. Most bodies
-// stand next to their parent. The values that go from one to the other then stay in registers: a
-// number that has just been stored takes time to be loaded again.
+// directly follow their parent in the list. The values that go from the parent to the body then
+// stay in registers: a number that has just been stored takes time to be loaded again.
 
 namespace {
 
