@@ -23,10 +23,10 @@ namespace {
 
 using std::chrono::steady_clock;
 
-// Time given to a process to end by itself, and pause between looks. Chosen: a process that ends by
-// itself does so within milliseconds.
+// Time given to a process to end by itself, and pause between two checks whether it has ended.
+// Chosen: a process that ends by itself does so within milliseconds.
 constexpr std::chrono::milliseconds kGrace(1000), kPause(1);
-// Time for which an exchange waits before it looks whether it should stop [ms]. Chosen: nobody
+// Time for which an exchange waits before it checks whether it should stop [ms]. Chosen: nobody
 // notices it, and it costs nothing.
 constexpr long kStopPause = 50;
 
@@ -74,7 +74,7 @@ pid_t start_child(const ChildStart& start) {
   std::vector<std::string> words = {start.program}, variables = start.environment;
   words.insert(words.end(), start.arguments.begin(), start.arguments.end());
   const std::vector<char*> argv = pointers_to(words), envp = pointers_to(variables);
-  // The descriptor is above the standard streams, also where one of these is closed.
+  // The descriptor is above those of the standard streams, even if one of these is closed.
   const int opened = open("/dev/null", O_RDWR | O_CLOEXEC);
   const int nowhere = opened < 0 ? -1 : fcntl(opened, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
   int reason = errno;
@@ -117,7 +117,7 @@ ChildProcess::ChildProcess(const std::filesystem::path& program,
   int ends[2] = {-1, -1};
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) refuse(errno);
   // The descriptor 0 of this process may be closed, and the child's end would then have the number
-  // 0. Copying it to itself would keep the mark that closes it.
+  // 0. A copy to the same number would keep the close-on-exec flag.
   const int connection = fcntl(ends[1], F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
   const int no_copy = errno;
   close(ends[1]);

@@ -19,12 +19,12 @@ struct ChildStart {
   std::vector<std::string> arguments = {};    ///< arguments after the name of the program
   std::vector<std::string> environment = {};  ///< variables as "NAME=value"
   int input = -1;  ///< becomes the child's standard input and must be above 2
-  /// Becomes the child's standard error and must be above 2; with -1, errors lead nowhere.
+  /// Becomes the child's standard error and must be above 2; with -1, errors are discarded.
   int errors = -1;
 };
 
 /// Starts the program and returns its process id, or -1 with the reason in errno. Its standard
-/// output leads nowhere, and no other file of this process is open in it. It is in a process group
+/// output is discarded, and no other file of this process is open in it. It is in a process group
 /// of its own, so that Ctrl-C on a terminal does not reach it. The kernel ends it when the thread
 /// that has started it ends, however that happens. Signals that this process blocks or ignores have
 /// their usual effect in it.
@@ -39,16 +39,16 @@ struct ChildEnding {
 };
 
 /// A child process. Its standard input is one end of a socket on which it reads and writes; its
-/// standard output and standard error lead nowhere; every other open file of this process is closed
-/// in it. It is in a process group of its own, so that Ctrl-C on a terminal reaches only this
-/// process. Signals that this process blocks or ignores have their usual effect in the child.
+/// standard output and standard error are discarded; every other open file of this process is
+/// closed in it. It is in a process group of its own, so that Ctrl-C on a terminal reaches only
+/// this process. Signals that this process blocks or ignores have their usual effect in the child.
 class ChildProcess {
  public:
   /// The outcome of an exchange of bytes.
   enum class Exchange {
     done,
     closed,   ///< the child closed the connection, usually because it has ended
-    too_late  ///< the time was over before, or a stop was asked for
+    too_late  ///< the time ended first, or a stop was requested
   };
 
   /// Starts `program` without arguments. Its environment has the variables of this process that

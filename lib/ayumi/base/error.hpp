@@ -72,7 +72,7 @@ class Interrupted : public std::runtime_error {
   throw Error(error.code(), message, error.place());
 }
 
-/// Calls `work`. If an Error without a place leaves it, the Error gets this place; its message
+/// Calls `work`. If it throws an Error without a place, the Error gets this place; its message
 /// stays.
 template <typename Work>
 auto at_place(SourcePlace place, const Work& work) {

@@ -19,8 +19,8 @@ std::string read_file(const fs::path& path, size_t max_bytes) {
   const auto refuse = [&](const std::string& reason) {
     fail(ErrorCode::bad_file, {path.string()}, reason);
   };
-  // The kind of the file is asked of the open file, which nobody can exchange any more. Without
-  // O_NONBLOCK, opening a named pipe would wait for its writer.
+  // The kind is read from the open file, because another process could replace the file at the
+  // path. Without O_NONBLOCK, opening a named pipe would wait for its writer.
   const int opened = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
   if (opened < 0 && errno == ENOENT) refuse("no such file");
   if (opened < 0 && errno == ENXIO)

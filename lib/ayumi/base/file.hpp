@@ -9,7 +9,7 @@ namespace ayumi {
 
 /// Returns the bytes of a regular file. Throws Error(bad_file) with the path and the reason if it
 /// is missing, a directory, a device, a named pipe, a socket, unreadable, or larger than
-/// `max_bytes`. It never waits. Every reader of Ayumi opens files by this function.
+/// `max_bytes`. It never waits. Every reader of Ayumi opens files with this function.
 std::string read_file(const std::filesystem::path& path, size_t max_bytes = size_t{1} << 30);
 
 /// Throws Error(bad_file) with the path if no regular file can be written there: it is a folder, a

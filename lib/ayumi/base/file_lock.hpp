@@ -22,7 +22,7 @@ LockedFolder lock_folder(const std::filesystem::path& folder, const std::string&
 void unlock_folder(const LockedFolder& locked);
 
 /// Locks a file that several programs could write, against every other FileLock on it. The lock is
-/// a folder with the name of the file and `.lock` behind it, because the file itself is replaced.
+/// a folder with the name of the file plus `.lock`, because the file itself is replaced.
 class FileLock {
  public:
   /// Throws Error(bad_file) with the file if another process writes it, or if it cannot be locked.

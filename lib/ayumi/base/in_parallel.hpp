@@ -11,9 +11,9 @@
 namespace ayumi {
 
 /// Runs job(0..count-1) on threads. After an exception, no further jobs are started. Of several
-/// exceptions, that of the first job in order is thrown again. It is the same for any number of
-/// threads, because all jobs before it were started. If the system grants no further thread, the
-/// existing threads do the work.
+/// exceptions, that of the first job in order is thrown again. This exception is the same for any
+/// number of threads, because all jobs before that job were started. If the system grants no
+/// further thread, the existing threads do the work.
 template <typename Job>
 void in_parallel(size_t count, int threads, std::atomic<bool>& stop, const Job& job) {
   std::atomic<size_t> next = 0;

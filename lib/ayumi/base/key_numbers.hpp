@@ -1,7 +1,7 @@
 #pragma once
-// Numbers keys in the order in which they first occur. It is a table of open addressing, because a
-// mesh has up to millions of corners, and a separate piece of memory for each would take most of
-// the time of reading it.
+// Gives numbers to keys in the order in which they first occur. The class is a hash table with open
+// addressing, because a mesh has up to millions of corners, and a separate allocation for each
+// corner would take most of the time of reading the mesh.
 
 #include <array>
 #include <bit>

@@ -8,9 +8,10 @@
 
 namespace ayumi {
 
-/// Slips are: a decimal point that is one or two places off, thousandths, two neighbouring digits
-/// that are exchanged, and a zero too many after the point ("2.03" for "2.3"). The number itself is
-/// never among the results.
+/// The guesses assume one of these mistakes: the decimal point is one or two places too far to the
+/// right or one place too far to the left; the number is in thousandths of its unit; two
+/// neighbouring digits are exchanged; there is a superfluous zero after the point ("2.03" for
+/// "2.3"). The number itself is never among the results.
 inline std::vector<double> number_slips(double value) {
   std::vector<double> slips = {value / 1000, value / 100, value / 10, value * 10};
   const std::string digits = text::exact(value);

@@ -14,7 +14,7 @@ namespace ayumi {
 
 ScratchFile::ScratchFile(std::filesystem::path folder)
     : folder_(folder.empty() ? std::filesystem::path(".") : std::move(folder)) {
-  // Not every file system can make a file without a name, so that the file has a name for a moment.
+  // Not every file system can make a file without a name, so the file has a name for a moment.
   std::string name = (folder_ / ".ayumi_scratch_XXXXXX").string();
   descriptor_ = ::mkostemp(name.data(), O_CLOEXEC);
   if (descriptor_ < 0) refuse("no file can be made in this folder");

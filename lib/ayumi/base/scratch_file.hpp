@@ -7,8 +7,9 @@
 
 namespace ayumi {
 
-/// An open file without a name: it ends with this object, and with the process, however that ends.
-/// If the file system cannot take away the name of an open file, it only ends with this object.
+/// An open file without a name: it is deleted with this object, and with the process, however the
+/// process ends. If the file system cannot remove the name of an open file, only the destructor of
+/// this object deletes the file.
 class ScratchFile {
  public:
   /// Makes the file on the disk of `folder`. Throws Error(bad_file) with the folder.

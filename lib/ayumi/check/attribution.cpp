@@ -1,10 +1,11 @@
-// Data feed each other in one direction: the angle of a joint makes poses, poses and time make
-// rates, rates make forces, and the command is compared with all of them. A finding is a
-// consequence if a finding upstream, at the same place in the motion, is sufficient to cause it.
-// One engine executes the rules in their order: for each open error of the cause, in the rule's
-// order, every other open error that belongs to one of its effects, touches that effect's interval
-// and passes its condition follows from it. An error is open as long as it follows from no other
-// one.
+// Quantities depend on each other in one direction: joint angles determine poses, poses and time
+// determine rates, rates determine forces, and the command is compared with all of them. A finding
+// is a consequence if a finding earlier in this chain, at the same place in the motion, is
+// sufficient to cause it. One function, execute(), applies the rules in their order. It takes the
+// open errors of the rule's cause one after the other, in the order that the rule names. Another
+// open error becomes a consequence if three conditions hold: its kind is one of the rule's effects,
+// its window overlaps the interval of this effect, and it passes the condition of this effect. An
+// error is open as long as it is not a consequence of another error.
 #include "ayumi/check/attribution.hpp"
 
 #include <algorithm>
@@ -22,7 +23,7 @@ namespace {
 
 // ---- the parts of a rule
 
-/// The findings of a motion while causes are looked for.
+/// The findings of a motion during the search for their causes.
 struct Scene {
   JudgedMotion& motion;
   std::vector<FindingWindow>& windows;
@@ -46,7 +47,7 @@ struct Where {
   std::vector<Interval> (*of)(const Scene&, int i);
 };
 
-/// Whether j follows from i, whose interval it touches.
+/// Whether finding j, which touches the interval of finding i, is a consequence of i.
 struct Condition {
   const char* words;
   bool (*holds)(Scene&, int i, int j, const Interval& interval);
@@ -83,7 +84,7 @@ bool is_foot(FindingKind k) {
          k == FindingKind::foot_float;
 }
 
-// Everything that is computed from accelerations. A support margin of the command is not.
+// Everything that is computed from accelerations. The support margin of the commanded ZMP is not.
 bool is_force(const Violation& v) {
   return is_class(v, LimitClass::force) &&
          (v.kind != FindingKind::support_margin || v.item == kMotionZmp);
@@ -169,9 +170,9 @@ const FindingSet kTorsion = {"`yaw_moment`", is_kind<FindingKind::yaw_moment>};
 
 // ---- intervals
 
-// Number of samples before and after a lift-off or landing in which a jump of the path shows.
-// Derived: the reach of differences (3), and two samples on either side, which belong neither to
-// the flight nor to the support.
+// Number of samples before and after a lift-off or landing that a discontinuity of the path
+// affects. Derived: differences reach over three samples, and two more samples on either side
+// belong neither to the flight nor to the support.
 constexpr int kEdgeReach = 5;
 
 Interval influence_of(const Scene& scene, int i) {
@@ -269,7 +270,8 @@ bool is_jump(const Scene& scene, int j, int sample) {
 }
 
 // Whether a sole leaves its place suddenly, and comes back suddenly or at the end of its contact.
-// If so, the joints of the leg jump with the sole, each by the amount that the geometry requires.
+// If so, the angles of the leg's joints change suddenly with the sole, each by the amount that the
+// geometry requires.
 bool stands_before_and_after(const Scene& scene, const FindingWindow& w) {
   const JudgedMotion& motion = scene.motion;
   const int foot = w.worst.item;
@@ -281,8 +283,8 @@ bool stands_before_and_after(const Scene& scene, const FindingWindow& w) {
   return contact.contact && stands(w.first - kDifferenceReach) && stands(w.last + kDifferenceReach);
 }
 
-// The interval from the last jump of the joint before this window to its first jump after the
-// window.
+// The interval from the last sudden change of the joint's angle before this window to the first one
+// after the window.
 Interval held_around(const Scene& scene, const FindingWindow& w, int dof) {
   Interval held = {0, scene.motion.count() - 1};
   for (const FindingWindow& jump : scene.windows) {
@@ -364,8 +366,9 @@ const Condition kHeldJoint = {
              (is_jump(scene, j, held.first) || is_jump(scene, j, held.last));
     }};
 
-// A displaced foot on the ground does not disturb a free flight. But differences across a jump into
-// the displacement reach a few samples back.
+// A displaced foot on the ground does not disturb a free flight. But where the foot is displaced
+// suddenly, the rates of a few samples before it are also wrong, because they are differences
+// across the discontinuity.
 const Condition kNearDisplacement = {
     "the effect is within 3 samples of the displacement of the foot",
     [](Scene& scene, int i, int j, const Interval&) {
@@ -510,7 +513,7 @@ const std::vector<Rule>& rules() {
   return table;
 }
 
-// ---- the engine
+// ---- execution of the rules
 
 bool follows(Scene& scene, const Effect& effect, const std::vector<Interval>& intervals, int i,
              int j) {

@@ -16,9 +16,10 @@ namespace ayumi {
 /// an error before, at least one error remains.
 void mark_consequences(JudgedMotion& motion, std::vector<FindingWindow>& windows);
 
-/// Adds what `export` would refuse of the table (JudgedMotion::table). A table finding follows from
-/// an error of the motion itself that reaches it: within the influence interval of the error, or
-/// between the same two rests where the error is of a rate or a force.
+/// Adds findings for everything that `export` would refuse in the table (JudgedMotion::table). A
+/// table finding follows from an error of the motion itself that reaches it: within the influence
+/// interval of the error, or, for an error of a rate or a force, between the same two rests of the
+/// motion.
 void add_table_findings(JudgedMotion& motion, std::vector<FindingWindow>& windows);
 
 /// The rows of the table in their order. Each names a cause, what follows from it, in which

@@ -31,7 +31,7 @@ void judge_samples(JudgedMotion& motion) {
 }
 
 // Judges the samples. At the same time, the limits that depend on the commands alone are computed;
-// then follow the limits that need the whole motion.
+// the limits that need the whole motion are computed afterwards.
 void judge(JudgedMotion& motion, int threads) {
   std::vector<const Limit*> ahead;
   for (const Limit* limit : limits())
@@ -48,8 +48,8 @@ void judge(JudgedMotion& motion, int threads) {
 }
 
 // Where the acceleration has a kink, as beside a flight, single samples of the ZMP are outliers. A
-// moment of up to kSpikeSize times the limit that lasts less than kSpikeTime turns nothing, so it
-// becomes a warning. Source of both constants: docs/attribution.md.
+// moment of up to kSpikeSize times the limit that lasts less than kSpikeTime is too short to turn
+// the robot, so it becomes a warning. Source of both constants: docs/attribution.md.
 constexpr double kSpikeTime = 0.005;  // longest time of a spike [s]
 constexpr double kSpikeSize = 3;      // largest size of a spike, as a multiple of the limit
 
@@ -122,7 +122,8 @@ ConsistencyReport report_of(JudgedMotion& motion) {
   ConsistencyReport report;
   report.profile = motion.limits.name;
   report.summary = motion.summary;
-  // Without a value, nothing was near the limit.
+  // A smallest value that is not finite was computed at no sample, because nothing was near its
+  // limit.
   for (const FindingSpec* spec : summary_figures())
     if (spec->figure.least && !std::isfinite(report.summary[spec->kind]))
       report.summary[spec->kind] = 0;

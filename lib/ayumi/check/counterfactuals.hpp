@@ -6,29 +6,34 @@
 
 namespace ayumi {
 
-/// The bodies overlap by at most 15 mm, and not at all if every joint is within its limits.
+/// Whether the bodies overlap by at most 15 mm, and would not overlap if every joint were within
+/// its limits.
 bool touches_by_limits(const JudgedMotion& motion, const Violation& collision);
 
 bool in_leg(const RobotModel& model, Side side, int dof);
 
-/// The distance of the bodies depends on this joint.
+/// Whether the distance of the bodies depends on this joint.
 bool sets_distance(const JudgedMotion& motion, const Violation& collision, int dof);
 
-/// The distance depends on this joint, and the bodies are not an arm and the trunk.
+/// Whether the distance depends on this joint. It is false for a joint outside the legs if one of
+/// the bodies is the trunk.
 bool hangs_on(const JudgedMotion& motion, const Violation& collision, int dof);
 
-/// The torque of a flight is within its limit when nothing pushes or turns the robot.
+/// Whether the torque of a flight is within its limit if no external force or moment acts on the
+/// robot.
 bool holds_in_free_flight(JudgedMotion& motion, const Violation& torque);
 
-/// Whether the COG error is explained by the foot error: the COG is no farther off than the sole,
-/// or its error vanishes when the robot is moved back rigidly with the sole into its place.
-/// Swinging soles always explain it.
+/// Whether the COG error is explained by the foot error: the COG error is at most the displacement
+/// of the sole, or it vanishes when the robot is moved rigidly so that the sole is in its place. A
+/// swinging sole always explains it.
 bool moves_cog(const JudgedMotion& motion, const Violation& foot, const Violation& cog);
 
-/// The ZMP is outside the support because the command puts it there, so no posture is the cause.
+/// Whether the ZMP is outside the support because the command puts it there, so that no posture is
+/// the cause.
 bool is_asked_for(JudgedMotion& motion, const Violation& v);
 
-/// A foot that is not counted at this sample stands where it stood before or will stand after.
+/// Whether a foot that does not count as supporting at this sample stands in the place of its
+/// previous or of its next contact.
 bool uncounted_foot_stands(const JudgedMotion& motion, int sample);
 
 }  // namespace ayumi

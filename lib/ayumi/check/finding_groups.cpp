@@ -61,8 +61,8 @@ class PlaceKeys {
   std::optional<MirrorMap> map_;
 };
 
-// Distance of a value beyond its limit. Value and limit have the same sign; a limit for both signs
-// is positive.
+// Amount by which a value exceeds its limit. A limit for values of one sign has this sign. A limit
+// for values of both signs is positive, so only absolute values are compared.
 double excess(const Finding& f) { return std::abs(std::abs(f.worst) - std::abs(f.limit)); }
 
 int root_of(const ConsistencyReport& report, int i) {

@@ -31,7 +31,7 @@ bool is_further_beyond(const Finding& a, const Finding& b);
 
 /// Every finding is a member of one group, or a consequence of a member. Groups are in the order of
 /// their first member: errors first, then by time. For a robot without a mirror image, left and
-/// right stay apart.
+/// right are separate groups.
 std::vector<FindingGroup> finding_groups(const ConsistencyReport& report, const RobotModel& model);
 
 }  // namespace ayumi

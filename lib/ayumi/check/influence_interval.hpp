@@ -14,9 +14,9 @@ struct Interval {
   bool contains(int sample) const { return first <= sample && sample <= last; }
 };
 
-/// Number of samples on either side that a jump of a joint spoils through differences. Derived:
-/// rates and accelerations are fitted over two samples to either side (motion/differentiate.hpp),
-/// and a jump has two samples.
+/// Number of samples on either side whose rates and accelerations are wrong because the angle of a
+/// joint is discontinuous. Derived: rates and accelerations are differences over two samples to
+/// either side (motion/differentiate.hpp), and a discontinuity lies between two samples.
 inline constexpr int kDifferenceReach = 3;
 
 /// The window with `pad` samples on either side.
@@ -25,7 +25,7 @@ inline Interval around(const Interval& interval, int pad) {
   return {interval.first - pad, interval.last + pad};
 }
 
-/// The window and the time around it in which the COG of the posture is off the command.
+/// The window and the time around it in which the COG of the posture deviates from the command.
 Interval deviation_around(const JudgedMotion& motion, const FindingWindow& window);
 
 /// The window of a foot's fault and the time around it, within the same contact, in which the sole
@@ -39,8 +39,8 @@ double displacement(const JudgedMotion& motion, int foot, int sample);
 /// window to its first turning point after it. One wrong key moves the joint only within this time.
 Interval excursion_around(const JudgedMotion& motion, const FindingWindow& window);
 
-/// The time in which an angle is wrong: its excursion, and the time in which it moves the COG off
-/// the command.
+/// The time in which an angle is wrong: its excursion, and the time in which the COG deviates from
+/// the command because of it.
 Interval wrong_angle_around(const JudgedMotion& motion, const FindingWindow& window);
 
 /// The flight of this window.
@@ -54,10 +54,11 @@ Interval motion_around(const JudgedMotion& motion, int sample);
 /// the time in which the foot is off the ground at that end of its contact.
 Interval moved_phases(const JudgedMotion& motion, const Violation& foot);
 
-/// Whether another step in this interval undoes the joint's largest step.
+/// Whether the joint comes back in this interval: its largest steps in both directions from one
+/// sample to the next have about the same size (within a factor of 2).
 bool comes_back(const JudgedMotion& motion, int dof, const Interval& interval);
 
-/// The number of samples in 50 ms: forces respond before and after a displacement by this time.
+/// The number of samples in 50 ms: forces change up to this long before and after a displacement.
 int pad_samples(const JudgedMotion& motion);
 
 }  // namespace ayumi

@@ -1,7 +1,7 @@
 #pragma once
-// The verdict on a pattern, the same in every command: the motion is consistent, and the actuators
-// suffice for the motion and for the goals of VIIP. For such goals, the motion only holds a
-// posture.
+// The verdict on a pattern, the same in every command: the pattern is good if the motion is
+// consistent and the actuators suffice for the motion and for the goals of VIIP. During such a
+// goal, the motion only holds a posture.
 
 #include "ayumi/check/actuator_need.hpp"
 

@@ -24,8 +24,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A swing that lasts longer is not one of a walking robot [s]. Chosen: the slowest bundled motion
-// swings for 2 s, and seconds written as milliseconds are a thousand times too long.
+// Longest swing of a walking robot [s]. Chosen: the slowest bundled motion swings for 2 s, and
+// seconds written as milliseconds are a thousand times too long.
 constexpr double kLongestSwing = 30;
 // No motion without a swing lasts longer [s]. Chosen: seconds written as milliseconds are a
 // thousand times too long.
@@ -33,7 +33,7 @@ constexpr double kLongestStand = 1000;
 // A COG below this share of its height at home is nearer to the ground than folded legs allow.
 // Chosen: the deepest squat of HOAP-1 is at 0.6.
 constexpr double kLowestCog = 0.3;
-// A foot lands beside the other one on its own side of it, or on the other side by less than this
+// A foot that lands on the wrong side of the other foot by less than this does not cross the legs
 // [m]. Chosen: half the width of a small sole, so that a tightrope walk is no mistake.
 constexpr double kCrossing = 0.02;
 // A foot key this far above the other sole lifts the COG noticeably [m]. Chosen: a sole that clears
@@ -42,7 +42,7 @@ constexpr double kLiftedKey = 0.005;
 // A foot lower than this over the ground counts as standing on it [m].
 constexpr double kOnGround = 1e-3;
 // Angles below this count as zero, and angles this near to a whole number count as whole [deg].
-// Definition: rounding to three digits leaves this.
+// Definition: the error of rounding to three decimals is smaller.
 constexpr double kLeastAngle = 1e-3;
 // From this number of angles on, a regularity is not taken for chance. Chosen: two keys of two
 // joints.
@@ -55,8 +55,8 @@ constexpr double kRoughest = 2;
 // Chosen: ten times what walking robots survive. With half or twice this bound, units that are
 // wrong by a factor of 1000 are found as well.
 constexpr double kFastestPush = 2;
-// Time for which a force is not answered [s]. Chosen: about a step; against a force that lasts
-// longer, a robot leans.
+// Time for which a robot does not react to a force [s]. Chosen: about a step; against a force that
+// lasts longer, a robot leans.
 constexpr double kUnopposed = 0.5;
 // How long a simulation holds the last posture [s]. Definition: SimulateOptions.
 constexpr double kHeld = 1;
@@ -70,7 +70,7 @@ class Suspicions {
   Suspicions(const RobotModel& model, const Pattern& pattern) : model_(model), pattern_(pattern) {
     try {
       if (model.has_soles()) feet_.emplace(model, pattern);
-    } catch (const Error&) {  // the phases themselves are wrong, which their own message says
+    } catch (const Error&) {  // the phases themselves are wrong; their own message says so
     }
   }
 
@@ -295,7 +295,8 @@ class Suspicions {
     say(found);
   }
 
-  /// Whether the boxes around both soles overlap, where one is at this place from the other.
+  /// Whether the boxes around both soles overlap if `between` is the displacement from one sole to
+  /// the other.
   bool soles_overlap(const Vector3d& between) const {
     Eigen::AlignedBox2d box;
     for (const Eigen::Vector2d& corner : model_.sole(Side::left).polygon) box.extend(corner);
@@ -385,7 +386,8 @@ class Suspicions {
     say(found);
   }
 
-  // The COG keeps its height above the mean of both soles, which a lifted foot raises by half.
+  // Without keys, the COG keeps its height above the mean height of both soles, so a lifted foot
+  // raises it by half of the lift. This rule names the keys that lift a foot.
   void lifted_keys() {
     const bool has_height = std::any_of(pattern_.keyframes.begin(), pattern_.keyframes.end(),
                                         [](const Keyframe& key) { return key.cog_height; });

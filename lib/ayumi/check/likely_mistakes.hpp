@@ -28,14 +28,14 @@ struct Mistake {
 /// this only if something is wrong. It takes very little time.
 std::vector<Mistake> impossible_values(const RobotModel& model, const Pattern& pattern);
 
-/// Mistakes that a consistent pattern may contain: a single support without a swing among others
-/// with one, angles of a few degrees that look like radians, ground that is rougher than any,
-/// pushes that no robot survives, and disturbances after the end.
+/// Mistakes that a consistent pattern may contain: a single support without a swing although the
+/// others have one, angles of a few degrees that look like radians, a friction coefficient that no
+/// real ground has, pushes that no robot survives, and disturbances after the end.
 std::vector<Mistake> doubtful_values(const RobotModel& model, const Pattern& pattern);
 
 /// The changes that would make the pattern consistent or, if there is none, its impossible values.
-/// Samples and checks the pattern some fifty times, which takes a few seconds, and at most 300
-/// times; the last mistake says so where this bound ended the search. `progress` may stop it.
+/// Samples and checks the pattern about fifty times, which takes a few seconds, and at most 300
+/// times; if this bound ended the search, the last mistake says so. `progress` may stop it.
 std::vector<Mistake> likely_mistakes(const RobotModel& model, const Pattern& pattern,
                                      const CheckOptions& options, const Progress& progress = {});
 

@@ -45,14 +45,14 @@ constexpr long kManyKeys = 4;
 // Two times that differ by less than this share are meant to be equal. Chosen: times are written in
 // milliseconds, and a factor that is derived from such times has an error of this size.
 constexpr double kSameTime = 0.005;
-// A length below this counts as zero [m]. Definition: rounding leaves less.
+// A length below this counts as zero [m]. Definition: rounding errors are smaller.
 constexpr double kNoLength = 1e-4;
-// Numbers of a target below this are taken for metres, whatever the other numbers are. Chosen: half
-// a millimetre, or half a centimetre.
+// Numbers of a target below this are taken for metres, whatever the other numbers are. Chosen: read
+// in mm or cm, they would be less than half a millimetre or half a centimetre.
 constexpr double kLeastWritten = 0.5;
 // Units in which lengths are written by mistake, instead of metres.
 constexpr std::array kSmallerUnits = {std::pair("mm", 1e-3), std::pair("cm", 1e-2)};
-// An angle below this counts as zero [rad]. Definition: rounding leaves less.
+// An angle below this counts as zero [rad]. Definition: rounding errors are smaller.
 constexpr double kNoAngle = 1e-6;
 // A level foot below a leg that leans by less than this is not named as a reason [rad]. Chosen:
 // five degrees, which every ankle can bend.
@@ -62,8 +62,8 @@ constexpr double kNotedLean = 0.09;
 constexpr size_t kTurnedKeys = 3;
 // Below this, the turn of a foot against the other one is ignored [rad]. Chosen: ten degrees.
 constexpr double kNotedTurn = 0.17;
-// A COG that is farther than this from the middle of the feet is beside them; a share of the length
-// of a leg. Chosen: more than half of a sole.
+// A COG that is farther than this from the middle of the feet is not above them; the bound is a
+// share of the length of a leg. Chosen: more than half of a sole.
 constexpr double kNotedOffset = 0.25;
 // Largest sideways distance of a foot, as a share of the length of its leg. Definition: the sine of
 // an angle.
@@ -72,8 +72,8 @@ constexpr double kMostLean = 0.9;
 // value is considered wrong by a power of ten. Chosen: keys of one motion are seldom so unequal.
 constexpr double kShortSegment = 0.15;
 // The COG may sink below its lowest key before a lift-off or after a landing. If it sinks by less
-// than this share of the stoop, the motion is what its author sees in the keys. Chosen: 3 mm for a
-// stoop of 30 mm.
+// than this share of the stoop, the motion counts as what the keys show. Chosen: 3 mm for a stoop
+// of 30 mm.
 constexpr double kNotedSink = 0.1;
 // Number of points of a segment at which its lowest value is searched. Chosen: between two points,
 // the value is lower by less than 1e-3 of the stoop.
@@ -176,7 +176,8 @@ class Hypotheses::Maker {
     cog_height(made);
     if (pattern_.table || pattern_.correction) return made;
     shorter_flights(made);
-    // The COG sways less where the steps are quicker.
+    // For slight errors, shorter times are also tried, because the COG sways less if the steps are
+    // quicker.
     const std::vector<double> usual = {1.25, 1.6, 2.0, 3.0, 5.0},
                               slight = {1.03, 0.9, 1.1, 0.8, 1.25};
     for (const double factor : found_.slight ? slight : usual)
@@ -191,7 +192,8 @@ class Hypotheses::Maker {
   double begin_of(size_t phase) const { return phase > 0 ? pattern_.phases[phase - 1].until : 0.0; }
   std::string phase_place(size_t i) const { return pointer_of_phase(pattern_, i); }
   std::string key_place(size_t i) const { return pointer_of_keyframe(pattern_, i); }
-  /// Whether an error may come from this phase, or from that of the next step.
+  /// Whether this phase may cause an error: there is an error between the beginning of the phase
+  /// and the end of the fourth phase after it.
   bool reaches(size_t phase) const {
     const size_t last = std::min(phase + 4, pattern_.phases.size() - 1);
     return found_.touches(begin_of(phase), pattern_.phases[last].until);
@@ -240,8 +242,8 @@ class Hypotheses::Maker {
                         }});
   }
 
-  // The phases were stretched and the keyframes were left as they were, or the keyframes were
-  // stretched and the phases were left.
+  // Perhaps only the phases or only the keyframes were stretched in time: tries one factor for the
+  // times of all keyframes.
   void stretched_keys(std::vector<Hypothesis>& made) const {
     const auto& keys = pattern_.keyframes;
     const auto fitting = [&](double factor) {
@@ -275,7 +277,8 @@ class Hypotheses::Maker {
          }});
   }
 
-  // If most lengths are larger than the length of three legs.
+  // Tries smaller units for all lengths if at least half of the lengths are larger than three leg
+  // lengths.
   void length_units(std::vector<Hypothesis>& made) const {
     const double leg = leg_length(model_);
     int far = 0, all = 0;
@@ -345,7 +348,8 @@ class Hypotheses::Maker {
       if (i == 0 || (!too_early && belongs_to_phase(keys[i]))) continue;
       const std::string lasts = ", so the segment before it lasts " + seconds(in) +
                                 " and the one after it " + seconds(out);
-      // The key is between a short and a long neighbour segment, and is moved towards the long one.
+      // The key is moved into the longer one of its two neighbouring segments, and also into the
+      // shorter one.
       for (const double share : {0.35, 0.6, 0.8}) {
         const double t = in < out ? keys[i].t + share * out : keys[i].t - share * in;
         if (too_early)
@@ -400,8 +404,9 @@ class Hypotheses::Maker {
       const double flight = phase.until - begin_of(i);
       const Keyframe &leaves = pattern_.keyframes[*off], &lands = pattern_.keyframes[*on];
       const double mean = (*lands.cog_height - *leaves.cog_height) / flight;
-      // For each side: the key beside the flight, the key at this end of the flight, and the mean
-      // speed of the flight away from the first key.
+      // For each end of the flight: the neighbouring key outside the flight, the key at this end,
+      // and the mean vertical speed of the flight, where time runs away from the first of these
+      // keys.
       std::vector<std::tuple<size_t, const Keyframe*, double>> sides;
       if (off != keys.begin()) sides.emplace_back(*(off - 1), &leaves, mean);
       if (on + 1 != keys.end()) sides.emplace_back(*(on + 1), &lands, -mean);
@@ -524,7 +529,8 @@ class Hypotheses::Maker {
     return wrong;
   }
 
-  // In several phases on one foot, the ZMP stays in the middle between the feet or elsewhere.
+  // If keys put the ZMP elsewhere in several phases on one foot, tries all of them under the
+  // supporting foot.
   void all_zmp_keys(std::vector<Hypothesis>& made) const {
     std::map<size_t, ZmpKey::Place> meant;
     std::vector<size_t> phases;
@@ -556,7 +562,8 @@ class Hypotheses::Maker {
                                             : "at a point";
   }
 
-  // All keys of the ZMP are under the other foot.
+  // If keys put the ZMP under the foot in the air in most phases on one foot, tries all keys of the
+  // ZMP with left and right exchanged.
   void zmp_sides(std::vector<Hypothesis>& made) const {
     size_t wrong = 0, single = 0;  // numbers of phases
     for (size_t i = 0; i < pattern_.phases.size(); ++i) {
@@ -696,8 +703,8 @@ class Hypotheses::Maker {
     }
   }
 
-  // Where most feet land on the other side of the world's x axis than they start: y was counted to
-  // the right, or the words left and right were exchanged. The trial says whether it was so.
+  // If most feet land on the other side of the world's x axis than they start, y may have been
+  // counted to the right, or the words left and right may have been exchanged. Both are tried.
   void all_sides(std::vector<Hypothesis>& made) const {
     if (!feet_) return;
     std::vector<size_t> crossed;
@@ -758,7 +765,7 @@ class Hypotheses::Maker {
     }
   }
 
-  // A whole foothold or foot key is written in another unit.
+  // Tries another unit for a whole foothold or foot key.
   void footholds(std::vector<Hypothesis>& made) const {
     const auto add = [&](const std::string& place, Side side, const Foothold& foot,
                          const std::function<Foothold&(Pattern&)>& in) {
@@ -851,8 +858,8 @@ class Hypotheses::Maker {
            [in = target.in, factor = factor](Pattern& p) { in(p) *= factor; }});
   }
 
-  // All targets of the hands and other links, or all targets of the gaze, are written in another
-  // unit.
+  // Tries another unit for all targets of the hands and other links, or for all targets of the
+  // gaze.
   void target_units(std::vector<Hypothesis>& made) const {
     const std::vector<FarTarget> all = far_targets();
     for (const bool gaze : {false, true}) {
@@ -873,7 +880,7 @@ class Hypotheses::Maker {
     }
   }
 
-  // A whole point of the ZMP is written in another unit.
+  // Tries another unit for a whole point of the ZMP.
   void zmp_point(size_t key, std::vector<Hypothesis>& made) const {
     const auto& zmp = pattern_.keyframes[key].zmp;
     if (!zmp || zmp->place != ZmpKey::Place::point || zmp->point.norm() < leg_length(model_) ||
@@ -892,8 +899,8 @@ class Hypotheses::Maker {
     }
   }
 
-  // "turn" counts from the other foot. If both feet have the same turn, the robot turns twice as
-  // far, and every second foot is turned inwards.
+  // The value "turn" of a step is relative to the heading of the other foot. If both feet have the
+  // same turn, the robot turns twice as far, and every second foot is turned inwards.
   void turns(std::vector<Hypothesis>& made) const {
     const auto turn_of = [&](const Phase& phase) {
       return phase.swing && phase.swing->step ? phase.swing->step->turn : 0.0;
@@ -1040,7 +1047,8 @@ class Hypotheses::Maker {
            written(foot.rpy.z() / unit) + "]}";
   }
 
-  // A foot stays level while its leg leans, so that the ankle has to compensate for the lean.
+  // If a foot stays level while its leg leans, the ankle has to compensate for the lean. Tries the
+  // foot turned with its leg.
   void level_feet(std::vector<Hypothesis>& made) const {
     if (!feet_) return;
     const double leg = leg_length(model_);
@@ -1182,7 +1190,7 @@ class Hypotheses::Maker {
       if (phase.swing || phase.viip || !is_single(phase.support)) continue;
       const Side idle = other(stance_of(phase.support));
       if (has_foot_key(idle, begin_of(i), phase.until)) continue;
-      // The new foothold is ahead by half the way of the other foot's next step, or beside the
+      // The new foothold is ahead by half the length of the other foot's next step, or beside the
       // other foot if there is no such step.
       RelativeStep step;
       const Eigen::Isometry3d stance = feet_->pose(other(idle), phase.until);
@@ -1321,7 +1329,7 @@ class Hypotheses::Maker {
     }
   }
 
-  // Keys hold the COG at a place that the feet have left.
+  // If keys hold the COG at a place that the feet have left, tries the pattern without these keys.
   void held_cog(std::vector<Hypothesis>& made) const {
     if (!feet_) return;
     for (const auto& [axis, key_of] : {std::pair(0, &Keyframe::cog_x), {1, &Keyframe::cog_y}}) {
@@ -1333,7 +1341,8 @@ class Hypotheses::Maker {
         if (!(key.*key_of)) continue;
         const double center = feet_->support_center(key.t)[axis];
         const double off = std::abs(*(key.*key_of) - center);
-        // Only keys behind the feet count: they are nearer to the place where the feet were first.
+        // Only keys that lag behind the feet count, that is, keys that are nearer to the first
+        // place of the feet than to their present place.
         if (off <= most || std::abs(*(key.*key_of) - before) >= off) continue;
         most = off;
         feet_at = center;
@@ -1353,12 +1362,12 @@ class Hypotheses::Maker {
     }
   }
 
-  // The length of a flight says how high the robot rises, and how fast it is at both ends.
+  // The length of a flight determines how high the robot rises, and how fast it is at both ends.
   void shorter_flights(std::vector<Hypothesis>& made) const {
     struct Flight {
       double begin, end, factor;
     };
-    // The robot rises by half at the last.
+    // With the last share, the robot rises half as high.
     for (const double share : {0.9, 0.8, 0.7}) {
       std::vector<Flight> flights;
       size_t first = 0;
@@ -1392,7 +1401,8 @@ class Hypotheses::Maker {
     }
   }
 
-  // The legs are nearly straight at the height of home, or are folded far below it.
+  // The COG may be too high or too low. If the legs are folded, tries heights nearer to the COG
+  // height of the home posture; if they are nearly straight, tries lower heights.
   void cog_height(std::vector<Hypothesis>& made) const {
     const double height = default_cog_height(model_, pattern_);
     if (legs_are_folded(model_, pattern_, height)) {

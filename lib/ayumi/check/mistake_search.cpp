@@ -39,11 +39,12 @@ constexpr double kNoShare = 0.05;
 // half the length of a leg, or half a radian; a step or a swing of a joint within one segment is
 // usually shorter.
 constexpr double kGrossSuspicion = 0.5;
-// If another error appears without a value, the value is tried at this share of the way from its
-// neutral value to itself. Chosen: feet then turn less or land nearer, but not beside each other.
+// If another error appears when a value is left out, the value is tried at this share of the
+// distance from its neutral value to itself. Chosen: feet then turn less or land nearer, but not
+// beside each other.
 constexpr double kHalfWay = 0.5;
 // A change is small if it is less than this share of a value. Chosen: more than rounding, and less
-// than a slip of the pen.
+// than a typing error.
 constexpr double kSmallChange = 0.2;
 // Number of mistakes that are named if several explain the same errors. Chosen: a third one would
 // hide the first.
@@ -79,7 +80,7 @@ bool is_better(const TrialOutcome& a, const TrialOutcome& b, Measure measure) {
 /// The search in one pattern.
 class Search {
  public:
-  /// `rounds`: changes that may be named one after the other from now on.
+  /// `rounds` is the number of changes that may be named from now on, one after the other.
   Search(Trials& trials, const RobotModel& model, const Pattern& pattern, const TrialOutcome& found,
          int rounds)
       : trials_(trials),
@@ -108,8 +109,8 @@ class Search {
  private:
   using Kind = Hypotheses::Kind;
 
-  // The best explanations for slight errors. A hypothesis of another sign, digit or foot is not
-  // tried unless something in the pattern speaks for it.
+  // The best explanations for slight errors. Another sign, digit or foot is tried only if something
+  // in the pattern makes this mistake likely.
   std::vector<Candidate> best_of_slight() {
     test(hypotheses_.of(Kind::units));
     if (enough(Rank::unit)) return chosen();
@@ -147,7 +148,8 @@ class Search {
                        return a.suspicion(model_) > b.suspicion(model_);
                      });
     if (suspects.size() > kTriedValues) suspects.resize(kTriedValues);
-    // A value of which little may remain is seldom the one at fault; another one may do with half.
+    // If only a small share of the value is possible, this value is seldom at fault. Therefore the
+    // values are also tried half-way between their neutral value and themselves.
     const auto is_mild = [](const Candidate& c) {
       return c.outcome.good() && c.hypothesis.rank <= Rank::amount &&
              c.hypothesis.change < 1 - kGrossShare;
@@ -157,7 +159,7 @@ class Search {
     demote_slips();
   }
 
-  // Whether one of the values is at fault. Each value is pulled to `share` of the way from its
+  // Whether one of the values is at fault. Each value is set to `share` of the distance from its
   // neutral value to itself; at 0 it is left out.
   bool look_at_best(const std::vector<WrittenValue>& suspects, double share) {
     std::vector<Mend> mends;
@@ -186,7 +188,8 @@ class Search {
     return true;
   }
 
-  // Tries the other sign and a tenth of those values without which the errors do not vanish.
+  // For each value whose removal leaves errors, tries the value with the opposite sign and, if it
+  // is far from its neighbours, a tenth of the value.
   void test_other_numbers(const std::vector<WrittenValue>& suspects,
                           const std::vector<TrialOutcome>& without) {
     std::vector<Hypothesis> signs, tenths;
@@ -200,8 +203,8 @@ class Search {
     test(std::move(tenths));
   }
 
-  // If a small change of another value is enough, a misplaced decimal point is no better a guess
-  // than a wrong size.
+  // If a small change of another value is enough, a misplaced decimal point is not more likely than
+  // a value of a wrong size.
   void demote_slips() {
     const auto small = [](const Candidate& c) {
       return c.hypothesis.rank == Rank::amount && c.hypothesis.change < kSmallChange;
@@ -237,7 +240,7 @@ class Search {
       return [&value, share](Pattern& p) { value.pull(p, share); };
     };
     bisect([&](double share) { return trials_.after(pattern_, at(share)); });
-    // The table for the robot, which quick trials do not see, may end the range earlier.
+    // The table for the robot, which quick trials do not check, may make the range smaller.
     const auto exactly = [&](double share) { return trials_.exactly(pattern_, at(share)); };
     if (at_limit.good() && !trials_.exact() && possible > least && !exactly(possible).good() &&
         exactly(least).good()) {
@@ -246,8 +249,9 @@ class Search {
       at_limit = without;
       bisect(exactly);
     }
-    // Nothing of the value is possible: then the message names what would be there without it,
-    // which has to be enough as it is written, for all numbers of the value.
+    // If even the smallest share of the value is impossible, the message suggests the value that
+    // the track would have without it. This suggestion, rounded as it is printed and put in place
+    // of all numbers of the value, must be as good as leaving the value out.
     if (possible == 0) {
       possible = value.written_share(pattern_, 0);
       at_limit = trials_.after(pattern_, at(possible));
@@ -274,7 +278,8 @@ class Search {
                       at_limit});
     if (found_.slight || least > 0) return;
     std::vector<Hypothesis> slips;
-    // Almost no value of this sign is possible, and the size of this value is usual.
+    // The sign is probably wrong: almost no value of this sign is possible, and the size of the
+    // value is usual.
     const bool other_sign =
         limit / number.value < kNoShare && std::abs(number.value) < value.unit(model_);
     if (value.has_sign())
@@ -306,8 +311,8 @@ class Search {
     test(std::move(slips));
   }
 
-  // The hypothesis of a tenth, for a value whose neighbours leave no larger range than the value
-  // itself.
+  // The hypothesis that a tenth of the value was meant. It is tried for a value that is far from
+  // its neighbours (kGrossSuspicion).
   Hypothesis tenth_of(const WrittenValue& value) const {
     const double number = value.numbers.front().value;
     return {Rank::slip,
@@ -330,8 +335,8 @@ class Search {
             [value](Pattern& p) { value.scale(p, -1); }};
   }
 
-  /// Whether a change can be a cause: it leaves no more errors than the other changes that may be
-  /// named after it could remove, if each removed as many.
+  /// Whether a change can be a cause. If n changes may still be named, including this one, it must
+  /// remove at least 1/n of the errors (at least half if it is the last one).
   bool leaves_few(const Candidate& c) const {
     if (found_.errors == kUnsampled) return true;
     const int changes = std::max(2, rounds_);  // the last one removes at least half
@@ -412,7 +417,8 @@ std::string result_words(const TrialOutcome& before, const TrialOutcome& after) 
   return text::remaining(after.errors, before.errors, "error");
 }
 
-// The result of a change that has no errors in a quick trial, at the servo's period.
+// The result, in words, of a change that leaves no errors in a quick trial, after it was tried
+// again at the servo's period.
 std::string words_at_period(const TrialOutcome& before, const TrialOutcome& after) {
   if (after.good()) return result_words(before, after);
   return "only " + text::counted(after.errors, "error") +
@@ -421,7 +427,7 @@ std::string words_at_period(const TrialOutcome& before, const TrialOutcome& afte
 }
 
 // Whether a phase or a keyframe is one of several rounds of a block, which have one text in the
-// file: a change of another round is the same line again.
+// file: a change of another round would name the same line again.
 bool is_repeated(const Pattern& pattern, const std::string& place) {
   const auto rounds = [&](const auto& items) {
     return std::count_if(items.begin(), items.end(),

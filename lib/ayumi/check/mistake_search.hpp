@@ -4,7 +4,7 @@
 // specific first: a unit, a decimal point, an exchanged side, a sign, something that is missing,
 // then a value that is too large or too small. A motion whose errors are all slight is near its
 // limits. For such a motion, another sign, digit or foot is tried only if something else in the
-// pattern speaks for it.
+// pattern makes this mistake likely.
 
 #include <string>
 #include <vector>

@@ -12,7 +12,8 @@ namespace {
 constexpr double kBoardDegrees = 180 / EIGEN_PI;  // Definition
 // Definition: range of signed numbers of 16 bits.
 constexpr double kFewestCounts = -32768, kMostCounts = 32767;
-constexpr double kWhole = 1e-6;  // tolerance in counts. Chosen: rounding of degrees and radians
+constexpr double kWhole = 1e-6;  // tolerance in counts. Chosen: above rounding errors of deg and
+                                 // rad
 
 // Keeps the worst of each kind for one joint.
 class Watch {

@@ -27,9 +27,10 @@ struct BoardTargets {
 };
 
 /// The rows of the table as the boards pass them on. Each row holds until the next one. A tick is a
-/// millisecond if the interval is a whole number of them, otherwise it is the interval. Joints
-/// without an encoder have no counts: their speed limit is that of the profile of the options.
-/// Throws Error(bad_pattern) for a table without rows or with other joints than the robot's.
+/// millisecond if the interval is a whole number of milliseconds; otherwise it is the interval.
+/// Joints without an encoder have no counts: their speed limit is that of the profile of the
+/// options. Throws Error(bad_pattern) for a table without rows or with other joints than the
+/// robot's.
 BoardTargets board_targets(const RobotModel& model, const ReferenceTrajectory& table,
                            const SafetyOptions& options = {});
 

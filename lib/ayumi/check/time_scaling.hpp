@@ -6,12 +6,13 @@
 
 namespace ayumi {
 
-/// Whether differences across a jump spoil the demand near this sample, so that time scaling cannot
-/// help.
+/// Whether the path is discontinuous near this sample, so that rates from differences make the
+/// demand too large and time scaling cannot help.
 bool broken_by_jump(const JudgedMotion& motion, int sample);
 
-/// Whether one pace removes both violations. If a jump spoils the demand, no pace removes them. In
-/// this case the violation is attributed to the speed, unless it is that jump itself.
+/// Whether one pace removes both violations. If the path is discontinuous near the effect, no pace
+/// removes them. In this case the effect is attributed to the speed, unless the effect is the
+/// discontinuity itself.
 bool slower_pace_removes(JudgedMotion& motion, const Violation& cause, const Violation& effect);
 
 }  // namespace ayumi

@@ -36,23 +36,25 @@ struct WrittenValue {
 
   /// A large value of this quantity: the length of a leg, a radian, the weight, or 1.
   double unit(const RobotModel& model) const;
-  /// Distance of the value from what would be there without it, in such units.
+  /// Largest distance of one of its numbers from the neutral value, in these units.
   double suspicion(const RobotModel& model) const;
   /// Whether the same value with the other sign could have been meant.
   bool has_sign() const;
   /// "0.9 m", "30 deg": `value` as the author of this pattern writes it.
   std::string text(const Pattern& pattern, double value) const;
-  /// Where its other numbers are, which a change of the value changes too: " here and in
-  /// /keyframes/3"; "" where it is one line of the file.
+  /// A text with the places of the other numbers of this value, because a change of the value
+  /// changes them, too: " here and in /keyframes/3". It is empty if the value is on one line of the
+  /// file.
   std::string elsewhere() const;
-  /// The share nearest to this one at which pull() leads to a value as text() writes it.
+  /// The share nearest to `share` for which pull() gives exactly a value that text() can write (a
+  /// rounded value).
   double written_share(const Pattern& pattern, double share) const;
   /// Multiplies all numbers of the value.
   void scale(Pattern& pattern, double factor) const;
-  /// Gives all numbers of the value one value, at this share of the way of the first of them from
-  /// what would be there without it.
+  /// Gives all numbers of the value the same new value: neutral + share * (value - neutral) of its
+  /// first number.
   void pull(Pattern& pattern, double share) const;
-  /// Gives each number of the value what would be there without it.
+  /// Gives each number its neutral value.
   void leave_out(Pattern& pattern) const;
 };
 

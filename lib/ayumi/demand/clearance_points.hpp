@@ -4,8 +4,9 @@
 // distance jumps with them: a solver that uses this distance alternates between the corners. So the
 // distances here are those of the ends of each shape from the other shape; ends are corners (box),
 // end points (capsule) or end discs (cylinder). None of these distances is less than the clearance,
-// and outside the other shape each has a continuous derivative. The clearance itself is added if
-// two edges meet, which no end shows, and for shapes without ends (spheres, hulls).
+// and outside the other shape each has a continuous derivative. The clearance itself is added for
+// shapes without ends (spheres, hulls), and if two edges are nearest to each other, because the
+// distances of the ends do not show this case.
 
 #include <Eigen/Core>
 #include <vector>

@@ -37,7 +37,7 @@ struct BodySphere {
 struct BodyPlace {
   Eigen::Vector3d center;  ///< world [m]
   double shift = 0;        ///< of the centre [m]
-  double turn = 0;         ///< at least the angle of the turn [rad]
+  double turn = 0;         ///< upper bound of the angle of the turn [rad]
 };
 
 std::vector<BodySphere> body_spheres(const RobotModel& model, const CollisionModel& collisions) {
@@ -119,7 +119,7 @@ class ClearanceScan {
   }
 
   // A turn by an angle moves a point by less than the angle times its distance; the chord of the
-  // rotation matrices is sqrt(8) sin(angle/2), and angle/2 at most pi/2 times its sine.
+  // rotation matrices is sqrt(8) sin(angle/2), and angle/2 is at most pi/2 times its sine.
   static double angle_between(const Eigen::Matrix3d& before, const Eigen::Matrix3d& after) {
     return std::numbers::pi * (after - before).norm() / std::sqrt(8.0);
   }
@@ -169,7 +169,8 @@ class ClearanceScan {
     return most_around(c, [&](int k) { return way(k, pair); });
   }
 
-  // Whether the spheres alone show that a pair is neither near at a coarse sample nor beside it.
+  // Whether the spheres alone show that a pair is near neither at a coarse sample nor between this
+  // sample and its neighbours.
   bool is_far(int c, const CollisionModel::Pair& bodies, double gap) const {
     if (gap < wanted()) return false;
     return gap -

@@ -43,7 +43,8 @@ ContactPlan contact_plan(const CommandSeries& series);
 /// The continuation of a swing beyond the beginning or end of a contact: a foot that lands later,
 /// or lifts off earlier, than the phases say.
 struct RunOn {
-  /// Height of the sole's centre over its place at that time, if it is still moving [m].
+  /// Height of the sole's centre over its place at that beginning or end, if the sole is still
+  /// moving [m].
   double height = 0;
   int samples = 0;  ///< number of samples until it has practically come to its place
 };
@@ -53,20 +54,21 @@ RunOn swing_run_on(const RobotModel& model, const CommandSeries& series, Side si
                    const ContactInterval& contact, bool lands);
 
 /// Height at which a swing may continue, as a share of the height by which a supporting sole may
-/// float. Chosen: a fifth finds 60 ms of a slow swing (0.06 mm), and generated walks have 1e-12 m
-/// (docs/attribution.md, "Contacts that begin in the air"). No measured case changes between half
-/// and twice the value (constants.md).
+/// float. Chosen: with a fifth (0.06 mm), a contact that begins 60 ms before the end of a slow
+/// swing is found, and in generated walks the height is at most 1e-12 m there (docs/attribution.md,
+/// "Contacts that begin in the air"). No measured case changes between half and twice the value
+/// (constants.md).
 inline constexpr double kRunOnShare = 0.2;
 
 /// How long a foot stays in the place of `contact` after the planned end of the contact [samples],
-/// if the following swing begins at all. It is computed from the times at which the sole is 0.01
-/// and 0.08 mm off its place, as if its distance grew with the cube of time. Slower starts give a
-/// larger number, and quicker ones a smaller one, even below 0.
+/// or 0 if the foot does not move by 0.08 mm in the following swing. It is computed from the times
+/// at which the sole is 0.01 and 0.08 mm off its place, as if its distance grew with the cube of
+/// time. Slower starts give a larger number, and quicker ones a smaller one, even below 0.
 double samples_after_contact(const RobotModel& model, const CommandSeries& series, Side side,
                              const ContactInterval& contact, const ContactInterval& swing);
 
 /// Whether the differences that give the rates of sample k mix support and flight. There, the
-/// acceleration jumps, and the demand on the ground is unknown.
+/// acceleration is discontinuous, and the demand on the ground is unknown.
 bool at_flight_edge(const CommandSeries& series, int k);
 
 }  // namespace ayumi

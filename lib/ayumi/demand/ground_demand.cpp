@@ -175,9 +175,9 @@ Vector2d behind(const ConvexPolygon& b, const Vector2d& point, const Vector2d& z
   return point + 0.5 * (low + high) * ray;
 }
 
-// Is 0 below 0, 1 above 1, and `u` between them. It is rounded at both ends so that its slope has
-// no jump, because the ZMP of a walk rests exactly there and the repair differentiates this
-// function.
+// 0 if u < 0, 1 if u > 1, and `u` in between. The function is rounded at both ends so that its
+// slope is continuous, because the ZMP of a walk rests exactly there and the repair differentiates
+// this function.
 double rounded_clamp(double u) {
   // Rounded share at each end. Chosen: a tenth of the way between the feet. Between half and twice
   // the value, figures change by less than 5 %.
@@ -188,9 +188,10 @@ double rounded_clamp(double u) {
 }
 
 // Along the line between the sole centres the share follows the ZMP, and across it both centres of
-// pressure shift alike: one foot takes all when the ZMP is past its centre. If a centre of pressure
-// would leave its sole in this way, the ZMP lies near a corner of the hull. Then one foot presses
-// in the middle of its possible places, and the other one on the other side of the ZMP.
+// pressure shift by the same distance. One foot takes the whole force when the ZMP is past its
+// centre. If a centre of pressure would leave its sole in this way, the ZMP lies near a corner of
+// the hull. Then the centre of pressure of one foot is in the middle of its possible places, and
+// that of the other foot is on the opposite side of the ZMP.
 Shares share_zmp(const std::array<ConvexPolygon, 2>& soles, const Vector2d& zmp) {
   const Vector2d left = soles[0].centroid(), right = soles[1].centroid();
   const Vector2d line = left - right;

@@ -1,7 +1,7 @@
 #pragma once
 // The demands of a planned motion on the ground, the motors and the feet, and their distance from
-// what was commanded. Each quantity is only computed here: the report evaluates it, and the
-// nonlinear program constrains it.
+// what was commanded. Each quantity is computed here but not judged: the report evaluates it, and
+// the nonlinear program constrains it.
 
 #include <Eigen/Dense>
 #include <array>
@@ -37,12 +37,12 @@ Vector6d plane_wrench(const SupportPlane& plane, const Eigen::Vector3d& base_pos
 /// edge) [N m].
 Eigen::Matrix<double, Eigen::Dynamic, 6> support_rows(const SupportPlane& plane);
 
-/// Share of the weight above which the ZMP of the ground force has a meaning. Chosen: below it, the
-/// moment that determines the ZMP is rounding. Motions in contact rest on far more
-/// (normal_force.cpp warns at 5 %), so that only samples beside flights come near it. The estimator
-/// of a controller and the commands of an imported motion take 5 % instead: load cells and
-/// differences are noisier. No measured case changes between half and twice the value
-/// (constants.md).
+/// Share of the weight above which the ZMP of the ground force has a meaning. Chosen: below it,
+/// rounding errors dominate the moment that determines the ZMP. The normal force of motions in
+/// contact is far larger (normal_force.cpp warns at 5 %), so that only samples next to flights come
+/// near this share. The estimator of a controller and the commands of an imported motion take 5 %
+/// instead: load cells and differences are noisier. No measured case changes between half and twice
+/// the value (constants.md).
 inline constexpr double kContactThreshold = 0.02;
 
 /// The normal force of a robot above which the ZMP of the ground force has a meaning [N].
@@ -76,8 +76,9 @@ std::array<Vector6d, 2> foot_wrenches(const RobotModel& model, Support support,
                                       const Vector6d& base_wrench);
 
 /// The sign of dry friction changes gradually over twice this joint rate [rad/s]. Chosen: far below
-/// the rates of a motion (0.1 rad/s and more) and above the rounding of differences, so that its
-/// torque has no jump. No measured case changes between half and twice the value (constants.md).
+/// the rates of a motion (0.1 rad/s and more) and above the rounding of differences, so that the
+/// friction torque is continuous. No measured case changes between half and twice the value
+/// (constants.md).
 inline constexpr double kCoulombRate = 0.01;
 
 /// The motor torques [dof]: `force` of inverse_dynamics without the contribution of the ground at

@@ -26,8 +26,8 @@ class MotionDynamics {
   /// square of `pace`: the same path, played more slowly.
   const SampleDynamics& at(int k, double pace = 1);
 
-  /// Sample k of a flight with an acceleration of the base for which it needs no wrench from
-  /// outside. The motors' torques are then those without the force and moment that no ground can
+  /// Sample k of a flight, with the acceleration of the base changed so that the robot needs no
+  /// external wrench. The motor torques then do not contain a force and a moment that no ground can
   /// give.
   const SampleDynamics& free_flight(int k);
 

@@ -25,7 +25,7 @@ Eigen::MatrixXd cog_jacobian_floating(const RobotModel& model, RobotData& data);
 Eigen::MatrixXd anchored_velocity_map(const RobotModel& model, const RobotData& data, Side support);
 
 /// (6+dof) x dof on both feet: the base moves so that the two soles move as little as possible,
-/// where turns are multiplied by 0.2 m. For joint rates that can keep both soles at rest, they are
+/// where turns are multiplied by 0.2 m. If the joint rates allow both soles to be at rest, they are
 /// at rest.
 Eigen::MatrixXd both_feet_velocity_map(const RobotModel& model, const RobotData& data);
 

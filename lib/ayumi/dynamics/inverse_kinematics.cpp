@@ -29,9 +29,9 @@ constexpr std::array<Side, 2> kSides = {Side::left, Side::right};
 // small enough for accelerations, which are differences at 1 kHz.
 constexpr double kNewtonTolerance = 1e-13;
 
-// Length of a step after which Newton stops without looking at the residual [m, rad]. Derived: a
-// step of s leaves at most (6 s)^2 / 2 times the length of a leg in metres, which is below
-// kNewtonTolerance for legs up to 50 m.
+// Length of a step after which Newton stops without another computation of the residual [m, rad].
+// Derived: a step of s leaves at most (6 s)^2 / 2 times the length of a leg in metres, which is
+// below kNewtonTolerance for legs up to 50 m.
 constexpr double kLastNewtonStep = 1e-8;
 
 // Residual that is accepted if rounding keeps it above kNewtonTolerance [m, rad]. Chosen: far below
@@ -69,8 +69,8 @@ constexpr double kLastStep = 1e-10;
 // degrees.
 constexpr double kAcross = 0.7;
 
-// Range that a knee needs on its human side [rad]. Chosen: half of kStartBend; a knee with less
-// stays nearly straight, and its robot is built to bend the other way.
+// Range that a knee needs on its human side [rad]. Chosen: half of kStartBend; a knee with a
+// smaller range stays nearly straight, and its robot is built to bend the other way.
 constexpr double kStartBend = 0.3, kKneeRoom = 0.15;
 
 // Bend of a knee that a walk with bent legs needs [rad]. Chosen: 50 degrees for standing and 20 for
@@ -476,7 +476,7 @@ void InverseKinematics::damped(const PostureTarget& target, RobotState& state,
     e = residual(target, state, data);
   }
   stack(e, r);
-  double lambda = 1e-6, before = 0;  // the longest step of a joint before
+  double lambda = 1e-6, before = 0;  // the longest step of a joint in the iteration before
   MatrixXd J(rows, base + n), H(base + n, base + n);
   RobotState trial = state;
   for (int iteration = 0; iteration < 200 && r.cwiseAbs().maxCoeff() > kNewtonTolerance;
@@ -529,9 +529,10 @@ void InverseKinematics::damped(const PostureTarget& target, RobotState& state,
     stack(next, after);
     const double gain = r.squaredNorm() - after.squaredNorm();
     // If soles cannot reach their places, a residual remains and the steps vanish. Each step is
-    // shorter than the one before by about the same factor, so the next one is foretold.
+    // shorter than the one before by about the same factor, so the length of the next one is
+    // predicted.
     const bool ends = lacking_ && std::min(longest, longest / before * longest) < kLastStep;
-    before = gain > 0 ? longest : 0;  // only a step that helped foretells the next one
+    before = gain > 0 ? longest : 0;  // only a step that helped predicts the next one
     if (gain > 0) {
       state = trial;
       e = next;
@@ -580,7 +581,7 @@ PostureSolution InverseKinematics::solve(const PostureTarget& target, RobotState
       share[s] = solution.miss[s] / allowed;
       turned[s] = e.foot[s].tail<3>().norm();
     }
-    // The soles are at their places in this case.
+    // In this case the soles are at their places, so their turns are compared.
     if (!solution.reached && std::max(share[0], share[1]) <= 1)
       for (int s = 0; s < 2; ++s) share[s] = turned[s] / tolerance(target.hold[s]);
     solution.foot = share[0] >= share[1] ? Side::left : Side::right;

@@ -65,7 +65,7 @@ class InverseKinematics {
   /// The joints that are solved are those of one leg only. A waist above both legs is not solved.
   const std::vector<int>& leg(Side side) const { return legs_[static_cast<int>(side)]; }
   /// Whether a leg has fewer than six joints of its own. Then the trunk leans as far as the soles
-  /// and the COG need it, and joints that are coupled across both legs are solved too.
+  /// and the COG require, and joints that are coupled across both legs are solved too.
   bool lacks_joints() const { return lacking_; }
   /// Joints that move both legs at once, as coupled hips do. The list is only filled where legs
   /// lack joints.
@@ -132,7 +132,8 @@ class InverseKinematics {
   std::array<int, 2> knees_ = {-1, -1};
   /// Bodies of the joints across the trunk below the knees.
   std::array<int, 2> knee_feet_ = {-1, -1};
-  std::array<int, 2> knee_hips_ = {-1, -1};  ///< bodies of those above the knees
+  std::array<int, 2> knee_hips_ = {-1, -1};  ///< bodies of the joints across the trunk above the
+                                             ///< knees
   std::array<double, 2> forward_ = {0, 0};
   Eigen::VectorXd start_;
   double largest_bend_rate_ = 0;  ///< largest change of the determinants below per radian

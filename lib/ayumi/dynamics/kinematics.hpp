@@ -9,7 +9,7 @@ namespace ayumi {
 /// Fills the position part of `data` from the base pose and theta.
 void update_positions(const RobotModel& model, const RobotState& state, RobotData& data);
 
-/// Fills the positions and then the velocity part: (1)(2), carried out along the tree.
+/// Fills the positions and then, by (1)(2) from the root outwards, the velocity part.
 void update_velocities(const RobotModel& model, const RobotState& state, RobotData& data);
 
 /// Fills the velocity part alone. Needs update_positions().

@@ -33,7 +33,7 @@ constexpr double kPartOfLimb = 0.5;
 std::vector<int> limb_ends(const RobotModel& model) {
   const auto& bodies = model.bodies();
   std::vector<int> children(bodies.size(), 0);
-  // Distance to the farthest joint that hangs on it [m].
+  // Distance from each body's joint to the farthest joint that it carries [m].
   std::vector<double> carried(bodies.size(), 0);
   for (size_t b = bodies.size(); b-- > 1;) {
     const auto parent = static_cast<size_t>(bodies[b].parent);
@@ -76,8 +76,8 @@ std::vector<int> limb_dofs(const RobotModel& model, int body) {
 
 namespace {
 
-// A limb whose end is at rest this near to the middle plane is not an arm [m]. Chosen: necks lie
-// within it.
+// A limb whose end is nearer than this to the middle plane, in the rest posture, is not an arm [m].
+// Chosen: necks lie within it.
 constexpr double kMiddle = 0.02;
 
 // The ends of limbs that are not feet, and the positions of their joints at rest [m].

@@ -56,8 +56,8 @@ class TreeDynamics {
   /// The mass matrix, (6+dof) square, for the positions of `state`.
   void mass_matrix(const RobotState& state, Eigen::MatrixXd& M);
 
-  /// Analytic derivatives, by twelve numbers per subtree. The function allocates nothing after the
-  /// first call.
+  /// Analytic derivatives. Twelve numbers describe the velocity forces of each subtree. The
+  /// function allocates nothing after the first call.
   void inverse_derivatives(const RobotState& state, const Eigen::VectorXd& acceleration,
                            InverseDynamicsDerivatives& derivatives);
 

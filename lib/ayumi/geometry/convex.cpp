@@ -121,8 +121,9 @@ bool nearest_inside(const Few<Vertex>& v, const std::array<int, 4>& pick, Few<do
   return true;
 }
 
-// Reduces `simplex` to the part that is nearest to the origin. `newest`: only parts with the last
-// vertex count. In the search for the nearest point, the others were looked at before.
+// Reduces `simplex` to the part that is nearest to the origin. With `newest`, only parts that
+// contain the last vertex are examined, because the search for the nearest point has examined the
+// other parts before.
 void reduce(Simplex& simplex, bool newest = false) {
   const auto count = static_cast<int>(simplex.vertices.size());
   std::array<int, 4> best = {};
@@ -239,8 +240,8 @@ class Polytope {
 
   // Replaces the faces that the vertex sees by faces between the vertex and their rim. If rounding
   // makes some faces of one plane visible and others hidden, the rim is not a simple loop, and the
-  // number of faces would grow without limit. In this case, only faces count that are seen from a
-  // larger distance. Returns false if there is no simple rim.
+  // number of faces would grow without limit. In this case, only faces that are seen from a larger
+  // distance count. Returns false if there is no simple rim.
   bool replace_visible(int top) {
     // Distances of the vertex from the plane of a face beyond which it sees the face [m].
     for (const double seen_from : {1e-13, 1e-11, 1e-9}) {

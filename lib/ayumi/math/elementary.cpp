@@ -24,8 +24,8 @@ parts::Reduced<double> reduced(double x) {
   constexpr double kLeast = 0.78, kMost = 1e9;
   // Below pi/4, where no multiple of pi/2 is subtracted.
   if (std::abs(x) < kLeast) return {{x, 0}, 0};
-  // Angles this large mean nothing. They are reduced by the double nearest to 2 pi, exactly and
-  // everywhere alike.
+  // Angles this large have no meaning. They are reduced by the double nearest to 2 pi, exactly and
+  // with the same result on every machine.
   if (std::abs(x) > kMost) x = std::fmod(x, 6.283185307179586);
   return parts::reduced(x);
 }
@@ -49,7 +49,7 @@ double exp_of_pair(const Pair& x) {
   const double k = x.high * 1.4426950408889634 + kRound - kRound;
   const Pair a = sum(x.high - k * kLog2, -k * kLog2Low);
   const auto exponent = static_cast<int>(k);
-  // The factor is applied in two steps, so that it stays a number where the result is one.
+  // The factor is applied in two steps, so that it does not overflow if the result is finite.
   return std::ldexp(std::ldexp(exp_of({a.high, a.low + x.low}), exponent / 2),
                     exponent - exponent / 2);
 }

@@ -21,7 +21,7 @@ double log1p(double x);  ///< log(1 + x), accurate near 0
 double atan2(double y, double x);
 double asin(double x);
 double acos(double x);
-double hypot(double x, double y);  ///< cannot overflow in between
+double hypot(double x, double y);  ///< no intermediate result can overflow
 /// x^y for x >= 0; the result is not a number for x below 0.
 double power(double x, double y);
 

@@ -1,5 +1,5 @@
 // The linear programs have two unknowns. They are solved row by row (Seidel): as long as the best
-// point so far keeps the next row, it stays; otherwise the new best point lies on that row.
+// point so far satisfies the next row, it stays; otherwise the new best point lies on that row.
 #include "ayumi/math/path_timing.hpp"
 
 #include <algorithm>
@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// A row of unit length, or one between parallel rows, counts as kept within this tolerance. Chosen:
-// far above the rounding of doubles and far below any limit of a motion.
+// Tolerance within which a row of unit length, or a row between parallel rows, counts as satisfied.
+// Chosen: far above the rounding of doubles and far below any limit of a motion.
 constexpr double kKept = 1e-10;
 
 // Largest value of s''. Definition: above any value that makes sense, so that only the rows limit
@@ -29,7 +29,7 @@ struct Interval {
   double least, most;
 };
 
-// Rows of unit length. `impossible` is set if a row without unknowns is broken.
+// Rows of unit length. `impossible` is set if a row without unknowns is violated.
 struct Rows {
   std::vector<UnitRow> all;
   bool impossible = false;
@@ -145,7 +145,7 @@ class Reachability {
       else
         low = std::max(low, u);
     }
-    // Because of rounding, the interval may be empty by a little.
+    // Because of rounding, the upper bound may be slightly below the lower one.
     return std::clamp(x + twice * std::max(high, std::min(low, high)), to.least, to.most);
   }
 

@@ -27,8 +27,8 @@ struct PathTiming {
   int stuck = -1;  ///< the last point from which the end cannot be reached; -1 if there is none
 };
 
-/// The timing that has the largest possible x at every point, so that no timing that keeps the rows
-/// is quicker.
+/// The timing that has the largest possible x at every point, so that no timing that satisfies the
+/// rows is quicker.
 PathTiming quickest_timing(const std::vector<TimingPoint>& points);
 
 /// The time at every point [s], from 2 d / (s'_i + s'_{i+1}) for each step. Of two neighbours, at

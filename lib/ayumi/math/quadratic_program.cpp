@@ -21,7 +21,7 @@ constexpr int kMostSteps = 200;
 
 // Size below which a step, relative to that of x, or a multiplier, relative to the gradient, counts
 // as zero. Chosen: thousands of times the rounding of double precision, and far below anything that
-// matters for a foot or a clock; this is also true of half and twice the value.
+// matters for a foothold or the time of a step; this is also true of half and twice the value.
 constexpr double kZero = 1e-12;
 
 constexpr int kMostRows = 2 * kMostUnknowns;

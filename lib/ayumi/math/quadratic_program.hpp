@@ -29,8 +29,8 @@ struct ProgramSolution {
   bool optimal = false;                  ///< false if x is only feasible
 };
 
-/// Solves it by an active set that begins at `start`, which has to keep A x <= b. Allocates
-/// nothing.
+/// Solves the program by an active set that begins at `start`, which has to satisfy A x <= b.
+/// Allocates nothing.
 ProgramSolution solve_program(const QuadraticProgram& program,
                               const QuadraticProgram::Vector& start);
 

@@ -12,8 +12,8 @@ using Eigen::MatrixXd;
 
 namespace {
 
-// Largest number of doublings; after them there is no solution. Chosen: 2^40 steps are longer than
-// any motion, and so are 2^20; the regulators here need about twelve doublings.
+// Largest number of doublings; if they are not enough, there is no solution. Chosen: 2^40 steps are
+// longer than any motion, and so are 2^20; the regulators here need about twelve doublings.
 constexpr int kMostDoublings = 40;
 
 // Change of the cost in a doubling, relative to the cost, below which the cost is the solution.

@@ -9,7 +9,7 @@ namespace ayumi {
 /// the least sum of x'Q x + u'R u:
 ///   P = A'PA - A'PB (R + B'PB)^-1 B'PA + Q.
 /// A is n x n, B is n x m, Q is n x n, symmetric and semidefinite, and R is m x m, symmetric and
-/// definite. Throws Error(bad_input) if there is none.
+/// definite. Throws Error(internal) if there is no such P.
 Eigen::MatrixXd solve_riccati(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B,
                               const Eigen::MatrixXd& Q, const Eigen::MatrixXd& R);
 

@@ -12,7 +12,7 @@ namespace ayumi {
 ///   linear        straight, C0
 ///   cubic         Hermite with Catmull-Rom rates, C1
 ///   minimum_jerk  rest to rest quintic, C2
-///   hold          the previous value until the key, then a jump
+///   hold          the previous value until the key, then a step
 ///   spline        cubic spline through consecutive spline keys, C2 inside the run
 /// The end of a cubic or spline run is at rest or has the slope of a linear neighbour.
 enum class Interpolation { linear, cubic, minimum_jerk, hold, spline };

@@ -6,7 +6,7 @@
 
 namespace ayumi {
 
-using TimeWindow = std::pair<double, double>;  ///< begin and end [s]
+using TimeWindow = std::pair<double, double>;  ///< beginning and end [s]
 
 /// The windows in order, where overlapping or touching ones are merged.
 std::vector<TimeWindow> merged(std::vector<TimeWindow> windows);

@@ -40,7 +40,7 @@ constexpr double kAsymmetry = 0.02;
 constexpr double kPartner = 0.1;
 /// A centre of mass is suspicious if it lies outside its shape by more than this share of the
 /// shape's size. Chosen: a motor behind a plate is less far away, and a distance of half the size
-/// has to be found.
+/// must be detected.
 constexpr double kOutside = 0.25;
 /// Largest number of names that a warning lists in full, and the number that it lists if there are
 /// more. Chosen: they fit on a line of a terminal.
@@ -291,7 +291,7 @@ class Doctor {
     const auto mirrored_distance = [&](const Dof& a, const Dof& b) {
       Eigen::Vector3d mirrored = place(a);
       mirrored.y() = -mirrored.y();
-      // Joints that share a centre are told apart by their axes.
+      // Joints that share a centre are distinguished by their axes.
       const Eigen::Vector3d axis = zero_[a.body].linear() * model_.bodies()[a.body].axis;
       const Eigen::Vector3d other = zero_[b.body].linear() * model_.bodies()[b.body].axis;
       const Eigen::Vector3d turned(axis.x(), -axis.y(), axis.z());

@@ -64,8 +64,8 @@ struct LoadFriction {
 };
 
 /// A position servo. It receives positions only. With the target of `delay` seconds ago, the angle
-/// phi of the motor behind the gear (the joint's own where the gear has neither backlash nor
-/// stiffness), its reading theta = phi - offset and the error e = target - theta, which is zero
+/// phi of the motor behind the gear (the angle of the joint itself if the gear has neither backlash
+/// nor stiffness), its reading theta = phi - offset and the error e = target - theta, which is zero
 /// within the dead band and reduced by it beyond,
 ///   torque = kp e - kd dphi,   or with an inner speed loop   kd (clamp(kp / kd e) - dphi),
 /// bounded by the profile's peak torque and by the motor's voltage. A velocity feed-forward is a
@@ -79,8 +79,8 @@ struct ServoDescription {
   double delay = 0;          ///< transport delay of the target [s], any number of ticks
   /// Largest speed that the position loop asks the inner speed loop for [rad/s]; 0 for no bound.
   double speed_command_limit = 0;
-  /// Dry friction at rest beyond `coulomb` [N m]; at the rate v it is s times as large, with
-  /// s = exp(-(|v| / stribeck_rate)^stribeck_exponent).
+  /// Dry friction at rest in addition to `coulomb` [N m]; at the rate v it is s times as large,
+  /// with s = exp(-(|v| / stribeck_rate)^stribeck_exponent).
   double stribeck_torque = 0;
   /// Rate in the decay above [rad/s], at which s is 1/e; 0 for no Stribeck effect.
   double stribeck_rate = 0;

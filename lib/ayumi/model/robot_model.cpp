@@ -81,7 +81,7 @@ class TreeBuilder {
     bodies_ = &bodies;
     links_ = &links;
     if (const JointDescription* joint = floating_root(root_link)) {
-      // The frame in which the robot floats becomes a link at its drawn place.
+      // The frame in which the robot floats becomes a link in its place according to the URDF.
       const LinkDescription& frame = robot_.links[root_link];
       links.push_back({frame.name, 0, joint->origin.inverse(), {}, {}, {}});
       root_link = link_index(joint->child);

@@ -53,8 +53,9 @@ struct ActuatorLimits {
   /// Whether the files give the joint a servo; a servo with kp = 0 is passive.
   std::vector<bool> has_servo;
 
-  /// Whether the files say that the joint has no motor: its servo has kp = 0, and that of another
-  /// joint has not. If no joint has a motor, the files do not state the motors.
+  /// Whether the files say that the joint has no motor: its servo has kp = 0, and the servo of at
+  /// least one other joint has a kp above 0. If no joint has a motor, the files do not state the
+  /// motors.
   bool lacks_motor(int dof) const;
 };
 
@@ -116,7 +117,7 @@ class RobotModel {
   Eigen::VectorXd posture(const std::string& posture_name = "home") const;
   bool has_posture(const std::string& posture_name) const;
 
-  Eigen::VectorXd joint_weight() const;  ///< diagonal of W: the sidecar's, otherwise 1
+  Eigen::VectorXd joint_weight() const;  ///< diagonal of W: from the sidecar, or 1
 
   /// The state at rest with the base at the origin and the joints in `posture_name`.
   RobotState rest_state(const std::string& posture_name = "home") const;

@@ -36,8 +36,8 @@ std::string place_of(const RobotModel& model, const ActuatorLimits& limits, int 
          ": ";
 }
 
-// Where the constants of a joint stand: with the profile where this has its own, else with the
-// robot.
+// The place of a joint's constants: in the profile if it has constants of its own for this joint,
+// otherwise among the servos of the robot.
 const char* pointer_of(const RobotDescription& robot, const std::string& profile,
                        const std::string& joint) {
   const bool own =

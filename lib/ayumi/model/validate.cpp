@@ -66,7 +66,7 @@ void validate_inertia(const RobotDescription& robot, const LinkDescription& link
                       " kg m^2, which no body can have; check the products of inertia");
 }
 
-// A flat shape is possible.
+// A shape may be flat.
 void validate_shapes(const RobotDescription& robot, const LinkDescription& link) {
   for (const auto* shapes : {&link.visuals, &link.collisions})
     for (const PlacedShape& placed : *shapes) {

@@ -13,14 +13,15 @@ namespace ayumi {
 inline constexpr double kLargestMass = 1e6;
 inline constexpr double kLargestLength = 1e4;
 /// Largest number of links of a robot, and of joints. Chosen: humanoids with hands have about a
-/// hundred; the tree of the robot descends a chain of links by recursion, and some steps take the
-/// square of their number.
+/// hundred; the tree of the robot descends a chain of links by recursion, and the time of some
+/// steps grows with the square of the number.
 inline constexpr size_t kMostLinks = 1000;
-/// What a reader says when there are more "links" or "joints", before the work with them grows.
+/// The message with which a reader refuses a file with more "links" or "joints", before it works on
+/// them.
 std::string too_many(const std::string& what);
 /// Shortest and longest servo period [s]. Chosen: a thousandth of the shortest period and a hundred
 /// times the longest period of known servos; another value is in a wrong unit. With the shortest
-/// period, a motion of half a second has the largest number of steps that sampling accepts.
+/// period, a motion of 0.4 s has the largest number of steps that sampling accepts (4e6).
 inline constexpr double kShortestServoPeriod = 1e-7, kLongestServoPeriod = 10;
 
 /// Throws Error(bad_model) "urdf file: message".

@@ -1,6 +1,6 @@
 #pragma once
 // The quantities of a control law in one tick, as plain numbers: the terms of its reference by the
-// paper's equations, and what the resolution of (22) or (28) left of its tasks.
+// paper's equations, and the residuals of its tasks after (22) or (28) has been solved.
 
 #include <Eigen/Core>
 

@@ -24,7 +24,7 @@ ReferenceRow between(const ReferenceRow& a, const ReferenceRow& b, double u) {
 }  // namespace
 
 ReferenceTrajectory resampled(const ReferenceTrajectory& table, double dt) {
-  // Definition: largest distance from a row, as a fraction of a row, at which a time is that row's.
+  // Definition: a time belongs to a row if it is nearer than this to the row, as a fraction of dt.
   constexpr double kOnRow = 1e-6;
   if (table.rows.empty() || std::abs(dt - table.dt) < kOnRow * table.dt) return table;
   ReferenceTrajectory result = table;

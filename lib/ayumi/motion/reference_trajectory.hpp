@@ -18,7 +18,7 @@ struct Provenance {
 /// The servo that a table was made for.
 struct TableServo {
   std::string content;  ///< "ideal" (the posture), "lead" or "lead+sag"; "" if it is not known
-  std::string profile;  ///< profile whose servos they are
+  std::string profile;  ///< profile to which the servo belongs
   /// The transport delay, and the time by which a joint is behind its target [s]. Each is one
   /// number for all joints, or one per joint in the order of the columns.
   std::string delay, lag;

@@ -78,7 +78,7 @@ struct UncertainQuantity {
   Distribution distribution = {};
   /// Factor that this quantity shares with others; empty if there is none.
   std::string factor = {};
-  /// Correlation with that factor, of the normal numbers from which both are drawn.
+  /// Correlation between the normal numbers from which this quantity and the factor are drawn.
   double correlation = 0;
   std::string source = {};  ///< where the numbers come from
   SourcePlace place = {};   ///< place for messages
@@ -89,8 +89,8 @@ struct UncertainPush {
   std::string name;
   bool bounds = false;     ///< the size is in capture bounds, otherwise in N s
   double duration = 0.02;  ///< duration of the push [s]
-  /// Whether the time is the number of one of the phases of a push study in which the robot walks,
-  /// all with the same probability.
+  /// Whether the time is the number of a walking phase of a push study; each of these phases has
+  /// the same probability.
   bool phases = false;
   std::vector<std::string> links = {"cog"};
   /// Size, direction, time and link, each with its own distribution.

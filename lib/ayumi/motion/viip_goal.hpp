@@ -15,7 +15,7 @@ struct CogGoal {
 
 /// Both feet stay, and the COG moves at this velocity [m/s], ref v_G of the paper, in the axes of
 /// the feet (x forward, z up). It starts from the place that the goals before it ask for, and it
-/// stops where the phase ends.
+/// stops when the phase ends.
 struct CogVelocityGoal {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
 };
@@ -29,7 +29,7 @@ struct StepGoal {
   double turn = 0;                                     ///< turn to the left [rad/s]
 };
 
-/// A jump of stoop, lift-off, flight, touchdown and settling, repeated `times` times.
+/// A jump that consists of stoop, lift-off, flight, touchdown and settling, repeated `times` times.
 struct JumpGoal {
   /// The event that ends the spring of (26): the COG passes ref z_G, or f_z is zero.
   enum class Release { ref_z, spring };

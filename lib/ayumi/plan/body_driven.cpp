@@ -135,8 +135,8 @@ PostureSolution solve_posture(const SampleJob& job, double t, const Eigen::Matri
 namespace {
 
 /// Largest change of an angle [rad] or place [m] from one step to the next that is extrapolated.
-/// The trunk jumps at keys with the interpolation hold. Chosen: 20 rad/s at 1 kHz, above the speed
-/// of servos. Figures change by rounding only.
+/// The trunk moves suddenly at keys with the interpolation hold. Chosen: 20 rad/s at 1 kHz, above
+/// the speed of servos. Figures change by rounding only.
 constexpr double kLargestChange = 0.02;
 
 }  // namespace

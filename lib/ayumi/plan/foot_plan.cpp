@@ -75,8 +75,8 @@ bool same_place(const Isometry3d& a, const Isometry3d& b) {
   const double first = feet.begin(static_cast<int>(phase)), until = feet.phases()[phase].until;
   const Isometry3d stands = feet.pose(side, first);
   size_t dragging = 0;
-  bool by_curve = true,
-       kept = false;  // no key is at another place; a key at the end of the phase keeps this place
+  // by_curve: no key is at another place. kept: a key at the end of the phase keeps this place.
+  bool by_curve = true, kept = false;
   for (size_t i = 0; i < pattern.keyframes.size(); ++i) {
     const auto& key = pattern.keyframes[i].feet[index(side)];
     if (!key || pattern.keyframes[i].t < first - kInstant) continue;

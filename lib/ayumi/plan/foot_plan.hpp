@@ -1,6 +1,6 @@
 #pragma once
 // The planned places of the feet: constant while they support, from foothold to foothold while they
-// swing. Computed from the feet at the start, the swings of the phases, and foot keys.
+// swing. They are computed from the feet at the start, the swings of the phases, and foot keys.
 
 #include <array>
 #include <optional>

@@ -1,5 +1,5 @@
 // The base follows from the anchor, the foot that supports the robot; in double support the last
-// anchor remains. A new anchor stays at its present place, so the base never jumps.
+// anchor remains. A new anchor stays at its present place, so the base moves continuously.
 #include <algorithm>
 
 #include "ayumi/base/error.hpp"

@@ -1,8 +1,8 @@
 // The joints q of a limb minimize
 //   F = w_p/L^2 sum |p(q) - p*|^2 / 2 + w_d sum |d(q) - d*|^2 / 2 + |q - q_keys|^2 / 2
-// between their limits by Newton's method. With a_i the axis of a joint and r_i the way from it to
-// the end p: dp/dq_i = a_i x r_i, and for a joint i above a joint j, d2p/dq_i dq_j = a_i x dp/dq_j;
-// the same holds for a direction d, with dd/dq_i = a_i x d.
+// between their limits by Newton's method. With a_i the axis of a joint and r_i the vector from it
+// to the end p: dp/dq_i = a_i x r_i, and for a joint i above a joint j, d2p/dq_i dq_j = a_i x
+// dp/dq_j; the same holds for a direction d, with dd/dq_i = a_i x d.
 #include "ayumi/plan/link_plan.hpp"
 
 #include <algorithm>
@@ -56,9 +56,9 @@ constexpr double kLongestStep = 0.3;
 // After a step that is smaller than this, the next one would only be rounding [rad, m]. Derived:
 // Newton's method squares the error, to less than the 1e-13 to which legs are solved.
 constexpr double kLastStep = 1e-8;
-// Largest multiplier of a term over the root of its weight while the steps are cut short. Chosen:
-// far above that of a posture a few radians from its keys, and below what would outweigh the linear
-// part of a limb that cannot reach.
+// Largest multiplier of a term, divided by the root of the term's weight, while the steps are cut
+// short. Chosen: far above that of a posture a few radians from its keys, and below what would
+// outweigh the linear part of a limb that cannot reach.
 constexpr double kLargestPull = 1;
 // Step away from a point without a gradient, such as a straight arm [rad, m]. Chosen: about a
 // degree.
@@ -110,12 +110,14 @@ std::string numbers(const Vector3d& v, int digits) {
          text::fixed(v.z(), digits) + "]";
 }
 
-// If the numbers of a place are probably in another unit, the place is farther than the first
-// multiple of the COG height, and in the other unit nearer than the second one. Chosen: arms and
-// walks of a few metres reach less than the first distance and more than the second.
+// The numbers of a place are probably in another unit if the place is farther than the first
+// multiple of the COG height and if, read in the other unit, it is nearer than the second multiple.
+// Chosen: arms and walks of a few metres reach less than the first distance and more than the
+// second.
 constexpr double kOtherUnit = 20, kSameUnit = 5;
 // Each number of such a place is 0 or at least this large. Chosen: nobody writes a tenth of a
-// millimetre. So a smaller number beside a large one is in metres, and the large one is a slip.
+// millimetre. So a smaller number beside a large one is in metres, and the large one is a typing
+// error.
 constexpr double kWholeUnits = 0.5;
 
 // The unit, mm or cm, in which a place that is far away would be near. Empty if there is none.
@@ -234,7 +236,7 @@ void LinkPlan::add_target(const std::string& name, bool gaze, const std::vector<
     target.anchors.push_back(
         {key.t, free ? nullptr : asked, key.interpolation.value_or(pattern_->interpolation), i});
   }
-  if (target.anchors.empty()) return;  // all keys let the link go free
+  if (target.anchors.empty()) return;  // no key gives the link a place
   fill_tracks(target);
   put_in_group(std::move(target));
 }
@@ -515,8 +517,8 @@ double LinkPlan::minimize(const Group& group, const std::vector<Aim>& aims, cons
     }
     const double longest = way.cwiseAbs().maxCoeff();
     if (!convex && longest < kLastStep) {
-      // The gradient is zero, but this is no minimum of the sum: towards the middle of the ranges
-      // the sum falls.
+      // The gradient is zero, but this is not a minimum of the sum: the sum decreases towards the
+      // middle of the joints' ranges.
       for (const Eigen::Index i : free) {
         const double middle =
             std::isfinite(low[i]) && std::isfinite(high[i]) ? 0.5 * (low[i] + high[i]) : q[i] + 1;
@@ -636,13 +638,12 @@ void LinkPlan::complain(const Group& group, double t, const std::vector<Aim>& ai
   const Anchor& key = next == target.anchors.end() ? target.anchors.back() : *next;
   const bool under_way = next != target.anchors.end() && key.t > t + kSameMoment;
   const bool in_trunk = key.target && key.target->frame == LinkTarget::Frame::trunk;
-  // If the trunk moves until then, it is not known here what the limb reaches at the time of the
-  // key.
+  // If the trunk moves until the time of the key, it is not known here what the limb reaches then.
   const bool trunk_waits = in_trunk || !trunk_moves(*pattern_, t, key.t);
   const bool only_way = under_way && !trunk_waits;
   if (only_way && t < forgiven_before_ - kSameMoment) return;
-  // On the way to a key the limb is at the end of its reach; the message states the distance of the
-  // key.
+  // If the target is out of reach on the way to a key, and also at the key, the message states the
+  // distance at the key.
   if (under_way && key.target && trunk_waits) {
     RobotState there = state;
     std::vector<Aim> goal = aims_at(group, key.t, keyed, there, data, true);

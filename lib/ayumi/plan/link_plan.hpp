@@ -2,7 +2,7 @@
 // Hands, other links and the gaze of a pattern as they move over time, and the joints that follow
 // them. A link without a target is where the keys of its joints put it; between two keys it moves
 // from one place to the other. Of all postures of the limb that put the link there, the joints take
-// the one nearest to their own keys, so that they begin and end with them.
+// the one nearest to their own keys, so that their motion begins and ends at these keys.
 
 #include <array>
 #include <map>
@@ -16,8 +16,8 @@
 
 namespace ayumi {
 
-/// A target is out of reach before the time of its key, while the trunk moves: whether the limb
-/// reaches it at that time is not known there.
+/// Thrown if a target is out of reach before the time of its key while the trunk moves. At this
+/// point it is not known whether the limb reaches the target at the time of the key.
 class MissedOnTheWay : public Error {
  public:
   MissedOnTheWay(const std::string& message, SourcePlace place, double key_time)
@@ -46,10 +46,11 @@ class LinkPlan {
   /// Moves the joints that follow targets at t. `keyed` are the angles of the joints' own keys. The
   /// base and all other joints do not move. Returns the largest change of a joint [rad, m]. Throws
   /// Error(bad_pattern), which states the missing distance, for a target that is out of reach.
-  /// Throws MissedOnTheWay if only a place before its key is known to be out of reach.
+  /// Throws MissedOnTheWay if it is only known that a place on the way to the key is out of reach.
   double solve(double t, const Eigen::VectorXd& keyed, RobotState& state, RobotData& data) const;
 
-  /// From now on, a limb comes as near as it can where MissedOnTheWay would be thrown before `t`.
+  /// From now on, solve() does not throw MissedOnTheWay before `t`; the limb comes as near as it
+  /// can.
   void forgive_before(double t) { forgiven_before_ = t; }
 
   /// What moves joints: "hands", "gaze" or both. Empty if nothing does.

@@ -33,9 +33,9 @@ constexpr double kGridStep = 0.005;
 /// sole, and 1/10 of what the check reports in its figures. Between half and twice the value,
 /// figures change by less than 5 %.
 constexpr double kZmpGoal = 1e-4;
-/// Largest number of passes. Chosen: each pass reduces the error to a fraction, and passes end
-/// earlier when two in a row do not. No measured case changes between half and twice the value
-/// (constants.md).
+/// Largest number of passes. Chosen: each pass reduces the error to a fraction, and the passes end
+/// earlier if two in a row do not reduce it. No measured case changes between half and twice the
+/// value (constants.md).
 constexpr int kMostIterations = 12;
 
 constexpr const char* kStage = "solve the COG";
@@ -61,13 +61,14 @@ Track default_height(const SampleJob& job, const Grid& grid) {
   return spline_through(grid, z);
 }
 
-// Smallest height of the pendulum of lean_height(), as a share of the height of the COG. Chosen: if
-// the trunk leaned against the movement of the COG, which has not been observed, the pendulum would
-// not fall at once.
+// Smallest height of the pendulum of lean_height(), as a share of the height of the COG. Chosen: it
+// keeps the height above 0 if the trunk leans against the movement of the COG, which has not been
+// observed.
 constexpr double kLeastHeight = 0.3;
 
-// Step of the COG to either side by which lean_height() looks at the postures [m]. Chosen: 1/20 of
-// the displacement with legs of five joints, and far above the tolerance of the inverse kinematics.
+// Displacement of the COG to either side between the two postures that lean_height() compares [m].
+// Chosen: 1/20 of the displacement with legs of five joints, and far above the tolerance of the
+// inverse kinematics.
 constexpr double kLook = 5e-4;
 
 // Where legs lack joints, the trunk leans to move the COG aside, and its angular momentum L about
@@ -97,7 +98,7 @@ Eigen::Vector2d lean_height(const SampleJob& job, const CogPlan& plan) {
     RobotState state = posture_at(cog);
     cog[axis] += 2 * kLook;
     const RobotState after = posture_at(cog);
-    // The speed at the first of the postures, if the COG made both steps in 1 s.
+    // The rates with which the robot would move from the first posture to the second one in 1 s.
     state.base_velocity = after.base.position - state.base.position;
     state.base_angular_velocity =
         log_rotation(after.base.attitude * state.base.attitude.conjugate());
@@ -266,7 +267,8 @@ double CogSolver::measure() {
   return worst;
 }
 
-// Keeps the best pass: where keys jump the error cannot vanish, and passes may stop improving.
+// Keeps the best pass. Where the keys are discontinuous, the error cannot vanish, and a later pass
+// may be worse than an earlier one.
 void CogSolver::correct() {
   double best = INFINITY;
   auto best_cog = cog;

@@ -31,7 +31,7 @@ int sample_count(const Pattern& pattern, double duration, double dt) {
   return static_cast<int>(steps) + 1;
 }
 
-// The plan with the default posture carried along it.
+// The plan, with the default posture moved along with the COG.
 CommandSeries sample_carried(const SampleJob& job) {
   require_body_tracks(job);
   CommandSeries series;

@@ -57,8 +57,8 @@ void in_blocks(const SampleJob& job, const char* stage, int count, int block, co
 class Extrapolation {
  public:
   void add(const Eigen::VectorXd& x);
-  /// `guess` becomes the extrapolated vector, or the last vector if the sequence jumps. Needs at
-  /// least one vector.
+  /// `guess` becomes the extrapolated vector, or the last vector if the sequence is discontinuous.
+  /// Needs at least one vector.
   void next(Eigen::VectorXd& guess) const;
 
  private:
@@ -109,9 +109,9 @@ struct CogPlan {
   std::array<Track, 3> zmp;                     ///< ZMP in the world, as the keys state it [m]
   std::array<bool, 2> solved = {false, false};  ///< whether an axis is solved from the ZMP
   std::array<Eigen::Vector2d, 2> bump = {
-      Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};  ///< bumps at begin and end by axis [m]
+      Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};  ///< bumps at both ends by axis [m]
   std::array<Eigen::Vector2d, 2> omega = {
-      Eigen::Vector2d::Ones(), Eigen::Vector2d::Ones()};  ///< omega at begin and end by axis [1/s]
+      Eigen::Vector2d::Ones(), Eigen::Vector2d::Ones()};  ///< omega at both ends by axis [1/s]
   TrunkTurn turn;
   double duration = 0;  ///< duration of the pattern [s]
   /// Postures on a grid from beginning to end that are close to those of the motion and serve as
@@ -129,7 +129,7 @@ struct CogPlan {
 /// full model.
 CogPlan plan_cog(const SampleJob& job);
 
-/// Computes the commanded ZMP and f_z of a sample whose COG has its rates.
+/// Computes the commanded ZMP and f_z of a sample whose COG rates are already known.
 void put_ground_commands(const SampleJob& job, const CogPlan& plan, double t,
                          CommandSample& sample);
 

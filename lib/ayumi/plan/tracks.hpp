@@ -1,7 +1,7 @@
 #pragma once
 // The keyframes and the table of a pattern as tracks over time. Every track starts from the default
-// posture at rest: without a key at t = 0 it has an implied key (joints: the
-// default posture; ZMP: "center"; COG: over the middle of the feet; torso: level; f_z: the weight).
+// posture at rest: if it has no key at t = 0, it has an implied key there (joints: the default
+// posture; ZMP: "center"; COG: over the middle of the feet; torso: level; f_z: the weight).
 
 #include <array>
 #include <map>

@@ -22,7 +22,8 @@ constexpr double kAtRest = 0.015;
 /// (constants.md).
 constexpr double kShortestSample = 0.1;
 
-/// A VIIP phase: its number, begin and end, and the total duration of the VIIP phases before it.
+/// A VIIP phase: its number, its beginning and end, and the total duration of the VIIP phases
+/// before it.
 struct Cut {
   size_t phase;
   double begin, end, before;

@@ -14,7 +14,7 @@ bool has_viip_phases(const Pattern& pattern);
 void refuse_viip_phases(const Pattern& pattern, const std::string& done);
 
 /// The pattern without its VIIP phases and without its correction. Throws Error(bad_pattern) for
-/// keys inside a VIIP phase and for a table together with one.
+/// keys inside a VIIP phase and for a table together with a VIIP phase.
 Pattern without_viip_phases(const Pattern& pattern);
 
 /// `cut`, the samples of without_viip_phases(), with the posture held during the VIIP phases and

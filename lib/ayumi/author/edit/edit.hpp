@@ -28,18 +28,19 @@ struct MirrorMap {
 MirrorMap mirror_map(const RobotModel& model);
 
 /// Exchanges left and right in feet, joints, y coordinates, pushes, table and correction. Mirrored
-/// twice, a pattern is unchanged. Throws the same errors as mirror_map, and Error(bad_pattern) for
-/// an unknown joint.
+/// twice, a pattern is unchanged. Throws the same errors as mirror_map(), and Error(bad_pattern)
+/// for an unknown joint.
 Pattern mirrored(const RobotModel& model, const Pattern& pattern);
 
 /// The pattern with all times multiplied by `scale`. f_z keys get the vertical acceleration of the
 /// new times; ZMP and f_z columns of a table are no longer valid and come from the full model. A
-/// push keeps its duration. Throws Error(usage) unless 0.01 <= scale <= 100, and as baked().
+/// push keeps its duration. Throws Error(usage) unless 0.01 <= scale <= 100, and the same errors as
+/// baked().
 Pattern retimed(const RobotModel& model, const Pattern& pattern, double scale);
 
 /// The pattern with the time from `begin` to `end` [s] multiplied by `factor` and the rest shifted;
-/// keys, phases and f_z keys as in retimed(). Throws Error(usage) for a factor or window out
-/// of range, Error(bad_pattern) for a table or a correction, and as retimed().
+/// keys, phases and f_z keys change as in retimed(). Throws Error(usage) for a factor or window out
+/// of range, Error(bad_pattern) for a table or a correction, and the same errors as retimed().
 Pattern stretched(const RobotModel& model, const Pattern& pattern, double begin, double end,
                   double factor);
 
@@ -71,7 +72,7 @@ struct KeyEdit {
 };
 /// A keyframe that is moved to the time of another one is merged with it. For a track that both
 /// have, the moved keyframe counts. Throws Error(usage) for a time without a keyframe or beyond the
-/// phases, and as mirror_map.
+/// phases, and the same errors as mirror_map().
 Pattern with_key_edited(const RobotModel& model, const Pattern& pattern, const KeyEdit& edit);
 
 /// The pattern and its mirror image in turn, `times` in all, so that one step becomes a walk: each
@@ -79,7 +80,7 @@ Pattern with_key_edited(const RobotModel& model, const Pattern& pattern, const K
 /// relative to the other foot, the last of which brings the feet beside each other when `close`.
 /// Points on the ground move with the foot that carries the robot in the first swing. Throws
 /// Error(bad_pattern) for a pattern with a table, a correction, VIIP phases or foot keys, or
-/// without a swing, Error(usage) unless `times` is 2 to 1000, and as mirror_map.
+/// without a swing, Error(usage) unless `times` is 2 to 1000, and the same errors as mirror_map().
 Pattern alternated(const RobotModel& model, const Pattern& pattern, int times, bool close = true);
 
 /// A pattern and its samples.
@@ -93,16 +94,17 @@ struct MotionPart {
 /// of the first one stand, with its footholds, keys and scenario. `over` [s] is the time of a
 /// transition from rest to rest with both feet still; with 0 there is none, and the postures have
 /// to agree within 2e-4 rad. World and controller are those of the first motion. Throws
-/// Error(bad_pattern) when a foot is in the air at the join, the feet stand differently (1 mm, 0.01
-/// rad) or the legs do not reach, and as baked().
+/// Error(bad_pattern) if a foot is in the air at the join, the feet stand differently (1 mm, 0.01
+/// rad) or the legs do not reach the soles, and the same errors as baked().
 Pattern joined(const RobotModel& model, const MotionPart& first, const MotionPart& second,
                double over, const std::string& table);
 
-/// Two patterns in sequence as keys, as joined() does it with samples: keys, phases and scenario of
-/// the second pattern are moved in place and time; keys at the join keep the value of every track
-/// of both patterns. Throws the same errors as joined(), and Error(bad_pattern) with the reason if
-/// keys cannot express the joined motion: a table, a correction, VIIP phases, legs led by joints,
-/// foot keys, and tracks of COG or ZMP that only one of the patterns has.
+/// Two patterns in sequence as a pattern with keys (joined() makes a table of samples): keys,
+/// phases and scenario of the second pattern are moved in place and time; at the join, each track
+/// of either pattern gets a key with its value. Throws the same errors as joined(), and
+/// Error(bad_pattern) with the reason if keys cannot express the joined motion: a table, a
+/// correction, VIIP phases, legs led by joints, foot keys, and tracks of COG or ZMP that only one
+/// of the patterns has.
 Pattern chained(const RobotModel& model, const MotionPart& first, const MotionPart& second,
                 double over);
 
@@ -116,7 +118,7 @@ struct LoopGap {
   std::string joint;   ///< name of the joint that differs most
   bool closed = false;
 };
-/// Throws Error(bad_pattern) where a foot is in the air at an end.
+/// Throws Error(bad_pattern) if a foot is in the air at the beginning or at the end.
 LoopGap loop_gap(const RobotModel& model, const MotionPart& motion);
 
 struct Ramps {

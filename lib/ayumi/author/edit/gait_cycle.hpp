@@ -1,8 +1,8 @@
 #pragma once
 // The part of a walk that repeats: two steps, from the middle of the double support before the
 // swing of one foot to the middle of the double support before the next swing of the same foot. At
-// both times the robot has the same posture and rates, moved over the ground, when the walk has
-// forgotten its start and does not yet know its end.
+// both times the robot has the same posture and rates, moved over the ground, if the cycle is so
+// far from the start and the end of the walk that they no longer affect it.
 
 #include <Eigen/Core>
 #include <string>
@@ -20,20 +20,22 @@ struct GaitCycle {
   LoopGap gap;      ///< difference between the end and the beginning
 };
 
-/// The cycle that begins before swing `swing`, counted from 0. Throws Error(bad_pattern) where the
-/// pattern has fewer than `swing` + 3 swings or a foot is in the air at an end of the cycle.
+/// The cycle that begins before swing `swing`, counted from 0. Throws Error(bad_pattern) if the
+/// pattern has fewer than `swing` + 3 swings or if a foot is in the air at the beginning or the end
+/// of the cycle.
 GaitCycle gait_cycle(const RobotModel& model, const MotionPart& motion, int swing);
 
-/// The samples of a walk, in which the end of the cycle is its beginning to the last digit, moved
-/// over the ground. The remaining difference is spread over the cycle and removed after it, because
-/// a jump of a tenth of a micrometre in a millisecond moves the ZMP by millimetres. A difference
-/// that is larger than a loop may have stays visible.
+/// The samples of a walk, changed so that the end of the cycle equals its beginning (moved over the
+/// ground) to the last digit. The difference is spread smoothly over the cycle and fades out after
+/// it, because a sudden displacement of 0.1 um within a millisecond moves the ZMP by millimetres. A
+/// difference that is too large for a loop still shows in `gap` of the cycle.
 CommandSeries with_closed_cycle(const CommandSeries& series, const GaitCycle& cycle);
 
 /// The samples `first` to `last` of a motion, such as a cycle, as a motion of its own: a table of
 /// posture and base (COG, ZMP and f_z are those of the full model), with the phases, weights and
 /// disturbances of this time. Throws Error(usage) for samples that are not there,
-/// Error(bad_pattern) where a foot is in the air at one of them, and as baked().
+/// Error(bad_pattern) if a foot is in the air at the first or the last sample, and the same errors
+/// as baked().
 Pattern cut(const RobotModel& model, const MotionPart& motion, long first, long last,
             const std::string& table);
 

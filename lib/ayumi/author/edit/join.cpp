@@ -39,8 +39,8 @@ using Feet = std::array<Isometry3d, 2>;
 /// Chosen: below what the check's tolerances for slip and sink allow at the join.
 constexpr double kSamePlace = 1e-3;
 constexpr double kSameAngle = 0.01;
-/// Largest jump of base [m] and joints [rad] at a join without a transition. Chosen: a jump of 2e-4
-/// rad in 1 ms is 0.2 rad/s, far below the speed limits of servos.
+/// Largest difference of the base [m] and of the joints [rad] at a join without a transition.
+/// Chosen: a step of 2e-4 rad in 1 ms is 0.2 rad/s, far below the speed limits of servos.
 constexpr double kSameBase = 2e-5;
 constexpr double kSameJoint = 2e-4;
 
@@ -115,7 +115,7 @@ double rest_to_rest(double u) { return u * u * u * (10 - 15 * u + 6 * u * u); }
 
 int ticks_of(double time, double dt) { return static_cast<int>(std::lround(time / dt)); }
 
-// The samples between two postures on the same soles, without these postures.
+// The samples between two postures on the same soles; the two postures themselves are not included.
 std::vector<RobotState> transition(const RobotModel& model, const RobotState& from,
                                    const RobotState& to, int ticks) {
   RobotData data(model);
@@ -505,8 +505,8 @@ LoopGap loop_gap(const RobotModel& model, const MotionPart& motion) {
   gap.base = (end.state.base.position - again.base.position).norm();
   gap.rate =
       (end.state.velocity() - begin.state.velocity()).tail(model.dof_count()).cwiseAbs().maxCoeff();
-  // Largest difference of a joint's rate that counts as zero [rad/s]. Chosen: a jump of the posture
-  // by kSameJoint in a millisecond.
+  // Largest difference of a joint's rate that counts as zero [rad/s]. Chosen: the rate of a joint
+  // that moves by kSameJoint in a millisecond.
   constexpr double kSameRate = 1e3 * kSameJoint;
   gap.closed = gap.feet < kSamePlace && turn < kSameAngle && gap.posture < kSameJoint &&
                gap.base < kSameBase && gap.rate < kSameRate;

@@ -107,7 +107,7 @@ RelativeStep step_seen(const FootPlan& plan, const Phase& phase, const Isometry3
   step.up = seen.translation().z();
   step.turn = std::remainder(matrix_to_rpy(seen.linear()).z() - matrix_to_rpy(beside.linear()).z(),
                              2 * M_PI);
-  // Rounded as it is written: to a hundredth of a millimetre and a thousandth of a degree.
+  // Rounds the step as it is written: to a hundredth of a millimetre and a thousandth of a degree.
   const auto rounded = [](double value, double unit) { return unit * std::round(value / unit); };
   step.forward = rounded(step.forward, 1e-5);
   step.side = rounded(step.side, 1e-5);

@@ -20,8 +20,8 @@ namespace {
 /// Largest distance of a joint from the image of its counterpart [m]. Chosen: above the asymmetry
 /// of real robots, below the distance of two joints of one limb.
 constexpr double kAlike = 0.005;
-/// Smallest cosine of the angle between an axis and the mirror image of its counterpart; it belongs
-/// to 8 deg.
+/// Smallest cosine of the angle between an axis and the mirror image of its counterpart; the value
+/// is the cosine of 8 deg.
 constexpr double kParallel = 0.99;
 
 Vector3d image(const Vector3d& p) { return {p.x(), -p.y(), p.z()}; }

@@ -1,8 +1,8 @@
-// Motions by which the constants of servos can be told apart. The robot stands on one foot, because
-// two feet may press against each other with forces that no sensor measures. The supporting leg
-// carries the weight in slow sweeps: up and down, to the sides, forward and back. The other leg
-// moves its foot in the air: slow sweeps, whose turning points show friction, then a chirp and
-// quick steps, by which delay and damping can be told apart. Joints that do not belong to a leg
+// Motions from which the constants of servos can be identified separately. The robot stands on one
+// foot, because two feet may press against each other with forces that no sensor measures. The
+// supporting leg carries the weight in slow sweeps: up and down, to the sides, forward and back.
+// The other leg moves its foot in the air: slow sweeps, whose turning points show friction, then a
+// chirp and quick steps, which distinguish delay from damping. Joints that do not belong to a leg
 // make such motions separately, while the robot stands on both feet.
 #include <algorithm>
 #include <cmath>
@@ -46,8 +46,8 @@ constexpr double kStepShare = 0.33;
 constexpr double kJointAngle = 0.25;
 constexpr double kFootAngle = 0.1;
 // Roll of the foot in the air while its leg leans, with the outer edge up [rad], and the distance
-// that joints keep from their limits [rad]. Chosen: the roll is the middle of the lean with which
-// the robot puts its weight on one foot, so that the ankle stays within its range.
+// that joints keep from their limits [rad]. Chosen: the roll is half of the lean that puts the
+// weight of the robot on one foot, so that the ankle stays within its range.
 constexpr double kFootLean = 0.17;
 constexpr double kLimitMargin = 0.05;
 // Distances by which the foot in the air moves forward, sideways and up, and the height to which it
@@ -163,8 +163,8 @@ void add_stand_on(const RobotModel& model, PatternBuilder& writer, double& t, Si
   writer.add(t += kShiftTime, first);
 }
 
-// For each joint that does not belong to a leg: its number in its own chain. Joints with the same
-// number move together.
+// The joints that do not belong to a leg, sorted by the number of joints from the root to them.
+// Joints with the same number move together.
 std::map<int, std::vector<int>> other_joints(const RobotModel& model) {
   std::map<int, std::vector<int>> by_place;
   for (int j = 0; j < model.dof_count(); ++j) {

@@ -155,10 +155,11 @@ Keyframe half_key(const RobotModel& model, const WalkParameters& p, Side side,
   return result;
 }
 
-// A step without a swing, over half the way: with both feet on the ground, the ZMP goes towards one
-// of them and stays there for the time of a swing. The COG then sways before the first swing as it
+// A step without a swing: with both feet on the ground, the ZMP moves half of the distance to one
+// foot and stays there for the time of a swing. The COG then sways before the first swing as it
 // does in the walk, and never farther; a ZMP that goes to the first standing foot and waits there
-// would draw the COG with it. Legs that carry the COG a few millimetres aside need this.
+// would draw the COG with it. This is necessary for legs that can move the COG only a few
+// millimetres sideways.
 void sway_in_place(PatternBuilder& writer, const Keyframe& key, const WalkParameters& p) {
   const double change = to_millisecond(p.period * p.double_support);
   writer.phase(change, Support::both);

@@ -58,8 +58,8 @@ Pattern sway_pattern(const RobotModel& model, const SwayParameters& parameters);
 /// Half of the width of the narrower sole [m].
 double half_sole_width(const RobotModel& model);
 
-/// COG height at which generated patterns begin: the home posture's, lower where its legs are
-/// straight [m].
+/// COG height at which generated patterns begin [m]: that of the home posture, or less if its legs
+/// are straight.
 double starting_height(const RobotModel& model);
 
 /// The COG moves down and up over both feet.
@@ -123,9 +123,10 @@ struct KickParameters {
 KickParameters kick_defaults(const RobotModel& model);
 Pattern kick_pattern(const RobotModel& model, const KickParameters& parameters);
 
-/// Slow sweeps, chirps and steps of every joint within its limits, by which `identify` can
-/// distinguish the constants of the servos; the robot stands on both feet. `scale` is a factor on
-/// all amplitudes, `stature` a factor on the COG height. Throws the same errors as walk_pattern.
+/// Slow sweeps, chirps and steps of every joint within its limits, from which `identify` can
+/// distinguish the constants of the servos. The robot stands on one foot while its legs move, and
+/// on both feet while the other joints move. `scale` is a factor on all amplitudes, `stature` a
+/// factor on the COG height. Throws the same errors as walk_pattern.
 Pattern excite_pattern(const RobotModel& model, double scale = 1, double stature = 1);
 
 /// A jump has a stoop, lift-off, flight, touchdown and settling; with `times` jumps there is no

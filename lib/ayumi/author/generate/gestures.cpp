@@ -1,5 +1,5 @@
 // Gestures. Each part is minimum jerk with rest at both ends. The motion starts and ends with the
-// COG over the middle of the feet, or its COG is solved from ZMP keys there.
+// COG over the middle of the feet, or with a COG that is solved from ZMP keys.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -121,8 +121,8 @@ namespace {
 
 double to_millimetre(double x) { return 1e-3 * std::round(1e3 * x); }
 
-// Rounded like an angle that is read from a pattern in degrees, so that it is written with one
-// digit.
+// Rounds an angle to a tenth of a degree. The result has the bits of an angle that is read from a
+// pattern in degrees, so that it is written with one decimal.
 double to_tenth_degree(double radians) {
   constexpr double degree = std::numbers::pi / 180;
   return std::round(10 * radians / degree) / 10 * degree + 0.0;
@@ -299,8 +299,8 @@ Pattern wave_pattern(const RobotModel& model, const WaveParameters& p) {
              "joints of the arm are at their limits; write keys of the arm's joints instead");
   const double rest = rest_time(model);
   PatternBuilder writer{pattern};
-  // A joint that came back to its limit would need a target of its servo beyond it: such an arm
-  // begins and ends beside its home posture.
+  // A joint that comes back to its limit would need a servo target beyond the limit. So an arm with
+  // such a joint begins and ends beside its home posture.
   Eigen::VectorXd home = model.rest_state().theta;
   bool beside = false;
   for (const int dof : arm) {

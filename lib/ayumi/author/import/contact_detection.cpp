@@ -156,8 +156,8 @@ std::vector<double> loads_of(const RobotModel& model, const RawMotion& motion) {
   return loads;
 }
 
-// Rows in which no sole rests although the robot does not fall: feet that are near the lowest
-// height of these moments and slow enough.
+// In rows in which no sole rests although the robot does not fall, a foot supports the robot if it
+// is slow enough and near the lowest height around this row.
 void carry_loaded_rows(const RobotModel& model, const RawMotion& motion, const Soles& soles,
                        std::vector<Support>& supports) {
   if (std::find(supports.begin(), supports.end(), Support::none) == supports.end()) return;
@@ -166,7 +166,7 @@ void carry_loaded_rows(const RobotModel& model, const RawMotion& motion, const S
   std::array<std::vector<double>, 2> low;
   for (int s : {0, 1})
     for (int k = 0; k < n; ++k) low[s].push_back(lowest_point(model, soles, s, k));
-  // Half of the time in which the search looks for the lowest sole [s]. Chosen: a step.
+  // Half of the time in which the lowest height of a sole is searched [s]. Chosen: a step.
   constexpr double kWindow = 0.5;
   const int window = std::max(1, static_cast<int>(std::lround(kWindow / motion.dt)));
   const int look = std::max(1, static_cast<int>(std::lround(kLook / motion.dt)));
@@ -242,9 +242,9 @@ double cog_outside(const RobotModel& model, const RawMotion& motion, const Soles
   return -ConvexPolygon(model.sole(static_cast<Side>(foot)).polygon).margin(cog.head<2>());
 }
 
-// One foot alone carries the robot for a moment only if the COG is near this foot; otherwise the
-// ZMP would be far outside of the sole. A moment for which this is not so joins the double support
-// beside it, or its longer neighbour.
+// One foot alone can carry the robot for a short time only if the COG is near this foot; otherwise
+// the ZMP would be far outside of the sole. A short support by one foot for which this does not
+// hold is added to the adjacent double support, or otherwise to the longer one of its neighbours.
 std::vector<Support> without_doubtful_moments(const RobotModel& model, const RawMotion& motion,
                                               const Soles& soles, std::vector<Support> supports) {
   // Duration up to which a support by one foot is doubtful [s]. Chosen: a quarter of the single
@@ -258,8 +258,8 @@ std::vector<Support> without_doubtful_moments(const RobotModel& model, const Raw
     if (run.support == Support::both || run.support == Support::none || rows * motion.dt > kMoment)
       continue;
     const int foot = run.support == Support::left ? 0 : 1;
-    // Distance of the COG from the sole from which on one foot cannot carry it [m]. Chosen: half
-    // the width of the sole.
+    // If the COG is farther than this outside the sole, one foot alone cannot carry the robot [m].
+    // Chosen: half the width of the sole.
     Eigen::AlignedBox2d sole;
     for (const Eigen::Vector2d& corner : model.sole(static_cast<Side>(foot)).polygon)
       sole.extend(corner);
@@ -303,7 +303,7 @@ void end_swings(const RobotModel& model, const RawMotion& motion, const Soles& s
       const int middle = (run.first + run.last) / 2;
       int least = edge;
       while (least != middle && height(least + step) < height(least)) least += step;
-      if (least == middle) continue;  // the sole sinks all the time: a load, no swing
+      if (least == middle) continue;  // sinks all the time: it takes up load
       const double place = height(least);
       for (int k = edge; k != least && height(k) > place + kAtRest; k += step)
         supports[k] = supports[outside];

@@ -17,9 +17,10 @@ Soles soles_of(const RobotModel& model, const RawMotion& motion);
 /// Height of the lowest corner of a sole in row k; `foot` is the index of its Side.
 double lowest_point(const RobotModel& model, const Soles& soles, int foot, int k);
 
-/// Support by row. Standing feet do not move relative to each other; at an immediate change of the
-/// supporting foot both support as long as they do not move apart. A contact lasts from the rest
-/// after a swing to the beginning of the next swing.
+/// The supporting feet in each row. Feet that stand do not move relative to each other. If the
+/// supporting foot changes without a phase in which both feet are at rest, both feet support the
+/// robot as long as they do not move apart. A contact begins when the foot comes to rest after a
+/// swing, and it ends when the next swing of this foot begins.
 std::vector<Support> supports_from(const RobotModel& model, const RawMotion& motion,
                                    const Soles& soles);
 

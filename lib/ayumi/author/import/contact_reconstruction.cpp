@@ -253,8 +253,8 @@ void require_motion(const RobotModel& model, const RawMotion& motion) {
 /// may slide.
 constexpr double kRestRate = 0.1, kRestSlide = 0.05;
 
-// Speed of the row pair that begins at `k`, and the joint that has this speed. Empty if the motion
-// is at rest.
+// The fastest joint from row `k` to the next row and its speed, or the root and its speed, in
+// words. Empty if the motion is at rest.
 std::string movement_at(const RobotModel& model, const RawMotion& motion, Eigen::Index k) {
   Eigen::Index joint = 0;
   const double rate =
@@ -286,7 +286,7 @@ class Slowed {
   }
 
  private:
-  // Integral of minimum jerk from 0 to u; it is a half at u = 1.
+  // Integral of minimum jerk from 0 to u; it is 0.5 at u = 1.
   static double advance(double u) { return u * u * u * u * (2.5 - 3 * u + u * u); }
 
   int rows_, ramp_, begin_, end_;

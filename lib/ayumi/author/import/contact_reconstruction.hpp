@@ -13,14 +13,15 @@ namespace ayumi {
 /// If no sole is at rest in a motion with a base, these three thresholds decide whether a foot
 /// carries the robot, because recorded soles hover, slide and tilt.
 struct ContactThresholds {
-  /// Largest height of a sole over the lowest one within half a second [m]. Chosen: soles of
-  /// retargeted dances hover 4 to 10 mm; swings lift them by more than 15 mm.
+  /// Largest height of a sole above the lowest height that any sole has in the half second before
+  /// and after [m]. Chosen: soles of retargeted dances hover 4 to 10 mm; swings lift them by more
+  /// than 15 mm.
   double height = 0.012;
   /// Largest speed of the sole [m/s]. Chosen: a tenth of the speed of a quick swing (1.5 m/s).
   double speed = 0.15;
   /// Smallest vertical force that the motion of the COG needs, as a multiple of the weight. Chosen:
-  /// 0 is flight and 1 is rest; recordings at 30 rows per second give this force to within about
-  /// 0.2.
+  /// 0 is flight and 1 is rest; recordings at 30 rows per second give this force with an error of
+  /// about 0.2.
   double load = 0.3;
 };
 
@@ -35,15 +36,15 @@ struct RawMotion {
   ContactThresholds contact = {};  ///< thresholds of the detection
 };
 
-/// Support in each row. Feet on the ground do not move relative to each other: both support while
-/// their relative pose rests (2 cm/s) at one height (3 mm); otherwise the foot supports that is
-/// lower in the frame of the other foot. At an immediate change of the supporting foot both support
-/// as long as they do not move apart along the ground (4 cm/s) or by more than 1 cm in height. In a
-/// motion with a base, a sole supports that is at rest within 3 mm of the lowest height of all. In
-/// rows without such a sole, the thresholds of the motion decide by height, speed and load; rows
-/// where they find no sole either are flight. Intervals shorter than 20 ms belong to their
-/// neighbours. A contact lasts from the rest after a swing, if there is one, to the beginning of
-/// the next swing.
+/// The supporting feet in each row. Feet on the ground do not move relative to each other: both
+/// support the robot while their relative pose rests (2 cm/s) at one height (3 mm); otherwise the
+/// foot that is lower in the frame of the other foot supports the robot. At an immediate change of
+/// the supporting foot, both support it as long as they do not move apart along the ground (4 cm/s)
+/// or by more than 1 cm in height. In a motion with a base, a sole supports the robot if it is at
+/// rest and at most 3 mm above the lowest height that any sole has. In rows without such a sole,
+/// the thresholds of the motion decide by height, speed and load; rows where they find no sole
+/// either are flight. Intervals shorter than 20 ms belong to their neighbours. A contact begins
+/// when the foot comes to rest after a swing, and it ends when the next swing of this foot begins.
 std::vector<Support> detect_supports(const RobotModel& model, const RawMotion& motion);
 
 /// One foot on the ground.

@@ -1,7 +1,7 @@
 #pragma once
-// The border between the dynamics and their kernels, which are compiled once per instruction set.
-// Nothing here or behind it may use inline functions of other headers: the linker would be free to
-// take the copy made for the wider instruction set.
+// The interface between the dynamics and their kernels, which are compiled once per instruction
+// set. Neither this file nor the kernels may use inline functions of other headers: the linker
+// would be free to take the copy made for the wider instruction set.
 
 namespace ayumi::kernels {
 

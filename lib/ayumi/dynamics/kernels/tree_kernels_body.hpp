@@ -18,7 +18,7 @@
 
 #include "ayumi/dynamics/kernels/tree_kernels_fours.hpp"
 #include "ayumi/dynamics/kernels/tree_kernels_vectors.hpp"
-// The kernels themselves, which use what stands above.
+// The kernels themselves, which use the definitions above.
 #include "ayumi/dynamics/kernels/tree_kernels_factor.hpp"
 #include "ayumi/dynamics/kernels/tree_kernels_forward.hpp"
 #include "ayumi/dynamics/kernels/tree_kernels_inverse.hpp"

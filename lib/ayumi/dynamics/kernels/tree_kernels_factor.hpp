@@ -1,5 +1,5 @@
 // Part of tree_kernels_body.hpp: the sparse factor M = L' L. The row of a place holds its path from
-// the root. The path of an ancestor is the beginning of it, so that all loops run over whole
+// the root. The path of an ancestor is the beginning of this path, so that all loops run over
 // beginnings of rows. Rows are filled up to a multiple of four with numbers that have no meaning.
 
 namespace {

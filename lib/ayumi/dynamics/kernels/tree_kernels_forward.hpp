@@ -27,7 +27,8 @@ inline void start_body(const Link& link, Articulated<T>& t) {
   t.n = cross<T>(t.w, symmetric_times<T>(link.I, t.w));
 }
 
-// What is left of the body once its joint about or along axis K gives way, in the joint's axes.
+// Eliminates the acceleration of the joint about or along axis K from the inertia and the bias
+// force of an articulated body, and turns them into the axes of the joint frame.
 template <int K, bool kSlides, typename T>
 inline void solve_joint(Articulated<T>& t, const Joint<T>& joint, T force, double rotor) {
   for (int j = 0; j < 3; ++j) {

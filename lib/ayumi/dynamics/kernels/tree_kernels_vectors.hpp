@@ -125,7 +125,7 @@ inline void sine_cosine(T q, T& sine, T& cosine) {
   cosine = even * c - turn * s;
 }
 
-// The joint positions of all links, and the sines and cosines of those that turn.
+// The coordinate of a joint with its sine and cosine.
 template <typename T>
 struct Joint {
   T q, s, c;
@@ -174,8 +174,8 @@ inline void sines_and_cosines(const double* angle, double* sine, double* cosine,
 
 // Several joints of one state, or one joint of several states, go through the series at once. These
 // functions write and read the place of one joint in such a group: one lane for one state, or all
-// lanes for several states. They do not go through memory, because a vector is late if it was
-// stored number by number.
+// lanes for several states. They do not go through memory, because a vector that was just stored
+// number by number is loaded slowly.
 inline void put_lane(Wide& all, int lane, double x) { all[lane] = x; }
 inline void put_lane(Wide& all, int, const Wide& x) { all = x; }
 inline void get_lane(const Wide& all, int lane, double& x) { x = all[lane]; }
@@ -257,7 +257,8 @@ inline void turn_symmetric(T* S, T c, T s) {
   kk_a = c * ka - s * kb;
   kk_b = s * ka + c * kb;
   T &aa = S[kSix[a][a]], &bb = S[kSix[b][b]], &ab = S[kSix[a][b]];
-  // The rows are turned first, (a, b) -> (c a - s b, s a + c b), and then the columns likewise.
+  // The rows are turned first, (a, b) -> (c a - s b, s a + c b), and then the columns in the same
+  // way.
   const T raa = c * aa - s * ab, rab = c * ab - s * bb, rbb = s * ab + c * bb;
   const T rba = s * aa + c * ab;
   aa = c * raa - s * rab;

@@ -4,8 +4,8 @@
 //   a_i = a_p + alpha_p x r + w_p x (w_p x r),    f = m (a_c + g z),
 //   n = I alpha + w x I w + c x f,                tau = s . (n_subtree - p x f_subtree).
 // A prismatic joint adds s ddq + 2 w_p x s dq to a_i instead of the angular terms. Most bodies
-// stand next to their parent. The values that go from one to the other then stay in registers: a
-// number that has just been stored takes time to be loaded again.
+// directly follow their parent in the list. The values that go from the parent to the body then
+// stay in registers: a number that has just been stored takes time to be loaded again.
 
 namespace {
 
@@ -29,8 +29,9 @@ struct Frame {
   Four p;
 };
 
-// Carries a body from the frame in which its joint starts, which becomes the body's frame (both in
-// link axes). Returns its first moment.
+// Computes the pose of a body and stores it. `frame` is the frame of its joint at the angle 0 when
+// the function begins, and the frame of the body when it ends (both in link axes). Returns the
+// first moment of the body.
 template <int K>
 inline Four place_body(const Link& link, const Joint<double>& joint, Frame& frame,
                        const Bodies& bodies, int i) {
@@ -127,8 +128,8 @@ inline Columns about_origin(const Link& link, const double* rotation, const Four
   return I;
 }
 
-// Puts the entry of two columns of different rank, or of a column with itself. Without ties, the
-// column of the body that is further out has the higher rank, and no entry comes twice.
+// Puts the entry of two columns of different rank, or of a column with itself. If no joints are
+// tied, the column of the body that is further out has the higher rank, and no entry is put twice.
 template <bool kTied>
 inline void put_entry(const Layout& at, double* M, int a, int b, double value) {
   const bool swap = kTied && at.rank[a] < at.rank[b];
