@@ -1,9 +1,10 @@
-// A rigid shift of all footholds to come by D moves the plan's DCM now by less, because the plan's
-// ZMP is still where it was: with zeta the shift of the ZMP, d dcm = int omega exp(-omega s)
-// zeta(t + s) ds, so D share exp(-omega T) before a landing in T. Conversely, an error of
-// the DCM that the ZMP cannot take away until then asks for D = error exp(omega T) / share. The
-// clock of the pattern shortens T. Under a clock of rate r the plan's DCM runs along the same
-// pendulum about the ZMP p of the single support, dcm = p + (dcm_landing - p) exp(-omega T / r).
+// If all coming footholds are shifted by D, the present DCM of the plan is shifted by less, because
+// the ZMP of the plan is still at its old place. With zeta the shift of the ZMP, the shift of the
+// DCM is d dcm = int omega exp(-omega s) zeta(t + s) ds, which is D share exp(-omega T) at the time
+// T before a landing. Conversely, an error of the DCM that the ZMP cannot remove until then
+// requires D = error exp(omega T) / share. A faster clock of the pattern shortens T. Under a clock
+// of rate r the plan's DCM runs along the same pendulum about the ZMP p of the single support,
+// dcm = p + (dcm_landing - p) exp(-omega T / r).
 #include "ayumi/control/foothold_shift.hpp"
 
 #include <algorithm>
@@ -211,8 +212,8 @@ FootholdShift::Step FootholdShift::step_of(const PlannedSwing& swing) const {
   return step;
 }
 
-/// The share of a shift of the ZMP that the DCM has already made. The ZMP makes the shift evenly
-/// within `time`, and the share is that at the start of this time.
+/// The share of a shift of the ZMP that the DCM must already have made when the shift begins. The
+/// ZMP makes the shift evenly within `time`.
 double FootholdShift::ramp_share(double time) const {
   return time > 0 ? (1 - elementary::exp(-omega_ * time)) / (omega_ * time) : 1.0;
 }

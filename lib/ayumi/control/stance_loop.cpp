@@ -31,8 +31,8 @@ namespace {
 // Step of the differences [m, rad]. Chosen: ten times the root of the rounding error of a double.
 constexpr double kStep = 1e-6;
 
-// Inverse weight of the base relative to that of a joint, with which the base follows freely.
-// Definition: large.
+// Inverse weight of the base in the solution for P, relative to that of a joint. Definition: it is
+// large, so that the base follows the joints freely.
 constexpr double kFreeBase = 1e3;
 
 // Time for which a walking robot stands on one foot, as a multiple of 1/omega. Chosen: the time of

@@ -63,9 +63,9 @@ constexpr double kSettleTime = 5;
 // "steps" changes from 2 to 4.
 constexpr double kStepLandingAfter = 0.6;
 
-// Fastest clock of a step that is made earlier, as a multiple of its own pace. Chosen: joint speeds
-// limit the swing before this clock is reached. No measured case changes between half and twice the
-// value (constants.md).
+// Largest factor by which a step may be speeded up so that it lands earlier, relative to its
+// planned speed. Chosen: joint speeds limit the swing before this factor is reached. No measured
+// case changes between half and twice the value (constants.md).
 constexpr double kStepTimeScaleLimit = 4;
 
 // Share of the difference between a landing error and the known bias that is taken over at each

@@ -8,9 +8,9 @@
 //            with L its own at release; the IMU gives the attitude, the parabola the position
 //   landing  f_z/m = k (z1 - z) + g, k = z1'^2 / zd^2, until z' = 0      (27)
 //   settle   as the stoop, towards r
-// The angular momentum is zero at release: that of a resolution (28) is affine in the trunk's rate,
-// so that four resolutions give the rate that leaves none. This rate is blended in during the push,
-// and out during (27).
+// The angular momentum is zero at release. The angular momentum of a resolution (28) is affine in
+// the trunk's rate, so four resolutions determine the rate at which it is zero. This rate is
+// blended in during the push, and out during (27).
 #include "ayumi/control/laws/viip_jump.hpp"
 
 #include <Eigen/LU>
@@ -85,9 +85,10 @@ constexpr double kRunOnTime = 0.030;
 // Before touchdown the legs give way to the ground, up to this share of the falling speed. They
 // reach this share within the first time, and keep it from the second time before the planned
 // touchdown until as long after it [s]. Measured on 23 jumps of HOAP-1 (z_H 20 to 50 mm, both
-// releases), as the largest peak force over twice that of (27): 0.71 with these values, 0.81 with
-// 0.07 s for the first time. With 0.02 s for the second time, or a share of 0.95, the legs are
-// stretched too far before the touchdown, and the highest jumps land with 1.5 and 2.1 times.
+// releases), as the largest ratio of the peak force to twice the peak force of (27): 0.71 with
+// these values, 0.81 with 0.07 s for the first time. With 0.02 s for the second time, or a share of
+// 0.95, the legs are stretched too far before the touchdown, and in the highest jumps the ratio is
+// 1.5 and 2.1.
 constexpr double kRetractionTime = 0.050;
 constexpr double kRetractionHold = 0.010;
 constexpr double kRetractionShare = 0.9;
