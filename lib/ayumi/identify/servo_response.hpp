@@ -33,7 +33,7 @@ enum class CommandLaw {
   stepped
 };
 
-/// A joint's recording. Vectors of the measured rate have one entry per measured row.
+/// A joint's recording. All vectors of values except `command` have one entry per measured row.
 struct JointRecording {
   double command_dt = 0.001, dt = 0.001;  ///< time between rows of command and recording [s]
   bool at_once = false;                   ///< the angle follows the late command without J and D
