@@ -19,13 +19,13 @@ namespace {
 // Largest share of the peak torque. Definition: the data sheet states the largest torque.
 constexpr double kWholeTorque = 1;
 
-// Torque that a joint without a motor bears beside its stated dry friction: the weight of the robot
-// times this lever [m]. Chosen: a limp hand hangs and swings freely, and the joints of a leg that
-// stands on bent knees need 20 times as much. No measured case changes from half to twice, because
-// the robots there have motors in all joints.
+// Torque that a joint without a motor may carry even if its stated dry friction is smaller: the
+// weight of the robot times this lever [m]. Chosen: a limp hand hangs and swings freely, and the
+// joints of a leg that stands on bent knees need 20 times as much. No measured case changes from
+// half to twice, because the robots there have motors in all joints.
 constexpr double kLimpLever = 1e-3;
 
-// Infinite where nothing is known.
+// The largest torque of a joint; infinite if nothing is known about it.
 double peak_of(const JudgedMotion& motion, int dof) {
   const double peak = motion.limits.peak_torque[dof];
   if (!motion.limits.lacks_motor(dof)) return peak;

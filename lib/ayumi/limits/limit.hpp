@@ -88,7 +88,8 @@ struct RepairTraits {
 struct FindingSpec {
   FindingKind kind = FindingKind::cog_residual;
   LimitClass limit_class = LimitClass::posture;
-  const char* unit = "";     ///< of the tolerance: "1" a share of the limit, "m g" of the weight
+  /// The unit of the tolerance: "1" for a share of the limit, "m g" for a share of the weight.
+  const char* unit = "";
   double tolerance = 0;      ///< default tolerance; patterns and `--tolerance` may set another one
   const char* meaning = "";  ///< meaning in the text of `check --tolerances`
   /// The smallest default for a motion of one robot; null if the default holds for all motions.

@@ -114,7 +114,8 @@ struct RowOrder {
 struct RowKind {
   const char* name = "";
   double RowPrices::*unit = &RowPrices::share;  ///< unit of a violation
-  double RowPrices::*soft_goal = nullptr;       ///< its price; null if the rows may not be violated
+  /// Price as a soft goal; null if the rows may not be violated.
+  double RowPrices::*soft_goal = nullptr;
   /// Price if limits are relaxed; null if the rows may not be violated.
   double RowPrices::*relaxed = &RowPrices::limit;
   /// Whether it requires more than the check; then it counts as cost of robustness.
