@@ -53,7 +53,7 @@ constexpr double kSlowerPace = 1.25;
 // range to the other.
 constexpr int kMostPaces = 25;
 // Factor by which the path becomes slower if limits contradict each other, and the largest number
-// of times. Chosen: the share of the limits that is used asks for 1.5 %.
+// of such changes. Chosen: the share of the limits that is used requires 1.5 %.
 constexpr double kSlowerPath = 1.03;
 constexpr int kMostSlower = 6;
 
@@ -173,8 +173,8 @@ class LocalSearch {
     return false;
   }
 
-  // The smallest scale at which the whole path keeps its limits, found with coarse samples. If
-  // there is no such scale, the largest one that was tried.
+  // The smallest scale at which the whole path is within its limits, found with coarse samples,
+  // times kPaceSpare. It is 1 if no such scale is found.
   double path_scale() {
     PathLimitOptions path = options_.path;
     path.own_margin = 0;
@@ -316,7 +316,7 @@ class LocalSearch {
       const double t = options_.dt * static_cast<double>(k);
       while (i + 2 < times.size() && times[i + 1] <= t) ++i;
       const double step = points[i + 1].at - points[i].at;
-      // This holds except in a pause.
+      // The duration of this step that follows from x. In a pause, `times` has another duration.
       const double lasts = 2 * step / (std::sqrt(x[i]) + std::sqrt(x[i + 1]));
       const double later = (t - times[i]) * lasts / (times[i + 1] - times[i]);
       const double u = (x[i + 1] - x[i]) / (2 * step);

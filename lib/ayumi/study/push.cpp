@@ -271,7 +271,7 @@ struct Study {
   void search(size_t i, PushCase& found);
 };
 
-// Runs a controller to the end, standing or not. The run is copied on the way for each phase.
+// Runs a controller to the end, standing or not. During the run, it is copied for each phase.
 void Study::run_baselines(size_t controller, bool standing) {
   std::vector<std::pair<long, PushBaseline*>> branches;  // baselines to copy, by tick
   for (size_t p = 0; p < phases.size(); ++p)
@@ -294,7 +294,7 @@ void Study::run_baselines(size_t controller, bool standing) {
     for (const auto& [tick, baseline] : branches)
       if (std::max(0L, tick) == run.tick()) baseline->simulator = run;
   };
-  // Whether a run that goes on from one of the copies is tested after this tick.
+  // Whether a run that continues from one of the copies is tested after this tick.
   const auto tested = [&] {
     return std::any_of(branches.begin(), branches.end(), [&](const auto& b) {
       const long since = run.tick() - std::max(0L, b.first);
