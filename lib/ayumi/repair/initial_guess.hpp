@@ -26,9 +26,10 @@ Eigen::MatrixXd straight_line_guess(const RobotModel& model, const CommandSeries
 /// The variables of the program for random control points.
 Eigen::VectorXd random_start(const CorrectionProblem& problem, const RandomStart& how);
 
-/// The point from which the program starts. It is no correction. If this violates the strongly
-/// nonlinear rows (soles and clearances) by much, it is the straight-line guess with the smallest
-/// violation of these rows.
+/// The point from which the program starts. It is the start of `nlp`, unless this start violates
+/// the strongly nonlinear rows (soles and clearances) by much. In this case it is the straight-line
+/// guess with the smallest violation of these rows, if this violation is smaller than that of the
+/// start.
 Eigen::VectorXd initial_guess(const CorrectionProblem& problem, const Nlp& nlp,
                               const RobotModel& model, const CommandSeries& series,
                               const std::vector<Finding>& findings);
