@@ -24,10 +24,10 @@ namespace {
 // slip of the case "hurried walk" changes from 5.22 to 6.34 mm.
 constexpr double kLoadFilterTime = 0.003;
 
-// Share of f_z that makes a foot the stance foot. Chosen: 40 % of hysteresis, so that the stance
-// does not chatter in a double support; at 0.5 there is none. With half of the value, the number of
-// touchdowns of the case "rough walk" changes from 6 to 7; with twice, the case "crossing walk"
-// falls.
+// Share of f_z that makes a foot the stance foot. Chosen: from 40 to 60 % of f_z, the stance foot
+// does not change, so that the stance does not chatter in a double support; with 0.5 there would be
+// no such hysteresis. With half of the value, the number of touchdowns of the case "rough walk"
+// changes from 6 to 7; with twice, the case "crossing walk" falls.
 constexpr double kStanceShare = 0.6;
 
 // Share of the weight below which there is no ZMP: (17) loses its meaning towards flight

@@ -51,8 +51,8 @@ class FootholdShift {
   const CommandSample& plan() const { return plan_; }
 
   /// Must be called after the tick of plan() has been measured. It chooses the next foothold and
-  /// advances the clock. Returns true if a foot has landed early. Then the foot stays in its place,
-  /// and the foot of the plan jumps there.
+  /// advances the clock. Returns true if a foot has landed early. Then the foot stays where it is,
+  /// and the foot of the plan is set to this place.
   bool advance(const Estimate& estimate);
 
   /// The rate of the pattern's clock; 1 is its own pace.

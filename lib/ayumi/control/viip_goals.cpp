@@ -46,8 +46,8 @@ constexpr double kLeadTime = 0.1;
 // No measured case changes between half and twice the value (constants.md).
 constexpr double kLeadSpeed = 0.1;
 
-// Lowest COG that is tried, as a share of the height that the pattern holds. Chosen: below it no
-// leg of a humanoid folds. Between half and twice the value, figures change by less than 5 %.
+// Lowest COG that is tried, as a share of the height that the pattern holds. Chosen: no leg of a
+// humanoid can fold so far. Between half and twice the value, figures change by less than 5 %.
 constexpr double kLowestShare = 0.3;
 
 // Number of bisections in the search for the possible part of a goal. Chosen: the result is

@@ -60,7 +60,8 @@ struct RepairOptions {
   std::optional<double> zmp_margin;
   /// Largest number of Ipopt's iterations in each round.
   int max_iterations = repair_policy::rounds::kMostIterations;
-  /// Largest work for each second of the motion, and for five seconds at least.
+  /// Largest work for each second of the motion. A motion of less than five seconds has the work of
+  /// five seconds.
   double most_work = repair_policy::rounds::kMostWork;
   bool mumps = false;  ///< whether MUMPS solves the linear systems, for comparison
   /// Random start of the first program, to test how little depends on it.

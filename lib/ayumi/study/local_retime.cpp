@@ -43,8 +43,8 @@ constexpr double kSearchPeriod = 0.01;
 // Spacing of the points in this search [s]. Chosen: each peak of a swing of 0.2 s has several
 // points.
 constexpr double kSearchSpacing = 0.02;
-// Relative accuracy of that pace, and the share by which the path is then slower. Chosen: coarse
-// samples miss the peaks by about a percent.
+// Relative accuracy of the pace that this search finds, and the factor by which the path is then
+// slower. Chosen: coarse samples miss the peaks by about a percent.
 constexpr double kPaceAccuracy = 0.02;
 constexpr double kPaceSpare = 1.01;
 // Factor between paces if the ZMP leaves the support, which no row predicts. Chosen.

@@ -84,8 +84,9 @@ constexpr double kLandingBiasLimit = 0.015;
 // value, figures change by less than 5 %.
 constexpr double kSlopeTime = 6.6;
 
-// Time constant of the low pass of the vertical push that the load cells measure, without the lag
-// of the servos [s]. Derived: with a low pass T and a force that is late by d, the loop obeys
+// Time constant of the low pass of the vertical push that the load cells measure [s]; the lag of
+// the servos is added to it. Derived: with a low pass T and a force that is late by d, the loop
+// obeys
 //   T s = -exp(-s d),
 // which is stable for d < T pi/2. Sensors may be 10 ms late.
 constexpr double kPushFilterTime = 0.010;
