@@ -1,7 +1,8 @@
-// With the COG and the soles held, a turn of what the trunk carries moves the rest of the robot
-// little, so L about the COG is taken as that of the trunk and of all that it carries about their
-// own centre of mass U. A body set of mass m, first moment h and second moment J about the base
-// origin that turns with the axis a through p has, about u = p_U,
+// If the trunk and the parts that it carries turn while the COG and the soles are held, the other
+// parts of the robot move only a little. So L about the COG is taken as the angular momentum of the
+// trunk and of all parts that it carries, about their own centre of mass U. A body set of mass m,
+// first moment h and second moment J about the base origin that turns with the axis a through p
+// has, about u = p_U,
 //   sum m_i (r_i - u) x (a x (r_i - p)) = J a - h x (a x p) - u x (a x (h - m p)).
 // If the wanted ZMP Z* is outside the support, the missing moment is dL = m g e_z x (Z* - ref Z).
 #include "ayumi/control/angular_momentum.hpp"

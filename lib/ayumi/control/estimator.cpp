@@ -30,9 +30,9 @@ constexpr double kLoadFilterTime = 0.003;
 // changes from 6 to 7; with twice, the case "crossing walk" falls.
 constexpr double kStanceShare = 0.6;
 
-// Share of the weight below which there is no ZMP: (17) loses its meaning towards flight
-// (docs/notation.md). Chosen: half of the force from which a foot stands (control/swing_foot).
-// Between half and twice the value, figures change by less than 5 %.
+// Share of the weight below which there is no ZMP: (17) loses its meaning near a flight
+// (docs/notation.md). Chosen: half of the smallest force with which a foot counts as standing
+// (control/swing_foot). Between half and twice the value, figures change by less than 5 %.
 constexpr double kContactShare = 0.05;
 
 // Tilt about x and y of a sole that lies flat, for each unit of f_z (cop - centre) [rad/(N m)]. The

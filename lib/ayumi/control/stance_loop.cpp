@@ -168,8 +168,8 @@ struct Stance {
 };
 
 // Converts the continuous system to ticks with constant inputs. Rates are taken at the end of the
-// tick, as the plant integrates: this damps an oscillation of w [rad/s] by w^2 tick / 2 [1/s], 3 /s
-// at 12 Hz and 1 ms.
+// tick, as in the integration of the plant: this damps an oscillation of w [rad/s] by w^2 tick / 2
+// [1/s], 3 /s at 12 Hz and 1 ms.
 void discretize(const MatrixXd& motion, const MatrixX2d& input, LoopModel& loop) {
   const Index n = motion.rows();
   const MatrixXd one = MatrixXd::Identity(n, n);

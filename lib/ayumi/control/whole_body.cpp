@@ -41,9 +41,10 @@ constexpr double kSoftness = 0.003;
 // between half and twice the value (constants.md).
 constexpr double kDone = 0.002;
 
-// How often joints that reach a position limit are fixed and the rest is solved again. Chosen: both
-// knees and both ankles may reach their limits one after the other. No measured case changes
-// between half and twice the value (constants.md).
+// Largest number of solutions of a task. After each of them, the joints that would leave their
+// range are fixed, and the task is solved again for the other joints. Chosen: both knees and both
+// ankles may reach their limits one after the other. No measured case changes between half and
+// twice the value (constants.md).
 constexpr int kLimitPasses = 4;
 
 // Speed limit of the reference COG, as a multiple of omega z: 1.2 m/s on HOAP-1. Chosen: at this

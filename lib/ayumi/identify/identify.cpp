@@ -49,9 +49,9 @@ constexpr double kBeyondErrors = 2;
 // show its stiffness.
 constexpr double kLoadError = 0.01;
 
-// Uncertainty of a rotor's inertia, as a part of it. Chosen: it is calculated from data sheets, and
-// gears add to it. The stiffness of a joint that carries little can only be seen together with its
-// inertia.
+// Uncertainty of a rotor's inertia, as a part of this inertia. Chosen: it is calculated from data
+// sheets, and gears add to it. The stiffness of a joint that carries little can only be seen
+// together with its inertia.
 constexpr double kRotorShare = 0.25;
 
 // Compliance below which a joint does not show any compliance [rad/(N m)]. Chosen: far stiffer than

@@ -6,7 +6,7 @@
 //   theta = phi + offset - backlash/2 sgn(tau)
 // where J is the inertia of rotor and link, and tau is the other torque on the joint. Dry friction
 // holds the joint at rest. The equations are solved by the implicit midpoint rule in steps of at
-// most kResponseStep, or as the law says.
+// most kResponseStep, except under CommandLaw::stepped.
 //   In a recording that shows no damping, the joint has no J and D: phi then only moves where the
 // error would exceed the dry friction, so that |u(t - delay) - phi - s tau| <= C.
 

@@ -118,9 +118,9 @@ struct Limit {
   std::vector<FindingSpec> findings;
   /// Records the violations of one sample. Called for all samples in order of time.
   void (*judge_sample)(JudgedMotion&, const JudgedSample&) = nullptr;
-  /// Computes values that take long and only depend on the commands, and stores them in a member of
-  /// JudgedMotion that only this limit uses. Runs on another thread at the same time as
-  /// judge_sample.
+  /// Computes values that only depend on the commands and need a long computation, and stores them
+  /// in a member of JudgedMotion that only this limit uses. Runs on another thread at the same time
+  /// as judge_sample.
   void (*look_ahead)(JudgedMotion&) = nullptr;
   /// Records violations that only the whole motion shows. Called after all samples.
   void (*judge_motion)(JudgedMotion&) = nullptr;

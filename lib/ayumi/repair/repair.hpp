@@ -3,10 +3,10 @@
 // that bring a command series inside all limits of the check with the smallest change. Ipopt solves
 // the program.
 //
-// Ipopt takes Ayumi's linear solver under the name MA27, in one place of the whole process. That
-// place is held only while a repair runs, for the threads that run one, and it is empty again
-// afterwards. A host program that has its own MA27 keeps it, and repairs then use MUMPS. See
-// repair/nlp/nlp.hpp.
+// Ipopt accepts Ayumi's linear solver only under the name MA27, and the whole process has only one
+// place for it. Ayumi holds this place only while a repair runs, for the threads that run one;
+// afterwards, the place is empty again. A host program that has its own MA27 keeps it, and repairs
+// then use MUMPS. See repair/nlp/nlp.hpp.
 
 #include <array>
 #include <cstdint>

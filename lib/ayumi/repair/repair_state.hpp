@@ -48,7 +48,7 @@ struct RepairState {
   std::optional<CorrectionTrack> passing = {};  ///< an earlier result that passes the check
   bool relaxation_cut_short = false;  ///< whether the limit of iterations stopped the search
   std::optional<OverlappingFeet> overlap =
-      {};  ///< feet that are planned in one place, in which case there is no solution
+      {};  ///< feet that are planned at the same place, in which case there is no solution
 };
 
 /// The state before the first round, with the check of the motion as it is given.

@@ -19,7 +19,7 @@ namespace ayumi {
 namespace {
 
 // Share of the room between standing still and a limit that a timing may use at first. Chosen: the
-// rest is more than the smoothing and the ticks between two points change.
+// remaining share is larger than the effect of the smoothing and of the ticks between two points.
 constexpr double kFirstShare = 0.97;
 // Factor by which this share is reduced around an error of the check: the limit divided by the
 // value, within these bounds, and the time to either side [s of the path]. Chosen: one to three

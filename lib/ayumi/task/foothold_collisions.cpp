@@ -201,7 +201,7 @@ class Footholds {
 
   std::optional<Mistake> mistake_at(size_t phase) {
     const std::optional<double> clearance = clearance_at_end(task_.pattern, phase);
-    if (!clearance || *clearance >= 0) return {};  // the feet meet on the way
+    if (!clearance || *clearance >= 0) return {};  // the feet collide during the step
     if (-*clearance > kGrazing * width_of_sole()) return {};
     const Swing& swing = *task_.pattern.phases[phase].swing;
     std::string words = std::string("the ") + name_of(swing.foot) + " foot lands " +

@@ -1,7 +1,7 @@
 // Joints move with their solved rates. The base then gets the velocity with which the robot, in its
 // new posture, has exactly the momentum that results from gravity and the forces from outside: M(q)
-// v changes along the step, and this correction keeps momentum constant up to rounding in flight,
-// and ground forces equal to the rate of momentum in contact.
+// v changes along the step, and with this correction, the momentum in flight is exact up to
+// rounding, and the ground forces in contact equal the rate of momentum.
 //
 // No spring holds a robot that turns about an edge or a corner, and a step of first order would
 // lose energy there. Its step is therefore computed for the posture half a step ahead. Up to this
