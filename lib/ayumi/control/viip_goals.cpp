@@ -99,7 +99,7 @@ std::string in_millimetres(const Vector3d& d) {
          text::fixed(1e3 * d.z(), 1) + " mm";
 }
 
-/// How near the resolution comes to a COG, and the joint that stops it.
+/// How near resolve() comes to a COG, and the joint that stops it.
 struct Attempt {
   double miss = 0;  ///< remaining distance from the wanted COG [m]
   std::string joint;

@@ -399,7 +399,7 @@ void ReferenceBody::release(const CommandSample& command) {
   move_base(reference_.base, data_);
 }
 
-// A tilt of the trunk turns the feet with it, about the COG. The joints of the hip turn the legs
+// If the trunk tilts, the feet turn with it about the COG. The joints of the hip turn the legs
 // back, so that the soles come down level and under the COG.
 void ReferenceBody::fly(const Vector3d& tilt, const CommandSample& command,
                         const CommandSample& next, const VectorXd& offsets, ControlOutput& out) {
@@ -441,9 +441,9 @@ void ReferenceBody::send(const VectorXd& dtheta, const CommandSample& command,
   bound_target(command, next, out);
 }
 
-// The feedforward and the ankles may require more than the resolution did. The targets of the plan
-// with its velocity feedforward may move faster than the joint, as where a leg lands; the law
-// changes them by no more than the joint's speed limit. Each joint is noted once.
+// The feedforward and the ankles may require more of a joint than resolve() did. The targets of the
+// plan with its velocity feedforward may move faster than the joint, for example where a leg lands;
+// the law changes them by no more than the joint's speed limit. Each joint is noted once.
 void ReferenceBody::bound_target(const CommandSample& command, const CommandSample& next,
                                  ControlOutput& out) {
   const auto hold = [&](int j, double low, double high, char what, const char* text) {

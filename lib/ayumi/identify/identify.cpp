@@ -163,7 +163,7 @@ bool fits_better(const ServoFit& a, const ServoFit& b) {
 }
 
 // The same for two laws of the servo's behaviour between two commands: their answers must differ by
-// more than the residual of the better one that is not noise.
+// clearly more than that part of the residual of the better law that is not noise.
 bool shows_law(const ServoFit& a, const ServoFit& b) {
   return fits_better(a, b) &&
          rms_between(a, b) > std::max(kBeyondErrors * a.model_error, kSameAnswer * a.rms);

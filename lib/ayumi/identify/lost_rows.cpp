@@ -329,7 +329,7 @@ LostRows change_of_delay(const AngleTable& command, const AngleTable& measured,
     windows.push_back(std::move(window));
   }
   if (windows.size() < 2 * kLeastWindows) return {};
-  // Both sides of a jump have delays of their own, which change little.
+  // Both sides of a sudden change have delays of their own, which change little.
   struct Side {
     std::vector<Delay> delays;
     double spread = 0;
@@ -364,7 +364,7 @@ LostRows change_of_delay(const AngleTable& command, const AngleTable& measured,
   LostRows lost;
   double least = HUGE_VAL;
   for (size_t split = 2; split + 2 <= windows.size(); ++split) {
-    // The window with the jump belongs to neither side.
+    // The window with the sudden change belongs to neither side.
     const auto before = side(0, split - 1), after = side(split, windows.size());
     if (!before || !after) continue;
     const auto change = change_of(before->delays, after->delays);

@@ -48,7 +48,7 @@ constexpr double kAway = 8 * kDegree;
 constexpr double kCounterRange = 65536;
 
 // Step of the search for a time shift [s], and the factor by which the distance must become smaller
-// before a shift is believed. Chosen: a wrong shift fits many times worse.
+// before a shift is accepted. Chosen: a wrong shift fits many times worse.
 constexpr double kShiftStep = 0.01, kShiftGain = 0.25;
 
 // Time that a recording and its command must share, as a part of the shorter one. Chosen: a short

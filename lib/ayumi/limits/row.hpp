@@ -99,7 +99,7 @@ struct RowPrices {
   double zmp_margin = 0, landing = 0, dcm = 0;  ///< prices of soft goals
   /// Price of a limit when the program is relaxed to find the reasons against a repair.
   double limit = 0;
-  double foot = 0;  ///< price of feet in contact and of flight then; they are violated last
+  double foot = 0;  ///< price of feet in contact and of flight in this case; they are violated last
 };
 
 /// The place of rows among those of one sample: by group, then by item, then by line. The order

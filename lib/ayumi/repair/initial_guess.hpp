@@ -16,9 +16,9 @@ namespace ayumi {
 Eigen::MatrixXd with_halved_knots(const Eigen::MatrixXd& coefficients);
 
 /// `rows` control points at a distance of `spacing` [s] that lead the joints at fault straight past
-/// the errors, from `reach` [s] before an error to `reach` after it. At these two times, they have
-/// the angles and speeds of the motion. For a joint beyond its limit, only this joint is moved. For
-/// two bodies that overlap, all joints between them are moved.
+/// the errors, from `reach` [s] before an error to `reach` after it. At these two times, the joints
+/// have the angles and speeds of the motion. For a joint beyond its limit, only this joint is
+/// moved. For two bodies that overlap, all joints between them are moved.
 Eigen::MatrixXd straight_line_guess(const RobotModel& model, const CommandSeries& series,
                                     const std::vector<Finding>& findings, double reach,
                                     double spacing, Eigen::Index rows);

@@ -135,7 +135,7 @@ inline constexpr double kRounding = 1e-6;
 namespace zmp {
 /// Wanted margin of a repaired ZMP, as a share of the radius of the largest circle about the centre
 /// of the smaller sole. Reason: after a walk in open loop, the robot then stands although its
-/// servos sag. Chosen: 28 mm of HOAP-1. With half of the value, the ZMP margin of the case "sway"
+/// servos sag. Chosen: 28 mm on HOAP-1. With half of the value, the ZMP margin of the case "sway"
 /// changes from 28.7 to 13.7 mm; with twice, the missing safety of the case "sway" changes from
 /// 0.296 to 0.641. Test: Repair.Hoap1KneesInEveryStep (min_zmp_margin above 20 mm).
 inline constexpr double kSafeShare = 0.9;
@@ -225,7 +225,7 @@ inline constexpr double kLeastLandingHeight = 0.12;
 /// Test: Landing.ASoundWalkMeetsItsRows.
 inline constexpr double kOwnLandingFactor = 1.5;
 /// A sole below this height is left out of that median [m]. Reason: the quotient of two small
-/// numbers says little. No measured case changes between half and twice the value (constants.md).
+/// numbers is inaccurate. No measured case changes between half and twice the value (constants.md).
 /// Test: none.
 inline constexpr double kLowestMeasured = 0.001;
 /// Period at which the motion's swings are measured for landings, and for heights [s]. Chosen.
@@ -259,7 +259,7 @@ inline constexpr double kSlack = 3e-4;
 /// safety of the case "planned sway" changes from 0.485 to 0.288; with twice, to 0.747. Test:
 /// ThrownKnee.RepairedWithstandsThePushesOfItsPlan.
 inline constexpr double kZmpSlack = 1e-3;
-/// Time around an error of the commanded COG or ZMP in which the plan is no goal [s]. Chosen:
+/// Time around an error of the commanded COG or ZMP in which the plan is not a goal [s]. Chosen:
 /// 2/omega. No measured case changes between half and twice the value (constants.md). Test:
 /// ThrownKnee.FollowsNoPlanThatIsItselfAtFault.
 inline constexpr double kWrongPlanAround = 0.3;
@@ -291,8 +291,8 @@ inline constexpr double kKept = 2.4e-3;
 /// they keep. Between half and twice the value, figures change by less than 5 %. Test: none.
 inline constexpr double kWatchedBodies = 0.005;
 /// Shapes of such a pair that are nearer than this are watched [m]. Reason: when the nearest shapes
-/// move apart, the next ones are not far. Chosen: twice as far. No measured case changes between
-/// half and twice the value (constants.md). Test: none.
+/// move apart, the next shapes are not far away. Chosen: twice as far. No measured case changes
+/// between half and twice the value (constants.md). Test: none.
 inline constexpr double kWatchedShapes = 0.010;
 /// Amount by which a row of edges may be smaller than the rows of corners beside it [m]. If both
 /// are equal, only the corners count. Chosen. Between half and twice the value, figures change by
@@ -379,8 +379,8 @@ inline constexpr double kMet = 1e-6;
 /// iterations changed nothing. No measured case changes between half and twice the value
 /// (constants.md). Test: none.
 inline constexpr int kBeforeFinerKnots = 50;
-/// Tolerance of optimality; the smallest change is only searched at the end. Chosen. Between half
-/// and twice the value, figures change by less than 5 %. Test: none.
+/// Tolerance of optimality; the smallest change is only searched for at the end. Chosen. Between
+/// half and twice the value, figures change by less than 5 %. Test: none.
 inline constexpr double kTolerance = 1e-3;
 /// Largest work of all programs of a repair (NlpSolution::work) for each second of the motion.
 /// Measured: a unit of work takes 1.3e-8 s of processor time, so that the programs end within 2 s
@@ -463,8 +463,8 @@ inline constexpr double kBaseStep = 1e-6, kWrenchStep = 1e-5;
 
 namespace guess {
 /// If soles and clearances are violated by more than this, the program starts from a guess [m],
-/// [rad]. Measured: for a hip that is thrown up by a radian, it took 232 iterations without a guess
-/// and 20 with it. Test: none.
+/// [rad]. Measured: for a hip that is thrown up by a radian, the program took 232 iterations
+/// without a guess and 20 with a guess. Test: none.
 inline constexpr double kFarOff = 0.01;
 /// Times before and after an error between which its joints follow a straight line [s]. Chosen:
 /// from less than a knot interval to the time of a step. No measured case changes between half and
@@ -482,8 +482,8 @@ inline constexpr int kMostIterations = 60;
 /// Largest number of reasons in words. Chosen. No measured case changes between half and twice the
 /// value (constants.md). Test: none.
 inline constexpr size_t kMostReasons = 6;
-/// A window that would need more time than this factor is not called too short. Chosen. No measured
-/// case changes between half and twice the value (constants.md). Test: cli
+/// A window that would have to become longer by more than this factor is not called too short.
+/// Chosen. No measured case changes between half and twice the value (constants.md). Test: cli
 /// Infeasible.AWindowFarTooShortIsStillAMatterOfTime.
 inline constexpr double kSlowest = 8;
 /// Precision of that factor. Derived: it is written with one decimal. Test: none.
@@ -501,7 +501,7 @@ inline constexpr double kLength = 0.01, kForce = 10, kOther = 0.1;
 
 namespace report {
 /// A joint that moves by less than this counts as unmoved [rad]. Chosen: far below a servo count
-/// (8e-5 rad of HOAP-1). No measured case changes between half and twice the value (constants.md).
+/// (8e-5 rad on HOAP-1). No measured case changes between half and twice the value (constants.md).
 /// Test: none.
 inline constexpr double kMoved = 1e-6;
 /// The time of a change is the time in which it is above this share of its largest value. Chosen.

@@ -1,6 +1,6 @@
 #pragma once
-// The data that the stages of one repair share: the question, the program of the last round, and
-// the best result so far. The stages are functions of this state: repair_rounds,
+// The data that the stages of one repair share: the request, the program of the last round, and the
+// best result so far. The stages are functions of this state: repair_rounds,
 // tighten_to_check_limits and infeasibility_report.
 
 #include <deque>

@@ -57,7 +57,7 @@ constexpr double kContactTiltTime = 0.33;
 
 using GainFields = std::map<std::string, double*>;
 
-/// Gains of the body, which apply whatever chooses the ZMP.
+/// Gains of the body, which apply with every method that chooses the ZMP.
 GainFields body_gain_fields(DtadParams& p) {
   return {{"ka", &p.zmp_gain},           {"ks", &p.pull_rate},      {"kd", &p.pull_damping},
           {"damp", &p.rocking_damping},  {"tau_z", &p.zmp_filter},  {"margin", &p.margin},

@@ -580,7 +580,7 @@ void Viip::step_state_machine(const Estimate& e) {
   next_.support = stage_ == Stage::single_support ? on(anchor_) : Support::both;
 }
 
-// COG, ZMP and trunk of the plan, for the fall monitor and the resolution.
+// COG, ZMP and trunk of the plan, for the fall monitor and resolve().
 void Viip::finish_plan() {
   const GroundPose feet = ground_middle(*model_, next_.feet);
   const double yaw_before = matrix_to_rpy(plan_.state.base.attitude.toRotationMatrix()).z();

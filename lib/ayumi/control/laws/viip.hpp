@@ -30,7 +30,7 @@ struct ViipParams {
   double one_foot_rate = 1.06;  ///< [kz_one] `height_rate` while one foot carries load
   double height_damping = 1;    ///< [dz] K_Dz / (2 sqrt(m K_Pz)); (25) requires at least 1
   double momentum_share = 0.3;  ///< [moment] share of a swing's moment that the COG compensates
-  double yielding = 1;          ///< [yield] share of a vertical push to which standing yields
+  double yielding = 1;       ///< [yield] share of a vertical push to which a standing robot yields
   double ankle_share = 0.5;  ///< [ankle] share of the stance foot's tilt that the ankle compensates
   double single_support = 1.7;  ///< [single] duration of a single support
   double double_support = 0.4;  ///< [both] duration of a double support

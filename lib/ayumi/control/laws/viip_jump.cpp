@@ -112,9 +112,9 @@ constexpr double kTouchdownTime = 0.003;
 // No measured case changes between half and twice the value (constants.md).
 constexpr double kHardTouchdownShare = 0.4;
 
-// A flight that is longer than planned by this ends as if it had touched down [s]. Chosen: half of
-// a flight of 0.1 m; the landing then meets a ground that is lower than planned. No measured case
-// changes between half and twice the value (constants.md).
+// A flight that is longer than planned by this ends as if the feet had touched down [s]. Chosen:
+// half of the duration of a flight with an apex of 0.1 m; the landing then meets a ground that is
+// lower than planned. No measured case changes between half and twice the value (constants.md).
 constexpr double kLateTouchdown = 0.15;
 
 // Correction of the feet in flight [1/s], pull towards the held posture [1/s], damping of the
@@ -635,10 +635,10 @@ void ViipJump::fly(const Estimate& e, ControlOutput& out) {
   if (touched || elapsed_ > flight_.duration + kLateTouchdown) touch_down(e);
 }
 
-// The vertical speed of the COG. While the feet carry load, it is measured from the ground; from
-// then on, it is the integral of the load cells' reading minus the weight. Load cells and encoders
-// have the same delay, so the duration of a flight has none. The speed before an impact is the one
-// before the load began.
+// The vertical speed of the COG. While the feet carry load, it is measured relative to the ground;
+// after that, it is the integral of the load cells' reading minus the weight. Load cells and
+// encoders have the same delay, so the delay does not change the measured duration of a flight. The
+// speed before an impact is the one before the load began.
 void ViipJump::measure_speed(const Estimate& e) {
   const double load = e.fz / (model_->mass() * kGravity);
   const bool may_land = stage_ == Stage::flight && elapsed_ > kTouchdownBlindTime;
