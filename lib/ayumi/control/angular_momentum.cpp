@@ -1,9 +1,10 @@
-// With the COG and the soles held, a turn of what the trunk carries moves the rest of the robot
-// little, so L about the COG is taken as that of the trunk and of all that it carries about their
-// own centre of mass U. A body set of mass m, first moment h and second moment J about the base
-// origin that turns with the axis a through p has, about u = p_U,
+// If the trunk and the parts that it carries turn while the COG and the soles are held, the other
+// parts of the robot move only a little. So L about the COG is taken as the angular momentum of the
+// trunk and of all parts that it carries, about their own centre of mass U. A body set of mass m,
+// first moment h and second moment J about the base origin that turns with the axis a through p
+// has, about u = p_U,
 //   sum m_i (r_i - u) x (a x (r_i - p)) = J a - h x (a x p) - u x (a x (h - m p)).
-// The moment that a ZMP outside the support stands for is dL = m g e_z x (Z* - ref Z).
+// If the wanted ZMP Z* is outside the support, the missing moment is dL = m g e_z x (Z* - ref Z).
 #include "ayumi/control/angular_momentum.hpp"
 
 #include <Eigen/Cholesky>
@@ -22,9 +23,9 @@ using Eigen::VectorXd;
 namespace {
 
 // Rate at which the turn of the trunk returns to zero with critical damping, as a multiple of
-// omega. Chosen: slower than the DCM, so that the return does not undo the effect of the turn.
-// Largest pushes of the walk of HOAP-1, worst and mean of 32, in multiples of B: 1.14 and 1.52;
-// with 0.7 one of them is 1.02 instead of 1.44.
+// omega. Chosen: slower than the DCM, so that the return does not undo the effect of the turn. The
+// largest pushes that the walk of HOAP-1 survives in 32 cases are at least 1.14 B, and 1.52 B in
+// the mean; with 0.7, one of them is 1.02 B instead of 1.44 B.
 constexpr double kReturnRate = 0.5;
 
 // Largest turn of the trunk [rad]: 24 deg. Chosen: with 0.35 the walk of HOAP-1 with hoap1-strong

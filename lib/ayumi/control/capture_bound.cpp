@@ -1,5 +1,7 @@
-// Supports are constant over a tick, so that the integral is a sum with the weights
-//   exp(-omega i dt) (1 - exp(-omega dt)),  the rest exp(-omega n dt) on the last support.
+// Supports are constant over a tick, so that the integral is a sum. The support of tick i has the
+// weight
+//   exp(-omega i dt) (1 - exp(-omega dt)),
+// and the last support also has the remaining weight exp(-omega n dt).
 #include "ayumi/control/capture_bound.hpp"
 
 #include <algorithm>

@@ -47,7 +47,8 @@ class CommandPlan {
   void move_footholds(const RobotModel& model, const FootholdParams& params);
 
   /// The command one tick after now(), which depends on the measurements. If a foot has landed
-  /// early, the feet of now() jump to its place. The reference is valid until the next call.
+  /// early, now() has the foot at its real place from then on. The reference is valid until the
+  /// next call.
   const CommandSample& look_ahead(const Estimate& estimate);
 
   /// Makes the result of look_ahead() the result of now(). The reference that look_ahead() returned

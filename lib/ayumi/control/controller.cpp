@@ -33,7 +33,8 @@ Controller::Controller(const RobotModel& model, const ActuatorLimits& limits,
   enter(0);
 }
 
-// Checks gains and goals, and works out the torques that the servos receive beside the command.
+// Checks gains and goals, and computes the torques that the servos receive in addition to the
+// command.
 Controller::Law Controller::first_law() {
   check_controller(*model_, spec_);
   if (spec_.type.kind == ControllerKind::viip && series_->viip.empty())

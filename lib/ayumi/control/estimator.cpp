@@ -24,15 +24,15 @@ namespace {
 // slip of the case "hurried walk" changes from 5.22 to 6.34 mm.
 constexpr double kLoadFilterTime = 0.003;
 
-// Share of f_z that makes a foot the stance foot. Chosen: 40 % of hysteresis, so that the stance
-// does not chatter in a double support; at 0.5 there is none. With half of the value, the number of
-// touchdowns of the case "rough walk" changes from 6 to 7; with twice, the case "crossing walk"
-// falls.
+// Share of f_z that makes a foot the stance foot. Chosen: from 40 to 60 % of f_z, the stance foot
+// does not change, so that the stance does not chatter in a double support; with 0.5 there would be
+// no such hysteresis. With half of the value, the number of touchdowns of the case "rough walk"
+// changes from 6 to 7; with twice, the case "crossing walk" falls.
 constexpr double kStanceShare = 0.6;
 
-// Share of the weight below which there is no ZMP: (17) loses its meaning towards flight
-// (docs/notation.md). Chosen: half of the force from which a foot stands (control/swing_foot).
-// Between half and twice the value, figures change by less than 5 %.
+// Share of the weight below which there is no ZMP: (17) loses its meaning near a flight
+// (docs/notation.md). Chosen: half of the smallest force with which a foot counts as standing
+// (control/swing_foot). Between half and twice the value, figures change by less than 5 %.
 constexpr double kContactShare = 0.05;
 
 // Tilt about x and y of a sole that lies flat, for each unit of f_z (cop - centre) [rad/(N m)]. The

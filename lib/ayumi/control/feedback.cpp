@@ -3,9 +3,9 @@
 // so that K > 1 and D > 0 bring the COG back. For the poles -omega and -q omega,
 //   K = 1 + q,  D = (1 + q)/omega:  cmdZ - K Dx - D Ddx = cmdZ + (1 + q)(dcm - cmd dcm).
 // The error grows with the printed sign, which is + D Ddx.
-// In (26) and (27), a spring kappa = K_Pz/m with gravity compensated keeps dz^2/2 + kappa z^2/2, so
-// the speed at its middle is z_d sqrt(kappa): sqrt(2 g z_H) for a push, the falling speed for a
-// landing.
+// In (26) and (27), a spring kappa = K_Pz/m with gravity compensated keeps dz^2/2 + kappa z^2/2
+// constant, so the speed at its middle is z_d sqrt(kappa): sqrt(2 g z_H) for a push, the falling
+// speed for a landing.
 #include "ayumi/control/feedback.hpp"
 
 #include <algorithm>
@@ -26,8 +26,8 @@ constexpr double kAdmissibleForceShare = 0.1;
 // Largest shift of the ZMP by which the rocking of the robot on its soles is damped, as a multiple
 // of z: 22 mm on HOAP-1. Chosen: enough to end the rocking that a push of 0.3 N s leaves with
 // sensors that are 14 ms late (with 0.06 the rocking continues), and small compared with the soles.
-// After a hard push, this damping works against the long term: without a bound the walk survives
-// 0.78 B instead of 1.08.
+// After a hard push, this damping works against the long-term absorption: without a bound, the walk
+// survives 0.78 B instead of 1.08 B.
 constexpr double kRockingLimit = 0.09;
 
 }  // namespace

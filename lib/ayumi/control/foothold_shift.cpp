@@ -1,9 +1,10 @@
-// A rigid shift of all footholds to come by D moves the plan's DCM now by less, because the plan's
-// ZMP is still where it was: with zeta the shift of the ZMP, d dcm = int omega exp(-omega s)
-// zeta(t + s) ds, so D share exp(-omega T) before a landing in T. Conversely, an error of
-// the DCM that the ZMP cannot take away until then asks for D = error exp(omega T) / share. The
-// clock of the pattern shortens T. Under a clock of rate r the plan's DCM runs along the same
-// pendulum about the ZMP p of the single support, dcm = p + (dcm_landing - p) exp(-omega T / r).
+// If all coming footholds are shifted by D, the present DCM of the plan is shifted by less, because
+// the ZMP of the plan is still at its old place. With zeta the shift of the ZMP, the shift of the
+// DCM is d dcm = int omega exp(-omega s) zeta(t + s) ds, which is D share exp(-omega T) at the time
+// T before a landing. Conversely, an error of the DCM that the ZMP cannot remove until then
+// requires D = error exp(omega T) / share. A faster clock of the pattern shortens T. Under a clock
+// of rate r the plan's DCM runs along the same pendulum about the ZMP p of the single support,
+// dcm = p + (dcm_landing - p) exp(-omega T / r).
 #include "ayumi/control/foothold_shift.hpp"
 
 #include <algorithm>
@@ -65,9 +66,9 @@ constexpr double kLeastError = 0.02;
 constexpr double kLookAhead = 1;
 
 // Cost of moving a foothold by a length, relative to the cost of a remaining error of the same
-// length. Chosen: a foothold moves if this removes at least a third of the distance that it moves.
-// With half of the value, the slip of the case "hurried walk" changes from 5.22 to 9.26 mm; with
-// twice, to 4.57 mm.
+// length. Chosen: a larger movement is preferred if it reduces the remaining error by at least a
+// third of the additional distance. With half of the value, the slip of the case "hurried walk"
+// changes from 5.22 to 9.26 mm; with twice, to 4.57 mm.
 constexpr double kMoveCost = 0.3;
 
 // Cost of the clock's rate 1 [z]. Chosen: small, so that a faster clock is chosen whenever it
@@ -211,8 +212,8 @@ FootholdShift::Step FootholdShift::step_of(const PlannedSwing& swing) const {
   return step;
 }
 
-/// The share of a shift of the ZMP that the DCM has already made. The ZMP makes the shift evenly
-/// within `time`, and the share is that at the start of this time.
+/// The share of a shift of the ZMP that the DCM must already have made when the shift begins. The
+/// ZMP makes the shift evenly within `time`.
 double FootholdShift::ramp_share(double time) const {
   return time > 0 ? (1 - elementary::exp(-omega_ * time)) / (omega_ * time) : 1.0;
 }
@@ -376,8 +377,8 @@ void FootholdShift::search_foothold(const Vector2d& dcm) {
 }
 
 // In the last part of the swing, the planned foot is next to the ground and hardly moves. A contact
-// in this part is the planned landing, so the clock does not jump. A jump of the clock would also
-// move the DCM of the plan.
+// in this part is the planned landing, so the clock is not advanced to the landing. Such a step of
+// the clock would also move the DCM of the plan.
 bool FootholdShift::lands_early(const Estimate& e) const {
   if (!moved_ || coming_ == steps_.size()) return false;
   const PlannedSwing& swing = steps_[coming_].swing;
@@ -387,8 +388,8 @@ bool FootholdShift::lands_early(const Estimate& e) const {
          bears(*model_, e, swing.foot);
 }
 
-/// The foot stays where it has met the ground, and the clock jumps to its landing. The COG does not
-/// jump.
+/// The foot stays where it has met the ground, and the clock is advanced to its landing at once.
+/// The COG does not change suddenly.
 void FootholdShift::land_where_it_is(const Estimate& e) {
   const PlannedSwing& swing = steps_[coming_].swing;
   update_positions(*model_, e.state, data_);

@@ -17,7 +17,7 @@ namespace ayumi {
 
 /// One swing of a pattern; its phases are numbers of samples.
 struct PlannedSwing {
-  double lift = 0, land = 0;  ///< begin and end of the single support
+  double lift = 0, land = 0;  ///< beginning and end of the single support
   double rest = 0;            ///< end of the double support after it
   Side foot = Side::right;    ///< foot in the air
 };
@@ -30,7 +30,8 @@ CommandSample command_between(const CommandSeries& series, double phase);
 void command_between(const CommandSeries& series, double phase, CommandSample& command);
 
 struct FootholdParams {
-  /// Share of the DCM error left by the supports that the footholds remove; 0 switches this off.
+  /// The supports cannot always remove the whole DCM error. This is the share of the remaining
+  /// error that the footholds remove; 0 switches this off.
   double share = 0;
   double time_scale_limit = 2.5;  ///< fastest clock of the pattern, at least 1
   /// Footholds and clock are chosen by the program of control/step_program, which answers every
@@ -50,8 +51,8 @@ class FootholdShift {
   const CommandSample& plan() const { return plan_; }
 
   /// Must be called after the tick of plan() has been measured. It chooses the next foothold and
-  /// advances the clock. Returns true if a foot has landed early. Then the foot stays in its place,
-  /// and the foot of the plan jumps there.
+  /// advances the clock. Returns true if a foot has landed early. Then the foot stays where it is,
+  /// and the foot of the plan is set to this place.
   bool advance(const Estimate& estimate);
 
   /// The rate of the pattern's clock; 1 is its own pace.
@@ -67,7 +68,7 @@ class FootholdShift {
     Eigen::Vector2d zmp;   // ZMP in its single support [m]
     Eigen::Vector2d dcm;   // DCM at the landing [m]
     ConvexPolygon before;  // support before lift-off
-    // This support and that of the landing foot, relative to the ZMP [m].
+    // Support during the swing, and support of the foot that lands; both relative to the ZMP [m].
     ConvexPolygon single, next;
     GroundPose stance, landing;  // places of the feet at the landing
     double share = 1;            // share of a foothold's shift that the DCM makes by the landing

@@ -54,7 +54,7 @@ class Footsteps {
   Footsteps(const RobotModel& model, const std::array<Eigen::Isometry3d, 2>& feet, double period,
             double growth, double recovery, double inset = 0);
 
-  /// The nominal ZMP while only the foot `side` supports.
+  /// The nominal ZMP while only the foot `side` supports the robot.
   Eigen::Vector2d zmp_on(Side side, const GroundPose& foot) const;
 
   /// The step with the foot `stance` on the ground at its present place. `left` is the number of

@@ -2,7 +2,7 @@
 //   per tick, from measurements n ticks old:
 //   zf += f (zZ - zf),  gap = zf - K x - D dx - zd,  zd += dt w / Tw gap
 //   dxr += dt (ka w2 gap + damp w (dx - dxr) - ks^2 w2 xr - 2 kd w dxr),  xr += dt dxr
-// Poles are log(eigenvalue) / tick. The measured zZ is that under the target of the tick before, as
+// Poles are log(eigenvalue) / tick. The measured zZ belongs to the target of the previous tick, as
 // in the simulator.
 #include "ayumi/control/gain_design.hpp"
 

@@ -70,7 +70,7 @@ std::optional<DtadParams> nearest_stable_gains(const std::vector<LoopModel>& loo
 std::vector<std::pair<std::string, double>> changed_loop_gains(const DtadParams& params,
                                                                const DtadParams& other);
 
-/// Throws Error(usage) with the growing mode and with stable gains nearby.
+/// If a loop is unstable, throws Error(usage) that names the growing mode and stable gains nearby.
 void refuse_unstable(const std::vector<LoopModel>& loops, const DtadParams& params);
 
 /// The reason why a robot should not be run with a controller at this COG height, in the words of

@@ -1,7 +1,7 @@
 #pragma once
-// Inputs and outputs of every control law. A law (control/laws) has plan(), the command of the
-// coming tick; update(), which measures one tick and fills a ControlOutput; and handover(), with
-// which the next law continues.
+// Inputs and outputs of every control law. A law (control/laws) has three functions: plan() returns
+// the command of the coming tick, update() takes the estimate of one tick and fills a
+// ControlOutput, and handover() returns the state from which the next law continues.
 
 #include <string>
 #include <vector>

@@ -4,9 +4,9 @@
 // the smallest cost is reached by du = -K X - sum_j F(j) change of the planned ZMP(k + j) with P of
 // the Riccati equation,
 //   K = (R + B'PB)^-1 B'PA,   F(j) = -(R + B'PB)^-1 B' (Ac')^(j-1) P (1, 0),   Ac = A - B K,
-// and the jerk is its sum over time (Katayama and others 1985). Shifting all places by a length
-// changes nothing: F(1) + F(2) + ... = -(gain of x). The gains beyond the horizon are added to the
-// last one, so that this holds exactly.
+// and the jerk is the sum of du over time (Katayama and others 1985). Shifting all places by a
+// length changes nothing: F(1) + F(2) + ... = -(gain of x). The gains beyond the horizon are added
+// to the last one, so that this holds exactly.
 #include "ayumi/control/preview_control.hpp"
 
 #include <algorithm>

@@ -57,7 +57,7 @@ class PreviewControl {
   /// Continues from tick k of the plan. Returns the motion of the COG in this tick.
   CogMotion go_on(long k, double omega);
 
-  /// Is called when the robot has left the ground: the preview starts again from the plan.
+  /// Must be called when the robot has left the ground: the preview starts again from the plan.
   void restart() { started_ = false; }
 
  private:

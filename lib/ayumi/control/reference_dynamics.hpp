@@ -1,7 +1,7 @@
 #pragma once
 // The forces that the motion of a law's reference body requires, for laws whose motion is not
-// planned in advance: the rate of its angular momentum, which moves the ZMP, and the torques that
-// hold it. docs/theory.md, "VIIP".
+// planned in advance: the rate of its angular momentum, which moves the ZMP, and the torques of its
+// joints. docs/theory.md, "VIIP".
 
 #include "ayumi/demand/ground_demand.hpp"
 #include "ayumi/dynamics/robot_data.hpp"

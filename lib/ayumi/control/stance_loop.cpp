@@ -31,8 +31,8 @@ namespace {
 // Step of the differences [m, rad]. Chosen: ten times the root of the rounding error of a double.
 constexpr double kStep = 1e-6;
 
-// Inverse weight of the base relative to that of a joint, with which the base follows freely.
-// Definition: large.
+// Inverse weight of the base in the solution for P, relative to that of a joint. Definition: it is
+// large, so that the base follows the joints freely.
 constexpr double kFreeBase = 1e3;
 
 // Time for which a walking robot stands on one foot, as a multiple of 1/omega. Chosen: the time of
@@ -168,8 +168,8 @@ struct Stance {
 };
 
 // Converts the continuous system to ticks with constant inputs. Rates are taken at the end of the
-// tick, as the plant integrates: this damps an oscillation of w [rad/s] by w^2 tick / 2 [1/s], 3 /s
-// at 12 Hz and 1 ms.
+// tick, as in the integration of the plant: this damps an oscillation of w [rad/s] by w^2 tick / 2
+// [1/s], 3 /s at 12 Hz and 1 ms.
 void discretize(const MatrixXd& motion, const MatrixX2d& input, LoopModel& loop) {
   const Index n = motion.rows();
   const MatrixXd one = MatrixXd::Identity(n, n);

@@ -1,9 +1,8 @@
 #pragma once
 // Chooses where the next foot lands and how long it takes until then, by a quadratic program in
-// every tick. This is the step of DCM tracking that chooses step place and durations, one of the
-// baselines of DTAD. After Khadiv and others, "Step timing adjustment: a step toward generating
-// robust gaits" (2016), with the ZMP inside the sole as a further unknown.
-// docs/theory_baselines.md.
+// every tick. This is one of the baselines of DTAD. After Khadiv and others, "Step timing
+// adjustment: a step toward generating robust gaits" (2016), with the ZMP inside the sole as a
+// further unknown. docs/theory_baselines.md, "Steps chosen by a program".
 
 #include <Eigen/Core>
 

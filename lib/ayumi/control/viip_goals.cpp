@@ -1,8 +1,8 @@
-// A displacement is reachable when the robot can stand there: the COG is inside the support of the
-// feet with the margin that VIIP keeps, and VIIP's own resolution gets there, joints inside their
-// limits. How much of it is possible is found by bisection. A velocity is reachable when the COG
-// can stand where it leads to, and can stop there: the DCM is inside the support too. Steps are
-// judged by the walk with keys.
+// A displacement is reachable if the robot can stand at its end: the COG is inside the support of
+// the feet with the margin that VIIP keeps, and VIIP's own inverse kinematics (resolve()) reaches
+// it with all joints inside their limits. Bisection finds the possible part of a displacement. A
+// velocity is reachable if the robot can stand and stop at the end of the motion: the DCM is inside
+// the support, too. For steps, a walk of the same shape is generated with keys and sampled.
 #include "ayumi/control/viip_goals.hpp"
 
 #include <algorithm>
@@ -46,8 +46,8 @@ constexpr double kLeadTime = 0.1;
 // No measured case changes between half and twice the value (constants.md).
 constexpr double kLeadSpeed = 0.1;
 
-// Lowest COG that is tried, as a share of the height that the pattern holds. Chosen: below it no
-// leg of a humanoid folds. Between half and twice the value, figures change by less than 5 %.
+// Lowest COG that is tried, as a share of the height that the pattern holds. Chosen: no leg of a
+// humanoid can fold so far. Between half and twice the value, figures change by less than 5 %.
 constexpr double kLowestShare = 0.3;
 
 // Number of bisections in the search for the possible part of a goal. Chosen: the result is
@@ -99,7 +99,7 @@ std::string in_millimetres(const Vector3d& d) {
          text::fixed(1e3 * d.z(), 1) + " mm";
 }
 
-/// How near the resolution comes to a COG, and the joint that stops it.
+/// How near resolve() comes to a COG, and the joint that stops it.
 struct Attempt {
   double miss = 0;  ///< remaining distance from the wanted COG [m]
   std::string joint;
@@ -194,8 +194,9 @@ struct CogPath {
   double time = 0;
 };
 
-// The displacement that the goals before a span ask for. VIIP continues from this displacement as
-// long as the feet and the robot stay.
+// The displacement at the beginning of a span, which the goals directly before it have produced,
+// and the velocity and the duration of the span. Steps, jumps and times without a goal reset the
+// displacement to zero.
 CogPath cog_path(const CommandSeries& series, const ViipSpan& span) {
   CogPath path = {Vector3d::Zero(), Vector3d::Zero(), 0};
   long end = 0;

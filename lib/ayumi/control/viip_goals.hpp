@@ -1,6 +1,6 @@
 #pragma once
-// Makes motions that the check can judge from goals of VIIP, and refuses goals that a robot cannot
-// reach at all.
+// Makes motions from goals of VIIP, so that the check can judge them, and refuses goals that a
+// robot cannot reach at all.
 
 #include <vector>
 

@@ -5,9 +5,10 @@
 // The anchored sole moves with the plan (at rest in stance), so the velocity of the floating base
 // is V = map dtheta + rigid(anchor motion), where the map belongs to a sole at rest. Angular rows
 // are scaled by a length so that the damping treats them like metres.
-// A joint at a limit takes rates away. Then the COG height gives way first, the trunk's attitude
-// next: their rows are scaled down, so that the damping outweighs them. Feet and horizontal COG,
-// which keep the robot upright, come last: only then the whole motion becomes slower.
+// A joint at a limit cannot move as fast as the task requires. Then the task of the COG height is
+// reduced first, and that of the trunk's attitude next: their rows are scaled down, so that the
+// damping outweighs them. The rows of the feet and of the horizontal COG, which keep the robot
+// upright, are not scaled: if a joint is still too fast, the whole motion becomes slower.
 #include "ayumi/control/whole_body.hpp"
 
 #include <algorithm>
@@ -40,9 +41,10 @@ constexpr double kSoftness = 0.003;
 // between half and twice the value (constants.md).
 constexpr double kDone = 0.002;
 
-// How often joints that reach a position limit are fixed and the rest is solved again. Chosen: both
-// knees and both ankles may reach their limits one after the other. No measured case changes
-// between half and twice the value (constants.md).
+// Largest number of solutions of a task. After each of them, the joints that would leave their
+// range are fixed, and the task is solved again for the other joints. Chosen: both knees and both
+// ankles may reach their limits one after the other. No measured case changes between half and
+// twice the value (constants.md).
 constexpr int kLimitPasses = 4;
 
 // Speed limit of the reference COG, as a multiple of omega z: 1.2 m/s on HOAP-1. Chosen: at this
@@ -55,10 +57,10 @@ constexpr double kCogSpeedLimit = 0.8;
 // half and twice the value (constants.md).
 constexpr double kCogAccelerationLimit = 4;
 
-// Distance of the centre of pressure from the nearest edge of the sole, as a share of the most
-// there is, from which a tilted foot lies on the ground instead of tipping over an edge. Chosen: 5
-// mm on HOAP-1, twice the noise of its load cells; docs/theory.md, "A foot on a bump". Between half
-// and twice the value, figures change by less than 5 %.
+// A tilted foot counts as lying on the ground, and not as tipping over an edge, if its centre of
+// pressure is farther than this from the nearest edge of the sole, as a share of the largest
+// possible distance. Chosen: 5 mm on HOAP-1, twice the noise of its load cells; docs/theory.md, "A
+// foot on a bump". Between half and twice the value, figures change by less than 5 %.
 constexpr double kInsideSole = 0.15;
 
 // Time constant of the low pass of the tilt that the ankles compensate [s]. Chosen: stiff servos
@@ -263,7 +265,7 @@ void resolve(const RobotModel& model, const ActuatorLimits& limits, const RobotS
     if (yielding.trunk) soften(work.softened, 9, 3);
     Resolution& attempt = work.attempt;
     within_limits(model, limits, reference, asked, weight, dt, options, work, attempt);
-    if (yielding.height) {  // the joints that made the task give way stay recorded
+    if (yielding.height) {  // the joints because of which the task was reduced stay recorded
       attempt.held.insert(attempt.held.end(), result.held.begin(), result.held.end());
       std::sort(attempt.held.begin(), attempt.held.end());
       attempt.held.erase(std::unique(attempt.held.begin(), attempt.held.end()), attempt.held.end());
@@ -397,7 +399,7 @@ void ReferenceBody::release(const CommandSample& command) {
   move_base(reference_.base, data_);
 }
 
-// A tilt of the trunk turns the feet with it, about the COG. The joints of the hip turn the legs
+// If the trunk tilts, the feet turn with it about the COG. The joints of the hip turn the legs
 // back, so that the soles come down level and under the COG.
 void ReferenceBody::fly(const Vector3d& tilt, const CommandSample& command,
                         const CommandSample& next, const VectorXd& offsets, ControlOutput& out) {
@@ -439,9 +441,9 @@ void ReferenceBody::send(const VectorXd& dtheta, const CommandSample& command,
   bound_target(command, next, out);
 }
 
-// The feedforward and the ankles may require more than the resolution did. The targets of the plan
-// with its velocity feedforward may move faster than the joint, as where a leg lands; the law
-// changes them by no more than the joint's speed limit. Each joint is noted once.
+// The feedforward and the ankles may require more of a joint than resolve() did. The targets of the
+// plan with its velocity feedforward may move faster than the joint, for example where a leg lands;
+// the law changes them by no more than the joint's speed limit. Each joint is noted once.
 void ReferenceBody::bound_target(const CommandSample& command, const CommandSample& next,
                                  ControlOutput& out) {
   const auto hold = [&](int j, double low, double high, char what, const char* text) {

@@ -24,8 +24,9 @@ namespace {
 // Longest shift that the search allows [s]. Chosen: recorders are started by hand.
 constexpr double kReach = 10;
 
-// Frequency to which loads and accelerations are smoothed before they are compared [Hz]; both are
-// smoothed alike. Chosen: weight goes from foot to foot in 0.1 s or more.
+// Cut-off frequency of the low pass of loads and IMU readings before they are compared [Hz]. It is
+// the same for measured and simulated values. Chosen: weight goes from foot to foot in 0.1 s or
+// more.
 constexpr double kLoadBand = 15;
 
 // Share of the load at which a foot has landed, the share below which it was in the air, and the

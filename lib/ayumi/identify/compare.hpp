@@ -67,7 +67,7 @@ struct CompareOptions {
 };
 
 /// Throws Error(bad_file) "`file`: what" if the recording and the run have no time in common.
-/// Joints with another sign or unit, or that do not follow, are noted. The recording contains the
+/// Joints whose sign or unit differs, or that do not follow, are noted. The recording contains the
 /// readings of the encoders, so that the zero offsets of the run's servos are subtracted from the
 /// simulated angles.
 Comparison compare(const RobotModel& model, const SimulationLog& log,

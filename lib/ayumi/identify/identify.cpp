@@ -25,8 +25,8 @@ namespace {
 // Chosen: masses and lengths of a robot are known to about a percent, and intervals cover this.
 constexpr double kModelShare = 0.01;
 
-// Share of the load on the own foot above which a leg counts as loaded; it counts as unloaded below
-// 1 minus this share. Chosen: single support with noisy load cells.
+// Share of the load on a leg's own foot above which the leg counts as loaded; it counts as unloaded
+// below 1 minus this share. Chosen: single support with noisy load cells.
 constexpr double kLoaded = 0.9;
 
 // Correlation of two estimates above which the recording does not distinguish them. Chosen: the
@@ -44,31 +44,32 @@ constexpr double kKnown = 0.5;
 // recordings with a chirp give 3.4 or more.
 constexpr double kBeyondErrors = 2;
 
-// Uncertainty of the torque that loads a joint, in addition to that share [N m]. Chosen: that of
+// Uncertainty of the torque that loads a joint, in addition to kModelShare [N m]. Chosen: that of
 // cables and bearings of a small joint. A joint that carries much less of a changing load does not
 // show its stiffness.
 constexpr double kLoadError = 0.01;
 
-// Uncertainty of a rotor's inertia, as a part of it. Chosen: it is calculated from data sheets, and
-// gears add to it. The stiffness of a joint that carries little can only be seen together with its
-// inertia.
+// Uncertainty of a rotor's inertia, as a part of this inertia. Chosen: it is calculated from data
+// sheets, and gears add to it. The stiffness of a joint that carries little can only be seen
+// together with its inertia.
 constexpr double kRotorShare = 0.25;
 
 // Compliance below which a joint does not show any compliance [rad/(N m)]. Chosen: far stiffer than
 // the servos of small humanoids, which have 1e-4 or more.
 constexpr double kLeastCompliance = 1e-6;
 
-// Lag of an answer that no servo has: a time [s], and a multiple of the lag that the robot's file
+// Largest possible lag of a servo: a time [s], and a multiple of the lag that the robot's file
 // states; the larger of the two is used. Chosen: soft servos of small humanoids have up to 20 ms. A
-// recording that is shifted by more than this is refused; half as much would refuse soft servos.
+// recording with a larger lag is shifted, and it is refused; with half of the value, soft servos
+// would be refused.
 constexpr double kSlowServo = 0.03, kSlowerThanStated = 2;
 
 // Time by which the lag must exceed that of the robot's file before the recording counts as
 // probably shifted [s]. Chosen: loads and friction change the lag of a servo by a few milliseconds.
 constexpr double kLikelyShift = 0.007;
 
-// Shortest time with a known load of a joint from which its stiffness is computed [s]. Chosen: the
-// single supports of two steps.
+// The stiffness of a joint is computed only if its load is known for longer than this [s]. Chosen:
+// the single supports of two steps.
 constexpr double kLeastKnown = 1;
 
 // Distance by which the robot's file may be wrong about the place of the centre of gravity [m].
@@ -84,18 +85,19 @@ constexpr double kFlankTorque = 0.05;
 constexpr double kLawSeen = 25;
 
 // Share of the residual of a law below which the answers of two laws count as equal. Chosen: the
-// steps in which an answer is integrated change it by up to a tenth. Synthetic servos for which the
-// wrong law was chosen before had 0.005 to 0.12, others 0.25 or more.
+// steps in which an answer is integrated change it by up to a tenth. Synthetic servos for which an
+// earlier version chose the wrong law had 0.005 to 0.12, others 0.25 or more.
 constexpr double kSameAnswer = 0.15;
 
 struct TypeFit {
   ServoFit fit;
   bool delay_takes_damping = false;  // the recording does not distinguish delay and damping
   bool has_backlash = false;
-  /// The amount by which the delay is smaller because of the servo's behaviour between two
-  /// commands, and at the same time its uncertainty [s].
+  /// The amount that is subtracted from the delay because the servo may hold each command, and at
+  /// the same time the uncertainty of the delay [s]. It is 0 if the recording shows the law.
   double hold = 0;
-  /// The same for the damping: the simulator's step was neither seen nor excluded.
+  /// The additional uncertainty of the damping if the recording neither shows nor excludes the law
+  /// CommandLaw::stepped [s].
   double step = 0;
   ServoConstants heavier;  ///< constants with a rotor inertia that is larger by its uncertainty
   StandingCompliance standing;  ///< used if it shows the stiffness better than the motion does
@@ -161,7 +163,7 @@ bool fits_better(const ServoFit& a, const ServoFit& b) {
 }
 
 // The same for two laws of the servo's behaviour between two commands: their answers must differ by
-// more than the residual of the better one that is not noise.
+// clearly more than that part of the residual of the better law that is not noise.
 bool shows_law(const ServoFit& a, const ServoFit& b) {
   return fits_better(a, b) &&
          rms_between(a, b) > std::max(kBeyondErrors * a.model_error, kSameAnswer * a.rms);
@@ -228,8 +230,9 @@ void take_standing_stiffness(const std::vector<JointRecording>& joints, double l
 }
 
 // A servo may hold each command until the next one, or move from one to the other. If the recording
-// shows the difference, the better law is taken. If it does not, the delay of a servo that holds
-// would be half an interval shorter, and the delay is given in the middle of both.
+// shows the difference, the better law is taken. If it does not, the delay is uncertain, because it
+// would be half an interval shorter for a servo that holds. The result is then the mean of both
+// delays.
 TypeFit fit_type(std::vector<JointRecording> joints, double longest_delay, double weight) {
   const std::vector<ServoConstants> guess = first_guess(joints, longest_delay);
   std::vector<ServoConstants> start = guess;
@@ -354,9 +357,9 @@ class Advice {
   const ServoFit& fit_;
 };
 
-// Rows in which the share of the load on the own foot has been above kLoaded, or below 1 minus
-// kLoaded, and stays there: they are in the middle of a stretch of kSettle. The load of a leg then
-// does not depend on how the feet share the weight.
+// Rows in which the share of the load on the leg's own foot has been above kLoaded, or below 1
+// minus kLoaded, and stays there: they are in the middle of a stretch of kSettle. The load of a leg
+// then does not depend on how the feet share the weight.
 std::vector<Index> settled_rows(const VectorXd& own, double dt) {
   const auto half = static_cast<Index>(std::ceil(0.5 * kSettle / dt));
   const auto kind = [&](Index k) { return own[k] > kLoaded ? 1 : own[k] < 1 - kLoaded ? -1 : 0; };
@@ -381,9 +384,10 @@ VectorXd own_share(const RobotModel& model, const JointLoads& loads, int dof) {
   return {};
 }
 
-// The change of the measured angle from the unloaded to the loaded foot, by least squares of its
-// distance from the late command over the share of the load on the own foot, in the rows in which
-// one foot carries the robot. It needs no stiffness.
+// The change of the measured angle from the unloaded to the loaded foot. It is the slope of a
+// straight line, fitted by least squares to the difference between the angle and the delayed
+// command as a function of the load share of the leg's own foot, in the rows in which one foot
+// carries the robot. The stiffness is not needed.
 void find_sag(const JointRecording& recording, IdentifiedJoint& joint) {
   double x = 0, y = 0, xx = 0, xy = 0, n = 0, least = 1, most = 0;
   for (const Index k : recording.settled) {
@@ -477,8 +481,8 @@ double longest_lag(const RobotModel& model) {
   return longest;
 }
 
-// The text about an answer that is rather late, with the joint in the middle. It is empty if there
-// is no such answer.
+// The caution about angles that are far behind their commands, with the lag of the median joint. It
+// is empty if there is no reason for a caution.
 std::string late_answer(const RobotModel& model, const std::vector<IdentifiedJoint>& joints) {
   std::vector<std::pair<double, double>> lags;  // lag beyond the stated one, and whole lag
   for (const IdentifiedJoint& joint : joints) {

@@ -21,9 +21,9 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Frequency to which angles are smoothed before they are differentiated twice [Hz]. Chosen: a small
-// humanoid moves its joints at less than 10 Hz, and counts of 0.005 degrees then disturb the torque
-// of a leg by less than 0.05 N m.
+// Cut-off frequency of the low pass of angles before they are differentiated twice [Hz]. Chosen: a
+// small humanoid moves its joints at less than 10 Hz, and counts of 0.005 degrees then disturb the
+// torque of a leg by less than 0.05 N m.
 constexpr double kLoadCutoff = 50;
 
 // Frequency below which the difference between a joint and its delayed command changes [Hz].
@@ -31,12 +31,12 @@ constexpr double kLoadCutoff = 50;
 // frequency does not become a torque.
 constexpr double kSagCutoff = 15;
 
-// Share of the quick load of a standing leg in the largest load of the joint above which the load
-// is not known well. Chosen: at a tenth, the delays of a simulated robot are wrong by 0.5 ms.
+// The load of a standing leg is not known well if its quick part exceeds this share of the largest
+// load of the joint. Chosen: at a tenth, the delays of a simulated robot are wrong by 0.5 ms.
 constexpr double kQuickShare = 0.05;
 
-// Frequency to which load cells are smoothed [Hz]. Chosen: the weight goes from foot to foot in 0.1
-// s or more.
+// Cut-off frequency of the low pass of load cells [Hz]. Chosen: the weight goes from foot to foot
+// in 0.1 s or more.
 constexpr double kShareCutoff = 15;
 
 // Sum of the loads of both feet, as a part of its mean in the recording, below which no share is
@@ -61,9 +61,9 @@ std::vector<CommandSample> anchored(const RobotModel& model, const MatrixXd& the
   return samples;
 }
 
-// The ground wrench of the whole robot on the left foot: its share of the force, where the centre
-// of pressure is as far from the centre of its sole as that of the other foot from the centre of
-// the other sole.
+// The part of the whole ground wrench that acts on the left foot: its share of the force, at its
+// centre of pressure. The centres of pressure of both feet have the same offset from the centres of
+// their soles.
 Vector6d left_wrench(const RobotModel& model, const std::array<Eigen::Isometry3d, 2>& soles,
                      const SupportPlane& plane, const GroundDemand& use, double share,
                      const Vector3d& base, const Vector6d& whole) {
@@ -110,8 +110,8 @@ class LoadsOnFeet {
     supports_ = detect_supports(model, motion);
   }
 
-  // The torques of row k. `share` is the load share of the left foot; if it is below 0 it is not
-  // known, and the share that was used is written into it.
+  // The torques of row k. `share` is the load share of the left foot. If it is below 0, it is not
+  // known; then the share that is used instead is written into it.
   VectorXd torque(size_t k, double& share) {
     const Support support = supports_[k];
     const bool right_carries =

@@ -34,9 +34,9 @@ struct JointLoads {
 };
 
 /// The rows are those of `motion.measured`; joints that it does not have keep the home posture.
-/// Angles are smoothed first (kLoadCutoff). While both feet support, the left foot's share is that
-/// of `motion.sensors.foot_load` if the file has it, and otherwise the share that follows from the
-/// ZMP.
+/// Angles are smoothed first (kLoadCutoff). While both feet support the robot, the left foot's
+/// share is that of `motion.sensors.foot_load` if the file has it, and otherwise the share that
+/// follows from the ZMP.
 JointLoads joint_loads(const RobotModel& model, const RecordedMotion& motion, RobotStand stand);
 
 /// By row, whether the load of joint `dof` follows from the motion. While both feet stand, the legs

@@ -31,19 +31,19 @@ constexpr double kMostLeft = 0.75;
 // without a lost row, steps that are near a whole number of rows reach less than half of it.
 constexpr double kClearStep = 5;
 
-// The rows after a lost row stay earlier. The constants are: the time on both sides of a step in
-// which the delays are compared [s], the shortest such time, the smallest lasting change in rows,
-// and its largest difference from the step, in rows and as a part of the step. Chosen: recorders
-// take some rows up to 0.45 rows late and the next ones in time again, and joints begin to slide
-// within a row, which does not last.
+// After a lost row, all further rows are too early, so the change of the delay lasts. The constants
+// are: the time on both sides of a step in which the delays are compared [s], the shortest such
+// time, the smallest lasting change in rows, and its largest difference from the step, in rows and
+// as a part of the step. Chosen: recorders take some rows up to 0.45 rows late and the next ones in
+// time again, and joints begin to slide within a row, which does not last.
 constexpr double kLastingTime = 0.75, kLeastLastingTime = 0.3;
 constexpr double kLeastStep = 0.6, kStepMargin = 0.35, kStepShare = 0.25;
 
 // Number of the clearest steps that are examined. Chosen: about ten rows belong to each.
 constexpr size_t kMostSteps = 60;
 
-// Smallest noise of a joint in steps of its encoder, and for values that are not rounded in [rad,
-// m]. Derived: rounding alone has a standard deviation of 0.29 steps.
+// Smallest noise of a joint: in steps of its encoder, and in [rad, m] for values that are not
+// rounded. Derived: rounding alone has a standard deviation of 0.29 steps.
 constexpr double kLeastNoise = 0.29, kLeastNoiseAngle = 1e-7;
 
 // Length of the windows in which the delay of the answer is followed [s], and a change of the delay
@@ -52,24 +52,24 @@ constexpr double kLeastNoise = 0.29, kLeastNoiseAngle = 1e-7;
 // windows.
 constexpr double kDelayWindow = 1.5, kDelayJump = 0.003;
 
-// Least information of windows that are compared, as a part of that of the best window, and largest
-// spread of the delays of both sides together, as a part of the change. There is also a smallest
-// number of windows on each side. Chosen: a delay needs motion, a spread needs two values, and a
-// change that is four times the spread is no drift.
+// Conditions for a change of the delay: the least information of a window, as a part of the
+// information of the best window; the largest spread of the delays of both sides together, as a
+// part of the change; and the smallest number of windows on each side. Chosen: a delay needs
+// motion, a spread needs two values, and a change that is four times the spread is no drift.
 constexpr double kLeastInformation = 0.1, kMostSpread = 0.25;
 constexpr int kLeastWindows = 2;
 
-// Part of a row from which on a change of delay around a rest counts as lost rows. Chosen: between
-// a whole row and the delays of a recorded walk, which differ by 0.1 ms between windows.
+// Smallest change of the delay around a rest that counts as lost rows, as a part of a row. Chosen:
+// between a whole row and the delays of a recorded walk, which differ by 0.1 ms between windows.
 constexpr double kRestJump = 0.75;
 
 // Least information of a change of delay, as a part of the information on each side. Derived:
-// joints that move alike on both sides have half; joints that only sway with the motion of others
-// have hundredths.
+// joints that move in the same way on both sides have half; joints that only sway with the motion
+// of others have hundredths.
 constexpr double kLeastCommon = 0.1;
 
 // Time without motion that counts as a rest [s], and the part of the mean information below which
-// nothing moves. Chosen: a step of the method above cannot be seen in such a time.
+// nothing moves. Chosen: in such a time, step_in_motion() cannot find a step.
 constexpr double kRestTime = 0.05, kRestShare = 0.02;
 
 double middle_of(std::vector<double> values) {
@@ -110,10 +110,10 @@ FollowingJoint following(const AngleTable& command, const AngleTable& measured, 
   return joint;
 }
 
-// The number of lost rows before row k by least squares, together with a constant and a slope of
-// each joint and a delay that they have in common, and the standard deviation of that number for
-// noise alone. A joint and its twin of the other side may slip, so that the other joints have to
-// agree: `without_clearest` leaves out the two joints that show most.
+// The number of lost rows before row k, by least squares, and the standard deviation of this number
+// for noise alone. The other unknowns are a constant and a slope of each joint, and one delay of
+// all joints. A joint and its twin on the other side may slip, so the other joints must agree:
+// `without_clearest` leaves out the two joints that show the step most clearly.
 struct RowStep {
   double rows = 0, deviation = HUGE_VAL;
 };
@@ -143,18 +143,19 @@ RowStep row_step(const std::vector<FollowingJoint>& joints, Index k,
   }
   if (without_clearest) sums -= clearest + second;
   const double b = sums[1], c = sums[2], x = sums[3], y = sums[4];
-  // At a constant speed, the data do not show a delay. It is then taken to be as unlikely as a
-  // thousandth of a step.
+  // At a constant speed, the data do not determine the delay. The small additional term then keeps
+  // the delay near zero.
   const double a = sums[0] + 1e-3 * c;
   const double determinant = a * c - b * b;
   if (!(c > 0) || !(determinant > 0)) return {};
   return {(a * y - b * x) / determinant, std::sqrt(a / determinant)};
 }
 
-// The part that remains, around row k, when lost rows explain what a constant, a slope and a delay
-// of each joint leave; both are counted beyond the noise. Lost rows leave most of the answer of
-// servos to a sudden move. Such an answer looks like a step for a few rows, and alike for all
-// joints that make the move.
+// A constant, a slope and a delay of each joint are fitted to the differences around row k. Returns
+// the part of the residual that is left if `lost` rows are lost as well; the noise is subtracted
+// from both residuals. For the answer of servos to a sudden move, most of the residual is left.
+// Such an answer looks like a step for a few rows, and it looks the same for all joints that make
+// the move.
 double left_around(const std::vector<FollowingJoint>& joints, Index k, double lost) {
   double without = 0, with = 0;
   for (const FollowingJoint& joint : joints) {
@@ -261,7 +262,7 @@ LostRows step_in_motion(const AngleTable& command, const AngleTable& measured,
     steps[static_cast<size_t>(k)] = step;
     if (std::isfinite(step.deviation)) ratios.push_back(step.rows / step.deviation);
   }
-  // The behaviour of a servo beside its delay is no white noise.
+  // The behaviour of a servo apart from its delay is not white noise.
   const double more = std::max(1.0, robust_deviation(ratios));
   std::vector<size_t> clear;
   const auto ratio = [&](size_t k) { return std::abs(steps[k].rows) / steps[k].deviation; };
@@ -328,7 +329,7 @@ LostRows change_of_delay(const AngleTable& command, const AngleTable& measured,
     windows.push_back(std::move(window));
   }
   if (windows.size() < 2 * kLeastWindows) return {};
-  // Both sides of a jump have delays of their own, which change little.
+  // Both sides of a sudden change have delays of their own, which change little.
   struct Side {
     std::vector<Delay> delays;
     double spread = 0;
@@ -363,7 +364,7 @@ LostRows change_of_delay(const AngleTable& command, const AngleTable& measured,
   LostRows lost;
   double least = HUGE_VAL;
   for (size_t split = 2; split + 2 <= windows.size(); ++split) {
-    // The window with the jump belongs to neither side.
+    // The window with the sudden change belongs to neither side.
     const auto before = side(0, split - 1), after = side(split, windows.size());
     if (!before || !after) continue;
     const auto change = change_of(before->delays, after->delays);

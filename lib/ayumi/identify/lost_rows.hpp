@@ -2,9 +2,9 @@
 // Rows that a recording lost or repeated. If a file does not say when each row was measured, all
 // that follows such a row comes earlier or later than before. Every moving joint shows this at
 // once. Let p be the command, delayed as the recording is. The differences e = theta - p of all
-// joints j then step by n dt p'_j, where n is the number of lost rows. Least squares over the rows
-// around give n and its standard deviation. If nothing moves there, the delays before and after
-// show the step, for each joint that moves on both sides: joints with different servos have
+// joints j then step by n dt p'_j, where n is the number of lost rows. Least squares over the
+// surrounding rows give n and its standard deviation. If nothing moves there, the delays before and
+// after show the step, for each joint that moves on both sides: joints with different servos have
 // different delays.
 
 #include <string>

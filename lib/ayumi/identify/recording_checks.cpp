@@ -28,8 +28,8 @@ constexpr double kMoves = 0.5 * kDegree;
 // servo; a recording that is shorter has lost rows or its end.
 constexpr double kLengthShare = 0.02, kLengthTime = 0.25, kShorter = 0.05;
 
-// Mean share of the weight on the standing foot in all single supports, below which load cells are
-// not of this motion. Chosen: cells that are 0.3 s late, or of the other side, have less.
+// Mean share of the weight on the standing foot in all single supports, below which the load cells
+// do not fit this motion. Chosen: cells that are 0.3 s late, or of the other side, have less.
 constexpr double kStandingShare = 0.8;
 
 // Squared correlations with the command: above the first, slope and sign have a meaning; below the
@@ -48,7 +48,7 @@ constexpr double kAway = 8 * kDegree;
 constexpr double kCounterRange = 65536;
 
 // Step of the search for a time shift [s], and the factor by which the distance must become smaller
-// before a shift is believed. Chosen: a wrong shift fits many times worse.
+// before a shift is accepted. Chosen: a wrong shift fits many times worse.
 constexpr double kShiftStep = 0.01, kShiftGain = 0.25;
 
 // Time that a recording and its command must share, as a part of the shorter one. Chosen: a short
@@ -207,7 +207,8 @@ void require_answer(const RobotModel& model, const AngleTable& command, const An
   }
   const double reach = std::min(5.0, 0.3 * asked);
   const double shift = time_shift(model, command, measured, reach);
-  // Recorders may count so that the recording is one row earlier than its command.
+  // Some recorders number their rows in such a way that the recording is one row ahead of its
+  // command. Two rows are therefore accepted.
   if (shift > longest_lag || shift < -2 * measured.dt) {
     std::vector<Index> few = dofs;
     if (few.size() > 4) few.resize(4);

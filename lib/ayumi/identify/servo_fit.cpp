@@ -23,7 +23,7 @@ namespace {
 constexpr double kRestRate = 0.01, kRateTime = 0.01;
 
 // Units of the constants in a fit, so that the numbers of the search are near 1: ms, 0.1 mrad/(N
-// m), ms, 0.1 mrad.
+// m), ms, and 0.1 mrad for the last three.
 constexpr std::array<double, kConstants + 1> kUnit = {1e-3, 1e-4, 1e-3, 1e-4, 1e-4, 1e-4};
 
 // Size of the differences for the derivatives, in these units. Chosen: it changes the angle by a
@@ -246,8 +246,9 @@ ServoFit fit_servo(const std::vector<JointRecording>& joints,
   options.parameter_tolerance = 1e-7;
   options.logging_type = ceres::SILENT;
   options.num_threads = 1;
-  // The place where the joint comes to rest jumps when its friction changes, so that the error has
-  // more than one minimum over the friction. Therefore others are looked for.
+  // The place where the joint comes to rest changes suddenly when its friction changes, so the
+  // error has more than one minimum over the friction. Therefore, other values of the friction are
+  // tried.
   constexpr int kDry = static_cast<int>(Constant::dry);
   constexpr std::array<double, 9> kOtherFriction = {0.3, 0.5, 0.7, 0.85, 1.15, 1.4, 1.8, 2.5, 4};
   constexpr int kRounds = 4;

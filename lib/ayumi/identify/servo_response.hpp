@@ -6,7 +6,7 @@
 //   theta = phi + offset - backlash/2 sgn(tau)
 // where J is the inertia of rotor and link, and tau is the other torque on the joint. Dry friction
 // holds the joint at rest. The equations are solved by the implicit midpoint rule in steps of at
-// most kResponseStep, or as the law says.
+// most kResponseStep, except under CommandLaw::stepped.
 //   In a recording that shows no damping, the joint has no J and D: phi then only moves where the
 // error would exceed the dry friction, so that |u(t - delay) - phi - s tau| <= C.
 
@@ -33,7 +33,7 @@ enum class CommandLaw {
   stepped
 };
 
-/// A joint's recording. Vectors of the measured rate have one entry per measured row.
+/// A joint's recording. All vectors of values except `command` have one entry per measured row.
 struct JointRecording {
   double command_dt = 0.001, dt = 0.001;  ///< time between rows of command and recording [s]
   bool at_once = false;                   ///< the angle follows the late command without J and D

@@ -19,10 +19,10 @@ namespace {
 // clearance of the case "grip" changes from 12.2 to 14.6 mm.
 constexpr double kClearanceTolerance = 0.002;
 
-// Below this clearance above the tolerance, every sample is examined [m]. Chosen: in 20 ms, bodies
-// approach each other by this distance at 0.5 m/s. With half of the value, the clearance of the
-// case "slip" changes from 15 to 7.11 mm; with twice, the clearance of the case "walk" changes from
-// 12.1 to 15 mm.
+// If the clearance exceeds the tolerance by less than this, every sample is examined [m]. Chosen:
+// in 20 ms, bodies approach each other by this distance at 0.5 m/s. With half of the value, the
+// clearance of the case "slip" changes from 15 to 7.11 mm; with twice, the clearance of the case
+// "walk" changes from 12.1 to 15 mm.
 constexpr double kRefineBelow = 0.010;
 
 void note_clearance(JudgedMotion& motion, int pair, int k, double clearance) {

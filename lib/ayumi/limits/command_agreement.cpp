@@ -1,4 +1,5 @@
-// A pattern commands COG, ZMP and f_z beside the posture; they have to be those of the motion:
+// A pattern commands COG, ZMP and f_z in addition to the posture; they have to be those of the
+// motion:
 //   |COG of the posture - commanded COG|,  |ZMP of the full model - commanded ZMP|,
 //   |f_z - commanded|.
 // The point mass gap is the distance between the ZMP of the mass-concentrated model, equations (14)

@@ -23,7 +23,7 @@ namespace ayumi {
 
 namespace {
 
-// Definition: the tolerances are those of `export`, so that a larger one has no effect.
+// Definition: the tolerances are those of `export`, so that a larger tolerance has no effect.
 const SafetyOptions kExport;
 
 // Definition: details of a violation, which determine the unit of its value.

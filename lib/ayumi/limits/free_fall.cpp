@@ -24,7 +24,7 @@ constexpr double kFallTolerance = 0.5;
 // come from a force.
 constexpr double kLeap = 1e-3;
 
-// Whether all five samples are in the same flight.
+// The acceleration of the commanded COG, from five samples that must be in the same flight.
 Vector3d commanded_acceleration(const CommandSeries& series, int k) {
   const auto cog = [&](int i) { return series.samples[i].cog; };
   return (16 * (cog(k - 1) + cog(k + 1)) - (cog(k - 2) + cog(k + 2)) - 30 * cog(k)) /

@@ -11,9 +11,9 @@ namespace ayumi {
 
 namespace {
 
-// Tolerance of the angle [rad] or [m]. Chosen: a motion that is planned onto the limit keeps it,
-// except for the rounding of a table with four decimals. No measured case changes between half and
-// twice the value (constants.md).
+// Tolerance of the angle [rad] or [m]. Chosen: a motion that is planned exactly at the limit keeps
+// the limit, except for the rounding of a table with four decimals. No measured case changes
+// between half and twice the value (constants.md).
 constexpr double kPositionTolerance = 1e-4;
 constexpr double kLeastHalfRange =
     1e-9;  // prevents a division by zero for a joint without a range [rad]

@@ -1,7 +1,8 @@
 // A motor has a peak torque: |tau| <= peak torque of the actuator profile, with tau from inverse
 // dynamics and the ground wrench shared between the feet, plus the rotor's inertia, viscous and
 // Coulomb friction of the servo (demand/ground_demand.hpp, motor_torques()). Stribeck and
-// load-dependent friction are not included, nor the torque that is lost with speed at a voltage.
+// load-dependent friction are not included, nor the loss of torque with speed that the voltage
+// causes.
 // A joint without a motor (kp of its servo is 0) gives no torque, whatever its files state as its
 // peak. Near the beginning and end of a flight, accelerations have no meaning, so torques are not
 // judged there.
@@ -19,13 +20,13 @@ namespace {
 // Largest share of the peak torque. Definition: the data sheet states the largest torque.
 constexpr double kWholeTorque = 1;
 
-// Torque that a joint without a motor bears beside its stated dry friction: the weight of the robot
-// times this lever [m]. Chosen: a limp hand hangs and swings freely, and the joints of a leg that
-// stands on bent knees need 20 times as much. No measured case changes from half to twice, because
-// the robots there have motors in all joints.
+// Torque that a joint without a motor may carry even if its stated dry friction is smaller: the
+// weight of the robot times this lever [m]. Chosen: a limp hand hangs and swings freely, and the
+// joints of a leg that stands on bent knees need 20 times as much. No measured case changes from
+// half to twice, because the robots there have motors in all joints.
 constexpr double kLimpLever = 1e-3;
 
-// Infinite where nothing is known.
+// The largest torque of a joint; infinite if nothing is known about it.
 double peak_of(const JudgedMotion& motion, int dof) {
   const double peak = motion.limits.peak_torque[dof];
   if (!motion.limits.lacks_motor(dof)) return peak;

@@ -88,7 +88,8 @@ struct RepairTraits {
 struct FindingSpec {
   FindingKind kind = FindingKind::cog_residual;
   LimitClass limit_class = LimitClass::posture;
-  const char* unit = "";     ///< of the tolerance: "1" a share of the limit, "m g" of the weight
+  /// The unit of the tolerance: "1" for a share of the limit, "m g" for a share of the weight.
+  const char* unit = "";
   double tolerance = 0;      ///< default tolerance; patterns and `--tolerance` may set another one
   const char* meaning = "";  ///< meaning in the text of `check --tolerances`
   /// The smallest default for a motion of one robot; null if the default holds for all motions.
@@ -117,9 +118,9 @@ struct Limit {
   std::vector<FindingSpec> findings;
   /// Records the violations of one sample. Called for all samples in order of time.
   void (*judge_sample)(JudgedMotion&, const JudgedSample&) = nullptr;
-  /// Computes values that take long and only depend on the commands, and stores them in a member of
-  /// JudgedMotion that only this limit uses. Runs on another thread at the same time as
-  /// judge_sample.
+  /// Computes values that only depend on the commands and need a long computation, and stores them
+  /// in a member of JudgedMotion that only this limit uses. Runs on another thread at the same time
+  /// as judge_sample.
   void (*look_ahead)(JudgedMotion&) = nullptr;
   /// Records violations that only the whole motion shows. Called after all samples.
   void (*judge_motion)(JudgedMotion&) = nullptr;

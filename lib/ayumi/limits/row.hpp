@@ -99,7 +99,7 @@ struct RowPrices {
   double zmp_margin = 0, landing = 0, dcm = 0;  ///< prices of soft goals
   /// Price of a limit when the program is relaxed to find the reasons against a repair.
   double limit = 0;
-  double foot = 0;  ///< price of feet in contact and of flight then; they are violated last
+  double foot = 0;  ///< price of feet in contact and of flight in this case; they are violated last
 };
 
 /// The place of rows among those of one sample: by group, then by item, then by line. The order
@@ -114,7 +114,8 @@ struct RowOrder {
 struct RowKind {
   const char* name = "";
   double RowPrices::*unit = &RowPrices::share;  ///< unit of a violation
-  double RowPrices::*soft_goal = nullptr;       ///< its price; null if the rows may not be violated
+  /// Price as a soft goal; null if the rows may not be violated.
+  double RowPrices::*soft_goal = nullptr;
   /// Price if limits are relaxed; null if the rows may not be violated.
   double RowPrices::*relaxed = &RowPrices::limit;
   /// Whether it requires more than the check; then it counts as cost of robustness.

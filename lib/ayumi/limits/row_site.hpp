@@ -28,9 +28,9 @@ struct CollocationPoint {
   /// Place of the sole, or of the ground below it, by Side.
   std::array<Eigen::Isometry3d, 2> ground;
   std::array<Eigen::Isometry3d, 2> path;  ///< pose of the sole in the given motion, by Side
-  /// Nearer one of the places where a swing begins and ends, by Side.
+  /// The nearer one of the places where a swing begins and ends, by Side.
   std::array<Eigen::Isometry3d, 2> place;
-  /// The kinds and items that have rows here; empty for all of them.
+  /// The kinds and items that have rows here; empty if all of them have.
   std::vector<std::pair<const RowKind*, int>> only;
   bool torques = false;  ///< whether a row depends on motor torques; set when all rows are placed
 

@@ -81,7 +81,8 @@ void judge_contact_edge(JudgedMotion& motion, Side side, const ContactInterval& 
                      lands ? k : k - run.samples, lands ? k + run.samples : k);
 }
 
-// The samples before the first one in place and after the last one in place belong to the swing.
+// The samples before the first sample and after the last sample in which the sole is in its place
+// belong to the swing.
 void judge_supporting_foot(JudgedMotion& motion, Side side, const ContactInterval& contact) {
   const int foot = static_cast<int>(side);
   const double high = motion.tolerance(FindingKind::foot_float),

@@ -6,7 +6,8 @@
 // goals for it. In open loop, the servos sag, and a sole that arrives low or tilted touches down
 // while it still moves. So a sole at height h over its place should be near this place,
 //   |offset| <= slack + k h^2,   with k from the motion's own swings,
-// and in the middle half of a swing at a share of the height that the motion's own swings have.
+// and in the middle half of a swing it should be at least as high as a share of the height that the
+// motion's own swings have.
 #include "ayumi/limits/swing_foot.hpp"
 
 #include <algorithm>

@@ -159,7 +159,7 @@ class JointJudge {
     first_ = false;
   }
 
-  /// The violations of the joints before this one, and of this one.
+  /// Adds the results of this joint to those of the joints before it.
   void add_to(SafetyReport& report, Violations& violations) const {
     if (margin_ < report.min_limit_margin) {
       report.min_limit_margin = margin_;

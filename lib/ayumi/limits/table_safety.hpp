@@ -24,7 +24,7 @@ struct SafetyOptions {
   /// 4e-9 rad.
   double beyond_range = 1e-6;
   double rest_speed = 0.1;  ///< speed below which the start and the end count as rest [rad/s]
-  double rest_window = 0;   ///< time over which the speed is a mean [s]; 0 for that over one row
+  double rest_window = 0;   ///< time over which the speed is a mean [s]; with 0, one row
 };
 
 /// The options for an imported sequence whose rows are kept and which is already complete: it gets

@@ -11,7 +11,7 @@ namespace ayumi {
 
 /// The free control points of a uniform cubic B-spline over base position, base rotation vector and
 /// joints. Its first and last three control points stay zero, so that the motion starts and ends as
-/// before. If the posture at this end is at fault, the three points move together.
+/// before. If the posture at one end is at fault, the three points at this end move together.
 struct CorrectionVariables {
   CorrectionTrack zero;   ///< the track with zero coefficients
   Eigen::MatrixXi index;  ///< variable of control point (row) and column, or -1

@@ -216,8 +216,8 @@ void solve_relaxed(RepairState& state) {
   note_work(state, relaxed, solution);
   state.result.constraint_violation = violation;
   state.relaxation_cut_short = solution.status == NlpStatus::iteration_limit;
-  // If even the nearby motion with the smallest violation violates a limit, no motion passes. A
-  // search that was stopped early does not show this.
+  // If even the nearby motion with the smallest violation violates a limit, no nearby motion
+  // passes. A search that was stopped early does not show this.
   if (solution.status != NlpStatus::failed)
     state.status = state.relaxation_cut_short ? NlpStatus::iteration_limit : NlpStatus::infeasible;
   take(state, problem.track(solution.x.head(problem.variable_count())));

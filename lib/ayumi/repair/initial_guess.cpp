@@ -36,8 +36,8 @@ std::vector<int> joints_at_fault(const RobotModel& model, const Finding& f) {
   return bodies ? joints_between(model, bodies->a, bodies->b) : std::vector<int>();
 }
 
-// The difference between the motion and a cubic that leads a joint from one end of a window to the
-// other.
+// The difference between a cubic, which leads a joint from one end of a window to the other, and
+// the motion.
 class StraightLine {
  public:
   StraightLine(const CommandSeries& series, int dof, const TimeWindow& window)
@@ -68,7 +68,7 @@ class StraightLine {
   long begin_ = 0, end_ = 0;
 };
 
-// The violation of the rows of soles and clearances, which are the most nonlinear rows.
+// The violation of the rows of soles and clearances, which are the least linear rows.
 struct LeastLinearViolation {
   double sum = 0, worst = 0;
 };

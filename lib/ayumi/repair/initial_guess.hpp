@@ -16,9 +16,9 @@ namespace ayumi {
 Eigen::MatrixXd with_halved_knots(const Eigen::MatrixXd& coefficients);
 
 /// `rows` control points at a distance of `spacing` [s] that lead the joints at fault straight past
-/// the errors, from `reach` [s] before an error to `reach` after it. At these two times, they have
-/// the angles and speeds of the motion. For a joint beyond its limit, only this joint is moved. For
-/// two bodies that overlap, all joints between them are moved.
+/// the errors, from `reach` [s] before an error to `reach` after it. At these two times, the joints
+/// have the angles and speeds of the motion. For a joint beyond its limit, only this joint is
+/// moved. For two bodies that overlap, all joints between them are moved.
 Eigen::MatrixXd straight_line_guess(const RobotModel& model, const CommandSeries& series,
                                     const std::vector<Finding>& findings, double reach,
                                     double spacing, Eigen::Index rows);
@@ -26,9 +26,10 @@ Eigen::MatrixXd straight_line_guess(const RobotModel& model, const CommandSeries
 /// The variables of the program for random control points.
 Eigen::VectorXd random_start(const CorrectionProblem& problem, const RandomStart& how);
 
-/// The point from which the program starts. It is no correction. If this violates the strongly
-/// nonlinear rows (soles and clearances) by much, it is the straight-line guess with the smallest
-/// violation of these rows.
+/// The point from which the program starts. It is the start of `nlp`, unless this start violates
+/// the strongly nonlinear rows (soles and clearances) by much. In this case it is the straight-line
+/// guess with the smallest violation of these rows, if this violation is smaller than that of the
+/// start.
 Eigen::VectorXd initial_guess(const CorrectionProblem& problem, const Nlp& nlp,
                               const RobotModel& model, const CommandSeries& series,
                               const std::vector<Finding>& findings);

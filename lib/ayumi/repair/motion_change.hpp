@@ -12,7 +12,7 @@ namespace ayumi {
 
 struct JointChange {
   std::string joint;
-  double most = 0;            ///< largest change, signed [rad], for sliding joints [m]
+  double most = 0;            ///< largest change with its sign [rad], for sliding joints [m]
   double at = 0;              ///< time of the largest change [s]
   double begin = 0, end = 0;  ///< times between which the change exceeds a tenth of the largest [s]
 };

@@ -1,6 +1,6 @@
 #pragma once
-// Feet that are planned to stand in one place. A correction keeps the planned places of the feet,
-// so no repair can separate them.
+// Feet that are planned to stand at the same place. A correction keeps the planned places of the
+// feet, so no repair can separate them.
 
 #include <optional>
 #include <string>

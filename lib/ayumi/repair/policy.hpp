@@ -81,8 +81,8 @@ namespace collocation {
 /// spline has its kinks at the knots, so that its extremes lie there or halfway. Test: none.
 inline constexpr int kPerKnot = 2;
 /// A limit has rows where the motion, or an earlier result, uses more than this share of it; the
-/// check of the result looks at the rest. Chosen: at 0 every limit has its rows. Between half and
-/// twice the value, figures change by less than 5 %. Test: none (PlacedRows.* set it to 0).
+/// check of the result tests the other limits. Chosen: at 0 every limit has its rows. Between half
+/// and twice the value, figures change by less than 5 %. Test: none (PlacedRows.* set it to 0).
 inline constexpr double kWatchedShare = 0.7;
 /// The normal force has rows where the motion presses with less than this share of the weight.
 /// Chosen. Between half and twice the value, figures change by less than 5 %. Test: none.
@@ -135,7 +135,7 @@ inline constexpr double kRounding = 1e-6;
 namespace zmp {
 /// Wanted margin of a repaired ZMP, as a share of the radius of the largest circle about the centre
 /// of the smaller sole. Reason: after a walk in open loop, the robot then stands although its
-/// servos sag. Chosen: 28 mm of HOAP-1. With half of the value, the ZMP margin of the case "sway"
+/// servos sag. Chosen: 28 mm on HOAP-1. With half of the value, the ZMP margin of the case "sway"
 /// changes from 28.7 to 13.7 mm; with twice, the missing safety of the case "sway" changes from
 /// 0.296 to 0.641. Test: Repair.Hoap1KneesInEveryStep (min_zmp_margin above 20 mm).
 inline constexpr double kSafeShare = 0.9;
@@ -225,7 +225,7 @@ inline constexpr double kLeastLandingHeight = 0.12;
 /// Test: Landing.ASoundWalkMeetsItsRows.
 inline constexpr double kOwnLandingFactor = 1.5;
 /// A sole below this height is left out of that median [m]. Reason: the quotient of two small
-/// numbers says little. No measured case changes between half and twice the value (constants.md).
+/// numbers is inaccurate. No measured case changes between half and twice the value (constants.md).
 /// Test: none.
 inline constexpr double kLowestMeasured = 0.001;
 /// Period at which the motion's swings are measured for landings, and for heights [s]. Chosen.
@@ -235,7 +235,8 @@ inline constexpr double kLowestMeasured = 0.001;
 inline constexpr double kLandingPeriod = 0.005, kHeightPeriod = 0.01;
 /// Wanted height in the middle half of a swing, as a share of the median height of the motion's own
 /// swings. Measured: when feet were only kept above the ground, the robot scraped the ground and
-/// fell in all of three cases of thrown knees. Test: Landing.AThrownKneePassesOverTheGround.
+/// fell in each of three cases with a knee that is thrown up. Test:
+/// Landing.AThrownKneePassesOverTheGround.
 inline constexpr double kHeightShare = 0.5;
 /// A swinging sole higher than this has no rows against the ground [m]. Chosen. Between half and
 /// twice the value, figures change by less than 5 %. Test: none.
@@ -243,9 +244,9 @@ inline constexpr double kWatchedHeight = 0.004;
 }  // namespace swing
 
 namespace dcm {
-/// The DCM is held to its plan where the posture has it off by more than this share of the COG's
-/// height, times kWatchedShare. Derived: 1 % is 0.06 of the capture bound B, the step of a push
-/// study. Test: ThrownKnee.LeavesTheCaptureBoundsAsTheyWerePlanned.
+/// The DCM is held to its plan where the posture displaces it from the plan by more than this share
+/// of the COG's height, times kWatchedShare. Derived: 1 % is 0.06 of the capture bound B, the step
+/// of a push study. Test: ThrownKnee.LeavesTheCaptureBoundsAsTheyWerePlanned.
 inline constexpr double kOff = 0.014;
 /// Time around such a posture in which the DCM is held [s]. Chosen: 3/omega. Between half and twice
 /// the value, figures change by less than 5 %. Test: none.
@@ -258,7 +259,7 @@ inline constexpr double kSlack = 3e-4;
 /// safety of the case "planned sway" changes from 0.485 to 0.288; with twice, to 0.747. Test:
 /// ThrownKnee.RepairedWithstandsThePushesOfItsPlan.
 inline constexpr double kZmpSlack = 1e-3;
-/// Time around an error of the commanded COG or ZMP in which the plan is no goal [s]. Chosen:
+/// Time around an error of the commanded COG or ZMP in which the plan is not a goal [s]. Chosen:
 /// 2/omega. No measured case changes between half and twice the value (constants.md). Test:
 /// ThrownKnee.FollowsNoPlanThatIsItselfAtFault.
 inline constexpr double kWrongPlanAround = 0.3;
@@ -290,8 +291,8 @@ inline constexpr double kKept = 2.4e-3;
 /// they keep. Between half and twice the value, figures change by less than 5 %. Test: none.
 inline constexpr double kWatchedBodies = 0.005;
 /// Shapes of such a pair that are nearer than this are watched [m]. Reason: when the nearest shapes
-/// move apart, the next ones are not far. Chosen: twice as far. No measured case changes between
-/// half and twice the value (constants.md). Test: none.
+/// move apart, the next shapes are not far away. Chosen: twice as far. No measured case changes
+/// between half and twice the value (constants.md). Test: none.
 inline constexpr double kWatchedShapes = 0.010;
 /// Amount by which a row of edges may be smaller than the rows of corners beside it [m]. If both
 /// are equal, only the corners count. Chosen. Between half and twice the value, figures change by
@@ -312,12 +313,12 @@ inline constexpr double kTrustedShare = 0.25;
 // for each `unit` of violation of the worst row of one limit within a window of time
 
 namespace prices {
-/// Price of a soft goal. Measured (support): with a tenth of it, walks in 0.65 of their time fall
-/// in open loop; with three times, their repair takes twice the iterations and the robot stands no
-/// better. Chosen (the others): a displaced foot costs more than the ZMP, and the DCM lies between.
-/// kZmpMargin, kLanding: between half and twice the value, figures change by less than 5 %. kDcm:
-/// with half of the value, the missing safety of the case "planned sway" changes from 0.485 to
-/// 0.263; with twice, figures change by less than 5 %.
+/// Price of a soft goal. Measured (support): with a tenth of it, walks that are played in 0.65 of
+/// their time fall in open loop after a repair; with three times, their repair takes twice the
+/// iterations and the robot does not stand better. Chosen (the others): a displaced foot costs more
+/// than the ZMP, and the DCM lies between. kZmpMargin, kLanding: between half and twice the value,
+/// figures change by less than 5 %. kDcm: with half of the value, the missing safety of the case
+/// "planned sway" changes from 0.485 to 0.263; with twice, figures change by less than 5 %.
 inline constexpr double kZmpMargin = 0.1, kLanding = 1, kDcm = 0.3;
 /// Price of a limit in the relaxed program. Reason: it is above all observed multipliers, so that a
 /// limit is only violated if it must be; a repair costs about 1. With half of the value, the
@@ -350,8 +351,8 @@ inline constexpr double kMet = 1e-6;
 // ---- the rounds
 
 namespace rounds {
-/// Largest number of rounds. Measured: walks in half of their time are repaired within them. Test:
-/// none.
+/// Largest number of rounds. Measured: walks that are played in half of their time are repaired
+/// within this number. Test: none.
 inline constexpr int kMost = 8;
 /// Largest number of rounds without a solution. Chosen: first wider windows are tried, then finer
 /// knots, then a program without soft goals. No measured case changes between half and twice the
@@ -374,11 +375,12 @@ inline constexpr double kNearKnown = 1e-2;
 /// tolerance. Test: Repair.* (constraint_violation).
 inline constexpr double kMet = 1e-6;
 /// Largest number of iterations of the first program. Reason: finer knots may help more than
-/// further iterations. Measured: a thrown knee changed nothing in the last 60 of 100. No measured
-/// case changes between half and twice the value (constants.md). Test: none.
+/// further iterations. Measured: in the repair of a knee that is thrown up, the last 60 of 100
+/// iterations changed nothing. No measured case changes between half and twice the value
+/// (constants.md). Test: none.
 inline constexpr int kBeforeFinerKnots = 50;
-/// Tolerance of optimality; the smallest change is only searched at the end. Chosen. Between half
-/// and twice the value, figures change by less than 5 %. Test: none.
+/// Tolerance of optimality; the smallest change is only searched for at the end. Chosen. Between
+/// half and twice the value, figures change by less than 5 %. Test: none.
 inline constexpr double kTolerance = 1e-3;
 /// Largest work of all programs of a repair (NlpSolution::work) for each second of the motion.
 /// Measured: a unit of work takes 1.3e-8 s of processor time, so that the programs end within 2 s
@@ -405,15 +407,17 @@ inline constexpr int kMostRounds = 4;
 /// fixed tolerance, the barrier of a thousand rows outweighed a change of half a thousandth. It
 /// only applies to complementarity (NlpOptions::tolerance). Test: LeastChange.*.
 inline constexpr double kTolerance = 1e-7, kLeastTolerance = 1e-9, kMostTolerance = 1e-6;
-/// Share of the way back to the passing motion at which the next program starts. Chosen. Between
-/// half and twice the value, figures change by less than 5 %. Test: none.
+/// Share of the difference to the passing motion by which the start of the next program is moved
+/// back to this motion. Chosen. Between half and twice the value, figures change by less than 5 %.
+/// Test: none.
 inline constexpr double kStartBack = 0.1;
-/// Shares of the way back to the passing motion that are tried before the program is solved once
-/// more: the first and the largest; each is ten times the one before. Chosen: a step of a
-/// thousandth of the way back changes the weighted change by at most a thousandth of the difference
-/// between the two motions, because it is convex. It saves a program of ten iterations (friction
-/// 0.10 on a walk of 4.3 s). Test: LeastChange.* (the motion after going back costs more than the
-/// smallest change).
+/// Shares of the difference to the passing motion that are tried as steps back to this motion,
+/// before the program is solved once more: the first and the largest; each is ten times the one
+/// before. Chosen: a step of a thousandth of the difference changes the weighted change by at most
+/// a thousandth of the difference between the weighted changes of the two motions, because the
+/// weighted change is convex. The step saves a program of ten iterations (friction 0.10 on a walk
+/// of 4.3 s). Test: LeastChange.* (the motion after the step back costs more than the smallest
+/// change).
 inline constexpr double kFirstBack = 1e-6, kMostBack = 1e-3, kBackFactor = 10;
 /// ZMP margin without robustness, inside the edge [m]. Derived: kRounding of 1 mm. Test: none.
 inline constexpr double kZmpMargin = kRounding * 1e-3;
@@ -422,8 +426,9 @@ inline constexpr double kZmpMargin = kRounding * 1e-3;
 // ---- the solver
 
 namespace solver {
-/// Barrier with which a program starts, and barrier of a warm start, which a larger one would push
-/// away from a motion with a small violation. Measured: 20 iterations instead of 36. Test: none.
+/// Barrier with which a program starts, and barrier of a warm start. A larger barrier would push a
+/// warm start away from a motion with a small violation. Measured: 20 iterations instead of 36.
+/// Test: none.
 inline constexpr double kStartBarrier = 1e-3, kWarmBarrier = 1e-5;
 /// Smallest barrier of a start with multipliers, even if the last program ended with a smaller one.
 /// Chosen: with a larger one, the result of the last program is lost; with a smaller one, steps to
@@ -458,8 +463,8 @@ inline constexpr double kBaseStep = 1e-6, kWrenchStep = 1e-5;
 
 namespace guess {
 /// If soles and clearances are violated by more than this, the program starts from a guess [m],
-/// [rad]. Measured: for a hip that is thrown up by a radian, it took 232 iterations without a guess
-/// and 20 with it. Test: none.
+/// [rad]. Measured: for a hip that is thrown up by a radian, the program took 232 iterations
+/// without a guess and 20 with a guess. Test: none.
 inline constexpr double kFarOff = 0.01;
 /// Times before and after an error between which its joints follow a straight line [s]. Chosen:
 /// from less than a knot interval to the time of a step. No measured case changes between half and
@@ -477,8 +482,8 @@ inline constexpr int kMostIterations = 60;
 /// Largest number of reasons in words. Chosen. No measured case changes between half and twice the
 /// value (constants.md). Test: none.
 inline constexpr size_t kMostReasons = 6;
-/// A window that would need more time than this factor is not called too short. Chosen. No measured
-/// case changes between half and twice the value (constants.md). Test: cli
+/// A window that would have to become longer by more than this factor is not called too short.
+/// Chosen. No measured case changes between half and twice the value (constants.md). Test: cli
 /// Infeasible.AWindowFarTooShortIsStillAMatterOfTime.
 inline constexpr double kSlowest = 8;
 /// Precision of that factor. Derived: it is written with one decimal. Test: none.
@@ -496,7 +501,7 @@ inline constexpr double kLength = 0.01, kForce = 10, kOther = 0.1;
 
 namespace report {
 /// A joint that moves by less than this counts as unmoved [rad]. Chosen: far below a servo count
-/// (8e-5 rad of HOAP-1). No measured case changes between half and twice the value (constants.md).
+/// (8e-5 rad on HOAP-1). No measured case changes between half and twice the value (constants.md).
 /// Test: none.
 inline constexpr double kMoved = 1e-6;
 /// The time of a change is the time in which it is above this share of its largest value. Chosen.

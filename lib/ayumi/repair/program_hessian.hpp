@@ -32,8 +32,8 @@ void objective_gradient(const ProgramHessian& hessian, const Eigen::VectorXd& x,
 /// Curvature of the rows of one point, for the columns that are curved.
 struct PointCurvature {
   SplineWeights weights;
-  /// Second derivatives by value and value, by acceleration and value, and the transpose of the
-  /// latter. Empty if nothing is curved.
+  /// Second derivatives by value and value, by acceleration and value, and the transpose of
+  /// `mixed`. Empty if nothing is curved.
   Eigen::MatrixXd value, mixed, turned;
   Eigen::Matrix2d cone = Eigen::Matrix2d::Zero();  ///< second derivatives by the tangential force
   std::array<Eigen::MatrixXd, 4> force;  ///< derivatives of this force by each control point

@@ -1,9 +1,9 @@
 // The stages of a repair:
 //   setup      check the motion, and decide how finely a correction has to act
-//   rounds     solve, lay the correction over the motion, check again (repair_rounds)
+//   rounds     solve, add the correction to the motion, check again (repair_rounds)
 //   tighten    from a correction that passes to the least one (tighten_to_check_limits)
-//   relaxed    where no round passes: find what stands in the way (infeasibility_report)
-//   conclude   status, change and reasons
+//   relaxed    if no round passes, find what prevents a repair (infeasibility_report)
+//   conclude   determine status, change and reasons
 #include "ayumi/repair/repair.hpp"
 
 #include <algorithm>

@@ -3,10 +3,10 @@
 // that bring a command series inside all limits of the check with the smallest change. Ipopt solves
 // the program.
 //
-// Ipopt takes Ayumi's linear solver under the name MA27, in one place of the whole process. That
-// place is held only while a repair runs, for the threads that run one, and it is empty again
-// afterwards. A host program that has its own MA27 keeps it, and repairs then use MUMPS. See
-// repair/nlp/nlp.hpp.
+// Ipopt accepts Ayumi's linear solver only under the name MA27, and the whole process has only one
+// place for it. Ayumi holds this place only while a repair runs, for the threads that run one;
+// afterwards, the place is empty again. A host program that has its own MA27 keeps it, and repairs
+// then use MUMPS. See repair/nlp/nlp.hpp.
 
 #include <array>
 #include <cstdint>
@@ -60,7 +60,8 @@ struct RepairOptions {
   std::optional<double> zmp_margin;
   /// Largest number of Ipopt's iterations in each round.
   int max_iterations = repair_policy::rounds::kMostIterations;
-  /// Largest work for each second of the motion, and for five seconds at least.
+  /// Largest work for each second of the motion. A motion of less than five seconds has the work of
+  /// five seconds.
   double most_work = repair_policy::rounds::kMostWork;
   bool mumps = false;  ///< whether MUMPS solves the linear systems, for comparison
   /// Random start of the first program, to test how little depends on it.

@@ -1,8 +1,8 @@
 #pragma once
 // The rounds of a repair. Each round chooses windows around the findings of the check, solves, adds
 // the correction to the motion at its full rate, and checks again. A later round has more freedom
-// (wider windows, finer knots), rows for every limit to which the motion has come near, and a
-// little more distance from the limits.
+// (wider windows, finer knots), rows for every limit that the motion has come near, and a slightly
+// larger distance from the limits.
 
 #include "ayumi/repair/repair_state.hpp"
 

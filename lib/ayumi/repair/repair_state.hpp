@@ -1,6 +1,6 @@
 #pragma once
-// The data that the stages of one repair share: the question, the program of the last round, and
-// the best result so far. The stages are functions of this state: repair_rounds,
+// The data that the stages of one repair share: the request, the program of the last round, and the
+// best result so far. The stages are functions of this state: repair_rounds,
 // tighten_to_check_limits and infeasibility_report.
 
 #include <deque>
@@ -48,7 +48,7 @@ struct RepairState {
   std::optional<CorrectionTrack> passing = {};  ///< an earlier result that passes the check
   bool relaxation_cut_short = false;  ///< whether the limit of iterations stopped the search
   std::optional<OverlappingFeet> overlap =
-      {};  ///< feet that are planned in one place, in which case there is no solution
+      {};  ///< feet that are planned at the same place, in which case there is no solution
 };
 
 /// The state before the first round, with the check of the motion as it is given.

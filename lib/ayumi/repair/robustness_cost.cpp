@@ -36,7 +36,7 @@ std::vector<TimeWindow> windows_of_change(const CommandSeries& before, const Com
   return merged(std::move(windows));
 }
 
-// For every factor of robustness, the feet stay in their places.
+// The price of the places of the feet does not depend on the robustness factor `safety`.
 double price_factor(const RowKind& kind, double safety) {
   return kind.relaxed == &RowPrices::foot ? 1 : safety;
 }

@@ -63,7 +63,7 @@ RowSettings row_settings(const CorrectionSpec& spec) {
   return s;
 }
 
-// The rows in the order of the program, without the rows of points that only have a few.
+// The rows in the order of the program. Points with a list `only` keep only the rows of this list.
 std::vector<RowBlock> ordered(std::vector<RowBlock> all,
                               const std::vector<CollocationPoint>& points) {
   std::erase_if(all, [&](const RowBlock& block) {

@@ -65,9 +65,10 @@ struct PassingResult {
   bool as_table;
 };
 
-// Keeps the result, or replaces it by a motion that passes, at most a share of the way back to the
-// correction that passed. Returns false if there is none, without a change of the result. If the
-// motion that is farthest back does not pass, the others are not tried.
+// Keeps the result if it passes. Otherwise, moves it back towards the correction that passed, by a
+// share `most_back` of their difference or less, so that it passes. Returns false and does not
+// change the result if the motion with the share `most_back` does not pass; smaller shares are not
+// tried then.
 bool take_first_passing(RepairState& state, const PassingResult& passing, double most_back) {
   auto passes = [&] {
     return state.result.check.consistent && (!passing.as_table || table_passes(state));
@@ -81,8 +82,8 @@ bool take_first_passing(RepairState& state, const PassingResult& passing, double
     state.track = wanted;
     return false;
   }
-  // A small one of the shares kFirstBack * kBackFactor^i that passes, found by bisection. It is the
-  // smallest one if every motion farther back passes, too.
+  // Bisection over the shares kFirstBack * kBackFactor^i finds a small share whose motion passes.
+  // It is the smallest share that passes, provided that all larger shares pass, too.
   std::vector<double> shares;
   for (double share = policy::tighten::kFirstBack; share < most_back;
        share *= policy::tighten::kBackFactor)

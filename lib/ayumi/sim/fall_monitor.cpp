@@ -47,11 +47,11 @@ constexpr double kRestSpeed = 0.054;
 /// and 2.6 mm under VIIP, and feet that hammer move it by 68 mm and more.
 constexpr double kRestZmp = 0.02;
 /// Time at the end in which the ZMP must be at rest [s]. Chosen: several periods of the slowest
-/// oscillation that is looked for, and shorter than the time (1 s) for which a run continues after
-/// its motion.
+/// oscillation that is searched for, and shorter than the time (1 s) for which a run continues
+/// after its motion.
 constexpr double kRestTime = 0.5;
-/// Slowest oscillation of the ZMP that is looked for [Hz]. Chosen: faster than any step, and slower
-/// than the rocking of a robot on soft soles. Slower motions are judged by the COG.
+/// Slowest oscillation of the ZMP that is searched for [Hz]. Chosen: faster than any step, and
+/// slower than the rocking of a robot on soft soles. Slower motions are judged by the COG.
 constexpr double kSlowestRocking = 3;
 /// Time off the ground after which the robot is in flight [s]. Chosen: a shorter one is a rebound.
 /// With half of the value, the duration of the flight of the case "viip jump" changes from 0.154 to

@@ -16,8 +16,8 @@ class LoadCell {
 
   /// The part of the force that the cell senses in this reading, times the gain [N]:
   ///   x = max(f - dead zone, 0),   y = y' moved no farther than into x -/+ hysteresis/2,
-  /// with the y' of the reading before, at first 0. So y is x - hysteresis/2 while the force rises
-  /// by more than the hysteresis, and x + hysteresis/2 while it falls.
+  /// where y' is the y of the previous reading, or 0 at first. So y is x - hysteresis/2 while the
+  /// force rises by more than the hysteresis, and x + hysteresis/2 while it falls.
   double felt(double force);
 
   /// Takes the value [N] of this reading, after noise and rounding. Returns the mean of the last

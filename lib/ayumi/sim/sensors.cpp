@@ -119,7 +119,7 @@ void Sensors::draw_numbers(const StepReport& report) {
 Vector3d Sensors::noise(double sigma) {
   const Eigen::Map<const Vector3d> numbers(&numbers_[used_]);
   used_ += 3;
-  // The published tables were made with z drawn first.
+  // The first number is that of z: the published tables were made in this order.
   return sigma * numbers.reverse();
 }
 

@@ -29,8 +29,8 @@ constexpr double kLongestCalibration = 3;
 /// Step of Ayumi's own plant and of the sensors during this time [s]; another plant keeps its tick.
 /// Chosen: the robot hardly moves, and the examination then takes a quarter of the time. Of 200
 /// draws of HOAP-1's uncertainty, 7 decide differently than with 1 ms whether an offset is found,
-/// and another seed of the noise changes 11 or 17. With half of the step, 1 decides differently;
-/// with twice, 8 (docs/theory_plant.md).
+/// and another seed of the noise changes 11 or 17 decisions. With half of the step, 1 decides
+/// differently; with twice, 8 (docs/theory_plant.md).
 constexpr double kCalibrationStep = 0.004;
 /// Simulated time after a fall [s]. Chosen: the robot has reached the ground, which a replay shows.
 /// Between half and twice the value, figures change by less than 5 %.
@@ -96,8 +96,8 @@ Simulator::Simulator(const RobotModel& model, const CommandSeries& series,
   if (!options.true_state && options.controller.type != ControllerKind::none) calibrate_ankles();
 }
 
-// Done before the first tick with separate sensors, so that a robot that stands on its soles gets
-// the same readings as without this.
+// This is done before the first tick with separate sensors, so that a robot that stands on its
+// soles gets the same readings as without this.
 void Simulator::calibrate_ankles() {
   const bool own_plant = !options_.plant.make;
   const double dt = own_plant ? std::max(kCalibrationStep, series_->dt) : series_->dt;
@@ -212,8 +212,8 @@ const ControlOutput& Simulator::with_targets_of_caller(double t, const ControlOu
   return changed_;
 }
 
-/// The servos read their encoders. If the sensors are as the sidecar describes them, the servos
-/// receive whole counts.
+/// The output with the targets that the servos receive: they are angles as the encoders read them,
+/// and whole counts if the sensors are as the sidecar describes them.
 const ControlOutput& Simulator::in_counts(const ControlOutput& out) {
   if (encoder_offset_.size() == 0 && !counts_targets_) return out;
   changed_ = out;

@@ -21,9 +21,10 @@ namespace {
 // slopes by 5 degrees leaves HOAP-1 a share of 0.6.
 constexpr double kOnEdge = 0.15;
 
-// Share of this distance up to which an ankle turns, and smaller share from which on its sole is at
-// rest. Chosen: half of the distance, and less for the rest, so that the noise of the load cells
-// does not end it.
+// An ankle turns until the centre of pressure of its sole is at this share of the largest possible
+// distance from the edges; from the smaller share on, the sole counts as at rest. Chosen: half of
+// the distance, and a smaller share for rest, so that the noise of the load cells does not end the
+// rest.
 constexpr double kInside = 0.5;
 constexpr double kAtRest = 0.3;
 

@@ -49,8 +49,8 @@ void run_numbers(const UncertainTask& task, const std::vector<long>& numbers,
                  const Progress& progress);
 
 /// Bounds of the quantile 1 - p0 of the largest errors of a run, each with the confidence of the
-/// test, from as many first runs as a certificate without a failure needs. Runs that fell count as
-/// infinitely bad; an infinite value means that there is no bound.
+/// test. They are computed from the first runs, as many as a certificate without a failure needs.
+/// Runs that fell count as infinitely bad; an infinite value means that there is no bound.
 struct QuantileBounds {
   double cog_error = 0, torque = 0, foot_tilt = 0;
   long runs = 0;  ///< number of runs; 0 if the test stopped before

@@ -19,7 +19,7 @@ namespace ayumi {
 namespace {
 
 // Share of the room between standing still and a limit that a timing may use at first. Chosen: the
-// rest is more than the smoothing and the ticks between two points change.
+// remaining share is larger than the effect of the smoothing and of the ticks between two points.
 constexpr double kFirstShare = 0.97;
 // Factor by which this share is reduced around an error of the check: the limit divided by the
 // value, within these bounds, and the time to either side [s of the path]. Chosen: one to three
@@ -43,8 +43,8 @@ constexpr double kSearchPeriod = 0.01;
 // Spacing of the points in this search [s]. Chosen: each peak of a swing of 0.2 s has several
 // points.
 constexpr double kSearchSpacing = 0.02;
-// Relative accuracy of that pace, and the share by which the path is then slower. Chosen: coarse
-// samples miss the peaks by about a percent.
+// Relative accuracy of the pace that this search finds, and the factor by which the path is then
+// slower. Chosen: coarse samples miss the peaks by about a percent.
 constexpr double kPaceAccuracy = 0.02;
 constexpr double kPaceSpare = 1.01;
 // Factor between paces if the ZMP leaves the support, which no row predicts. Chosen.
@@ -53,7 +53,7 @@ constexpr double kSlowerPace = 1.25;
 // range to the other.
 constexpr int kMostPaces = 25;
 // Factor by which the path becomes slower if limits contradict each other, and the largest number
-// of times. Chosen: the share of the limits that is used asks for 1.5 %.
+// of such changes. Chosen: the share of the limits that is used requires 1.5 %.
 constexpr double kSlowerPath = 1.03;
 constexpr int kMostSlower = 6;
 
@@ -173,8 +173,8 @@ class LocalSearch {
     return false;
   }
 
-  // The smallest scale at which the whole path keeps its limits, found with coarse samples. If
-  // there is no such scale, the largest one that was tried.
+  // The smallest scale at which the whole path is within its limits, found with coarse samples,
+  // times kPaceSpare. It is 1 if no such scale is found.
   double path_scale() {
     PathLimitOptions path = options_.path;
     path.own_margin = 0;
@@ -316,7 +316,7 @@ class LocalSearch {
       const double t = options_.dt * static_cast<double>(k);
       while (i + 2 < times.size() && times[i + 1] <= t) ++i;
       const double step = points[i + 1].at - points[i].at;
-      // This holds except in a pause.
+      // The duration of this step that follows from x. In a pause, `times` has another duration.
       const double lasts = 2 * step / (std::sqrt(x[i]) + std::sqrt(x[i + 1]));
       const double later = (t - times[i]) * lasts / (times[i + 1] - times[i]);
       const double u = (x[i + 1] - x[i]) / (2 * step);

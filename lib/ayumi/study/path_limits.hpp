@@ -50,8 +50,9 @@ class PathLimits {
   const std::vector<TimingPoint>& points() const { return timing_; }
 
   /// Makes the rows about a timing with these u and x by point. `share` gives, by point, the part
-  /// of the room between standing still and a limit that may be used. In a motion that flies, the
-  /// path's own pace (u = 0, x = 1) keeps all rows, because nothing else is possible in flight.
+  /// of the room between standing still and a limit that may be used. In a motion with a flight,
+  /// bounds are raised where necessary, so that the path's own pace (u = 0, x = 1) satisfies all
+  /// rows; no other pace is possible in flight.
   void linearize(const std::vector<double>& u, const std::vector<double>& x,
                  const std::vector<double>& share);
 
@@ -65,8 +66,8 @@ class PathLimits {
 
   /// The values that the path allows if it is played at one pace.
   struct UniformPace {
-    bool keeps = false;  ///< the path's own pace keeps all rows
-    double pace = 0;     ///< the largest pace that keeps all rows except those of the ZMP
+    bool keeps = false;  ///< whether the path satisfies all rows at its own pace
+    double pace = 0;     ///< the largest pace that satisfies all rows except those of the ZMP
   };
   UniformPace uniform_pace();
 

@@ -6,10 +6,10 @@ namespace ayumi {
 
 namespace {
 
-// Speeds of joints [rad/s] and of the trunk [m/s, rad/s] below which nothing moves. Chosen: what an
-// eye takes for standing; while a pose is held, the COG that is solved from the ZMP still settles
-// by a millimetre or two. With a tenth of the values, holds of less than a second are missed; half
-// or twice changes the length of a pause by a tenth of a second.
+// Speeds of joints [rad/s] and of the trunk [m/s, rad/s] below which nothing moves. Chosen: to an
+// observer, such a motion looks like standing; while a pose is held, the COG that is solved from
+// the ZMP still settles by a millimetre or two. With a tenth of the values, holds of less than a
+// second are missed; half or twice changes the length of a pause by a tenth of a second.
 constexpr double kStillJoint = 0.01, kStillTrunk = 2e-3, kStillTurn = 0.01;
 // Shortest pause [s]. Chosen: keyed joints that turn back rest for some hundredths of a second.
 constexpr double kShortest = 0.1;

@@ -10,7 +10,7 @@
 
 namespace ayumi {
 
-/// The begin and the end of a span [s].
+/// The beginning and the end of a span [s].
 using TimeSpan = std::pair<double, double>;
 
 /// The spans of at least 0.1 s in which no joint and no trunk moves, in the order of time.

@@ -36,8 +36,9 @@ namespace {
 /// recovery in the push while walking takes 0.054 s instead of 0.019 s; with twice, the recovery in
 /// the push while standing takes 0 s instead of 0.019 s.
 constexpr double kNearPlan = 0.045;
-/// Share of the set around the unpushed run. Measured: without sensor noise, a run that has been in
-/// this part never drifts out of the whole set (docs/measurements/pushes.md, "Early verdicts").
+/// Size of the inner part of the set around the unpushed run, as a share of the set. Measured:
+/// without sensor noise, a run that has been in this part never drifts out of the whole set
+/// (docs/measurements/pushes.md, "Early verdicts").
 constexpr double kWellInside = 1.0 / 3;
 /// Tilt beyond which a stance foot is tilted [rad]. Chosen: above the tilt that the compliance of a
 /// loaded sole allows. No measured case changes between half and twice the value (constants.md).
@@ -271,7 +272,7 @@ struct Study {
   void search(size_t i, PushCase& found);
 };
 
-// Runs a controller to the end, standing or not. The run is copied on the way for each phase.
+// Runs a controller to the end, standing or not. During the run, it is copied for each phase.
 void Study::run_baselines(size_t controller, bool standing) {
   std::vector<std::pair<long, PushBaseline*>> branches;  // baselines to copy, by tick
   for (size_t p = 0; p < phases.size(); ++p)
@@ -294,7 +295,7 @@ void Study::run_baselines(size_t controller, bool standing) {
     for (const auto& [tick, baseline] : branches)
       if (std::max(0L, tick) == run.tick()) baseline->simulator = run;
   };
-  // Whether a run that goes on from one of the copies is tested after this tick.
+  // Whether a run that continues from one of the copies is tested after this tick.
   const auto tested = [&] {
     return std::any_of(branches.begin(), branches.end(), [&](const auto& b) {
       const long since = run.tick() - std::max(0L, b.first);

@@ -27,9 +27,9 @@ constexpr double kLargeScale = 3;
 /// that the first scale that passes is not skipped. No measured case changes between half and twice
 /// the value (constants.md).
 constexpr double kSpeedStep = 0.8;
-/// Factor between scales beyond an edge, and their number below: 0.5 % each, 18 % in all. Chosen: a
-/// compromise, since each scale costs one sampling and one check. No measured case changes between
-/// half and twice the value (constants.md).
+/// Factor between the scales that are tried beyond an edge: 0.5 % each, with kBeyondSteps of them
+/// 18 % in all. Chosen: a compromise, since each scale costs one sampling and one check. No
+/// measured case changes between half and twice the value (constants.md).
 constexpr double kBeyondStep = 1.005;
 // The number of these scales. No measured case changes between half and twice the value
 // (constants.md).

@@ -1,6 +1,6 @@
 #pragma once
-// Searches better gains by a coordinate search with a declared objective, a declared set of pushes
-// and a fixed order. The same input gives the same gains for any number of threads.
+// Searches for better gains by a coordinate search with a declared objective, a declared set of
+// pushes and a fixed order. The same input gives the same gains for any number of threads.
 
 #include <map>
 #include <string>

@@ -23,11 +23,11 @@ using Eigen::Isometry3d;
 // Largest number of footholds that are examined. Chosen: each cause costs up to two checks. A walk
 // whose every step collides has one cause.
 constexpr size_t kMostFootholds = 3;
-// Grain of a change to the side, and its largest size. Chosen: the grain is what an author writes,
-// and the largest size limits the search.
+// Step between the changes to the side that are tried, and their largest size. Chosen: an author
+// writes whole millimetres, and the largest size limits the search.
 constexpr double kSideGrain = 1e-3, kMostSide = 0.2;  // [m]
 constexpr double kDegree = EIGEN_PI / 180;            // a degree [rad]
-constexpr double kRadianGrain = 0.01;  // grain of a turn if the pattern is in rad [rad]
+constexpr double kRadianGrain = 0.01;  // step between turns if the pattern is in rad [rad]
 // Largest overlap of the feet that is examined, as a share of the width of a sole. Chosen: the
 // overlap of a step that is turned or narrowed a little too much. Feet that are exchanged, or on
 // the wrong side, overlap by most of their width.
@@ -165,7 +165,7 @@ class Footholds {
     const FootPlan plan(task_.robot, task_.pattern);
     const Isometry3d stance = plan.pose(other(swing.foot), task_.pattern.phases[phase].until);
     return first_apart(phase, static_cast<int>(std::lround(kMostSide / kSideGrain)), [&](int n) {
-      // Number of whole grains beyond the written value, counted outwards.
+      // `to` is n whole steps beyond the written value, counted outwards.
       const double from = swing.step ? outwards * swing.step->side : 0;
       const double to = kSideGrain * (std::floor(from / kSideGrain + kRounding) + n);
       const Eigen::Vector3d shift = (to - from) * outwards * stance.linear().col(1);
@@ -201,7 +201,7 @@ class Footholds {
 
   std::optional<Mistake> mistake_at(size_t phase) {
     const std::optional<double> clearance = clearance_at_end(task_.pattern, phase);
-    if (!clearance || *clearance >= 0) return {};  // the feet meet on the way
+    if (!clearance || *clearance >= 0) return {};  // the feet collide during the step
     if (-*clearance > kGrazing * width_of_sole()) return {};
     const Swing& swing = *task_.pattern.phases[phase].swing;
     std::string words = std::string("the ") + name_of(swing.foot) + " foot lands " +

@@ -9,8 +9,8 @@
 namespace ayumi {
 
 /// The state, COG, ZMP, f_z, foot forces and motor torques that the full model needs for `motion`,
-/// and beside them what `command` commands (the same series, or the one before a change). The log
-/// has every `stride`-th sample, starting with the first.
+/// and in addition the commanded values of `command` (the same series, or the one before a change).
+/// The log has every `stride`-th sample, starting with the first.
 SimulationLog plan_log(const RobotModel& model, const ActuatorLimits& actuators,
                        const CommandSeries& motion, const CommandSeries& command, int stride = 1);
 

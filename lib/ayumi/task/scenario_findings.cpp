@@ -21,7 +21,8 @@ std::vector<std::string> findings_under_scenario(const Task& task, const CheckOp
                   [](const Disturbance& d) { return std::holds_alternative<Payload>(d.what); });
   for (const Disturbance& d : task.pattern.scenario) {
     if (!std::holds_alternative<FrictionChange>(d.what)) continue;
-    // Disturbances that act at the same time act together.
+    // The check includes the changes of friction and the payloads that act at the same time as this
+    // one.
     CheckOptions loaded = options;
     for (const Disturbance& other : task.pattern.scenario)
       if (const auto* friction = std::get_if<FrictionChange>(&other.what);

@@ -1,7 +1,8 @@
 #pragma once
-// Tables of servo targets, made for the servos of a profile. A table holds the plain posture, or
-// the posture ahead by the lag of the servo (motion/servo_feedforward), or this with the offset
-// against the servo's sag under the torque of the motion (control/torque_feedforward).
+// Tables of servo targets, made for the servos of a profile. A table holds the plain posture; or
+// the posture ahead by the lag of the servo (motion/servo_feedforward); or this posture with an
+// additional offset that compensates for the servo's sag under the torque of the motion
+// (control/torque_feedforward).
 
 #include <string>
 #include <vector>
@@ -16,7 +17,7 @@ namespace ayumi {
 enum class ServoContent { ideal, lead, lead_and_sag };
 /// The name of the content: "ideal", "lead" or "lead+sag".
 std::string name_of(ServoContent content);
-/// The content of that name. Throws Error(usage) for an unknown name.
+/// The content with this name. Throws Error(usage) for an unknown name.
 ServoContent servo_content(const std::string& name);
 
 /// What a table says about the servo that it was made for.

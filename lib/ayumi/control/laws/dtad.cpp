@@ -10,8 +10,8 @@
 // The term with ka is the part of (14) that the reference lacks. By (14), w2 (x - refZ) is the
 // wanted acceleration, and the ground gives w2 (x - zhat). The term is zero if the ZMP is where it
 // should be. This is the short-term absorption. The term with damp damps the rocking of the robot
-// on soles and servos that yield, which the late answer of the term with ka drives (docs/theory.md,
-// "Late sensors").
+// on soles and servos that yield. This rocking is excited by the term with ka, because it answers
+// late (docs/theory.md, "Late sensors").
 #include "ayumi/control/laws/dtad.hpp"
 
 #include <algorithm>
@@ -57,7 +57,7 @@ constexpr double kContactTiltTime = 0.33;
 
 using GainFields = std::map<std::string, double*>;
 
-/// Gains of the body, which apply whatever chooses the ZMP.
+/// Gains of the body, which apply with every method that chooses the ZMP.
 GainFields body_gain_fields(DtadParams& p) {
   return {{"ka", &p.zmp_gain},           {"ks", &p.pull_rate},      {"kd", &p.pull_damping},
           {"damp", &p.rocking_damping},  {"tau_z", &p.zmp_filter},  {"margin", &p.margin},
@@ -116,8 +116,8 @@ Vector2d without_contradiction(const Vector2d& offset, const Vector2d& contradic
   return offset + std::clamp(-offset.dot(along), 0.0, size) * along;
 }
 
-/// Mean of the planned ZMP minus the COG over the first or the last time 1/omega of a plan that is
-/// at rest there. It is zero if the plan moves there, or if both agree.
+/// Mean of the planned ZMP minus the COG over the first or the last period 1/omega of a plan that
+/// is at rest there. It is zero if the plan moves there, or if both agree.
 Vector2d contradiction(const CommandSeries& series, bool at_end, double w) {
   const std::vector<CommandSample>& samples = series.samples;
   const auto count =

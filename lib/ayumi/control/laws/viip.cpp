@@ -63,9 +63,9 @@ constexpr double kSettleTime = 5;
 // "steps" changes from 2 to 4.
 constexpr double kStepLandingAfter = 0.6;
 
-// Fastest clock of a step that is made earlier, as a multiple of its own pace. Chosen: joint speeds
-// limit the swing before this clock is reached. No measured case changes between half and twice the
-// value (constants.md).
+// Largest factor by which a step may be speeded up so that it lands earlier, relative to its
+// planned speed. Chosen: joint speeds limit the swing before this factor is reached. No measured
+// case changes between half and twice the value (constants.md).
 constexpr double kStepTimeScaleLimit = 4;
 
 // Share of the difference between a landing error and the known bias that is taken over at each
@@ -84,8 +84,9 @@ constexpr double kLandingBiasLimit = 0.015;
 // value, figures change by less than 5 %.
 constexpr double kSlopeTime = 6.6;
 
-// Time constant of the low pass of the vertical push that the load cells measure, without the lag
-// of the servos [s]. Derived: with a low pass T and a force that is late by d, the loop obeys
+// Time constant of the low pass of the vertical push that the load cells measure [s]; the lag of
+// the servos is added to it. Derived: with a low pass T and a force that is late by d, the loop
+// obeys
 //   T s = -exp(-s d),
 // which is stable for d < T pi/2. Sensors may be 10 ms late.
 constexpr double kPushFilterTime = 0.010;
@@ -579,7 +580,7 @@ void Viip::step_state_machine(const Estimate& e) {
   next_.support = stage_ == Stage::single_support ? on(anchor_) : Support::both;
 }
 
-// COG, ZMP and trunk of the plan, for the fall monitor and the resolution.
+// COG, ZMP and trunk of the plan, for the fall monitor and resolve().
 void Viip::finish_plan() {
   const GroundPose feet = ground_middle(*model_, next_.feet);
   const double yaw_before = matrix_to_rpy(plan_.state.base.attitude.toRotationMatrix()).z();

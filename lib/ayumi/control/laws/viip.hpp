@@ -29,8 +29,8 @@ struct ViipParams {
   double height_rate = 1.5;  ///< [kz] sqrt(K_Pz / m) of (24) while both feet carry load
   double one_foot_rate = 1.06;  ///< [kz_one] `height_rate` while one foot carries load
   double height_damping = 1;    ///< [dz] K_Dz / (2 sqrt(m K_Pz)); (25) requires at least 1
-  double momentum_share = 0.3;  ///< [moment] share of the moment of a swing that the COG takes
-  double yielding = 1;          ///< [yield] share of a vertical push to which standing yields
+  double momentum_share = 0.3;  ///< [moment] share of a swing's moment that the COG compensates
+  double yielding = 1;       ///< [yield] share of a vertical push to which a standing robot yields
   double ankle_share = 0.5;  ///< [ankle] share of the stance foot's tilt that the ankle compensates
   double single_support = 1.7;  ///< [single] duration of a single support
   double double_support = 0.4;  ///< [both] duration of a double support
@@ -88,7 +88,7 @@ class Viip {
        const Handover& start, const CommandSample& held);
 
   /// Sets the goal for `ticks` ticks, from the coming tick on. A step goal without a number of
-  /// steps makes as many steps as fit into this time. A velocity ends after it.
+  /// steps makes as many steps as fit into this time. A velocity ends after this time.
   void set_goal(const ViipGoal& goal, long ticks);
 
   double omega() const { return omega_; }  ///< sqrt(g / z) of the held posture [1/s]

@@ -8,9 +8,9 @@
 //            with L its own at release; the IMU gives the attitude, the parabola the position
 //   landing  f_z/m = k (z1 - z) + g, k = z1'^2 / zd^2, until z' = 0      (27)
 //   settle   as the stoop, towards r
-// The angular momentum is zero at release: that of a resolution (28) is affine in the trunk's rate,
-// so that four resolutions give the rate that leaves none. This rate is blended in during the push,
-// and out during (27).
+// The angular momentum is zero at release. The angular momentum of a resolution (28) is affine in
+// the trunk's rate, so four resolutions determine the rate at which it is zero. This rate is
+// blended in during the push, and out during (27).
 #include "ayumi/control/laws/viip_jump.hpp"
 
 #include <Eigen/LU>
@@ -85,9 +85,10 @@ constexpr double kRunOnTime = 0.030;
 // Before touchdown the legs give way to the ground, up to this share of the falling speed. They
 // reach this share within the first time, and keep it from the second time before the planned
 // touchdown until as long after it [s]. Measured on 23 jumps of HOAP-1 (z_H 20 to 50 mm, both
-// releases), as the largest peak force over twice that of (27): 0.71 with these values, 0.81 with
-// 0.07 s for the first time. With 0.02 s for the second time, or a share of 0.95, the legs are
-// stretched too far before the touchdown, and the highest jumps land with 1.5 and 2.1 times.
+// releases), as the largest ratio of the peak force to twice the peak force of (27): 0.71 with
+// these values, 0.81 with 0.07 s for the first time. With 0.02 s for the second time, or a share of
+// 0.95, the legs are stretched too far before the touchdown, and in the highest jumps the ratio is
+// 1.5 and 2.1.
 constexpr double kRetractionTime = 0.050;
 constexpr double kRetractionHold = 0.010;
 constexpr double kRetractionShare = 0.9;
@@ -111,9 +112,9 @@ constexpr double kTouchdownTime = 0.003;
 // No measured case changes between half and twice the value (constants.md).
 constexpr double kHardTouchdownShare = 0.4;
 
-// A flight that is longer than planned by this ends as if it had touched down [s]. Chosen: half of
-// a flight of 0.1 m; the landing then meets a ground that is lower than planned. No measured case
-// changes between half and twice the value (constants.md).
+// A flight that is longer than planned by this ends as if the feet had touched down [s]. Chosen:
+// half of the duration of a flight with an apex of 0.1 m; the landing then meets a ground that is
+// lower than planned. No measured case changes between half and twice the value (constants.md).
 constexpr double kLateTouchdown = 0.15;
 
 // Correction of the feet in flight [1/s], pull towards the held posture [1/s], damping of the
@@ -634,10 +635,10 @@ void ViipJump::fly(const Estimate& e, ControlOutput& out) {
   if (touched || elapsed_ > flight_.duration + kLateTouchdown) touch_down(e);
 }
 
-// The vertical speed of the COG. While the feet carry load, it is measured from the ground; from
-// then on, it is the integral of the load cells' reading minus the weight. Load cells and encoders
-// have the same delay, so the duration of a flight has none. The speed before an impact is the one
-// before the load began.
+// The vertical speed of the COG. While the feet carry load, it is measured relative to the ground;
+// after that, it is the integral of the load cells' reading minus the weight. Load cells and
+// encoders have the same delay, so the delay does not change the measured duration of a flight. The
+// speed before an impact is the one before the load began.
 void ViipJump::measure_speed(const Estimate& e) {
   const double load = e.fz / (model_->mass() * kGravity);
   const bool may_land = stage_ == Stage::flight && elapsed_ > kTouchdownBlindTime;

@@ -7,9 +7,9 @@
 //   iw     the same, number of nonzeros, then the plan: the target of every nonzero
 //   a      values of the nonzeros, pivots [n], values of the rows by group, the band
 // Rows with the same unknowns form a group, a dense matrix V: V' D V is added to the band, with D
-// the inverse pivots. The band is stored by columns. Each is as long as the width and a panel, so
-// that parts of the band are dense matrices whose columns are one less than that length apart; the
-// entries of a panel beyond the width are zero and stay zero.
+// the inverse pivots. The band is stored by columns. The length of each column is the width plus
+// the size of a panel, so that parts of the band are dense matrices whose columns are one less than
+// this length apart; the entries of a panel beyond the width are zero and stay zero.
 #include "ayumi/repair/nlp/banded_kkt_solver.hpp"
 
 #include <coin/HSLLoader.h>

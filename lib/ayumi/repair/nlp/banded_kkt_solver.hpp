@@ -10,11 +10,11 @@
 // takes a third to a quarter of the time that it takes with MUMPS. The method needs programs
 // without equality constraints: an equality has no slack by which it could be eliminated.
 //
-// Ipopt takes a linear solver from outside only under the name MA27, in one place of the whole
-// process. That place is therefore held only while a solve of Ayumi runs, and it is empty again
-// afterwards. Another Ipopt program of the process that asks for MA27 at that time, on another
-// thread or from within a callback, is passed on to the HSL library. A place that the host program
-// has filled (with an HSL library that is loaded, or with LSL_setMA27) is left alone.
+// Ipopt accepts an external linear solver only under the name MA27, and the whole process has only
+// one place for it. Ayumi therefore holds this place only while one of its solves runs; afterwards,
+// the place is empty again. Another Ipopt program of the process that asks for MA27 at that time,
+// on another thread or from within a callback, is passed on to the HSL library. A place that the
+// host program has filled (with an HSL library that is loaded, or with LSL_setMA27) is left alone.
 
 #include "ayumi/dynamics/kernels/tree_kernels.hpp"
 

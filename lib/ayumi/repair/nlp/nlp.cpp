@@ -209,7 +209,8 @@ void set_linear_solver(Ipopt::OptionsList& list, bool banded) {
   list.SetNumericValue("ma27_liw_init_factor", 1);
 }
 
-// The start has multipliers. `push` is the distance that they and the start keep from their bounds.
+// Sets the options for a start that has multipliers. `push` is the distance that they and the start
+// keep from their bounds.
 void start_with_multipliers(Ipopt::OptionsList& list, double push) {
   list.SetStringValue("warm_start_init_point", "yes");
   for (const char* name :

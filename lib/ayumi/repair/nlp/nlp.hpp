@@ -50,7 +50,8 @@ struct Nlp {
       hessian_values;
 };
 
-/// The largest violation of a constraint by the start; negative if it is inside all of them.
+/// The largest violation of a constraint by the start; negative if the start is inside all
+/// constraints.
 double violation_at_start(const Nlp& nlp);
 
 struct NlpOptions {

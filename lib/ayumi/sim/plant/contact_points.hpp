@@ -14,8 +14,9 @@ struct ContactPoint {
   int body = 0;
   Eigen::Vector3d position;  ///< position in the body frame [m]
   double radius = 0;         ///< radius of the sphere around it [m]
-  /// The radius of a circle around it whose lowest point touches, which is the end of a rolling
-  /// cylinder [m]. A level circle has no lowest point; other points then carry the cylinder.
+  /// The radius of a circle around the point [m]. The lowest point of the circle touches the
+  /// ground. The circle is the end of a cylinder that can roll. A level circle has no lowest point;
+  /// other points then carry the cylinder.
   double rim = 0;
   Eigen::Vector3d axis = Eigen::Vector3d::Zero();  ///< axis of the circle in the body frame
   double stiffness = 0;                            ///< stiffness of the contact [N/m]

@@ -8,7 +8,7 @@
 // then arrives at the solution, where sweeps alone converge slowly when many points share a stiff
 // load. A Newton step is kept only when the sweep after it changes less than the sweep before it.
 // Newton steps from the last step's impulses come first, as long as they approach the solution: the
-// first one mostly is the solution, which a test of each contact against the others shows for the
+// first one is usually the solution. A test of each contact against the others shows this for the
 // cost of one product with A.
 #include "ayumi/sim/plant/contact_solver.hpp"
 

@@ -36,9 +36,9 @@ constexpr double kContactTolerance = 1e-10;
 /// twice the value, figures change by less than 5 %.
 constexpr int kMaxContactSweeps = 500;
 
-/// Relative distance from the cone from which on an impulse counts as inside it. Chosen: far above
-/// the rounding at which the equation of a slide is solved, so that an impulse on the cone is not
-/// inside it. No measured case changes between half and twice the value (constants.md).
+/// Smallest relative distance from the cone with which an impulse counts as inside it. Chosen: far
+/// above the rounding at which the equation of a slide is solved, so that an impulse on the cone is
+/// not inside it. No measured case changes between half and twice the value (constants.md).
 constexpr double kConeMargin = 1e-9;
 
 /// Whether the impulse of a closed contact is inside the cone by more than rounding.

@@ -1,12 +1,12 @@
-// Joints move with their solved rates. The base then takes the velocity that gives the robot, in
-// its new posture, exactly the momentum that gravity and the outside have left it: M(q) v changes
-// along the step, and this correction keeps momentum to rounding in flight and ground forces equal
-// to the rate of momentum in contact.
+// Joints move with their solved rates. The base then gets the velocity with which the robot, in its
+// new posture, has exactly the momentum that results from gravity and the forces from outside: M(q)
+// v changes along the step, and with this correction, the momentum in flight is exact up to
+// rounding, and the ground forces in contact equal the rate of momentum.
 //
-// A robot on an edge or a corner turns with no spring to hold it, and a step of first order costs
-// energy there. Its step is therefore that of the posture half a step ahead: all that has turned as
-// one body keeps its numbers in axes that have turned with it, and gravity and the ground turn
-// back.
+// No spring holds a robot that turns about an edge or a corner, and a step of first order would
+// lose energy there. Its step is therefore computed for the posture half a step ahead. Up to this
+// posture, the robot turns as one body. So its numbers do not change in axes that turn with it, and
+// only gravity and the ground are turned back in these axes.
 #include "ayumi/sim/plant/integrator.hpp"
 
 #include <algorithm>
@@ -29,8 +29,8 @@ namespace {
 constexpr double kOnePoint = 1e-6;
 
 /// Contacts lie on a line if their distance from it is less than this fraction of its length.
-/// Chosen: 0.01 mm for an edge of 0.1 m; contacts that lie farther off leave the robot no turn.
-/// Between half and twice the value, figures change by less than 5 %.
+/// Chosen: 0.01 mm for an edge of 0.1 m; if a contact is farther from the line, the robot cannot
+/// turn about it. Between half and twice the value, figures change by less than 5 %.
 constexpr double kStraight = 1e-4;
 
 /// A part of a step that is shorter than this fraction of the step is not integrated separately.
@@ -86,8 +86,8 @@ void Integrator::find_pivot(const ContactSet& contacts) {
   pivot_.freedom = 1;
 }
 
-// The rate about the pivot that this momentum gives the robot with its joints locked. Forces in the
-// pivot have no moment about it.
+// The angular velocity about the pivot that the robot, with its joints locked, has with this
+// momentum. Forces in the pivot have no moment about it.
 Vector3d Integrator::turn_about_pivot(const RobotModel& robot, const StepSystem& system,
                                       const Momentum& given) const {
   const Vector3d r = data_.cog - pivot_.point;

@@ -73,8 +73,8 @@ JointLaws::JointLaws(const RobotModel& model, const ActuatorLimits& limits)
     joint.back_emf = servo.back_emf;
     joint.speed_command = servo.speed_command_limit;
     joint.needs_friction = servo.stribeck_rate > 0 || !(servo.load == LoadFriction{});
-    // A joint without a motor also has an end stop; the stop of a hinge has 20 weights times 1
-    // m/rad.
+    // A joint without a motor also has an end stop; the stiffness of the stop of a hinge is 20
+    // weights times 1 m/rad.
     const double weight = model.mass() * kGravity;
     const double passive = dof.prismatic ? weight / kStopSink : weight;
     joint.stop = kStopStiffness * (servo.kp > 0 ? servo.kp : passive);

@@ -20,7 +20,7 @@ struct LinkTouch {
 
 /// The distance of two bodies is computed only when they may have come near each other since the
 /// last computation; their speeds bound how far they have moved. The line of the smallest distance
-/// at the last computation then mostly shows that they are still apart, which saves the exact
+/// at the last computation then usually shows that they are still apart, which saves the exact
 /// distance.
 class LinkContacts {
  public:
@@ -31,8 +31,8 @@ class LinkContacts {
     return shapes_.shapes(body);
   }
 
-  /// A sphere that contains them: its centre in the body's frame, and its radius, which is 0
-  /// without shapes [m].
+  /// A sphere that contains the collision shapes of a body: its centre in the body's frame, and its
+  /// radius, which is 0 without shapes [m].
   const Eigen::Vector3d& center(int body) const { return center_[static_cast<size_t>(body)]; }
   double radius(int body) const { return radius_[static_cast<size_t>(body)]; }
 

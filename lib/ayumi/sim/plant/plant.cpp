@@ -103,9 +103,9 @@ void Plant::clear_report() {
   report_.self_contact = {-1, -1};
 }
 
-// Takes the solution over `dt` into the report, whose forces are means over `whole`, and into the
-// state. An impulse times the mean of the rates before and after it is exactly the change of
-// kinetic energy that it makes.
+// Adds the solution for the time `dt` to the report, whose forces are means over `whole`, and
+// advances the state by it. An impulse times the mean of the rates before and after it is exactly
+// the change of kinetic energy that it makes.
 void Plant::finish(double dt, double whole) {
   report_.torque += dt / whole * joints_.torque();
   for (size_t j = 0; j < limited_.size(); ++j)

@@ -82,8 +82,8 @@ class StepSystem {
   }
   void end_turn() { turned_ = false; }
 
-  /// The momentum about the COG that the robot gets from outside in this step: from gravity and
-  /// pushes after push(); the caller adds the contacts.
+  /// The momentum about the COG that the robot receives from outside in this step. After push() it
+  /// contains gravity and the pushes; the caller adds the momentum from the contacts.
   Momentum& external() { return external_; }
   const Momentum& external() const { return external_; }
 
