@@ -588,7 +588,7 @@ class Engine {
     return lines.empty() ? "" : ": " + text::printable(lines.back());
   }
 
-  /// Gives back the tasks that ended without a file.
+  /// Finds the tasks that ended without a result file, so that their cases are submitted again.
   void find_lost(const Queue& queue) {
     for (auto at = out_.begin(); at != out_.end();) {
       const auto known = queue.find({job_of(at->first.first), at->first.second});
