@@ -292,7 +292,8 @@ class MjcfReader {
       joint.parent = above;
       joint.child = --left == 0 ? name : name + "/" + joint.name;
       joint.origin = placement * Eigen::Translation3d(at - anchor);
-      // Angles of the model count from its reference, so the frame is turned back by it.
+      // The frames of the model are those at the reference position of the joint, so the frame is
+      // moved back to the position 0.
       if (slides)
         joint.origin = joint.origin * Eigen::Translation3d(-reference * axis);
       else

@@ -919,7 +919,8 @@ std::vector<std::string> hold_play_of_gears(RobotDescription& robot) {
   // Largest range of a passive joint that is the play of a gear [rad]. Chosen: worn hobby servos
   // have 2 deg; toes and springs move by 10 deg and more.
   constexpr double kMostPlay = 4 * kOneDegree;
-  // Cosine of the angle between parallel axes. Definition: six digits leave this.
+  // Smallest cosine of the angle between two axes that count as parallel. Definition: rounding the
+  // axes to six digits causes a smaller deviation.
   constexpr double kParallel = 1 - 1e-9;
   std::vector<std::string> held, driven;
   for (JointDescription& play : robot.joints) {

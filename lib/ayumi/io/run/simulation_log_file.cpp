@@ -245,7 +245,7 @@ std::string plain_head(const SimulationLog& log, size_t rows, const std::string&
 // the cache.
 constexpr size_t kRowsAtATime = 64;
 
-// Passes the rows of a log of version 1 on, a few at a time.
+// Calls visit(rows) with the rows of the log as version 1 has them, a few at a time.
 void for_rows_of(const SimulationLog& log, const std::function<void(const std::string&)>& visit) {
   std::string rows;
   for (size_t k = 0; k < log.samples.size(); ++k) {
