@@ -27,7 +27,7 @@ struct OverlayOptions {
   bool scale = true;         ///< heights in a parallel view
   bool caption = true;       ///< line of text and legend of the marks
   double trail = 2.0;        ///< length of the trails [s]
-  double push_length = 0.6;  ///< length of its arrow, as a share of the robot's height
+  double push_length = 0.6;  ///< length of the arrow of a push, as a share of the robot's height
   double push_hold = 0.6;    ///< a push is shown at least this long from its start [s]
 };
 
