@@ -79,7 +79,8 @@ std::vector<Vector2d> path_of(const SimulationLog& log, const Interval& time,
   return points;
 }
 
-/// Both axes have one scale, and show everything that stands on the ground or was planned to.
+/// Both axes have one scale, and show everything that stands on the ground or was planned to stand
+/// there.
 Axes make_axes(const Drawing& drawing, const std::vector<LociRun>& runs, const Interval& time,
                const std::vector<PlacedSole>& feet, double top) {
   Eigen::AlignedBox2d box;

@@ -24,8 +24,8 @@ namespace ayumi {
 std::vector<SequenceLayout> sequence_layouts(const RobotModel& model);
 
 /// The layout with this name; without a name, the first one with an interval. Tables are written in
-/// it. Throws Error(bad_model) if there is no such layout, or if the robot does not have each of
-/// its devices once.
+/// this layout. Throws Error(bad_model) if there is no such layout, or if the robot does not have
+/// each of its devices once.
 SequenceLayout written_layout(const RobotModel& model, const std::string& name = "");
 
 /// One row with a value for every motor.
