@@ -31,7 +31,7 @@ constexpr int kMostSampled = 90, kMostChecked = 8;
 constexpr double kMostWork = 600;
 constexpr double kWorkOfCheck = 4, kWorkOfRun = 5;
 // Shares of the range of a dial by which its value is moved: the first and the last one. Chosen:
-// the last one is the smallest move for which the errors of a walk can be told apart.
+// the last one is the smallest move for which the errors of a walk can be distinguished.
 constexpr double kFirstMove = 0.25, kLastMove = 0.03;
 // Largest number of motions that are simulated. Chosen: a walk of 12 s takes 0.3 to 1 s.
 constexpr int kMostSimulated = 5;
@@ -150,8 +150,8 @@ class MotionSearch {
  private:
   using Values = std::vector<double>;
 
-  // The errors of a motion, and its fall in a simulation. Nothing is wrong with it if `first` is
-  // "".
+  // The errors of a motion, and its fall in a simulation. If `first` is "", there is no error and
+  // no fall.
   Wrong wrong_with(const Pattern& pattern, const Values& values) {
     ++checked_;
     work_ += kWorkOfCheck * pattern.duration();
@@ -185,8 +185,8 @@ class MotionSearch {
   }
 
   void try_lists() {
-    // Indices of the other dials for which the postures passed, but not speeds, torques or ZMP.
-    // Another posture does not correct these.
+    // Indices of the dials that do not change postures, for trials whose postures passed, but not
+    // their speeds, torques or ZMP. Another posture does not correct these errors.
     std::set<std::vector<size_t>> hopeless;
     for (const std::vector<size_t>& places : nearest_first(dials_)) {
       std::vector<size_t> others;

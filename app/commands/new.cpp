@@ -651,7 +651,7 @@ void new_stand(const Context& context, const NewOptions& options) {
            : "The robot stands on both feet with bent knees, lower than in the home posture."});
 }
 
-// Amplitudes shrink, and the robot bends its knees more, until the check finds the pattern
+// Reduces the amplitudes, and bends the knees of the robot more, until the check finds the pattern
 // consistent.
 void new_excite(const Context& context, const NewOptions& options) {
   const RobotModel model = load_robot(options.robot, robot_search(context));

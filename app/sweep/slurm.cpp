@@ -272,7 +272,8 @@ size_t most_tasks() {
 }
 
 /// The script of an array. Each task computes in the temporary folder of its node. Its file appears
-/// as a whole or not at all. A task that is told to stop leaves the rows that it has so far.
+/// as a whole or not at all. A task that receives the signal to stop delivers the rows that it has
+/// so far.
 std::string script_of(const Context& context, const CaseRunner& runner, const fs::path& folder,
                       const std::string& name, long array, size_t tasks) {
   const fs::path here = fs::absolute(folder);
