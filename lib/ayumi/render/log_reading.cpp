@@ -182,8 +182,9 @@ double difference(const SimulationLog& log, double a, double b) {
   return most;
 }
 
-/// The first time at which a joint has moved farthest since the start [s]; the middle where none
-/// moves. The place does not count: a walk goes farthest at its end, in the posture of its start.
+/// The first time at which a joint has moved farthest since the start [s]; the middle of the run if
+/// no joint moves. The place does not count: a walk goes farthest at its end, in the posture of its
+/// start.
 double most_changed_at(const SimulationLog& log) {
   // Postures that differ by less count as one posture that is held [rad]. Chosen: larger than
   // rounding errors.

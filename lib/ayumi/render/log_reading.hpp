@@ -63,8 +63,8 @@ std::vector<FlightRecord> flights(const SimulationLog& log);
 /// largest change of a joint since the start. If no joint moves, it is the middle of the run.
 double telling_instant(const SimulationLog& log);
 
-/// `count` instants worth showing [s], in the order of time. They are: begin and end, pushes, the
-/// fall, the apex of each flight, then postures in which joints or the COG turn back or come to
+/// `count` instants worth showing [s], in the order of time. They are: beginning and end, pushes,
+/// the fall, the apex of each flight, then postures in which joints or the COG turn back or come to
 /// rest (those with larger moves first), and instants that fill the longest gaps. In a walk, some
 /// of them show the robot on the left foot and some on the right foot. All instants lie around
 /// pushes, with the step or kick during which the first push acts, or around flights, unless the

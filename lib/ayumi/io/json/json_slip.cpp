@@ -506,7 +506,7 @@ class SlipFinder {
   std::vector<Open> open_;
   std::optional<JsonSlip> slip_;
   Token token_ = Token::end;
-  size_t at_ = 0, end_ = 0;  // begin and end of the present token
+  size_t at_ = 0, end_ = 0;  // beginning and end of the present token
   size_t before_ = 0;        // end of the previous token
   Token last_ = Token::end;  // the previous token, and its place
   size_t last_at_ = 0;

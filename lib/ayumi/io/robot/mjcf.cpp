@@ -459,8 +459,8 @@ class MjcfReader {
           " with the square or a higher power of a joint's position are left out");
   }
 
-  // Position actuators are servos; every other actuator has the limits of its force. A joint that
-  // no actuator drives is passive where others are driven.
+  // Position actuators are servos; every other actuator has the limits of its force. If some joints
+  // are driven by actuators, the other joints are passive.
   void read_actuators() {
     std::set<size_t> driven;
     std::vector<std::string> without_force;

@@ -58,7 +58,8 @@ constexpr size_t kMostCorners = 8;
 constexpr double kLongerEnd = 1.1;
 
 // Reach of the legs at home, in lengths of the straight leg, in the order in which they are tried.
-// Chosen: thigh and shank of equal length are at 40 deg to each other for 0.94; HOAP-1 stands so.
+// Chosen: thigh and shank of equal length are at 40 deg to each other for 0.94, similar to the home
+// posture of HOAP-1.
 constexpr std::array kReaches = {0.94, 0.92, 0.955, 0.90, 0.97, 0.87, 0.84};
 // Distance of the home posture from the position limits [rad]. Chosen: 2 deg, so that the
 // controller has room on both sides.

@@ -29,8 +29,8 @@ static_assert(std::endian::native == std::endian::little, "logs are little-endia
 
 constexpr char kMagic[] = "AYUMILOG";
 constexpr std::uint32_t kPlain = 1;  // Definition: the version with uncompressed rows
-// Definition: the version with compressed rows in one block. In version 2 no column is predicted
-// from others; it is read like this one.
+// Definition: the version with compressed rows in one block. Version 2, in which no column is
+// predicted from others, is read like this version.
 constexpr std::uint32_t kCompressed = 3;
 constexpr std::uint32_t kInBlocks = 4;  // Definition: the version with several blocks
 constexpr size_t kPrefix = 16;          // magic, version, header length
