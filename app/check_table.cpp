@@ -252,7 +252,7 @@ std::vector<AnswerPart> mistake_parts(const std::vector<Mistake>& mistakes, bool
   if (consistent)
     return remark_parts(painted(Paint::caution, "worth a look:") + " ", cause_texts(mistakes),
                         Worth::remark);
-  // A cause that is named beside another is needed too, so nothing is dearer.
+  // If several causes are named, the author needs all of them, so they have the highest importance.
   std::vector<AnswerPart> parts = remark_parts(painted(Paint::caution, "likely cause:") + " ",
                                                cause_texts(mistakes), Worth::verdict);
   if (!parts.empty()) parts.front().forms.resize(1);

@@ -59,8 +59,8 @@ SimulationLog log_of(const LogExport& options) {
 }
 
 // Largest number of triangles of the robot in an MCAP file, which viewers receive as JSON. Chosen:
-// the bundled HOAP-1 has fewer and is not simplified. With half of it, a file of its walk is 0.2 %
-// smaller; with twice, nothing changes.
+// the bundled HOAP-1 has fewer and is not simplified. With half of this number, a file of its walk
+// is 0.2 % smaller; with twice this number, nothing changes.
 constexpr size_t kMostTriangles = 20'000;
 
 std::vector<ColoredMesh> surface_of(const RobotModel& model) {

@@ -10,7 +10,7 @@ struct LogExport {
   std::string input;   ///< run folder or log file
   std::string format;  ///< one of log_formats()
   std::string output;
-  std::string log;    ///< name of the log; "" for closed_loop, or for the only one
+  std::string log;    ///< name of the log; "" for closed_loop, or for the only log
   std::string robot;  ///< the robot; "" for the one that the run names
 };
 

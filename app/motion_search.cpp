@@ -25,13 +25,13 @@ namespace {
 // sampling a walk of 12 s at kCoarse takes 0.05 s and a full check takes 0.5 s, so a search ends
 // within ten seconds; on 14 robots and 69 variants of them, the longest search took 8 s.
 constexpr int kMostSampled = 90, kMostChecked = 8;
-// Length of the motions after which the search does not go on from the nearest trial [s]. A motion
-// that is checked or simulated counts several times. Chosen: a look takes 13 ms for a second of
-// motion, so that a search ends within ten seconds.
+// Total length of all tried motions at which the search from the nearest trial ends [s]. A motion
+// that is checked or simulated counts several times. Chosen: the quick check of look_at() takes 13
+// ms for a second of motion, so that a search ends within ten seconds.
 constexpr double kMostWork = 600;
 constexpr double kWorkOfCheck = 4, kWorkOfRun = 5;
 // Shares of the range of a dial by which its value is moved: the first and the last one. Chosen:
-// the last one is the smallest move for which the errors of a walk can be told apart.
+// the last one is the smallest move for which the errors of a walk can be distinguished.
 constexpr double kFirstMove = 0.25, kLastMove = 0.03;
 // Largest number of motions that are simulated. Chosen: a walk of 12 s takes 0.3 to 1 s.
 constexpr int kMostSimulated = 5;
@@ -47,7 +47,7 @@ std::string text_of(const Finding& finding) {
   return kind_place_and_time(finding) + ": " + finding.hint;
 }
 
-// A quick look at a motion.
+// The result of the quick check of a motion.
 struct Look {
   std::string posture;  // the error in its postures; "" if there is none
   double beyond = 0;    // the sum of the shares by which it exceeds limits
@@ -150,8 +150,8 @@ class MotionSearch {
  private:
   using Values = std::vector<double>;
 
-  // The errors of a motion, and its fall in a simulation. Nothing is wrong with it if `first` is
-  // "".
+  // The errors of a motion, and its fall in a simulation. If `first` is "", there is no error and
+  // no fall.
   Wrong wrong_with(const Pattern& pattern, const Values& values) {
     ++checked_;
     work_ += kWorkOfCheck * pattern.duration();
@@ -185,8 +185,8 @@ class MotionSearch {
   }
 
   void try_lists() {
-    // Indices of the other dials for which the postures passed, but not speeds, torques or ZMP.
-    // Another posture does not correct these.
+    // Indices of the dials that do not change postures, for trials whose postures passed, but not
+    // their speeds, torques or ZMP. Another posture does not correct these errors.
     std::set<std::vector<size_t>> hopeless;
     for (const std::vector<size_t>& places : nearest_first(dials_)) {
       std::vector<size_t> others;
@@ -207,7 +207,7 @@ class MotionSearch {
           const Wrong motion = wrong_with(pattern, values);
           wrong = motion.first;
           if (!wrong.empty()) hopeless.insert(others);
-          // At the servo's own period, more may be wrong than at a look.
+          // At the servo's own period, more may be wrong than in the quick check.
           if (beyond == 0) beyond = motion.severity;
         }
         note_look(values, beyond);
@@ -233,8 +233,8 @@ class MotionSearch {
     start_ = values;
   }
 
-  // Looks at the motion with these values, if it can be made and was not looked at before. Returns
-  // whether it is nearer to passing than all others.
+  // Checks the motion with these values quickly, if it can be made and was not checked before.
+  // Returns whether it is nearer to passing than all others.
   bool looks_nearer(const Values& values) {
     if (!looked_at_.insert(values).second) return false;
     try {

@@ -43,7 +43,7 @@ struct SearchResult {
 std::string end_in_simulation(const RobotModel& model, const Pattern& pattern);
 
 /// Tries the values of the dials, those nearest to the defaults first, until the check accepts the
-/// motion for a profile of the robot. If none of them passes, the search goes on from the trial
+/// motion for a profile of the robot. If none of them passes, the search continues from the trial
 /// that is nearest to passing: it moves one value after the other, or two at once, and keeps
 /// changes that come nearer. `make` returns the pattern for values of the dials; it may throw
 /// Error(bad_pattern) or Error(usage) for values that the robot cannot do. The number of trials is

@@ -12,7 +12,7 @@ namespace ayumi::app {
 /// "joints", "postures", "profiles", "gains", "controllers", "plants" or "equations". For "robots"
 /// together with other kinds, prints only robots until a robot is named, and afterwards only the
 /// other kinds. `words` are those of the command line that is being typed. The robot is that of
-/// `--robot`, or else of the first robot, pattern or run among them, or else the one that `new`
+/// `--robot`, or else of the first robot, pattern or run among `words`, or else the one that `new`
 /// uses. A shell that completes a word needs no message, so nothing is printed if a file cannot be
 /// read.
 void print_names(const Context& context, const std::string& kinds,

@@ -55,7 +55,7 @@ bool write_new_pattern(const Context& context, const RobotModel& model, Pattern 
   const bool consistent =
       !series.viip.empty() || !model.has_soles() || choose_profile(context, task);
   Pattern& written = task.pattern;
-  written.file = "new";  // relative names hold from the working folder
+  written.file = "new";  // names are relative to the working folder
   write_pattern(out, written, comments);
   context.print(out + ": " + text::fixed(series.duration(), 2) + " s, " +
                 text::counted(written.phases.size(), "phase") + ", " +

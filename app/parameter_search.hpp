@@ -21,8 +21,9 @@ using PassingValues = std::vector<PassingValue>;
 /// Every returned value has been tried. First, single parameters are changed to the nearest value
 /// that passes, from zero to four times the given value; whole numbers stay whole if a whole number
 /// passes. If no single parameter is enough, several are changed together, at each step the one
-/// that leaves the smallest violation. Empty: nothing was found. Values with which the motion
-/// cannot be sampled (a foot out of reach) do not pass. Parameters that are 0 are not changed.
+/// that leaves the smallest violation. The result is empty if nothing was found. Values with which
+/// the motion cannot be sampled (a foot out of reach) do not pass. Parameters that are 0 are not
+/// changed.
 std::vector<PassingValues> passing_parameters(const Context& context, const std::string& pattern,
                                               const PatternOptions& options,
                                               const std::vector<std::string>& tolerances);

@@ -16,10 +16,10 @@ namespace ayumi::app {
 void read_locks(const std::vector<std::string>& words, const Pattern& pattern, double duration,
                 RepairOptions& options);
 
-/// Writes `text`, a pattern that was read from `from`, as `to`, byte for byte. If the folder is
-/// another one, writes the table and the posture libraries that it names beside it. Returns false
-/// and writes nothing if they cannot be copied: their paths leave the folder, or the robot is named
-/// by a relative path.
+/// Writes `text`, a pattern that was read from `from`, as `to`, byte for byte. If `to` is in
+/// another folder, the table and the posture libraries that the pattern names are written beside
+/// `to`. Returns false and writes nothing if they cannot be copied: their paths leave the folder,
+/// or the robot is named by a relative path.
 bool write_with_companions(const Context& context, const std::string& from, const std::string& to,
                            const std::string& text);
 

@@ -11,8 +11,8 @@ namespace ayumi::app {
 
 namespace {
 
-// Size of the drawn motion. Chosen: a test of 5 degrees is hardly visible in a picture.
-// Angle by which a joint is drawn away from home [rad].
+// Angle by which a joint is drawn away from home [rad]. Chosen: the 5 degrees of the test itself
+// would hardly be visible in a picture.
 constexpr double kDrawnAngle = 30 * EIGEN_PI / 180;
 constexpr double kDrawnSlide = 0.05;  // distance by which a slider is drawn away from home [m]
 

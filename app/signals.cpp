@@ -26,8 +26,8 @@ void on_signal(int signal) {
   if (has_timer) timer_settime(impatience, 0, &once, nullptr);
 }
 
-// Nothing is lost: files only get their names when they are complete, and child processes end with
-// this process.
+// Runs if the work has not stopped in time after Ctrl-C. No result is lost: a file is renamed to
+// its final name only when it is complete, and child processes end with this process.
 void on_impatience(int) {
   if (is_stop_expected) _exit(0);
   constexpr char kMessage[] = "ayumi: stopped\n";

@@ -14,8 +14,8 @@ namespace ayumi::app {
 Study load_study(const Task& input, const std::string& file);
 
 /// If the user `stated` quantities that the plant of this name does not use, throws
-/// Error(bad_pattern). Such quantities of a default uncertainty are left out, and the answer says
-/// so in one line; it is empty if nothing is left out.
+/// Error(bad_pattern). Such quantities of a default uncertainty are left out, and the returned line
+/// says so; it is empty if nothing is left out.
 std::string fit_to_plant(Study& study, const std::string& plant, bool stated);
 
 }  // namespace ayumi::app

@@ -102,8 +102,8 @@ const OrderedJson& written_at(const Written& text, const std::string& pointer) {
   return text.document.at(OrderedJson::json_pointer(pointer));
 }
 
-// The place of the time of a keyframe in the text, and the time from which the written value
-// counts.
+// The place of the time of a keyframe in the text, and the time to which the written value is
+// relative.
 OrderedJson time_json(const Written& text, size_t i) {
   const auto& frames = text.pattern.keyframes;
   const std::string pointer = pointer_of_keyframe(text.pattern, i);
@@ -434,8 +434,8 @@ Eigen::AlignedBox3d box_of(const RobotModel& model, int body) {
   return box;
 }
 
-// A limb whose end is this near to the middle plane at rest is not an arm [m]. Chosen: necks are
-// within it.
+// A limb whose end is this near to the middle plane at rest is not an arm [m]. Chosen: the ends of
+// necks are nearer.
 constexpr double kMiddle = 0.02;
 
 // Distance of the gaze's handle from the head, in heights of the robot at rest. Chosen: the handle

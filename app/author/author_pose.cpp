@@ -28,8 +28,8 @@ using Eigen::Isometry3d;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-// Two times that are written to the millisecond are the same if they differ by less than half of it
-// [s].
+// Two times that are written to the millisecond are the same if they differ by less than half a
+// millisecond [s].
 constexpr double kSameTime = 5e-4;
 // A drag by less than this moves nothing [m]. Chosen: lengths are written in tenths of a
 // millimetre.
@@ -88,7 +88,7 @@ class KeyEdits {
       for (const auto& [name, value] : members.items()) frame[name] = value;
       const auto i = static_cast<size_t>(next - frames.begin());
       edits.push_back({PatternEdit::Kind::insert, room_before(i, t), frame.dump()});
-      // The next keyframe counts its time from the new one.
+      // If the time of the next keyframe is relative, it is now relative to the new keyframe.
       if (i == frames.size()) continue;
       const std::string after = pointer_of_keyframe(motion_.task.pattern, i) + "/after";
       if (motion_.document.contains(OrderedJson::json_pointer(after)))
@@ -233,8 +233,9 @@ Matrix3d with_yaw_of(const Matrix3d& now, const Matrix3d& wanted) {
       {-std::asin(std::clamp(up.y(), -1.0, 1.0)), std::atan2(up.x(), up.z()), yaw});
 }
 
-// The trunk leans across the line from the body's origin to the dragged point; along this line the
-// COG rises. A level change only makes it lean, and an upright change only makes it rise.
+// The part of the drag that is perpendicular to the line from the body's origin to the dragged
+// point makes the trunk lean; the part along this line raises the COG. A level drag only makes the
+// trunk lean, and an upright drag only raises the COG.
 void drag_trunk(const AuthorMotion& motion, double time, const AuthorHandle& handle,
                 const Vector3d& change, KeyEdits& keys) {
   const auto attitude = [&](double t) {
@@ -583,7 +584,8 @@ class Drag {
     }
     // A sole on the ground stays at its height, so its height does not count as a deviation.
     if (handle_.kind == AuthorHandle::Kind::foot) off.z() = 0;
-    // A leaning trunk comes down and a rising one stays over the feet, so this also does not count.
+    // A trunk that leans comes down, so its height does not count as a deviation either. A trunk
+    // that rises stays over the feet, so its level deviation does not count.
     if (handle_.kind == AuthorHandle::Kind::trunk && is_level(change_)) off.z() = 0;
     if (handle_.kind == AuthorHandle::Kind::trunk && is_upright(change_)) off.head<2>().setZero();
     return off;

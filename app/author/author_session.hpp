@@ -99,7 +99,7 @@ class AuthorSession {
   std::mutex reading_;  ///< locked while the file is read or written
   std::optional<NamedRobot> robot_;
   Stamps seen_;
-  /// Set until the file is checked a second time.
+  /// Time of the last reading; empty after the file was checked a second time.
   std::optional<std::chrono::steady_clock::time_point> read_at_;
   std::optional<std::chrono::steady_clock::time_point> gone_since_;
   TextHistory history_;

@@ -320,7 +320,7 @@ void certify_pattern(Context& context, CertifyCommand& options) {
   if (!study.uncertainty.pushes.empty()) simulate.scenario.clear();
   const Json asked = study_json(context, input, study, simulate);
   const std::string shard = options.certify.shards > 1 ? options.shard : "";
-  // Two programs that write the same file would lose cases of each other.
+  // If two programs wrote the same file, each would lose cases that the other one has added.
   std::optional<FileLock> lock;
   if (!options.out.empty()) lock.emplace(options.out);
   KnownResults results, known;

@@ -43,7 +43,7 @@ namespace fs = std::filesystem;
 
 struct ExportOptions {
   std::string input, format, output, robot, log, layout;
-  std::string servo;  ///< option as given; "" for the lead
+  std::string servo;  ///< option as given; "" for the usual content of the format
   std::vector<std::string> set;
   SafetyOptions safety;
   std::optional<double> ramp, hold;  ///< options as given [s]

@@ -1,5 +1,5 @@
-// Design of gains: wishes in seconds become the gains of DTAD. Also shows the stability of the
-// whole loop, and from which disturbances the robot can then recover.
+// Design of gains: computes the gains of DTAD from times that the user states. Also shows the
+// stability of the whole loop, and from which disturbances the robot can then recover.
 
 #include <memory>
 #include <nlohmann/json.hpp>

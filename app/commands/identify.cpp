@@ -1,5 +1,5 @@
-// Determines servo constants of a robot from a recording, and writes them as a sidecar over that of
-// the robot.
+// Determines servo constants of a robot from a recording, and writes them as a sidecar that has the
+// robot as its base.
 
 #include "ayumi/identify/identify.hpp"
 

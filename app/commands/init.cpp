@@ -136,7 +136,8 @@ void init(const Context& context, const InitOptions& options) {
   NewFolder files(context, folder);
   RobotPicture picture;
   size_t joints = 0;
-  // The sidecar is read back before it gets its name.
+  // The sidecar is written to a temporary file and read back from it. Only then is the file renamed
+  // to robot.json.
   write_file_with(folder / "robot.json", [&](const fs::path& temporary) {
     write_file(temporary, sidecar.text);
     const RobotModel model =

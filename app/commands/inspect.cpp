@@ -174,8 +174,8 @@ std::vector<Coupling> couplings(const RobotModel& model) {
   return found;
 }
 
-// Joints of both legs, such as coupled hips, of which each leg has one of its own. A waist above
-// both legs does not count.
+// Degrees of freedom that move a joint in each leg at the same time, such as coupled hips. A waist
+// above both legs does not count.
 std::vector<std::string> joints_of_both_legs(const RobotModel& model) {
   std::vector<std::string> names;
   if (!model.has_soles()) return names;

@@ -79,11 +79,11 @@ void add_common(Command& command, NewOptions& options) {
 
 double rounded(double value, double unit) { return unit * std::round(value / unit); }
 
-// The largest movement of the ZMP inwards, of half the width of a sole. Chosen: the ZMP then stays
-// on the sole.
+// The largest movement of the ZMP inwards, as a share of half the width of a sole. Chosen: the ZMP
+// then stays on the sole.
 constexpr double kMostInwards = 0.9;
-// The least value of a dial that is tried in between, of the least in its list. Chosen: what is
-// less is hardly the motion that was asked for.
+// The smallest value of a dial that is tried outside its list, as a share of the smallest value in
+// the list. Chosen: with a smaller value, it is hardly the motion that was asked for.
 constexpr double kLeastShare = 0.6;
 
 Dial dial(const char* name, const char* unit, double value, double step, bool open,
@@ -175,7 +175,7 @@ void fit_steps(const Context& context, const RobotModel& model, const NewOptions
   Dial height = height_dial(model, w.cog_height);
   if (lacking) {
     height = height_dial(model, w.cog_height, {0.91, 0.88});
-    height.posture = false;  // lower, their knees need less torque
+    height.posture = false;  // with a lower COG, their knees need less torque
   }
   const std::vector<double> paces =
       lacking ? std::vector{0.34, 0.55, 0.42, 0.75} : std::vector{1.25, 1.6, 0.8, 2.2};
@@ -193,7 +193,8 @@ void fit_steps(const Context& context, const RobotModel& model, const NewOptions
                                          : std::vector{stature, length, pace, shift};
   const bool lists_lift = lifts && !lacking;
   if (lists_lift) turned.insert(turned.begin() + 1, rise);
-  // The list of the others is the default alone: they turn where none of the lists is enough.
+  // The lists of the other dials contain only the default, so their values change only if no value
+  // in the lists is enough.
   std::vector<WalkDial> others = {both};
   if (!lists_lift) others.push_back(rise);
   for (WalkDial& each : others) {
@@ -650,7 +651,7 @@ void new_stand(const Context& context, const NewOptions& options) {
            : "The robot stands on both feet with bent knees, lower than in the home posture."});
 }
 
-// Amplitudes shrink, and the robot bends its knees more, until the check finds the pattern
+// Reduces the amplitudes, and bends the knees of the robot more, until the check finds the pattern
 // consistent.
 void new_excite(const Context& context, const NewOptions& options) {
   const RobotModel model = load_robot(options.robot, robot_search(context));

@@ -58,9 +58,10 @@ std::string choose_profile(const RobotModel& model, JumpParameters& p, bool stoo
   return {};
 }
 
-// A lower jump that some profile can carry out, if the default one is too much. It is the first
-// that passes on a grid of shares of the height, the stoop and the COG height, as far as they are
-// not given; heights change first. If there is none, returns "" and leaves the values unchanged.
+// If no profile can carry out the default jump, searches for a lower one. The search runs over a
+// grid of shares of the jump height, the stoop and the COG height, and takes the first jump that
+// passes. A value that the user has given is not changed. The jump height varies first. If no jump
+// passes, returns "" and leaves the values unchanged.
 std::string lower_jump(const RobotModel& model, JumpParameters& p, const JumpOptions& options,
                        const Progress& progress) {
   // Shares of the height that are tried. Chosen: half the height needs 0.7 of the speed, and a jump

@@ -84,7 +84,7 @@ std::optional<RobotModel> robot_at_hand(const LabelledLog& entry, const PlotOpti
   }
 }
 
-// Each log must be one of its robot; `model` is that of the last one.
+// Throws if a log does not fit its robot; `model` is the robot of the last log.
 void require_logs(const RobotModel& model, const std::vector<LabelledLog>& logs,
                   const PlotOptions& options, const Context& context) {
   for (const LabelledLog& entry : logs)

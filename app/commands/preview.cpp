@@ -89,7 +89,7 @@ int thread_count(const Context& context) {
 
 void settle(PreviewOptions& options, const Context& context) {
   ClipOptions& clip = options.clip;
-  // A snapshot has upright format, as a robot has.
+  // A snapshot is higher than it is wide, like a robot.
   parse_size(!options.size.empty() ? options.size
              : options.strip > 0   ? "320x480"
                                    : "1280x720",

@@ -138,8 +138,8 @@ AnswerPart check_part(const ConsistencyReport& report, const RobotModel& model) 
           kStageHang};
 }
 
-// Differences that are worth a line. Chosen: nobody sees a tilt of less than a degree in a clip; a
-// tenth of the torque limit is more than rounding and less than a motor notices.
+// Smallest differences that are reported. Chosen: nobody sees a tilt of less than a degree in a
+// clip; a tenth of the torque limit is more than rounding and less than a motor notices.
 constexpr double kMoreTilt = std::numbers::pi / 180;  // difference of the tilt [rad]
 constexpr double kMoreTorque = 0.1;                   // share of the limit
 

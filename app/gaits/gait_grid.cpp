@@ -14,10 +14,10 @@ namespace ayumi::app {
 namespace {
 
 /// Largest number of values of an axis. Chosen: more than a person can read in a map. Half or twice
-/// of it only changes which mistyped lists are refused.
+/// this number only changes which mistyped lists are refused.
 constexpr long kMostValues = 1000;
 /// Smallest distance of two values of an axis [m/s, deg/s, s]. Chosen: the names of cells differ,
-/// and no walk shows a smaller difference. Half or twice of it changes nothing.
+/// and no walk shows a smaller difference. Half or twice this distance changes nothing.
 constexpr double kLeastDistance = 1e-6;
 
 std::vector<std::string> split_at(const std::string& words, char separator) {
@@ -83,7 +83,7 @@ GaitCell GaitGrid::cell(size_t index) const {
   const size_t s = index % sideways.size(), f = index / sideways.size() % forward.size();
   const size_t rest = index / (sideways.size() * forward.size());
   const size_t t = rest % turn.size(), p = rest / turn.size();
-  // The numbers are whole in most grids, so that names have no points.
+  // In most grids these numbers are whole, so that the names have no decimal points.
   const auto thousandths = [](double value) { return text::brief(1e3 * value, 9); };
   return {.name = "f" + thousandths(forward[f]) + "_s" + thousandths(sideways[s]) + "_t" +
                   text::brief(turn[t], 9) + "_p" + thousandths(period[p]),

@@ -34,7 +34,7 @@ namespace {
 
 /// Share of a disturbance of the pendulum that is left when it counts as decayed. Chosen: if a COG
 /// is displaced by 15 mm, 1.5 um are left, far below the gap that a loop may have. With half or
-/// twice of it, walks have the same number of steps, or one more.
+/// twice this share, walks have the same number of steps, or one more.
 constexpr double kForgotten = 1e-4;
 /// Number of decimals of footholds [m, rad]. Chosen: with 4, as in new patterns, the steps of a
 /// walk that turns differ by 0.05 mm and the posture by 0.02 degrees, more than a loop may have;

@@ -36,7 +36,8 @@ struct GaitResult {
 
 class GaitMaker {
  public:
-  /// Throws Error(bad_model) for an unknown profile or a robot without soles, and as load_study().
+  /// Throws Error(bad_model) for an unknown profile or a robot without soles, and the same errors
+  /// as load_study().
   GaitMaker(RobotModel model, const GaitOptions& options);
 
   const RobotModel& model() const { return model_; }

@@ -27,8 +27,8 @@ bool is_there(const fs::path& path) {
   return fs::exists(fs::symlink_status(path, ignored));
 }
 
-/// The files that a finished library lists, including the index. A library has no names that leave
-/// its folder.
+/// The files that a finished library lists, including the index. If a listed path leads out of the
+/// folder, this is not the index of a library.
 std::vector<std::string> files_of_library(const fs::path& folder) {
   const fs::path index = folder / kIndex;
   std::vector<std::string> files = {kIndex};

@@ -25,8 +25,8 @@ namespace {
 
 /// Mark in the head of the file, "AYUM", by which other programs recognize it. Definition.
 constexpr int kApplication = 0x4159554d;
-/// Version of the tables and views. Definition: another number with every change of their SQL,
-/// because a file with others is refused.
+/// Version of the tables and views. Definition: every change of their SQL requires another number,
+/// because a file with other tables or views is refused.
 constexpr int kDatabaseFormat = 1;
 /// Longest text or row in a file [bytes]. Definition: a study file of 64 MiB, and room for the
 /// rest.
@@ -123,7 +123,7 @@ std::string sql_text(const std::string& text) {
 
 namespace {
 
-/// What describes the study, and the shards.
+/// The tables that describe the study and list the shards.
 constexpr const char* kHeadTables =
     "CREATE TABLE about (key TEXT PRIMARY KEY, value TEXT) WITHOUT ROWID;"
     "CREATE TABLE inputs (place INTEGER PRIMARY KEY, kind TEXT, name TEXT, sha256 TEXT);"
@@ -300,9 +300,9 @@ void ResultsDatabase::make_tables() {
   execute(sql + "COMMIT");
 }
 
-// A file from a stranger may have views that never end in the place of tables, or triggers that
-// change what is written. Whatever has or belongs to one of Ayumi's names must be as Ayumi makes
-// it.
+// A file from a stranger may have views in place of tables, whose queries never end, or triggers
+// that change what is written. So everything that has one of Ayumi's names, or belongs to a table
+// with such a name, must be as Ayumi makes it.
 void ResultsDatabase::require_made_by(const std::string& sql) const {
   sqlite3* made = nullptr;
   const int opened = sqlite3_open_v2(":memory:", &made, SQLITE_OPEN_READWRITE, nullptr);

@@ -14,7 +14,7 @@ namespace ayumi::app {
 namespace {
 
 /// Time between two commits. Chosen: a killed program loses the rows of this time. A commit of some
-/// rows takes about 1 ms, so half of this time costs 0.4 % and twice of it 0.1 %.
+/// rows takes about 1 ms, so half of this time costs 0.4 % and twice this time 0.1 %.
 constexpr std::chrono::milliseconds kBetweenCommits(500);
 /// Largest number of rows that are kept in memory. Chosen: some MB.
 constexpr size_t kMostWaiting = 5000;

@@ -13,8 +13,8 @@ struct RunCost {
 };
 
 /// Runs the given `cases` (by number) on `threads` threads (0: all cores). Rows are committed about
-/// twice a second, so that a killed program loses no more than that. If `progress` stops the work,
-/// all known rows are kept and Interrupted is thrown.
+/// twice a second, so that a killed program loses the rows of half a second at most. If `progress`
+/// stops the work, all known rows are kept and Interrupted is thrown.
 RunCost run_cases(const CaseRunner& runner, ResultsDatabase& results,
                   const std::vector<bool>& cases, int threads, const Progress& progress);
 

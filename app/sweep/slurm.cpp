@@ -272,7 +272,8 @@ size_t most_tasks() {
 }
 
 /// The script of an array. Each task computes in the temporary folder of its node. Its file appears
-/// as a whole or not at all. A task that is told to stop leaves the rows that it has so far.
+/// as a whole or not at all. A task that receives the signal to stop delivers the rows that it has
+/// so far.
 std::string script_of(const Context& context, const CaseRunner& runner, const fs::path& folder,
                       const std::string& name, long array, size_t tasks) {
   const fs::path here = fs::absolute(folder);
@@ -588,7 +589,7 @@ class Engine {
     return lines.empty() ? "" : ": " + text::printable(lines.back());
   }
 
-  /// Gives back the tasks that ended without a file.
+  /// Finds the tasks that ended without a result file, so that their cases are submitted again.
   void find_lost(const Queue& queue) {
     for (auto at = out_.begin(); at != out_.end();) {
       const auto known = queue.find({job_of(at->first.first), at->first.second});

@@ -26,7 +26,7 @@ for finding in verdict.findings:
         print(f"  {finding.kind} at {finding.at:.3f} s, {finding.where}: "
               f"{finding.worst:.3g} {finding.unit}, limit {finding.limit:.3g} {finding.unit}")
 
-# %% The nearest motion that is
+# %% The nearest consistent motion
 repaired = ayumi.repair(task)
 print(f"{repaired.status}: {repaired.where} moves most, "
       f"by {1e3 * repaired.max_joint_change:.1f} mrad at {repaired.at:.2f} s")

@@ -1,26 +1,26 @@
-# What makes a build from nothing quick.
+# Settings that shorten a full build.
 #
 # AYUMI_PRECOMPILE: the headers that nearly every source includes (Eigen, the standard library, and
-#   those that a target names) are parsed once for each level of optimization, because g++ optimizes
-#   what a precompiled header brings as the header was made.
-# AYUMI_UNITY: several sources of a room (a folder of lib/ayumi) are compiled as one. A build from
-#   nothing takes about a third of the time; after a change of one source its whole group is
-#   compiled, and after a new source its room. The preset for daily work switches it off.
-# Rooms that run in a loop (each tick of a simulation, each iteration of a repair) are compiled with
-#   -O3. Warm ones, which call them and judge what they return, or draw, are compiled with -O1: check,
-#   repair, push and retime take the same time. Cold ones read, write and talk to the user; with -Og
-#   they compile in three quarters of the time of -O1. (A run with its clip takes 0.7 s longer of 15
-#   if what draws is cold.)
+#   those that a target names) are parsed once for each level of optimization, because g++ compiles
+#   the functions of a precompiled header at the level at which the header was made.
+# AYUMI_UNITY: several sources of a room (a folder of lib/ayumi) are compiled as one. A full build
+#   takes about a third of the time. After a change of one source its whole group is compiled, and
+#   after a new source its whole room. The preset for daily work switches it off.
+# Hot rooms, which run in a loop (each tick of a simulation, each iteration of a repair), are
+#   compiled with -O3. Warm rooms, which call the hot ones and judge their results, or draw, are
+#   compiled with -O1: check, repair, push and retime take the same time. Cold rooms read, write and
+#   talk to the user; with -Og they compile in three quarters of the time of -O1. (If the rooms that
+#   draw were cold, a run with its clip, which takes 15 s, would take 0.7 s longer.)
 
 option(AYUMI_PRECOMPILE "Precompile the headers that most sources include" ON)
 option(AYUMI_UNITY "Compile several sources as one: quick from nothing, slower after a change" ON)
 set(AYUMI_UNITY_SIZE 8 CACHE STRING "How many sources are compiled as one at -O3")
 set(AYUMI_COLD_UNITY_SIZE 24 CACHE STRING "How many warm or cold sources are compiled as one")
 
-# ayumi_compile_together(key size sources...): about this many of them as one, in groups of the same
-# size. Groups of different keys stay apart, so that a new source moves no source of another key.
-# Three groups of eight as one take 0.57 of the time at -O1, but 1.2 times as long at -O3, where the
-# optimizer works on more functions at once: therefore two sizes.
+# ayumi_compile_together(key size sources...) compiles about `size` sources as one, in groups of equal
+# size. Groups of different keys are separate, so that a new source moves no source of another key.
+# If three groups of eight are compiled as one, this takes 0.57 of the time at -O1, but 1.2 times the
+# time at -O3, where the optimizer works on more functions at once. Therefore there are two sizes.
 function(ayumi_compile_together key size)
   list(FILTER ARGN INCLUDE REGEX "[.]cpp$")
   list(LENGTH ARGN count)
@@ -36,15 +36,16 @@ function(ayumi_compile_together key size)
   endforeach()
 endfunction()
 
-# g++ looks for garbage from 128 MB on, and a group of sources has 500 MB and more that are in use:
-# from 1 GB on this is 6 to 9 % less time and 15 % more memory.
+# g++ begins to collect garbage at 128 MB, but a group of sources uses 500 MB and more at one time. If
+# it begins at 1 GB, a compilation takes 6 to 9 % less time and 15 % more memory.
 function(ayumi_collect_less_garbage target)
   target_compile_options(${target} PRIVATE
     $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=1000000>)
 endfunction()
 
-# ayumi_compile_quickly(target headers...): headers in angle brackets, beyond the standard library; or
-# REUSE_FROM and a target that is compiled with the same options.
+# ayumi_compile_quickly(target headers...): the headers, in angle brackets, are precompiled in addition
+# to those of the standard library. In place of headers, REUSE_FROM and another target may be given,
+# which is compiled with the same options.
 function(ayumi_compile_quickly target)
   if(AYUMI_PRECOMPILE AND "${ARGV1}" STREQUAL "REUSE_FROM")
     target_precompile_headers(${target} REUSE_FROM ${ARGV2})
@@ -62,8 +63,8 @@ endfunction()
 # be inlined there although the code is position independent.
 set(AYUMI_LIBRARY_OPTIONS -ffp-contract=off -fno-semantic-interposition)
 
-# ayumi_compile_with_heat(target HOT|WARM|COLD): for a target with AYUMI_LIBRARY_OPTIONS and position
-# independent code.
+# ayumi_compile_with_heat(target HOT|WARM|COLD) sets the level of optimization of a target that has
+# AYUMI_LIBRARY_OPTIONS and position independent code.
 set(AYUMI_HOT_OPTION)
 set(AYUMI_WARM_OPTION $<$<CONFIG:Release>:-O1>)
 set(AYUMI_COLD_OPTION $<$<CONFIG:Release>:-Og>)

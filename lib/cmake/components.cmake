@@ -1,4 +1,4 @@
-# What the program is made of: AYUMI_LIBRARIES for people ("Eigen 3.4.0, ..."), and the file
+# Lists the components of the program: AYUMI_LIBRARIES for people ("Eigen 3.4.0, ..."), and the file
 # AYUMI_BILL, a software bill of materials (CycloneDX 1.5). Both come from the one table below, and
 # nothing in them depends on the time or the place of the build.
 

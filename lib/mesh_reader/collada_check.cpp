@@ -22,7 +22,7 @@ void skip_spaces(std::string_view& text) {
 
 using Attributes = std::map<std::string, std::string, std::less<>>;
 
-// The attributes of a tag, starting behind its name. The list ends at the first text that is no
+// The attributes of a tag, starting behind its name. The list ends at the first text that is not an
 // attribute.
 Attributes attributes_of(std::string_view tag) {
   Attributes found;

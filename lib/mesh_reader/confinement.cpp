@@ -26,8 +26,8 @@ namespace {
 
 // The first number of /proc/self/statm is the size of the address space in pages.
 int memory_file = -1;
-// The address space before the first mesh [bytes]. Limits are counted from it: memory that the heap
-// keeps from earlier meshes is reused and is not part of this number.
+// The address space before the first mesh [bytes]. Limits are added to this number. It does not
+// contain the memory that the heap keeps from earlier meshes, because this memory is reused.
 std::uint64_t own_space = 0;
 
 std::uint64_t address_space() {
@@ -47,9 +47,9 @@ void set_soft_limit(int resource, std::uint64_t value) {
 }
 
 #if defined(AYUMI_HAS_SECCOMP) && !defined(AYUMI_SANITIZED)
-// Every other system call fails with EPERM. The list has the calls that assimp needs; the calls
-// that it can do without, such as opening files beside the interface that it is given, then just
-// fail. If the kernel has no filters, the limits remain.
+// Every other system call fails with EPERM. The list has the calls that assimp needs. Calls that it
+// does not need, such as those that open files without the given interface, just fail. If the
+// kernel has no filters, the limits remain.
 void filter_system_calls() {
   scmp_filter_ctx filter = seccomp_init(SCMP_ACT_ERRNO(EPERM));
   if (!filter) return;
@@ -66,7 +66,8 @@ void filter_system_calls() {
   const auto allow_if = [&](int call, scmp_arg_cmp what) {
     good = good && seccomp_rule_add(filter, SCMP_ACT_ALLOW, call, 1, what) == 0;
   };
-  // No address is allowed, which leaves only the connection.
+  // sendto() is allowed only without an address, so that it can only send on the existing
+  // connection.
   allow_if(SCMP_SYS(sendto), SCMP_A4(SCMP_CMP_EQ, 0));
   allow_if(SCMP_SYS(pread64), SCMP_A0(SCMP_CMP_EQ, static_cast<scmp_datum_t>(memory_file)));
   allow_if(SCMP_SYS(mmap), SCMP_A2(SCMP_CMP_MASKED_EQ, PROT_EXEC, 0));
@@ -89,10 +90,10 @@ void confine() {
   if (setrlimit(RLIMIT_FSIZE, &none) != 0 || setrlimit(RLIMIT_CORE, &none) != 0) _exit(1);
   memory_file = open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
   own_space = address_space();
-  // Sizes of memory that the heap keeps and of single blocks that it manages. The heap keeps the
-  // memory of a mesh for the next one, because clearing new pages takes most of the time of a small
-  // mesh: assimp takes a buffer of 16 MiB for each OBJ. Chosen: above that size; the second is the
-  // largest value that mallopt() takes.
+  // Size of the free memory that the heap keeps, and size from which on a block is not part of the
+  // heap [bytes]. The heap keeps the memory of a mesh for the next one, because clearing new pages
+  // takes most of the time of a small mesh: assimp takes a buffer of 16 MiB for each OBJ. Chosen:
+  // both are larger than this buffer; the second is the largest value that mallopt() takes.
   constexpr int kKept = 64 << 20, kOnItsOwn = 32 << 20;
   mallopt(M_TRIM_THRESHOLD, kKept);
   mallopt(M_MMAP_THRESHOLD, kOnItsOwn);

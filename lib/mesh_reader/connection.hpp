@@ -9,12 +9,12 @@
 
 namespace ayumi::mesh_reader {
 
-/// Sends a message. It ends the process if Ayumi has closed the connection.
+/// Sends a message. Ends the process if Ayumi has closed the connection.
 void send(MeshMessage kind, std::string_view bytes);
 /// Sends the number that a hello has.
 void send_hello();
-/// Returns the bytes of the next message. It ends the process if there is none, with exit code 0,
-/// or if it is of another kind, with exit code 1.
+/// Returns the bytes of the next message. Ends the process with exit code 0 if there is no message,
+/// and with exit code 1 if the message is of another kind.
 std::string receive(MeshMessage kind);
 
 }  // namespace ayumi::mesh_reader

@@ -11,7 +11,7 @@
 
 namespace ayumi::mesh_reader {
 
-/// The reason why a file is no mesh, for people. It does not name the file.
+/// The reason why a file is not a mesh, for people. It does not name the file.
 class Refusal : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -45,8 +45,8 @@ py::array view_of(const Scalar* first, std::vector<py::ssize_t> shape,
   return array;
 }
 
-/// The arrays of samples that outlive them. `joints` are the columns of joint vectors, and
-/// `prismatic` says which of them are lengths; if it is empty, none are.
+/// The arrays of `samples`, which must outlive the arrays. `joints` are the columns of joint
+/// vectors, and `prismatic` says which of them are lengths; if it is empty, none are.
 NamedArrays arrays_of(const std::vector<SimulationSample>& samples,
                       const std::vector<std::string>& joints, const std::vector<bool>& prismatic);
 NamedArrays arrays_of(const std::vector<CommandSample>& samples,
@@ -54,7 +54,7 @@ NamedArrays arrays_of(const std::vector<CommandSample>& samples,
 NamedArrays arrays_of(const std::vector<ReferenceRow>& rows, const std::vector<std::string>& joints,
                       const std::vector<bool>& prismatic);
 
-/// A joint table, and what its head says about the run that it is from.
+/// A joint table, and what its head says about the run from which it comes.
 struct CautiousTable : ReferenceTrajectory {
   TableCaution caution;
 };

@@ -6,9 +6,9 @@
 
 namespace ayumi {
 
-/// The folder `name` ("robots", "patterns", "examples"). It is in share/ayumi of the folder below
-/// which `binary` (the program or the Python module) is installed. If it is not there, it is the
-/// folder of the sources, and then that of the place where the build was to be installed.
+/// The folder `name` ("robots", "patterns", "examples"). It is searched in three places:
+/// share/ayumi of the folder below which `binary` (the program or the Python module) is installed,
+/// the sources, and the place where the build was to be installed.
 std::filesystem::path bundled_data(const std::filesystem::path& binary, const std::string& name);
 
 }  // namespace ayumi

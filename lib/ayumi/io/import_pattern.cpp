@@ -84,7 +84,7 @@ ImportedPattern import_pattern(const std::string& bytes, const std::string& file
       keys ? of_keys(std::move(*keys), options)
            : of_rows(model, read_motion(bytes, file, model, options.reading), options);
   result.pattern.name = "imported from " + fs::path(file).filename().string();
-  result.pattern.file = "imported";  // relative names hold from the working folder
+  result.pattern.file = "imported";  // names are relative to the working folder
   return result;
 }
 

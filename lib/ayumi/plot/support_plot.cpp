@@ -79,7 +79,8 @@ std::vector<Vector2d> path_of(const SimulationLog& log, const Interval& time,
   return points;
 }
 
-/// Both axes have one scale, and show everything that stands on the ground or was planned to.
+/// Both axes have one scale, and show everything that stands on the ground or was planned to stand
+/// there.
 Axes make_axes(const Drawing& drawing, const std::vector<LociRun>& runs, const Interval& time,
                const std::vector<PlacedSole>& feet, double top) {
   Eigen::AlignedBox2d box;
@@ -128,8 +129,8 @@ void draw_foothold(Drawing& drawing, const Axes& axes, const PlacedSole& foot) {
 }
 
 /// Draws labels with the number in the order of landing, the foot and the time, each joined to its
-/// foothold by a line. A label stands where it covers no other label and as few soles as possible,
-/// near its own.
+/// foothold by a line. A label stands near its own foothold, where it covers no other label and as
+/// few soles as possible.
 void label_footholds(Drawing& drawing, const Axes& axes, const std::vector<PlacedSole>& feet) {
   constexpr double kText = 11, kPad = 2, kTurns = 24;
   std::vector<Eigen::AlignedBox2d> taken, soles;

@@ -141,11 +141,11 @@ std::string law_name(const ControllerType& law) {
 /// The name of a file without folder and extension.
 std::string plain_name(const std::string& file) { return fs::path(file).stem().string(); }
 
-/// Largest number of triangles of a robot in a clip: beyond it, the robot is thinned by up to four
-/// times as much, and simplified if noise is left. Chosen: they take about 25 ms of a frame, which
-/// is 1 s for each second of motion, and half of them face the eye, about one for three pixels.
-/// With half of the value, corners of noisy meshes are several pixels apart; with twice, clips of
-/// robots with such meshes take 1 s longer.
+/// Largest number of triangles of a robot in a clip. If there are more, the robot is thinned with
+/// up to four times the tolerance, and it is simplified if there are still more. Chosen: they take
+/// about 25 ms of a frame, which is 1 s for each second of motion, and half of them face the eye,
+/// about one for three pixels. With half of the value, corners of noisy meshes are several pixels
+/// apart; with twice, clips of robots with such meshes take 1 s longer.
 constexpr size_t kMostOfClip = 80'000;
 /// Smallest number of frames for which the robot of a clip is thinned. Chosen: thinning a robot
 /// with 280,000 triangles takes 0.3 s, which about five frames save. With half of the value, clips
@@ -156,9 +156,9 @@ constexpr int kThinFrames = 24;
 /// once, and the wait costs nothing.
 constexpr std::chrono::milliseconds kFrameWait(50);
 
-/// Largest number of threads that draw a clip. Chosen: one encoder takes the frames of about that
-/// many, and each takes 40 MB. With half of the value, a machine of 16 cores draws half as fast;
-/// with twice, a clip takes 1.3 GB.
+/// Largest number of threads that draw a clip. Chosen: one encoder can keep up with about this
+/// number of threads, and each thread takes 40 MB. With half of the value, a machine of 16 cores
+/// draws half as fast; with twice, a clip takes 1.3 GB.
 constexpr int kMostClipThreads = 16;
 
 /// Frames 0..count-1 in order, from `threads` workers that each own a renderer. At most two

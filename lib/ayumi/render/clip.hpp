@@ -81,7 +81,7 @@ class ClipRenderer {
   Image frame(double t);
   /// The picture of frame() as a part of the clip; all pictures of the clip have one legend.
   Image clip_frame(double t);
-  /// The next frame takes the memory of this one, which nobody needs any more.
+  /// Gives the memory of `frame` to the next frame. `frame` must no longer be needed.
   void reuse(Image frame) { renderer_.reuse(std::move(frame)); }
   /// A picture for a sheet of several: time and event are written in a corner, and nothing else is
   /// written.

@@ -20,9 +20,9 @@ const std::vector<std::string>& frame_names();
 Frame frame_of(const std::string& name);
 
 /// The log with all places and directions in that frame. The supporting foot is the one that is
-/// planned on the ground; if both are, it is the one that carried before. In flight, and while that
-/// sole is tilted, the frame stays as it was last. Throws Error(usage) for a robot without soles in
-/// the frame of the foot.
+/// planned on the ground; if both are, it is the one that carried the robot before. In flight, and
+/// while that sole is tilted, the frame stays as it was last. Throws Error(usage) for a robot
+/// without soles in the frame of the foot.
 SimulationLog in_frame(const RobotModel& model, SimulationLog log, Frame frame);
 
 /// Throws Error(usage) if the ground is not a resting level plane, because it would have to move

@@ -24,10 +24,10 @@ const std::array<Vector3f, 6> kHues = {{{0.93f, 0.45f, 0.05f},    // orange
                                         {0.05f, 0.62f, 0.62f},    // turquoise
                                         {0.50f, 0.27f, 0.88f}}};  // violet
 
-/// Power by which a colour near a hue counts. Chosen: a colour 47 degrees from a hue counts half
-/// against it. With 2 it would be 66 degrees, and a robot of three colours would leave nothing to
-/// choose; with 8 it would be 33 degrees, less than the distance of two hues that have the same
-/// name.
+/// Exponent of the weight with which a colour of the robot counts as the use of a hue; the weight
+/// is 1 for the same hue. Chosen: at a distance of 47 degrees, the weight is one half. With 2, this
+/// distance would be 66 degrees, and no hue would be left for a robot of three colours; with 8, it
+/// would be 33 degrees, less than the distance of two hues that have the same name.
 constexpr int kSharpness = 4;
 
 /// Saturation below which a colour counts as grey. Chosen: silver has 0.05, and covers of a pale

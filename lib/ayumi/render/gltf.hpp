@@ -25,8 +25,8 @@ enum class MotionSource { run, command, reference };
 const char* name_of(MotionSource source);
 
 /// The postures of a log at begin, begin + 1/rate, ..., and at its end. Throws Error(usage) if the
-/// log has no samples or the rate is not above 0, and Error(bad_file) if the log lacks that
-/// posture.
+/// log has no samples or the rate is not above 0, and Error(bad_file) if the log does not have the
+/// requested postures.
 Motion motion_of(const SimulationLog& log, MotionSource source, double rate, double begin = 0,
                  double end = -1);
 

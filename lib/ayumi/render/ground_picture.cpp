@@ -110,10 +110,10 @@ AYUMI_INLINE void near_share(const GroundRow& row, const Eight& u, const Eight& 
   near = 1.0f / (1.0f + square * square);
 }
 
-/// Tells for eight stretches of the row, each from its first to its last pixel, whether a part of
-/// one of these lines may be in the stretch. In the others, add_lines() adds nothing. Along a row
-/// of pixels, the plane's coordinates only grow or only fall, and so does the width of a pixel
-/// there.
+/// Determines for eight stretches of the row, each from its first to its last pixel, whether a part
+/// of one of these lines may be in the stretch. In all other stretches, add_lines() adds nothing.
+/// Along a row of pixels, the plane's coordinates only grow or only fall, and so does the width of
+/// a pixel there.
 AYUMI_INLINE void has_lines(const Seen& from, const Seen& to, const GridLines& lines,
                             EightWhole& has) {
   Eight wide, low, high, first, last;
@@ -254,7 +254,8 @@ GroundPicture::GroundPicture(const Camera& camera, const Eigen::Matrix4d& to_cli
   fade_ = kFade * distance;
   if (!shown || camera.parallel_height > 0 || plane.normal.dot(camera.eye - plane.origin) <= 0)
     return;
-  Eigen::Matrix<double, 4, 3> corner;  // coefficients of (u, v, 1), counted from whole metres
+  // Coefficients of (u, v, 1), where u and v are relative to `whole_`.
+  Eigen::Matrix<double, 4, 3> corner;
   corner << plane.u, plane.v, plane.origin + plane.u * whole_.x() + plane.v * whole_.y(), 0, 0, 1;
   const Eigen::Matrix<double, 4, 3> seen = to_clip * corner;
   Eigen::Matrix3d flat;

@@ -163,7 +163,7 @@ std::vector<Candidate> landings(const SimulationLog& log, const std::vector<Flig
     const SimulationSample& highest = log.samples[tick_at(log, apex_of(log, flown[i]))];
     const double drop = highest.cog.z() - log.samples[low].cog.z();
     const double height = std::max(1e-3, highest.cog.z() - log.world.height);
-    // The fall is measured in the unit of the COG in turning_postures().
+    // The drop of the COG is divided by half its height, as in turning_postures().
     if (2 * drop / height >= kSeenMove)
       out.push_back({static_cast<double>(low) * log.dt, 2 * drop / height, true});
   }
@@ -182,10 +182,12 @@ double difference(const SimulationLog& log, double a, double b) {
   return most;
 }
 
-/// The first time at which a joint has moved farthest since the start [s]; the middle where none
-/// moves. The place does not count: a walk goes farthest at its end, in the posture of its start.
+/// The first time at which a joint has moved farthest since the start [s]; the middle of the run if
+/// no joint moves. The place does not count: a walk goes farthest at its end, in the posture of its
+/// start.
 double most_changed_at(const SimulationLog& log) {
-  // Postures that differ by less are one that is held [rad]. Chosen: above rounding.
+  // Postures that differ by less count as one posture that is held [rad]. Chosen: larger than
+  // rounding errors.
   constexpr double kSame = 1e-6;
   const Eigen::VectorXd& start = log.samples.front().state.theta;
   double most = kSeenMove, at = 0.5 * duration(log);

@@ -63,11 +63,12 @@ std::vector<FlightRecord> flights(const SimulationLog& log);
 /// largest change of a joint since the start. If no joint moves, it is the middle of the run.
 double telling_instant(const SimulationLog& log);
 
-/// `count` instants worth showing [s], in the order of time. They are: begin and end, pushes, the
-/// fall, the apex of each flight, then postures in which joints or the COG turn back or come to
-/// rest (those with larger moves first), and instants that fill the longest gaps. Those of a walk
-/// are on both feet. They lie around pushes, with the step or kick during which the first push
-/// acts, or around flights, unless the robot moves more elsewhere.
+/// `count` instants worth showing [s], in the order of time. They are: beginning and end, pushes,
+/// the fall, the apex of each flight, then postures in which joints or the COG turn back or come to
+/// rest (those with larger moves first), and instants that fill the longest gaps. In a walk, some
+/// of them show the robot on the left foot and some on the right foot. All instants lie around
+/// pushes, with the step or kick during which the first push acts, or around flights, unless the
+/// robot moves more elsewhere.
 std::vector<double> telling_instants(const SimulationLog& log, int count);
 
 /// The event at an instant, such as "push 1.1 N s", "apex" or "falls"; empty if there is none.

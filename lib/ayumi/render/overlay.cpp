@@ -126,7 +126,8 @@ void add_pushes(Overlay& overlay, const std::vector<PushRecord>& pushed, double 
 /// elsewhere.
 double position_use(const Dof& dof, double theta, double home) {
   // The part of the range that is near a limit. Chosen: a tenth is 10 to 20 degrees of most joints.
-  // With half of the value, a warning comes late; with twice, deep knees are always warm.
+  // With half of the value, a warning comes late; with twice, strongly bent knees are always
+  // marked.
   constexpr double kNear = 0.1;
   double use = 0;
   for (const double side : {-1.0, 1.0}) {

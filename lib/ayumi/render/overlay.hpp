@@ -27,7 +27,7 @@ struct OverlayOptions {
   bool scale = true;         ///< heights in a parallel view
   bool caption = true;       ///< line of text and legend of the marks
   double trail = 2.0;        ///< length of the trails [s]
-  double push_length = 0.6;  ///< length of its arrow, as a share of the robot's height
+  double push_length = 0.6;  ///< length of the arrow of a push, as a share of the robot's height
   double push_hold = 0.6;    ///< a push is shown at least this long from its start [s]
 };
 
@@ -62,11 +62,11 @@ std::vector<Eigen::Vector3d> support_corners(
     const std::array<bool, 2>& contact,
     const Eigen::Isometry3d& ground = Eigen::Isometry3d::Identity());
 
-/// How near the joint of each body is to its limits of position, speed and torque, by body: 0 up to
-/// two thirds of the limit of speed or torque and outside the last tenth of the range, 1 at the
-/// limit. If the home posture is near a limit, the joint only counts as near from a third of that
-/// distance on, so that nothing is near a limit at home. `profile` is the name of an actuator
-/// profile; the default one is used if it is unknown.
+/// For each body, how near its joint is to its limits of position, speed and torque. The value is 0
+/// up to two thirds of the limit of speed or torque, and outside the last tenth of the range of
+/// positions; it is 1 at a limit. If the home posture is near the end of this range, the last tenth
+/// is reduced to a third of the distance at home, so that nothing is near a limit at home.
+/// `profile` is the name of an actuator profile; the default one is used if it is unknown.
 std::vector<float> joint_heat(const RobotModel& model, const std::string& profile,
                               const SimulationSample& sample);
 

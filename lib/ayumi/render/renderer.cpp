@@ -11,14 +11,15 @@
 // A frame is drawn in this order: first the robot's shadow, as coverage seen along the sun, which
 // is read back and blurred; then ground, sky and shadow as a picture (ground_picture.hpp). Then, in
 // OpenGL, only where anything else is: the depth of the ground where it may hide something, robot,
-// scenery, exposures, overlay. These are drawn on nothing, with colours multiplied by how much of a
-// pixel they cover, and laid over the picture: ground, sky and shadow have no edges that samples
-// would smooth (the grid smooths its own lines), so one colour per pixel is the same as one per
-// sample.
+// scenery, exposures, overlay. These are drawn on a transparent background, with colours multiplied
+// by the share of the pixel that they cover, and laid over the picture. Ground, sky and shadow have
+// no edges that samples would smooth (the grid smooths its own lines), so one colour per pixel is
+// the same as one per sample.
 //
 // An exposure is drawn twice, first into the depth alone, so that only its nearest surface shines
-// through. It lies a little behind where it is: what coincides with it is seen, without speckle.
-// What an overlay hides behind the robot is drawn first and faintly, then its visible part.
+// through. It is drawn a little farther away than its true place, so that surfaces that coincide
+// with it are visible without speckle. The part of the overlay behind the robot is drawn first,
+// faintly, and then its visible part.
 
 namespace ayumi {
 namespace {
@@ -50,7 +51,7 @@ Matrix4f pushed_back(const Scene& scene, const Matrix4f& view_projection, size_t
   return moved;
 }
 
-/// The colour of a body, which is its own colour where it is cold.
+/// The tint of a body with this heat; a body without heat keeps its own colour.
 Eigen::Vector4f heat_tint(float heat) {
   Eigen::Vector4f tint = heat_color(heat);
   tint[3] = heat > 0 ? 0.35f + 0.65f * std::min(heat, 1.0f) : 0.0f;
@@ -321,8 +322,8 @@ Image Renderer::render(const Scene& scene) {
       view_matrix(scene.camera);
   const Matrix4f view_projection = to_clip.cast<float>();
   const Setting setting = {plane, view_projection};
-  // The colours of everything that is drawn on nothing are multiplied by its cover, and the covers
-  // add up.
+  // The colours of everything that is drawn on the transparent background are multiplied by the
+  // share of the pixel that it covers, and these shares add up.
   p.gl.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   p.gl.Disable(GL_BLEND);
   p.gl.Disable(GL_SCISSOR_TEST);

@@ -84,7 +84,7 @@ class Renderer {
   /// Throws Error(internal) unless the scene has one pose per body.
   Image render(const Scene& scene);
 
-  /// The next picture takes the memory of this one, which nobody needs any more.
+  /// Gives the memory of `image` to the next picture. `image` must no longer be needed.
   void reuse(Image image);
 
   /// The parts that are drawn differently from the files, with the reason, such as a texture that

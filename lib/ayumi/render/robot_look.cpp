@@ -13,7 +13,7 @@ namespace {
 
 /// Number of triangles of a robot above which not all of them can be seen. Chosen: two for each
 /// pixel that a robot takes of a picture of 720 rows, of which one faces the eye. With half of the
-/// value, robots of makers would lose triangles; with twice, snapshots take twice as long.
+/// value, models from robot makers would lose triangles; with twice, snapshots take twice as long.
 constexpr size_t kMostTriangles = 200'000;
 /// Number of rows of the picture in which a thinned robot looks like its meshes.
 constexpr double kRows = 720;

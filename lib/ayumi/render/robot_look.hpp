@@ -24,9 +24,9 @@ struct RobotLook {
 /// same surface.
 std::shared_ptr<const RobotLook> robot_look(const RobotModel& model, const Progress& progress = {});
 
-/// Distance by which a thinned surface may be away from the robot's [pixel]. Chosen: the four
-/// samples of a pixel are a quarter of it apart. With half of the value, more triangles of round
-/// parts stay; with twice, their outlines have corners of half a pixel.
+/// Largest distance between a thinned surface and the original surface of the robot [pixel].
+/// Chosen: the four samples of a pixel are a quarter of a pixel apart. With half of the value, more
+/// triangles of round parts stay; with twice, their outlines have corners of half a pixel.
 inline constexpr double kThinned = 0.3;
 
 /// Thins, first by `tolerance` [m] and then by multiples of it up to four, until at most `most`

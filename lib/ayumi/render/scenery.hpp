@@ -1,6 +1,7 @@
 #pragma once
 // Everything that stands on the ground: blocks, fields of heights, patches of another friction, and
-// the bumps that rise during a run. It is in the floor's frame, log_reading's floor_at().
+// the bumps that rise during a run. All places are in the frame of the floor (floor_at() of
+// log_reading.hpp).
 
 #include <vector>
 
@@ -26,8 +27,8 @@ std::vector<RisingBump> rising_bumps(const RobotModel& model, const SimulationLo
 /// The triangles of these bumps as they are at `t`.
 Triangles make_bumps(const std::vector<RisingBump>& bumps, double ground_height, double t);
 
-/// The time in which a bump rises [s], as in sim/schedule.cpp, and the share of its height after a
-/// time since its begin.
+/// The time in which a bump rises [s], as in sim/schedule.cpp, and the share of its height at a
+/// time after its beginning.
 constexpr double kBumpRise = 0.02;
 double bump_share(double since);
 

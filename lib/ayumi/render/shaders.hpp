@@ -47,8 +47,8 @@ vec4 surface_color(vec4 base) {
 )";
 inline constexpr const char* kPlainInput = "vec4 surface_color(vec4 base) { return base; }\n";
 
-// What stands on the floor is darker where the robot's shadow falls on it; `place` is where the sun
-// casts it in the coverage.
+// Objects on the floor are darker where the robot's shadow falls on them; `place` is the place in
+// the coverage onto which the sun projects the point.
 inline constexpr const char* kSceneryVertex = R"(
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
@@ -78,10 +78,11 @@ vec4 surface_color(vec4 base) {
 }
 )";
 
-// Light from the whole sky, brighter from above; the sun; a dull highlight. A face seen from
-// behind, or with its normal turned away, is lit as if it were the front; a normal that is turned
-// away just so, at an outline, stays (turned, it would look down into the dark). Zero normal: an
-// unlit mark. `least` is 1 where nothing shines through.
+// The light comes from the whole sky, brighter from above, and from the sun, which also makes a
+// dull highlight. A face that is seen from behind, or whose normal points away from the eye, is lit
+// as if it were seen from the front. A normal that points only slightly away from the eye, as at an
+// outline, is kept, because the reversed normal would point down to the dark side. A mark has a
+// zero normal and is not lit. `least` is 1 if nothing is visible through the surface.
 inline constexpr const char* kSolidFragment = R"(
 in vec3 world_position;
 in vec3 world_normal;
@@ -127,8 +128,8 @@ void main() {
 }
 )";
 
-// Programs of their own with and without a hole: one that may leave pixels out hinders the early
-// depth test.
+// There are two programs, with and without a hole, because a program that may leave out pixels
+// prevents the early depth test.
 inline constexpr const char* kWhole = "bool outside(vec2 p) { return true; }\n";
 inline constexpr const char* kWithHole = R"(
 uniform vec4 hole;
@@ -157,7 +158,7 @@ out vec4 pixel;
 void main() { pixel = vec4(1.0); }
 )";
 
-// One colour from the samples of each pixel; places in pixels.
+// Computes one colour from the samples of each pixel; places are in pixels.
 inline constexpr const char* kMeanVertex = R"(
 layout(location = 0) in vec2 place;
 uniform vec2 center;

@@ -63,7 +63,8 @@ Image draw_strip(const RobotModel& model, const SimulationLog& log, const StripO
     return renderer.exposures(times);
   }
   clip.camera.smoothing = 0;  // every picture has the robot in its middle
-  // Half of a portrait that the robot fills is as wide as this share of the robot's height.
+  // If the robot fills a portrait picture, half of the picture's width is this share of the robot's
+  // height.
   clip.overlay.push_length = std::min(clip.overlay.push_length, 0.34);
   const auto alive = [&](const ProgressEvent&) {
     report(progress, {"snapshots", 0, ""});

@@ -50,7 +50,8 @@ struct Quadric {
   }
 };
 
-/// A triangle by its places, and by the vertices whose normals and colours its corners have.
+/// A triangle by the places of its corners, and by their looks: the vertices whose normals and
+/// colours the corners have.
 struct Facet {
   std::array<std::uint32_t, 3> place, look;
   bool gone = false;
@@ -82,7 +83,7 @@ class Thinning {
       go_through(tolerance_ * share * tolerance_ * share);
       std::erase_if(facets_, [](const Facet& facet) { return facet.gone; });
     }
-    // Further rounds do what the last bound still allows.
+    // Further rounds with the last bound remove edges that have become removable.
     for (int more = 0; more < kRounds && facets_.size() < before - before / 50; ++more) {
       report(progress, {"surface", -1, ""});
       before = facets_.size();
@@ -215,8 +216,8 @@ class Thinning {
   }
 
   void move(std::uint32_t from, std::uint32_t to) {
-    // Looks at the end where the place goes, beside those that it had: first those of the triangles
-    // that vanish, which join them.
+    // Collects the looks of the corners at `to`. In each triangle that vanishes, a look at `from`
+    // is joined with a look at `to`.
     joined_.clear();
     looks_.clear();
     for (std::uint32_t n = first_[to]; n < first_[to + 1]; ++n) {
@@ -239,8 +240,8 @@ class Thinning {
     settled_[from] = settled_[to] = true;
   }
 
-  /// The look of a corner that moves: the one that joined it, one that looks nearly alike, or its
-  /// own.
+  /// The new look of a corner that moves: the look at the new place that is joined with it, or else
+  /// the most similar look there, or else its own look.
   std::uint32_t look_at_end(std::uint32_t look) const {
     const RenderVertex& own = surface_.vertices[look];
     for (const auto& [before, after] : joined_)

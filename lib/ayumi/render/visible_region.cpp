@@ -13,8 +13,8 @@ namespace {
 
 constexpr int kSpare = 2;  // pixels around the visible part, for smoothed edges
 constexpr int kTile = 16;  // edge of a tile [pixel]
-// Half widths of the picture beyond which all tiles count as covered. Chosen: multiplied by 4096
-// pixels, it still fits into a whole number.
+// Distance from the middle of the picture, in half widths of the picture, beyond which all tiles
+// count as covered. Chosen: multiplied by 4096 pixels, it still fits into an int.
 constexpr double kFarOutside = 1e4;
 
 }  // namespace
@@ -65,8 +65,8 @@ void CoveredTiles::add(std::span<const Vector3d> points) {
   Eigen::AlignedBox2d all;
   for (const Vector3d& point : points) {
     const Eigen::Vector4d clip = view_projection_ * point.homogeneous();
-    // The point is too far outside for whole numbers, and a nearer place would turn the edges that
-    // end there.
+    // The place of the point does not fit into an int, and a nearer place would change the
+    // direction of the edges that end there.
     if (clip.w() < 1e-6 || !(clip.head<2>().cwiseAbs().maxCoeff() <= kFarOutside * clip.w()))
       return std::fill(covered_.begin(), covered_.end(), true);
     const Vector2d place = clip.head<2>() / clip.w();

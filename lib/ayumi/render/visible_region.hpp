@@ -10,7 +10,7 @@
 
 namespace ayumi {
 
-/// A part of a picture; it is empty unless it has an edge longer than 0.
+/// A part of a picture; it is empty if its width or height is 0.
 struct PixelBox {
   int x = 0, y = 0, width = 0, height = 0;  ///< corner and size [pixel]
 };

@@ -17,14 +17,15 @@
 
 namespace ayumi {
 
-/// The robot's layouts. A sidecar without any layout has two: the first has the interval, 2, the
-/// motors of all encoders and three requests; the second has the motors and then two more values,
-/// without an interval.
+/// The robot's layouts. A sidecar without any layout has three. The first has the interval, 2, the
+/// motors of all encoders and three requests. The other two have no interval: one has the counts of
+/// the motors and two more values, the other has the angles of the motors [rad] and two more
+/// values.
 std::vector<SequenceLayout> sequence_layouts(const RobotModel& model);
 
 /// The layout with this name; without a name, the first one with an interval. Tables are written in
-/// it. Throws Error(bad_model) if there is no such layout, or if the robot does not have each of
-/// its devices once.
+/// this layout. Throws Error(bad_model) if there is no such layout, or if the robot does not have
+/// each of its devices once.
 SequenceLayout written_layout(const RobotModel& model, const std::string& name = "");
 
 /// One row with a value for every motor.
@@ -69,8 +70,8 @@ double angle_of_unit(const HoapFile& sequence, const Dof& dof);
 /// other fields are zero. Joints without a device in the file keep their home angle.
 ReferenceTrajectory hoap_targets(const RobotModel& model, const HoapFile& sequence);
 
-/// The table as a sequence file, in the layout that the robot writes unless another one is given.
-/// The counts are those of encoder_counts under the step limits of the options. Throws
+/// The table as a sequence file, in the layout of written_layout() unless another one is given. The
+/// counts are those of encoder_counts under the step limits of the options. Throws
 /// Error(bad_pattern) if dt is not a whole number of milliseconds or a count does not fit into 16
 /// bits.
 std::string hoap_csv(const RobotModel& model, const ReferenceTrajectory& table,

@@ -47,7 +47,8 @@ void refuse_zeros(const HoapFile& sequence, const std::string& file) {
          "every value of every motor is 0, so nothing was recorded; record again");
 }
 
-// A step that no motor board passes on shows that the file has a jump, or that rows are missing.
+// A step that no motor board passes on shows that the motion in the file is discontinuous, or that
+// rows are missing.
 void say_largest_step(const HoapFile& sequence, std::vector<std::string>& filled) {
   if (sequence.layout.radians) return;
   const double limit = SafetyOptions().counts_per_ms;

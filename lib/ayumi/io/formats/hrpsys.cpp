@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 std::string blanks() { return " \t"; }
 
-// A file beside the .pos file, which has one row for each row of it.
+// A file beside the .pos file, with one row for each row of the .pos file.
 std::optional<NumberRows> rows_beside(const MotionInput& source, const std::string& extension,
                                       size_t rows) {
   const std::optional<std::string> bytes = source.beside(extension);

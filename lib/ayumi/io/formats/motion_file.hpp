@@ -34,7 +34,7 @@ struct MotionFile {
   bool keys = false;      ///< rows are key postures, between which a player interpolates
   bool commands = false;  ///< values are what servos receive
   /// Origin of the unit of the angles: the format defines it, or the reader has converted each
-  /// column by its own unit, or the user says it.
+  /// column by its own unit, or the user states it.
   enum class Unit { of_format, of_columns, assumed } unit = Unit::of_format;
   int file_rows = 0;          ///< data rows of the file; 0 if there are as many as rows()
   TableCaution caution = {};  ///< caution of the run from which the table comes

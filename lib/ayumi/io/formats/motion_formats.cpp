@@ -279,7 +279,7 @@ std::vector<std::string> written_format_names() {
 
 Recognized recognize(const MotionInput& source) {
   const Foreign* kind = signed_kind(source);
-  // Number of bytes that are looked at. Chosen: no text has bytes of 0 at its beginning, whatever
+  // Number of bytes that are examined. Chosen: no text has bytes of 0 at its beginning, whatever
   // else stands there.
   constexpr size_t kBeginning = 100;
   const bool binary = source.bytes.substr(0, kBeginning).find('\0') != std::string::npos;

@@ -114,7 +114,7 @@ void refuse_too_many(const MotionInput& source, const std::string& text) {
   }
 }
 
-// The number of numbers with decimal commas, whatever else the text contains.
+// Whether the numbers of a text have decimal commas, whatever else the text contains.
 bool has_decimal_commas(const std::string& text) {
   size_t points = 0, commas = 0;
   for (size_t i = 1; i + 1 < text.size(); ++i) {
@@ -123,7 +123,7 @@ bool has_decimal_commas(const std::string& text) {
                         std::isdigit(static_cast<unsigned char>(text[i + 1]));
     (text[i] == '.' ? points : commas) += inside;
   }
-  // The share of points that may be those of versions and names. Chosen: one in fifty.
+  // For each fifty commas, one point between digits may belong to a version or a name. Chosen.
   return commas > 2 && points * 50 < commas;
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 // Limits the depth to which arrays and objects of a JSON text may be nested. The library that reads
-// JSON accepts any depth, but it copies, compares and writes by recursion. A text that is nested
-// deeply enough would end the program where its value is used. So every reader of JSON refuses such
-// a text first.
+// JSON accepts any depth, but it copies, compares and writes by recursion. If a text is nested too
+// deeply, the use of its value would overflow the stack and end the program. So every reader of
+// JSON refuses such a text first.
 
 #include <cstddef>
 #include <optional>

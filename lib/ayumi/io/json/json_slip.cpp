@@ -128,14 +128,14 @@ class SlipFinder {
 
   static char closing(char bracket) { return bracket == '{' ? '}' : ']'; }
 
-  // Whether the word opened by mistake, as in "t: 0.5, "zmp": the mark that should open a word
-  // closed the word before it.
+  // Whether the quotation mark that should open this word has closed the string before it, as in
+  // `"t: 0.5, "zmp"`, where the mark after t is missing.
   bool opens_in_word() const {
     return token_ == Token::word && last_ == Token::string && text_[at_ - 1] == '"';
   }
 
-  // The missing mark belongs after the word and before the characters that are part of the text
-  // again.
+  // Says that a quotation mark is missing at the end of the string that begins at `begin`. The
+  // string ends before the next character that separates values.
   void say_unclosed(size_t begin) {
     size_t end = begin + 1;
     while (end < text_.size() &&
@@ -466,7 +466,7 @@ class SlipFinder {
     say(before_, "a comma is missing after " + quoted(value_begin_, before_));
   }
 
-  // The next character that is no space.
+  // The next character that is not a space.
   char skipped_to(size_t at) const {
     while (at < text_.size() && std::isspace(static_cast<unsigned char>(text_[at]))) ++at;
     return at < text_.size() ? text_[at] : '\0';
@@ -506,7 +506,7 @@ class SlipFinder {
   std::vector<Open> open_;
   std::optional<JsonSlip> slip_;
   Token token_ = Token::end;
-  size_t at_ = 0, end_ = 0;  // begin and end of the present token
+  size_t at_ = 0, end_ = 0;  // beginning and end of the present token
   size_t before_ = 0;        // end of the previous token
   Token last_ = Token::end;  // the previous token, and its place
   size_t last_at_ = 0;

@@ -15,7 +15,7 @@ struct TopObject {
   size_t open = 0, close = 0;  ///< places of the braces of the object
   size_t last = 0;  ///< place of the object's last character that is neither space nor comment
   size_t begin = 0,
-         end = 0;  ///< begin and end of the value of "correction"; both are 0 if there is none
+         end = 0;  ///< beginning and end of the value of "correction"; both are 0 if there is none
 };
 
 size_t skip_comment(const std::string& text, size_t i) {

@@ -26,8 +26,8 @@ constexpr double kLargestLift = 10;
 // be written [1/s].
 constexpr double kTimeSteps = 1e9;
 
-// The time that the key `absolute` states, or that the key `relative` states as counted from
-// `before` [s].
+// The time that the key `absolute` states, or that the key `relative` states relative to `before`
+// [s].
 double read_moment(const JsonNode& node, const char* absolute, const char* relative, double before,
                    PatternScope& scope) {
   if (node.has(absolute) == node.has(relative))

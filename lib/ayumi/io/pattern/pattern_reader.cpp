@@ -202,9 +202,10 @@ void each_item(const JsonNode& list, const std::string& name, PatternScope& scop
 // Chosen: half of ten.
 constexpr double kGrossTime = 5;
 
-// The end of a message about times that do not increase. If the previous time would be in order
-// without a slip of the keyboard, it names that time; otherwise it asks for a time later than `t`,
-// and proposes one if `t` can have such a slip. `before` is the time before both.
+// The end of a message about times that do not increase, where `t` follows `previous`, and
+// `previous` follows `before`. If `previous` with one slip of the keyboard corrected would be in
+// order, the message proposes this correction. Otherwise it asks for a later time in place of `t`,
+// and proposes one if `t` with one slip corrected would be in order.
 std::string meant_time(double before, double previous, const std::string& place_of_previous,
                        double t, const std::string& otherwise) {
   // If a time is only a little too late, its decimal point is not in a wrong place.
@@ -219,8 +220,8 @@ std::string meant_time(double before, double previous, const std::string& place_
   return "; give a later time" + otherwise;
 }
 
-// The end of a message about a time that counts from the beginning, if it was probably meant to
-// count from the time before.
+// The end of a message about a time since the beginning that was perhaps meant relative to the
+// previous time.
 std::string meant_span(const JsonNode& node, const std::string& absolute,
                        const std::string& relative, double value) {
   if (!node.has(absolute) || !(value > 0)) return "";

@@ -26,7 +26,7 @@ struct PatternScope {
 /// Whether a pattern's "robot" is a path and not a bundled name.
 bool names_a_path(const std::string& robot);
 
-/// Makes an error of every key that pattern_keys() does not list for `kind`.
+/// Throws an error for a key that pattern_keys() does not list for `kind`.
 void only_pattern_keys(const JsonNode& node, const std::string& kind);
 
 /// Reads a number or an expression such as "${name}"; it must be finite, and at most kLargestNumber

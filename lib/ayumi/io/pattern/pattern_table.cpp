@@ -43,8 +43,8 @@ void write_pattern_and_table(const fs::path& path, const Pattern& pattern,
          "the command writes two files, the pattern and a table beside it, and the table "
          "needs this name; give the pattern another ending, such as .json");
   Pattern named = pattern;
-  // The path is written as it holds from the pattern's old folder, and write_pattern() changes it
-  // to the new one.
+  // The path is relative to the pattern's old folder here. write_pattern() makes it relative to the
+  // new one.
   const fs::path from = fs::absolute(pattern.file.empty() ? path : fs::path(pattern.file));
   named.table->file = fs::relative(fs::absolute(table), from.parent_path()).string();
   std::optional<KeptSequence>& kept = named.table->sequence;

@@ -24,9 +24,9 @@ std::vector<std::filesystem::path> pattern_files(const std::filesystem::path& pa
 /// Writes as write_pattern() does. The data of a table are written to table_beside(path), and the
 /// pattern names that file. The bytes of the `sequence` from which the table was imported are
 /// written to sequence_beside(path), and the head of the table names that file. A table that
-/// already names one keeps the name as long as its angles are those of the import. Afterwards,
-/// either all files are there or none. The head of the table has the caution of the run from which
-/// the table comes.
+/// already names a sequence keeps this name as long as its angles are those of the import.
+/// Afterwards, either all files are there or none. The head of the table has the caution of the run
+/// from which the table comes.
 void write_pattern_and_table(const std::filesystem::path& path, const Pattern& pattern,
                              const std::vector<std::string>& comments = {},
                              const TableCaution& caution = {}, const std::string& sequence = {});

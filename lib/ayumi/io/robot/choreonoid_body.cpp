@@ -216,7 +216,7 @@ class BodyReader {
   void read_range(const YAML::Node& node, double unit, JointDescription& joint) const {
     if (const YAML::Node range = member(node, "joint_range", "jointRange")) {
       if (range.IsScalar() && range.Scalar() == "unlimited") {
-        // as it stands
+        // the joint stays without limits
       } else if (range.IsScalar()) {
         joint.upper = unit * std::abs(number(range));
         joint.lower = -joint.upper;
@@ -374,7 +374,7 @@ class BodyReader {
       for (size_t k = 2; k < face.size(); ++k) {
         const Vector3d &a = points[face[0]], &b = points[face[k - 1]], &c = points[face[k]];
         const Vector3d normal = (b - a).cross(c - a).normalized();
-        if (!(normal.squaredNorm() > 0.5)) continue;  // of no area
+        if (!(normal.squaredNorm() > 0.5)) continue;  // the triangle has no area
         const auto first = static_cast<std::uint32_t>(part.vertices.size());
         for (const Vector3d& p : {a, b, c}) {
           part.vertices.push_back(p.cast<float>());

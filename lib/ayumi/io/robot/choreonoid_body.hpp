@@ -11,8 +11,8 @@ namespace ayumi {
 
 /// Reads links with their joints, masses and shapes; the joint ids give the order of the joints.
 /// `path` is for messages and for meshes. What cannot be kept is listed in `assumptions`. Throws
-/// Error(bad_file) "file:line: ..." for what is not a body file, Error(bad_model) for an impossible
-/// robot.
+/// Error(bad_file) "file:line: ..." for a text that is not a body file, and Error(bad_model) for an
+/// impossible robot.
 RobotDescription parse_choreonoid_body(const std::string& bytes, const std::filesystem::path& path,
                                        const std::vector<std::filesystem::path>& packages);
 

@@ -412,9 +412,9 @@ LinkExtent extent_of(const LinkDescription& link) {
   return extent;
 }
 
-// Whether the link cannot have its inertia: it is missing, or no body can have it, or its body
-// would be larger than the link's shape (see model/diagnose). For a link without a shape, `largest`
-// is the largest reach of all links [m].
+// Whether the inertia of the link cannot be true: it is missing, no body can have it, or a body
+// with this inertia would be larger than the link's shape (see model/diagnose). For a link without
+// a shape, `largest` is the largest reach of all links [m].
 bool is_inertia_of_no_link(const LinkDescription& link, const LinkExtent& extent, double largest) {
   const Eigen::Matrix3d& tensor = link.inertia.about_com;
   const Vector3d moments = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(tensor).eigenvalues();

@@ -21,9 +21,9 @@ constexpr double kWritableOffset = 0.5;
 
 // The servo of a joint as the simulation gets it; its constants are those of `source`. If the
 // stiffness is not determined, the lower end of its interval is written; if there is no such end,
-// the robot keeps its own stiffness. A delay that also stands for the damping is written as
-// damping, because a servo without any damping would let the joint oscillate. The offset is the
-// joint's own: the difference between its angle and its command without load.
+// the robot keeps its own stiffness. If the recording shows no damping, the whole lag is written as
+// damping and not as delay, because a servo without any damping would let the joint oscillate. The
+// offset is the joint's own: the difference between its angle and its command without load.
 OrderedJson servo_group(const IdentifiedJoint& joint, const IdentifiedJoint& source,
                         const ServoDescription& own) {
   OrderedJson group = {{"joints", {joint.joint}}};

@@ -2,17 +2,17 @@
 // The messages between Ayumi and the program ayumi-mesh-reader. Both run on the same machine, so
 // that numbers have its byte order.
 //
-// The reader begins with a hello. Then the following is repeated as often as wanted: Ayumi sends a
-// request; the reader asks for companion files, each of which Ayumi answers with a file; the reader
-// sends a mesh or a refusal. The reader ends when the connection is closed.
+// The reader begins with a hello. Then the following steps are repeated: Ayumi sends a request; the
+// reader asks for companion files, each of which Ayumi answers with a file; the reader sends a mesh
+// or a refusal. The reader ends when the connection is closed.
 //
 // A message is a head and `size` bytes:
 //   hello    nothing; the number `version` is in `size`
 //   request  MeshRequestHead, the name of the file, the bytes of the file
 //   ask      the path of a companion file, relative to the folder of the mesh
-//   file     nothing where there is no such file, else one byte (1) and the bytes of the file
+//   file     nothing if there is no such file, otherwise one byte (1) and the bytes of the file
 //   mesh     what encode_mesh() makes
-//   refusal  why the file is no mesh, for people
+//   refusal  the reason why the file is not a mesh, for people
 //   memory   nothing: reading took more memory than the request allows
 
 #include <cstdint>

@@ -98,7 +98,7 @@ fs::path MeshPlaces::named_file(const std::string& name) const {
         return found / rest;
       if (folder == folder.root_path()) break;
     }
-    // Now packages whose folder has another name are searched, as copies and downloads have.
+    // Now packages are searched whose folder has another name, as in copies and downloads.
     above = 0;
     for (fs::path folder = first; above < kNeighbours && folder != folder.root_path();
          folder = folder.parent_path(), ++above)

@@ -292,7 +292,8 @@ class MjcfReader {
       joint.parent = above;
       joint.child = --left == 0 ? name : name + "/" + joint.name;
       joint.origin = placement * Eigen::Translation3d(at - anchor);
-      // Angles of the model count from its reference, so the frame is turned back by it.
+      // The frames of the model are those at the reference position of the joint, so the frame is
+      // moved back to the position 0.
       if (slides)
         joint.origin = joint.origin * Eigen::Translation3d(-reference * axis);
       else
@@ -458,8 +459,8 @@ class MjcfReader {
           " with the square or a higher power of a joint's position are left out");
   }
 
-  // Position actuators are servos; every other actuator has the limits of its force. A joint that
-  // no actuator drives is passive where others are driven.
+  // Position actuators are servos; every other actuator has the limits of its force. If some joints
+  // are driven by actuators, the other joints are passive.
   void read_actuators() {
     std::set<size_t> driven;
     std::vector<std::string> without_force;

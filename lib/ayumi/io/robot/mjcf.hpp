@@ -15,8 +15,8 @@ namespace ayumi {
 /// Reads bodies, joints, inertias, geoms, position actuators, force limits, joint equalities (as
 /// mimic joints), excluded contacts and the site of the inertial unit. `path` is for messages and
 /// for files that the model names. What cannot be kept is listed in `assumptions`. Throws
-/// Error(bad_file) for text that is no MJCF, Error(bad_model) with MuJoCo's words for an impossible
-/// model, and Error(bad_file) with a remedy where Ayumi was built without MuJoCo.
+/// Error(bad_file) for a text that is not MJCF, Error(bad_model) with MuJoCo's words for an
+/// impossible model, and Error(bad_file) with a remedy if Ayumi was built without MuJoCo.
 RobotDescription parse_mjcf(const std::string& bytes, const std::filesystem::path& path,
                             const std::vector<std::filesystem::path>& packages);
 

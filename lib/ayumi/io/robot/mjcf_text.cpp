@@ -309,8 +309,8 @@ class Cleaner {
     }
   }
 
-  // MuJoCo fits a primitive that names a mesh (a sphere where no type is stated) to this mesh. It
-  // gets an asset of its own, because the probe of an asset has another size.
+  // MuJoCo fits a primitive that names a mesh (a sphere if no type is stated) to this mesh. The
+  // primitive gets an asset of its own, because the probe of an asset has another size.
   void fit(const std::string& body, const std::string& mesh, TiXmlElement* geom) {
     if (!is_there_(body, text_.meshes.at(mesh).file)) {
       geom->Parent()->RemoveChild(geom);

@@ -22,8 +22,8 @@ constexpr const char* kSidecarName = "robot.json";
 // The robot.json of a folder, or the only other robot in it; empty if it has neither.
 fs::path file_in_folder(const fs::path& folder) {
   std::error_code ignored;
-  // This also holds for a named pipe or a link to nothing: read_file() reports it, and the robot is
-  // not read without its sidecar.
+  // A named pipe or a link to nothing is also returned. read_file() then reports it, and the robot
+  // is not read without its sidecar.
   const fs::path sidecar = folder / kSidecarName;
   if (fs::exists(fs::symlink_status(sidecar, ignored)) && !fs::is_directory(sidecar, ignored))
     return sidecar;

@@ -35,9 +35,9 @@ struct RobotEntry {
 std::vector<RobotEntry> find_robots(const RobotSearch& search);
 
 /// `name_or_path`: a name in the search folders, a folder, a robot.json, or a URDF. Inferred values
-/// are listed in `assumptions`. Throws Error(bad_file) when nothing is there or a file cannot be
-/// read, "file: /pointer: ..." for a sidecar that is not as specified, Error(bad_model) for an
-/// impossible robot.
+/// are listed in `assumptions`. Throws Error(bad_file) if there is no such robot or a file cannot
+/// be read, and "file: /pointer: ..." for a sidecar that is not as specified; throws
+/// Error(bad_model) for an impossible robot.
 RobotDescription load_robot_description(const std::string& name_or_path,
                                         const RobotSearch& search = {},
                                         const LoadOptions& options = {});

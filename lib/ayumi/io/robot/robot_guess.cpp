@@ -58,7 +58,8 @@ constexpr size_t kMostCorners = 8;
 constexpr double kLongerEnd = 1.1;
 
 // Reach of the legs at home, in lengths of the straight leg, in the order in which they are tried.
-// Chosen: thigh and shank of equal length are at 40 deg to each other for 0.94; HOAP-1 stands so.
+// Chosen: thigh and shank of equal length are at 40 deg to each other for 0.94, similar to the home
+// posture of HOAP-1.
 constexpr std::array kReaches = {0.94, 0.92, 0.955, 0.90, 0.97, 0.87, 0.84};
 // Distance of the home posture from the position limits [rad]. Chosen: 2 deg, so that the
 // controller has room on both sides.
@@ -919,7 +920,8 @@ std::vector<std::string> hold_play_of_gears(RobotDescription& robot) {
   // Largest range of a passive joint that is the play of a gear [rad]. Chosen: worn hobby servos
   // have 2 deg; toes and springs move by 10 deg and more.
   constexpr double kMostPlay = 4 * kOneDegree;
-  // Cosine of the angle between parallel axes. Definition: six digits leave this.
+  // Smallest cosine of the angle between two axes that count as parallel. Definition: rounding the
+  // axes to six digits causes a smaller deviation.
   constexpr double kParallel = 1 - 1e-9;
   std::vector<std::string> held, driven;
   for (JointDescription& play : robot.joints) {

@@ -90,7 +90,7 @@ RobotFormat robot_format(const std::string& bytes, const fs::path& path) {
   if (extension == ".urdf" || extension == ".xacro") return RobotFormat::urdf;
   if (text.starts_with("{") || text.starts_with("//") || text.starts_with("/*"))
     return RobotFormat::sidecar;
-  // A body file shows itself in its first line that is not a remark.
+  // A body file has the word ChoreonoidBody in its first line that is not a remark.
   if (extension == ".body" || text.substr(0, 4096).find("ChoreonoidBody") != std::string_view::npos)
     return RobotFormat::body;
   if (extension == ".ztk" || text.substr(0, 4096).find("[roki::") != std::string_view::npos ||

@@ -21,8 +21,9 @@ void parse_xml(TiXmlDocument& document, const std::string& bytes, const std::str
 /// The attribute of an element, or `other` if it is missing or there is no element.
 std::string xml_attribute(const TiXmlElement* element, const char* name, const std::string& other);
 
-/// The `count` numbers in `text`, which stands in `at`; a message begins with `place`. Throws
-/// Error(bad_file) for words that are not finite numbers, and for another count of them.
+/// The `count` numbers in `text`, which is in the element `at`; a message begins with `place`.
+/// Throws Error(bad_file) if a word is not a finite number, or if the number of words is not
+/// `count`.
 std::vector<double> xml_numbers(const std::string& file, const TiXmlElement* at,
                                 const std::string& place, const std::string& text, int count);
 

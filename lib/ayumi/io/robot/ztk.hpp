@@ -11,7 +11,8 @@ namespace ayumi {
 
 /// Reads links with their joints, masses, motors and shapes. A joint has the name of its link.
 /// `path` is for messages and for meshes. What cannot be kept is listed in `assumptions`. Throws
-/// Error(bad_file) "file:line: ..." for what is no chain, Error(bad_model) for an impossible robot.
+/// Error(bad_file) "file:line: ..." for a text that is not a chain, and Error(bad_model) for an
+/// impossible robot.
 RobotDescription parse_ztk(const std::string& bytes, const std::filesystem::path& path);
 
 /// The text of `robot` for RoKi: its links have the order of the joints, as .zvs files have it. A

@@ -33,7 +33,7 @@ void require_attitudes(const SimulationSample& sample, double t, const std::stri
 }
 
 struct Carried {
-  double begin = 0, end = 0;  // begin and end of the interval [s]
+  double begin = 0, end = 0;  // beginning and end of the interval [s]
   int body = 0;
   Vector3d point;  // point in the frame of the body
   double mass = 0;

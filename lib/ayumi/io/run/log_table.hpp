@@ -23,11 +23,12 @@ struct LogTable {
 ///   dcm, cmd.dcm, ref.dcm  COG + COG rate / omega with omega^2 = g / (z_G - z_Z); the rates of
 ///                          command and reference are central differences; no value for
 ///                          z_G <= z_Z
-///   zmp.margin             distance of the ZMP inside the hull of the soles planned down, where
-///                          they are; no value without one
+///   zmp.margin             distance of the ZMP inside the hull of the soles that are planned on
+///                          the ground, at their true places; no value without such a sole
 ///   left.contact, ...      whether the ground presses on the foot
 ///   support, planned_support
-///                        feet on the ground, really and by plan: 0 none, 1 left, 2 right, 3 both
+///                        feet on the ground, in the run and in the plan: 0 none, 1 left,
+///                        2 right, 3 both
 ///   phase                  number of the planned support since the start, from 0
 ///   disturbance.<n>_<name> whether disturbance n of the scenario, from 1, acts
 /// Throws Error(bad_file), beginning with `file`, for a log without samples or of another robot.

@@ -33,7 +33,7 @@ class LogWriter {
 
  private:
   struct Block {
-    size_t begin, size, rows;  // begin and size in the scratch file [bytes], number of rows
+    size_t begin, size, rows;  // place and size in the scratch file [bytes], number of rows
   };
   ScratchFile scratch_;
   std::vector<Block> written_;

@@ -29,8 +29,8 @@ struct RunFolder {
   std::optional<ReferenceTrajectory> pushed;     ///< table reference_pushed.csv, of a disturbed run
   /// Cautions for the heads of these tables.
   TableCaution reference_caution = {}, pushed_caution = {};
-  /// The run has no tables, because they follow from the logs; run.json then contains what their
-  /// heads would say.
+  /// Whether the run has no tables, which follow from the logs. In this case, run.json contains
+  /// what the heads of the tables would say.
   bool light = false;
   std::vector<std::string> files;  ///< other existing files in the folder, by relative path
   /// Reasons why the run gives no table for a robot: an inconsistent pattern, a run that fell or

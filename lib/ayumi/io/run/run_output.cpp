@@ -31,7 +31,7 @@ bool is_own_folder(const fs::path& path) {
   return fs::is_directory(fs::symlink_status(path, ignored));
 }
 
-// Throws if the name of a file of the run belongs to something else than a file, which must not be
+// Throws if something other than a file has the name of a file of the run, because it must not be
 // removed.
 void require_own_file(const fs::path& path) {
   if (is_there(path)) require_file_target(path);

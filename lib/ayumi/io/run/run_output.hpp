@@ -19,7 +19,7 @@ void require_run_target(const std::filesystem::path& folder, bool replace,
 class RunOutput {
  public:
   /// Locks `folder`, and makes it if necessary. Throws Error(bad_file) if another process is
-  /// writing a run there, and as require_run_target().
+  /// writing a run there, and the same errors as require_run_target().
   RunOutput(const std::filesystem::path& folder, bool replace);
   ~RunOutput();
   RunOutput(const RunOutput&) = delete;

@@ -125,7 +125,8 @@ std::uint64_t bits_of(const std::vector<std::uint64_t>& numbers) {
 // rows are left out, and the rest is fitted again. Chosen: with twice as many rows in the fit, a
 // log of the bundled walk has the same size.
 constexpr size_t kFitRows = 7;
-// Number of rounds of a fit. Chosen: 0.8 of the rows stay in each round, and half of them at last.
+// Number of rounds of a fit. Chosen: 0.8 of the rows stay in each round, and half of them at the
+// end.
 constexpr int kFitRounds = 4;
 // Share of rows that stay in a round. Chosen: together with kFitRounds.
 constexpr double kFitShare = 0.8;

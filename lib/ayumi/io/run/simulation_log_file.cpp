@@ -29,8 +29,8 @@ static_assert(std::endian::native == std::endian::little, "logs are little-endia
 
 constexpr char kMagic[] = "AYUMILOG";
 constexpr std::uint32_t kPlain = 1;  // Definition: the version with uncompressed rows
-// Definition: the version with compressed rows in one block. In version 2 no column is predicted
-// from others; it is read like this one.
+// Definition: the version with compressed rows in one block. Version 2, in which no column is
+// predicted from others, is read like this version.
 constexpr std::uint32_t kCompressed = 3;
 constexpr std::uint32_t kInBlocks = 4;  // Definition: the version with several blocks
 constexpr size_t kPrefix = 16;          // magic, version, header length
@@ -245,7 +245,7 @@ std::string plain_head(const SimulationLog& log, size_t rows, const std::string&
 // the cache.
 constexpr size_t kRowsAtATime = 64;
 
-// Passes the rows of a log of version 1 on, a few at a time.
+// Calls visit(rows) with the rows of the log as version 1 has them, a few at a time.
 void for_rows_of(const SimulationLog& log, const std::function<void(const std::string&)>& visit) {
   std::string rows;
   for (size_t k = 0; k < log.samples.size(); ++k) {

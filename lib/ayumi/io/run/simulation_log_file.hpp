@@ -3,8 +3,8 @@
 // header length and CRC-32, the header as JSON text (columns with units, joints, events, result,
 // provenance), then rows of 64-bit floats as compress_samples() writes them, all little-endian.
 // Every number survives bit for bit. A log of more than kLogBlockRows rows ("ayumi.log/4") has them
-// in blocks of that many, one after the other, so that it can be written while it grows. Version 1
-// has no CRC, and its rows are not compressed.
+// in blocks of kLogBlockRows rows, so that it can be written while it grows. Version 1 has no CRC,
+// and its rows are not compressed.
 
 #include <filesystem>
 #include <functional>

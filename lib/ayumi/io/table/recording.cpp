@@ -200,7 +200,8 @@ void require_less_than_a_turn(const AngleTable& table, int j, const RobotModel& 
 
 void require_motion(const AngleTable& table, const std::vector<size_t>& lines,
                     const RobotModel& model, const std::string& file) {
-  // Angles in degrees have jumps, too, so the unit is checked first. Counts can wrap.
+  // Angles in degrees that are read as radians also look like jumps, so the unit is checked first.
+  // Counts that wrap can also exceed a turn, so their jumps are tested first.
   for (int j = 0; j < model.dof_count(); ++j)
     if (table.resolution[j] <= 0) require_less_than_a_turn(table, j, model, file);
   bool any = false;

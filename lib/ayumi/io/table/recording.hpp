@@ -17,10 +17,10 @@ struct RecordingOptions {
 /// Reads joint angles: a HOAP sequence (interval, 2, counts, ...), rows of counts (one column for
 /// each device, further columns are 0), or a table with a head row: t[s] or time[s], and joints as
 /// theta.<joint>[rad], <joint>, <joint>[rad], <joint>[deg] or <joint>[counts]; other columns are
-/// ignored. Throws Error(bad_file) "file:line: ..." or "file: column '...': ..." for text that is
-/// no such table, line ends of two kinds, values that are no numbers, gaps in time, jumps that no
-/// motor makes (samples that are missing, counters that wrap), angles in another unit, a device
-/// that moves without a joint, and where no value differs from zero.
+/// ignored. Throws Error(bad_file) "file:line: ..." or "file: column '...': ..." for a text that is
+/// not such a table, line ends of two kinds, values that are not numbers, gaps in time, jumps that
+/// no motor makes (missing samples, counters that wrap), angles in another unit, a device that
+/// moves but has no joint, and a table in which all values are zero.
 AngleTable read_angles(const std::string& bytes, const std::string& file, const RobotModel& model,
                        const RecordingOptions& options = {});
 

@@ -11,8 +11,8 @@ export function largerPart(way, right, up) {
   return Math.abs(along) > Math.abs(across) ? [0, 0, along / up[2]] : [right[0] * across, right[1] * across, 0];
 }
 
-/// The direction of the view, or the axis of the world if the direction is nearly that of the axis.
-/// So in the view from the side, nothing moves to the left.
+/// The direction of the view. If it is within 13 degrees of an axis of the world, returns this axis
+/// instead. So a drag in the side view does not change the sideways coordinate y.
 export function nearAxis(way) {
   const most = Math.max(...way.map(Math.abs));
   return most > 0.975 ? way.map((value) => Math.abs(value) === most ? Math.sign(value) : 0) : way;

@@ -32,8 +32,8 @@ export function removeValue(document, pointer) {
 /// the author changes it in the text. The server can change an expression by adding a number.
 export const canDrag = (value, thing = {}) => ["number", "string"].includes(typeof value) && !thing.repeated;
 
-/// The value that is written so that a key or the end of a phase is at `time`; some times count
-/// from the previous one.
+/// The value that is written so that a key or the end of a phase is at `time`; some times are
+/// relative to the previous one.
 const timeValue = (time, base) => roundedTime(time - (base || 0));
 
 /// The times between which a keyframe may be moved: those of its neighbours.
@@ -103,17 +103,16 @@ const outermost = (pointer) => pointer.split("/").slice(0, 3).join("/");
 
 const isRelative = (frame) => frame.time_pointer.endsWith("/after");
 
-/// Keeps the time of a keyframe that counts from the previous one, if the previous one is now at
-/// `base`.
+/// Keeps the time of a keyframe with a relative time, if the previous keyframe is now at `base`.
 const follow = (frame, base) => frame && isRelative(frame) && canDrag(frame.time_value, frame)
   ? [{ kind: "set", pointer: frame.time_pointer, value: timeValue(frame.time, base) }] : [];
 
 /// The reason why a keyframe cannot be removed if a block that repeats counts its time from it.
 export const countedFrom = "A block that repeats counts its time from there, and would move with it. Change it in the text.";
 
-/// The edits that remove the keyframes with these pointers, each in all its rounds. Keyframes that
-/// count from one of them keep their time. null if this is not possible because such a keyframe is
-/// in a block that repeats.
+/// The edits that remove the keyframes with these pointers, each in all its rounds. Keyframes whose
+/// times are relative to one of them keep their time. Returns null if this is not possible because
+/// such a keyframe is in a block that repeats.
 function withoutFrames(keyframes, pointers) {
   const goes = (frame) => pointers.includes(frame.pointer);
   const edits = pointers.map((pointer) => ({ kind: "remove", pointer }));
@@ -130,9 +129,10 @@ function withoutFrames(keyframes, pointers) {
   return edits;
 }
 
-/// The edits that put all of a keyframe into another one, which is at the time that the author has
-/// typed. null if both have the same key, if one is in a block that repeats, or if such a block
-/// counts from it. `document` is the pattern as written.
+/// The edits that move all keys of the keyframe `frame` into the keyframe `there`, which is at the
+/// time that the author has typed. Returns null if both keyframes have the same key, if one of them
+/// is in a block that repeats, or if the time of such a block is given relative to `frame`.
+/// `document` is the pattern as written.
 export function joinKeyframe(state, document, frame, there) {
   if (frame.repeated || there.repeated) return null;
   const from = valueAt(document, frame.pointer), to = valueAt(document, there.pointer);
@@ -254,8 +254,8 @@ export function putSupport(state, document, index, support, cogAt) {
       : putKey(state.keyframes, time, "cog", value);
     if (!added.length) return inBlock;
     for (const one of added) if (one.kind === "insert") one.value.t = time;
-    // If there are two new keyframes before one that counts from the previous one, it counts from
-    // the later one.
+    // If two new keyframes are inserted before a keyframe with a relative time, its time is
+    // relative to the later one of the two.
     for (const one of added) {
       const same = edits.findIndex((other) => other.kind === "set" && other.pointer === one.pointer);
       if (same >= 0) edits.splice(same, 1);
@@ -295,8 +295,8 @@ export function stillWanted(wanted, selection, text) {
 }
 
 /// The edits that give a phase another goal of VIIP and remove those of `keyframes` that are inside
-/// it, or that go back to keys. The other values of the phase do not change. null if a block that
-/// repeats would move with these keyframes.
+/// it. Without a goal, the edits make it a phase with keys again. The other values of the phase do
+/// not change. Returns null if a block that repeats would move with these keyframes.
 export function putGoal(phase, name, angleUnit, keyframes = []) {
   const pointer = phase.pointer, goal = goals.find((one) => one.name === name);
   if (!goal.value)
@@ -319,8 +319,8 @@ const inBlock = (from, until, begins) => ({ time }) => begins ? time > from - 5e
 const afterBlock = (until, begins) => ({ time }) => time >= until + (begins ? -5e-4 : 5e-4);
 
 /// Moves everything after a phase by `shift`: phases, keyframes (`isLater`), disturbances, and
-/// motions of the floor. A keyframe that counts from the previous one follows it, if that one moves
-/// (`after`).
+/// motions of the floor. A keyframe whose time is relative to the previous keyframe moves with it;
+/// `after` says whether the keyframe before the first later one moves.
 function moveLater(state, document, last, shift, after, isLater) {
   const edits = [], { until } = state.phases[last], set = (pointer, value) => edits.push({ kind: "set", pointer, value });
   const refused = { refused: "A later block that repeats has times of its own. Change them in the text." };

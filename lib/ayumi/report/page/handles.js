@@ -170,7 +170,7 @@ export class Handles {
     return handle?.name === "cog" || handle?.name === "trunk";
   }
 
-  /// The drag is in the plane that faces the eye; with Shift, it is only upright.
+  /// The drag is in the plane that faces the eye; with Shift, it is only vertical.
   dragOf({ handle, target, ball }, event) {
     const { camera } = this.page.viewer, oneWay = !target && this.isOneWay(handle);
     const right = new Vector3(), up = new Vector3(), facing = new Vector3();

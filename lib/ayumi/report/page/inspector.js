@@ -236,7 +236,7 @@ export class Inspector {
       () => this.focusValues(pointer + "/shift"), pointer + " shift");
   }
 
-  /// What is uncertain, for `ayumi certify`.
+  /// The uncertain quantities, for `ayumi certify`.
   uncertainty() {
     const unit = this.page.state.angle_unit, kind = element("select", { "aria-label": "What is uncertain" },
       ...quantities.map((one) => element("option", { value: one.what }, one.words)));

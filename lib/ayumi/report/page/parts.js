@@ -13,7 +13,7 @@ export function freeGround(world = {}, soles = []) {
   const ends = [...world.blocks ?? [], ...world.patches ?? []].map((one) =>
     one.position ? number(one.position[0]) + number(one.radius) : number(one.x?.[1]));
   if (world.field) ends.push(number(world.field.origin?.[0]) + number(world.field.spacing) * (world.field.heights.length - 1));
-  // There are at least 20 mm of free ground before the toes, in steps of 50 mm.
+  // The position is a multiple of 50 mm, at least 20 mm in front of the toes.
   const toes = soles.map(([x]) => 0.05 * Math.ceil((x + 0.02) / 0.05 - 1e-6));
   return Number(Math.max(0.1, ...toes, ...ends).toFixed(4));
 }

@@ -174,7 +174,7 @@ export class Timeline {
         }
         if (event.ctrlKey || !/^Arrow/.test(event.key)) return;
         event.preventDefault();
-        // Up and down stay at the place at which they began.
+        // Several steps up or down keep the horizontal place at which the first of them began.
         const way = { ArrowUp: -1, ArrowDown: 1 }[event.key], column = this.column ?? part.offsetLeft + part.offsetWidth / 2;
         const next = way ? this.beside(part, way, column)
           : event.key === "ArrowRight" ? part.nextElementSibling : part.previousElementSibling;
