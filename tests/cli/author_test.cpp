@@ -203,7 +203,7 @@ TEST_F(AuthorServer, AnswersOnlyItsOwnPage) {
   ASSERT_TRUE(page);
   EXPECT_NE(page->body.find("<html"), std::string::npos);
   EXPECT_EQ(page->get_header_value("Cache-Control"), "no-store");
-  // The machine does not answer at its other addresses.
+  // A request that is not an edit is refused, and the file stays as it is.
   for (const char* const body : {"", "[]", "{", "{\"hash\":3}", "{\"hash\":\"\",\"edits\":7}"})
     EXPECT_GE(client.Post(server.root() + "edit", body, "application/json")->status, 400) << body;
   EXPECT_EQ(contents(file), walk);
@@ -225,7 +225,7 @@ TEST_F(AuthorServer, CompressesNothing) {
   }
 }
 
-// Before, such a request ended the server: its value was written by recursion.
+// In an earlier version, such a request ended the server: its value was written by recursion.
 TEST_F(AuthorServer, RefusesRequestsThatAreNestedDeeply) {
   const Server server(file);
   const std::string deep = std::string(300'000, '[') + std::string(300'000, ']');
@@ -404,7 +404,7 @@ TEST_F(AuthorServer, EditsExpressionsWithTheParametersOfTheCommand) {
   EXPECT_EQ(contents(file), with("\"${side}\"", "\"${side} + 0.003\""));
 }
 
-// The page has a button, so that its words do not name the command.
+// The page has a button for the repair, so its messages name the button and not the command.
 TEST_F(AuthorServer, AdvisesTheButtonOfTheRepair) {
   const Server server(file);
   ASSERT_EQ(server
