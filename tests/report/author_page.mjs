@@ -79,7 +79,7 @@ export async function openPage(driver_, width, height) {
   return tab;
 }
 
-/// One trial after the other: what one of them throws breaks that one only.
+/// Runs one trial after the other. An error in one of them does not stop the others.
 export async function runTrials(tab, trials) {
   for (const trial of trials) {
     try {

@@ -136,8 +136,8 @@ async function twoPages(driver_, tab) {
   await other.end();
 }
 
-/// What takes as many changes on the first eleven seconds as on the minute, where each change is judged anew for
-/// a second.
+/// Trials that behave in the same way on a short motion use its first eleven seconds, because with the whole minute
+/// each change is judged for a second.
 async function onAShortMotion(tab, trials) {
   const minute = text(), short = JSON.parse(minute);
   short.phases[0].until = 11;

@@ -139,7 +139,7 @@ async function inWindows(tab) {
   await tab.tool("Emulation.clearDeviceMetricsOverride", {});
 }
 
-/// The page with its scripts held back, as a dark one.
+/// The page without scripts, in the dark colour scheme.
 async function withoutScript(tab) {
   await tab.tool("Emulation.setScriptExecutionDisabled", { value: true });
   await tab.tool("Emulation.setEmulatedMedia", { features: [
