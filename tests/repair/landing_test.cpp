@@ -29,7 +29,7 @@ Pattern table_of(const WalkParameters& parameters) {
 
 // The sole is 3 mm ahead, 4 mm to the left and 20 mm above a place that is turned and on a slope,
 // rolled by 0.01 rad and turned by 0.02 rad. The offsets are along the place's axes; the rotations
-// are given as displacements of the farthest corner of the sole.
+// are multiplied by half the size of the sole.
 TEST(Landing, OffsetIsAlongThePlacesAxes) {
   Isometry3d place = Isometry3d::Identity();
   place.linear() = exp_rotation({0.1, -0.05, 0.8}).toRotationMatrix();
