@@ -582,7 +582,7 @@ TEST_F(AuthorServer, SaysThatTheFileIsGone) {
   fs::remove(file);
   const OrderedJson gone =
       server.state_when([](const OrderedJson& now) { return !now["error"].is_null(); });
-  EXPECT_NE(gone["error"].dump().find("is gone"), std::string::npos) << gone["error"];
+  EXPECT_NE(gone["error"].dump().find("no longer exists"), std::string::npos) << gone["error"];
   save(walk);
   EXPECT_TRUE(
       server.state_when([](const OrderedJson& now) { return now["error"].is_null(); })["consistent"]

@@ -80,7 +80,7 @@ async function typesTargets(tab) {
   expect(held.position?.[2] === wanted && near(Math.hypot(...held.direction), 1, 1e-3), "a direction: " + JSON.stringify(held));
   await tab.after(() => tab.click("#undo"));
   await select();
-  await tab.after(() => press(tab, "Let it go free here"));
+  await tab.after(() => press(tab, "Release it here"));
   expect(data().keyframes[i].hands.left === "free", "free: " + JSON.stringify(data().keyframes[i]));
   await select();
   await tab.after(() => press(tab, "Hold the present place"));
