@@ -698,7 +698,8 @@ TEST(PlantedMistakes, WhatIsNamedForTwoKeysWasTriedForBoth) {
   EXPECT_TRUE(is_consistent(pattern, options)) << found;
 }
 
-// The range of a value ends where the table for the robot ends it, at a number as it is printed.
+// The table for the robot limits the range of this value. With the end of the range as it is
+// printed, the pattern is consistent.
 TEST(PlantedMistakes, TheEndOfARangeIsEnoughToTheLetter) {
   Pattern pattern = hop_with(
       {{0.5, 0.245}, {1.35, 0.2}, {1.5, 0.229}, {1.65, 0.235}, {1.732, 0.2}, {2.8, 0.245}});

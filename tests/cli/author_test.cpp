@@ -210,7 +210,8 @@ TEST_F(AuthorServer, AnswersOnlyItsOwnPage) {
   EXPECT_NE(client.Put(server.root() + "state", "", "text/plain")->status, 200);
 }
 
-// Compressing by Brotli at its highest level took longer than the change of the motion itself.
+// In an earlier version, compressing by Brotli at its highest level took longer than the change of
+// the motion itself.
 TEST_F(AuthorServer, CompressesNothing) {
   const Server server(file);
   httplib::Client client = server.client();
@@ -508,8 +509,9 @@ OrderedJson row_at(const Server& server, const OrderedJson& state, double time) 
   return row;
 }
 
-// While something is dragged, the page shows the pattern as it is once it is written. The text has
-// durations, relative steps and blocks that repeat: edits change the words that the author wrote.
+// While something is dragged, the page shows the pattern as it will be after it is written. The
+// text has durations, relative steps and blocks that repeat: edits change the words that the author
+// wrote.
 TEST_F(AuthorServer, EditsAPatternInFewWords) {
   const std::string text = R"({
   "format": "ayumi.pattern/1", "robot": "hoap1", "units": { "angle": "deg" },

@@ -292,7 +292,8 @@ class ChecksOn80Columns : public CheckRepair {
   static void expect_one_screen(const std::string& answer) { expect_fits(answer, 22); }
 };
 
-// A jump with seven kinds of warnings took 60 rows, so that the verdict was out of sight.
+// In an earlier version, the answer about a jump with seven kinds of warnings took 60 rows, so that
+// the verdict was out of sight.
 TEST_F(ChecksOn80Columns, WhatIsConsistentFitsOnOneScreen) {
   std::vector<std::string> patterns;
   for (const auto& entry : fs::directory_iterator(AYUMI_SOURCE_DIR "/patterns"))

@@ -83,7 +83,7 @@ TEST(GainsCommand, WhatItRefusesIsNotRunUnlessAsked) {
   };
   EXPECT_FALSE(outcome({"--gain", "ka=40", "--allow-unstable"}).empty());
   EXPECT_EQ(outcome({"--controller", "dtad-literal", "--profile", "hoap1-soft"}),
-            "fell");  // a demonstration needs no permission
+            "fell");  // demonstrations need no --allow-unstable
 }
 
 TEST(TuneCommand, BettersItsObjectiveTheSameWayForAnyNumberOfThreads) {

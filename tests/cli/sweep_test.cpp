@@ -323,7 +323,7 @@ TEST(SweepCommand, OneClearLineForBadInput) {
   expect(s.sweep({"-o", "good.db"}), 3, "another study (the study is different)");
   ASSERT_EQ(s.sweep({"-o", "other.db"}).exit_code, 0);
   expect(s.run({"sweep", "merge", "good.db", "other.db"}), 3, "other.db: this file holds");
-  // A wrong expectation makes no file and replaces none, and commands that only read leave none
+  // A wrong expectation makes no file and replaces none, and commands that only read leave no file
   // behind.
   expect(s.sweep({"-o", "y.db", "--expect", "fals == 0"}), 2, "did you mean 'falls'?");
   EXPECT_FALSE(fs::exists(s.folder / "y.db"));

@@ -85,8 +85,8 @@ TEST(JsonReader, NamesASlipInWordsAboutTheText) {
     EXPECT_TRUE(parse_error(text).starts_with(words)) << text << "\n" << parse_error(text);
 }
 
-// A character is left out of a pattern: the message names its line. For a bracket, whose line only
-// its author knows, it names some slip in any case.
+// A character is left out of a pattern: the message names its line. For a bracket, only the
+// author knows the right line, so the message may name another slip.
 TEST(JsonReader, NamesTheLineOfAnyCharacterThatIsLeftOut) {
   const std::string text = R"({
   "name": "kick", // a comment, with "quotes"

@@ -130,7 +130,8 @@ TEST(Loci, AFallInTheAirHasNoMarkOfTheZmp) {
     }
 }
 
-// No run stands, and the margin has no command: its range is that before the fall, and not a metre.
+// No run stands, and the margin has no command: the axis of the margin fits the time before the
+// fall, and does not extend to a metre.
 TEST(Loci, TheMarginOfAFallenRunIsThatBeforeItsFall) {
   const TwoRuns runs;
   LociOptions options;

@@ -345,7 +345,7 @@ async function movesKeysByTyping(tab) {
   expect(JSON.stringify(data()) === JSON.stringify(before), "all is as before");
 }
 
-/// While the text has other places than the motion that is shown, nothing can be changed there.
+/// As long as places in the text differ from those of the motion that is shown, the page allows no changes.
 async function locksWhatIsOld(tab) {
   const before = data(), wrong = structuredClone(before);
   wrong.keyframes.splice(1, 0, { t: 0, zmp: "left" });

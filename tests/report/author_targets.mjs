@@ -31,7 +31,8 @@ async function showsTargets(tab) {
   await tab.click("#mark-targets");
 }
 
-/// A target in the picture, and the hand itself while a target leads it: the key of the target moves.
+/// Drags a target in the picture, and the hand itself while a target leads it. The target moves up, and the hand
+/// reaches it.
 async function dragsTargets(tab) {
   const before = data();
   const at = await tab.run(`${page} page.viewer.look("front"); page.show(0);

@@ -6,8 +6,8 @@ import { startDriver, until } from "./driver.mjs";
 
 const [driver, page, shot] = process.argv.slice(2);
 const address = pathToFileURL(page).href;
-/// Where nobody looks at pictures, a quarter as many pixels in each direction, with the same layout: a machine without a graphics
-/// card draws them in less time.
+/// If nobody looks at the pictures, they have a quarter of the pixels in each direction, with the
+/// same layout: a machine without a graphics card draws them in less time.
 const deviceScaleFactor = shot ? 1 : 0.25;
 let failures = 0;
 const expect = (good, words) => {
