@@ -233,8 +233,8 @@ TEST(Consequence, OfAPhaseThatHasMovedOnStairs) {
   }
 }
 
-// A phase is shifted, so that it says that feet carry the robot while the keys move them. The check
-// reports this.
+// A phase is shifted. According to the phase, the feet carry the robot, but their keys move them.
+// The check reports this.
 TEST(Consequence, OfAFlightWithFootKeysThatEndsEarly) {
   JumpParameters jump = jump_defaults(hoap1());
   jump.forward = 0.02;

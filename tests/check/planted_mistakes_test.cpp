@@ -715,7 +715,7 @@ TEST(PlantedMistakes, TheEndOfARangeIsEnoughToTheLetter) {
   EXPECT_TRUE(is_consistent(pattern, options)) << found;
 }
 
-// Two keys that hold one value: a change of it concerns both, which the message says.
+// Two keys have the same value. A change of the value concerns both keys, and the message says so.
 TEST(PlantedMistakes, EveryKeyThatAChangeConcernsIsNamed) {
   Pattern bow;
   bow.robot = "hoap1";

@@ -163,7 +163,8 @@ TEST(Init, SuspiciousLinksAreOnTheList) {
       << made.out;
 }
 
-// The motors of a robot whose file states no limits are on the list, and no share of them is given.
+// If the robot's file states no limits of the motors, these limits are on the to-do list, and no
+// shares of limits are printed.
 TEST(Init, MotorsWithoutLimitsAreSaid) {
   Folder folder;
   std::string text = UrdfBiped{}.text();

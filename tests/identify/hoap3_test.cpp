@@ -89,7 +89,7 @@ TEST(IdentifyHoap3, FindsTheServosOfTheRecordedWalk) {
   expect_the_servos_of_the_walk(true);
 }
 
-// In this case, the way in which the feet share the weight follows from the geometry.
+// Without load cells, the way in which the feet share the weight follows from the geometry.
 TEST(IdentifyHoap3, FindsTheServosWithoutLoadCells) {
   if (!has_recordings()) GTEST_SKIP() << "no recordings of HOAP-3 at " << kHoap3;
   expect_the_servos_of_the_walk(false);

@@ -45,7 +45,7 @@ TEST(Ghost, StandsWhereTheCommandIs) {
     s.state.base.position.y() = 0;
     s.state.theta.setZero();
     s.cog.y() = 0;
-    // It is to the right in the picture, as seen from the front.
+    // The ghost is to the right in the picture, as seen from the front.
     s.command_base.position.y() = 0.15;
   }
   const Image alone = ClipRenderer(model, log, bare()).frame(0.5);

@@ -129,7 +129,7 @@ TEST(LogReading, AWalkIsShownOnBothFeet) {
     const bool left = k % 100 < 50;  // 0.1 s on each foot in turn
     log.samples[k].planned_contact = {left, !left};
   }
-  // They are evenly spaced, and all on the left foot.
+  // Six evenly spaced instants would all be on the left foot. The chosen instants show both feet.
   const std::vector<double> times = telling_instants(log, 6);
   ASSERT_EQ(times.size(), 6u);
   const auto left = std::count_if(times.begin(), times.end(),

@@ -366,7 +366,7 @@ async function dragsInTime(tab) {
   expect(await tab.run("return window.ayumiAuthor.page.time") === 2, "a drag does not move the cursor");
   expect(data().keyframes[1].t > before.keyframes[1].t + 0.1, "a dragged key: " + data().keyframes[1].t);
   await tab.after(() => tab.click("#undo"));
-  // What is written as an expression stays one.
+  // A value that is written as an expression stays an expression.
   const words = { ...before, parameters: { lift_off: before.keyframes[1].t }, keyframes: structuredClone(before.keyframes) };
   words.keyframes[1].t = "${lift_off}";
   await tab.after(() => save(JSON.stringify(words, null, 1)));

@@ -93,7 +93,8 @@ async function withScript(tab) {
   expect(requests.length === 0, "requests: " + requests.join(" "));
 }
 
-/// What is seen of an element in the window, and how large the smallest letters of the curves are.
+/// The places of scene and curves in the window, and the size of the smallest letters of the
+/// curves.
 const seen = (tab) => tab.run(`
   const box = (e) => { const b = e.getBoundingClientRect();
     return { left: b.left, right: b.right, top: b.top, bottom: b.bottom }; };

@@ -80,7 +80,7 @@ TEST_P(ServoForm, ACopyContinuesToTheSameBits) {
   run(rig.plant, 400, 800);
   run(copy, 400, 800);
   run(again.plant, 0, 800);
-  // It forgets the targets that the servo has received.
+  // set_state() forgets the targets that the servo has received.
   again.plant.set_state(again.fresh().state());
   run(again.plant, 0, 800);
   for (const Plant* other : {&copy, &again.plant}) {
