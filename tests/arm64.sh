@@ -1,6 +1,6 @@
 #!/bin/bash
-# Whether `ayumi selftest` gives the published hashes on ARM64: compiles the program for it by Debian's
-# cross compiler and runs it under qemu.
+# Tests whether `ayumi selftest` gives the published hashes on ARM64: compiles the program for it by
+# Debian's cross compiler and runs it under qemu.
 #
 #   tests/arm64.sh [FOLDER]         FOLDER keeps what is made (default: build/arm64)
 #

@@ -1,7 +1,7 @@
 #!/bin/bash
 # Builds everything and runs every test: tests/run.sh [ctest options]
-# From a bare Debian 12; installs what is missing. What examples/quickstart.sh has built is used.
-# `tests/run.sh -L quick` gives a verdict within a minute once everything is built.
+# Works on a bare Debian 12, and installs what is missing. Uses what examples/quickstart.sh has
+# built. `tests/run.sh -L quick` gives a verdict within a minute once everything is built.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

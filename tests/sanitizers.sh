@@ -1,6 +1,6 @@
 #!/bin/bash
-# Runs tests under the tools that see what a test alone does not. All must be clean. It takes hours;
-# .ci/sanitize runs a part.
+# Runs tests under tools that find errors which a test alone does not show. All must be clean. It
+# takes hours; .ci/sanitize runs a part.
 #
 #   tests/sanitizers.sh [asan] [tsan] [valgrind] [clang] [tidy]     no name: all of them
 #

@@ -194,7 +194,8 @@ bool AuthorSession::is_gone() {
   seen_[setting_.file] = {};  // any file that comes back is read
   if (!gone_since_) gone_since_ = now;
   const Shown before = view();
-  const std::string words = "the file is gone. The page goes on when it is there again";
+  const std::string words =
+      "the file no longer exists. The page continues as soon as the file exists again";
   if (now - *gone_since_ < kGone || (before->error && (*before->error)["message"] == words))
     return true;
   auto next = std::make_shared<View>(*before);

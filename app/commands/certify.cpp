@@ -117,7 +117,7 @@ void print_certificate(const Context& context, bool degrees, const Certificate& 
     const ShownUnit tilt = shown_unit("rad", degrees);
     const auto figure = [](double value, double factor, const std::string& unit) {
       return std::isfinite(value) ? text::brief(factor * value, 3) + unit
-                                  : std::string("no bound (a run fell)");
+                                  : std::string("no bound (the robot fell in a run)");
     };
     context.print("  " + in_percent(1 - options.failure) +
                   " of all runs stay within each of these bounds, with " + confidence +

@@ -23,7 +23,7 @@ void bind_import(py::module_& m) {
       .def_property_readonly(
           "foot", [](const FootContact& c) { return std::string(name_of(c.foot)); },
           "'left' or 'right'.")
-      .def_readonly("begin", &FootContact::begin, "Begin of the contact [s].")
+      .def_readonly("begin", &FootContact::begin, "Beginning of the contact [s].")
       .def_readonly("end", &FootContact::end, "End of the contact [s].")
       .def_property_readonly(
           "position", [](const FootContact& c) { return c.place.position; },
@@ -174,7 +174,7 @@ void bind_identify(py::module_& m) {
       .def_readonly("largest_error", &IdentifiedJoint::largest_error,
                     "Largest error of the angle that remains with these constants [rad].")
       .def_readonly("confounded", &IdentifiedJoint::confounded,
-                    "What cannot be told apart in this recording, in words.");
+                    "What cannot be distinguished in this recording, in words.");
   py::class_<PyIdentification>(m, "Identification", "Servo constants of a robot from a recording.")
       .def_property_readonly(
           "joints", [](const PyIdentification& i) { return i.found.joints; },

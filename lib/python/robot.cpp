@@ -77,8 +77,9 @@ void bind_robot(py::module_& m) {
                     "Largest speeds [rad/s, m/s], shape (dof,); inf where there is no limit.")
       .def_readonly("peak_torque", &ActuatorLimits::peak_torque,
                     "Largest torques [N m, N], shape (dof,).")
-      .def_readonly("continuous_torque", &ActuatorLimits::continuous_torque,
-                    "Largest torques for any length of time [N m, N], shape (dof,).");
+      .def_readonly(
+          "continuous_torque", &ActuatorLimits::continuous_torque,
+          "Largest torques that the motors bear without a time limit [N m, N], shape (dof,).");
 
   py::class_<RobotModel, std::shared_ptr<RobotModel>>(
       m, "Robot", "A robot: a tree of links with soles, motors and named postures.")

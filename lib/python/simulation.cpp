@@ -156,9 +156,9 @@ void bind_step(py::module_& m) {
   py::class_<ExternalWrench>(m, "Wrench", "A force or a couple from outside during one step.")
       .def_readonly("body", &ExternalWrench::body, "Index of the body; -1: through the COG.")
       .def_readonly("point", &ExternalWrench::point,
-                    "Point of attack in the world [m], shape (3,).")
-      .def_readonly("force", &ExternalWrench::force, "World [N], shape (3,).")
-      .def_readonly("torque", &ExternalWrench::torque, "World [N m], shape (3,).");
+                    "Point of application in the world [m], shape (3,).")
+      .def_readonly("force", &ExternalWrench::force, "Force in world axes [N], shape (3,).")
+      .def_readonly("torque", &ExternalWrench::torque, "Moment in world axes [N m], shape (3,).");
   py::class_<StepInput>(m, "StepInput", "What acts on the robot from outside during one step.")
       .def(py::init<>())
       .def_readonly("wrenches", &StepInput::wrenches, "Forces and couples.")

@@ -302,7 +302,8 @@ void bind_pace(py::module_& m) {
   py::class_<FastestPace>(m, "Pace", "The result of fastest_pace().")
       .def_readonly("found", &FastestPace::found, "Whether a scale passes the check.")
       .def_readonly("scale", &FastestPace::scale, "Smallest factor on all times that passes.")
-      .def_readonly("bounded", &FastestPace::bounded, "False: even the fastest scale passes.")
+      .def_readonly("bounded", &FastestPace::bounded,
+                    "False if even the fastest scale that was tried passes.")
       .def_readonly("limited_by", &FastestPace::limited_by,
                     "First error at a slightly smaller scale, in words.")
       .def_readonly("evaluations", &FastestPace::evaluations, "Number of scales tried.");

@@ -70,7 +70,7 @@ void bind_table(py::module_& m) {
           "The table at another rate, interpolated linearly between its rows; `dt` in s.")
       .def_property_readonly(
           "unfit", [](const Table& t) { return t.data().caution.unfit; },
-          "Why no robot should receive the table; '' where nothing is known against it.")
+          "Why no robot should receive the table; '' if there is no known reason.")
       .def_property_readonly(
           "disturbances", [](const Table& t) { return t.data().caution.disturbances; },
           "The disturbances of the run that the table is from; '' where there were none.");

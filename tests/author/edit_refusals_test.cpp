@@ -59,7 +59,7 @@ TEST(JoinRefuses, MotionsThatDoNotMeet) {
               "deg away from its place at the end of the first motion (limits 1.0 mm");
 
   Pattern bent = stand;
-  // So little that the base stays in its place.
+  // The angle is so small that the base stays in its place.
   bent.keyframes.at(0).joints["l_elbow"] =
       samples.samples.front().state.theta[model.find_dof("l_elbow")] - 5e-4;
   const CommandSeries bent_samples = sample(model, bent);
@@ -71,7 +71,7 @@ TEST(JoinRefuses, MotionsThatDoNotMeet) {
   low.keyframes.at(0).cog_height = height - 0.01;
   expect_part(message(low, sample(model, low), 0), "the base is ");
 
-  // A foot in the air, at the end of the one and at the beginning of the other.
+  // A foot is in the air at the end of the first motion and at the beginning of the second one.
   Pattern lifted = step_once();
   lifted.phases.pop_back();
   lifted.keyframes.pop_back();
@@ -102,7 +102,7 @@ TEST(AlternateRefuses, WhatIsNoStep) {
   Pattern keyed = step;
   keyed.keyframes.at(0).feet[0] = Foothold{{0, 0.039, 0}, Vector3d::Zero()};
   expect_part(message(keyed, 2, ErrorCode::bad_pattern), "the feet have keys; give swings");
-  // The walk turns, so a key of x alone has no place in the next step.
+  // The walk turns, so a key with COG x alone cannot be moved to the next step.
   Pattern turning = step;
   turning.phases.at(1).swing->to.rpy.z() = -0.1;
   turning.keyframes.at(1).zmp.reset();
@@ -111,8 +111,8 @@ TEST(AlternateRefuses, WhatIsNoStep) {
               "a motion that turns needs keys of COG x and y together");
 }
 
-// What a key of one step says in the world, the key of the third step, which is the same step
-// again, says two steps ahead.
+// The third step repeats the first one. Its keys have the points in the world of the first step's
+// keys, moved ahead by two steps.
 TEST(Alternate, PointsOfTheWorldMoveWithTheSteps) {
   const RobotModel& model = hoap1();
   Pattern step = step_once();
@@ -142,7 +142,8 @@ TEST(Alternate, PointsOfTheWorldMoveWithTheSteps) {
   EXPECT_EQ(third->cog_height, 0.2);
 }
 
-// A posture that is not its own mirror image has no name on the other side.
+// A posture that is not its own mirror image has no named mirror image, so the new key has the
+// mirrored angles themselves.
 TEST(KeyEdit, TheImageOfAPostureHasItsJoints) {
   Pattern p = stand_pattern(hoap1(), 1.0);
   p.postures["wave"] = {{"l_shoulder_pitch", 0.3}, {"l_elbow", -0.7}};
@@ -173,8 +174,8 @@ TEST(CutRefuses, SamplesThatAreNotThere) {
   expect_part(message(0, 1000, ErrorCode::bad_pattern), "at 1 s a foot is in the air");
 }
 
-// The weights that hold at the beginning of the part were given before it; its pushes count from
-// it.
+// The weights at the beginning of the part come from a key before the part. The times of its pushes
+// are relative to the beginning of the part.
 TEST(Cut, KeepsWhatHoldsAtItsBeginning) {
   Pattern stand = stand_pattern(hoap1(), 1.0);
   stand.keyframes.at(0).weights = {{"l_knee", 2.0}};

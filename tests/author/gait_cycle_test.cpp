@@ -65,7 +65,7 @@ TEST(WalkInParts, HasTheStepsOfItsParts) {
     EXPECT_NEAR(places[i] - places[0], wanted[i] - 0.02, 1e-9);
   EXPECT_NEAR(times[2] - times[1], slow.period, 1e-9);
   EXPECT_NEAR(times[4] - times[3], fast.period, 1e-9);
-  // A walk of one part is the walk as it is.
+  // A walk of one part is the same as the walk without parts.
   const Pattern one = walk_in_parts(hoap1(), {slow}), same = walk_pattern(hoap1(), slow);
   ASSERT_EQ(one.phases.size(), same.phases.size());
   for (size_t i = 0; i < one.phases.size(); ++i)

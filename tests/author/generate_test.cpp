@@ -90,7 +90,7 @@ TEST(WalkPattern, BendsTheLegsOfARobotThatStandsStraight) {
   const Pattern pattern = walk_pattern(model, {});
   EXPECT_GT(pattern.cog_height, 0.1);
   EXPECT_GT(sample(model, pattern, {.dt = 0.005}).samples.size(), 100u);
-  // The height of home, in which the knees are already bent.
+  // 0 stands for the COG height of the home posture, in which the knees are already bent.
   EXPECT_EQ(walk_pattern(test::biped(), {}).cog_height, 0);
 }
 

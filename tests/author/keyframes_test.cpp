@@ -150,7 +150,8 @@ Eigen::Isometry3d middle_of_feet(const CommandSample& sample) {
   return frame;
 }
 
-// Two steps from the middle of a walk, in motion at both ends, follow each other without a jump.
+// Two steps from the middle of a walk, in motion at both ends, follow each other without a
+// discontinuity.
 TEST(Loop, ACycleIsCutFromAWalk) {
   const RobotModel& model = hoap1();
   const Pattern walk = walk_pattern(model, {.steps = 8, .stride = 0.03, .period = 0.8});
@@ -225,7 +226,7 @@ TEST(Loop, SaysWhetherTheEndMeetsTheBeginning) {
   p.keyframes.push_back(home);
   const CommandSeries closed = sample(model, p, {.dt = 0.005});
   EXPECT_TRUE(loop_gap(model, {p, closed}).closed);
-  // The same posture at another rate does not close.
+  // A motion that ends in the same posture, but with another joint rate, does not close.
   CommandSeries moving = closed;
   moving.samples.back().state.dtheta[model.find_dof("l_elbow")] = 0.5;
   EXPECT_FALSE(loop_gap(model, {p, moving}).closed);

@@ -19,7 +19,8 @@ TEST(InParallel, RunsEveryJobOnce) {
   }
 }
 
-// The first job is the last one that fails.
+// Job 1 sleeps, so it fails later than all other jobs. Its error is thrown nevertheless, because it
+// is the first in the order of the jobs.
 TEST(InParallel, ThrowsTheErrorOfTheFirstJobThatFails) {
   for (const int threads : {1, 4}) {
     std::atomic<bool> stop = false;

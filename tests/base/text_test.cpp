@@ -45,7 +45,7 @@ TEST(PrintableText, WritesOutBytesThatAreNotUtf8) {
   EXPECT_EQ(text::printable("\x80\xff"), "\\x80\\xff");
 }
 
-// Whatever the bytes are, nothing that steers a terminal is left, and a second pass changes
+// Whatever the bytes are, no control characters for a terminal are left, and a second pass changes
 // nothing.
 TEST(PrintableText, IsPrintableForAnyBytes) {
   unsigned state = 12345;

@@ -1,8 +1,9 @@
-// node author_bench.mjs AYUMI CHROMEDRIVER PATTERN [SAVES]: the times from saving a pattern, of which
-// one value changes each time, to the findings of `ayumi author`, to the page that has taken them, and
-// to its picture in headless Chromium, beside the time of a whole `ayumi check` of the same file. Works
-// on a copy. The browser draws in software: where other programs take the cores, its next frame alone
-// may wait for seconds, while the page has long taken the motion.
+// node author_bench.mjs AYUMI CHROMEDRIVER PATTERN [SAVES]: changes one value of the pattern, saves it,
+// and measures three times from the save: until `ayumi author` has the findings, until the page has
+// received them, and until headless Chromium shows the picture. For comparison, it also measures a
+// whole `ayumi check` of the same file. Works on a copy. The browser draws without a graphics card: if
+// other programs use the processor cores, its next frame may come seconds after the page has received
+// the motion.
 
 import { execFileSync, spawn } from "node:child_process";
 import { mkdtempSync, readFileSync, renameSync, rmSync, writeFileSync } from "node:fs";
@@ -42,7 +43,7 @@ try {
   const tab = await driver.open("1280,800");
   await tab.load(address);
   await until(() => tab.run("return document.documentElement.dataset.author === 'ready'"), 60);
-  // The frame after the one that shows a new version is drawn when the version is on the screen.
+  // When the next frame begins, the frame with the new version has been drawn and is on the screen.
   await tab.run(`window.shown = {}; window.taken = {};
     new MutationObserver(() => {
       const version = document.documentElement.dataset.version;

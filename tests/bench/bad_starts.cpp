@@ -24,8 +24,8 @@ struct Outcome {
 };
 
 bool measure(const FaultyMotion& motion, int starts) {
-  // Distance below which motions count as the same [rad], [m]. Chosen: the tolerance of the solver
-  // leaves a tenth of it.
+  // Distance below which motions count as the same [rad], [m]. Chosen: ten times the differences
+  // that the tolerance of the solver leaves.
   constexpr double kSame = 1e-3;
   double begin = processor_seconds();
   const RepairResult usual = repair(hoap1(), motion.series, motion.options);

@@ -133,7 +133,7 @@ Kernel tick_of(const std::string& name, const PlantKind& kind) {
   struct Run : Walk {
     std::optional<Simulator> simulator;
   };
-  const auto made = std::make_shared<std::optional<Run>>();  // it is only made when it is asked for
+  const auto made = std::make_shared<std::optional<Run>>();  // the run is made at its first use
   return {"walking tick",
           name,
           "closed loop, without the log",

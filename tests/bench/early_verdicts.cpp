@@ -30,7 +30,7 @@ constexpr long kTicksPerTest = 10;
 constexpr double kRest = 0.5;
 /// Share of the set in which figures are decided (study/push).
 constexpr double kWellInside = 1.0 / 3;
-/// Time at the begin and the end of a motion in which there is no push [s].
+/// Time without pushes at the beginning and at the end of a motion [s].
 constexpr double kEdge = 0.3;
 
 struct Motion {
@@ -55,7 +55,8 @@ struct Tried {
 struct Count {
   int cases = 0, stand = 0, early = 0, wrong = 0;
   double early_time = 0, full_time = 0;  // times of the runs in which the robot stands [s]
-  // The largest drift after the run has been in the set, and after it has been in a third of it.
+  // The largest drift after the run has been in the set, and after it has been in a third of the
+  // set.
   double farthest = 0, inside = 0;
   double last = 0;  // largest drift in the last half second
 };
@@ -141,7 +142,7 @@ Count measure(const Motion& motion, const Law& law, int cases, Random& random) {
       before.push_back(run);
   }
   Count count;
-  // In this case no push is studied.
+  // If the unpushed run does not stand at its end, no push is studied.
   if (run.fell() || run.result().outcome != Outcome::stands) return count;
   for (size_t i = 0; i < before.size(); ++i) try_push(motion, all[i], before[i], unpushed, count);
   return count;

@@ -12,7 +12,7 @@ count() {
 }
 printf '%-28s %-18s %12s\n' job library 'Ir per state'
 "$bench" --list | while IFS="$(printf '\t')" read -r job who states; do
-  [ -n "$states" ] || continue  # what a peer says of its own
+  [ -n "$states" ] || continue  # a line that a library itself prints
   few=$(count "$job" "$who" 128)
   many=$(count "$job" "$who" 384)
   printf '%-28s %-18s %12d\n' "$job" "$who" $(((many - few) / 256 / states))

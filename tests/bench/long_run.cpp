@@ -5,8 +5,8 @@
 // then stands in one run. A line is printed after every tenth of the time; the last line is the
 // verdict, and the program fails if the robot fell, turned away, or if a quantity grew. No sensor
 // knows the heading, and a pattern that begins with the same foot turns the robot a little each
-// time: in turn with its mirror image this cancels, and a turn that is left would be caused by the
-// integrator.
+// time: in turn with its mirror image these turns cancel, and a remaining turn would be caused by
+// the integrator.
 
 #include <unistd.h>
 

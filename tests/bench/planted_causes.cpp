@@ -38,7 +38,7 @@ struct Motion {
 struct Fault {
   std::string name;
   Kinds kinds;                // kinds of errors that this fault may cause
-  double begin = 0, end = 0;  // begin and end of the fault [s]
+  double begin = 0, end = 0;  // beginning and end of the fault [s]
 };
 
 ConsistencyReport judged(const RobotModel& robot, const Pattern& pattern) {

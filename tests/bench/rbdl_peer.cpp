@@ -24,7 +24,8 @@ struct Rbdl {
     model.gravity = Vector3d(0, 0, -kGravity);
     std::vector<unsigned> ids;
     for (const Body& body : robot.bodies()) {
-      // Its vectors and matrices can be made from any of Eigen's, so that the type must be named.
+      // RBDL's vectors and matrices can be made from any of Eigen's, so that the type must be
+      // named.
       const rb::Body solid(body.inertia.mass, rb::Math::Vector3d(body.inertia.com),
                            rb::Math::Matrix3d(body.inertia.about_com));
       if (body.parent < 0) {

@@ -1,10 +1,10 @@
 // Measures repairs of HOAP-1 walks with faults in every step: size of the program, iterations,
-// seconds in functions and in the linear algebra of Ipopt, and peak memory of the process. The same
-// repair by MUMPS follows at once (processor time), with the ratio of the times that the linear
-// algebra of an iteration takes with MUMPS and without it. The figures are those of the quickest of
-// as many rounds as the first argument says (2). A second argument is the number of steps of the
-// longest walk (13). At the end, or alone if the first argument is "check", the check of a walk of
-// 10 s at 1 kHz is measured by parts.
+// seconds in the functions of the program and in the linear algebra of Ipopt, and peak memory of
+// the process. The same repair by MUMPS follows at once (processor time), with the ratio of the
+// times that the linear algebra of an iteration takes with MUMPS and without it. The first argument
+// is the number of rounds (default 2); the figures are those of the quickest round. A second
+// argument is the number of steps of the longest walk (13). At the end, or alone if the first
+// argument is "check", the check of a walk of 10 s at 1 kHz is measured by parts.
 
 #include <sys/resource.h>
 

@@ -14,7 +14,7 @@ namespace {
 using Eigen::Vector3d;
 using namespace planted;
 
-// The left foot carries in phase 1 of the walk, and slips there.
+// A walk whose left foot slips in phase 1, in which it carries the robot.
 Pattern slipping(const Vector3d& way, const std::function<double(double t)>& shape) {
   Pattern p = walk();
   move_body(hoap1(), *p.table,
@@ -22,8 +22,8 @@ Pattern slipping(const Vector3d& way, const std::function<double(double t)>& sha
   return p;
 }
 
-// All joints of a leg jump to the place of the sole and back. They do not jump by the same angles,
-// because the body has moved on in between.
+// The angles of the leg change suddenly when the sole is displaced, and again when it comes back.
+// The two changes differ, because the body has moved on in between.
 TEST(Consequence, OfASlipThatBeginsAndEndsAtOnce) {
   const double from = begin_of(walk(), 1) + 0.02, to = walk().phases[1].until - 0.02;
   for (const Vector3d& way :
@@ -36,7 +36,8 @@ TEST(Consequence, OfASlipThatBeginsAndEndsAtOnce) {
   }
 }
 
-// An arm is held in a wrong place, into which the thigh moves: one key is wrong.
+// An arm is held in a wrong place, and the thigh moves into it. This is one wrong key: the sudden
+// movements of the arm are consequences of the collision.
 TEST(Consequence, OfAnArmHeldInTheWayAreItsJumps) {
   Pattern p = table_of(squat_pattern(hoap1(), squat_defaults(hoap1())));
   const std::vector<std::pair<std::string, double>> arm = {
@@ -50,7 +51,7 @@ TEST(Consequence, OfAnArmHeldInTheWayAreItsJumps) {
   EXPECT_EQ(e.kinds, (Kinds{"self_collision"})) << e.printed;
   ASSERT_EQ(e.all.size(), 1u) << e.printed;
   EXPECT_GT(e.all[0].begin, 3.29) << "the arm jumps at 3.25 s";
-  // It is not the cause of a jump of the other arm.
+  // The collision of the left arm does not explain a sudden movement of the right one.
   for_rows(*p.table, [&](double t, size_t k) {
     if (std::abs(t - 3.95) < 0.7)
       p.table->theta(static_cast<Eigen::Index>(k), hoap1().find_dof("r_elbow")) -= 0.5;
@@ -61,8 +62,8 @@ TEST(Consequence, OfAnArmHeldInTheWayAreItsJumps) {
     EXPECT_TRUE(f.kind != FindingKind::joint_speed || f.where == "r_elbow");
 }
 
-// The foot is elsewhere for most of its contact: the place at the begin and the end counts as its
-// place.
+// The foot is displaced for most of its contact. Its place at the beginning and at the end of the
+// contact counts as its planned place.
 TEST(Consequence, OfASlipThatLastsLongerThanTheFootStands) {
   const Pattern sway = table_of(sway_pattern(hoap1(), {.side = 0.015, .period = 2, .cycles = 2}));
   const double from = 1.0, to = sway.phases.back().until - 1.0;
@@ -84,8 +85,8 @@ TEST(Consequence, OfASlipThatLastsLongerThanTheFootStands) {
   }
 }
 
-// The flanks of the slip are slower than what counts as a slip, and end at 0.05 mm: it is still the
-// same slip.
+// At its beginning and end, the slip is slower than what counts as a slip, and its distance is 0.05
+// mm. The forces at these times are nevertheless consequences of the slip.
 TEST(Consequence, OfASlipAreForcesAsLongAsTheSoleIsOff) {
   const double at = middle_of(walk(), 1),
                half = 0.5 * (walk().phases[1].until - begin_of(walk(), 1));
@@ -97,8 +98,8 @@ TEST(Consequence, OfASlipAreForcesAsLongAsTheSoleIsOff) {
   EXPECT_NEAR(e.all[0].at, at, 0.002) << e.printed;
 }
 
-// Feet that turn pass each other closely: the part of that gap that a slip closes is a consequence
-// of the slip.
+// Feet that turn pass each other closely. If a slip makes them touch, the collision is a
+// consequence of the slip.
 TEST(Consequence, OfASlipAreFeetThatTouch) {
   Pattern p = table_of(
       walk_pattern(hoap1(), {.steps = 3, .stride = 0.02, .period = 0.8, .turn = 15 * kDegree}));
@@ -109,8 +110,9 @@ TEST(Consequence, OfASlipAreFeetThatTouch) {
       << e.printed;
 }
 
-// A hip and an ankle that turn against each other move the sole 5 mm aside and lift it on the way:
-// it is reported where it is farthest, not where it leaves the ground.
+// A hip and an ankle that turn in opposite directions move the sole 5 mm aside and lift it on the
+// way. The error is reported at the time of the largest displacement, not when the sole leaves the
+// ground.
 TEST(Consequence, OfASlipIsThatTheSoleRises) {
   Pattern p = walk();
   const double at = middle_of(walk(), 1), width = 0.5;
@@ -126,7 +128,7 @@ TEST(Consequence, OfASlipIsThatTheSoleRises) {
 TEST(Consequence, OfAnAngleThatIsWrongForAWhile) {
   const double at = middle_of(walk(), 1);
   const int column = hoap1().find_dof("r_hip_roll");
-  // Beyond its limit inwards, the leg meets the other one.
+  // The leg is turned inwards beyond its limit and collides with the other leg.
   Pattern legs = walk();
   const double now = legs.table->theta(std::lround(at / legs.table->dt), column);
   move_joint(hoap1(), *legs.table, "r_hip_roll", 25 * kDegree - now, at, 0.8);
@@ -141,7 +143,7 @@ TEST(Consequence, OfAnAngleThatIsWrongForAWhile) {
   });
   e = errors_of(hard);
   EXPECT_EQ(e.kinds, (Kinds{"joint_position"})) << e.printed;
-  // A fault of a joint that is not on that leg is reported for itself.
+  // A collision that is caused by joints of an arm is an error of its own.
   for (const auto& [joint, degrees] : std::vector<std::pair<std::string, double>>{
            {"l_shoulder_pitch", 42}, {"l_shoulder_twist", 85}, {"l_elbow", -64}})
     move_joint(hoap1(), *legs.table, joint, degrees * kDegree, at, 1.5);
@@ -151,7 +153,7 @@ TEST(Consequence, OfAnAngleThatIsWrongForAWhile) {
   EXPECT_TRUE(e.kinds.count("self_collision")) << e.printed;
 }
 
-// The trunk sways outwards, and the ZMP that is commanded for it stays where it was.
+// The trunk sways outwards, but the commanded ZMP stays where it was.
 TEST(Consequence, OfAMotionWhoseZmpLeavesTheSupportIsItsDistance) {
   Pattern p = table_of(sway_pattern(hoap1(), {.side = 0.02, .period = 2, .cycles = 2}));
   const double at = 0.5 * p.phases.back().until;
@@ -162,8 +164,8 @@ TEST(Consequence, OfAMotionWhoseZmpLeavesTheSupportIsItsDistance) {
   EXPECT_NE(e.printed.find("warning zmp_residual"), std::string::npos) << e.printed;
 }
 
-// A COG key is wrong while a foot slips: it is farther off than the sole, whichever way the sole
-// slips.
+// The commanded COG is wrong while a foot slips. The COG error is larger than the slip, so it stays
+// an error of its own, whatever the cause of the slip is.
 TEST(Consequence, NeverOfAFaultThatIsLarger) {
   const double at = middle_of(walk(), 1);
   for (const bool base : {false, true}) {

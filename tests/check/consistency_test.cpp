@@ -256,7 +256,7 @@ TEST(Consistency, MotionZmpLeavesTheSupport) {
   EXPECT_EQ(f.worst, r.summary[FindingKind::support_margin]);
 }
 
-// Its stated peak torque is no help where kp of its servo is 0.
+// If kp of its servo is 0, a joint gives no torque, even if its peak torque is stated.
 TEST(Consistency, AJointWithoutAMotorGivesNoTorque) {
   RobotDescription limp = hoap1().description();
   limp.servos.at("l_knee").kp = limp.servos.at("l_knee").kd = 0;
@@ -269,7 +269,7 @@ TEST(Consistency, AJointWithoutAMotorGivesNoTorque) {
   const Finding& f = find(r, "joint_torque");
   EXPECT_EQ(f.where, "l_knee");
   EXPECT_NE(f.hint.find("l_knee has no motor"), std::string::npos) << f.hint;
-  // A joint that bears nothing needs none.
+  // A joint that bears no load needs no motor.
   RobotDescription wrist = hoap1().description();
   wrist.servos.at("l_elbow").kp = wrist.servos.at("l_elbow").kd = 0;
   for (ActuatorProfile& profile : wrist.profiles) profile.servos.clear();

@@ -80,7 +80,7 @@ void expect_alone(const Motion& motion, const Pattern& pattern, const std::set<s
   EXPECT_TRUE(found) << told.str() << "expected " << where << " at " << at;
 }
 
-// The distance from the support at motion.at, outwards along y, to 20 mm beyond its edge.
+// The distance along y from the commanded ZMP at motion.at to a point 20 mm outside the sole.
 double way_outside(const Motion& motion) {
   const CommandSeries series = sample(hoap1(), motion.pattern);
   const CommandSample& s = series.samples[std::lround(motion.at / series.dt)];
@@ -253,7 +253,7 @@ TEST(FaultsOnPatterns, FlightThatIsNotBallistic) {
     p.table->base[k].position.z() += 0.004 * bump(t, at, width);
   });
   expect_alone(m, p, {"ballistic"}, "z", m.pattern.table->dt * std::round(at / 0.001));
-  // The COG moves on a level line instead of a parabola; then feet also come to the ground.
+  // The COG moves on a level line instead of a parabola; the feet then also reach the ground.
   p = m.pattern;
   for_rows(*p.table, [&](double t, size_t k) {
     if (t > begin && t < end) p.table->base[k].position.z() -= 0.006 * bump(t, at, width);

@@ -38,7 +38,8 @@ TEST(Consequence, OfAFlightThatIsNotFreeIsOneFinding) {
   EXPECT_NE(e.printed.find("warning joint_torque"), std::string::npos) << e.printed;
 }
 
-// Without the force that no ground gives, the motors have no torque to give for it.
+// A flight that is not free needs a force that no ground can give, and joint torques for this
+// force. The torque errors are consequences of the error of the flight.
 TEST(Consequence, OfAFlightThatIsNotFreeAreTorques) {
   const double from = begin_of(hops(), 1), to = hops().phases[1].until, at = middle_of(hops(), 1);
   const auto kink = [&](double t) {
@@ -57,7 +58,8 @@ TEST(Consequence, OfAFlightThatIsNotFreeAreTorques) {
   }
 }
 
-// In a long flight, the COG is farthest off where its acceleration becomes free again.
+// In a long flight that is not free, the COG error is largest where the acceleration of the COG
+// equals that of free fall again. This is not a separate error.
 TEST(Consequence, OfALongFlightThatIsNotFreeIsTheCogInItsMiddle) {
   const RobotModel& robot = bundled_robot("humanoid30");
   Pattern p = baked(robot, pattern_of({"humanoid30", "jump"}));
@@ -75,8 +77,8 @@ TEST(Consequence, OfALongFlightThatIsNotFreeIsTheCogInItsMiddle) {
   EXPECT_EQ(free, 1);
 }
 
-// A flight at another scale ends with a jump to the ground: soles and forces there are not the
-// cause.
+// If the height of a flight is scaled, the posture is discontinuous at lift-off and landing. The
+// errors of soles and forces at these times are consequences of the wrong flight.
 TEST(Consequence, OfAFlightThatIsTooLowAreItsEdges) {
   for (const double scale : {0.5, 1.3}) {
     Pattern p = hops();
@@ -91,7 +93,8 @@ TEST(Consequence, OfAFlightThatIsTooLowAreItsEdges) {
   }
 }
 
-// The COG moves parallel to the true flight, but nothing throws the robot there.
+// The COG moves parallel to the true flight, so the posture is discontinuous at lift-off and
+// landing.
 TEST(Consequence, OfAFlightThatLeapsAreItsEdges) {
   const double dt = hops().table->dt, from = begin_of(hops(), 1), to = hops().phases[1].until;
   for (const Vector3d& way : {Vector3d(0.005, 0, 0), Vector3d(0, -0.003, 0), Vector3d(0, 0, 0.02),
@@ -113,8 +116,8 @@ TEST(Consequence, OfAFlightThatLeapsAreItsEdges) {
       }
     }
   }
-  // The COG is out of its place for the first part of the next stance, and in it from then on: then
-  // the fault is a foot's.
+  // If robot and commanded COG are displaced only during the first part of the stance after the
+  // flight, the fault is a slip of the feet and not a fault of the flight.
   Pattern p = hops();
   const double begin = to, end = to + 0.4 * (p.phases[2].until - to);
   for_rows(*p.table, [&](double t, size_t k) {
@@ -125,8 +128,8 @@ TEST(Consequence, OfAFlightThatLeapsAreItsEdges) {
   EXPECT_EQ(errors_of(p).kinds, (Kinds{"foot_slip"})) << errors_of(p).printed;
 }
 
-// A commanded COG that is only bent in the flight is a flight that is not free; if it is bent
-// beyond the flight, a key is wrong.
+// If the commanded COG deviates only within the flight, the error is a flight that is not free. If
+// it also deviates before and after the flight, the error is a wrong COG key.
 TEST(Consequence, OfACommandedCogDependsOnWhereItEnds) {
   const double at = middle_of(hops(), 1), length = hops().phases[1].until - begin_of(hops(), 1);
   for (const double share : {0.9, 6.0}) {
@@ -160,8 +163,8 @@ TEST(Consequence, OfAPhaseThatHasMoved) {
   EXPECT_EQ(e.kinds, (Kinds{"foot_float", "ballistic"})) << e.printed;
 }
 
-// The foot that is lifted stands still meanwhile, and no force shows this if the ZMP is already
-// over the other foot.
+// The foot that is planned to be lifted still stands on the ground, but no force shows this if the
+// ZMP is already over the other foot.
 TEST(Consequence, OfAFootThatIsLetGoTooEarly) {
   for (const size_t both : {0, 2, 4}) {
     Pattern p = walk();
@@ -175,7 +178,7 @@ TEST(Consequence, OfAFootThatIsLetGoTooEarly) {
     EXPECT_EQ(e.all[0].unit, "s");
     EXPECT_NEAR(e.all[0].worst, 0.060, 0.005);
     EXPECT_NE(e.all[0].hint.find("stands still"), std::string::npos) << e.all[0].hint;
-    // The swing of the foot moved as a whole: it is reported where the foot lands.
+    // The whole swing of the foot is too early: the error is reported where the foot lands.
     p.phases[both + 1].until -= 0.060;
     e = errors_of(p);
     EXPECT_EQ(e.kinds, (Kinds{"foot_float"})) << both << "\n" << e.printed;
@@ -187,8 +190,8 @@ TEST(Consequence, OfAFootThatIsLetGoTooEarly) {
              [&](double t, size_t k) { p.table->cog[k].x() += 0.015 * bump(t, at, 0.3); });
     EXPECT_EQ(errors_of(p).kinds, (Kinds{"foot_float", "cog_residual"})) << errors_of(p).printed;
   }
-  // Both feet are lifted before a flight: a force that pushes there does not make the flight
-  // unfree.
+  // Both feet are planned to leave the ground too early before a flight. A ground force at this
+  // time does not count as an error of the flight.
   Pattern p = hops();
   p.phases[0].until -= 0.060;
   const Errors e = errors_of(p);
@@ -230,8 +233,8 @@ TEST(Consequence, OfAPhaseThatHasMovedOnStairs) {
   }
 }
 
-// A phase is shifted, so that it says that feet carry the robot while the keys move them. The check
-// reports this.
+// A phase is shifted. According to the phase, the feet carry the robot, but their keys move them.
+// The check reports this.
 TEST(Consequence, OfAFlightWithFootKeysThatEndsEarly) {
   JumpParameters jump = jump_defaults(hoap1());
   jump.forward = 0.02;

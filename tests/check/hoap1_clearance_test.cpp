@@ -1,4 +1,5 @@
-// HOAP-1's collision shapes leave ordinary walking alone, and still notice a foot on a foot.
+// In ordinary walking, HOAP-1's collision shapes keep a clearance, and they detect a foot that
+// touches the other one.
 
 #include <gtest/gtest.h>
 

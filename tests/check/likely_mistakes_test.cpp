@@ -36,7 +36,7 @@ std::vector<std::string> mistakes_after(const std::function<void(Pattern&)>& pla
   return impossible(pattern);
 }
 
-/// Expects one sentence, or two and a count, that begins with `place` and contains `words`.
+/// Expects that the first message begins with `place` and contains `words`.
 void expect_called(const std::vector<std::string>& mistakes, const std::string& place,
                    const std::string& words) {
   ASSERT_FALSE(mistakes.empty());
@@ -167,7 +167,7 @@ TEST(ImpossibleValues, AFootKeyThatLiftsTheCog) {
   }
   const auto mistakes = impossible(pattern);
   expect_called(mistakes, "/keyframes/1: the right foot is 30 mm up", "the COG rises by half");
-  // If there is a key of the height, the author has decided.
+  // If the author has written a key of the height, the height is not doubted.
   pattern.keyframes[0].cog_height = 0.23;
   EXPECT_TRUE(impossible(pattern).empty());
 }

@@ -50,7 +50,7 @@ const Finding& first(const ConsistencyReport& r, const std::string& kind) {
   return none;
 }
 
-// Begin and end of the n-th phase with this support.
+// Beginning and end of the n-th phase with this support.
 std::pair<double, double> phase(const Pattern& pattern, Support support, int n) {
   double begin = 0;
   for (const Phase& each : pattern.phases) {
@@ -146,8 +146,8 @@ TEST(PlantedFault, JointBeyondItsLimit) {
       EXPECT_EQ(error_kinds(r), Kinds{"joint_position"}) << joint << "\n" << print(r);
       const Finding& f = first(r, "joint_position");
       EXPECT_EQ(f.where, joint);
-      // The walk itself moves the joint, so that the worst sample is not exactly at the top of the
-      // hill.
+      // The walk itself moves the joint, so that the worst sample is not exactly at the maximum of
+      // the added bump.
       Eigen::Index worst = 0;
       (p.table->theta.col(joint_column(p, joint)) * (degrees > 0 ? 1 : -1)).maxCoeff(&worst);
       EXPECT_NEAR(f.at, static_cast<double>(worst) * p.table->dt, 0.002);
@@ -277,8 +277,8 @@ TEST(PlantedFault, ASoundJumpPassesBaked) {
   EXPECT_TRUE(r.consistent) << print(r);
 }
 
-// A posture and a command, each alone, and an arm that swings: in none of them does the robot fall
-// freely.
+// The posture rises, the command rises, both rise, or an arm swings. In none of these cases does
+// the robot fall freely.
 TEST(PlantedFault, FlightIsNotBallistic) {
   const auto [begin, end] = phase(jump(), Support::none, 0);
   const double at = 0.5 * (begin + end), width = 0.9 * (end - begin);

@@ -318,7 +318,8 @@ TEST(PlantedMistakes, AreNamed) {
   }
 }
 
-// A reach of the left hand in three keys. Before, other units of targets were not tried.
+// A reach of the left hand in three keys. In an earlier version, other units of targets were not
+// tried.
 TEST(PlantedMistakes, TargetsOfHandsInAnotherUnitAreNamed) {
   for (const auto& [robot, size] : {std::pair(&small(), 1.0), {&tall(), 2.4}}) {
     Pattern reach;
@@ -354,7 +355,8 @@ TEST(PlantedMistakes, TargetsOfHandsInAnotherUnitAreNamed) {
 }
 
 // The y of all footholds is counted to the right, or the words left and right are exchanged
-// throughout. Before, the height of the COG was named, and then one foothold after the other.
+// throughout. In an earlier version, the height of the COG was named, and then one foothold after
+// the other.
 TEST(PlantedMistakes, SidesThatAreAllExchangedAreNamed) {
   for (const RobotModel* robot : {&small(), &tall()}) {
     Pattern sides = walk(*robot), words = sides;
@@ -556,8 +558,8 @@ TEST(PlantedMistakes, ACogThatSinksBelowItsStoopIsNamed) {
       << found.front().text();
 }
 
-// A kick with a level foot: the pose of the foot is named for every key in which its leg leans, and
-// with all the named changes the pattern is consistent.
+// A kick with a level foot: the pose of the foot is named for every key at which its leg is
+// inclined, and with all the named changes the pattern is consistent.
 TEST(PlantedMistakes, EveryKeyOfALevelFootIsNamed) {
   Pattern kick;
   kick.robot = "hoap1";
@@ -608,7 +610,7 @@ bool is_consistent(const Pattern& pattern, const CheckOptions& options) {
   return check_consistency(small(), sample(small(), pattern), options).consistent;
 }
 
-/// The flight and all that follows as a message says it.
+/// Shortens the flight and makes everything after it earlier, by the values in a message.
 void shorten_flight(Pattern& pattern, const std::smatch& says) {
   const double earlier = std::stod(says[2]), end = pattern.phases[1].until;
   EXPECT_NEAR(end - pattern.phases[0].until - std::stod(says[1]), earlier, 1e-9);
@@ -639,8 +641,8 @@ TEST(PlantedMistakes, AShorterFlightIsNamedForAHopThatIsTooHigh) {
   EXPECT_TRUE(is_consistent(pattern, options)) << found;
 }
 
-// A slow stoop, and legs that are too straight at both ends of the flight: what is named is enough,
-// to the letter.
+// The stoop is slow, and the legs are too straight at both ends of the flight. With exactly the
+// values that the message names, the pattern is consistent.
 TEST(PlantedMistakes, AllThatIsNamedForAHopIsEnough) {
   Pattern pattern =
       hop_with({{0.5, 0.245}, {1.2, 0.2}, {1.5, 0.235}, {1.65, 0.235}, {1.85, 0.2}, {2.8, 0.245}});
@@ -667,12 +669,12 @@ TEST(PlantedMistakes, AChangeThatCannotBeSampledIsNotNamed) {
   pattern.keyframes.front().zmp = ZmpKey{ZmpKey::Place::center};
   pattern.phases[2].until = 3.2;
   const std::string found = texts_of(likely_mistakes(small(), pattern, strong_options(pattern)));
-  // The number of errors that such a motion counts as.
+  // A motion that cannot be sampled counts as this number of errors.
   EXPECT_EQ(found.find("2147483647"), std::string::npos) << found;
 }
 
-// Two keys hold one value, and what would be there without them differs. A change that is named for
-// both is enough if both get the named value.
+// Two keys have the same value, and the two values that the track would have without them differ. A
+// change that is named for both keys is enough if both get the named value.
 TEST(PlantedMistakes, WhatIsNamedForTwoKeysWasTriedForBoth) {
   Pattern pattern;
   pattern.robot = "hoap1";
@@ -684,7 +686,7 @@ TEST(PlantedMistakes, WhatIsNamedForTwoKeysWasTriedForBoth) {
   pattern.keyframes.front().zmp = ZmpKey{ZmpKey::Place::center};
   const CheckOptions options = options_of(pattern);
   const std::string found = texts_of(likely_mistakes(small(), pattern, options));
-  // Of both keys, -36.26 deg would be there without the first one.
+  // Without both keys, the angle at the time of the first one would be -36.26 deg.
   std::smatch value;
   if (!std::regex_search(
           found, value,
@@ -696,7 +698,8 @@ TEST(PlantedMistakes, WhatIsNamedForTwoKeysWasTriedForBoth) {
   EXPECT_TRUE(is_consistent(pattern, options)) << found;
 }
 
-// The range of a value ends where the table for the robot ends it, at a number as it is printed.
+// The table for the robot limits the range of this value. With the end of the range as it is
+// printed, the pattern is consistent.
 TEST(PlantedMistakes, TheEndOfARangeIsEnoughToTheLetter) {
   Pattern pattern = hop_with(
       {{0.5, 0.245}, {1.35, 0.2}, {1.5, 0.229}, {1.65, 0.235}, {1.732, 0.2}, {2.8, 0.245}});
@@ -712,7 +715,7 @@ TEST(PlantedMistakes, TheEndOfARangeIsEnoughToTheLetter) {
   EXPECT_TRUE(is_consistent(pattern, options)) << found;
 }
 
-// Two keys that hold one value: a change of it concerns both, which the message says.
+// Two keys have the same value. A change of the value concerns both keys, and the message says so.
 TEST(PlantedMistakes, EveryKeyThatAChangeConcernsIsNamed) {
   Pattern bow;
   bow.robot = "hoap1";
@@ -733,8 +736,8 @@ TEST(PlantedMistakes, EveryKeyThatAChangeConcernsIsNamed) {
   EXPECT_TRUE(is_consistent(bow, options_of(bow))) << found;
 }
 
-// Steps to the right with a quarter turn, a little too far to the side. Without the step to the
-// side, the feet collide, and without most of the turn, the steps are possible too.
+// Steps to the right with a quarter turn, a little too far to the side. If the step to the side is
+// removed, the feet collide. If most of the turn is removed, the steps are possible, too.
 TEST(PlantedMistakes, TheLeastChangeOfTwoValuesIsNamed) {
   Pattern pattern = quarter_turn(0.25);
   for (Phase& phase : pattern.phases) {

@@ -62,7 +62,7 @@ TEST(ServoTarget, TheCheckFindsWhatExportRefuses) {
   EXPECT_GT(refused, 0);
 }
 
-// A table for another profile than the robot's own is no reason against the motion.
+// If export refuses the table for a profile that is not the robot's own, the check only warns.
 TEST(ServoTarget, OfAStudyTheCheckOnlyWarns) {
   const Pattern pattern = walk_with_period(0.40);
   const CommandSeries series = sample(hoap1(), pattern);
@@ -86,7 +86,8 @@ TEST(ServoTarget, OfAStudyTheCheckOnlyWarns) {
   EXPECT_GT(refused, 0);
 }
 
-// A joint that is too fast by itself is one error, and its table follows from it.
+// If the joint itself is too fast, this is the error, and the too large step in the table is its
+// consequence.
 TEST(ServoTarget, OfAJointThatIsTooFastFollowsFromIt) {
   const ConsistencyReport r = report_of(hoap1(), walk_with_period(0.8, 0.045));
   EXPECT_FALSE(r.consistent);

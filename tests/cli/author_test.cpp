@@ -203,14 +203,15 @@ TEST_F(AuthorServer, AnswersOnlyItsOwnPage) {
   ASSERT_TRUE(page);
   EXPECT_NE(page->body.find("<html"), std::string::npos);
   EXPECT_EQ(page->get_header_value("Cache-Control"), "no-store");
-  // The machine does not answer at its other addresses.
+  // A request that is not an edit is refused, and the file stays as it is.
   for (const char* const body : {"", "[]", "{", "{\"hash\":3}", "{\"hash\":\"\",\"edits\":7}"})
     EXPECT_GE(client.Post(server.root() + "edit", body, "application/json")->status, 400) << body;
   EXPECT_EQ(contents(file), walk);
   EXPECT_NE(client.Put(server.root() + "state", "", "text/plain")->status, 200);
 }
 
-// Compressing by Brotli at its highest level took longer than the change of the motion itself.
+// In an earlier version, compressing by Brotli at its highest level took longer than the change of
+// the motion itself.
 TEST_F(AuthorServer, CompressesNothing) {
   const Server server(file);
   httplib::Client client = server.client();
@@ -225,7 +226,7 @@ TEST_F(AuthorServer, CompressesNothing) {
   }
 }
 
-// Before, such a request ended the server: its value was written by recursion.
+// In an earlier version, such a request ended the server: its value was written by recursion.
 TEST_F(AuthorServer, RefusesRequestsThatAreNestedDeeply) {
   const Server server(file);
   const std::string deep = std::string(300'000, '[') + std::string(300'000, ']');
@@ -404,7 +405,7 @@ TEST_F(AuthorServer, EditsExpressionsWithTheParametersOfTheCommand) {
   EXPECT_EQ(contents(file), with("\"${side}\"", "\"${side} + 0.003\""));
 }
 
-// The page has a button, so that its words do not name the command.
+// The page has a button for the repair, so its messages name the button and not the command.
 TEST_F(AuthorServer, AdvisesTheButtonOfTheRepair) {
   const Server server(file);
   ASSERT_EQ(server
@@ -508,8 +509,9 @@ OrderedJson row_at(const Server& server, const OrderedJson& state, double time) 
   return row;
 }
 
-// While something is dragged, the page shows the pattern as it is once it is written. The text has
-// durations, relative steps and blocks that repeat: edits change the words that the author wrote.
+// While something is dragged, the page shows the pattern as it will be after it is written. The
+// text has durations, relative steps and blocks that repeat: edits change the words that the author
+// wrote.
 TEST_F(AuthorServer, EditsAPatternInFewWords) {
   const std::string text = R"({
   "format": "ayumi.pattern/1", "robot": "hoap1", "units": { "angle": "deg" },
@@ -582,7 +584,7 @@ TEST_F(AuthorServer, SaysThatTheFileIsGone) {
   fs::remove(file);
   const OrderedJson gone =
       server.state_when([](const OrderedJson& now) { return !now["error"].is_null(); });
-  EXPECT_NE(gone["error"].dump().find("is gone"), std::string::npos) << gone["error"];
+  EXPECT_NE(gone["error"].dump().find("no longer exists"), std::string::npos) << gone["error"];
   save(walk);
   EXPECT_TRUE(
       server.state_when([](const OrderedJson& now) { return now["error"].is_null(); })["consistent"]

@@ -398,7 +398,7 @@ TEST(SoundInput, NamesAreShownWithoutControlCharacters) {
   }
 }
 
-// Before, the program used up all memory.
+// In an earlier version, the program used up all memory.
 TEST(StandardInput, WithoutEndIsRefused) {
   const std::string command = program_under_test() + " check - 2>&1 </dev/zero";
   FILE* const program = ::popen(command.c_str(), "r");

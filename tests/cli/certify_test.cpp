@@ -93,8 +93,8 @@ TEST(CertifyCommand, GoesOnAndRefusesOtherStudies) {
       << other.err;
 }
 
-// Before, the comparison with the program's own study descended into these results by recursion,
-// and the program crashed.
+// In an earlier version, the comparison with the program's own study descended into these results
+// by recursion, and the program crashed.
 TEST(CertifyCommand, RefusesResultsThatAreNestedDeeply) {
   const CertifyStudy study;
   const std::string deep = std::string(300'000, '[') + std::string(300'000, ']');

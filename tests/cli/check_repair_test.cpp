@@ -52,7 +52,7 @@ TEST_F(CheckRepair, TheWalkIsConsistent) {
   EXPECT_TRUE(folder.files().empty());
 }
 
-// Before, the distance of bodies that overlap was reported as a negative distance.
+// In an earlier version, the distance of bodies that overlap was reported as a negative distance.
 TEST_F(CheckRepair, BodiesThatOverlapAreSaidTo) {
   plant("arm.json", R"({ "t": 0, "zmp": "center" })",
         R"({ "t": 0, "zmp": "center", "joints": { "l_shoulder_roll": -40 } })");
@@ -70,8 +70,8 @@ TEST_F(CheckRepair, TheMistakeIsNamedFirst) {
             std::string::npos)
       << far.err;
   EXPECT_NE(far.err.find("the first error is: /phases/5: t = "), std::string::npos);
-  // A value that is wrong by a factor of a thousand also has a range, which contains the value that
-  // it may stand for.
+  // For a value that is wrong by a factor of a thousand, the message also states the range of
+  // possible values. This range contains the value that is suggested.
   write(folder / "step.json", R"({"format": "ayumi.pattern/1", "robot": "hoap1",
       "phases": [{"duration": 1.2, "support": "both"},
                  {"duration": 0.6, "support": "left",
@@ -108,8 +108,8 @@ TEST_F(CheckRepair, TheMistakeIsNamedFirst) {
       << foot.out;
 }
 
-// No other number mends a name that nothing has: only the name is reported, and nothing is
-// searched.
+// An unknown name cannot be corrected by another number. So only the name is reported, and no
+// search for mistakes is made.
 TEST_F(CheckRepair, AnUnknownNameIsSaidAloneAtOnce) {
   const std::string key = R"({ "t": 2.22, "zmp": "left" })";
   const std::vector<std::pair<std::string, std::string>> misspelt = {
@@ -292,7 +292,8 @@ class ChecksOn80Columns : public CheckRepair {
   static void expect_one_screen(const std::string& answer) { expect_fits(answer, 22); }
 };
 
-// A jump with seven kinds of warnings took 60 rows, so that the verdict was out of sight.
+// In an earlier version, the answer about a jump with seven kinds of warnings took 60 rows, so that
+// the verdict was out of sight.
 TEST_F(ChecksOn80Columns, WhatIsConsistentFitsOnOneScreen) {
   std::vector<std::string> patterns;
   for (const auto& entry : fs::directory_iterator(AYUMI_SOURCE_DIR "/patterns"))

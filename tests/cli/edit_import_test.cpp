@@ -57,7 +57,8 @@ TEST_F(Edit, ATableIsFoundFromWhereverItsPatternWasMade) {
             std::string::npos);
 }
 
-// The name of a kept sequence was that from the folder itself, and was read from the link.
+// In an earlier version, the name of a kept sequence was relative to the folder itself, but was
+// read relative to the link.
 TEST_F(Edit, AKeptSequenceIsFoundThroughALink) {
   fs::create_directories(folder / "in");
   fs::create_directories(folder / "deep/er");
@@ -259,7 +260,8 @@ TEST_F(Edit, SequencesComeBack) {
   EXPECT_EQ(json["contacts"].size(), 11u) << out.out;
   const Json last = json["contacts"].back();
   EXPECT_NEAR(last["position_m"][0], 0.24, 0.004);
-  // A table that is made for the robot's own file does not take the name of another file.
+  // The table of the new pattern would have the name of the input file, which is not overwritten,
+  // not even with --force.
   EXPECT_EQ(ayumi({"import", "walk.csv", "--robot", "hoap1", "-o", "walk.json"}).exit_code, 3);
   const Output own =
       ayumi({"import", "walk.csv", "--robot", "hoap1", "-o", "walk.json", "--force"});

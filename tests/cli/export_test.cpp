@@ -209,7 +209,7 @@ TEST_F(Export, HoapNamesTheTorqueBeyondTheRobotsOwnMotors) {
 }
 
 // A sequence of HOAP-1 around its home posture. `tail` comes after the motors, and `end` ends the
-// lines. The left elbow turns by a count in so many rows, including the last one.
+// lines. The left elbow turns by one count every `slowness` rows.
 std::string sequence(const std::string& interval, const std::string& tail, const std::string& end,
                      int rows = 60, bool waist = false, double slowness = 10) {
   const int home[20] = {0, 0, 3607,  9107,  -5500, 0, 18810,  -2090, 0, 5225,

@@ -83,7 +83,7 @@ TEST(GainsCommand, WhatItRefusesIsNotRunUnlessAsked) {
   };
   EXPECT_FALSE(outcome({"--gain", "ka=40", "--allow-unstable"}).empty());
   EXPECT_EQ(outcome({"--controller", "dtad-literal", "--profile", "hoap1-soft"}),
-            "fell");  // a demonstration needs no permission
+            "fell");  // demonstrations need no --allow-unstable
 }
 
 TEST(TuneCommand, BettersItsObjectiveTheSameWayForAnyNumberOfThreads) {
@@ -230,7 +230,8 @@ TEST(ExplainCommand, EveryNumberIsTheLogsOwn) {
         if (!(run.all && t == run.times[0]) && !groups.contains(n)) continue;
         SCOPED_TRACE(std::string(run.name) + " (" + std::to_string(n) + ") at " +
                      std::to_string(t));
-        // One of them is taken from the whole run, in which the row of a time has to be found.
+        // Equation (14) is explained from the log of the whole run, in which the row of the time
+        // has to be found.
         const Output each =
             n == 14
                 ? run_program({"explain", "14", "run@" + text::exact(t), "--json"}, folder.path())

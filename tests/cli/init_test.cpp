@@ -65,9 +65,10 @@ TEST(Init, FiveJointLegsShuffle) {
   }
 }
 
-// Open Duck Mini: legs of five joints whose hips are as low as its COG, and whose limits want the
-// knees of a bird. The trunk leans by 13 degrees in each of its quick steps. They ask a sixth more
-// of its knees than these have, which the check says; with the torque at its limit, it stands.
+// Open Duck Mini has legs of five joints, its hips are as low as its COG, and its joint limits only
+// allow knees that bend backwards like those of a bird. The trunk leans by 13 degrees in each of
+// its quick steps. These steps need a sixth more torque than the knees have, which the check
+// reports. With the torque at its limit, the robot still stands.
 TEST(Init, OpenDuckStandsAfterQuickSteps) {
   const fs::path mjcf = AYUMI_SOURCE_DIR "/../shared/data/open_duck_mini_v2/open_duck_mini_v2.xml";
   if (!fs::exists(mjcf)) GTEST_SKIP() << "no file of Open Duck Mini";
@@ -81,7 +82,7 @@ TEST(Init, OpenDuckStandsAfterQuickSteps) {
   EXPECT_NE(made.out.find("; a swinging sole by up to "), std::string::npos) << made.out;
   const Output run = ayumi(folder, {"simulate", "walk.json"});
   EXPECT_EQ(run.exit_code, 0) << run.out << run.err;
-  // A pendulum without the angular momentum of the trunk sways too far for slower steps.
+  // Slower steps need the angular momentum of the trunk: a pendulum without it sways too far.
   const Output slower =
       ayumi(folder, {"new", "step", "--robot", "robot", "--period", "0.25", "--lift", "0.005",
                      "--zmp-inwards", "0.008", "-o", "step.json"});
@@ -130,8 +131,8 @@ TEST(Init, CoupledHipsTurn) {
   EXPECT_EQ(check.exit_code, 0) << check.out;
 }
 
-// A joint that turns both legs the same way: the sole reached its place, so the turn failed "by
-// 0.029 mm (allowed: 2.42 mm)".
+// One joint turns both legs in the same direction. In an earlier version, the message said that the
+// sole was out of reach "by 0.029 mm (allowed: 2.42 mm)", although the sole reached its place.
 TEST(Init, LegsThatCannotTurnApartSaySo) {
   Folder folder;
   std::string text = UrdfBiped{}.text();
@@ -147,8 +148,8 @@ TEST(Init, LegsThatCannotTurnApartSaySo) {
   EXPECT_EQ(made.err.find("out of reach by"), std::string::npos) << made.err;
 }
 
-// Before, only `inspect` warned of a centre of mass far from its link, and a beginner never runs
-// `inspect`.
+// In an earlier version, only `inspect` warned of a centre of mass far from its link, and a
+// beginner never runs `inspect`.
 TEST(Init, SuspiciousLinksAreOnTheList) {
   Folder folder;
   std::string text = UrdfBiped{}.text();
@@ -162,7 +163,8 @@ TEST(Init, SuspiciousLinksAreOnTheList) {
       << made.out;
 }
 
-// The motors of a robot whose file states no limits are on the list, and no share of them is given.
+// If the robot's file states no limits of the motors, these limits are on the to-do list, and no
+// shares of limits are printed.
 TEST(Init, MotorsWithoutLimitsAreSaid) {
   Folder folder;
   std::string text = UrdfBiped{}.text();

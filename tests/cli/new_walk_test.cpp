@@ -48,8 +48,8 @@ TEST(NewWalk, LegsWithoutMotorsAreNamed) {
       << check.out;
 }
 
-// Weak hips pass with none of the listed heights, lengths and times: the ZMP must stay farther
-// inwards, which no list of this robot has.
+// With weak hips, no combination of the listed heights, lengths and times passes. The ZMP must stay
+// farther inwards, and no list contains this value.
 TEST(NewWalk, TheSearchGoesOnFromTheNearestTrial) {
   Folder folder;
   std::string profiles;
@@ -128,8 +128,8 @@ TEST_P(NewKinds, ATurnAndAWaveAreConsistent) {
   }
 }
 
-// If no walk is found, the message names the one that comes nearest and its limit. That the legs do
-// not reach would not tell the user which option to change.
+// If no walk is found, the message names the one that comes nearest and its limit. A message that
+// the legs do not reach a place would not tell the user which option to change.
 TEST(NewWalk, NamesTheWalkThatComesNearest) {
   const std::filesystem::path robot =
       AYUMI_SOURCE_DIR "/../shared/data/open_duck_mini_v2/open_duck_mini_v2.xml";

@@ -73,7 +73,7 @@ TEST_F(PostureCommand, ListsPosturesInTimeThatIsLinearInTheirNumber) {
   EXPECT_LT(time_of_children() - begin, 5.0);
   EXPECT_EQ(all.size(), 80'000u);
   EXPECT_EQ(all["p79999"]["l_elbow"], 1);
-  // A message does not name all of them either.
+  // The message about an unknown posture does not list all postures, either.
   const Output wrong = ayumi({"posture", "adjust", "many.json", "q", "--joint", "l_elbow=1", "--as",
                               "r", "-o", "mine.json"});
   EXPECT_EQ(wrong.exit_code, 2);

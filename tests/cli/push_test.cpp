@@ -72,8 +72,8 @@ TEST(PushCommand, GoesOnFromItsResultsForAnyNumberOfThreads) {
       << other.err;
 }
 
-// Before, the comparison with the program's own study descended into these results by recursion,
-// and the program crashed.
+// In an earlier version, the comparison with the program's own study descended into these results
+// by recursion, and the program crashed.
 TEST(PushCommand, RefusesResultsThatAreNestedDeeply) {
   const Study study;
   const std::string deep = std::string(300'000, '[') + std::string(300'000, ']');

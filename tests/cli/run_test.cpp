@@ -323,7 +323,8 @@ TEST_F(Run, OneFolderIsWrittenByOneRunAtATime) {
   EXPECT_EQ(refused.exit_code, 3);
   EXPECT_NE(refused.err.find("out: another run is being written to this folder"), std::string::npos)
       << refused.err;
-  // This is the same as the end of that process, however it ends: the file alone locks nothing.
+  // Closing the file releases the lock, as the end of the other process does. The file alone locks
+  // nothing.
   ::close(held);
   ASSERT_TRUE(fs::exists(lock));
   EXPECT_EQ(run("calm.json").exit_code, 0);

@@ -19,8 +19,8 @@ Output selftest(const std::vector<std::string>& settings, const std::vector<std:
 
 TEST(Selftest, GivesTheCommittedHashesEverywhere) {
   const Folder folder;
-  // The settings are those of the machine, and others: without fused multiply-add and AVX2 in the C
-  // library, with another BLAS kernel, and with other words for numbers and times.
+  // The settings are those of the machine, and other settings: without fused multiply-add and AVX2
+  // in the C library, with another BLAS kernel, and with other words for numbers and times.
   const std::vector<std::vector<std::string>> machines = {
       {},
       {"GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX2_Usable,-FMA_Usable",

@@ -49,7 +49,7 @@ try {
       .filter((cell) => / to /.test(cell.textContent)).length`);
     expect(intervals > 1, "rates with intervals: " + intervals);
 
-    // The replay runs in its frame. The frame is a page of its own origin, so its document says so
+    // The replay runs in its frame. The frame is a page of another origin, so its document is read
     // through the driver.
     await tab.run("document.querySelector('details.replay').open = true");
     const ready = await until(() => tab.inFrame("iframe",

@@ -323,7 +323,7 @@ TEST(SweepCommand, OneClearLineForBadInput) {
   expect(s.sweep({"-o", "good.db"}), 3, "another study (the study is different)");
   ASSERT_EQ(s.sweep({"-o", "other.db"}).exit_code, 0);
   expect(s.run({"sweep", "merge", "good.db", "other.db"}), 3, "other.db: this file holds");
-  // A wrong expectation makes no file and replaces none, and commands that only read leave none
+  // A wrong expectation makes no file and replaces none, and commands that only read leave no file
   // behind.
   expect(s.sweep({"-o", "y.db", "--expect", "fals == 0"}), 2, "did you mean 'falls'?");
   EXPECT_FALSE(fs::exists(s.folder / "y.db"));
@@ -386,7 +386,7 @@ TEST(SweepCommand, OnlyItsOwnTablesAreRead) {
     EXPECT_TRUE(contents(s.folder / "odd.db") == before) << sql;
   }
   EXPECT_TRUE(contents(s.folder / "good.db") == good);
-  // What somebody keeps beside them is no concern of the program.
+  // Further tables and views that a user has added to the file do not matter to the program.
   changed("CREATE TABLE notes (text); CREATE VIEW slow AS SELECT severity FROM cases");
   const Output out = s.run({"sweep", "status", "odd.db"});
   EXPECT_EQ(out.exit_code, 0) << out.err;
@@ -528,8 +528,8 @@ TEST(SweepOnSlurm, LostTasksAreSubmittedAgainUpToALimit) {
       "--memory 2G --sbatch=--account=lab");
   ASSERT_EQ(out.exit_code, 0) << out.out << out.err;
   EXPECT_EQ(contents(slurm.s.folder / "a.csv"), whole);
-  // The tasks are: five tasks, then those of the 5 and 5 cases that were lost, and one of these two
-  // once more.
+  // Of the five tasks of the first job, two are lost (10 cases). Of the two tasks that repeat these
+  // cases, one is lost again (5 cases).
   EXPECT_NE(out.out.find("10 cases of lost tasks"), std::string::npos) << out.out;
   EXPECT_NE(out.out.find("5 cases of lost tasks"), std::string::npos) << out.out;
   const std::string log = contents(slurm.s.folder / "sbatch.log");

@@ -32,7 +32,8 @@ struct AtHome {
   ActuatorLimits limits() const { return model.limits(); }
 };
 
-/// The angular momentum of these bodies about their centre of mass, from two postures dt apart.
+/// The angular momentum of the bodies in `counted` about their centre of mass, from two postures dt
+/// apart.
 Vector3d momentum(const RobotModel& model, const std::vector<bool>& counted, const RobotData& from,
                   const RobotData& to, double dt) {
   double mass = 0;
@@ -173,8 +174,8 @@ TEST_P(UpperBody, WhatStatesNoTorqueDoesNotTurn) {
   }
 }
 
-// A trunk that the plan tilts is turned less far to this side, so that both together stay away from
-// a fall.
+// If the plan tilts the trunk, the task turns it less far to the same side, so that the sum of tilt
+// and turn stays below the tilt that counts as a fall.
 TEST_P(UpperBody, ATiltedTrunkIsTurnedLessFar) {
   AtHome b(GetParam());
   const Vector2d tilt(0, 0.5);
@@ -197,7 +198,7 @@ TEST_P(UpperBody, ATiltedTrunkIsTurnedLessFar) {
     }
 }
 
-// With W, a part that is made heavy turns less, and the rest takes over.
+// A joint with a larger weight in W turns less, and the other coordinates turn more.
 TEST_P(UpperBody, WeightsMoveTheTurnFromTheArmsToTheTrunk) {
   AtHome b(GetParam());
   const Vector3d moment = 1e-3 * b.model.mass() * Vector3d(1, 0, 0);

@@ -42,7 +42,8 @@ TEST(PreviewControl, GainsSolveTheRiccatiEquation) {
                                        g.A.transpose() * PB * PB.transpose() * g.A / size + g.Q -
                                        g.P;
       EXPECT_LT(residual.norm(), 1e-8 * g.P.norm()) << tick << " " << effort;
-      // Places ahead count like the present one: a shift of all places changes nothing.
+      // The preview gains sum to the negative gain of the present place, so a shift of all places
+      // has no effect.
       EXPECT_NEAR(g.preview.sum(), -g.state[0], 1e-9 * std::abs(g.state[0]));
       EXPECT_NEAR(g.preview[0], -g.integral, 1e-9 * std::abs(g.integral));
     }
@@ -118,8 +119,8 @@ TEST(PreviewControl, FollowsAStepAsTheBestInputsDo) {
     for (int j = 1; j <= g.preview.size(); ++j) u -= g.preview[j - 1] * reference(k + j);
     u_best += best[k];
     most = std::max(most, std::abs(u));
-    // The law continues from the input before, which would already have begun to respond to the
-    // step.
+    // The law would have begun to respond to the step before the first input, so the first ten
+    // inputs are not compared.
     if (k >= 10) {
       EXPECT_NEAR(u, u_best, 1e-4) << k;
     }

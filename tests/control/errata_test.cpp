@@ -124,7 +124,7 @@ TEST_F(Errata, Equations18And19NeedMinusD) {
   EXPECT_GT(after(5.0, 0.9, D, -1), 0.010) << "K < 1: leaves";
 }
 
-// The characteristic polynomial behind it: s^2 + omega^2 D s + omega^2 (K - 1).
+// The characteristic polynomial of (18)(19) is s^2 + omega^2 D s + omega^2 (K - 1).
 TEST_F(Errata, GainsFromPoles) {
   const double omega = LevelPendulum().omega();
   const double q1 = 1.0, q2 = 0.25;
@@ -187,7 +187,8 @@ TEST_F(Errata, Equation25NeedsTheMass) {
   }
 }
 
-// (17): towards flight omega^2 goes to zero and the ZMP that (14) asks for goes anywhere.
+// (17): if the ground force goes to zero before a flight, omega^2 goes to zero, too, and the ZMP
+// that (14) requires goes to infinity.
 TEST_F(Errata, Equation17LosesItsMeaningInFlight) {
   const double mass = 6.5, height = 0.225;
   const Vector3d cog(0, 0, height), ddcog(0.2, 0, -kGravity);

@@ -82,8 +82,8 @@ constexpr size_t kJump = 2450;
 
 /// A pendulum that walks beside the pattern, with (18)(19) about the plan acting on its ZMP: y is
 /// its COG minus the pattern's, so that y'' = omega^2 (y - (Z - pattern's Z)) whatever the plan
-/// does. Its DCM jumps at tick kJump. Returns the distance of its DCM from the plan's at the end of
-/// the walk.
+/// does. Its DCM changes by `jump` at tick kJump. Returns the distance of its DCM from the plan's
+/// at the end of the walk.
 double pendulum_error(double share, const Vector2d& jump) {
   const std::vector<CommandSample>& s = walk().series.samples;
   const double omega = omega_of(s.front()), dt = walk().series.dt;
@@ -136,8 +136,9 @@ TEST(FootholdShift, ShiftedPlanIsSmooth) {
 }
 
 // In the plan, the foot is next to the ground for the last part of a swing. A load on it then
-// counts as the planned landing, and the plan's motion continues without a jump; the velocity of
-// the COG changes by no more than the ZMP at the edge of a sole requires, 3 mm/s in a tick.
+// counts as the planned landing, and the plan's motion continues without a discontinuity; the
+// velocity of the COG changes by no more than the ZMP at the edge of a sole requires, 3 mm/s in a
+// tick.
 TEST(FootholdShift, AFootThatBearsWhereThePlanHasItOnTheGroundIsNotEarly) {
   FootholdShift shift(walk().model, walk().series, {.share = 1, .time_scale_limit = 1.5});
   const std::vector<PlannedSwing> swings = swings_of(walk().series);

@@ -1,5 +1,6 @@
 // Servos receive, beyond the posture, the torque of the motion, within the motor's limits, and
-// nothing if the table already contains it. An integrator judges it in scenarios/open_loop_test.
+// nothing if the table already contains it. Its effect is tested in simulations by
+// scenarios/open_loop_test.
 #include "ayumi/control/torque_feedforward.hpp"
 
 #include <gtest/gtest.h>
@@ -28,7 +29,7 @@ const CommandSeries& squat() {
 TEST(TorqueFeedforward, WorksAsTheWeightDoes) {
   const std::vector<CommandSample>& samples = squat().samples;
   const Eigen::MatrixXd lead = torque_feedforward(hoap1(), hoap1().limits("hoap1-strong"), squat());
-  // One for the state of rest.
+  // One column more than samples, for the state of rest.
   ASSERT_EQ(lead.cols(), static_cast<Eigen::Index>(samples.size()) + 1);
   size_t deepest = 0;
   for (size_t k = 0; k < samples.size(); ++k)

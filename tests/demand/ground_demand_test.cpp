@@ -97,8 +97,8 @@ TEST(Residuals, SupportRowsGiveTheMargin) {
   EXPECT_GT(inside, 30);
 }
 
-// The lever is computed again by sampling: points are drawn evenly, and kept if they and their
-// mirror image are inside.
+// The lever is computed again by sampling: points are drawn with a uniform distribution, and are
+// kept if they and their mirror image are inside.
 TEST(Residuals, YawLeverAgreesWithSampling) {
   Random random(4);
   const ConvexPolygon polygon({{-0.05, -0.03}, {0.05, -0.03}, {0.06, 0.02}, {-0.04, 0.035}});

@@ -152,7 +152,8 @@ TEST_P(OddUrdf, AgreesWithMujoco) {
     EXPECT_LT(relative_error(M, judge.mass_matrix()), 1e-9);
     EXPECT_LT(relative_error(bias, judge.bias()), 1e-9);
     fast.forward(state, force, found);
-    // The rounding that an ill-conditioned mass matrix amplifies is nobody's error.
+    // The forces for the accelerations are compared, because an ill-conditioned mass matrix
+    // amplifies the rounding of accelerations.
     EXPECT_LT(relative_error(judge.mass_matrix() * found + judge.bias(), force), 1e-9);
     EXPECT_LT((data.cog - Map<Vector3d>(judge.data->subtree_com)).norm(), 1e-12);
     EXPECT_LT(relative_error(cog_jacobian_floating(model, data), judge.cog_jacobian()), 1e-9);

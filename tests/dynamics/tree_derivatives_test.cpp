@@ -77,7 +77,8 @@ TEST_P(ForwardDynamics, DerivativesMatchCentralDifferences) {
   }
 }
 
-// Twelve numbers per subtree give the same as matrices of six.
+// The derivatives are computed with twelve numbers per subtree. They are equal to those that are
+// computed with 6 x 6 matrices.
 TEST_P(ForwardDynamics, InverseDerivativesAgreeWithTheSecondRoute) {
   const VectorXd acceleration = random.vector(model.velocity_count(), 5.0);
   InverseDynamicsDerivatives found, expected;
@@ -90,7 +91,8 @@ TEST_P(ForwardDynamics, InverseDerivativesAgreeWithTheSecondRoute) {
             1e-12 * expected.acceleration.norm());
 }
 
-// The motors' share, added to the tree's force, gives the same motion back.
+// If the torques of rotors and friction are added to the forces of inverse dynamics, forward
+// dynamics returns the same accelerations.
 TEST_P(ForwardDynamics, UndoesInverseDynamicsWithDrives) {
   const VectorXd wanted = random.vector(model.velocity_count(), 5.0);
   VectorXd needed = inverse_dynamics(model, state, wanted, data);

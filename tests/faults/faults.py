@@ -8,11 +8,12 @@ PROGRAM is ayumi and LIBRARY the library of failing_calls.c. Each trial works in
 Signals stop commands that work on the bundled walk, or on a walk of so many steps.
 What holds after each of them:
   - the program has ended by itself or by our signal: never by SIGSEGV, SIGABRT and the like;
-  - exit code 0 or 1 means that every output is there and whole; another code comes with a message;
-  - what is there under the name of an output is whole: a file that was there before is unchanged
-    or replaced, and a run folder that has a run.json passes its own hashes;
-  - the same command, started again without a fault, does its work. push, certify and sweep go on
-    with what is there, and give the results of a command that nothing has stopped;
+  - exit code 0 or 1 means that every output exists and is complete; another code comes with a
+    message;
+  - every file with the name of an output is complete: a file that existed before is unchanged or
+    replaced, and a run folder that has a run.json passes its own hashes;
+  - the same command, started again without a fault, does its work. push, certify and sweep continue
+    with the results that exist, and give the results of a command that nothing has stopped;
   - the pattern that a live page edits is one of the texts that the page has sent.
 The exit code is 1 when something does not hold, and the trial is printed so that it can be repeated.
 """
@@ -67,7 +68,7 @@ class Trial:
             stdout=subprocess.PIPE, stderr=subprocess.PIPE, env={**os.environ, **environment})
 
     def complaints(self, process, out, err, signals=()):
-        """What does not hold, as a list of sentences."""
+        """The broken expectations, as a list of sentences."""
         code, wrong = process.returncode, []
         if code < 0 and -code not in signals:
             wrong.append(f"ended by signal {-code}: {err[-300:]!r}")
@@ -93,7 +94,7 @@ class Trial:
         if text == b"before\n":
             return [f"{name} is unchanged after success"] if done else []
         if name.endswith(".json") and text.count(b"{") != text.count(b"}"):
-            return [f"{name} is not whole"]  # a pattern may have comments, so it is no plain JSON
+            return [f"{name} is not whole"]  # a pattern may have comments, which a JSON parser refuses
         if not text.endswith(b"\n"):
             return [f"{name} is cut off"]
         return []
@@ -113,7 +114,7 @@ class Trial:
         return wrong
 
     def results(self):
-        """What a command that goes on must have found in the end, however often it was stopped."""
+        """The results of a command that continues earlier work, however often it was stopped."""
         path = os.path.join(self.folder, self.outputs[0])
         if path.endswith(".db"):
             with sqlite3.connect(path) as database:
@@ -126,7 +127,7 @@ class Trial:
 
 
 def complaints_about_run(folder, done):
-    """A folder with a run.json is a whole run; hashes are those that run.json states."""
+    """A folder with a run.json is a complete run, and its files have the hashes that run.json states."""
     path = os.path.join(folder, "run.json")
     if not os.path.exists(path):
         return [f"{folder}: no run.json after success"] if done else []
@@ -206,7 +207,7 @@ def commands(program, pattern):
 
 
 def slow_commands(program, walk):
-    """What runs long enough to be stopped at a random moment."""
+    """The commands that run long enough to be stopped at a random moment."""
     return {
         **commands(program, walk),
         "pictures": lambda: Trial(program, ["run", walk, "-o", "run"], ["run"]),

@@ -15,10 +15,10 @@ import tempfile
 SHORT, LONG = 18, 28
 PERIODS = (LONG - SHORT) * 2000
 
-# Bytes for each servo period of HOAP-1. The command series, which the motion itself is, takes 1.1 kB, and the table of
-# a run 0.4 kB. Measured between sways of 40 and 80 s: check 1.6 kB, simulate and simulate -o 1.5 kB. The rest of each bound is for
-# the steps in which lists grow and for the text of a table that is being written. Before logs were written block by
-# block, check took 2.4 kB, simulate 8 kB, simulate -o 13 kB and run 16 kB.
+# Bytes for each servo period of HOAP-1. The command series, which is the motion itself, takes 1.1 kB, and the table of
+# a run 0.4 kB. Measured between sways of 40 and 80 s: check 1.6 kB, simulate and simulate -o 1.5 kB. The rest of each
+# bound is for the steps in which lists grow and for the text of a table that is being written. Before logs were written
+# block by block, check took 2.4 kB, simulate 8 kB, simulate -o 13 kB and run 16 kB.
 BOUNDS = {"check": 2000, "simulate": 2500, "simulate -o": 3500, "run": 4500}
 
 

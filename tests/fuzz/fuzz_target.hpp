@@ -64,7 +64,8 @@ bool accepts(const Read& read) {
     const std::string text = error.what();
     if (error.code() == ErrorCode::internal) report("an invariant of Ayumi is broken: " + text);
     if (text.empty()) report("an error without a message");
-    // A word of the input may occur in it once or twice, and lists of names are bounded.
+    // The message may contain a word of the input once or twice, and lists of names in it are
+    // bounded.
     if (text.size() > kLargestInput * 4)
       report("a message of " + std::to_string(text.size()) + " bytes");
     return false;

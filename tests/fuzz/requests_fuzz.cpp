@@ -15,7 +15,8 @@ namespace {
 using namespace ayumi;
 using fuzz::kSecret;
 
-/// A client that has sent everything, and that goes away after its first news of a listening page.
+/// A client that has sent its whole request. It closes the connection after the first event for a
+/// page that listens.
 class Client : public httplib::Stream {
  public:
   explicit Client(std::string request) : request_(std::move(request)) {}

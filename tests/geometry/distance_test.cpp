@@ -40,8 +40,9 @@ TEST(Distance, BoxesFaceToFace) {
   EXPECT_NEAR(clearance(a, A, b, B), -0.01, 1e-9);
 }
 
-// Boxes overlap with almost parallel faces: the depth is known in closed form, whatever the
-// rounding of faces in one plane is. The tilt of up to e moves corners by less than 3 e half edges.
+// Boxes overlap with almost parallel faces: the depth is known in closed form, and the rounding of
+// faces in one plane must not change it. The tilt of up to e moves corners by less than 3 e half
+// edges.
 TEST(Distance, OverlapOfNearlyParallelBoxes) {
   std::mt19937 generator(1);
   std::uniform_real_distribution<double> uniform(-1, 1);

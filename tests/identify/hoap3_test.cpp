@@ -89,7 +89,7 @@ TEST(IdentifyHoap3, FindsTheServosOfTheRecordedWalk) {
   expect_the_servos_of_the_walk(true);
 }
 
-// In this case, the way in which the feet share the weight follows from the geometry.
+// Without load cells, the way in which the feet share the weight follows from the geometry.
 TEST(IdentifyHoap3, FindsTheServosWithoutLoadCells) {
   if (!has_recordings()) GTEST_SKIP() << "no recordings of HOAP-3 at " << kHoap3;
   expect_the_servos_of_the_walk(false);
@@ -124,7 +124,8 @@ Eigen::MatrixXd without_rows(const Eigen::MatrixXd& whole, Eigen::Index gap, Eig
   return rest;
 }
 
-// Rows of files without times are missing or repeated: the message names the row, to two rows.
+// Rows are missing or repeated in files without times. The message names the row with an error of
+// at most two rows.
 TEST(IdentifyHoap3, RefusesMissingRows) {
   if (!has_recordings()) GTEST_SKIP() << "no recordings of HOAP-3 at " << kHoap3;
   const RobotModel model = recorded_robot();
@@ -140,11 +141,12 @@ TEST(IdentifyHoap3, RefusesMissingRows) {
                           " ms earlier than before"),
                 std::string::npos)
           << gap << ": " << said;
-      // "m.csv: at data row 8001 (8.000 s, one row every 1 ms) ...": the row, or one beside it.
+      // "m.csv: at data row 8001 (8.000 s, one row every 1 ms) ...": the row, with an error of at
+      // most two rows.
       ASSERT_TRUE(said.starts_with("m.csv: at data row ")) << said;
       EXPECT_NEAR(std::stod(said.substr(19)), static_cast<double>(gap + 1), 2) << said;
     }
-  // Where nothing moves, the total number of rows shows it.
+  // If rows are missing where nothing moves, the total number of rows shows it.
   for (const Eigen::Index missing : {1, 2, 3}) {
     motion.measured.theta = without_rows(whole, 300, missing);
     EXPECT_NE(

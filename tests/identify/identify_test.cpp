@@ -155,7 +155,9 @@ TEST(Identify, TheSameForAnyNumberOfThreads) {
   EXPECT_EQ(one.delay.upper, four.delay.upper);
 }
 
-// The largest lag of a servo is a named limit; from half of it on, there is a message of one line.
+// If the angles are behind the command by clearly more than the lag in the robot's file
+// (kLikelyShift), there is a caution. If they are behind by more than longest_lag, the recording is
+// refused.
 TEST(Identify, SaysThatTheRecordingMayBeShifted) {
   const SyntheticServo servo = soft();
   const Eigen::VectorXd theta = simulated_angles(servo, 6, excitation);
@@ -206,7 +208,7 @@ TEST(RecordingChecks, OneLineForARecordingThatIsNotTheAnswer) {
   said(answer_error(late_by(800)),
        "ms behind their command, but a servo is at most 30 ms behind (--longest-lag); the "
        "recording is shifted");
-  // A lag of 50 ms is not that of a servo either.
+  // A lag of 50 ms is also too large for a servo.
   said(answer_error(late_by(50)),
        "ms behind their command, but a servo is at most 30 ms behind (--longest-lag); the "
        "recording is shifted");
@@ -233,8 +235,9 @@ double moves_with_a_rest(double t) {
   return 0.35 * (1 - std::cos(2 * M_PI * moved / 2)) + 0.1 * std::sin(2 * M_PI * moved);
 }
 
-// Three rows are lost while nothing moves, and the recorder continued at the end: the delays before
-// and after show it. Without a lost row, and with times of the rows, nothing is wrong.
+// Three rows are lost while nothing moves, and the recording has three more rows at its end
+// instead. The delays before and after the gap show the loss. A recording without a lost row, and
+// one with the times of its rows, are accepted.
 TEST(RecordingChecks, RowsThatAreMissingInARest) {
   const SyntheticServo servo = soft();
   const RobotModel model(pendulum_robot(servo));

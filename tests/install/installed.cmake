@@ -1,7 +1,7 @@
 # cmake -DSCRATCH= -DPYTHON= -P installed.cmake
-# What was installed works by itself, from a folder that knows nothing of the sources: the bundled
-# robots and patterns are those of the installation, shells complete the commands, the manual page
-# is one, and Python imports the package.
+# What was installed works by itself, from a folder outside of the sources: the bundled robots and
+# patterns are those of the installation, shells complete the commands, the manual page is valid,
+# and Python imports the package.
 cmake_minimum_required(VERSION 3.25)
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 

@@ -1,6 +1,6 @@
 # cmake -DBUILD= -DSCRATCH= -P packages.cmake
-# The Debian packages can be made, lintian finds no error in them, and each has what it is for. Ends
-# with "skipped" where dpkg-shlibdeps or lintian is missing.
+# The Debian packages can be made, lintian finds no error in them, and each contains the files for
+# its purpose. Ends with "skipped" where dpkg-shlibdeps or lintian is missing.
 cmake_minimum_required(VERSION 3.25)
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 find_program(lintian lintian)

@@ -112,7 +112,7 @@ TEST(BrokenRobot, WhatIsNoUrdf) {
   EXPECT_EQ(urdf_error("<robot name=\"r\"/>"), "r.urdf: the robot has no link; add one");
 }
 
-// Before, each of these took minutes, gigabytes or the whole stack.
+// In an earlier version, each of these took minutes, gigabytes or the whole stack.
 TEST(BrokenRobot, WhatIsFarTooLarge) {
   std::string chain = link("l0");
   for (int i = 1; i < 10'000; ++i) {

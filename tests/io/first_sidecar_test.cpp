@@ -350,8 +350,8 @@ TEST(FirstSidecar, RefusesARobotThatHasOne) {
   EXPECT_THROW(first_sidecar(robot, robot), Error);
 }
 
-// Before, with the meshes of the legs missing, the hands were taken for feet, and `init` failed
-// because the COG was below them. What is missing is on the list.
+// In an earlier version, with the meshes of the legs missing, the hands were taken for feet, and
+// `init` failed because the COG was below them. What is missing is on the list.
 TEST(FirstSidecar, HandsAreNoFeetWhereTheShapesOfTheFeetAreMissing) {
   const TemporaryFolder folder;
   std::string text = UrdfBiped{}.text();
@@ -380,7 +380,8 @@ TEST(FirstSidecar, HandsAreNoFeetWhereTheShapesOfTheFeetAreMissing) {
       }));
 }
 
-// A low link without a shape that is no leg, such as the end of a tether, hides no feet.
+// The feet are found even if a lower link exists that has no shape and does not belong to a leg,
+// such as the end of a tether.
 TEST(FirstSidecar, ALowLinkWithoutAShapeHidesNoFeet) {
   const TemporaryFolder folder;
   std::string text = UrdfBiped{}.text();

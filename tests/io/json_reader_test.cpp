@@ -65,7 +65,8 @@ TEST(JsonReader, NamesASlipInWordsAboutTheText) {
       {"{\"a\": True}", "f.json:1:7: True is written as true"},
       {"# c\n{}", "f.json:1:1: a comment begins with //, not with #"},
       {"{\"a\": (1, 2)}", "f.json:1:7: a list is written in [ ], not in ( )"},
-      {"{\"a\": \"C:\\q\"}", "f.json:1:10: write a backslash between quotation marks twice"},
+      {"{\"a\": \"C:\\q\"}",
+       "f.json:1:10: in a text between quotation marks, write each backslash twice"},
       {"[{\"a\": 1, {\"a\": 2}]", "f.json:1:9: the { of line 1 is not closed: a } is missing"},
       {"[{\"a\": 1\n {\"a\": 2}]", "f.json:1:9: the { of line 1 is not closed: a } and a comma"},
       {"{\"a\": [\n1\n\"b\": 2}", "f.json:2:2: the [ of line 1 is not closed: a ] and a comma"},
@@ -84,8 +85,8 @@ TEST(JsonReader, NamesASlipInWordsAboutTheText) {
     EXPECT_TRUE(parse_error(text).starts_with(words)) << text << "\n" << parse_error(text);
 }
 
-// A character is left out of a pattern: the message names its line. For a bracket, whose line only
-// its author knows, it names some slip in any case.
+// A character is left out of a pattern: the message names its line. For a bracket, only the
+// author knows the right line, so the message may name another slip.
 TEST(JsonReader, NamesTheLineOfAnyCharacterThatIsLeftOut) {
   const std::string text = R"({
   "name": "kick", // a comment, with "quotes"
@@ -129,8 +130,7 @@ TEST(JsonReader, RefusesTextThatNestsTooDeeply) {
             "brackets");
 }
 
-// Before, 100,000 members took minutes, because each of them was visited again after every other.
-// These values are not read by parse_json().
+// Brackets inside of strings and comments do not count. shallow_json() has the same rule.
 TEST(JsonReader, DepthIsCountedOutsideOfStringsAndComments) {
   const std::string deep(201, '['), flat(200, '[');
   EXPECT_EQ(nested_too_deep(deep), std::optional<size_t>(200));
@@ -145,6 +145,8 @@ TEST(JsonReader, DepthIsCountedOutsideOfStringsAndComments) {
   EXPECT_EQ(shallow_json<Json>("[1]"), Json::array({1}));
 }
 
+// In an earlier version, 100,000 members took minutes, because each member was visited again for
+// every other one.
 TEST(JsonReader, TakesTimeThatIsLinearInTheNumberOfMembers) {
   std::string text = "{\"p0\": {\"a\": 1}";
   for (int i = 1; i < 100'000; ++i) text += ", \"p" + std::to_string(i) + "\": {\"a\": [1, 2]}";

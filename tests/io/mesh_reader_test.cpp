@@ -81,8 +81,8 @@ std::ostream& operator<<(std::ostream& out, const Hostile& hostile) { return out
 
 class HostileMesh : public testing::TestWithParam<Hostile> {};
 
-// The memory of this process cannot grow, since the reader has it. The test therefore shows that
-// this process lives, answers soon and gives one message.
+// The reader process holds the memory, so that the memory of this process does not grow. The test
+// therefore shows that this process lives, answers soon and gives one message.
 TEST_P(HostileMesh, IsRefusedInOneLine) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "the sanitizers reserve terabytes of addresses, so the reader has no limit";
@@ -162,7 +162,8 @@ TEST(HostileMesh, HidesNoneOfTheOthers) {
             std::string::npos);
 }
 
-// Before, a stop had an effect only after all meshes had been read, which took seconds.
+// In an earlier version, a stop had an effect only after all meshes had been read, which took
+// seconds.
 TEST(MeshReader, IsStoppedWhileItReads) {
   const TemporaryFolder folder;
   const auto mesh = folder.write("good.obj", kTriangle);

@@ -499,8 +499,8 @@ TEST(MotionFormats, OneOfSeveralMotionsIsChosen) {
       << said;
 }
 
-// Before, a damaged page was played if another page led to it, and a file that was cut off had no
-// known format.
+// In an earlier version, a damaged page was played if another page led to it, and a file that was
+// cut off had no known format.
 TEST(MotionFormats, DamagedPagesOfAnActionFileAreRefused) {
   MotionFile motion = moving(hoap1(), 15, 62.5);
   motion.name = "nod";

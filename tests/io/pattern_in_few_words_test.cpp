@@ -123,7 +123,7 @@ TEST(PatternInFewWords, RepeatedBlocksAreWrittenOut) {
   EXPECT_DOUBLE_EQ(few.keyframes[1].t, 0.5);
   EXPECT_DOUBLE_EQ(few.keyframes[2].t, 1.5);
   EXPECT_DOUBLE_EQ(few.keyframes[2].joints.at("l_elbow"), 10 * M_PI / 180);
-  // Counts are not among them.
+  // The counters of blocks are not parameters.
   EXPECT_EQ(few.parameters, (std::map<std::string, double>{{"T", 0.5}}));
 }
 

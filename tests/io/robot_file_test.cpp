@@ -100,8 +100,8 @@ TEST(RobotFile, TheNameOfAFolderMayEndLikeThatOfAFile) {
   }
 }
 
-// Values that are inferred from the bare URDF are close to those of the sidecar, and are reported.
-// Before, the robot was read without its sidecar, with servos that nobody had stated.
+// In an earlier version, the robot was read without its sidecar, with servos that nobody had
+// stated.
 TEST(RobotFile, ASidecarThatIsNoFileIsRefused) {
   const TemporaryFolder folder;
   folder.write("pipe/robot.urdf", read_file(kRobots + "/hoap1/robot.urdf"));
@@ -119,6 +119,7 @@ TEST(RobotFile, ASidecarThatIsNoFileIsRefused) {
     }
 }
 
+// Values that are inferred from the bare URDF are close to those of the sidecar, and are reported.
 TEST(Hoap1, BareUrdfIsInferred) {
   const RobotModel model = load_robot(kRobots + "/hoap1/robot.urdf");
   const RobotModel full = load_robot("hoap1", {{kRobots}});

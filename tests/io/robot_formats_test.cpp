@@ -675,7 +675,8 @@ TEST(Sdf, VeryManyFramesInAChain) {
   EXPECT_NEAR(robot.joints.at(0).origin.translation().z(), 1e-3 * kFrames, 1e-6);
 }
 
-// Following a chain of joints that mimic each other took the third power of their number.
+// In an earlier version, the time to follow a chain of joints that mimic each other grew with the
+// third power of their number.
 TEST(RobotFormats, AChainOfMimicJointsIsShort) {
   const auto words_for = [](int joints) {
     const std::string inside =

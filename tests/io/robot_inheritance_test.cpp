@@ -152,10 +152,9 @@ TEST(RobotInheritance, CirclesAndMissingBasesAreRefused) {
   EXPECT_EQ(unit_error(unit), "unit.json: /base: robot 'a.json': no such file");
   folder.write("a.json", over_base("b/robot.json"));
   folder.write("b/robot.json", over_base("../unit.json"));
-  EXPECT_EQ(
-      unit_error(unit),
-      "b/robot.json: /base: the bases form a circle: unit.json, a.json, b/robot.json and the first "
-      "again; one of them must have no base");
+  EXPECT_EQ(unit_error(unit),
+            "b/robot.json: /base: the bases form a circle: unit.json, a.json, b/robot.json, and "
+            "the last of them names the first one as its base; remove \"base\" from one of them");
   folder.write("unit.json", over_base("unit.json"));
   EXPECT_EQ(unit_error(unit),
             "unit.json: /base: 'unit.json' is this file itself; name another robot");

@@ -126,7 +126,7 @@ TEST(RobotVariants, PackagesLieElsewhere) {
   };
   folder.write("one/legs_bringup/urdf/r.urdf", with_mesh(name));
   EXPECT_EQ(meshes("one/legs_bringup/urdf/r.urdf"), 0u);
-  // The package is beside it, under another name.
+  // The package is beside the package of the URDF file, in a folder with another name.
   folder.write("one/legs_description-main/package.xml", package);
   folder.write("one/legs_description-main/meshes/a.obj", kTriangleText);
   EXPECT_EQ(meshes("one/legs_bringup/urdf/r.urdf"), 1u);

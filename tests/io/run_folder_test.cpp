@@ -166,7 +166,7 @@ TEST(SimulationLogFile, ReadsFilesOfOlderVersions) {
   EXPECT_EQ(present[8], 3);
   EXPECT_NE(old.find("ayumi.log/1"), std::string::npos);
   EXPECT_NE(present.find("ayumi.log/3"), std::string::npos);
-  // With so few rows, no relation of columns is found, which version 2 did not have.
+  // With so few rows, no relation between columns is found; version 2 did not know such relations.
   std::string second = present;
   second[8] = 2;
   EXPECT_EQ(log_bytes(parse_log(second, "x.bin")), present);
@@ -193,7 +193,8 @@ TEST(SimulationLogFile, NoColumnFollowsFromItself) {
   EXPECT_EQ(related, 3u * 9 + 3u * 3 + 2u);
 }
 
-// Before, a walk of 8 s had 13 MB. Most columns of a log are smooth or constant.
+// In an earlier version, the log of a walk of 8 s had 13 MB. Most columns of a log are smooth or
+// constant.
 TEST(SimulationLogFile, IsHalfAsLargeAsPlain) {
   SimulationLog log = random_log(9);
   log.samples.resize(4000, log.samples.front());
@@ -220,7 +221,7 @@ TEST(SimulationLogFile, OnlyFiniteNumbersAreRead) {
   }
 }
 
-// Before, with a tick of 1e-300 s, the export to MCAP divided by 0.
+// In an earlier version, with a tick of 1e-300 s, the export to MCAP divided by 0.
 TEST(SimulationLogFile, TicksAreServoPeriods) {
   for (const double dt : {0.0, 1e-300, 1e-8, 11.0, 1e300}) {
     SimulationLog log = random_log(3);
@@ -258,8 +259,8 @@ TEST(SimulationLogFile, BrokenFilesGetOneClearMessage) {
   EXPECT_NE(parse_message(good.substr(0, good.size() - 1)).find("truncated"), std::string::npos);
   EXPECT_NE(parse_message(good + "x").find("damaged: there are 1 bytes after"), std::string::npos);
   // Any flipped byte of the header, its checksum or the samples is noticed, or changes nothing that
-  // is read, because zstd has different codes with the same meaning. (Before these parts come the
-  // magic word, the version and a length.)
+  // is read, because zstd has different codes with the same meaning. (In front of these parts are
+  // the magic word, the version and a length.)
   int without_effect = 0;
   for (size_t at = 8; at < good.size(); ++at) {
     std::string flipped = good;

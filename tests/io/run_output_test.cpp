@@ -90,8 +90,8 @@ TEST_F(RunOutputTest, TakesOverWhatAnInterruptedProcessLeft) {
   EXPECT_EQ(names(), (Names{"a.csv", "run.json"}));
 }
 
-// A folder that a stranger has packed may contain such links. Before, the files behind the second
-// link were moved into the folder of the run.
+// A folder that a stranger has packed may contain such links. In an earlier version, the files
+// behind the second link were moved into the folder of the run.
 TEST_F(RunOutputTest, LinksInPlaceOfItsHiddenFoldersAreNotFollowed) {
   for (const std::string name : {".ayumi_part", ".ayumi_replaced"}) {
     fs::remove_all(target);

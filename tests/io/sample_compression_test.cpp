@@ -82,8 +82,8 @@ TEST(SampleCompression, RelatedColumnsAreSmallAndExact) {
   const std::string related = compress_samples(plain, 5, servo.sources);
   EXPECT_EQ(decompress_samples(related, 5, 6000, "x"), plain);
   EXPECT_EQ(decompress_samples(alone, 5, 6000, "x"), plain);
-  // Only the rate and the target are left, and the rounding of the two that are integrated or
-  // computed: three bits of each sample.
+  // What has to be stored is the rate and the target, and the rounding of the two columns that are
+  // integrated or computed: three bits of each sample.
   std::vector<double> two;
   for (size_t i = 0; i < servo.values.size(); i += 5)
     two.insert(two.end(), {servo.values[i + 1], servo.values[i + 3]});

@@ -56,7 +56,7 @@ Outcome outcome_of(const MotionFormat& format, const std::string& bytes) {
 }
 
 // The message is one line with the file and its assumed format or the formats that are read, and
-// contains nothing that a terminal obeys.
+// contains no control characters for a terminal.
 void expect_one_line(const std::string& message, const std::string& what) {
   EXPECT_TRUE(message.starts_with("folder/m.dat:")) << what << ": " << message;
   EXPECT_LT(message.size(), 1500u) << what << ": " << message;
@@ -157,7 +157,7 @@ TEST_P(UnreadableMotions, AreRefusedInOneLineOrReadAsTheyWere) {
       EXPECT_EQ(outcome_of(format(), bytes).message,
                 "folder/m.dat:1: this is UTF-16 text; save it as UTF-8");
   }
-  // A file that was written twice is no motion of the first part alone.
+  // A file that contains its content twice is not read as if it had only the first part.
   const Outcome twice = outcome_of(format(), good + good);
   if (twice.message.empty())
     EXPECT_GT(twice.motion.motion.theta.rows(), whole.motion.motion.theta.rows());

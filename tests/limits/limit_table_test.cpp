@@ -1,4 +1,5 @@
-// In the table of limits, every kind is defined once, and visitors find what they ask for.
+// In the table of limits, every kind is defined once, and each limit has its name, its file and its
+// tolerance.
 
 #include "ayumi/limits/limit_table.hpp"
 

@@ -113,7 +113,7 @@ TEST(ExportSafety, ARampThatIsTooLongIsRefused) {
                          "take "),
             std::string::npos)
       << message;
-  // A verdict is possible nevertheless.
+  // The safety of the targets can be judged nevertheless.
   TargetRows targets;
   targets.joints = {"a", "b", "c"};
   targets.count = 2;

@@ -95,8 +95,8 @@ TEST(PathTiming, ARowThatNoPaceKeepsIsNamed) {
   EXPECT_EQ(quickest_timing(points).stuck, 30);
 }
 
-// For random rows, every timing that keeps the rows, found by a grid over (x, u) from the end, is
-// as slow or slower at every point.
+// For random rows, every timing that satisfies the rows, found by a grid over (x, u) from the end,
+// is as slow or slower at every point.
 TEST(PathTiming, NoTimingOnAGridIsQuicker) {
   Random random(7);
   const auto uniform = [&](double low, double high) {

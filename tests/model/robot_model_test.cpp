@@ -377,8 +377,8 @@ TEST(RobotModel, NamesSolesThatCannotBe) {
 }
 
 // Values that no motor of a robot of this mass and size can have are refused, also in a profile.
-// Two links of a leg are 0.1 m long each, and a centre of mass is 37 mm away, which makes 0.474 m
-// stretched out and 6 kg.
+// The robot has 6 kg. Stretched out, it is 0.474 m long: two legs of two links of 0.1 m each, and
+// two centres of mass that are 37 mm beyond them.
 TEST(RobotModel, RefusesServosThatAreTooLargeForIt) {
   const auto with = [](double ServoDescription::*constant, double value) {
     return error_of([&](RobotDescription& robot) { robot.servos["l_knee"].*constant = value; });

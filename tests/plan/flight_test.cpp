@@ -130,8 +130,8 @@ TEST(Flight, KeysOnTheWayAreTheAuthors) {
   EXPECT_GT(flight_of(model, sample(model, pattern)).fall, 1.0);
 }
 
-// A hand goes from one place beside the trunk to another in the air: it is on its way, the trunk
-// turns against it, and the COG falls freely.
+// During a flight, a hand moves from one place beside the trunk to another: between both it is on
+// its way, the trunk turns in the opposite direction, and the COG falls freely.
 TEST(Flight, AHandFollowsItsTargetInTheAir) {
   const RobotModel& model = test::hoap1();
   const Pattern plain = jump_pattern(model, small_jump(model));

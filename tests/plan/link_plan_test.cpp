@@ -169,8 +169,8 @@ TEST(LinkPlan, RandomPlacesAndDirectionsAreMet) {
   }
 }
 
-// No posture nearby puts the hand there and is nearer to the keys: no part of the way to the keys
-// leaves the hand in its place.
+// Among the nearby postures that put the hand at its target, none is nearer to the keys: every
+// motion towards the keys moves the hand.
 TEST(LinkPlan, TheElbowGoesWhereTheKeysAskFor) {
   const RobotModel& model = humanoid30();
   const int body = hand_body(model, Side::right);
@@ -252,7 +252,8 @@ TEST(LinkPlan, APlaceWithOneSlipIsInMetres) {
 TEST(LinkPlan, SaysByHowMuchAHandIsOutOfReach) {
   const RobotModel& model = hoap1();
   const int body = hand_body(model, Side::left);
-  // Straight out of the stretched arm by 100 mm: of all places, the end is the nearest.
+  // The target is 100 mm beyond the end of the stretched arm, in its direction. Of all places that
+  // the hand reaches, this end is the nearest one.
   RobotState state = model.rest_state();
   for (const int dof : limb_dofs(model, body)) state.theta[dof] = 0;
   const Hand straight = hand_at(model, state, body);
@@ -355,8 +356,8 @@ TEST(LinkPlan, DoesNotMeasureTheReachOfATrunkThatIsOnItsWay) {
   const auto error_of = [&](const Pattern& pattern) {
     return test::error_message([&] { sample(hoap1(), in_order(pattern)); }, ErrorCode::bad_pattern);
   };
-  // The hand is nearly there before the trunk bends: the pattern is refused because of the way
-  // alone.
+  // The hand is near its target before the trunk bends. The pattern is refused only because the
+  // hand cannot follow its path before the key.
   Pattern early = bow(2.9, 0);
   at(early, 2.2).torso = Vector3d::Zero();
   at(early, 0.2).hands["right"] = LinkTarget{};
@@ -366,7 +367,7 @@ TEST(LinkPlan, DoesNotMeasureTheReachOfATrunkThatIsOnItsWay) {
   EXPECT_NE(message.find("on the way to this key: the right hand is out of reach by "),
             std::string::npos)
       << message;
-  EXPECT_NE(message.find("the trunk is on its way, too"), std::string::npos) << message;
+  EXPECT_NE(message.find("the trunk also moves at this time"), std::string::npos) << message;
   // The hand should be there before the trunk bends: the place is out of reach at the key itself.
   at(too_early, 1.5).hands["right"] = place(end);
   const std::string at_key = error_of(too_early);

@@ -17,7 +17,7 @@ namespace {
 using test::hoap1;
 using test::hoap1_walk;
 
-/// Runs up to the push once, and then makes a copy per push.
+/// Simulates the run up to the push once, and then copies it for each push.
 class Runs {
  public:
   Runs(const PlantKind& kind, double at, int substeps = 1) : at_(at) {
@@ -51,7 +51,8 @@ class Runs {
 
 struct Comparison {
   int pushes = 0, same = 0, falls = 0;
-  /// Largest distance of a differing push from the threshold, as a share of it.
+  /// Largest distance between the threshold and a push whose two outcomes differ, as a share of the
+  /// threshold.
   double farthest = 0;
 };
 

@@ -130,7 +130,8 @@ TEST(Loci, AFallInTheAirHasNoMarkOfTheZmp) {
     }
 }
 
-// No run stands, and the margin has no command: its range is that before the fall, and not a metre.
+// No run stands, and the margin has no command: the axis of the margin fits the time before the
+// fall, and does not extend to a metre.
 TEST(Loci, TheMarginOfAFallenRunIsThatBeforeItsFall) {
   const TwoRuns runs;
   LociOptions options;
@@ -139,8 +140,8 @@ TEST(Loci, TheMarginOfAFallenRunIsThatBeforeItsFall) {
   const std::vector<std::string> all = texts(drawing);
   const auto margin = std::find(all.begin(), all.end(), "margin [mm]");
   ASSERT_NE(margin, all.end());
-  // The numbers of an axis come before its name or after it, and those of the panel below come
-  // later.
+  // The numbers of an axis are drawn before its name or after it, and the texts of the panel below
+  // are drawn later.
   double most = 0;
   int numbers = 0;
   for (auto text = margin - 1; text >= all.begin(); --text, ++numbers) {

@@ -68,8 +68,8 @@ TEST(PushMap, SaysWhatItShows) {
     }
 }
 
-// The dot of a largest value lies on the outer ring, beside the name of its direction. Before, the
-// number of a ring was covered by dots of pushes forward.
+// The dot of a largest value lies on the outer ring, beside the name of its direction. In an
+// earlier version, the number of a ring was covered by dots of pushes forward.
 TEST(PushMap, NamesOfDirectionsAndRingsStandBesideTheDots) {
   PushMap map = four_directions();
   map.phases[0].curves[1] = {{5, 5, 5, 5}, {false, false, false, false}};

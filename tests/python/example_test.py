@@ -1,5 +1,5 @@
 """Runs an example in a scratch folder: example_test.py EXAMPLE FILE... ; the files must be written.
-What the example ends with is the result, 77 where it says what it needs."""
+The exit code is that of the example: 77 if the example says that something is missing."""
 
 import pathlib
 import subprocess

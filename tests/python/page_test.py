@@ -1,4 +1,4 @@
-"""The Python of docs/python.md runs from top to bottom, in a scratch folder, and what its comments
+"""The Python code of docs/python.md runs from top to bottom, in a scratch folder, and what its comments
 `# -> ...` say of the values is true."""
 
 import os

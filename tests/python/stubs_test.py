@@ -37,7 +37,7 @@ class Stubs(unittest.TestCase):
         self.assertEqual(used - known, set(), "types that the stubs do not define")
 
     def test_types_are_complete(self):
-        """What `mypy --strict` demands: the types inside of lists, and no None for another type."""
+        """`mypy --strict` requires the types inside of lists, and no None for another type."""
         for node in ast.walk(ast.parse(write_stubs.stubs(ayumi))):
             if isinstance(node, ast.Subscript) and getattr(node.value, "id", "") not in ("NDArray", "Callable"):
                 for inner in node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]:

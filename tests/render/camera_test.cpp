@@ -135,7 +135,8 @@ TEST(CameraPath, FramedPointsAreJustWithinThePicture) {
       Eigen::AlignedBox2d box;
       for (const Vector3d& p : points)
         box.extend(Eigen::Vector2d(project(moved, 1000, 1000, p).head<2>()));
-      // `project` of a square picture: its width is what the aspect makes of it.
+      // `project` takes a square picture, so its horizontal coordinates are scaled by the aspect
+      // ratio.
       const double half_x = 500 * aspect;
       const Eigen::Vector2d reach((box.max().x() - 500) / half_x, (box.max().y() - 500) / 500);
       const Eigen::Vector2d back((500 - box.min().x()) / half_x, (500 - box.min().y()) / 500);

@@ -110,8 +110,8 @@ TEST_F(Clip, AFolderOfFramesReplacesFramesAlone) {
   options.end = 0.5;
   EXPECT_EQ(write_clip(model, log, frames, options).frames, 3);
   EXPECT_EQ(std::distance(fs::directory_iterator(frames), fs::directory_iterator()), 3);
-  // A file of the user stays, and so do the frames beside it, even if it has nearly the name of a
-  // frame.
+  // A file of the user is kept, and so are the frames beside it, even if its name is similar to
+  // that of a frame.
   for (const char* name : {"notes.txt", "frame_title.png", "frame_00001.jpg", "frame_00001b.png"}) {
     const std::string before = read_file(frames / "frame_00000.png");
     write_file(frames / name, "mine");

@@ -45,7 +45,7 @@ TEST(Ghost, StandsWhereTheCommandIs) {
     s.state.base.position.y() = 0;
     s.state.theta.setZero();
     s.cog.y() = 0;
-    // It is to the right in the picture, as seen from the front.
+    // The ghost is to the right in the picture, as seen from the front.
     s.command_base.position.y() = 0.15;
   }
   const Image alone = ClipRenderer(model, log, bare()).frame(0.5);
@@ -106,7 +106,7 @@ TEST(Heat, RisesTowardsTheNearestLimit) {
   EXPECT_GT(changed(cold, ClipRenderer(model, log, hot).frame(0)).first, 50);
 }
 
-// This holds for any home posture, even with joints at their limits.
+// No joint has heat in the home posture, even if joints are at their limits there.
 TEST(Heat, TheHomePostureIsCold) {
   for (const char* robot : {"hoap1", "humanoid30"}) {
     const RobotModel model = load_robot(std::string(AYUMI_SOURCE_DIR) + "/robots/" + robot);
@@ -130,7 +130,7 @@ TEST(Ghost, HasNoSpeckleWhereItCoincides) {
   const RobotModel model = box_robot();
   SimulationLog log = box_run(model);
   SimulationLog other = log;
-  // As much as a servo sags.
+  // The ghost is displaced by as much as a servo sags.
   for (SimulationSample& s : other.samples) s.state.base.position.x() += 1e-4;
   ClipOptions with = bare();
   for (const std::string& view : view_names()) {

@@ -191,7 +191,7 @@ TEST(Simplify, KeepsTheShapeWithinACell) {
     EXPECT_GT(face.dot(corner[0] + corner[1] + corner[2]), 0) << "faces look outwards";
     area += 0.5 * face.norm();
   }
-  // Before, it was drawn from both sides, which takes twice as long.
+  // In an earlier version, the surface was drawn from both sides, which takes twice as long.
   EXPECT_TRUE(surface[0].open.indices.empty()) << "still closed";
   EXPECT_NEAR(area, 4 * M_PI * 0.01, 0.12 * 4 * M_PI * 0.01) << "no holes";
 }

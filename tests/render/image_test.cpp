@@ -39,7 +39,8 @@ TEST(Image, DifferentTextDiffers) {
   EXPECT_NE(a.rgb, b.rgb);
 }
 
-// Before, the name of a pattern of 5000 letters ended `run` and `report` with an internal error.
+// In an earlier version, the name of a pattern of 5000 letters ended `run` and `report` with an
+// internal error.
 TEST(Image, TextOfAnyLengthIsCutOffToo) {
   Image image = white(40, 20);
   draw_text(image, 0, 10, std::string(100'000, 'n'), {});

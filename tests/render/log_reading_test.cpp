@@ -55,7 +55,8 @@ TEST(LogReading, ThePushOrTheFallIsWorthShowing) {
   EXPECT_EQ(times.back(), 1);
 }
 
-// A bow: at its end the robot stands as at its start, elsewhere.
+// A bow while the robot moves forward: at its end the robot stands in the same posture as at its
+// start, but at another place.
 TEST(LogReading, ThePostureFarthestFromTheStartIsWorthShowing) {
   SimulationLog log = test::box_run(test::box_robot());
   for (size_t k = 0; k < log.samples.size(); ++k) {
@@ -128,7 +129,7 @@ TEST(LogReading, AWalkIsShownOnBothFeet) {
     const bool left = k % 100 < 50;  // 0.1 s on each foot in turn
     log.samples[k].planned_contact = {left, !left};
   }
-  // They are evenly spaced, and all on the left foot.
+  // Six evenly spaced instants would all be on the left foot. The chosen instants show both feet.
   const std::vector<double> times = telling_instants(log, 6);
   ASSERT_EQ(times.size(), 6u);
   const auto left = std::count_if(times.begin(), times.end(),
@@ -163,7 +164,8 @@ bool shows(const std::vector<double>& times, double t, double near) {
                      [&](double shown) { return std::abs(shown - t) <= near; });
 }
 
-// Before, the stoop and the landing of a jump looked alike, and only the stoop was shown.
+// In an earlier version, the stoop and the landing of a jump looked alike, and only the stoop was
+// shown.
 TEST(LogReading, TheLandingOfAJumpIsWorthShowing) {
   SimulationLog log = nod(1.2, 1.2, 6);
   const double home = log.samples.front().cog.z();

@@ -72,7 +72,8 @@ TEST(RobotLook, OfAnOrdinaryRobotIsItsOwnSurface) {
   EXPECT_EQ(alone.rgb, ClipRenderer(model, log, options).frame(0.5).rgb);
 }
 
-// Before, a stop had an effect only after all triangles had been joined, several seconds later.
+// In an earlier version, a stop had an effect only after all triangles had been joined, several
+// seconds later.
 TEST(RobotLook, WorkOnAHeavyRobotStopsWhenAsked) {
   const RobotModel model = heavy_robot(460);
   int heard = 0;
@@ -81,7 +82,8 @@ TEST(RobotLook, WorkOnAHeavyRobotStopsWhenAsked) {
   EXPECT_EQ(heard, 3);
 }
 
-// Before, snapshots, clip and page each read, joined and simplified all triangles separately.
+// In an earlier version, snapshots, clip and page each read, joined and simplified all triangles
+// separately.
 TEST(RobotLook, OfAHeavyRobotHasFewTrianglesThatLookTheSame) {
   const RobotModel model = heavy_robot(460);
   const auto look = robot_look(model);
@@ -120,7 +122,8 @@ TEST(RobotLook, ThinsFurtherUntilFewEnoughAreLeft) {
   EXPECT_LT(triangle_count(least), triangle_count(few));
 }
 
-// Before, a small clip joined the triangles of every robot by a grid of many pixels.
+// In an earlier version, a small clip simplified the surface of every robot, by a grid whose cells
+// were many pixels wide.
 TEST(RobotLook, OfAnOrdinaryRobotIsMovedInNoClip) {
   const RobotModel model = heavy_robot(60);
   const SimulationLog log = still(model);

@@ -110,7 +110,8 @@ TEST(Thin, EdgesAndCornersStay) {
 }
 
 TEST(Thin, BordersOfColoursStay) {
-  // A flat strip whose left half is red, so that only the border of colours keeps its course.
+  // A flat strip whose left half is red: only the border between the colours has to keep its
+  // course.
   Triangles strip;
   for (int half = 0; half < 2; ++half)
     for (int y = 0; y < 10; ++y) {

@@ -214,7 +214,8 @@ TEST_P(ConstraintRows, NumbersAreThoseOfTheCheck) {
       const VectorXd rows = g.segment(b.row, b.rows());
       const GroundDemand use = motion.at(k).use;
       const double light = use.normal_force / weight;
-      const std::string_view kind = b.kind->name;  // landing and foot_clearance belong to no figure
+      // Rows of landing and foot_clearance have no figure in the check's summary to compare with.
+      const std::string_view kind = b.kind->name;
       if (kind == "support") {
         // The row is f_n (distance of the ZMP inside the edges - margin) / (m g), with the
         // program's margin.

@@ -33,8 +33,8 @@ WalkShape short_walk() {
   return w;
 }
 
-// Compares the Jacobian with central differences of two widths, extrapolated, by group; the error
-// is relative if a derivative is above one.
+// Compares the Jacobian with central differences, which are extrapolated from two step widths. The
+// largest error of each kind of rows is tested; it is relative where the derivative is above one.
 void expect_jacobian(const CorrectionProblem& problem, const VectorXd& x, double tolerance) {
   const Nlp nlp = problem.nlp();
   VectorXd values(nlp.jacobian.size());

@@ -87,8 +87,8 @@ TEST_F(ThrownKnee, RepairedWithstandsThePushesOfItsPlan) {
         << before[i].direction << " rad";
 }
 
-// The command is 15 mm aside for half a second: it is wrong there, and the posture must not follow
-// it.
+// The commanded COG is displaced by 15 mm for half a second. It is wrong there, and the posture
+// must not follow it.
 TEST_F(ThrownKnee, FollowsNoPlanThatIsItselfAtFault) {
   Pattern pattern = plan;
   const double middle = 0.5 * (begin + end);

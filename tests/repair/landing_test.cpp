@@ -28,8 +28,8 @@ Pattern table_of(const WalkParameters& parameters) {
 }
 
 // The sole is 3 mm ahead, 4 mm to the left and 20 mm above a place that is turned and on a slope,
-// rolled by 0.01 and turned by 0.02 rad: along the place's axes, and 70 mm away, where the sole
-// ends.
+// rolled by 0.01 rad and turned by 0.02 rad. The offsets are along the place's axes; the rotations
+// are multiplied by half the size of the sole.
 TEST(Landing, OffsetIsAlongThePlacesAxes) {
   Isometry3d place = Isometry3d::Identity();
   place.linear() = exp_rotation({0.1, -0.05, 0.8}).toRotationMatrix();
@@ -46,7 +46,7 @@ TEST(Landing, OffsetIsAlongThePlacesAxes) {
   EXPECT_NEAR(offset[4], 0.02 * reach, 3e-7);
 }
 
-// The rows hold for an unchanged walk: they ask for nothing that it does not do.
+// An unchanged walk satisfies all rows.
 TEST(Landing, ASoundWalkMeetsItsRows) {
   const Pattern pattern = table_of({.steps = 3, .stride = 0.025, .turn = 0.08, .side = 0.02});
   const CommandSeries series = sample(hoap1(), pattern);
@@ -82,8 +82,8 @@ double low_offset(const CommandSeries& series, Side side, int landing) {
   return most;
 }
 
-// Before, a foot that has to come down 60 ms earlier came in low, 7 mm from its place: a robot
-// whose servos sag under its weight by a millimetre stumbled over it.
+// In an earlier version, a foot that had to land 60 ms earlier approached the ground 7 mm beside
+// its place. A robot whose servos sag under its weight by a millimetre stumbled over this foot.
 TEST(Landing, EarlyContactComesDownOnItsPlace) {
   Pattern pattern = table_of({.steps = 9, .stride = 0, .side = 0.03});
   size_t step = pattern.phases.size() / 2;
@@ -110,8 +110,9 @@ double clearance_of(const CommandSeries& series, Side side, int lift, int landin
   return least;
 }
 
-// A knee that stretches by 75 degrees moves the swinging foot through the ground. Before, the foot
-// was only brought back to the ground: it scraped over it as the servos sagged, and the robot fell.
+// A knee that stretches by 75 degrees moves the swinging foot through the ground. In an earlier
+// version, the foot was only raised to the ground: it scraped over the ground because the servos
+// sag, and the robot fell.
 TEST(Landing, AThrownKneePassesOverTheGround) {
   Pattern pattern = table_of({.steps = 5, .stride = 0.02, .lift = 0.018, .turn = 0.08});
   size_t step = pattern.phases.size() / 2;

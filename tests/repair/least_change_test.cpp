@@ -1,6 +1,6 @@
 // The repaired motion is compared with twenty others that also pass the check: parts of the
 // correction, the correction with smooth noise, and, if it touches so many limits that noise breaks
-// one of them, the same on the way to a correction that keeps away from them. This is done for
+// one of them, noisy motions between it and a correction for stricter limits. This is done for
 // every fault that needs a change of the motion.
 
 #include <gtest/gtest.h>
@@ -95,7 +95,8 @@ class LeastChange : public testing::Test {
     EXPECT_GE(cost.total(), (1 - kRounding) * least.total()) << how << ", change " << cost.change;
   }
 
-  // Judges nine tenths, and less, of the way to the correction for `stricter` limits.
+  // Judges motions between `track` and the correction for the limits `stricter`, at random shares
+  // from 0.1 to 0.9.
   void judge_on_the_way(const CorrectionTrack& track, const RepairOptions& stricter,
                         Random& random) {
     const RepairResult far = repair(hoap1(), series, stricter);

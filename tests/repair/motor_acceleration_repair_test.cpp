@@ -14,7 +14,7 @@ namespace {
 
 using namespace planted;
 
-constexpr double kBegin = 0.1, kPeriod = 0.004;  // begin and period of a swing of the elbow [s]
+constexpr double kBegin = 0.1, kPeriod = 0.004;  // beginning and period of a swing of the elbow [s]
 
 /// A walk in which the left elbow accelerates by this much, as a sine of one period.
 CommandSeries swung(double acceleration) {

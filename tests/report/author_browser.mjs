@@ -72,7 +72,7 @@ async function editsByKeyboard(tab) {
   await tab.after(() => tab.click("#undo"));
 }
 
-/// Real presses of keys alone: the focus is never lost, and never goes where nobody sent it.
+/// Works with real key presses alone: the focus is never lost, and never moves without a key press.
 async function keepsTheFocus(tab) {
   const keys = { Tab: "\uE004", Enter: "\uE007", Escape: "\uE00C", Right: "\uE014", Left: "\uE012", Up: "\uE013", Down: "\uE015" };
   const press = (name) => tab.act([{ type: "key", id: "keyboard", actions: ["keyDown", "keyUp"].map((type) => ({ type, value: keys[name] ?? name })) }]);
@@ -97,7 +97,7 @@ async function keepsTheFocus(tab) {
     .map((l) => [l.textContent, l.querySelector(".unit")?.textContent.trim()])
     .filter(([words, unit]) => unit && !words.endsWith(" " + unit)).map(([words]) => words);`);
   expect(units.length === 0, "names that run into their units: " + units.join("; "));
-  // A move that is taken back before it is written leaves what was written before.
+  // If a move is undone before it is written, the file stays as it was.
   const written = text();
   await tab.run("document.querySelector(arguments[0]).focus()", keySelector(1));
   await tab.act([{ type: "key", id: "keyboard", actions: [["keyDown", "\uE009"], ["keyDown", keys.Right], ["keyUp", keys.Right],
@@ -114,7 +114,8 @@ async function keepsTheFocus(tab) {
   await tab.after(() => press("Enter"));
   expect(/selected|values/.test(await at()), "and gives it to the panel: " + await at());
   for (let i = 0; i < 2; ++i) await tab.after(() => tab.click("#undo"));
-  // Cancel takes the focus from the button that it ends, and gives it back.
+  // While a job runs, the button Cancel has the focus. When the job is cancelled, the focus returns to the button that
+  // started the job.
   await tab.run("document.getElementById('job-push').focus()");
   await press("Enter");
   expect(await until(async () => await at() === "cancel"), "work that runs has the focus at Cancel: " + await at());
@@ -139,7 +140,8 @@ async function addsPhasesAndKeys(tab) {
   expect(JSON.stringify(data()) === JSON.stringify(before), "all is as before");
 }
 
-/// A foot that is free gets a key where it is, and keys at the ends of its freedom; one that stands or swings gets none.
+/// A key for a foot that is not planned has the place where the foot is, and two further keys hold this place at the
+/// beginning and the end of the free phase. A foot that stands or swings gets no key.
 async function addsKeysOfFeet(tab) {
   const before = data(), bare = Object.fromEntries(["format", "robot", "units", "profile", "defaults"].filter((name) => before[name] !== undefined).map((name) => [name, before[name]]));
   const add = (side, time) => tab.run(`window.ayumiAuthor.page.show(arguments[1]); document.getElementById("to-edit").click();
@@ -168,7 +170,7 @@ async function addsKeysOfFeet(tab) {
   expect(selected[0] === `/keyframes/${i}/feet/right` && selected[1] === selected[0] + "/0", "the new key has the focus: " + selected);
   await tab.after(() => tab.type(`#selected [data-id="/keyframes/${i}/feet/right/2"]`, 0.01));
   expect(keys()[1][3] === 0.01 && keys()[0][3] === 0, "and is raised: " + JSON.stringify(keys()));
-  // Where the robot cannot do what is written, a further key has the place of the one before.
+  // If the robot cannot carry out the pattern as it is written, a new key has the place of the key before it.
   await tab.after(() => tab.type(`#selected [data-id="/keyframes/${i}/feet/right/2"]`, 2));
   expect(await tab.run("return Boolean(window.ayumiAuthor.page.state.error)"), "out of reach");
   await tab.after(() => add("right", 2.4));
@@ -176,7 +178,7 @@ async function addsKeysOfFeet(tab) {
   await tab.after(() => save(JSON.stringify(before, null, 1)));
 }
 
-/// Parameters, blocks of the ground, goals of VIIP and blocks that repeat are made, and taken back.
+/// Parameters, blocks of the ground, goals of VIIP and blocks that repeat are made, and this is undone.
 async function makesWhatIsNotThere(tab) {
   const before = text();
   const press = (words) => tab.run("[...document.querySelectorAll('#selected button')].find((b) => b.textContent === arguments[0]).click();", words);
@@ -343,7 +345,7 @@ async function movesKeysByTyping(tab) {
   expect(JSON.stringify(data()) === JSON.stringify(before), "all is as before");
 }
 
-/// While the text has other places than the motion that is shown, nothing can be changed there.
+/// As long as places in the text differ from those of the motion that is shown, the page allows no changes.
 async function locksWhatIsOld(tab) {
   const before = data(), wrong = structuredClone(before);
   wrong.keyframes.splice(1, 0, { t: 0, zmp: "left" });
@@ -364,7 +366,7 @@ async function dragsInTime(tab) {
   expect(await tab.run("return window.ayumiAuthor.page.time") === 2, "a drag does not move the cursor");
   expect(data().keyframes[1].t > before.keyframes[1].t + 0.1, "a dragged key: " + data().keyframes[1].t);
   await tab.after(() => tab.click("#undo"));
-  // What is written as an expression stays one.
+  // A value that is written as an expression stays an expression.
   const words = { ...before, parameters: { lift_off: before.keyframes[1].t }, keyframes: structuredClone(before.keyframes) };
   words.keyframes[1].t = "${lift_off}";
   await tab.after(() => save(JSON.stringify(words, null, 1)));
@@ -399,7 +401,7 @@ async function showsFindings(tab) {
   expect(seen.curves.includes("q." + seen.joint), "its curve is shown");
   expect(seen.ghost, "the last consistent motion is the ghost");
   await tab.shoot("finding.png");
-  // What is no error is neither called a warning nor drawn as an error.
+  // A finding with the severity info is called "Info", and its colour differs from that of warnings and errors.
   const note = await tab.run(`
     const one = { ...window.ayumiAuthor.page.state.findings[0], severity: "info" };
     const words = window.ayumiAuthor.page.answer.call({ state: { findings: [one] }, showFinding() {} },
@@ -422,7 +424,7 @@ async function showsFindings(tab) {
   await tab.key("body", "n");
   await tab.key("body", "Escape");
   expect(await tab.run("return window.ayumiAuthor.wrongBodies().length") === 0, "Escape ends it");
-  // What cannot be read: the line is named, the old motion is grey.
+  // If the text cannot be read, the message names its line, and the old motion is grey.
   await tab.after(() => save(good.replace('"phases"', "phases")));
   const line = good.slice(0, good.indexOf('"phases"')).split("\n").length;
   const told = await tab.run(`document.getElementById("error-go").click();
@@ -440,7 +442,7 @@ async function showsFindings(tab) {
 
 async function keepsBothVersions(tab) {
   const before = data();
-  // The page is kept from hearing of the change, as when both happen at once.
+  // The page does not hear of the change in the file, as if file and page were changed at the same time.
   await tab.run("window.ayumiAuthor.page.load = () => Promise.resolve();");
   const changed = { ...before, name: "changed elsewhere" };
   save(JSON.stringify(changed, null, 1));
@@ -491,7 +493,7 @@ async function poses(tab) {
   const to = await tab.run("const p = window.ayumiAuthor.page; return p.row()[p.columns['cog.y']]");
   expect(Math.abs(to - from) > 0.001, `the COG is dragged from ${from} to ${to}`);
   await tab.after(() => tab.click("#undo"));
-  // Straight down in the slanted view is down, and nothing else.
+  // A drag straight down in the slanted view moves the COG down, and in no other direction.
   const zmpBefore = JSON.stringify(data().keyframes.map((frame) => frame.zmp).filter(Boolean));
   await tab.run("window.ayumiAuthor.page.viewer.look('iso');");
   await tab.after(async () => tab.drag(await tab.run("return window.ayumiAuthor.pixelOf('cog')"), [1, 4]));
@@ -563,7 +565,7 @@ async function showsResults(tab) {
     return [lanes.map((one) => one.name).join() === plan.lanes.map((one) => one.name).join(), dt * lanes[0].values.length, plan.lanes[0].values.length * plan.dt,
       document.querySelector(".of-pattern").textContent];`);
   expect(strip[0] && strip[1] > strip[2] + 0.5 && /strip and curves show: run/.test(strip[3]), "and so is its strip: " + strip);
-  // One press is enough for a drag, which shows the pattern.
+  // A drag works at once while a run is shown; it shows the pattern again.
   const first = data();
   const hand = await tab.run("window.ayumiAuthor.page.show(2); return window.ayumiAuthor.pixelOf('left_hand')");
   await tab.after(() => tab.drag(hand, [10, -14]));
@@ -571,7 +573,7 @@ async function showsResults(tab) {
   await tab.after(() => tab.click("#undo"));
   await tab.click("#job-simulate");
   expect(await until(() => tab.run("return document.getElementById('which').value === 'closed_loop'"), 60), "the run is shown");
-  // A key is one of the pattern, whatever is shown.
+  // A new key has the value of the pattern, whatever motion is shown.
   const planned = await tab.run("const p = window.ayumiAuthor.page; p.show(1); return p.planRow()[p.plan.columns['q.l_elbow']] * 180 / Math.PI");
   await tab.run("document.getElementById('to-edit').click(); document.getElementById('key-track').value = 'l_elbow';");
   await tab.after(() => tab.click("#add-key button"));
@@ -604,7 +606,7 @@ async function keepsWhatIsBeingTyped(tab) {
   await tab.after(() => save(JSON.stringify(before, null, 1)));
 }
 
-/// A server that can do little: nothing is shown that does not work, and nothing breaks.
+/// If the server offers few functions, the page shows no control for a missing one, and causes no error.
 async function showsNoDeadControls(tab) {
   const seen = await tab.run(`
     const page = window.ayumiAuthor.page, { version, file, text, hash, duration, replay } = page.state;

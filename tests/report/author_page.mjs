@@ -30,8 +30,8 @@ export const save = (words) => {
 };
 export const data = () => JSON.parse(text());
 
-/// Where nobody looks at pictures, a quarter as many pixels in each direction, with the same layout: a machine without a graphics
-/// card draws them in less time.
+/// If nobody looks at the pictures, they have a quarter of the pixels in each direction, with the same layout: a
+/// machine without a graphics card draws them in less time.
 const deviceScaleFactor = shots ? 1 : 0.25;
 
 /// A page with what the trials need.
@@ -79,7 +79,7 @@ export async function openPage(driver_, width, height) {
   return tab;
 }
 
-/// One trial after the other: what one of them throws breaks that one only.
+/// Runs one trial after the other. An error in one of them does not stop the others.
 export async function runTrials(tab, trials) {
   for (const trial of trials) {
     try {

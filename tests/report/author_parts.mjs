@@ -145,7 +145,7 @@ test("a phase is cut only within it, and never in its swing", () => {
     [{ kind: "insert", pointer: "/phases/4", value: { until: 1.25, support: "left" } }]);
   for (const [one, t] of [[phase, 1], [phase, 2], [{ ...phase, swing: {} }, 1.5], [{ ...phase, support: undefined }, 1.5]])
     assert.deepEqual(edits.splitPhase(one, t), []);
-  // A duration is that of the second part then.
+  // If the phase has a duration, this becomes the duration of the second part.
   assert.deepEqual(edits.splitPhase({ ...phase, until_pointer: "/phases/4/duration" }, 1.25)[1],
     { kind: "set", pointer: "/phases/4/duration", value: 0.75 });
   assert.deepEqual(edits.splitPhase({ ...phase, repeated: true }, 1.25), []);
@@ -245,7 +245,8 @@ test("texts beside each other: every line once, equal lines as equal", () => {
 const schema = JSON.parse(readFileSync(new URL("../../docs/schemas/pattern-1.schema.json", import.meta.url)));
 const definition = (node) => node?.$ref ? definition(schema.$defs[node.$ref.split("/").at(-1)]) : node;
 
-/// The schema of a place, by the way that exists among several.
+/// The part of the schema for a path. Where the schema has several alternatives (oneOf), takes the first one in which
+/// the path exists.
 function schemaAt(node, path) {
   if (!path.length) return definition(node);
   const now = definition(node);
@@ -335,7 +336,8 @@ test("a value that a keyframe may have says of what it is", () => {
   assert.deepEqual(names, ["interpolation", "posture", "ZMP", "COG forward", "COG left", "COG height", "vertical force", "trunk roll", "trunk pitch", "trunk yaw"]);
 });
 
-// Two phases on the right foot from 1 to 1.5 s, a last one, and keys; one key counts from another.
+// Two phases on the right foot from 1 to 1.5 s, a last one, and keys; two keys have times relative to the key before
+// them.
 const walk = () => {
   const document = { parameters: { i: 3 }, phases: [{ until: 1, support: "both" },
     { until: 1.4, support: "right", swing: { foot: "left", step: {} } }, { duration: 0.1, support: "both" }, { until: "${a} + 2", support: "both" }],
@@ -459,7 +461,7 @@ test("a block that repeats is refused where every round would be at the same pla
   }
   const { document, state } = walk();
   assert.ok(edits.repeatPhases(state, document, 1, 2, 1).refused);
-  // A robot that stays may have places.
+  // If the robot does not walk in the phases, their keys may have places in the world.
   state.phases[1].swing = null;
   document.keyframes[3].zmp = [0, 0.04];
   assert.ok(edits.repeatPhases(state, document, 1, 2, 3).edits);
@@ -476,7 +478,8 @@ test("a phase gets a goal of VIIP in place of its support and its swing, and bac
     assert.equal(edits.goalOf(last.value), name);
   }
   assert.equal(edits.goalOf(null), "none");
-  // Its keys go, each by its place in the text before the edit; those at its ends stay.
+  // The keys inside the phase are removed, each by its place in the text before the edit. The keys at both ends of the
+  // phase stay.
   const frames = [1, 1.5, 2, 2.5].map((time, i) => ({ time, pointer: `/keyframes/${i}`, time_pointer: `/keyframes/${i}/t`, time_value: time }));
   assert.deepEqual(edits.keysWithin({ from: 1, until: 2.5 }, frames).map(({ time }) => time), [1.5, 2]);
   const away = edits.putGoal({ pointer: "/phases/1", support: "both", from: 1, until: 2.5 }, "jump", "deg", frames);
@@ -501,12 +504,12 @@ test("no keyframe goes that a block which repeats counts its time from", () => {
   assert.equal(edits.putGoal(phase, "jump", "deg", keyframes), null);
   const tracks = [{ keys: [{ pointer: "/keyframes/1/fz" }, { pointer: "/keyframes/2/keyframes/0/fz" }] }];
   for (const key of tracks[0].keys) assert.equal(edits.removeKey({ keyframes: [...keyframes.slice(0, 2), ...inBlock], tracks }, key) === null, key === tracks[0].keys[0]);
-  // One that counts from the last round stays where it is.
+  // A keyframe whose time is relative to the last round keeps its time.
   const later = counts("/keyframes/3", 3, 2.7, false);
   assert.deepEqual(edits.removeKey({ keyframes: [...keyframes, later], tracks }, tracks[0].keys[1]),
     [{ kind: "remove", pointer: "/keyframes/2/keyframes/0" }, { kind: "set", pointer: "/keyframes/3/after", value: 1.5 }]);
   assert.equal(edits.joinKeyframe({ keyframes }, { keyframes: [{ t: 0.5, fz: 1 }, { t: 1.5, zmp: "left" }] }, keyframes[1], keyframes[0]), null);
-  // A later keyframe with a time of its own, or one outside of blocks, is no hindrance.
+  // A later keyframe is no hindrance if it has a time of its own, or if it is outside of blocks.
   assert.ok(edits.putGoal(phase, "jump", "deg", [...keyframes.slice(0, 2), at("/keyframes/2/keyframes/0", 2.1, { repeated: true })]));
   assert.deepEqual(edits.putGoal(phase, "jump", "deg", [...keyframes.slice(0, 2), counts("/keyframes/2", 2.1, 1.5)])[1], { kind: "set", pointer: "/keyframes/2/after", value: 1.6 });
 });
@@ -542,7 +545,7 @@ test("what the page adds to a pattern has what the schema asks for", () => {
     const state = { angle_unit: unit, joints: [{ name: "l_knee" }], links: ["torso"] };
     for (const { type } of parts.disturbances) fits(parts.addOther(type, 1, state)[0].value, disturbance);
   }
-  // All kinds that there are.
+  // The page offers all kinds that the schema has.
   assert.deepEqual(parts.quantities.map(({ what }) => what).sort(), [...quantity.properties.what.enum].sort());
   assert.deepEqual([...parts.disturbances.map(({ type }) => type), "impulse", "force", "torque"].sort(), [...disturbance.properties.type.enum].sort());
 });

@@ -31,7 +31,8 @@ async function showsTargets(tab) {
   await tab.click("#mark-targets");
 }
 
-/// A target in the picture, and the hand itself while a target leads it: the key of the target moves.
+/// Drags a target in the picture, and the hand itself while a target leads it. The target moves up, and the hand
+/// reaches it.
 async function dragsTargets(tab) {
   const before = data();
   const at = await tab.run(`${page} page.viewer.look("front"); page.show(0);
@@ -80,7 +81,7 @@ async function typesTargets(tab) {
   expect(held.position?.[2] === wanted && near(Math.hypot(...held.direction), 1, 1e-3), "a direction: " + JSON.stringify(held));
   await tab.after(() => tab.click("#undo"));
   await select();
-  await tab.after(() => press(tab, "Let it go free here"));
+  await tab.after(() => press(tab, "Release it here"));
   expect(data().keyframes[i].hands.left === "free", "free: " + JSON.stringify(data().keyframes[i]));
   await select();
   await tab.after(() => press(tab, "Hold the present place"));
@@ -136,8 +137,8 @@ async function twoPages(driver_, tab) {
   await other.end();
 }
 
-/// What takes as many changes on the first eleven seconds as on the minute, where each change is judged anew for
-/// a second.
+/// Trials that behave in the same way on a short motion use its first eleven seconds, because with the whole minute
+/// each change is judged for a second.
 async function onAShortMotion(tab, trials) {
   const minute = text(), short = JSON.parse(minute);
   short.phases[0].until = 11;

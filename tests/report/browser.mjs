@@ -6,8 +6,8 @@ import { startDriver, until } from "./driver.mjs";
 
 const [driver, page, shot] = process.argv.slice(2);
 const address = pathToFileURL(page).href;
-/// Where nobody looks at pictures, a quarter as many pixels in each direction, with the same layout: a machine without a graphics
-/// card draws them in less time.
+/// If nobody looks at the pictures, they have a quarter of the pixels in each direction, with the
+/// same layout: a machine without a graphics card draws them in less time.
 const deviceScaleFactor = shot ? 1 : 0.25;
 let failures = 0;
 const expect = (good, words) => {
@@ -93,7 +93,8 @@ async function withScript(tab) {
   expect(requests.length === 0, "requests: " + requests.join(" "));
 }
 
-/// What is seen of an element in the window, and how large the smallest letters of the curves are.
+/// The places of scene and curves in the window, and the size of the smallest letters of the
+/// curves.
 const seen = (tab) => tab.run(`
   const box = (e) => { const b = e.getBoundingClientRect();
     return { left: b.left, right: b.right, top: b.top, bottom: b.bottom }; };
@@ -139,7 +140,7 @@ async function inWindows(tab) {
   await tab.tool("Emulation.clearDeviceMetricsOverride", {});
 }
 
-/// The page with its scripts held back, as a dark one.
+/// The page without scripts, in the dark colour scheme.
 async function withoutScript(tab) {
   await tab.tool("Emulation.setScriptExecutionDisabled", { value: true });
   await tab.tool("Emulation.setEmulatedMedia", { features: [

@@ -21,7 +21,7 @@ export async function startDriver(program, shots) {
     return value;
   };
   const open = async (size = "1100,900") => {
-    // Without a graphics card, the page itself is put together faster by the browser than by its emulated card.
+    // Without a graphics card, Chromium composes the page faster by its own software than by an emulated graphics card.
     const args = ["--headless=new", "--no-sandbox", "--disable-dev-shm-usage", `--window-size=${size}`,
       "--enable-unsafe-swiftshader", "--use-angle=swiftshader", "--disable-gpu-compositing"];
     const { sessionId } = await call("POST", "", { capabilities: { alwaysMatch: {

@@ -82,7 +82,7 @@ TEST(Report, ShowsFindingsRepairAndThresholds) {
     EXPECT_NE(html.find(words), std::string::npos) << words;
 }
 
-// Before, "0 % of the limit" was written for robots that state no limit.
+// In an earlier version, "0 % of the limit" was written for robots that state no limit.
 TEST(Report, SaysWhichLimitsAreNotStatedAndHowSoftTheSolesAre) {
   Made made;
   ASSERT_FALSE(has_limit(made.model, FindingKind::continuous_torque));

@@ -70,8 +70,8 @@ TEST(ImportedMotions, AZmpThatNoGroundGives) {
     EXPECT_LT((s.reference_theta - s.command_theta).cwiseAbs().maxCoeff(), 0.03);
 }
 
-// The ZMP of a file differs by 15 mm from that of its own motion: the robot was another one, or the
-// ZMP was measured from another place. The robot moves and ends as the posture says.
+// The ZMP of a file differs by 15 mm from that of its own motion: the file was made for another
+// robot, or its ZMP has another origin. The robot moves and ends as the posture says.
 TEST(ImportedMotions, AZmpThatIsNotThatOfTheMotion) {
   for (const Eigen::Vector2d& off : {Eigen::Vector2d(0.015, 0), {-0.01, 0.01}, {0, -0.015}}) {
     SCOPED_TRACE(off.transpose());

@@ -329,7 +329,7 @@ TEST(ViipHoap1, PhasesPassTheRobotBetweenDtadAndViip) {
   const double period = 2.1 / std::sqrt(9.80665 / log.samples.front().cog.z());
   EXPECT_NEAR(log.samples.back().cog.x() - log.samples.front().cog.x(), 2 * x + 3 * 0.08 * period,
               0.02);
-  // Nothing jumps where the laws change.
+  // No quantity is discontinuous where the laws change.
   for (const double at : {first, first + wait}) {
     const size_t k = static_cast<size_t>(std::lround(1e3 * at));
     for (size_t i = k - 3; i < k + 3; ++i)

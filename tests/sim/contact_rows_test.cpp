@@ -98,8 +98,8 @@ struct ContactStep {
   std::vector<ActiveContact> contacts;
 };
 
-// If, by the contact problem, all contacts that press stick, the springs give its solution;
-// otherwise they say so themselves.
+// If all pressing contacts stick in the solution of the contact problem, the solution with springs
+// is the same. Otherwise the function with springs reports that its result is not valid.
 TEST(ContactRows, SpringsSolveTheContactProblemWhereAllStick) {
   int agreed = 0, refused = 0, open = 0;
   for (unsigned seed = 1; seed <= 60; ++seed) {

@@ -56,7 +56,7 @@ TEST(Payload, WeighsWhileItIsCarried) {
   EXPECT_GT(std::abs(at(log, 0.501).fz - weight), 1e-3);  // it has an effect in the first step
   EXPECT_NEAR(at(log, 1.45).fz, weight + 0.3 * kGravity, 0.05);
   EXPECT_NEAR(at(log, 1.99).fz, weight, 0.05);
-  // It moves the ZMP to its side, by the moments about the ground.
+  // The payload moves the ZMP to its own side, by the moments about the ground.
   const RobotModel& model = hoap1();
   RobotData data(model);
   const SimulationSample& s = at(log, 1.45);

@@ -58,8 +58,8 @@ TEST(Ground, BlocksRestOnStepsAndOnThePlaneBelow) {
   EXPECT_NEAR(beside.position().z(), 0.01, 1e-6);
 }
 
-// Tiles under other tiles are not stood upon, and too many edges under a sole are refused instead
-// of taking hours.
+// A sole does not touch tiles that lie under other tiles, and too many edges under a sole are
+// refused instead of taking hours.
 TEST(Ground, WhatAHigherBlockCoversIsNoContactAndTooManyEdgesAreRefused) {
   const std::vector<Vector3d> sole = {
       {-0.05, -0.03, 0.0205}, {0.05, -0.03, 0.0205}, {0.05, 0.03, 0.0205}, {-0.05, 0.03, 0.0205}};

@@ -316,7 +316,7 @@ TEST(Edges, APlankLeansOverAStep) {
   const double tilt = -0.35;  // about y: the end at +x is up
   RobotState s = model.rest_state();
   s.base.attitude = exp_rotation({0, tilt, 0});
-  // Its lower end is on the ground at x = -0.2.
+  // The lower end of the plank is on the ground at x = -0.2.
   s.base.position =
       Vector3d(-0.2, 0, 0.0) - s.base.attitude * Vector3d(-0.5 * size.x(), 0, -0.5 * size.z());
   plant.set_state(s);

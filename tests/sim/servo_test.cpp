@@ -80,7 +80,7 @@ TEST_P(ServoForm, ACopyContinuesToTheSameBits) {
   run(rig.plant, 400, 800);
   run(copy, 400, 800);
   run(again.plant, 0, 800);
-  // It forgets the targets that the servo has received.
+  // set_state() forgets the targets that the servo has received.
   again.plant.set_state(again.fresh().state());
   run(again.plant, 0, 800);
   for (const Plant* other : {&copy, &again.plant}) {
@@ -211,7 +211,7 @@ TEST(ServoFriction, IsThatOfTheModelsM1ToM6) {
   EXPECT_NEAR(friction(m, 0.2), 0.1 + 0.2 + e * (0.05 + 0.11), kPart);
   m.load.motor_quadratic = 0.005, m.load.external_quadratic = 0.003;
   EXPECT_NEAR(friction(m, 0), 0.15 + 0.2 + 0.11 + 0.003 * 4, kPart);  // M6: the motor drives
-  EXPECT_NEAR(dry_friction(m, 0, 2, -3), 0.15 + 0.25 + 0.14 + 0.005 * 4, kPart);  // the load does
+  EXPECT_NEAR(dry_friction(m, 0, 2, -3), 0.15 + 0.25 + 0.14 + 0.005 * 4, kPart);  // the load drives
   EXPECT_NEAR(dry_friction(m, 0, 3, 2), 0.15 + std::abs(0.14 - 0.06) + std::abs(0.08 - 0.03),
               kPart);  // both push the same way
 }

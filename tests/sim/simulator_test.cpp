@@ -59,7 +59,8 @@ TEST(Simulator, SamplesThatAreSentAreThoseOfTheLog) {
 TEST(Simulator, BranchGoesOnToTheSameBits) {
   const Stand stand;
   const std::string expected = log_hash(simulate(stand.model, stand.series, stand.options));
-  // The original run of the branches neither notices the push nor lives longer than they do.
+  // The original run is not changed by the push of a branch, and the branches continue after it is
+  // destroyed.
   SimulateOptions unpushed = stand.options;
   unpushed.scenario.clear();
   auto trunk = std::make_unique<Simulator>(stand.model, stand.series, unpushed);

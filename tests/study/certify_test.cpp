@@ -243,7 +243,7 @@ struct PushedStudy {
     options.most = 60;
     options.all = true;
   }
-  /// The results of all its cases, which depend on nothing else: they are run once.
+  /// The results of all cases of the study. They depend on nothing else, so they are computed once.
   static const KnownResults& results() {
     static const KnownResults all = [] {
       const PushedStudy study;

@@ -197,7 +197,7 @@ TEST(LocalRetime, ThePathStaysAndThePlanMovesAlong) {
     EXPECT_LT((after - before).cwiseAbs().maxCoeff(), 0.01) << i;
     EXPECT_EQ(pace.pattern.phases[i].support, walk.phases[i].support);
   }
-  // They are between the same two phases as before.
+  // The push is in the same phase as before.
   const auto phase_of = [](const Pattern& pattern, double t) {
     size_t i = 0;
     while (pattern.phases[i].until < t) ++i;

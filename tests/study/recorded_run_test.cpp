@@ -94,8 +94,8 @@ TEST(RecordedRun, DecidesNothingAtTheEnd) {
 }
 
 TEST(RecordedRun, OnUnevenGroundContainsOnlyWhatIsInTheSamePlace) {
-  // The block is far from the walk. The runs are the same, but with such a block their places
-  // count.
+  // The block is far from the walk. The runs are the same, but in a world with a block, a state is
+  // only in the set if the robot is in the same place.
   World world;
   world.blocks = {{.low = {5, 5}, .high = {6, 6}, .height = 0.1}};
   const RecordedWalk level(ControllerKind::dtad), uneven(ControllerKind::dtad, world);

@@ -1,4 +1,4 @@
-// The strip of a run agrees with results that follow in another way.
+// The stability strip of a run agrees with results that are computed in another way.
 #include "ayumi/task/run_stability.hpp"
 
 #include <gtest/gtest.h>

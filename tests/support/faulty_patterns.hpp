@@ -65,7 +65,8 @@ inline FaultyPattern motion(Dice& dice) {
   return made;
 }
 
-/// The size of a bump of this width whose largest speed is this. Derived: the largest speed of
+/// The size of a bump of the given width whose largest speed is `speed`. Derived: the largest speed
+/// of
 /// cos^4(pi s) is
 ///   3 sqrt(3) / 4 pi.
 inline double size_of(double speed, double width) {

@@ -110,7 +110,7 @@ inline OddRobot odd_robot(unsigned seed, int count) {
     }
     robot.links.push_back(link);
   }
-  // Frames between two axes are bare if something heavy is beyond them.
+  // A link between two axes may have no mass if a link with mass follows.
   for (OddLink& link : robot.links) {
     const bool inner = std::any_of(
         robot.joints.begin(), robot.joints.end(),

@@ -201,7 +201,7 @@ void place_stance_rows(RowSite& site) {
 
 Advice slip_advice(const JudgedMotion&, const FindingWindow& window) {
   return {"the " + std::string(name_of(foot_of(window.worst))) + " sole moves " +
-              in_mm(window.worst.value) + " while it supports: keep the foot still",
+              in_mm(window.worst.value) + " while it supports the robot: keep the foot still",
           kOrRepair};
 }
 
@@ -224,8 +224,8 @@ Advice float_advice(const JudgedMotion& motion, const FindingWindow& window) {
     return "the " + foot + " sole is already " + height +
            " above the ground when its contact ends: end the contact " + time + " earlier";
   return "the " + foot + " sole is " + in_mm(v.value) +
-         " above the ground while it should support: begin the contact later, end the contact "
-         "earlier, or lower the foot";
+         " above the ground while it should support the robot: begin the contact later, end the "
+         "contact earlier, or lower the foot";
 }
 
 std::string slip_infeasibility(const Finding& f, double) {

@@ -717,13 +717,15 @@ void LinkPlan::complain(const Group& group, double t, const std::vector<Aim>& ai
     remedy = "give a point nearer to straight ahead, or turn the torso";
   } else if (missing > 0) {
     what = "the " + target.name + " is out of reach by " + millimetres(missing);
-    remedy = other_unit(in_trunk ? Vector3d(trunk.inverse() * missed->place) : missed->place,
-                        data.cog.z()) +
-             "the " + target.name + " reaches only " +
-             numbers(in_trunk ? Vector3d(trunk.inverse() * end) : end, 4) + " m" + in_frame +
-             (only_way ? "; the trunk is on its way, too: let the hand set out when the trunk has "
-                         "arrived, with a key \"free\" of the hand there, or move the target"
-                       : "; move the target, or move or tilt the trunk");
+    remedy =
+        other_unit(in_trunk ? Vector3d(trunk.inverse() * missed->place) : missed->place,
+                   data.cog.z()) +
+        "the " + target.name + " reaches only " +
+        numbers(in_trunk ? Vector3d(trunk.inverse() * end) : end, 4) + " m" + in_frame +
+        (only_way ? "; the trunk also moves at this time: let the hand begin to move after the "
+                    "trunk has stopped, with a key \"free\" of the hand at that time, or "
+                    "move the target"
+                  : "; move the target, or move or tilt the trunk");
   } else {
     what = "the " + target.name + " is at its place but points " + degrees(angle) +
            " away from its direction (allowed " + degrees(kAligned) + ")";

@@ -222,7 +222,7 @@ class LocalSearch {
       if (found.x.empty()) {
         const std::string broken = limits_->broken_at(found.stuck);
         const double at = given_time(points[static_cast<size_t>(found.stuck)].at);
-        result_.limited_by = "at " + text::fixed(at, 3) + " s, no pace keeps all limits" +
+        result_.limited_by = "at " + text::fixed(at, 3) + " s, no pace satisfies all limits" +
                              (broken.empty() ? "" : "; even a robot at rest violates " + broken);
         return std::nullopt;
       }

@@ -26,7 +26,7 @@ class Actuators:
 
     @property
     def continuous_torque(self) -> NDArray[numpy.float64]:
-        """Largest torques for any length of time [N m, N], shape (dof,)."""
+        """Largest torques that the motors bear without a time limit [N m, N], shape (dof,)."""
 
 class Command:
     """The plan of one tick."""
@@ -64,7 +64,7 @@ class Contact:
 
     @property
     def begin(self) -> float:
-        """Begin of the contact [s]."""
+        """Beginning of the contact [s]."""
 
     @property
     def end(self) -> float:
@@ -144,7 +144,7 @@ class Finding:
 
     @property
     def begin(self) -> float:
-        """Begin of the window [s]."""
+        """Beginning of the window [s]."""
 
     @property
     def end(self) -> float:
@@ -280,7 +280,7 @@ class IdentifiedJoint:
 
     @property
     def confounded(self) -> list[str]:
-        """What cannot be told apart in this recording, in words."""
+        """What cannot be distinguished in this recording, in words."""
 
 class Import:
     """A motion of another program or robot as a pattern."""
@@ -444,7 +444,7 @@ class Pace:
 
     @property
     def bounded(self) -> bool:
-        """False: even the fastest scale passes."""
+        """False if even the fastest scale that was tried passes."""
 
     @property
     def limited_by(self) -> str:
@@ -879,7 +879,7 @@ class Table:
 
     @property
     def unfit(self) -> str:
-        """Why no robot should receive the table; '' where nothing is known against it."""
+        """Why no robot should receive the table; '' if there is no known reason."""
 
     @property
     def disturbances(self) -> str:
@@ -959,7 +959,7 @@ class Verdict:
 
     @property
     def consistent(self) -> bool:
-        """Whether motion and goals keep every limit."""
+        """Whether the motion and the goals satisfy every limit."""
 
     def __bool__(self) -> bool:
         ...
@@ -1009,15 +1009,15 @@ class Wrench:
 
     @property
     def point(self) -> NDArray[numpy.float64]:
-        """Point of attack in the world [m], shape (3,)."""
+        """Point of application in the world [m], shape (3,)."""
 
     @property
     def force(self) -> NDArray[numpy.float64]:
-        """World [N], shape (3,)."""
+        """Force in world axes [N], shape (3,)."""
 
     @property
     def torque(self) -> NDArray[numpy.float64]:
-        """World [N m], shape (3,)."""
+        """Moment in world axes [N m], shape (3,)."""
 
 def check(task: Task, *, tolerances: dict[str, float] = {}) -> Verdict:
     """The verdict on a pattern. `tolerances`: values by kind of finding, in place of those of the pattern."""

@@ -1,4 +1,4 @@
-// A program of its own on the installed libraries, one call into each.
+// A separate program that is built with the installed libraries, with one call to each of them.
 
 #include <cstdio>
 #include <filesystem>

@@ -220,8 +220,8 @@ class SlipFinder {
       if (end_ + 1 < text_.size() &&
           std::string_view("\"\\/bfnrtu").find(text_[end_ + 1]) == std::string_view::npos)
         return say(end_,
-                   "write a backslash between quotation marks twice: \\\\ (in the name of a "
-                   "file, you can write / instead)");
+                   "in a text between quotation marks, write each backslash twice: \\\\ (in the "
+                   "name of a file, you can write / instead)");
       ++end_;
     }
     say_unclosed(at_);
@@ -439,7 +439,7 @@ class SlipFinder {
         return say(at_, std::string("this ") + text_[at_] +
                             " closes nothing, because all brackets are closed; remove it");
       return say(at_,
-                 "the text goes on after its last bracket is closed; remove one closing bracket "
+                 "the text continues after its last bracket is closed; remove one closing bracket "
                  "before this place, or remove what follows");
     }
     if (token_ == Token::close) {

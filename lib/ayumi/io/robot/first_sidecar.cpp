@@ -481,8 +481,8 @@ std::string inertias_text(const RobotDescription& robot, const std::vector<std::
 std::vector<std::string> to_do_list(const RobotModel& model, const RobotGuess& guess) {
   std::vector<std::string> items;
   items.push_back(
-      "Look at the picture: the robot stands upright, looks along the red arrow, and "
-      "its left leg is on its left side (facing: " +
+      "Check in the picture that the robot stands upright, looks along the red arrow, and has its "
+      "left leg on its left side (facing: " +
       guess.facing + " of the URDF).");
   if (!model.has_soles()) {
     items.push_back("State the soles of both feet; without them no motion can be made.");

@@ -151,7 +151,8 @@ class BaseReader {
     for (auto each = again; each != open_.end(); ++each) circle.push_back(each->string());
     base.complain(circle.size() == 1 ? "'" + name + "' is this file itself; name another robot"
                                      : "the bases form a circle: " + text::join(circle, ", ") +
-                                           " and the first again; one of them must have no base");
+                                           ", and the last of them names the first one as its "
+                                           "base; remove \"base\" from one of them");
   }
 
   const FindRobot& find_;

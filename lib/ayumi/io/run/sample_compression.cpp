@@ -349,8 +349,7 @@ std::string decompress_samples(std::string_view bytes, size_t columns, size_t ro
   size_t head = 0;
   const std::vector<Predictor> predictors = predictors_of(plain, columns, head);
   const std::vector<size_t> order = decoding_order(predictors);
-  if (order.size() != columns)
-    stop("the file does not say correctly how the columns of the samples were predicted");
+  if (order.size() != columns) stop("the description of the predicted columns is not valid");
   if (plain.size() != head + planes) stop("the samples are not " + size);
   std::vector<Column> values(columns, Column(rows));
   for (const size_t c : order) {

@@ -108,7 +108,7 @@ const follow = (frame, base) => frame && isRelative(frame) && canDrag(frame.time
   ? [{ kind: "set", pointer: frame.time_pointer, value: timeValue(frame.time, base) }] : [];
 
 /// The reason why a keyframe cannot be removed if a block that repeats counts its time from it.
-export const countedFrom = "A block that repeats counts its time from there, and would move with it. Change it in the text.";
+export const countedFrom = "The time of a block that repeats is relative to this keyframe, so the block would move, too. Change the block in the text.";
 
 /// The edits that remove the keyframes with these pointers, each in all its rounds. Keyframes whose
 /// times are relative to one of them keep their time. Returns null if this is not possible because

@@ -286,7 +286,7 @@ export class Inspector {
         return this.page.edit([{ kind: "set", pointer: "/parameters" + token(name.value), value: Number(number.value) }])
           .then((done) => {
             if (!done) return;
-            this.page.say(`In every field, \${${name.value}} is this number now.`);
+            this.page.say(`From now on, \${${name.value}} stands for this number in every field.`);
             this.emptied(["new parameter", "new parameter value"]);
           });
       } }, name, number, element("button", { type: "submit" }, "New")) : null];
@@ -315,7 +315,7 @@ export class Inspector {
       if (there) {
         this.page.say(frame.repeated || there.repeated
           ? "A keyframe of a block that repeats cannot join another keyframe. Nothing is written."
-          : `This keyframe cannot join the one at ${seconds(time)}: both have a key of the same track, or their interpolation or weights differ, or a block that repeats counts its time from this one. Nothing is written.`);
+          : `This keyframe cannot join the one at ${seconds(time)}: both have a key of the same track, or their interpolation or weights differ, or the time of a block that repeats is relative to this keyframe. Nothing is written.`);
         return null;
       }
       const [from, to] = roomOfKey(state.keyframes, key.pointer);
@@ -431,7 +431,7 @@ export class Inspector {
       return handle ? [this.button(() => set(place()), "Hold the present place")] : [];
     const written = Array.isArray(key.value) ? key.value : key.value.position;
     const points = key.track.kind === "hand" && handle && !key.value.direction;
-    return [this.button(() => set("free"), "Let it go free here"),
+    return [this.button(() => set("free"), "Release it here"),
       points ? this.button(() => set({ ...Array.isArray(key.value) ? {} : key.value, position: written,
         direction: this.page.handles.directionOf(handle).toArray().map(millimetre) }), "Also hold its direction") : null];
   }
