@@ -399,7 +399,7 @@ void add_certify(Command& app, Context& context) {
       "Examples:\n  ayumi certify patterns/hoap1_walk.json --failure 0.01 --confidence 0.95\n"
       "  ayumi certify walk.json --study study.json -o out/cases.json --map out/matters.svg\n"
       "  ayumi certify walk.json --against-controller none --runs 299\n"
-      "Run again with the same -o to go on. Exit code 0: certified; 1: not certified.");
+      "Run again with the same -o to continue. Exit code 0: certified; 1: not certified.");
   auto options = std::make_shared<CertifyCommand>();
   CertifyOptions& certify = options->certify;
   command->add_option("PATTERN", options->pattern, "Pattern file.")->required();
@@ -433,7 +433,7 @@ void add_certify(Command& app, Context& context) {
   command
       ->add_option(
           "-o,--out", options->out,
-          "File for the results, as JSON. Run the command again with the same file to go on.")
+          "File for the results, as JSON. Run the command again with the same file to continue.")
       ->type_name("F");
   command
       ->add_option("--table", options->table,

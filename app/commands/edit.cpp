@@ -635,9 +635,8 @@ void add_edit(Command& app, Context& context) {
   add_table_flag(loop_command);
   loop_command.callback([&context] { loop(context, options); });
   Command& alternate_command =
-      add_edit_of(*command, "alternate",
-                  "play a step and its mirror image in turn, so that it becomes a walk", options);
-  alternate_command.add_option("--times", options.times, "Number of steps in all.")
+      add_edit_of(*command, "alternate", "make a walk from one step and its mirror image", options);
+  alternate_command.add_option("--times", options.times, "Total number of steps.")
       ->required()
       ->check(whole_number_within(2, 1000))
       ->type_name("N");

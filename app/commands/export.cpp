@@ -707,7 +707,7 @@ void add_export(Command& app, Context& context) {
       ->excludes(interval);
   command->add_option("--layout", options->layout,
                       "Name of the column layout for --format hoap, one of \"layouts\" in the "
-                      "sidecar (default: the first one).");
+                      "sidecar (default: the first one that has an interval).");
   command
       ->add_option(
           "--posture", options->safety.from,

@@ -332,7 +332,7 @@ void add_gaits(Command& app, Context& context) {
       "-16:16:5\n"
       "  ayumi gaits hoap1 -o out/gaits --forward 0,0.05 --sideways 0 --turn 0 --failure 0.01\n"
       "An axis is a list (0,0.05) or FROM:TO:COUNT. A cell of the library is one combination of "
-      "values of the axes. Run the command again with the same options to go on. Exit code 1: a "
+      "values of the axes. Run the command again with the same options to continue. Exit code 1: a "
       "cell has no walk.");
   auto options = std::make_shared<GaitsCommand>();
   GaitOptions& gaits = options->options;

@@ -840,7 +840,8 @@ void add_which(Command& command, const char* name, const char* what, NewOptions&
 void add_seat(Command& command, NewOptions& options) {
   add_common(command, options);
   add_scaled(command, "--depth", options.depth,
-             "Distance of the COG between standing and sitting [m]", SeatParameters().depth, "M");
+             "Difference of the COG height between standing and sitting [m]",
+             SeatParameters().depth, "M");
   command
       .add_option("--lean", options.angle_deg,
                   "Lean of the trunk in the middle of the motion [deg] (default: 20).")

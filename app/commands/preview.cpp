@@ -268,8 +268,8 @@ void add_picture_options(Command& command, PreviewOptions& options) {
   command.add_option(
       "--at", clip.at,
       "Time of the picture, if the file is a single picture [s] (default: just after "
-      "the first push, the fall, the first flight, or where the posture differs most "
-      "from the one at the start).");
+      "the first push; without a push, the time of the fall; otherwise the middle of the first "
+      "flight; otherwise the time at which the posture differs most from the one at the start).");
   command.add_option("--strip", options.strip, "Number of snapshots side by side in a .png.")
       ->check(whole_number_within(1, 400));
   command

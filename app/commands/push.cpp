@@ -235,7 +235,7 @@ void add_push(Command& app, Context& context) {
       "  ayumi push patterns/hoap1_walk.json -o out/push.json --map out/push.svg\n"
       "  ayumi push walk.json --profile hoap1-strong --controller dtad --controller dtad-literal\n"
       "  ayumi push walk.json --times 3.1 --times 3.4 --directions 4 --json\n"
-      "Run again with the same -o to go on with a study. The scenario of the pattern is ignored, "
+      "Run again with the same -o to continue a study. The scenario of the pattern is ignored, "
       "including lasting disturbances (payload, friction, latency, ...).");
   auto options = std::make_shared<PushCommand>();
   PushOptions& push = options->push;
@@ -243,7 +243,7 @@ void add_push(Command& app, Context& context) {
   command
       ->add_option(
           "-o,--out", options->out,
-          "File for the results, as JSON. Run the command again with the same file to go on.")
+          "File for the results, as JSON. Run the command again with the same file to continue.")
       ->type_name("F");
   command
       ->add_option("--map", options->map,

@@ -311,10 +311,10 @@ void add_sweep(Command& app, Context& context) {
       "  ayumi sweep study.json -o a.db --shard 1/2\n  ayumi sweep merge a.db b.db -o all.db\n"
       "  ayumi sweep status results.db\n"
       "  ayumi sweep study.json -o results.db --expect 'falls == 0' --junit results.xml\n"
-      "Run again with the same -o to go on: only the cases without a result are run. Exit code 1: "
-      "an expectation is not met, or a case could not be run.");
+      "Run again with the same -o to continue: only the cases without a result are run. "
+      "Exit code 1: an expectation is not met, or a case could not be run.");
   auto options = std::make_shared<SweepCommand>();
-  command->add_option("STUDY", options->study, "Study file with a \"sweep\".");
+  command->add_option("STUDY", options->study, "Study file that has the key \"sweep\".");
   command->add_option("-o,--out", options->out, "File for the results (SQLite).")
       ->type_name("F.db");
   command
