@@ -78,7 +78,7 @@ void bind_robot(py::module_& m) {
       .def_readonly("peak_torque", &ActuatorLimits::peak_torque,
                     "Largest torques [N m, N], shape (dof,).")
       .def_readonly("continuous_torque", &ActuatorLimits::continuous_torque,
-                    "Largest torques for any length of time [N m, N], shape (dof,).");
+                    "Largest torques without a time limit [N m, N], shape (dof,).");
 
   py::class_<RobotModel, std::shared_ptr<RobotModel>>(
       m, "Robot", "A robot: a tree of links with soles, motors and named postures.")

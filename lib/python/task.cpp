@@ -36,7 +36,7 @@ void bind_check(py::module_& m) {
       .def_property_readonly(
           "severity", [](const Finding& f) { return std::string(name_of(f.severity)); },
           "'error', 'warning' or 'info'.")
-      .def_readonly("begin", &Finding::begin, "Begin of the window [s].")
+      .def_readonly("begin", &Finding::begin, "Beginning of the window [s].")
       .def_readonly("end", &Finding::end, "End of the window [s].")
       .def_readonly("at", &Finding::at, "Time of the worst sample [s].")
       .def_readonly("worst", &Finding::worst, "Value at this time, in `unit`.")
@@ -51,7 +51,7 @@ void bind_check(py::module_& m) {
 
   py::class_<Judgement>(m, "Verdict", "Whether a pattern is physically consistent, and why not.")
       .def_property_readonly("consistent", &Judgement::good,
-                             "Whether motion and goals keep every limit.")
+                             "Whether motion and goals stay within every limit.")
       .def("__bool__", &Judgement::good)
       .def_property_readonly(
           "reason", &Judgement::reason,
