@@ -719,7 +719,8 @@ def write_page(results, found, commit):
                                 results[name + "=" + f]) for f in ("0.5", "2")]
             shown_value = value.replace("|", "\\|")
             lines.append(f"| `{name.split(':', 1)[1]}` | {shown_value} | {cells[0]} | {cells[1]} |")
-    lines += ["", "### Left out", ""]
+    lines += ["", "### Left out", "",
+              "These constants were not measured, for the reason that is stated before their names:", ""]
     for why in sorted({w for _, _, w in found if w}):
         names = [f"`{n.split('/')[-1]}`" for n, _, w in found if w == why]
         lines += textwrap.wrap(f"- {why}: {', '.join(names)}", 150, subsequent_indent="  ",
