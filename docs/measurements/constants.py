@@ -11,8 +11,8 @@ The source tree is copied to AYUMI_CONSTANTS (default: a folder in the temporary
 the next call). There, each `constexpr` number of the files in SOURCES becomes a variable whose
 factor is read from the environment variable AYUMI_SCALE, so that one program serves all trials.
 A trial runs the same short cases with one constant at half or at twice its value, and what it
-prints is compared with the run at factor 1. Results are kept beside the build, so a call that was
-interrupted goes on. Needs Python 3 and what a build needs.
+prints is compared with the run at factor 1. Results are kept beside the build, so the next call continues after
+an interruption. Needs Python 3 and what a build needs.
 """
 
 import datetime
@@ -55,7 +55,7 @@ LEFT_OUT = {
     "kTooFast": "an identifier",
     "kTooFar": "an identifier",
     "kLargestCount": "the size of a number in a file",
-    "plant_mujoco": "of the second plant, which the cases do not use",
+    "plant_mujoco": "belongs to the second plant, which the cases do not use",
     "kLargestNumber": "refuses input, changes no result",
     "kMostSamples": "refuses input, changes no result",
     "differentiate": "the reach of a formula",
@@ -104,7 +104,7 @@ T scaled_count(const char* name, T value) {
 
 
 def split(text):
-    """At the commas that are in no bracket."""
+    """The parts of `text` between the commas that are outside all brackets."""
     parts, depth, last = [], 0, 0
     for i, c in enumerate(text):
         depth += (c in "({[") - (c in ")}]")
@@ -719,7 +719,8 @@ def write_page(results, found, commit):
                                 results[name + "=" + f]) for f in ("0.5", "2")]
             shown_value = value.replace("|", "\\|")
             lines.append(f"| `{name.split(':', 1)[1]}` | {shown_value} | {cells[0]} | {cells[1]} |")
-    lines += ["", "### Left out", ""]
+    lines += ["", "### Left out", "",
+              "These constants were not measured, for the reason that is stated before their names:", ""]
     for why in sorted({w for _, _, w in found if w}):
         names = [f"`{n.split('/')[-1]}`" for n, _, w in found if w == why]
         lines += textwrap.wrap(f"- {why}: {', '.join(names)}", 150, subsequent_indent="  ",

@@ -83,7 +83,7 @@ def bundled(name):
 
 
 def robot_copy(name, change):
-    """A folder with the robot `name` whose sidecar went through `change`; for --robot-path."""
+    """A folder with the robot `name` and its sidecar changed by `change`; for --robot-path."""
     folder = pathlib.Path(tempfile.mkdtemp(dir=WORK))
     shutil.copytree(ROOT / "robots" / name, folder / name)
     sidecar = folder / name / "robot.json"
@@ -719,7 +719,7 @@ def viip_jumps():
 
 
 def hill(t, center, width):
-    """1 at `center`, 0 from half of `width` away, smooth."""
+    """A smooth bump: 1 at `center`, and 0 at distances of half of `width` or more."""
     s = (t - center) / width
     return math.cos(math.pi * s) ** 4 if abs(s) < 0.5 else 0
 
@@ -748,7 +748,7 @@ def faulty(name, change):
 
 
 def thrown(degrees, center, width, *joints):
-    """Joints thrown off by a smooth hill, the second and later ones the other way."""
+    """Adds a smooth bump to the angle of the first joint, and the opposite bump to the other joints."""
 
     def change(pattern, columns, rows):
         for k, joint in enumerate(joints):

@@ -89,7 +89,7 @@ def leg_joint(pattern, robot):
 
 
 def foot_up(pattern, robot):
-    """Without keys or a default of the COG height, and higher than the generated kick."""
+    """The foot keys are higher than in the generated kick, and the pattern states no COG height."""
     pattern["defaults"].pop("cog_height", None)
     for key in pattern["keyframes"]:
         for foot in key.get("feet", {}).values():
@@ -229,8 +229,7 @@ def foothold_in_air(pattern, robot):
     swing(pattern, 3)["to"] = swing(pattern, 3)["to"][:2] + [round(0.2 * robot["height"], 3)]
 
 
-# Mistakes that issues and trials have named, and others that were known when the search was
-# written.
+# Mistakes that were seen in trials, and others that were known when the search was written.
 KNOWN = [
     Mistake("degrees declared as radians (arm)", "wave", degrees_as_radians,
             r"^/units.*\"angle\": \"deg\""),
@@ -239,7 +238,7 @@ KNOWN = [
     Mistake("radians declared as degrees", "wave", radians_as_degrees,
             r"^/units.*\"angle\": \"rad\""),
     Mistake("a leg joint with a key", "walk", leg_joint, r"^/keyframes/3.*joint of a leg"),
-    Mistake("a foot key 30 mm up, the COG not kept down", "kick", foot_up,
+    Mistake("a foot key 30 mm up, without a COG height", "kick", foot_up,
             r"(?s)^/keyframes/\d+: the right foot is \d+ mm up, and the COG rises|"
             r"^/defaults/cog_height.*nearly straight"),
     Mistake("knees nearly straight at lift-off", "jump", straight_knees,
@@ -278,7 +277,7 @@ KNOWN = [
 ]
 
 
-# ---- New ones: written for this page, before the program was asked.
+# ---- New ones: written for this page, before they were tried with the program.
 
 
 def durations_as_times(pattern, robot):
@@ -295,7 +294,7 @@ def twice_as_fast(pattern, robot):
 
 
 def keys_not_moved(pattern, robot):
-    """The phases were made longer, the keys were left where they are."""
+    """The phases become longer, and the keys keep their times."""
     for phase in pattern["phases"]:
         phase["until"] = round(1.5 * phase["until"], 3)
 
@@ -432,7 +431,7 @@ def all_friction(pattern, robot):
 NEW = [
     Mistake("durations in place of times", "walk", durations_as_times, r"(?i)duration"),
     Mistake("all times at 0.3 of their values", "walk", twice_as_fast, r"^/phases.*multiplied by"),
-    Mistake("phases 1.5 times as long, keys left", "walk", keys_not_moved,
+    Mistake("phases 1.5 times as long, keys unchanged", "walk", keys_not_moved,
             r"keyframes.*(do not fit|phases)"),
     Mistake("left and right exchanged in all ZMP keys", "walk", zmp_keys_exchanged,
             r"exchanged in all ZMP keys"),

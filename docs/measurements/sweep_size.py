@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """What a sweep of many cases needs: size of the results, time and memory of the commands.
 
-sweep_size.py AYUMI CASES FOLDER: runs 40 cases of a study with so many, fills the results with rows
-like these, and prints what each command takes. The figures of docs/slurm.md are from it."""
+sweep_size.py AYUMI CASES FOLDER: runs 40 cases of a study that has CASES cases, adds similar rows for
+the other cases to the results, and prints what each command takes. It measures figures of
+docs/slurm.md."""
 
 import json
 import os
@@ -14,7 +15,7 @@ import time
 
 
 def measured(what, words, folder):
-    """Runs a command; processor time [s] and largest memory [MB]."""
+    """Runs a command, and prints its processor time [s] and its largest memory [MB]."""
     process = subprocess.Popen(words, cwd=folder, stdout=subprocess.DEVNULL)
     _, status, used = os.wait4(process.pid, 0)
     assert status == 0, words
@@ -22,7 +23,7 @@ def measured(what, words, folder):
 
 
 def rows_like(rows, count):
-    """Other rows with numbers of the same length."""
+    """Rows of the other cases, with numbers of the same length."""
     have = {row[0] for row in rows}
     random.seed(1)
     for number in range(count):

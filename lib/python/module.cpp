@@ -62,7 +62,8 @@ void bind_errors(py::module_& m) {
       "not converge are results, not errors.";
   error.attr("code") = "";
   error.attr("place") = "";
-  interrupted.attr("__doc__") = "Long work was stopped because its progress callback gave False.";
+  interrupted.attr("__doc__") =
+      "Long work was stopped because its progress callback returned False.";
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {
       if (thrown) std::rethrow_exception(thrown);

@@ -66,7 +66,7 @@ void bind_picture(py::module_& m) {
         return std::make_shared<Log>(data, data->joints, prismatic_of(t.robot));
       },
       py::arg("task"),
-      "The motion as it is planned, in the shape of a run, without a simulation: posture, COG, "
+      "The planned motion in the form of a log, without a simulation: posture, COG, "
       "ZMP, forces on the feet, and the motor torques that the full model needs. Pictures and "
       "plots show it like a run; `outcome`, `hash` and `events` have no meaning for such a "
       "motion.");

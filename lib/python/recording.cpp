@@ -50,8 +50,8 @@ void bind_import(py::module_& m) {
             write_imported(path, written);
           },
           py::arg("path"),
-          "Writes the pattern, its table beside it, and, for formats that come back unchanged, a "
-          "copy of the file; all of them or none.");
+          "Writes the pattern, its table beside it, and, for formats whose files can be exported "
+          "unchanged, a copy of the file; all of them or none.");
   m.def("motion_formats", &read_format_names, "Names of the formats that import_motion() reads.");
   m.def(
       "import_motion",
@@ -94,8 +94,9 @@ void bind_import(py::module_& m) {
       "`joints`: names of the joint columns; `motion`: name or number of the motion, if the file "
       "has several; "
       "`commands`: the angles are servo targets; "
-      "`smooth`: largest change for smoothing [deg]; `ground`: the soles that carry are put on the "
-      "ground; `ramp`: time from rest to the speed of a recording that was cut [s]. A sole carries "
+      "`smooth`: largest change for smoothing [deg]; `ground`: the soles that carry the robot are "
+      "put on the ground; `ramp`: time from rest to the speed of a recording that was cut [s]. A "
+      "sole carries "
       "the robot when it is at most `contact_height` [m] above the lowest one, slower than "
       "`contact_speed` [m/s], and the motion of the COG needs at least `contact_load` times the "
       "weight as ground force.");
@@ -236,9 +237,9 @@ void bind_identify(py::module_& m) {
       "`command` and `measured` are files, or (dt, angles) with the time between two rows [s] and "
       "an array of angles [rad, m], shape (n, dof). `loads` is a file of load cells; `per_type`: "
       "one set for all joints of one motor type; `stand`: 'feet', 'fixed' (the root is held "
-      "upright) or 'auto'; `rate` [1/s] and `degrees` are of files that do not state them; "
-      "`longest_lag` [s]: an answer that comes later is refused (0: 30 ms, or twice the lag of the "
-      "slowest servo).");
+      "upright) or 'auto'; `rate` [1/s] and `degrees` apply to files that do not state them; "
+      "`longest_lag` [s]: a recording whose angles are later than this is refused (0: 30 ms or "
+      "twice the lag of the slowest servo, whichever is larger).");
 }
 
 }  // namespace

@@ -152,9 +152,10 @@ TargetFunction targets_of(const py::object& function) {
 void bind_step(py::module_& m) {
   py::class_<World>(m, "World", "The ground under the robot.")
       .def(py::init<>())
-      .def_readwrite("friction", &World::friction, "Coulomb coefficient.");
+      .def_readwrite("friction", &World::friction, "Coefficient of Coulomb friction.");
   py::class_<ExternalWrench>(m, "Wrench", "A force or a couple from outside during one step.")
-      .def_readonly("body", &ExternalWrench::body, "Index of the body; -1: through the COG.")
+      .def_readonly("body", &ExternalWrench::body,
+                    "Index of the body; -1 if the force acts at the COG.")
       .def_readonly("point", &ExternalWrench::point,
                     "Point of application in the world [m], shape (3,).")
       .def_readonly("force", &ExternalWrench::force, "Force in world axes [N], shape (3,).")
@@ -194,7 +195,7 @@ void bind_step(py::module_& m) {
       .def_readonly("body_contact", &StepReport::body_contact,
                     "Whether a body that is no sole touches the ground.");
   py::class_<Plant>(m, "Plant",
-                    "Ayumi's own plant, also as the part of a plant that is written in Python.")
+                    "Ayumi's own plant. A plant that is written in Python may contain it.")
       .def(py::init([](const RobotModel& robot, const std::string& profile, const World& world) {
              return Plant(robot, robot.limits(profile), world);
            }),
@@ -221,8 +222,9 @@ void bind_controller(py::module_& m) {
                        "What a controller receives from the sensors, in the frame of the plan.")
       .def_readonly("state", &Estimate::state, "Estimated state of the robot.")
       .def_readonly("cog", &Estimate::cog, "COG [m], shape (3,).")
-      .def_readonly("dcog", &Estimate::dcog, "Its velocity [m/s], shape (3,).")
-      .def_readonly("zmp", &Estimate::zmp, "ZMP [m], shape (3,); held in flight.")
+      .def_readonly("dcog", &Estimate::dcog, "Velocity of the COG [m/s], shape (3,).")
+      .def_readonly("zmp", &Estimate::zmp,
+                    "ZMP [m], shape (3,); in flight, the last value on the ground.")
       .def_readonly("fz", &Estimate::fz, "Vertical ground force [N].")
       .def_property_readonly(
           "foot_fz", [](const Estimate& e) { return py::make_tuple(e.foot_fz[0], e.foot_fz[1]); },
@@ -231,7 +233,7 @@ void bind_controller(py::module_& m) {
   py::class_<CommandSample>(m, "Command", "The plan of one tick.")
       .def_readonly("state", &CommandSample::state, "Planned base and joints.")
       .def_readonly("cog", &CommandSample::cog, "COG [m], shape (3,).")
-      .def_readonly("dcog", &CommandSample::dcog, "Its velocity [m/s], shape (3,).")
+      .def_readonly("dcog", &CommandSample::dcog, "Velocity of the COG [m/s], shape (3,).")
       .def_readonly("zmp", &CommandSample::zmp, "ZMP [m], shape (3,).")
       .def_readonly("fz", &CommandSample::fz, "Vertical ground force [N].")
       .def_property_readonly(

@@ -56,7 +56,7 @@ void bind_push(py::module_& m) {
                     "Capture bound: the largest push that a point mass could absorb [N s].")
       .def_property_readonly(
           "open_loop", [](const PushCase& c) { return c.open_loop.impulse; },
-          "Largest push that open loop survives [N s].")
+          "Largest push that the robot survives in open loop [N s].")
       .def_property_readonly(
           "limits",
           [](const PushCase& c) {
@@ -64,7 +64,7 @@ void bind_push(py::module_& m) {
             for (const PushLimit& limit : c.limits) limits.push_back(limit.impulse);
             return limits;
           },
-          "Largest push that each controller survives [N s].")
+          "Largest push that the robot survives with each controller [N s].")
       .def_property_readonly(
           "capped",
           [](const PushCase& c) {
@@ -72,7 +72,7 @@ void bind_push(py::module_& m) {
             for (const PushLimit& limit : c.limits) capped.push_back(limit.capped);
             return capped;
           },
-          "Whether the largest push that was tried is survived, by controller.");
+          "Whether the robot survives the largest push that was tried, by controller.");
   py::class_<PyPushStudy, std::shared_ptr<PyPushStudy>>(m, "PushStudy", "The result of push().")
       .def_readonly(
           "cases", &PyPushStudy::cases,
@@ -258,8 +258,9 @@ void bind_local_pace(py::module_& m) {
       .def_readonly("pattern", &LocalPace::pattern, "The motion with this timing, as a table.")
       .def_readonly("scale", &LocalPace::scale,
                     "Duration divided by the duration of the given pattern.")
-      .def_readonly("path_scale", &LocalPace::path_scale,
-                    "The same for the fastest uniform pace, whose postures the motion has.")
+      .def_readonly(
+          "path_scale", &LocalPace::path_scale,
+          "The scale of the fastest uniform pace. The motion has the postures of this pace.")
       .def_property_readonly(
           "binding",
           [](const LocalPace& pace) {
@@ -293,8 +294,8 @@ void bind_local_pace(py::module_& m) {
       py::arg("margin") = py::none(), py::arg("keep_pauses") = false,
       py::arg("progress") = py::none(),
       "The fastest timing along the motion: the motion slows down only where a limit "
-      "binds. The result names its table `table`; the ZMP keeps at most `margin` [m] from the edge "
-      "of the support; "
+      "binds. The result names its table `table`; the ZMP need not keep a larger distance than "
+      "`margin` [m] from the edge of the support; "
       "with `keep_pauses`, spans in which nothing moves keep their length.");
 }
 

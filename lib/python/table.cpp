@@ -45,7 +45,7 @@ void bind_table(py::module_& m) {
   table
       .def(
           "csv", [](const Table& t) { return reference_csv(t.data(), t.data().caution); },
-          "The text of a CSV file, with a head that says what the table is from.")
+          "The text of a CSV file, with a head that states the origin of the table.")
       .def(
           "json", [](const Table& t) { return reference_json(t.data(), t.data().caution); },
           "The table as JSON text.")
@@ -90,7 +90,7 @@ void bind_table(py::module_& m) {
           "Why the robot may not receive the table, in words.")
       .def(
           "to_dict", [](const PySafeTable& s) { return from_json(safety_json(s.report)); },
-          "All figures of the judgement.");
+          "All figures of the verdict.");
 
   m.def(
       "read_table",

@@ -3,7 +3,7 @@
 // ankle encoder has an offset stands on an edge, because a stiff servo holds the angle that its
 // encoder reads. The ankles then turn until every sole carries its load inside its edges and,
 // according to the IMU, the soles are level. The angle by which an ankle has turned is the offset
-// of its encoder. docs/theory_plant.md, "Encoders that are off".
+// of its encoder. docs/theory_plant.md, "Encoders with an offset".
 
 #include <array>
 

@@ -41,7 +41,7 @@ class Command:
 
     @property
     def dcog(self) -> NDArray[numpy.float64]:
-        """Its velocity [m/s], shape (3,)."""
+        """Velocity of the COG [m/s], shape (3,)."""
 
     @property
     def zmp(self) -> NDArray[numpy.float64]:
@@ -98,11 +98,11 @@ class Estimate:
 
     @property
     def dcog(self) -> NDArray[numpy.float64]:
-        """Its velocity [m/s], shape (3,)."""
+        """Velocity of the COG [m/s], shape (3,)."""
 
     @property
     def zmp(self) -> NDArray[numpy.float64]:
-        """ZMP [m], shape (3,); held in flight."""
+        """ZMP [m], shape (3,); in flight, the last value on the ground."""
 
     @property
     def fz(self) -> float:
@@ -310,10 +310,10 @@ class Import:
         """What was assumed, left out or changed, one sentence each."""
 
     def write(self, path: Union[str, PathLike[str]]) -> None:
-        """Writes the pattern, its table beside it, and, for formats that come back unchanged, a copy of the file; all of them or none."""
+        """Writes the pattern, its table beside it, and, for formats whose files can be exported unchanged, a copy of the file; all of them or none."""
 
 class Interrupted(Exception):
-    """Long work was stopped because its progress callback gave False."""
+    """Long work was stopped because its progress callback returned False."""
 
 class LocalPace:
     """The result of fastest_local_pace()."""
@@ -332,7 +332,7 @@ class LocalPace:
 
     @property
     def path_scale(self) -> float:
-        """The same for the fastest uniform pace, whose postures the motion has."""
+        """The scale of the fastest uniform pace. The motion has the postures of this pace."""
 
     @property
     def binding(self) -> list[Any]:
@@ -504,7 +504,7 @@ class Pattern:
         """Writes the pattern file, whole or not at all."""
 
 class Plant:
-    """Ayumi's own plant, also as the part of a plant that is written in Python."""
+    """Ayumi's own plant. A plant that is written in Python may contain it."""
 
     def __init__(self, robot: Robot, profile: str = '', world: World = ...) -> None:
         ...
@@ -544,15 +544,15 @@ class PushCase:
 
     @property
     def open_loop(self) -> float:
-        """Largest push that open loop survives [N s]."""
+        """Largest push that the robot survives in open loop [N s]."""
 
     @property
     def limits(self) -> list[float]:
-        """Largest push that each controller survives [N s]."""
+        """Largest push that the robot survives with each controller [N s]."""
 
     @property
     def capped(self) -> list[bool]:
-        """Whether the largest push that was tried is survived, by controller."""
+        """Whether the robot survives the largest push that was tried, by controller."""
 
 class PushStudy:
     """The result of push()."""
@@ -717,7 +717,7 @@ class SafeTable:
         """Why the robot may not receive the table, in words."""
 
     def to_dict(self) -> Any:
-        """All figures of the judgement."""
+        """All figures of the verdict."""
 
 class Series:
     """The command at the servo period of the robot: posture, COG, ZMP, vertical force and sole poses of every sample. series['theta'] is an array, series.units('theta') has its units."""
@@ -863,7 +863,7 @@ class Table:
         """Times of the samples [s], shape (n,), computed as k dt."""
 
     def csv(self) -> str:
-        """The text of a CSV file, with a head that says what the table is from."""
+        """The text of a CSV file, with a head that states the origin of the table."""
 
     def json(self) -> str:
         """The table as JSON text."""
@@ -995,7 +995,7 @@ class World:
 
     @property
     def friction(self) -> float:
-        """Coulomb coefficient."""
+        """Coefficient of Coulomb friction."""
 
     @friction.setter
     def friction(self, value: float) -> None: ...
@@ -1005,7 +1005,7 @@ class Wrench:
 
     @property
     def body(self) -> int:
-        """Index of the body; -1: through the COG."""
+        """Index of the body; -1 if the force acts at the COG."""
 
     @property
     def point(self) -> NDArray[numpy.float64]:
@@ -1029,7 +1029,7 @@ def data_folder(name: str) -> Path:
     """Folder of the bundled data: 'robots', 'patterns' or 'examples'."""
 
 def fastest_local_pace(task: Task, *, table: str = 'retimed.csv', margin: Optional[float] = None, keep_pauses: bool = False, progress: Optional[Callable[[str, float, str], Any]] = None) -> LocalPace:
-    """The fastest timing along the motion: the motion slows down only where a limit binds. The result names its table `table`; the ZMP keeps at most `margin` [m] from the edge of the support; with `keep_pauses`, spans in which nothing moves keep their length."""
+    """The fastest timing along the motion: the motion slows down only where a limit binds. The result names its table `table`; the ZMP need not keep a larger distance than `margin` [m] from the edge of the support; with `keep_pauses`, spans in which nothing moves keep their length."""
 
 def fastest_pace(task: Task, *, resolution: float = 0.002, progress: Optional[Callable[[str, float, str], Any]] = None) -> Pace:
     """The fastest uniform time scaling of the pattern that passes the check."""
@@ -1038,10 +1038,10 @@ def gains(robot: Robot, *, poles: Optional[list[complex]] = None, absorb: Option
     """Gains of DTAD: two `poles` of the COG [1/s], the share of a ZMP error that is absorbed at once, the times [s] of the return to the command and of the filter of the ZMP, and the time [s] until a lasting offset of the ZMP is accepted; `set` gives gains by name, and `latency` [s] is the latency of the sensors."""
 
 def identify(robot: Robot, command: Union[Union[str, PathLike[str]], tuple[float, NDArray[numpy.float64]]], measured: Union[Union[str, PathLike[str]], tuple[float, NDArray[numpy.float64]]], *, loads: Optional[Union[str, PathLike[str]]] = None, per_type: bool = False, stand: str = 'auto', rate: float = 0.0, degrees: bool = False, longest_lag: float = 0.0, threads: int = 0, progress: Optional[Callable[[str, float, str], Any]] = None) -> Identification:
-    """The servo constants with which the simulated servos come nearest to what was measured. `command` and `measured` are files, or (dt, angles) with the time between two rows [s] and an array of angles [rad, m], shape (n, dof). `loads` is a file of load cells; `per_type`: one set for all joints of one motor type; `stand`: 'feet', 'fixed' (the root is held upright) or 'auto'; `rate` [1/s] and `degrees` are of files that do not state them; `longest_lag` [s]: an answer that comes later is refused (0: 30 ms, or twice the lag of the slowest servo)."""
+    """The servo constants with which the simulated servos come nearest to what was measured. `command` and `measured` are files, or (dt, angles) with the time between two rows [s] and an array of angles [rad, m], shape (n, dof). `loads` is a file of load cells; `per_type`: one set for all joints of one motor type; `stand`: 'feet', 'fixed' (the root is held upright) or 'auto'; `rate` [1/s] and `degrees` apply to files that do not state them; `longest_lag` [s]: a recording whose angles are later than this is refused (0: 30 ms or twice the lag of the slowest servo, whichever is larger)."""
 
 def import_motion(path: Union[str, PathLike[str]], robot: Robot, *, format: str = '', rate: float = 0.0, degrees: bool = False, order: bool = False, joints: list[str] = [], motion: str = '', commands: bool = False, smooth: Optional[float] = None, ground: bool = False, ramp: float = 0.0, contact_height: Optional[float] = None, contact_speed: Optional[float] = None, contact_load: Optional[float] = None) -> Import:
-    """Reads a motion of another program or robot, as `ayumi import` does. The format follows from the content unless `format` names one of motion_formats(). `rate` [1/s]: rows per second, if the rows have no times; `degrees`: angles of a file that does not state their unit are in degrees; `order`: the columns are the joints of the robot, in the order of the robot; `joints`: names of the joint columns; `motion`: name or number of the motion, if the file has several; `commands`: the angles are servo targets; `smooth`: largest change for smoothing [deg]; `ground`: the soles that carry are put on the ground; `ramp`: time from rest to the speed of a recording that was cut [s]. A sole carries the robot when it is at most `contact_height` [m] above the lowest one, slower than `contact_speed` [m/s], and the motion of the COG needs at least `contact_load` times the weight as ground force."""
+    """Reads a motion of another program or robot, as `ayumi import` does. The format follows from the content unless `format` names one of motion_formats(). `rate` [1/s]: rows per second, if the rows have no times; `degrees`: angles of a file that does not state their unit are in degrees; `order`: the columns are the joints of the robot, in the order of the robot; `joints`: names of the joint columns; `motion`: name or number of the motion, if the file has several; `commands`: the angles are servo targets; `smooth`: largest change for smoothing [deg]; `ground`: the soles that carry the robot are put on the ground; `ramp`: time from rest to the speed of a recording that was cut [s]. A sole carries the robot when it is at most `contact_height` [m] above the lowest one, slower than `contact_speed` [m/s], and the motion of the COG needs at least `contact_load` times the weight as ground force."""
 
 def jump_pattern(robot: Robot, *, height: Optional[float] = None, stoop: Optional[float] = None, cog_height: Optional[float] = None, forward: Optional[float] = None, times: Optional[int] = None) -> Pattern:
     """Stoop, lift-off, flight, touchdown and settling; all lengths in m."""
@@ -1074,7 +1074,7 @@ def picture(robot: Robot, log: Log, *, at: float = 0.0, width: int = 1280, heigh
     """The run at the time `at` [s] as the bytes of a PNG file. `view`: 'front', 'side', 'iso', 'back', 'top', 'ortho-side' or 'ortho-front'; `width` and `height` in pixels."""
 
 def plan(task: Task) -> Log:
-    """The motion as it is planned, in the shape of a run, without a simulation: posture, COG, ZMP, forces on the feet, and the motor torques that the full model needs. Pictures and plots show it like a run; `outcome`, `hash` and `events` have no meaning for such a motion."""
+    """The planned motion in the form of a log, without a simulation: posture, COG, ZMP, forces on the feet, and the motor torques that the full model needs. Pictures and plots show it like a run; `outcome`, `hash` and `events` have no meaning for such a motion."""
 
 def push(task: Task, *, controllers: list[str] = [], gains: dict[str, float] = {}, times: list[float] = [], directions: int = 8, step: float = 0.06, cap: float = 2.4, replicas: int = 2, duration: float = 0.02, seed: int = 1, threads: int = 0, progress: Optional[Callable[[str, float, str], Any]] = None) -> PushStudy:
     """The largest push that the robot survives, by phase of the gait and direction, in open loop and with each controller (the controller of the pattern when none is named). `times` [s] in place of the default phases; `step`: resolution of the search, and `cap`: largest push tried, both as multiples of the capture bound; `replicas`: number of small variations of every push, all of which the robot must survive; `duration` of a push [s]; `threads`: 0 for all; the results do not depend on this number."""
