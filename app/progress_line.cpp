@@ -18,7 +18,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Time between two plain lines of one stage. Chosen: the log of an hour has some hundred lines.
+/// Time between two plain lines of one stage. Chosen: the log of an hour has a few hundred lines.
 constexpr std::chrono::seconds kBetweenLines(10);
 
 struct ProgressLine {

@@ -14,7 +14,7 @@ namespace {
 // Angle by which a joint is drawn away from home [rad]. Chosen: the 5 degrees of the test itself
 // would hardly be visible in a picture.
 constexpr double kDrawnAngle = 30 * EIGEN_PI / 180;
-constexpr double kDrawnSlide = 0.05;  // distance by which a slider is drawn away from home [m]
+constexpr double kDrawnSlide = 0.05;  // distance of a drawn sliding joint from home [m]
 
 std::string in_units(const Dof& dof, double value) {
   return dof.prismatic ? text::fixed(1000 * value, 1) + " mm"

@@ -250,7 +250,8 @@ OrderedJson disturbances_json(const Written& text) {
 OrderedJson joints_json(const RobotModel& model) {
   OrderedJson joints = OrderedJson::array();
   for (const Dof& dof : model.dofs()) {
-    // A slider needs two ends: a joint without limits gets one turn, or a metre if it slides.
+    // The slider in the page needs two ends: a joint without limits gets one turn, or a metre each
+    // way if it slides.
     const double free = dof.prismatic ? 1.0 : M_PI;
     joints.push_back({{"name", dof.name},
                       {"low", std::isfinite(dof.lower) ? dof.lower : -free},

@@ -348,7 +348,8 @@ void loop_cycle(Context& context, const EditCommand& options) {
     fail(ErrorCode::bad_pattern, {options.pattern},
          "the best cycle of two steps begins at " +
              text::fixed(static_cast<double>(cycle.begin) * input.series.dt, 3) +
-             " s, and its end does not meet its beginning: " + gap_words(cycle.gap) +
+             " s, and its end does not meet its beginning; the differences are: " +
+             gap_words(cycle.gap) +
              "; take a walk that has more steps, all of the same length and period");
   const std::string table = table_beside(options.out).string();
   const CommandSeries closed = with_closed_cycle(input.series, cycle);
@@ -378,8 +379,9 @@ void loop_cycle(Context& context, const EditCommand& options) {
       context, options, all, check_edited(context, options, input, all),
       "  the cycle is from " + text::fixed(begin, 3) + " to " + text::fixed(end, 3) +
           " s of the walk, and the " + name_of(cycle.first) +
-          " foot swings first; the end of the cycle meets its beginning: " + gap_words(cycle.gap) +
-          "\n" + (!options.alone ? "" : "  the motion begins and ends while the robot walks\n"),
+          " foot swings first; differences between the end and the beginning of the cycle: " +
+          gap_words(cycle.gap) + "\n" +
+          (!options.alone ? "" : "  the motion begins and ends while the robot walks\n"),
       Json{{"times", options.times},
            {"cycle_s", {begin, end}},
            {"first_swing", name_of(cycle.first)},

@@ -40,13 +40,14 @@ struct NewOptions {
   double stand_height = 0;  // COG height [m]; 0 for that of the home posture
   double scale = 1;         // factor on the amplitudes of an excitation
   double low = 0;           // COG height of an excitation [m]; 0 if it is not given
-  // Values that are not given are those of HOAP-1, scaled to the robot.
   std::vector<double> cog, velocity, cog_velocity;  // goals of VIIP
   double moving = 1;                                // duration of a COG velocity [s]
   int viip_steps = 0;
+  // Values that are not given get the values for HOAP-1, scaled to the robot.
   std::optional<double> stride, period, lift, side, depth, hold, length, height;
   std::optional<double> angle_deg;
-  // Options of all kinds of walks.
+  // The options --double-support and --zmp-inwards of each subcommand that makes a walk.
+  // is_given() says whether one of them was given.
   std::vector<const Option*> double_support, zmp_inwards;
 
   static bool is_given(const std::vector<const Option*>& options) {

@@ -29,7 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-using Angles = std::map<std::string, double>;  // positions by joint [rad], for sliders [m]
+using Angles = std::map<std::string, double>;  // positions by joint [rad], for sliding joints [m]
 
 // Names in a message. Chosen: a person still reads a message of this length.
 constexpr size_t kMostNamed = 20;
@@ -136,8 +136,8 @@ Json angles_json(const RobotModel& model, const Angles& angles, bool degrees) {
   return json;
 }
 
-// Angles in words, such as "l_knee 43.58, ..."; joints at 0 are left out. For a slider, the unit
-// follows the number.
+// Angles in words, such as "l_knee 43.58, ..."; joints at 0 are left out. For a sliding joint, the
+// unit follows the number; other angles are in deg.
 std::string angles_text(const RobotModel* model, const Angles& angles) {
   std::vector<std::string> words;
   for (const auto& [joint, value] : angles) {

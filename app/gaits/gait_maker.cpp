@@ -250,8 +250,9 @@ void GaitMaker::make(const GaitCell& cell, GaitResult& result, const Progress& p
   const GaitCycle cycle = gait_cycle(model_, motion, begin);
   const LoopGap& open = whole.closed ? cycle.gap : whole;
   if (!open.closed)
-    throw Missing{"loop", std::string("the end of the ") + (whole.closed ? "cycle" : "walk") +
-                              " does not meet its beginning: " + gap_words(open)};
+    throw Missing{"loop",
+                  std::string("the end of the ") + (whole.closed ? "cycle" : "walk") +
+                      " does not meet its beginning; the differences are: " + gap_words(open)};
 
   simulate(task, json, progress);
   json["certificate"] = nullptr;

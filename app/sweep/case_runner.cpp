@@ -35,7 +35,7 @@ constexpr size_t kKeptMotions = 6;
 constexpr size_t kKeptLaws = 16;
 
 /// Largest number of cases that are tried before the first run to find one that can use the
-/// uncertainty of the study. Chosen: each may sample a motion, which takes some 10 ms; with half,
+/// uncertainty of the study. Chosen: each may sample a motion, which takes about 10 ms; with half,
 /// fewer such cases are found.
 constexpr long kMostTried = 20;
 

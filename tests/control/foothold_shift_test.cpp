@@ -115,8 +115,8 @@ TEST(FootholdShift, PendulumStepsOutWhatItsSupportCannotAnswer) {
   }
 }
 
-// While footholds move, the velocity of the COG in the plan is the derivative of its place, and the
-// plan ends where its feet end.
+// While footholds move, the velocity of the COG in the plan is the derivative of its position. At
+// the end, the COG is displaced by the same vector as the feet.
 TEST(FootholdShift, ShiftedPlanIsSmooth) {
   FootholdShift shift(walk().model, walk().series, {.share = 1, .time_scale_limit = 1.5});
   const double dt = walk().series.dt;

@@ -195,7 +195,8 @@ TEST(FirstSidecar, ServosFollowTheEffortOfEachJoint) {
   const auto& servos = guessed.robot.servos;
   EXPECT_NEAR(servos.at("l_shoulder").kp, 25 / 0.2, 0.5);
   const RobotModel model(guessed.robot);
-  // 139 N m at 0.2 rad is less than the 20 m g z that a leg needs.
+  // For the knee, the effort limit divided by 0.2 rad (139 N m / 0.2 rad) is less than the 20 m g z
+  // per rad that a leg needs, so kp is 20 m g z.
   RobotData data(model);
   update_positions(model, model.rest_state(), data);
   const double z = data.cog.z() - sole_pose(model, data, Side::left).translation().z();

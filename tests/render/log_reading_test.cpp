@@ -198,7 +198,8 @@ TEST(LogReading, ExtremesAreWorthShowing) {
       }
 }
 
-// Between its first and its last picture, a run with one short move is shown while it moves.
+// In a run with one short move, all pictures between the first and the last one are taken during
+// the move, so no two pictures show the same posture.
 TEST(LogReading, NoPostureIsShownTwice) {
   const SimulationLog log = nod(1.2, 1.2, 10);
   const std::vector<double> times = telling_instants(log, 6);

@@ -108,7 +108,8 @@ TEST(Repair, ZmpComesInsideAndNothingChangesTwice) {
   EXPECT_EQ(again.status, RepairStatus::already_consistent);
 }
 
-// Random motions from the same control points that stay feasible cost more.
+// Corrections that are made from the result by random changes of the control points of the arms and
+// by a random factor do not cost less, if they pass the check with the same ZMP margin.
 TEST(Repair, NothingNearbyIsCheaper) {
   const CommandSeries series = zmp_outside();
   RepairOptions options;

@@ -13,8 +13,9 @@ namespace {
 
 using test::hoap1;
 
-/// The robot stands on both feet for 3 s with sensors that are late [s], and is pushed to the left
-/// by 0.3 N s after 1 s. It can survive more than ten times as much.
+/// The robot stands on both feet for 3 s and is pushed to the left by 0.3 N s after 1 s. All sensor
+/// readings are late by `latency` [s]. The robot can survive a push of more than ten times this
+/// size.
 SimulationLog stands_pushed(const RobotModel& model, double latency,
                             const std::string& controller = "dtad") {
   Pattern pattern = stand_pattern(model, 3.0);

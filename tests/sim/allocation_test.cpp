@@ -1,5 +1,5 @@
-// After their largest problem, the inner loops allocate nothing. Every call of malloc in this
-// program is counted; operator new and Eigen also call malloc.
+// Once an inner loop has solved its largest problem, it allocates no more memory. Every call of
+// malloc in this program is counted; operator new and Eigen also call malloc.
 
 #include <gtest/gtest.h>
 

@@ -92,8 +92,8 @@ TEST_P(ServoForm, ACopyContinuesToTheSameBits) {
 INSTANTIATE_TEST_SUITE_P(Forms, ServoForm, testing::ValuesIn(test::servo_forms()),
                          [](const auto& form) { return form.param.name; });
 
-// The mean of the held targets over the window of a step, earlier by the delay, summed in steps of
-// 10 us.
+// The delayed target of a step is the mean of the held targets over the time of the step, shifted
+// back by the delay. The test sums it in steps of 10 us.
 TEST(ServoDelay, IsTheMeanOfTheTargetsOfTheDelayAgo) {
   constexpr double kDelay = 0.0037, kFine = 1e-5;
   test::Random random(7);

@@ -17,8 +17,8 @@ namespace ayumi {
 namespace {
 
 // Numbers of values that are left out on trial, that get the other sign, and that are examined
-// closely. Chosen: a time at which a motion fails lies between at most two keys of each of some ten
-// tracks.
+// closely. Chosen: a time at which a motion fails lies between at most two keys of each of about
+// ten tracks.
 constexpr size_t kTriedValues = 24;
 constexpr size_t kTriedSigns = 12;
 constexpr size_t kSuspects = 3;

@@ -32,9 +32,11 @@ struct TrialOutcome {
   /// Windows of the first errors that follow from no other one [s].
   std::vector<Window> windows = {};
 
-  bool table_alone = false;  ///< a quick trial has none of these errors
-  bool of_table = false;     ///< all errors are about the table for the robot
-  bool slight = false;       ///< all errors and what follows from them are slight
+  /// Set by exactly() if it finds errors: a quick trial finds none of them, because they only show
+  /// at the servo's own period.
+  bool table_alone = false;
+  bool of_table = false;  ///< all errors are about the table for the robot
+  bool slight = false;    ///< all errors and what follows from them are slight
 
   bool good() const { return errors == 0; }
   bool touches(double begin, double end) const {

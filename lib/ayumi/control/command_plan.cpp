@@ -1,5 +1,5 @@
-// The offset p that the COG has after another law is reduced to zero along a minimum-jerk blend
-// b(t/T):
+// When another law has controlled the robot before, the COG has an offset p from the plan. The
+// offset is reduced to zero along a minimum-jerk blend b(t/T):
 //   cog (1 - b) p,  dcog -b'/T p,  ddcog -b''/T^2 p,  zmp (1 - b + b''/(T^2 omega^2)) p,
 // which obeys (14)(15).
 #include "ayumi/control/command_plan.hpp"

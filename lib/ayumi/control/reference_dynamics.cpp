@@ -1,8 +1,10 @@
-// The acceleration is the difference of two ticks after a filter, because it contains the law's
-// answers to measurements. Inverse dynamics give the wrench of the ground about the base. Two feet
-// share it in the ratio in which the ZMP lies between the places of their soles, so the shares
-// change continuously while the ZMP moves from foot to foot. The distance of each centre of
-// pressure from the place of its sole is the distance of the ZMP from the line between both places.
+// The acceleration is computed as the filtered difference of the velocities of two ticks. It cannot
+// be taken from the plan, because the motion also contains the law's answers to measurements.
+// Inverse dynamics give the wrench of the ground about the base. In double support, the two feet
+// share the wrench in the ratio in which the ZMP lies between the places of their soles, so the
+// shares change continuously while the ZMP moves from foot to foot. The centre of pressure of each
+// sole is displaced from the place of the sole by the same vector by which the ZMP is displaced
+// from the line between both places.
 #include "ayumi/control/reference_dynamics.hpp"
 
 #include <algorithm>

@@ -24,8 +24,10 @@ constexpr double kThere = 1e-5;
 // Largest change of a joint in a round [rad, m]. Chosen: small enough for the linear model to hold.
 constexpr double kLongestStep = 0.2;
 
-// If the parts on a body reach less than this share of its limb's length, they belong to the end of
-// the limb. Chosen: fingers reach a fifth of an arm, and arms twice as far as a chest.
+// A body from which several chains of joints branch off is the end of its limb if the longest of
+// these chains is shorter than this share of the limb's length up to this body. Chosen: fingers are
+// a fifth as long as the arm that carries them, but arms are twice as long as the chest that
+// carries them.
 constexpr double kPartOfLimb = 0.5;
 
 }  // namespace

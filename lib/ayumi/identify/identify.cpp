@@ -38,10 +38,11 @@ constexpr double kConfounded = 0.9;
 // of a result, and not its numbers.
 constexpr double kKnown = 0.5;
 
-// Smallest change of the residual that a constant must cause, relative to the part of the residual
-// that is not noise, before the recording counts as showing this constant. Chosen: a wrong law
-// bends every constant a little. The recorded walk of a HOAP-3 gives 1.2 for damping, and simulated
-// recordings with a chirp give 3.4 or more.
+// Smallest change of the simulated angles that a constant must cause, relative to the part of the
+// residual that is not noise. Below it, the recording does not show this constant. Chosen: if the
+// law of the servo is a little wrong, an additional constant always changes the angles a little.
+// The recorded walk of a HOAP-3 gives 1.2 for damping, and simulated recordings with a chirp give
+// 3.4 or more.
 constexpr double kBeyondErrors = 2;
 
 // Uncertainty of the torque that loads a joint, in addition to kModelShare [N m]. Chosen: that of

@@ -127,8 +127,9 @@ struct JudgedSample {
 /// The axis along which a vector is largest.
 int largest_axis(const Eigen::Vector3d& v);
 
-/// Records the size of a difference that should vanish, as a figure and, beyond `allowance` times
-/// the tolerance, as a violation. Its detail is the largest axis.
+/// Records the size of a difference that should vanish as a figure. If the size exceeds `allowance`
+/// times the tolerance, it also adds a violation. The detail of both is the axis with the largest
+/// component.
 void judge_difference(JudgedMotion& motion, FindingKind kind, int sample,
                       const Eigen::Vector3d& difference, Severity severity = Severity::error,
                       int item = 0, double allowance = 1);

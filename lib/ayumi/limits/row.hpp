@@ -79,8 +79,8 @@ struct CogRows {
 /// [m].
 struct CorrectionRows {};
 
-/// Rows of the offset of the DCM, COG + time * COG rate, from a point along the ground [m], then
-/// rows of the ground wrench.
+/// Rows of the horizontal offset of the DCM, COG + time * COG rate, from the point `from` [m],
+/// followed by rows of the ground wrench.
 struct DcmRows {
   Eigen::Vector2d from = Eigen::Vector2d::Zero();
   double time = 0;  ///< 1 / omega [s]

@@ -98,9 +98,9 @@ PostureSolution solve_posture(const SampleJob& job, double t, const Eigen::Matri
 /// Whether any phase has no support.
 bool flies(const SampleJob& job);
 
-/// Fraction of the weight below which the ground force is too small for a ZMP to correct, (17).
-/// Chosen: 5 %, as in motion/differentiate. No measured case changes between half and twice the
-/// value (constants.md).
+/// Fraction of the weight. Where the vertical ground force is smaller, the ZMP has no meaning (see
+/// (17)), so its error is neither counted nor corrected. Chosen: 5 %, as in motion/differentiate.
+/// No measured case changes between half and twice the value (constants.md).
 inline constexpr double kZmpShare = 0.05;
 
 /// COG and ZMP of a motion driven by the body's tracks.

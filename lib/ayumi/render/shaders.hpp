@@ -47,8 +47,8 @@ vec4 surface_color(vec4 base) {
 )";
 inline constexpr const char* kPlainInput = "vec4 surface_color(vec4 base) { return base; }\n";
 
-// Objects on the floor are darker where the robot's shadow falls on them; `place` is the place in
-// the coverage onto which the sun projects the point.
+// Objects on the floor are darker where the robot's shadow falls on them. `place` is the point of
+// the shadow's coverage texture onto which the sun projects the vertex.
 inline constexpr const char* kSceneryVertex = R"(
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;

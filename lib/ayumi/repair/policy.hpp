@@ -411,13 +411,14 @@ inline constexpr double kTolerance = 1e-7, kLeastTolerance = 1e-9, kMostToleranc
 /// back to this motion. Chosen. Between half and twice the value, figures change by less than 5 %.
 /// Test: none.
 inline constexpr double kStartBack = 0.1;
-/// Shares of the difference to the passing motion that are tried as steps back to this motion,
-/// before the program is solved once more: the first and the largest; each is ten times the one
-/// before. Chosen: a step of a thousandth of the difference changes the weighted change by at most
-/// a thousandth of the difference between the weighted changes of the two motions, because the
-/// weighted change is convex. The step saves a program of ten iterations (friction 0.10 on a walk
-/// of 4.3 s). Test: LeastChange.* (the motion after the step back costs more than the smallest
-/// change).
+/// The result of the program may fail the check by a little. Before the program is solved once
+/// more, steps from it back towards the passing motion are tried. Their lengths are shares of the
+/// difference of the two motions: kFirstBack, and kBackFactor times as much each, up to kMostBack.
+/// The largest share is tried first. Chosen: the weighted change is convex, so a step of a
+/// thousandth of the difference changes it by at most a thousandth of the difference between the
+/// weighted changes of the two motions. The step saves a program of ten iterations (friction 0.10
+/// on a walk of 4.3 s). Test: LeastChange.* (the motion after the step back costs more than the
+/// smallest change).
 inline constexpr double kFirstBack = 1e-6, kMostBack = 1e-3, kBackFactor = 10;
 /// ZMP margin without robustness, inside the edge [m]. Derived: kRounding of 1 mm. Test: none.
 inline constexpr double kZmpMargin = kRounding * 1e-3;

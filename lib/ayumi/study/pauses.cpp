@@ -11,7 +11,7 @@ namespace {
 // the ZMP still settles by a millimetre or two. With a tenth of the values, holds of less than a
 // second are missed; half or twice changes the length of a pause by a tenth of a second.
 constexpr double kStillJoint = 0.01, kStillTrunk = 2e-3, kStillTurn = 0.01;
-// Shortest pause [s]. Chosen: keyed joints that turn back rest for some hundredths of a second.
+// Shortest pause [s]. Chosen: keyed joints that turn back rest for a few hundredths of a second.
 constexpr double kShortest = 0.1;
 
 bool is_still(const CommandSample& sample) {

@@ -27,9 +27,9 @@ constexpr double kLargeScale = 3;
 /// that the first scale that passes is not skipped. No measured case changes between half and twice
 /// the value (constants.md).
 constexpr double kSpeedStep = 0.8;
-/// Factor between the scales that are tried beyond an edge: 0.5 % each, with kBeyondSteps of them
-/// 18 % in all. Chosen: a compromise, since each scale costs one sampling and one check. No
-/// measured case changes between half and twice the value (constants.md).
+/// Factor between the scales that are tried beyond the fastest scale that passes: 0.5 % each, and
+/// 18 % in all kBeyondSteps of them. Chosen: a compromise, since each scale costs one sampling and
+/// one check. No measured case changes between half and twice the value (constants.md).
 constexpr double kBeyondStep = 1.005;
 // The number of these scales. No measured case changes between half and twice the value
 // (constants.md).
@@ -105,7 +105,7 @@ class PaceSearch {
 
   // The fastest of the next scales that passes, or 0 if none does. A pattern with flights may pass
   // again at a faster scale, because other samples then lie on the edges of the flights. The reason
-  // of the edge is kept.
+  // for the first failure is kept.
   double beyond(double passing) {
     const std::string reason = reason_;
     double found = 0, scale = passing;

@@ -25,9 +25,10 @@ struct FastestPace {
 
 /// Bisection between a scale that passes the check and one that does not. The search begins at 1.
 /// It goes faster by factors of 1.25 while scales pass; otherwise it goes slower by factors of
-/// 1.05, or by a larger step if a joint is much too fast. Beyond the first failure it also tries
-/// faster scales in steps of 0.5 % down to 0.82 of the edge, because jumps may pass again there,
-/// and continues from the fastest one that passes. A scale that cannot be sampled does not pass.
+/// 1.05, or by a larger step if a joint is much too fast. From the fastest scale that passes, it
+/// also tries faster scales in steps of 0.5 % (down to 0.82 of this scale), because a pattern with
+/// flights may pass again there, and it continues from the fastest of these that passes. A scale
+/// that cannot be sampled does not pass.
 FastestPace fastest_pace(const RobotModel& model, const Pattern& pattern,
                          const RetimeOptions& options, const Progress& progress = {});
 

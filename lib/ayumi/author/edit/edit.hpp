@@ -44,7 +44,8 @@ Pattern retimed(const RobotModel& model, const Pattern& pattern, double scale);
 Pattern stretched(const RobotModel& model, const Pattern& pattern, double begin, double end,
                   double factor);
 
-/// Another timing along a motion of the same postures.
+/// A new timing of a motion: the robot takes the same postures in the same order, but at other
+/// times.
 struct TimeCourse {
   double dt = 0.001;       ///< sampling step of the new motion [s]
   std::vector<double> at;  ///< for each sample of the new motion, the time of the given motion [s];

@@ -42,7 +42,7 @@ constexpr double kStepTime = 0.07;
 // frequencies.
 constexpr double kStepShare = 0.33;
 // Largest angle of joints outside the legs, and largest angle of the foot in the air about each
-// axis [rad]. Chosen: some thousand counts, without reaching other links.
+// axis [rad]. Chosen: a few thousand counts, without reaching other links.
 constexpr double kJointAngle = 0.25;
 constexpr double kFootAngle = 0.1;
 // Roll of the foot in the air while its leg leans, with the outer edge up [rad], and the distance

@@ -51,10 +51,12 @@ struct DtadParams {
   /// [effort] preview: cost of the jerk's change. Source: Q = 1 and R = 1e-6 of Kajita and others
   /// (2003), made dimensionless with their tick of 5 ms and their COG height of 0.814 m.
   double preview_effort = 5e-7;
-  double preview_horizon = 5.5;  ///< [horizon] preview: horizon of the planned ZMP; theirs is 1.6 s
-  double preview_feedback = 1;   ///< [feedback] preview: share of its gains on the measured state
-  double least_guide_time = 1;   ///< [soonest] foot-guided: smallest time that the DCM is given
-  StepWeights steps;             ///< [place], [time], [offset], [zmp], [slowest] dcm-step
+  /// [horizon] preview: horizon of the planned ZMP [1/omega]. Source: the 1.6 s of Kajita and
+  /// others (2003).
+  double preview_horizon = 5.5;
+  double preview_feedback = 1;  ///< [feedback] preview: share of its gains on the measured state
+  double least_guide_time = 1;  ///< [soonest] foot-guided: smallest time that the DCM is given
+  StepWeights steps;            ///< [place], [time], [offset], [zmp], [slowest] dcm-step
 
   /// Whether the plan moves with the robot in a pattern without VIIP goals.
   bool moves_footholds() const {

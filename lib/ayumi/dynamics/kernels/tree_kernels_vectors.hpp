@@ -140,7 +140,7 @@ inline bool any_large(T q) {
   return false;
 }
 
-// Angles beyond the reach of the series are computed by the library, one by one.
+// Angles beyond the range of the series are computed by math/elementary, one by one.
 template <typename T>
 __attribute__((noinline)) void far_sine_cosine(T q, T& s, T& c) {
   for (unsigned i = 0; i < sizeof(T) / sizeof(double); ++i) {

@@ -13,7 +13,7 @@ namespace {
 // Size of the motion. Chosen: a person sees it clearly, and no part of the robot touches another
 // one. Half of it is hard to see at a wrist; with twice, the feet of a robot touch each other.
 constexpr double kAngle = 5 * EIGEN_PI / 180;  // angle by which a joint is moved [rad]
-constexpr double kSlide = 0.01;                // distance by which a slider is moved [m]
+constexpr double kSlide = 0.01;                // distance by which a sliding joint is moved [m]
 // Times of one test [s]. Chosen: 2.5 degrees per second on average, slow enough to be stopped.
 constexpr double kRest = 0.5, kMove = 2, kHold = 1;
 

@@ -11,8 +11,8 @@ std::string recognize_webots_motion(const MotionInput& source);
 MotionFile read_webots_motion(const MotionInput& source);
 std::vector<WrittenFile> write_webots_motion(const RobotModel& model, const MotionFile& motion);
 
-/// Writes V1.1, with `%` between the cells and the names in the second line. The last cell of a row
-/// is the time in which its pose is reached. read_webots_motion() reads this form.
+/// The version V1.1, with `%` between the cells and the names in the second line. The last cell of
+/// a row is the duration of the motion to its pose. read_webots_motion() also reads this version.
 std::string recognize_webots_durations(const MotionInput& source);
 std::vector<WrittenFile> write_webots_durations(const RobotModel& model, const MotionFile& motion);
 

@@ -1,8 +1,8 @@
 #pragma once
 // Strict reading of JSON documents. Every complaint names the file, the JSON pointer and what was
 // expected, e.g. "step.json: /keyframes/3/time: expected a number, found a string". Comments are
-// allowed; duplicate keys, trailing text and numbers that are not finite are refused. Included by
-// io/*.cpp only.
+// allowed; duplicate keys, trailing text and numbers that are not finite are refused. In the
+// library, only files below io include it.
 
 #include <Eigen/Core>
 #include <map>

@@ -37,7 +37,7 @@ struct SweepThresholds {
 
 class SweepStudy {
  public:
-  /// Largest number of cases. Chosen: their numbers take some 100 MB of memory.
+  /// Largest number of cases. Chosen: their numbers take about 100 MB of memory.
   static constexpr long kMostCases = 100'000'000;
 
   /// Reads the bytes of a study file; `path` names it in messages. Throws Error(bad_pattern) "file:

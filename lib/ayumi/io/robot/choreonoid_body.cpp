@@ -29,7 +29,8 @@ using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
 // Largest number of elements of a body. Elements behind an alias count each time that the alias is
-// used. Chosen: a robot has some thousand; without a bound, aliases inside aliases would never end.
+// used. Chosen: a robot has a few thousand; without a bound, aliases inside aliases would never
+// end.
 constexpr int kMostBodyElements = 20000;
 // Largest depth of nested elements. Chosen: the same as in the parsers of other formats.
 constexpr int kDeepestBodyElement = 100;

@@ -1,5 +1,5 @@
 #pragma once
-// RobotDescription from a Choreonoid body file (.body, YAML). Included by io/*.cpp only.
+// RobotDescription from a Choreonoid body file (.body, YAML). Only files of io/robot include it.
 
 #include <filesystem>
 #include <string>

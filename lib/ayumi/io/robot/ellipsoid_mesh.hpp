@@ -1,5 +1,5 @@
 #pragma once
-// An ellipsoid as a mesh, for formats that have this shape. Included by io/*.cpp only.
+// An ellipsoid as a mesh, for formats that have this shape. Only files of io/robot include it.
 
 #include <cmath>
 #include <numbers>

@@ -1,7 +1,7 @@
 #pragma once
 // Ayumi's robots look along x of their root link. If the robot of a URDF looks along another axis,
 // the frame of the root link is turned, together with everything that is stated in this frame.
-// Included by io/*.cpp only.
+// Only files of io/robot include it.
 
 #include <Eigen/Geometry>
 #include <string>

@@ -52,7 +52,7 @@ std::string lower_name(std::string name) {
   return name;
 }
 
-// The file whose name differs from `file` only in capital letters; empty if there is none.
+// The file whose name differs from `file` only in upper and lower case; empty if there is none.
 fs::path with_other_capitals(const fs::path& file) {
   fs::path found = file.is_absolute() ? file.root_path() : fs::path(".");
   std::error_code ignored;

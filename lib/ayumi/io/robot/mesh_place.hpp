@@ -1,6 +1,6 @@
 #pragma once
 // Finds the meshes that a robot's file names. Missing meshes are remembered, so that all of them
-// can be listed at once. Included by io/*.cpp only.
+// can be listed at once. Only files of io/robot include it.
 
 #include <filesystem>
 #include <string>
@@ -20,7 +20,7 @@ class MeshPlaces {
   /// "package://NAME/..." and "model://NAME/...". A package is a folder of this name, or a folder
   /// whose package.xml has this name. It is searched among `packages` and the folders in them, and
   /// then in the folder of the robot's file, in the folders above it and beside those. A file whose
-  /// name differs only in capital letters is accepted. Empty if there is no such file.
+  /// name differs only in upper and lower case is accepted. Empty if there is no such file.
   std::string find(const std::string& link, const std::string& name);
 
   /// The folder "model://NAME" or "package://NAME"; empty if there is none.

@@ -2,7 +2,7 @@
 // Makes a RobotDescription from MJCF, MuJoCo's own format. MuJoCo compiles the model, so that its
 // own rules apply (default classes, frames, inertias from shapes), and the compiled tree is read
 // back. MuJoCo only gets text that was read and cleaned here, and no file: it places the meshes,
-// but they are read in the same way as those of other formats. Included by io/*.cpp only.
+// but they are read in the same way as those of other formats. Only files of io/robot include it.
 
 #include <filesystem>
 #include <string>

@@ -21,7 +21,8 @@ namespace fs = std::filesystem;
 // Largest depth of files that include each other. Chosen: models include a handful of parts, one or
 // two deep.
 constexpr int kDeepestMjcfInclude = 20;
-// Largest number of elements of a model with all included files. Chosen: a robot has some thousand.
+// Largest number of elements of a model with all included files. Chosen: a robot has a few
+// thousand.
 constexpr size_t kMostMjcfElements = 200000;
 // Largest number of bytes of an included file. Chosen: text of a model takes kilobytes.
 constexpr size_t kLargestMjcfPart = size_t{64} << 20;

@@ -1,7 +1,7 @@
 #pragma once
 // Prepares the text of an MJCF model for the installed version of MuJoCo. Included files replace
 // the elements that include them. Everything that does not describe the robot is left out, and
-// everything that this version of MuJoCo does not know. Included by io/*.cpp only.
+// everything that this version of MuJoCo does not know. Only files of io/robot include it.
 
 #include <Eigen/Geometry>
 #include <filesystem>

@@ -1,7 +1,7 @@
 #pragma once
 // What a bare URDF does not say: the direction that the robot faces, its soles, its home posture,
 // its servos and sensors. Each guess has a reason. A bare URDF is read with these guesses, and
-// `ayumi init` writes them down. Included by io/*.cpp only.
+// `ayumi init` writes them down. In the library, only files of io/robot include it.
 
 #include <string>
 #include <vector>

@@ -1,7 +1,7 @@
 #pragma once
 // Merges a sidecar with its base: {"base": "hoap1", ...} contains only the differences. Objects are
 // merged by key, profiles are merged by name, and the lists of groups are appended, so that the
-// later group counts. Everything else is replaced. Included by io/*.cpp only.
+// later group counts. Everything else is replaced. Only files of io/robot include it.
 
 #include <filesystem>
 #include <functional>

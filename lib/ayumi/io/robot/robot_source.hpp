@@ -1,6 +1,6 @@
 #pragma once
-// The links and joints of a robot from a file of any format that Ayumi reads. Included by io/*.cpp
-// only.
+// The links and joints of a robot from a file of any format that Ayumi reads. In the library, only
+// files below io include it.
 
 #include <filesystem>
 #include <string>
@@ -23,7 +23,7 @@ RobotFormat robot_format(const std::string& bytes, const std::filesystem::path& 
 RobotDescription parse_robot(const std::string& bytes, const std::filesystem::path& path,
                              const std::vector<std::filesystem::path>& packages);
 
-/// Whether the ending of a file's name, with or without capitals, may be that of a robot.
+/// Whether the ending of a file's name may be that of a robot, in upper or lower case.
 bool has_robot_ending(const std::filesystem::path& path);
 
 }  // namespace ayumi

@@ -1,7 +1,7 @@
 #pragma once
 // RobotDescription from SDF, the format of Gazebo, versions 1.4 to 1.11: frames and poses relative
 // to them, nested and included models. libsdformat is not used: it writes a log file into the
-// user's home folder whenever it reads, and prints. Included by io/*.cpp only.
+// user's home folder whenever it reads, and prints. Only files of io/robot include it.
 
 #include <filesystem>
 #include <string>

@@ -1,5 +1,5 @@
 #pragma once
-// Reads the sidecar robot.json into a description. Included by io/*.cpp only.
+// Reads the sidecar robot.json into a description. Only files of io/robot include it.
 
 #include <filesystem>
 #include <string>

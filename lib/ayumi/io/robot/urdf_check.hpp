@@ -1,5 +1,5 @@
 #pragma once
-// The strict check of a URDF's XML before urdfdom reads it. Included by io/*.cpp only.
+// The strict check of a URDF's XML before urdfdom reads it. Only files of io/robot include it.
 
 #include <map>
 #include <set>

@@ -1,5 +1,5 @@
 #pragma once
-// Reads XML from files that are not trusted, by TinyXML. Included by io/*.cpp only.
+// Reads XML from files that are not trusted, by TinyXML. Only files of io/robot include it.
 
 #include <tinyxml.h>
 

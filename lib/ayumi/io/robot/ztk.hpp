@@ -1,6 +1,6 @@
 #pragma once
 // Robots of mi-lib (.ztk of RoKi), which are read and written. Their text has tags with fields.
-// Included by io/*.cpp only.
+// In the library, only files below io include it.
 
 #include <filesystem>
 #include <string>

@@ -1,6 +1,6 @@
 // Points in the picture that can be dragged: feet, hands, gaze, trunk and COG, and the targets of
-// keys of hands and gaze. Also pushes, which are drawn there as arrows. The server answers a drag
-// with the posture that brings the point to its place.
+// keys of hands and gaze. Pushes, which are drawn as arrows, can be dragged too. For a dragged point,
+// the server answers with the posture that brings the point to its place.
 
 import { BufferGeometry, Line, LineBasicMaterial, Mesh, MeshBasicMaterial, OctahedronGeometry, Plane, Raycaster,
   SphereGeometry, Vector2, Vector3 } from "three";

@@ -278,9 +278,9 @@ bool ContactSolver::stick_and_slide(int rows) {
   return eliminate(store_[4].data(), store_[5].data(), rows);
 }
 
-// Makes Newton steps from the last step's impulses while each one reduces the distance from the
-// laws. Restores these impulses if the steps do not reach the tolerance. Returns the remaining
-// distance.
+// Makes Newton steps from the last step's impulses while each one reduces the violation of the
+// contact laws. Returns the remaining violation. If the steps do not reach the tolerance, restores
+// the impulses and returns infinity.
 double ContactSolver::newton_alone(int& sweeps, double tolerance) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
   Vector candidate(store_[3].data(), 3 * n_), start(store_[7].data(), 3 * n_);

@@ -1,7 +1,8 @@
-// A gap g that closes at the rate v becomes a contact if g + 3 h v < kContactMargin. Gravity and
-// servos can increase the speed of approach within a step of length h, and the distance of three
-// steps at the present speed allows for that. Groups of points, whole robots and pairs of bodies
-// are excluded first by lower bounds of their gaps, so that limbs in the air cost little time.
+// A gap g that changes at the rate v (negative while the gap closes) becomes a contact if
+// g + 3 h min(v, 0) < kContactMargin. Gravity and servos can increase the speed of approach within
+// a step of length h, so the distance of three steps at the present speed is allowed for. Groups of
+// points, whole robots and pairs of bodies are excluded first by lower bounds of their gaps, so
+// that limbs in the air cost little time.
 #include "ayumi/sim/plant/contacts.hpp"
 
 #include <algorithm>
