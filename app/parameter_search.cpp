@@ -23,7 +23,7 @@ namespace {
 using Values = std::map<std::string, double>;
 
 // Largest number of trials with several parameters together. Chosen: each trial costs one sampling
-// and one check, 0.1 s for a walk of some steps.
+// and one check, 0.1 s for a walk of a few steps.
 constexpr int kMostTrials = 60;
 // Violation of a motion that cannot be sampled. Chosen: worse than any motion.
 constexpr double kUnsampled = 1e6;

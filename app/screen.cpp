@@ -104,7 +104,7 @@ std::string in_full(const std::vector<AnswerPart>& parts) {
 }
 
 std::vector<std::string> shortened_line(const std::string& line) {
-  // Number of columns in two rows and in one row of 80 columns. Two rows lose some columns where a
+  // Number of columns in two rows and in one row of 80 columns. Two rows lose a few columns where a
   // line is broken and its rest is indented.
   constexpr size_t kTwoRows = 144, kOneRow = 78;
   return {line + "\n", beginning(line, kTwoRows), beginning(line, kOneRow)};

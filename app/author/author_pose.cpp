@@ -380,8 +380,8 @@ void drag_swing(const AuthorMotion& motion, size_t phase, double time, const Vec
   const Vector3d from = sample_near(motion.task.series, begin).feet[s].translation();
   const Vector3d to = sample_near(motion.task.series, end).feet[s].translation();
   const Vector3d now = sample_near(motion.task.series, time).feet[s].translation();
-  // The share of the way that the foot has covered. The landing place moves by the drag divided by
-  // this share, which counts as at least a quarter.
+  // The share of the distance that the foot has covered. The landing place moves by the drag
+  // divided by this share, which counts as at least a quarter.
   const double way = (to - from).head<2>().norm();
   const double u = (time - begin) / (end - begin);
   const double done = way > kStill ? (now - from).head<2>().norm() / way : u;
@@ -651,7 +651,7 @@ class Drag {
   }
 
   // A key of the target at this time, in the frame of the leading target. The trunk moves a little
-  // with the arm, so some rounds are needed for a place in the frame of the trunk.
+  // with the arm, so a few rounds are needed for a place in the frame of the trunk.
   std::vector<PatternEdit> target(const LinkTarget& leads) {
     const bool in_trunk = leads.frame == LinkTarget::Frame::trunk;
     Vector3d to = wish_.to;

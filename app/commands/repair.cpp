@@ -280,7 +280,7 @@ int exit_code_of(const RepairResult& result) {
              : 4;
 }
 
-// Tells a waiting user what a repair works on: after some seconds, again when another step takes
+// Tells a waiting user what a repair works on: after a few seconds, again when another step takes
 // long, and when the repair is stopped. This is not progress, so it is also printed with -q.
 class StruggleTeller {
  public:

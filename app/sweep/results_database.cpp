@@ -33,7 +33,7 @@ constexpr int kDatabaseFormat = 1;
 constexpr int kLongestText = 65 << 20;
 constexpr const char* kNoResults =
     "this file does not hold results of ayumi sweep, or the file is damaged; choose another name";
-/// Time for which a reader waits for a writer [ms]. Chosen: a commit takes some ms.
+/// Time for which a reader waits for a writer [ms]. Chosen: a commit takes a few ms.
 constexpr int kLockPatience = 10000;
 
 /// A prepared statement.

@@ -58,7 +58,7 @@ constexpr long kDefaultArray = 1000;
 /// controller takes less than a minute.
 constexpr double kLongestSilence = 600;
 /// Shortest and longest time between two queries of the queue [s]. Chosen: a query costs the
-/// controller some ms.
+/// controller a few ms.
 constexpr double kShortestPoll = 0.5, kLongestPoll = 10;
 /// Time between two attempts to submit tasks that Slurm has refused while it has other tasks [s].
 /// Chosen: the number of jobs that a limit allows changes when tasks end, which takes minutes.

@@ -114,7 +114,7 @@ void measure(const char* name, const RobotModel& model, const CommandSeries& ser
   std::fflush(stdout);
 }
 
-// The smallest processor time of some runs [ms].
+// The smallest processor time of several runs [ms].
 template <class Work>
 double quickest(const Work& work) {
   double best = 1e9;

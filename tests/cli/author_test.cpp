@@ -419,9 +419,9 @@ TEST_F(AuthorServer, AdvisesTheButtonOfTheRepair) {
   EXPECT_EQ(findings.find("ayumi repair"), std::string::npos) << findings;
 }
 
-// A text that cannot be read as a pattern is not written; a motion that the robot cannot do is
-// written, and is shown at its line. While the motion is older than the text, only places that both
-// have can be changed.
+// A text that cannot be read as a pattern is not written; a pattern whose motion the robot cannot
+// do is written, and the error is shown. While the motion is older than the text, only places that
+// both have can be changed.
 TEST_F(AuthorServer, RefusesEditsThatMakeThePatternUnreadable) {
   const Server server(file);
   const auto can_edit = [](const OrderedJson& state) {
@@ -667,8 +667,8 @@ TEST_F(AuthorServer, ADragOfTheTrunkLeansItOrMovesItUpAndDown) {
   EXPECT_EQ(rise.find("torso"), std::string::npos) << rise;
 }
 
-// An arm at its limits turns back there, and the targets of its servos exceed the limits because
-// they lead the motion.
+// If an arm turned back at its limits, the targets of its servos would exceed the limits, because
+// they lead the motion. So a dragged arm keeps a distance from its limits.
 TEST_F(AuthorServer, AnArmThatIsDraggedTooFarStaysWithinItsLimits) {
   const Server server(file);
   for (const double t : {2.0, 2.5, 3.0}) {

@@ -135,8 +135,8 @@ TEST_F(Replay, TheSignTestMovesOneJointAtATime) {
 }
 
 // A recorded walk of a real HOAP-3, replayed as it was sent: the encoders agree within 0.05 degrees
-// in the mean and 0.2 at most, and the feet share the load alike. The data are not part of this
-// program.
+// on average and within 0.2 degrees at every time, and the load is shared between the feet as in
+// the recording. The data are not part of this program.
 TEST(RecordedReplay, ARecordedWalkOfARealRobot) {
   const std::string data = AYUMI_SOURCE_DIR "/../shared/data/hoap3";
   if (!std::filesystem::exists(data + "/recordings"))

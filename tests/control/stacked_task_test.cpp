@@ -9,8 +9,8 @@ namespace {
 
 using Eigen::VectorXd;
 
-// The result is that of the general solve, even for tasks with two equal rows, for which the factor
-// breaks down.
+// The result is that of the general solve, even for tasks with two equal rows, for which the
+// factorization fails.
 TEST(StackedTask, IsSolvedAsAnyTask) {
   test::Random random(5);
   StackedTask task;

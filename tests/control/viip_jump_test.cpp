@@ -21,8 +21,8 @@ JumpGoal goal_of(double height, double stoop, JumpGoal::Release release) {
   return goal;
 }
 
-// (26) from rest by small steps: where and when contact is lost, the speed there, and the height
-// reached after that.
+// Integrates (26) from rest in small steps. Returns where and when contact is lost, the speed
+// there, and the height that is reached after that.
 JumpFigures integrated(const JumpGoal& goal) {
   const double k = 2 * kGravity * goal.height / (goal.stoop * goal.stoop), dt = 1e-6;
   double z = -goal.stoop, v = 0, t = 0;

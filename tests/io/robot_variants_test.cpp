@@ -1,5 +1,5 @@
-// Robots as they occur in practice: URDF with byte order marks, comments, other capitals, packages
-// in other places, misspelt elements, missing meshes and links without mass.
+// Robots as they occur in practice: URDF with byte order marks, comments, names in upper case,
+// packages in other places, misspelt elements, missing meshes and links without mass.
 
 #include <gtest/gtest.h>
 

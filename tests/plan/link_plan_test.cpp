@@ -350,7 +350,7 @@ TEST(LinkPlan, DoesNotMeasureTheReachOfATrunkThatIsOnItsWay) {
   };
   const CommandSeries bent = sample(hoap1(), in_order(hangs));
   const int body = hand_body(hoap1(), Side::right);
-  // A quick bow moves the trunk by some millimetres more.
+  // A quick bow moves the trunk by a few millimetres more.
   const Vector3d end =
       hand_at(hoap1(), sample_at(bent, 2.5).state, body).end + Vector3d(-0.005, 0, 0.005);
   const auto error_of = [&](const Pattern& pattern) {

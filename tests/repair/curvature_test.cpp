@@ -1,6 +1,6 @@
-// The Hessian of the repair's program is compared with differences of its gradient: at the motion
-// itself, held still in the middle of a step, where no term is left out, along directions of base
-// and legs.
+// The Hessian of the repair's program is compared with differences of its gradient: for a robot
+// that holds still in the middle of a step, without a correction, and for changes of base and legs.
+// There, the Hessian leaves out no term.
 
 #include <gtest/gtest.h>
 

@@ -29,8 +29,8 @@ const Pattern& trial_walk() {
   return pattern;
 }
 
-// Noise at all control points, as large as the track itself; the base moves by a tenth of the
-// joints.
+// Noise at all control points, as large as the track itself; the noise of the base position is a
+// tenth of the noise of the joints.
 CorrectionTrack with_noise(const CorrectionTrack& track, double size, Random& random) {
   CorrectionTrack noisy = track;
   for (Eigen::Index i = 3; i < track.coefficients.rows() - 3; ++i)

@@ -41,7 +41,8 @@ void expect_calm(const SimulationLog& log) {
     for (const Eigen::Vector3d& force : s.foot_force) ASSERT_GT(force.z(), 0);
 }
 
-// Without the gain damp the distance is 39 mm at 8 ms, and the ZMP does not come to rest.
+// Without the gain damp, the distance of the measured ZMP from ref ZMP is 39 mm at 8 ms, and the
+// ZMP does not come to rest.
 TEST(SensorLatency, AStandingRobotStaysCalmUpToFourteenMilliseconds) {
   for (const double latency : {0.0, 0.004, 0.008, 0.010, 0.014}) {
     SCOPED_TRACE(latency);
@@ -59,7 +60,7 @@ TEST(SensorLatency, TheGainsOfARobotWithoutGainsOfItsOwnDoAsWell) {
   }
 }
 
-// Without the gain damp the distance is 34 mm at 10 ms.
+// Without the gain damp, the distance of the measured ZMP from ref ZMP is 34 mm at 10 ms.
 TEST(SensorLatency, ViipStaysCalmUpToFourteenMilliseconds) {
   for (const double latency : {0.0, 0.004, 0.010, 0.014}) {
     SCOPED_TRACE(latency);
@@ -73,8 +74,9 @@ struct LateWalk {
   double most;         // largest rms of measured ZMP - ref ZMP with sensors that are 14 ms late [m]
 };
 
-// The sensors are 10 ms late, and the servos of HOAP-1 lag as much again. Measured: 8.9, 30.6,
-// 19.7, 23.1 and 9.4 mm. Without the gain damp, the feet of HOAP-1 hammer in all cases.
+// The readings are 14 ms late: 10 ms for the sensors, and the rest for the lag of HOAP-1's servos.
+// The rms of measured ZMP - ref ZMP is 8.9, 30.6, 19.7, 23.1 and 9.4 mm. Without the gain damp, the
+// feet of HOAP-1 hammer in all cases.
 TEST(SensorLatency, NoFootHammersWhileWalkingAndStepping) {
   for (const LateWalk& c :
        {LateWalk{"hoap1_walk", 0, 0, 0.011}, LateWalk{"hoap1_walk", -3 * M_PI / 180, 0, 0.036},

@@ -27,8 +27,8 @@ using test::error_message;
 
 constexpr double kHigh = 5.0;  // friction that holds every edge
 
-// The energy of a block that rocks about its edges, as the share that is left after each impact,
-// from the turning points (energy above rest).
+// The share of the energy that is left after each impact of a block that rocks about its edges. The
+// energy, relative to the block at rest, is computed at the turning points.
 std::vector<double> rocking_ratios(const Vector3d& size, double lean, int impacts, double h) {
   const double alpha = std::atan2(size.x(), size.z());
   const double radius = 0.5 * std::hypot(size.x(), size.z());

@@ -343,8 +343,8 @@ TEST(ServoGear, IsASpringInSeriesWithTheServo) {
   EXPECT_NEAR(rig.step(0.2, -3).torque[0], 3, 1e-6);
 }
 
-// On the way to a far target, the torque is the stall torque at rest. The last speed, without a
-// torque, is stall / back-EMF, and a straight line lies between.
+// On the way to a far target, the torque falls with the speed along a straight line: from the stall
+// torque at rest to 0 at the speed stall torque / back-EMF constant.
 TEST(ServoVoltage, BoundsTheTorqueByALineOverTheSpeed) {
   ServoDescription servo{.kp = 1000, .kd = 1, .rotor_inertia = 0.01};
   servo.stall_torque = 2;

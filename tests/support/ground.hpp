@@ -39,8 +39,8 @@ inline std::vector<FloorMotion> shaking(double amplitude) {
   return {{0.2, 10, {MotionShape::sine, 2, {0, 0}, {amplitude, 0, 0}}}};
 }
 
-/// The distance that a block moves on that floor after it has caught up with it, since the sine
-/// begins at full speed [m].
+/// The largest distance that a block moves relative to that floor [m]. It is measured only when the
+/// block has caught up with the floor, because the sine begins at full speed.
 template <typename Block>
 double moved_on_floor(Block& block, const std::vector<FloorMotion>& motions, double step) {
   double apart = 0, offset = 0;

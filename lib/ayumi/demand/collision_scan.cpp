@@ -142,8 +142,8 @@ class ClearanceScan {
     return way;
   }
 
-  // A bound of way() that costs less: the movements of both bodies seen from the ground. `gap` is
-  // the distance of their spheres at the coarse sample c.
+  // An upper bound of way() that takes less time to compute: it adds the movements of both bodies,
+  // seen from the ground. `gap` is the distance of their spheres at the coarse sample c.
   double way_bound(int c, const CollisionModel::Pair& bodies, double gap) const {
     const BodyPlace &a = places_[c][bodies.a], &b = places_[c][bodies.b];
     const double ra = spheres_[bodies.a].radius, rb = spheres_[bodies.b].radius;
@@ -184,8 +184,9 @@ class ClearanceScan {
   /// Clearances below this value must be exact.
   double wanted() const { return std::max(exact_, least_); }
 
-  // Clearance of a pair. Lower bounds are enough above `reach` [m], and above near_. The direction
-  // along which two shapes were nearest when they were last measured still separates them well.
+  // Clearance of a pair. A lower bound is sufficient if it is above `reach` [m] or above near_. The
+  // direction along which two shapes were nearest when they were last measured still separates them
+  // well.
   double measured(int pair, const Eigen::Isometry3d& pose_a, const Eigen::Isometry3d& pose_b,
                   double reach) {
     const CollisionModel::Pair& bodies = collisions_.pairs()[pair];

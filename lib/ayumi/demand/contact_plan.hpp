@@ -49,7 +49,8 @@ struct RunOn {
   int samples = 0;  ///< number of samples until it has practically come to its place
 };
 /// The continuation at the first sample of a contact (`lands`) or at its last one. The height is
-/// zero if the sole is in its place, or if it hangs still (then it is floating and not swinging).
+/// zero if the sole is in its place, or if it is at rest above its place (then it is floating and
+/// not swinging).
 RunOn swing_run_on(const RobotModel& model, const CommandSeries& series, Side side,
                    const ContactInterval& contact, bool lands);
 

@@ -24,9 +24,9 @@ Eigen::MatrixXd cog_jacobian_floating(const RobotModel& model, RobotData& data);
 /// rest.
 Eigen::MatrixXd anchored_velocity_map(const RobotModel& model, const RobotData& data, Side support);
 
-/// (6+dof) x dof on both feet: the base moves so that the two soles move as little as possible,
-/// where turns are multiplied by 0.2 m. If the joint rates allow both soles to be at rest, they are
-/// at rest.
+/// (6+dof) x dof: generalised velocity per joint rate on both feet. The base moves so that the two
+/// soles move as little as possible, where turns are multiplied by 0.2 m. If the joint rates allow
+/// both soles to be at rest, they are at rest.
 Eigen::MatrixXd both_feet_velocity_map(const RobotModel& model, const RobotData& data);
 
 /// (13) on both feet, 3 x dof, with the base velocity of both_feet_velocity_map().

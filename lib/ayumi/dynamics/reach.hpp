@@ -14,8 +14,9 @@ struct ReachSolution {
   double missing = 0;  ///< distance of the point from its place [m]
 };
 
-/// Bodies at which the limbs end: those that carry nothing, and those whose parts, such as fingers,
-/// reach less than half as far as the limb that carries them.
+/// Bodies at which the limbs end: bodies that carry no other body, and bodies from which several
+/// chains of joints, such as fingers, branch off that are all less than half as long as the limb up
+/// to this body.
 std::vector<int> limb_ends(const RobotModel& model);
 
 /// The joints that move this body and no other end of a limb, listed from the body towards the

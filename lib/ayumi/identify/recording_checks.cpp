@@ -29,7 +29,8 @@ constexpr double kMoves = 0.5 * kDegree;
 constexpr double kLengthShare = 0.02, kLengthTime = 0.25, kShorter = 0.05;
 
 // Mean share of the weight on the standing foot in all single supports, below which the load cells
-// do not fit this motion. Chosen: cells that are 0.3 s late, or of the other side, have less.
+// do not fit this motion. Chosen: cells that are 0.3 s late, or that belong to the other foot, have
+// less.
 constexpr double kStandingShare = 0.8;
 
 // Squared correlations with the command: above the first, slope and sign have a meaning; below the

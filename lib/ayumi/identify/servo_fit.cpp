@@ -30,8 +30,8 @@ constexpr std::array<double, kConstants + 1> kUnit = {1e-3, 1e-4, 1e-3, 1e-4, 1e
 // thousandth of a count.
 constexpr double kStep = 0.005;
 
-// Distance of residuals [s] that are free of the noise of single readings. Chosen: five rows of a
-// HOAP.
+// Time between two residuals of a joint [s] that do not contain the same noise of a reading.
+// Chosen: five rows of a HOAP.
 constexpr double kNoiseTime = 0.005;
 
 // Correlation below which residuals count as independent. Chosen: the usual value for block sums.

@@ -20,8 +20,8 @@ struct SafetyOptions {
   double counts_per_ms = 57;  ///< speed limit of the motor board [counts/ms]
   double step_share = 1;      ///< share of the largest step that may be used
   /// Distance by which a target may exceed the soft limits [rad], [m]. Chosen: a hundredth of a
-  /// count of HOAP's encoders; a target that leads a start from rest at a limit is beyond it by
-  /// 4e-9 rad.
+  /// count of HOAP's encoders; if a motion starts from rest at a limit, its first targets lead the
+  /// joint and exceed the limit by 4e-9 rad.
   double beyond_range = 1e-6;
   double rest_speed = 0.1;  ///< speed below which the start and the end count as rest [rad/s]
   double rest_window = 0;   ///< time over which the speed is a mean [s]; with 0, one row

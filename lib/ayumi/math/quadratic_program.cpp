@@ -16,7 +16,7 @@ namespace {
 
 // Largest number of steps; after them the search ends with a feasible x. Chosen: several times the
 // number of inequalities. The program of a tick takes fewer than twenty steps, so that half and
-// twice the value give the same.
+// twice the value give the same result.
 constexpr int kMostSteps = 200;
 
 // Size below which a step, relative to that of x, or a multiplier, relative to the gradient, counts

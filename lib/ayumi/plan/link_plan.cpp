@@ -577,8 +577,8 @@ double LinkPlan::solve(double t, const VectorXd& keyed, RobotState& state, Robot
 
 namespace {
 
-// The distance from the target: that of its place [m], or, if the place is reached, that of its
-// direction [rad]. It is 0 if both are reached.
+// The distance of a point from the place of its target [m], and the angle between a direction and
+// that of its target [rad]. Each is 0 if the target is reached, or if its weight is 0.
 double off_place(const Vector3d& end, const Vector3d& place, double weight) {
   const double missing = weight > 0 ? (end - place).norm() : 0;
   return missing > kThere ? missing : 0;

@@ -16,7 +16,8 @@ struct RobotLook {
   /// Like robot_surface(), but with fewer triangles if there are too many.
   std::vector<BodySurface> surface;
   size_t triangles = 0;  ///< number of triangles of the robot's own meshes
-  double moved = 0;  ///< approximate distance of the surface from the meshes [m]; 0 if it is theirs
+  double moved =
+      0;  ///< approximate distance of the surface from the meshes [m]; 0 if nothing moved
   GhostColors ghost;  ///< ghost_colors() of the robot's own meshes
 };
 

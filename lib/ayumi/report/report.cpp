@@ -15,16 +15,16 @@
 #include "ayumi/report/replay.hpp"
 #include "ayumi/report/sections.hpp"
 
-// A page that is too large is made again with a coarser replay: first with half the triangles, then
-// with half the rate, each down to a tenth; then without the snapshots, and at last without the
-// replay.
+// A page that is too large is made again with a coarser replay: the number of triangles is halved
+// until it reaches its lower limit, and then the rate; then the page is made without the snapshots,
+// and at last without the replay.
 
 namespace ayumi {
 namespace {
 
-// Limits that keep the page within its size: the largest number of keys of the replay, the largest
-// number of triangles of the robot, and the lowest rate of keys [Hz], between which the replay
-// interpolates.
+// Limits that keep the page within its size: the largest number of keys of the replay, the smallest
+// number of triangles to which the robot is reduced, and the lowest rate of keys [Hz], between
+// which the replay interpolates.
 constexpr double kMostKeys = 4000;
 constexpr size_t kFewestTriangles = 4000;
 constexpr double kLeastRate = 10;

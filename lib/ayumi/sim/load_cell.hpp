@@ -15,7 +15,8 @@ class LoadCell {
   LoadCell(const CellResponse& response, int readings);
 
   /// The part of the force that the cell senses in this reading, times the gain [N]:
-  ///   x = max(f - dead zone, 0),   y = y' moved no farther than into x -/+ hysteresis/2,
+  ///   x = max(f - dead zone, 0),
+  ///   y = the value between x - hysteresis/2 and x + hysteresis/2 that is nearest to y',
   /// where y' is the y of the previous reading, or 0 at first. So y is x - hysteresis/2 while the
   /// force rises by more than the hysteresis, and x + hysteresis/2 while it falls.
   double felt(double force);

@@ -26,7 +26,7 @@ namespace {
 /// mm, so that a sole rests on several of them.
 constexpr double kHollowSpacing = 0.02;
 /// Width of the uneven ground around the planned soles [m]. Chosen: wider than a sole and a slip of
-/// some centimetres; beyond it the ground is a plane.
+/// a few centimetres; beyond it the ground is a plane.
 constexpr double kHollowMargin = 0.2;
 /// Severity of a fall at the start of a run. Definition: the severity decreases by 1 per second
 /// until the fall, and even after an hour it is far above that of a run that has not settled.

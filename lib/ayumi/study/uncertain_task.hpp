@@ -1,9 +1,9 @@
 #pragma once
-// A task under uncertainty: from the number of a case to the values of all uncertain quantities,
-// the robot that has them, and its run. Every value is drawn from its own random numbers, which
-// depend on the seed of the study, the number of the case and the name of the value. So a case has
-// the same values under every law and in every pattern, and adding a quantity does not change the
-// values of the others.
+// A task under uncertainty. The number of a case, together with the seed of the study, determines
+// the values of all uncertain quantities, the robot that has them, and its run. Every value is
+// drawn from its own random numbers, which depend on the seed of the study, the number of the case
+// and the name of the value. So a case has the same values under every law and in every pattern,
+// and adding a quantity does not change the values of the others.
 
 #include <cstdint>
 #include <optional>

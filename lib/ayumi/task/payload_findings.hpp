@@ -1,7 +1,7 @@
 #pragma once
-// The effect of the scenario's payloads on the verdict. The author knows that the robot carries
-// them, unlike a push, so the motion has to bear them: while a payload is carried, the motion is
-// judged for the robot with its mass.
+// The effect of the scenario's payloads on the verdict. Unlike a push, a payload is known to the
+// author, so the motion has to allow for it: while a payload is carried, the motion is judged for
+// the robot with the mass of the payload.
 
 #include <string>
 #include <vector>

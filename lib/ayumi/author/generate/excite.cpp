@@ -34,7 +34,7 @@ constexpr double kShiftTime = 1.2, kLiftTime = 0.5;
 // torque that they can hold for a long time.
 constexpr double kRestTime = 2.2;
 // Half periods of the chirp [s] and the time of a step. Chosen: the chirp goes up to 6 Hz, and a
-// step is as quick as the speed of small servos allows for a minimum-jerk curve of some degrees.
+// step is as quick as the speed of small servos allows for a minimum-jerk curve of a few degrees.
 constexpr std::array<double, 8> kChirp = {0.45, 0.35, 0.28, 0.22, 0.18, 0.15, 0.11, 0.08};
 constexpr double kStepTime = 0.07;
 // Amplitude of the steps as a share of the amplitude of the sweep. Chosen: a joint then reaches

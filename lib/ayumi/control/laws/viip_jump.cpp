@@ -52,7 +52,8 @@ constexpr double kStoopTime = 5;
 constexpr double kStoopReached = 0.01;
 
 // Lean of the trunk when stooped, times z_d / ref z_G [rad]. Derivation: docs/theory_flight.md,
-// "Lean". Measured with version 0.1: 0 leaves the apex of springs 8 to 10 % low.
+// "Lean". Measured with version 0.1: with 0, jumps with the release `spring` reach an apex that is
+// 8 to 10 % too low.
 constexpr double kStoopLean = 1.2;
 
 // sqrt(K_Pz / m) after the landing, as a multiple of omega. Chosen: the COG is back at ref z_G

@@ -22,7 +22,7 @@ using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
 // A foot that changes by less than this from key to key stands still [m, rad]. Chosen: editors of
-// key poses print nine digits, and solvers of postures leave an error of some micrometres.
+// key poses print nine digits, and solvers of postures leave an error of a few micrometres.
 constexpr double kSamePlace = 1e-3, kSameTurn = 2e-3;
 // Largest number of keys of a file. Chosen: a motion edited by hand has a few hundred. A file of
 // 20,000 keys takes half a second and 70 MB.

@@ -111,8 +111,8 @@ Points loaded_outline(const PlacedShape& placed) {
   }
 }
 
-// Points of a shape, of which the lowest ones are the lowest ones of the shape. Round shapes touch
-// in one point or in a line.
+// Points of a shape, among them its lowest points. Round shapes touch the ground in one point or in
+// a line.
 Points points_above_ground(const PlacedShape& placed, const Isometry3d& link) {
   const Isometry3d pose = link * placed.pose;
   if (const auto* sphere = std::get_if<Sphere>(&placed.shape))
@@ -127,7 +127,7 @@ Points points_above_ground(const PlacedShape& placed, const Isometry3d& link) {
   return points;
 }
 
-// The points of the shapes with which a body touches others, or else of its visible shapes, in the
+// The points of the collision shapes of a body or, if it has none, of its visual shapes, in the
 // root frame.
 Points body_points(const RobotModel& model, const std::vector<Isometry3d>& poses, int body) {
   Points points;

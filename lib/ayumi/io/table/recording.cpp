@@ -39,7 +39,7 @@ constexpr double kJumpCounts = 4;
 // half a sample.
 constexpr double kGap = 0.5;
 
-// A device without a joint that moves by less than this does not move [counts]. Chosen: 0.05
+// A device without a joint counts as still if it moves by less than this [counts]. Chosen: 0.05
 // degrees.
 constexpr double kStillCounts = 10;
 

@@ -198,19 +198,19 @@ export function addSwing(phase, foot) {
 const gravity = 9.80665;
 const tenths = (value) => Number(value.toFixed(4));
 
-/// The time and the depth of the stoop of the COG before a flight of `length` s and after it. The
-/// quintic from rest to the lift-off of the parabola needs this depth to rise all the time. It is
-/// at most a fifth of the height, about the depth that nearly straight legs allow.
+/// The time and the depth of the stoop of the COG before a flight of `length` s and after it. With
+/// this depth, the quintic from rest to the lift-off of the parabola rises all the time. The depth
+/// is at most a fifth of the height, about as much as nearly straight legs allow.
 function stoopOf(length, room, height) {
   const deepest = 0.2 * height;
   const time = Math.min(length, room / 4, -2 * length + Math.sqrt(4 * length ** 2 + 20 * deepest / gravity));
   return { time, depth: gravity * time * (4 * length + time) / 20 };
 }
 
-/// Another support of a phase, as { edits } or { refused: why }. A flight follows a parabola, so
-/// "none" also adds missing COG keys and phases: keys at lift-off and touchdown, so low that the
-/// top of the parabola has the present height, a stoop before and after, and a phase for the
-/// landing. `cogAt(t)` is the present COG { x, y, height }.
+/// The edits that give a phase another support, as { edits } or { refused: why }. A flight follows
+/// a parabola, so "none" also adds missing COG keys and phases: keys at lift-off and touchdown, so
+/// low that the top of the parabola has the present height, a stoop before and after, and a phase
+/// for the landing. `cogAt(t)` is the present COG { x, y, height }.
 export function putSupport(state, document, index, support, cogAt) {
   const phase = state.phases[index], own = { kind: "set", pointer: phase.pointer + "/support", value: support };
   if (support !== "none") return { edits: [own] };
@@ -311,8 +311,9 @@ export function putGoal(phase, name, angleUnit, keyframes = []) {
 /// A time in each round as an expression: the written time plus the length of the previous rounds.
 const inRounds = (value, length, count) => `${value} + ${length}*\${${count}}`;
 
-/// The keyframes that belong to a block from `from` to `until`: those up to its end or, if each
-/// round `begins` with a keyframe, those from its beginning on.
+/// The keyframes that belong to a block from `from` to `until`: if each round `begins` with a
+/// keyframe, those from its beginning on, without the one at its end; otherwise those after its
+/// beginning, with the one at its end.
 const inBlock = (from, until, begins) => ({ time }) => begins ? time > from - 5e-4 && time < until - 5e-4 : time > from + 5e-4 && time < until + 5e-4;
 
 /// The keyframes that are later than this block.

@@ -173,7 +173,7 @@ double ContactSolver::sweep(Vector l, double share) {
 
 // Tests each contact against its law while the impulses of the others are constant. A contact that
 // deviates by more than `tolerance` gets the solution for itself alone. Returns the largest
-// distance from a law [m/s].
+// violation of a law [m/s].
 double ContactSolver::correct(Vector l, double tolerance) {
   const Matrix matrix = A();
   Vector u(store_[6].data(), 3 * n_);

@@ -30,9 +30,9 @@ constexpr double kContactMargin = 1e-3;
 /// upright. No measured case changes between half and twice the value (constants.md).
 constexpr double kLevelTilt = 1e-3;
 
-/// Number of steps with the present speed of approach in which a gap must stay open, so that it is
-/// not a contact. Chosen: gravity and servos can raise the approach within a step. Between half and
-/// twice the value, figures change by less than 5 %.
+/// A gap that stays open for this number of steps with the present speed of approach is not a
+/// contact. Chosen: gravity and servos can increase the speed of approach within a step. Between
+/// half and twice the value, figures change by less than 5 %.
 constexpr double kStepsAhead = 3;
 
 /// Gap within which edges and nodes of the ground are tested against shapes and soles [m]. Chosen:
