@@ -1,5 +1,5 @@
 #pragma once
-// Makes normals if a mesh has none, and joins vertices that are alike.
+// Makes normals if a mesh has none, and joins equal vertices.
 
 #include "ayumi/geometry/shape.hpp"
 

@@ -584,8 +584,8 @@ TEST_F(CheckRepair, BakedAndTakenToAnotherFolder) {
   EXPECT_EQ(ayumi({"check", "away/copy.json"}).exit_code, 0);
 }
 
-// The wishes in the file are kept, in the correction and in the table in another folder; the
-// command line adds to them.
+// The preferences for a repair in the file are kept, in the correction and in the table in another
+// folder; the command line adds to them.
 TEST_F(CheckRepair, WishesOfTheFile) {
   plant_zmp_outside("plain.json");
   std::string text = contents(folder / "plain.json");

@@ -143,8 +143,8 @@ TEST(FootGuided, BringsTheDcmBackInExactlyTheTime) {
   EXPECT_LT(std::abs(error), 1e-6);
 }
 
-// Along the way, the ZMP decays as exp(-omega t), the path with the smallest integral of its
-// square: no other path that brings the DCM back costs less.
+// Until the DCM has arrived, the ZMP decays as exp(-omega t), the path with the smallest integral
+// of its square: no other path that brings the DCM back costs less.
 TEST(FootGuided, CostsLeast) {
   const double omega = 6.6, time = 0.4, dt = 1e-4;
   const int n = 4000;

@@ -163,7 +163,7 @@ TEST(GainDesign, SoftServosGetGainsThatAreStable) {
   EXPECT_GT(mended, 0);
 }
 
-// Wishes that no gains fulfil are refused with the value and the reason.
+// If no gains fulfil what is asked for, the refusal names the value and the reason.
 TEST(GainDesign, RefusesWishesThatNoGainsFulfil) {
   const auto refused = [](const GainWishes& wishes) {
     return test::error_message([&] { design_gains(6, wishes, {}); }, ErrorCode::usage);

@@ -198,7 +198,8 @@ TEST(InverseKinematics, FiveJointLegsLetTheSwingingFootYield) {
     RobotState solved = state;
     RobotData there(model);
     const PostureSolution solution = ik.solve(target, solved, there);
-    // If both are held alike, each misses its place by more than a sole that carries may.
+    // If both soles are held with the same weight, each misses its place by more than is allowed
+    // for a sole that carries.
     EXPECT_EQ(solution.reached, hold < 1)
         << hold << " " << solution.miss[0] << " " << solution.miss[1];
     EXPECT_LT(solution.miss[0], before) << hold;

@@ -35,8 +35,8 @@ double duration(const std::vector<TimingPoint>& points) {
 
 }  // namespace
 
-// From rest to rest over a length L with |s''| <= a, the motion speeds up on half of the way and
-// slows down on the other half: 2 sqrt(L / a).
+// From rest to rest over a length L with |s''| <= a, the motion speeds up over half of the length
+// and slows down over the other half, and takes 2 sqrt(L / a).
 TEST(PathTiming, OneAxisFromRestToRest) {
   auto points = straight(0.8, 200, 5, 100);
   rest_at_ends(points);

@@ -102,8 +102,8 @@ TEST(ViipHoap1, CogMovesAtACommandedVelocityOnBothFeet) {
       EXPECT_EQ(log.result.outcome, Outcome::stands);
       const Vector3d start = log.samples[499].cog;
       EXPECT_LT((log.samples.back().cog - start - moving * velocity).norm(), hard ? 4e-3 : 1e-3);
-      // The mean velocity over the third quarter of the way, when the effect of a push is over. The
-      // COG is then up to 1.3 mm/s faster, because it compensates for its late start.
+      // The mean velocity over the last quarter of the motion, when the effect of a push is over.
+      // The COG is then up to 1.3 mm/s faster, because it compensates for its late start.
       const Vector3d mean = (log.samples[1690].cog - log.samples[1390].cog) / 0.3;
       EXPECT_LT((mean - velocity).norm(), hard ? 8e-3 : 2e-3) << mean.transpose();
       for (const SimulationSample& s : log.samples) EXPECT_GT(s.fz, 30.0);

@@ -278,7 +278,7 @@ TEST(Stack, OfMeshesRestsLikeOneOfBoxes) {
   EXPECT_LT(stack.plant.state().dtheta.cwiseAbs().maxCoeff(), 1e-6);
 }
 
-// The same over two ridges of a height field: no node is at a corner of the plank.
+// The same plank lies over two ridges of a height field: no node is at a corner of the plank.
 TEST(Edges, APlankLiesOnTwoRidgesOfAField) {
   World world{.friction = 0.6};
   HeightField field;

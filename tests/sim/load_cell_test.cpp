@@ -160,7 +160,7 @@ TEST(LoadCells, StatedExactCellsChangeNoBit) {
 }
 
 // One of four equal cells reads 1 + e times its force: the centre of pressure moves by e/(4 + e) of
-// the way to its corner.
+// the distance to its corner.
 TEST(LoadCells, AGainOfOneCellMovesTheCentreOfPressure) {
   const double e = 0.2;
   SensorDescription s;

@@ -135,7 +135,7 @@ TEST(LocalRetime, OneJointTakesItsBangBangTime) {
   }
 }
 
-// The same with a largest speed v that limits the motion takes L / v + v / a.
+// If a largest speed v limits the same motion as well, the motion takes L / v + v / a.
 TEST(LocalRetime, OneJointTakesItsTimeAtALargestSpeed) {
   const double angle = 1.4, most = 40, speed = hoap1().limits().speed[0];
   LocalRetimeOptions options;

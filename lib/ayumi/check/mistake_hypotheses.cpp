@@ -630,8 +630,8 @@ class Hypotheses::Maker {
     return way;
   }
 
-  // Exchanged footholds lead the feet back and forth, so that another exchange shortens the way. If
-  // the footholds are in good order, an exchange lengthens the way.
+  // Exchanged footholds lead the feet back and forth, so that another exchange shortens their path.
+  // If the footholds are in good order, an exchange lengthens the path.
   bool exchange_shortens_way(size_t one, size_t other) const {
     Pattern exchanged = pattern_;
     std::swap(exchanged.phases[one].swing->to, exchanged.phases[other].swing->to);

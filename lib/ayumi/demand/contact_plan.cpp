@@ -55,8 +55,8 @@ RunOn swing_run_on(const RobotModel& model, const CommandSeries& series, Side si
   // there. No measured case changes between half and twice the value (constants.md).
   constexpr double kArrived = 0.02;
   // A sole that is still swinging comes down without a halt by at least this share of the height.
-  // Chosen: a sole that hangs still and then comes down a little is floating, which is judged by
-  // its height. Between half and twice the value, figures change by less than 5 %.
+  // Chosen: a sole that is at rest above its place and then comes down a little is floating, which
+  // is judged by its height. Between half and twice the value, figures change by less than 5 %.
   constexpr double kRunOnFall = 0.8;
   const int edge = lands ? contact.first : contact.last, step = lands ? 1 : -1;
   const Eigen::Isometry3d inverse = contact.sole.inverse();

@@ -179,8 +179,8 @@ Vector2d behind(const ConvexPolygon& b, const Vector2d& point, const Vector2d& z
 // slope is continuous, because the ZMP of a walk rests exactly there and the repair differentiates
 // this function.
 double rounded_clamp(double u) {
-  // Rounded share at each end. Chosen: a tenth of the way between the feet. Between half and twice
-  // the value, figures change by less than 5 %.
+  // Rounded share at each end. Chosen: a tenth of the distance between the feet. Between half and
+  // twice the value, figures change by less than 5 %.
   constexpr double kRound = 0.1;
   if (u > 0.5) return 1 - rounded_clamp(1 - u);
   if (u >= kRound) return u;

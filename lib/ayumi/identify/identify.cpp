@@ -428,8 +428,8 @@ void describe(const TypeFit& type, size_t i, const JointRecording& recording,
   // The parts of the delay are not known separately.
   if (type.delay_takes_damping) joint.damping = {0, 0, HUGE_VAL, false};
   joint.coulomb = by_stiffness(Constant::dry, c.dry, type.heavier.dry, 0);
-  // The motor's damping and viscous friction act alike. The damping that the robot's file states is
-  // subtracted, unless the recording contradicts this.
+  // The motor's damping and viscous friction have the same effect. The damping that the robot's
+  // file states is subtracted, unless the recording contradicts this.
   const double kd = own_servo && servo.kd <= joint.damping.upper ? servo.kd : 0;
   joint.viscous = estimate(std::max(0.0, joint.damping.value - kd),
                            joint.damping.upper - joint.damping.value, 0);

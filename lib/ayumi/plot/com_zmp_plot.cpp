@@ -121,8 +121,8 @@ Value trunk_angle(int axis) {
   };
 }
 
-/// The angles that move most in the shown time of the last run, before a fall. Joints that move
-/// alike share one curve.
+/// The angles that move most in the shown time of the last run, before a fall. Joints with the same
+/// motion share one curve.
 PanelPlan moved_panel(const RobotModel& model, const SimulationLog& log, const Interval& time) {
   std::vector<MovedCurve> curves;
   for (const auto& [axis, name] :

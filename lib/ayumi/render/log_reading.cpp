@@ -12,8 +12,8 @@
 namespace ayumi {
 namespace {
 
-/// The vector between a and b at the fraction `share` of the way; if their sizes differ (one is
-/// empty), the result is a.
+/// The vector between a and b at the fraction `share` of the distance from a; if their sizes differ
+/// (one is empty), the result is a.
 template <typename Vector>
 Vector mix(const Vector& a, const Vector& b, double share) {
   if (a.size() != b.size()) return a;
@@ -56,7 +56,7 @@ constexpr double kPushWeight = 400, kFallWeight = 300, kApexWeight = 200, kStepW
 constexpr double kSeenMove = 0.05, kSeenShare = 0.15;
 
 // Share of the move within which an extreme that is held counts as reached. Chosen: in a quintic
-// between rests, 2 % of the way are left at four fifths of the time.
+// between rests, 2 % of the distance are left after 86 % of the time.
 constexpr double kReached = 0.02;
 
 /// Adds the instants at which a curve turns back or comes to rest after a move of at least `least`,

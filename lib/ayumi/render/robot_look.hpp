@@ -16,9 +16,8 @@ struct RobotLook {
   /// Like robot_surface(), but with fewer triangles if there are too many.
   std::vector<BodySurface> surface;
   size_t triangles = 0;  ///< number of triangles of the robot's own meshes
-  double moved =
-      0;  ///< approximate distance of the surface from the meshes [m]; 0 if nothing moved
-  GhostColors ghost;  ///< ghost_colors() of the robot's own meshes
+  double moved = 0;      ///< approximate distance of the surface from the meshes [m]; 0 if equal
+  GhostColors ghost;     ///< ghost_colors() of the robot's own meshes
 };
 
 /// The look of a robot. It depends on the robot alone, so that all pictures of a robot show the

@@ -1,5 +1,5 @@
 #pragma once
-// Prepares the programs of a repair: the wishes of the caller, and the places and the spacing of
+// Prepares the programs of a repair: the options of the caller, and the places and the spacing of
 // the knots that the report of the check requires.
 
 #include "ayumi/repair/correction_problem.hpp"

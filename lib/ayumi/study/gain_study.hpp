@@ -1,5 +1,5 @@
 #pragma once
-// Gains of DTAD for a standing robot: the gains that follow from the wishes of a designer, the
+// Gains of DTAD for a standing robot: the gains that follow from what the designer asks for, the
 // poles of the linear loop with these gains, and the pushes from which the robot recovers without a
 // step.
 

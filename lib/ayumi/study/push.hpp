@@ -74,8 +74,8 @@ double push_froude(const PushCase& push, double impulse);
 /// Figures over a group of cases, in capture bounds.
 struct PushSummary {
   double worst = 0, mean = 0, open_worst = 0, open_mean = 0;
-  double worst_speed = 0, mean_speed = 0;    ///< J/m of the worst case and in the mean [m/s]
-  double worst_froude = 0, mean_froude = 0;  ///< J/(m sqrt(g z)) of the worst case and in the mean
+  double worst_speed = 0, mean_speed = 0;    ///< J/m of the worst case, and the mean [m/s]
+  double worst_froude = 0, mean_froude = 0;  ///< J/(m sqrt(g z)) of the worst case, and the mean
   /// Number of cases whose limit is more than one search step below that of open loop.
   int below_open = 0;
   int cases = 0;

@@ -66,7 +66,7 @@ SequentialTest::SequentialTest(double failure, double confidence, long most)
                                text::brief(confidence) + ", even if no run fails; give " +
                                std::to_string(first) + " or more");
   // More failures than this cannot be certified in `most` runs, because a robot with the failure
-  // probability p0 has fewer failures in the mean.
+  // probability p0 has fewer failures on average.
   const auto widest = static_cast<size_t>(static_cast<double>(most) * failure) + 1;
   Paths paths(failure, widest);
   double left = 1 - confidence;

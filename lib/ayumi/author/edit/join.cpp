@@ -35,8 +35,8 @@ namespace {
 
 using Feet = std::array<Isometry3d, 2>;
 
-/// Largest difference of place [m] and angle [rad] with which soles count as standing alike.
-/// Chosen: below what the check's tolerances for slip and sink allow at the join.
+/// Largest difference of place [m] and angle [rad] with which two pairs of soles count as standing
+/// in the same way. Chosen: below what the check's tolerances for slip and sink allow at the join.
 constexpr double kSamePlace = 1e-3;
 constexpr double kSameAngle = 0.01;
 /// Largest difference of the base [m] and of the joints [rad] at a join without a transition.
