@@ -363,8 +363,8 @@ AuthorAnswer AuthorSession::write(const std::string& seen, const std::string& te
 
 namespace {
 
-// Throws the error of a text that cannot be read as a pattern. A motion that only the robot cannot
-// do is not such an error: it is shown at its line.
+// Throws the error of a text that cannot be read as a pattern. If the text can be read, but the
+// robot cannot do the motion, nothing is thrown: the page shows this error at its line.
 void require_readable(const std::string& text, const AuthorSetting& setting) {
   const Pattern pattern = pattern_of_text(text, setting.file, setting.set);
   if (has_viip_phases(pattern)) without_viip_phases(pattern);

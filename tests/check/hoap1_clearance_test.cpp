@@ -61,8 +61,8 @@ TEST_F(Hoap1Clearance, NoPairOfHousingsIsLeftOutUnseen) {
   EXPECT_TRUE(watched("l_forearm", "l_thigh"));
 }
 
-// Both legs sway alike, each is bent by its own amount, soles are kept level, and arms swing a
-// little.
+// Both legs sway by the same angle, each is bent by its own amount, soles are kept level, and arms
+// swing a little.
 TEST_F(Hoap1Clearance, OrdinaryWalkingIsFree) {
   std::mt19937 random(3);
   const auto between = [&](double low, double high) {

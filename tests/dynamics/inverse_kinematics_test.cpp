@@ -241,8 +241,8 @@ TEST(InverseKinematics, LimitsTellTheKneeOfABird) {
   EXPECT_LT(InverseKinematics(model, model.posture()).start()[model.find_dof("l_knee")], -0.1);
 }
 
-// If hips or ankles leave the knees little room to come forward, and more to go back, they go back.
-// Open Duck Mini is built in this way.
+// If hips or ankles leave the knees little room to bend forward, and more to bend backward, the
+// knees bend backward. Open Duck Mini is built in this way.
 TEST(InverseKinematics, HipsTellTheKneeOfABird) {
   for (const std::string limited : {"hip_pitch", "ankle_pitch"}) {
     RobotDescription robot = test::biped_description();

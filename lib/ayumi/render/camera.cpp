@@ -83,7 +83,7 @@ Vector3d project(const Camera& camera, int width, int height, const Vector3d& po
 // Let D be the distance, b how much nearer a point is, and k the tangent of half the view. A point
 // is within the picture if
 //   |r - shift| <= k (D - b).
-// Both edges touch a point if D is the span of r + k b and r - k b over 2 k.
+// Points lie on both edges if D is (max(r + k b) - min(r - k b)) / (2 k).
 Framing framing(const Camera& camera, double aspect, const std::vector<Vector3d>& offsets,
                 double share) {
   const bool parallel = camera.parallel_height > 0;

@@ -183,8 +183,8 @@ double difference(const SimulationLog& log, double a, double b) {
 }
 
 /// The first time at which a joint has moved farthest since the start [s]; the middle of the run if
-/// no joint moves. The place does not count: a walk goes farthest at its end, in the posture of its
-/// start.
+/// no joint moves. The place of the robot does not count, because a walk is farthest from its start
+/// at its end, where the robot has the posture of the start again.
 double most_changed_at(const SimulationLog& log) {
   // Postures that differ by less count as one posture that is held [rad]. Chosen: larger than
   // rounding errors.

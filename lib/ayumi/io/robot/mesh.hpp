@@ -60,7 +60,7 @@ struct MeshFailure {
 
 /// Several meshes as load_mesh() reads them, in the order of `requests`, by at most four readers
 /// side by side. The same files give the same bytes. After a failure, all further meshes are empty.
-/// The calling thread asks `progress` again and again.
+/// The calling thread calls `progress` repeatedly.
 std::vector<TriangleMesh> load_meshes(const std::vector<MeshRequest>& requests,
                                       MeshFailure& failure, const MeshReading& reading = {},
                                       const Progress& progress = {});
