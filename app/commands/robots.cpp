@@ -29,7 +29,9 @@ void list_robots(Context& context) {
       failures.push_back({{"robot", entry.name}, {"error", why}, {"file", entry.sidecar.string()}});
     }
   }
-  context.print_json(nlohmann::ordered_json{{"robots", robots}, {"failures", failures}}.dump(2));
+  // Names of files and folders need not be UTF-8.
+  context.print_json(nlohmann::ordered_json{{"robots", robots}, {"failures", failures}}.dump(
+      2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
   context.exit_code = failures.empty() ? 0 : 3;
 }
 

@@ -43,9 +43,11 @@ TEST(RobotPath, ABrokenRobotDoesNotHideTheOthers) {
   EXPECT_TRUE(out.err.starts_with("ayumi: robot 'half' is left out: robots/half/robot.json"))
       << out.err;
   EXPECT_EQ(line_count(out.err), 1) << out.err;
+  fs::rename(folder / "robots/half", folder / "robots/half\xff");
   const Output json = run_program({"robots", "--robot-path", "robots", "--json"}, folder.path());
-  EXPECT_EQ(json.exit_code, 3);
-  EXPECT_NE(json.out.find("\"failures\": [\n    {\n      \"robot\": \"half\""), std::string::npos)
+  EXPECT_EQ(json.exit_code, 3) << json.err;
+  EXPECT_NE(json.out.find("\"failures\": [\n    {\n      \"robot\": \"half\xEF\xBF\xBD\""),
+            std::string::npos)
       << json.out;
 }
 
