@@ -351,9 +351,10 @@ TEST(FirstSidecar, SaysWhatTheFileDoesNotState) {
   const UrdfBiped kind{.placeholders = true, .left = "one_", .right = "two_"};
   const std::string robot = folder.write("robot/robot.urdf", kind.text()).string();
   std::filesystem::create_directories(folder.path() / "packages");
-  const FirstSidecar first = first_sidecar(
-      robot, folder.path() / "robot", {.packages = {folder.path() / "packages"}},
-      [](const RobotModel&) {
+  RobotSearch search;
+  search.packages = {folder.path() / "packages"};
+  const FirstSidecar first =
+      first_sidecar(robot, folder.path() / "robot", search, [](const RobotModel&) {
         return SidecarGains{{{"K_P", 2.5}}, "the servos are soft", "the gains", "Check the gains."};
       });
   for (const char* const part :
