@@ -81,10 +81,6 @@ int exit_code_of(ErrorCode code) {
   }
 }
 
-void complain(const std::string& message) {
-  std::fprintf(stderr, "ayumi: %s\n", text::printable(message).c_str());
-}
-
 void add_global_options(CLI::App& app, Command& command_line, Context& context) {
   app.set_help_flag("-h,--help", "Print this page.");
   app.set_version_flag("--version",
@@ -202,27 +198,12 @@ std::string usage_message(const CLI::App& app, const CLI::ParseError& error) {
   return option_message(app, error);
 }
 
-// A message without its middle, if it contains long words of a file, such as a name of a megabyte.
-std::string shortened(const std::string& message, size_t most) {
-  if (message.size() <= most) return message;
-  const auto whole = [&](size_t at) {  // the cut is not inside a character of UTF-8
-    while ((static_cast<unsigned char>(message[at]) & 0xc0) == 0x80 && at + 1 < message.size())
-      ++at;
-    return at;
-  };
-  const size_t begin = whole(most / 2), end = whole(message.size() - most / 2);
-  return message.substr(0, begin) + " ... (" + std::to_string(end - begin) + " bytes more) ... " +
-         message.substr(end);
-}
-
 // Reports the error on standard error for people and, with --json, as an object on standard output.
 int failed(const Context& context, const std::string& text, int exit_code,
            const SourcePlace& place = {}) {
-  // Largest length of a message [bytes]. Chosen: a screen of 25 lines.
-  constexpr size_t kMost = 2000;
   // Largest length of a place [bytes]. Chosen: longer than every place of a valid file.
   constexpr size_t kMostPlace = 200;
-  const std::string message = shortened(text, kMost);
+  const std::string message = shortened(text, kLongestMessage);
   complain(message);
   nlohmann::ordered_json object = {{"error", message}, {"exit_code", exit_code}};
   if (!place.file.empty()) object["file"] = place.file;

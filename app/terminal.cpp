@@ -162,6 +162,22 @@ std::string padded(std::string text, size_t width) {
   return text;
 }
 
+std::string shortened(const std::string& message, size_t most) {
+  if (message.size() <= most) return message;
+  const auto whole = [&](size_t at) {  // the cut is not inside a character of UTF-8
+    while ((static_cast<unsigned char>(message[at]) & 0xc0) == 0x80 && at + 1 < message.size())
+      ++at;
+    return at;
+  };
+  const size_t begin = whole(most / 2), end = whole(message.size() - most / 2);
+  return message.substr(0, begin) + " ... (" + std::to_string(end - begin) + " bytes more) ... " +
+         message.substr(end);
+}
+
+void complain(const std::string& message) {
+  std::fprintf(stderr, "ayumi: %s\n", text::printable(shortened(message, kLongestMessage)).c_str());
+}
+
 void clear_screen() {
   if (is_terminal()) std::fputs("\x1b[H\x1b[2J\x1b[3J", stdout);
 }

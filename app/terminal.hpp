@@ -42,6 +42,16 @@ std::string broken_line(std::string line, size_t indent, size_t columns);
 /// The text with blanks after it, so that it has at least `width` bytes.
 std::string padded(std::string text, size_t width);
 
+/// Largest length of a message [bytes]. Chosen: a screen of 25 lines.
+inline constexpr size_t kLongestMessage = 2000;
+
+/// A message without its middle, if it contains long words of a file, such as a name of a megabyte,
+/// and therefore has more than `most` bytes.
+std::string shortened(const std::string& message, size_t most);
+
+/// Prints a message of one line on standard error, shortened to kLongestMessage.
+void complain(const std::string& message);
+
 /// Clears the screen and its history if standard output is a terminal.
 void clear_screen();
 

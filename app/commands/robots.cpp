@@ -1,28 +1,38 @@
 #include <nlohmann/json.hpp>
 
+#include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "commands.hpp"
+#include "terminal.hpp"
 
 namespace ayumi::app {
 
 namespace {
 
-void list_robots(const Context& context) {
-  nlohmann::ordered_json robots = nlohmann::ordered_json::array();
+// A robot that cannot be read does not hide the others.
+void list_robots(Context& context) {
+  nlohmann::ordered_json robots = nlohmann::ordered_json::array(), failures = robots;
   for (const RobotEntry& entry : find_robots(robot_search(context))) {
-    const RobotModel model = load_robot(entry.sidecar.string());
-    std::string line = entry.name;
-    line.resize(std::max<size_t>(line.size() + 1, 16), ' ');
-    context.print(line + std::to_string(model.dof_count()) + " DOF  " +
-                  text::fixed(model.mass(), 3) + " kg  profiles " +
-                  text::join(model.profile_names(), ", ") + "\n");
-    robots.push_back({{"robot", entry.name},
-                      {"dof", model.dof_count()},
-                      {"mass_kg", model.mass()},
-                      {"profiles", model.profile_names()},
-                      {"file", entry.sidecar.string()}});
+    try {
+      const RobotModel model = load_robot(entry.sidecar.string());
+      context.print(padded(entry.name + " ", 16) + std::to_string(model.dof_count()) + " DOF  " +
+                    text::fixed(model.mass(), 3) + " kg  profiles " +
+                    text::join(model.profile_names(), ", ") + "\n");
+      robots.push_back({{"robot", entry.name},
+                        {"dof", model.dof_count()},
+                        {"mass_kg", model.mass()},
+                        {"profiles", model.profile_names()},
+                        {"file", entry.sidecar.string()}});
+    } catch (const Error& error) {
+      const std::string why = shortened(error.what(), kLongestMessage);
+      complain("robot '" + entry.name + "' is left out: " + why);
+      failures.push_back({{"robot", entry.name}, {"error", why}, {"file", entry.sidecar.string()}});
+    }
   }
-  context.print_json(nlohmann::ordered_json{{"robots", robots}}.dump(2));
+  // Names of files and folders need not be UTF-8.
+  context.print_json(nlohmann::ordered_json{{"robots", robots}, {"failures", failures}}.dump(
+      2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  context.exit_code = failures.empty() ? 0 : 3;
 }
 
 }  // namespace

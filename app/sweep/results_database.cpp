@@ -16,6 +16,7 @@
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
 #include "ayumi/io/run/sha256.hpp"
+#include "terminal.hpp"
 
 namespace ayumi::app {
 
@@ -35,6 +36,13 @@ constexpr const char* kNoResults =
     "this file does not hold results of ayumi sweep, or the file is damaged; choose another name";
 /// Time for which a reader waits for a writer [ms]. Chosen: a commit takes a few ms.
 constexpr int kLockPatience = 10000;
+
+/// What SQLite says about its last error. It may quote names of the file, which may be long.
+std::string said_by(sqlite3* database) {
+  // Largest length [bytes]. Chosen: two rows of a terminal.
+  constexpr size_t kMost = 160;
+  return shortened(sqlite3_errmsg(database), kMost);
+}
 
 /// A prepared statement.
 class Statement {
@@ -208,7 +216,7 @@ void ResultsDatabase::complain(const std::string& doing) const {
   const int detail = database_ ? sqlite3_extended_errcode(database_) : SQLITE_OK;
   const bool unwritten = detail == SQLITE_IOERR_WRITE || detail == SQLITE_IOERR_SHMSIZE ||
                          detail == SQLITE_IOERR_FSYNC;
-  std::string why = database_ ? sqlite3_errmsg(database_) : "out of memory";
+  std::string why = database_ ? said_by(database_) : "out of memory";
   if (code == SQLITE_FULL || unwritten)
     why =
         "the disk is full, or the system does not let the file grow; what was written before is "
@@ -591,7 +599,7 @@ void ResultsDatabase::write_csv(const fs::path& file) const {
 
 std::vector<std::vector<std::string>> ResultsDatabase::query(const std::string& sql) const {
   Statement statement(database_, sql);
-  if (!statement.good()) fail(ErrorCode::usage, std::string(sqlite3_errmsg(database_)));
+  if (!statement.good()) fail(ErrorCode::usage, said_by(database_));
   std::vector<std::vector<std::string>> rows;
   while (statement.step()) {
     std::vector<std::string> row;

@@ -62,6 +62,12 @@ endfunction()
 # The libraries are linked statically, so a function is the one that its own source defines, and may
 # be inlined there although the code is position independent.
 set(AYUMI_LIBRARY_OPTIONS -ffp-contract=off -fno-semantic-interposition)
+# The tests are compiled as usual. Threads count without losing a count.
+option(AYUMI_COVERAGE "The libraries and ayumi count the lines they execute (tests/coverage.sh)" OFF)
+if(AYUMI_COVERAGE)
+  list(APPEND AYUMI_LIBRARY_OPTIONS --coverage -fprofile-update=atomic)
+  add_link_options(--coverage)
+endif()
 
 # ayumi_compile_with_heat(target HOT|WARM|COLD) sets the level of optimization of a target that has
 # AYUMI_LIBRARY_OPTIONS and position independent code.

@@ -33,5 +33,23 @@ TEST(RobotPath, HoldsFromTheWorkingFolderWhereverThePatternIsWritten) {
             0);
 }
 
+TEST(RobotPath, ABrokenRobotDoesNotHideTheOthers) {
+  Folder folder;
+  write(folder / "robots/half/robot.json", R"({"format": "ayumi.robot/1"})");
+  const Output out = run_program({"robots", "--robot-path", "robots"}, folder.path());
+  EXPECT_EQ(out.exit_code, 3);
+  EXPECT_NE(out.out.find("hoap1 "), std::string::npos) << out.out;
+  EXPECT_EQ(out.out.find("half"), std::string::npos) << out.out;
+  EXPECT_TRUE(out.err.starts_with("ayumi: robot 'half' is left out: robots/half/robot.json"))
+      << out.err;
+  EXPECT_EQ(line_count(out.err), 1) << out.err;
+  fs::rename(folder / "robots/half", folder / "robots/half\xff");
+  const Output json = run_program({"robots", "--robot-path", "robots", "--json"}, folder.path());
+  EXPECT_EQ(json.exit_code, 3) << json.err;
+  EXPECT_NE(json.out.find("\"failures\": [\n    {\n      \"robot\": \"half\xEF\xBF\xBD\""),
+            std::string::npos)
+      << json.out;
+}
+
 }  // namespace
 }  // namespace ayumi::test

@@ -327,6 +327,11 @@ TEST(SweepCommand, OneClearLineForBadInput) {
   // behind.
   expect(s.sweep({"-o", "y.db", "--expect", "fals == 0"}), 2, "did you mean 'falls'?");
   EXPECT_FALSE(fs::exists(s.folder / "y.db"));
+  // The library's words about a long name are shortened.
+  const std::string word(1000, 'x');
+  const Output quoted = s.sweep({"-o", "y.db", "--expect", word + " == 0"});
+  EXPECT_EQ(quoted.exit_code, 2);
+  EXPECT_LT(quoted.err.size(), word.size() + 600) << quoted.err;
   expect(s.sweep({"-o", "good.db", "--force", "--expect", "fals == 0"}), 2, "did you mean");
   EXPECT_TRUE(contents(s.folder / "good.db") == good);
   // The same holds for a refused file of another version, which differs in the head of the

@@ -17,6 +17,7 @@ void make_fingerprints_fit(std::vector<ayumi::fuzz::Part>& parts) {
   if (!run.is_object() || !run.contains("files") || !run["files"].is_object()) return;
   for (const ayumi::fuzz::Part& part : parts)
     if (run["files"].contains(part.name)) run["files"][part.name] = ayumi::sha256(part.bytes);
+  run.erase("file_bytes");
   run.erase("contents_sha256");
   std::string text = run.dump(2, ' ', false, Json::error_handler_t::replace);
   text.resize(text.rfind("\n}"));

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <regex>
 
 #include "ayumi/base/error.hpp"
@@ -341,6 +342,46 @@ TEST(FirstSidecar, PlaceholdersOfInertiasBecomeThoseOfTheShapes) {
   EXPECT_NE(sidecar.to_do.back().find("Replace the inertia of 2 links (l_thigh, r_foot)"),
             std::string::npos)
       << sidecar.to_do.back();
+}
+
+// What a sidecar says only of some robots: other names of the joints, packages, gains of the
+// control law, and what the file does not state or states only because its format requires a
+// number.
+TEST(FirstSidecar, SaysWhatTheFileDoesNotState) {
+  const TemporaryFolder folder;
+  const UrdfBiped kind{.placeholders = true, .left = "one_", .right = "two_"};
+  const std::string robot = folder.write("robot/robot.urdf", kind.text()).string();
+  std::filesystem::create_directories(folder.path() / "packages");
+  RobotSearch search;
+  search.packages = {folder.path() / "packages"};
+  const FirstSidecar first =
+      first_sidecar(robot, folder.path() / "robot", search, [](const RobotModel&) {
+        return SidecarGains{{{"K_P", 2.5}}, "the servos are soft", "the gains", "Check the gains."};
+      });
+  for (const char* const part :
+       {"\"package_path\": [\"../packages\"]", "\"control\": { \"dtad\": { \"K_P\": 2.5 } }",
+        "\"l_hip_yaw\": \"one_hip_yaw\"", "\"r_knee\": \"two_knee\"",
+        "Placeholder: the URDF states the effort limits of 1000 N m for 14 joints",
+        "State the true limits in \"position_limits_deg\"."})
+    EXPECT_NE(first.text.find(part), std::string::npos) << part << "\n" << first.text;
+  folder.write("robot/robot.json", first.text);
+  const RobotDescription read =
+      load_robot_description((folder.path() / "robot").string(), {}, {.guess = false});
+  EXPECT_EQ(read.aliases.at("r_ankle_roll"), "two_ankle_roll");
+  EXPECT_EQ(read.control.dtad.at("K_P"), 2.5);
+  const auto listed = [](const FirstSidecar& sidecar, const std::string& part) {
+    return std::any_of(sidecar.to_do.begin(), sidecar.to_do.end(), [&](const std::string& item) {
+      return item.find(part) != std::string::npos;
+    });
+  };
+  EXPECT_TRUE(listed(first, "Replace the placeholders: effort limits of 1000 N m on 14 joints."));
+  // Limits of 0 are not stated.
+  const UrdfBiped bare{.effort = [](const std::string&) { return 0; }, .speed = 0};
+  const FirstSidecar unlimited =
+      first_sidecar(folder.write("bare.urdf", bare.text()).string(), folder.path() / "bare");
+  EXPECT_TRUE(listed(unlimited,
+                     "the robot's file states no speed limit for 14 joints, and no torque limit "
+                     "for 14 joints; without them, check cannot say"));
 }
 
 TEST(FirstSidecar, RefusesARobotThatHasOne) {

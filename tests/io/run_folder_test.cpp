@@ -301,6 +301,27 @@ TEST(SimulationLogFile, BrokenFilesOfVersionOneGetOneClearMessage) {
   }
 }
 
+// Files of which the system keeps no more than the beginning: to read one would take gigabytes.
+TEST(SimulationLogFile, IsNotReadBeyondWhatItsHeaderAnnounces) {
+  const fs::path folder = fresh_folder();
+  fs::create_directories(folder);
+  const size_t size = size_t{7} << 29;
+  const auto error = [&](const std::string& beginning) {
+    write_file(folder / "x.bin", beginning);
+    fs::resize_file(folder / "x.bin", size);
+    return file_error([&] { read_log(folder / "x.bin"); });
+  };
+  EXPECT_NE(error("").find("is not a simulation log"), std::string::npos);
+  EXPECT_NE(error(log_bytes(random_log(5))).find("bytes of samples, but 20 rows have at most "),
+            std::string::npos);
+  EXPECT_NE(
+      error(plain_log_bytes(random_log(5))).find("bytes of samples, but 20 rows have at most "),
+      std::string::npos);
+  const std::string long_header = std::string("AYUMILOG\3\0\0\0\0\0\0\x70", 16);
+  EXPECT_NE(error(long_header).find("the header has 1879048192 bytes; it may have at most"),
+            std::string::npos);
+}
+
 RunFolder example() {
   RunFolder run;
   run.provenance = {"hoap1", "ab", "walk", "cd", "hoap1", "dtad", "ayumi run walk.json"};
@@ -348,7 +369,18 @@ TEST(RunFolderFile, SaysWhatIsWrong) {
               read_run_log(folder, "closedloop");
             }).find("the run has no log 'closedloop'; did you mean 'closed_loop'?"),
             std::string::npos);
-  std::ofstream(folder / "log_open_loop.bin", std::ios::app) << "x";
+  // Another size is noticed before the file is read: this one is not on the disk.
+  for (const char* const name : {"log_open_loop.bin", "reference.csv"}) {
+    const size_t size = fs::file_size(folder / name);
+    fs::resize_file(folder / name, size_t{7} << 29);
+    const std::string changed = "(it has 3758096384 bytes, but " + std::to_string(size) +
+                                " in run.json); make the run again";
+    EXPECT_NE(file_error([&] { verify_run(folder); }).find(changed), std::string::npos) << name;
+    fs::resize_file(folder / name, size);
+  }
+  std::string log = read_file(folder / "log_open_loop.bin");
+  log.back() = static_cast<char>(log.back() ^ 1);
+  write_file(folder / "log_open_loop.bin", log);
   EXPECT_NE(
       file_error([&] { read_run(folder); }).find("the file has changed since the run was written"),
       std::string::npos);

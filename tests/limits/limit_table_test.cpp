@@ -54,6 +54,29 @@ TEST(LimitTable, EveryLimitHasItsFile) {
 #undef AYUMI_EXPECT_FILE
 }
 
+/// The reasons why there is no repair are parts of a sentence. A kind without words of its own gets
+/// general ones.
+TEST(LimitTable, ReasonsWithoutARepairAreWords) {
+  for (const FindingSpec* spec : finding_specs()) {
+    if (!spec->infeasibility) continue;
+    Finding finding;
+    finding.kind = spec->kind;
+    finding.where = "left";
+    finding.unit = spec->unit;
+    finding.worst = 1.234567;
+    finding.limit = 1;
+    const std::string words = spec->infeasibility(finding, 1.234567);
+    SCOPED_TRACE(std::string(name_of(spec->kind)) + ": " + words);
+    EXPECT_FALSE(words.empty());
+    EXPECT_EQ(words.find('\n'), std::string::npos);
+    EXPECT_NE(words.back(), '.');
+    // A ratio is rounded up, so that the words never name less than what is missing.
+    if (spec->is_ratio() && words.find("times") != std::string::npos) {
+      EXPECT_NE(words.find("1.24 times"), std::string::npos);
+    }
+  }
+}
+
 TEST(LimitTable, TolerancesAreSetByName) {
   CheckOptions options;
   options.tolerances = {{"friction", 0.5}};

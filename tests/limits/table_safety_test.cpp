@@ -182,6 +182,26 @@ TEST(ExportSafety, RefusesAnotherRobotsTable) {
 }
 
 // At exactly the speed limit, and at the position limits, rounding alone must not exceed a limit.
+TEST(ExportSafety, TorquesBeyondThePeakMakeARunUnsafe) {
+  constexpr double peak = 2.5;
+  RobotDescription description = test::bus_description();
+  description.profiles.front().peak_torque = {{"b", peak}};
+  const RobotModel robot(description);
+  const ReferenceTrajectory table = still(10, {10, 20, 0});
+  Eigen::MatrixXd torque = Eigen::MatrixXd::Zero(10, 3);
+  EXPECT_TRUE(make_safe_run(robot, table, torque, {}).report.safe);
+  torque(4, 1) = -1.5 * peak;
+  torque(6, 1) = 1.2 * peak;
+  const SafetyReport report = make_safe_run(robot, table, torque, {}).report;
+  EXPECT_FALSE(report.safe);
+  ASSERT_EQ(report.violations.size(), 1u);
+  const SafetyViolation& worst = report.violations[0];
+  EXPECT_EQ(worst.kind + " " + worst.joint, "torque b");
+  EXPECT_EQ(worst.value, 1.5 * peak);
+  EXPECT_EQ(worst.limit, peak);
+  EXPECT_NEAR(worst.t, report.ramp + 4 * table.dt, 1e-9);
+}
+
 TEST(ExportSafety, RoundingKeepsTheLimitsThatTheMotionKeeps) {
   const RobotModel robot = test::bus_robot();
   ReferenceTrajectory table = still(1, {0, 0, 0});

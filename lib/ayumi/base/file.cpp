@@ -10,15 +10,14 @@
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file_lock.hpp"
+#include "ayumi/base/regular_file.hpp"
 
 namespace ayumi {
 
 namespace fs = std::filesystem;
 
-std::string read_file(const fs::path& path, size_t max_bytes) {
-  const auto refuse = [&](const std::string& reason) {
-    fail(ErrorCode::bad_file, {path.string()}, reason);
-  };
+RegularFile::RegularFile(const fs::path& path, size_t max_bytes)
+    : path_(path), max_bytes_(max_bytes) {
   // The kind is read from the open file, because another process could replace the file at the
   // path. Without O_NONBLOCK, opening a named pipe would wait for its writer.
   const int opened = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
@@ -26,33 +25,60 @@ std::string read_file(const fs::path& path, size_t max_bytes) {
   if (opened < 0 && errno == ENXIO)
     refuse("this is a socket or a device, but a regular file is needed");
   if (opened < 0) refuse(std::string("the file cannot be read (") + std::strerror(errno) + ")");
-  struct Closer {
-    int descriptor;
-    ~Closer() { ::close(descriptor); }
-  } const closer{opened};
-  struct stat about {};
-  if (::fstat(opened, &about) != 0)
-    refuse(std::string("the file cannot be read (") + std::strerror(errno) + ")");
-  if (S_ISDIR(about.st_mode)) refuse("this is a folder, but a file is needed");
-  if (!S_ISREG(about.st_mode))
-    refuse("this is a device or a named pipe, but a regular file is needed");
-  const auto too_large = [&](size_t size) {
+  try {
+    struct stat about {};
+    if (::fstat(opened, &about) != 0)
+      refuse(std::string("the file cannot be read (") + std::strerror(errno) + ")");
+    if (S_ISDIR(about.st_mode)) refuse("this is a folder, but a file is needed");
+    if (!S_ISREG(about.st_mode))
+      refuse("this is a device or a named pipe, but a regular file is needed");
+    size_ = static_cast<size_t>(about.st_size);
+    require_size(size_);
+  } catch (...) {
+    ::close(opened);
+    throw;
+  }
+  descriptor_ = opened;
+}
+
+RegularFile::~RegularFile() { ::close(descriptor_); }
+
+void RegularFile::refuse(const std::string& reason) const {
+  fail(ErrorCode::bad_file, {path_.string()}, reason);
+}
+
+void RegularFile::require_size(size_t size) const {
+  if (size > max_bytes_)
     refuse("the file has " + std::to_string(size) +
-           " bytes; a file of this kind may have at most " + std::to_string(max_bytes));
-  };
-  const auto size = static_cast<size_t>(about.st_size);
-  if (size > max_bytes) too_large(size);
-  // Some files, such as those of /proc, state no size, and a file may grow while it is read.
-  std::string bytes(size + 1, '\0');
+           " bytes; a file of this kind may have at most " + std::to_string(max_bytes_));
+}
+
+size_t RegularFile::read(char* to, size_t room) {
+  ssize_t more = -1;
+  do more = ::read(descriptor_, to, room);
+  while (more < 0 && errno == EINTR);
+  if (more < 0) refuse(std::string("reading failed (") + std::strerror(errno) + ")");
+  got_ += static_cast<size_t>(more);
+  require_size(got_);
+  return static_cast<size_t>(more);
+}
+
+std::string RegularFile::next(size_t count) {
+  std::string bytes(count, '\0');
   size_t got = 0;
-  while (true) {
+  while (const size_t more = got < count ? read(bytes.data() + got, count - got) : 0) got += more;
+  bytes.resize(got);
+  return bytes;
+}
+
+std::string read_file(const fs::path& path, size_t max_bytes) {
+  RegularFile file(path, max_bytes);
+  // Some files, such as those of /proc, state no size, and a file may grow while it is read.
+  std::string bytes(file.stated_size() + 1, '\0');
+  size_t got = 0;
+  while (const size_t more = file.read(bytes.data() + got, bytes.size() - got)) {
+    got += more;
     if (got == bytes.size()) bytes.resize(2 * bytes.size());
-    const ssize_t more = ::read(opened, bytes.data() + got, bytes.size() - got);
-    if (more < 0 && errno == EINTR) continue;
-    if (more < 0) refuse(std::string("reading failed (") + std::strerror(errno) + ")");
-    if (more == 0) break;
-    got += static_cast<size_t>(more);
-    if (got > max_bytes) too_large(got);
   }
   bytes.resize(got);
   return bytes;

@@ -50,6 +50,11 @@ class BodyMotionReader {
  private:
   static size_t line_of(const YamlNode& node) { return static_cast<size_t>(node.line); }
 
+  // A list of single numbers has no nodes for them.
+  static const YamlNode& frame_at(const YamlNode& frames, size_t k) {
+    return k < frames.items.size() ? frames.items[k] : frames;
+  }
+
   double number_of(const YamlNode& node, const char* key, const char* other, double otherwise) {
     const YamlNode* found = node.find(key, other);
     return found ? source_.number(found->text, line_of(*found), key) : otherwise;
@@ -167,9 +172,9 @@ class BodyMotionReader {
     for (size_t k = 0; k < rows.size(); ++k) {
       const std::vector<double>& row = rows[k];
       if (row.size() != width)
-        source_.refuse(line_of(frames.items[k]), "the position of a link has " +
-                                                     text::counted(row.size(), "value") + ", but " +
-                                                     std::to_string(width) + " are needed");
+        source_.refuse(line_of(frame_at(frames, k)),
+                       "the position of a link has " + text::counted(row.size(), "value") +
+                           ", but " + std::to_string(width) + " are needed");
       BasePose base;
       base.position = {row[0], row[1], row[2]};
       if (width == 6) {
@@ -178,9 +183,9 @@ class BodyMotionReader {
         base.attitude = scalar_last ? Eigen::Quaterniond(row[6], row[3], row[4], row[5])
                                     : Eigen::Quaterniond(row[3], row[4], row[5], row[6]);
         if (!(std::abs(base.attitude.norm() - 1) < kUnitQuaternion))
-          source_.refuse(line_of(frames.items[k]), "the quaternion has length " +
-                                                       text::brief(base.attitude.norm()) +
-                                                       ", but 1 is needed");
+          source_.refuse(line_of(frame_at(frames, k)), "the quaternion has length " +
+                                                           text::brief(base.attitude.norm()) +
+                                                           ", but 1 is needed");
       }
       motion_.base.push_back(base);
     }

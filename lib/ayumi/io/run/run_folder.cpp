@@ -6,6 +6,7 @@
 #include "ayumi/io/json/json_reader.hpp"
 #include "ayumi/io/run/provenance_fields.hpp"
 #include "ayumi/io/run/sha256.hpp"
+#include "ayumi/io/run/sha256_stream.hpp"
 #include "ayumi/io/run/simulation_log_file.hpp"
 #include "ayumi/io/table/table.hpp"
 
@@ -21,6 +22,7 @@ constexpr const char* kRunFile = "run.json";
 constexpr const char* kReferenceFile = "reference.csv";
 constexpr const char* kPushedFile = "reference_pushed.csv";
 constexpr const char* kLightKey = "light";
+constexpr const char* kSizesKey = "file_bytes";
 constexpr const char* kSealKey = "contents_sha256";
 // Largest size of a file of a run [bytes]. Chosen: a log of half an hour at 1 kHz is smaller.
 constexpr size_t kLargestRunFile = size_t{4} << 30;
@@ -44,7 +46,8 @@ TableCaution caution_of(const JsonNode& node) {
   return {node.at("disturbances").string(), node.at("unfit").string()};
 }
 
-OrderedJson summary_of(const RunFolder& run, const std::map<std::string, std::string>& hashes) {
+OrderedJson summary_of(const RunFolder& run, const std::map<std::string, std::string>& hashes,
+                       const fs::path& folder) {
   OrderedJson json = {{"format", kRunFormat}, {"tool", std::string("ayumi ") + version()}};
   OrderedJson provenance;
   for_each_provenance(run.provenance,
@@ -71,6 +74,8 @@ OrderedJson summary_of(const RunFolder& run, const std::map<std::string, std::st
     if (!run.written.contains(name)) logs[name] = entry(name, log, log_hash(log));
   for (const auto& [name, log] : logs) json["logs"][name] = log;
   json["files"] = hashes;
+  json[kSizesKey] = OrderedJson::object();
+  for (const auto& [name, hash] : hashes) json[kSizesKey][name] = fs::file_size(folder / name);
   return json;
 }
 
@@ -84,17 +89,28 @@ std::string sealed(const std::string& object) {
   return text + seal_before(text);
 }
 
-[[noreturn]] void complain_of_change(const fs::path& file) {
+[[noreturn]] void complain_of_change(
+    const fs::path& file, const std::string& what = "its SHA-256 differs from the value") {
   fail(ErrorCode::bad_file, {file.string()},
-       "the file has changed since the run was written (its SHA-256 "
-       "differs from the value in run.json); make the run again");
+       "the file has changed since the run was written (" + what +
+           " in run.json); make the run again");
 }
 
-std::string checked_bytes(const fs::path& folder, const JsonNode& files, const std::string& name) {
-  const std::string bytes = read_file(folder / name, kLargestRunFile);
-  const auto recorded = files.find(name);
-  if (recorded && recorded->string() != sha256(bytes)) complain_of_change(folder / name);
-  return bytes;
+// Compares a file of a run with what its run.json records. The size comes first, because it takes
+// no time. Files that run.json does not list are not compared; runs of versions before 0.3.0 have
+// no sizes.
+void require_unchanged(const fs::path& folder, const JsonNode& root, const std::string& name) {
+  const fs::path file = folder / name;
+  const auto sizes = root.find(kSizesKey);
+  const auto recorded = sizes ? sizes->find(name) : std::nullopt;
+  std::error_code unknown;
+  const auto size = fs::file_size(file, unknown);
+  if (recorded && !unknown && recorded->unsigned_integer() != size)
+    complain_of_change(file, "it has " + std::to_string(size) + " bytes, but " +
+                                 std::to_string(recorded->unsigned_integer()));
+  const std::string hash = sha256_of_file(file, kLargestRunFile);
+  const auto expected = root.at("files").find(name);
+  if (expected && expected->string() != hash) complain_of_change(file);
 }
 
 // The parsed run.json with its root.
@@ -136,7 +152,8 @@ struct RunFile {
 
 SimulationLog log_of(const fs::path& folder, const JsonNode& root, const std::string& name) {
   const std::string file = root.at("logs").at(name).at("file").string();
-  return parse_log(checked_bytes(folder, root.at("files"), file), (folder / file).string());
+  require_unchanged(folder, root, file);
+  return read_log(folder / file);
 }
 
 }  // namespace
@@ -161,8 +178,8 @@ void write_run(const fs::path& folder, const RunFolder& run) {
     write(kReferenceFile, reference_csv(*run.reference, run.reference_caution));
   if (run.pushed && !run.light) write(kPushedFile, reference_csv(*run.pushed, run.pushed_caution));
   for (const std::string& name : run.files)
-    hashes[name] = sha256(read_file(folder / name, kLargestRunFile));
-  write_file(folder / kRunFile, sealed(summary_of(run, hashes).dump(2)));
+    hashes[name] = sha256_of_file(folder / name, kLargestRunFile);
+  write_file(folder / kRunFile, sealed(summary_of(run, hashes, folder).dump(2)));
 }
 
 std::vector<std::string> run_file_names(const fs::path& folder) {
@@ -176,7 +193,7 @@ std::vector<std::string> run_file_names(const fs::path& folder) {
 bool is_file_of_run(const fs::path& folder, const fs::path& file) {
   const RunFile run(folder);
   const auto recorded = run.root().at("files").find(file.filename().string());
-  return recorded && recorded->string() == sha256(read_file(file, kLargestRunFile));
+  return recorded && recorded->string() == sha256_of_file(file, kLargestRunFile);
 }
 
 void verify_run(const fs::path& folder) {
@@ -186,8 +203,7 @@ void verify_run(const fs::path& folder) {
     root.complain(std::string("the member '") + kSealKey +
                   "' is missing: the file has changed, or an older version wrote it; make the run "
                   "again");
-  for (const auto& [name, hash] : root.at("files").members())
-    checked_bytes(folder, root.at("files"), name);
+  for (const auto& [name, hash] : root.at("files").members()) require_unchanged(folder, root, name);
 }
 
 RunFolder read_run(const fs::path& folder) {
@@ -208,7 +224,7 @@ RunFolder read_run(const fs::path& folder) {
     run.logs.emplace(name, log_of(folder, root, name));
   for (const auto& [name, hash] : root.at("files").members()) {
     if (name == kReferenceFile || name == kPushedFile) {
-      checked_bytes(folder, root.at("files"), name);
+      require_unchanged(folder, root, name);
       const bool pushed = name == kPushedFile;
       (pushed ? run.pushed : run.reference) = read_reference(folder / name);
       (pushed ? run.pushed_caution : run.reference_caution) = read_table_caution(folder / name);
@@ -218,7 +234,7 @@ RunFolder read_run(const fs::path& folder) {
   }
   for (const auto& [key, node] : root.members())
     if (key != "format" && key != "tool" && key != "provenance" && key != "logs" &&
-        key != "files" && key != "unfit" && key != kLightKey && key != kSealKey)
+        key != "files" && key != "unfit" && key != kLightKey && key != kSizesKey && key != kSealKey)
       run.sections.emplace_back(key, node.value().dump(2));
   return run;
 }

@@ -312,6 +312,10 @@ std::string compress_samples(std::string rows, size_t columns, const ColumnSourc
   return zstd_frame(std::string_view(bytes).substr(begin - head.size()));
 }
 
+size_t largest_compressed_size(size_t columns, size_t rows) {
+  return ZSTD_compressBound(largest_head(columns) + columns * rows * sizeof(double));
+}
+
 std::vector<std::string_view> sample_frames(std::string_view bytes, size_t count,
                                             const std::string& file) {
   std::vector<std::string_view> frames;

@@ -26,6 +26,9 @@ using ColumnSources = std::vector<std::vector<size_t>>;
 /// frees it early, and needs at most twice its memory.
 std::string compress_samples(std::string rows, size_t columns, const ColumnSources& sources = {});
 
+/// Largest size of what compress_samples() returns for this number of columns and rows.
+size_t largest_compressed_size(size_t columns, size_t rows);
+
 /// The `count` results of compress_samples() that stand one after the other in `bytes`. Throws
 /// Error(bad_file), beginning with `file`, if they are truncated or damaged, or if there are more
 /// or fewer. Each may still have another size than expected.

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/regular_file.hpp"
 
 namespace ayumi {
 
@@ -43,6 +44,17 @@ std::string Sha256Stream::digits() {
     text += kDigits[digest[i] & 15];
   }
   return text;
+}
+
+std::string sha256_of_file(const std::filesystem::path& path, size_t max_bytes) {
+  // Size of a piece [bytes]. Chosen: large enough that the calls of the system cost nothing.
+  constexpr size_t kPiece = size_t{1} << 20;
+  RegularFile file(path, max_bytes);
+  Sha256Stream hash;
+  std::string piece(kPiece, '\0');
+  while (const size_t got = file.read(piece.data(), piece.size()))
+    hash.add(std::string_view(piece).substr(0, got));
+  return hash.digits();
 }
 
 }  // namespace ayumi

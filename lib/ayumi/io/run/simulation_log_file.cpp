@@ -1,5 +1,6 @@
 #include "ayumi/io/run/simulation_log_file.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -10,6 +11,7 @@
 #include <utility>
 
 #include "ayumi/base/file.hpp"
+#include "ayumi/base/regular_file.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/compression.hpp"
 #include "ayumi/io/json/json_reader.hpp"
@@ -38,6 +40,8 @@ constexpr size_t kPrefix = 16;          // magic, version, header length
 constexpr size_t kChecksum = 4;
 // Largest size of the samples of a log [bytes]. Chosen: half an hour at 1 kHz takes less.
 constexpr size_t kMostBytes = size_t{4} << 30;
+// Largest size of a header [bytes]. Chosen: it leaves room for an event in every row.
+constexpr size_t kLongestHeader = size_t{256} << 20;
 constexpr const char* kOutcomes[] = {"stands", "unsettled", "fell"};
 
 using OrderedJson = nlohmann::ordered_json;
@@ -266,6 +270,96 @@ void append_samples(std::string_view values, size_t joints, size_t rows,
     for_each_field(samples[k], TakeValues(joints, at));
 }
 
+// What the header says about the samples.
+struct LogHead {
+  SimulationLog log;  // without samples
+  std::vector<std::string> columns;
+  bool is_compressed = false;
+  size_t begin = 0;  // where the samples begin in the file
+  size_t rows = 0, block_rows = 0;
+  size_t row_bytes() const { return columns.size() * sizeof(double); }
+  size_t blocks() const { return rows <= block_rows ? 1 : (rows + block_rows - 1) / block_rows; }
+  // Largest size of the samples in the file.
+  size_t most_bytes() const {
+    return is_compressed
+               ? blocks() * largest_compressed_size(columns.size(), std::min(rows, block_rows))
+               : rows * row_bytes();
+  }
+};
+
+// Reads the part before the samples of a file of `size` bytes. next(n) returns the next n bytes of
+// the file, or fewer at its end.
+template <typename Next>
+LogHead read_head(const Next& next, size_t size, const std::string& file) {
+  const auto stop = [&](const std::string& reason) { fail(ErrorCode::bad_file, {file}, reason); };
+  const std::string prefix = next(kPrefix);
+  if (prefix.empty()) stop("the file is empty, but a simulation log is needed");
+  if (prefix.size() < kPrefix || prefix.compare(0, 8, kMagic) != 0)
+    stop("this is not a simulation log; name a run folder or one of its .bin files");
+  const std::uint32_t version_of_file = word_at(prefix, 8);
+  if (version_of_file < kPlain || version_of_file > kInBlocks)
+    stop("log version " + std::to_string(version_of_file) + " cannot be read; this " +
+         "version of Ayumi reads " + std::to_string(kPlain) + " to " + std::to_string(kInBlocks));
+  LogHead head;
+  head.is_compressed = version_of_file != kPlain;
+  const std::string checksum = next(head.is_compressed ? kChecksum : 0);
+  const size_t length = word_at(prefix, 12);
+  head.begin = kPrefix + checksum.size() + length;
+  if (size < head.begin || (head.is_compressed && checksum.size() < kChecksum))
+    stop("the file is truncated: the header is incomplete");
+  if (length > kLongestHeader)
+    stop("the file is damaged: the header has " + std::to_string(length) +
+         " bytes; it may have at most " + std::to_string(kLongestHeader));
+  const std::string text = next(length);
+  if (head.is_compressed && word_at(checksum, 0) != crc32_of(text))
+    stop("the file is damaged: the checksum of the header is wrong");
+  const std::string place = file + " (header)";
+  const Json document = parse_json(text, place, ErrorCode::bad_file);
+  const JsonNode header = root_of(document, place, ErrorCode::bad_file);
+  read_header(header, head.log);
+  head.columns = columns_of(head.log.joints);
+  if (header.at("columns").strings() != head.columns)
+    header.at("columns").complain(
+        "these are not the columns of this version of Ayumi; simulate again");
+  head.rows = static_cast<size_t>(header.at("rows").unsigned_integer());
+  if (head.rows > kMostBytes / head.row_bytes())
+    header.at("rows").complain("this is more than a log may have (" +
+                               std::to_string(kMostBytes / head.row_bytes()) + ")");
+  head.block_rows = head.rows;
+  if (version_of_file == kInBlocks) {
+    const JsonNode stated = header.at("block_rows");
+    head.block_rows = static_cast<size_t>(stated.unsigned_integer());
+    if (head.block_rows == 0) stated.complain("a block must have at least 1 row");
+  }
+  return head;
+}
+
+// Reads the samples, which are the bytes of the file behind its header.
+SimulationLog read_samples(LogHead head, std::string_view values, const std::string& file) {
+  const auto stop = [&](const std::string& reason) { fail(ErrorCode::bad_file, {file}, reason); };
+  SimulationLog log = std::move(head.log);
+  const auto take = [&](std::string_view block, size_t count) {
+    require_finite(block, log.samples.size(), head.columns, stop);
+    append_samples(block, log.joints.size(), count, log.samples);
+  };
+  const size_t rows = head.rows, row_bytes = head.row_bytes();
+  if (!head.is_compressed) {
+    if (rows * row_bytes != values.size())
+      stop(std::string("the file is ") +
+           (rows * row_bytes > values.size() ? "truncated" : "damaged") + ": it has " +
+           std::to_string(values.size()) + " bytes of samples, but the header announces " +
+           std::to_string(rows) + " rows of " + std::to_string(row_bytes) + " bytes");
+    take(values, rows);
+    return log;
+  }
+  for (const std::string_view frame : sample_frames(values, head.blocks(), file)) {
+    const size_t count = std::min(head.block_rows, rows - log.samples.size());
+    log.samples.reserve(std::min(rows, 2 * (log.samples.size() + count)));
+    take(decompress_samples(frame, head.columns.size(), count, file), count);
+  }
+  return log;
+}
+
 }  // namespace
 
 size_t log_columns(const std::vector<std::string>& joints) { return columns_of(joints).size(); }
@@ -319,63 +413,14 @@ std::string plain_log_bytes(const SimulationLog& log) {
 }
 
 SimulationLog parse_log(const std::string& bytes, const std::string& file) {
-  const auto stop = [&](const std::string& reason) { fail(ErrorCode::bad_file, {file}, reason); };
-  if (bytes.empty()) stop("the file is empty, but a simulation log is needed");
-  if (bytes.size() < kPrefix || bytes.compare(0, 8, kMagic) != 0)
-    stop("this is not a simulation log; name a run folder or one of its .bin files");
-  const std::uint32_t version_of_file = word_at(bytes, 8);
-  if (version_of_file < kPlain || version_of_file > kInBlocks)
-    stop("log version " + std::to_string(version_of_file) + " cannot be read; this " +
-         "version of Ayumi reads " + std::to_string(kPlain) + " to " + std::to_string(kInBlocks));
-  const bool is_compressed = version_of_file != kPlain;
-  const size_t begin = kPrefix + (is_compressed ? kChecksum : 0);
-  const size_t length = word_at(bytes, 12);
-  if (bytes.size() < begin || length > bytes.size() - begin)
-    stop("the file is truncated: the header is incomplete");
-  const std::string text = bytes.substr(begin, length);
-  if (is_compressed && word_at(bytes, kPrefix) != crc32_of(text))
-    stop("the file is damaged: the checksum of the header is wrong");
-  const std::string place = file + " (header)";
-  const Json document = parse_json(text, place, ErrorCode::bad_file);
-  const JsonNode header = root_of(document, place, ErrorCode::bad_file);
-  SimulationLog log;
-  read_header(header, log);
-  const std::vector<std::string> columns = columns_of(log.joints);
-  if (header.at("columns").strings() != columns)
-    header.at("columns").complain(
-        "these are not the columns of this version of Ayumi; simulate again");
-  const auto rows = static_cast<size_t>(header.at("rows").unsigned_integer());
-  const size_t row_bytes = columns.size() * sizeof(double);
-  if (rows > kMostBytes / row_bytes)
-    header.at("rows").complain("this is more than a log may have (" +
-                               std::to_string(kMostBytes / row_bytes) + ")");
-  const std::string_view values = std::string_view(bytes).substr(begin + length);
-  const auto take = [&](std::string_view block, size_t count) {
-    require_finite(block, log.samples.size(), columns, stop);
-    append_samples(block, log.joints.size(), count, log.samples);
+  size_t at = 0;
+  const auto next = [&](size_t count) {
+    const std::string part = bytes.substr(at, count);
+    at += part.size();
+    return part;
   };
-  if (!is_compressed) {
-    if (rows * row_bytes != values.size())
-      stop(std::string("the file is ") +
-           (rows * row_bytes > values.size() ? "truncated" : "damaged") + ": it has " +
-           std::to_string(values.size()) + " bytes of samples, but the header announces " +
-           std::to_string(rows) + " rows of " + std::to_string(row_bytes) + " bytes");
-    take(values, rows);
-    return log;
-  }
-  size_t block_rows = rows;
-  if (version_of_file == kInBlocks) {
-    const JsonNode stated = header.at("block_rows");
-    block_rows = static_cast<size_t>(stated.unsigned_integer());
-    if (block_rows == 0) stated.complain("a block must have at least 1 row");
-  }
-  const size_t blocks = rows <= block_rows ? 1 : (rows + block_rows - 1) / block_rows;
-  for (const std::string_view frame : sample_frames(values, blocks, file)) {
-    const size_t count = std::min(block_rows, rows - log.samples.size());
-    log.samples.reserve(std::min(rows, 2 * (log.samples.size() + count)));
-    take(decompress_samples(frame, columns.size(), count, file), count);
-  }
-  return log;
+  LogHead head = read_head(next, bytes.size(), file);
+  return read_samples(std::move(head), std::string_view(bytes).substr(at), file);
 }
 
 bool is_log_file(const std::filesystem::path& path) {
@@ -394,7 +439,17 @@ size_t most_log_rows(const std::vector<std::string>& joints) {
 }
 
 SimulationLog read_log(const std::filesystem::path& path) {
-  return parse_log(read_file(path, kMostBytes), path.string());
+  RegularFile file(path, kMostBytes);
+  LogHead head =
+      read_head([&](size_t count) { return file.next(count); }, file.stated_size(), path.string());
+  // What the header does not announce is not read into memory.
+  const size_t rest = file.stated_size() - head.begin;
+  if (rest > head.most_bytes())
+    fail(ErrorCode::bad_file, {path.string()},
+         "the file is damaged: it has " + std::to_string(rest) + " bytes of samples, but " +
+             std::to_string(head.rows) + " rows have at most " + std::to_string(head.most_bytes()));
+  const std::string values = file.next(rest);
+  return read_samples(std::move(head), values, path.string());
 }
 
 void write_log(const std::filesystem::path& path, const SimulationLog& log) {
