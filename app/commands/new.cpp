@@ -102,15 +102,22 @@ Dial dial(const char* name, const char* unit, double value, double step, bool op
   return result;
 }
 
-// A dial for COG heights around the generator's own height, which is written as 0.
-Dial height_dial(const RobotModel& model, double given,
-                 const std::vector<double>& shares = {0.97, 1.02, 0.94, 0.91, 0.88}) {
-  Dial result = dial("--cog-height", "m", starting_height(model), 1e-3, given == 0, shares);
+// Shares of the generator's own COG height that are tried.
+const std::vector<double> kHeightShares = {0.97, 1.02, 0.94, 0.91, 0.88};
+
+// A dial for COG heights around `own`, the generator's own height, which is written as 0.
+Dial height_dial(double own, double given, const std::vector<double>& shares) {
+  Dial result = dial("--cog-height", "m", own, 1e-3, given == 0, shares);
   if (result.most > 0) result.least = *std::min_element(result.values.begin(), result.values.end());
-  result.stands_for = starting_height(model);
+  result.stands_for = own;
   result.values.front() = given;
   result.posture = true;
   return result;
+}
+
+Dial height_dial(const RobotModel& model, double given,
+                 const std::vector<double>& shares = kHeightShares) {
+  return height_dial(starting_height(model), given, shares);
 }
 
 // The values of the dials with which the robot can do the motion, or the defaults if there are
@@ -458,7 +465,7 @@ void new_kick(const Context& context, NewOptions options) {
   p.height = options.height.value_or(scaled.height);
   p.period = options.period.value_or(scaled.period);
   const std::vector<Dial> dials = {
-      height_dial(model, p.cog_height),
+      height_dial(kick_cog_height(model, p.height), p.cog_height, kHeightShares),
       dial("--length", "m", p.length, 1e-3, !options.length, {0.75, 0.5, 0.25}),
       dial("--period", "s", p.period, 0.01, !options.period, {1.25, 1.6, 2.2}),
       dial("--height", "m", p.height, 1e-3, !options.height, {0.6, 0.4})};
