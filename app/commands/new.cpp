@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -121,17 +122,18 @@ Dial height_dial(const RobotModel& model, double given,
 }
 
 // The values of the dials with which the robot can do the motion, or the defaults if there are
-// none. Prints what was changed and what limits the robot.
-std::vector<double> values_that_pass(const Context& context, const RobotModel& model,
-                                     const std::vector<Dial>& dials,
-                                     const std::function<Pattern(const std::vector<double>&)>& make,
-                                     bool simulated = false) {
+// none. Prints what was changed and what limits the robot. `used` are the values that the motion
+// really has, if it does not take all values of the dials as they are.
+std::vector<double> values_that_pass(
+    const Context& context, const RobotModel& model, const std::vector<Dial>& dials,
+    const std::function<Pattern(const std::vector<double>&)>& make, bool simulated = false,
+    const std::function<std::vector<double>(std::vector<double>)>& used = std::identity()) {
   std::vector<double> defaults;
   for (const Dial& each : dials) defaults.push_back(each.values.front());
   if (!model.has_soles()) return defaults;
   const SearchResult result = search_motion(model, dials, make, context.progress(), simulated);
   if (result.limit.empty()) return defaults;
-  const std::string changed = changed_values(dials, result.values);
+  const std::string changed = changed_values(dials, used(result.values));
   if (!result.falls.empty())
     context.print("the check accepts this motion" + (changed.empty() ? "" : " with " + changed) +
                   ", but the robot falls in a simulation: " + result.falls + "; " +
@@ -149,7 +151,7 @@ std::vector<double> values_that_pass(const Context& context, const RobotModel& m
     if (!result.refused)  // otherwise, the error says it
       context.print("First error with the default values: " + result.limit + "\n");
     if (!result.nearest.empty()) {
-      const std::string nearest = changed_values(dials, result.nearest_values);
+      const std::string nearest = changed_values(dials, used(result.nearest_values));
       context.print("The combination that comes nearest has " +
                     (nearest.empty() ? "the default values" : nearest) + ". Its limit is " +
                     result.nearest + "\n");
@@ -219,10 +221,19 @@ void fit_steps(const Context& context, const RobotModel& model, const NewOptions
     return walk;
   };
   const double lift = w.lift;
-  w = with(values_that_pass(
+  const auto lift_dial =
+      static_cast<size_t>(std::find_if(dials.begin(), dials.end(),
+                                       [](const Dial& each) { return each.name == "--lift"; }) -
+                          dials.begin());
+  const std::vector<double> values = values_that_pass(
       context, model, dials,
-      [&](const std::vector<double>& values) { return walk_pattern(model, with(values)); }, true));
-  if (w.lift != lift && lacking)
+      [&](const std::vector<double>& each) { return walk_pattern(model, with(each)); }, true,
+      [&](std::vector<double> each) {
+        if (each[lift_dial] != lift) each[lift_dial] = with(each).lift;
+        return each;
+      });
+  w = with(values);
+  if (w.lift != lift && values[lift_dial] == lift)
     context.print("  the feet rise by " + text::brief(w.lift) + " m in place of " +
                   text::brief(lift) + " m, because the steps are quick (--lift changes this)\n");
 }
