@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <set>
 
 #include "ayumi/base/error.hpp"
@@ -174,8 +175,11 @@ class MotionSearch {
 
   void note_trial() {
     ++result_.tried;
-    report(progress_, {"look for a motion that passes",
-                       std::min(1.0, result_.tried / double(kMostSampled)), ""});
+    // The lists are the first half of the search, and what goes on from them is the second one.
+    const double done = goes_on_from_ ? 0.5 + 0.5 * (work_ - *goes_on_from_) /
+                                                  std::max(1.0, kMostWork - *goes_on_from_)
+                                      : 0.5 * result_.tried / kMostSampled;
+    report(progress_, {"look for a motion that passes", std::min(1.0, done), ""});
   }
 
   void take(const Values& values) {
@@ -269,6 +273,7 @@ class MotionSearch {
   // then it does the same with moves of half the size.
   void go_on_from_nearest() {
     if (start_.empty()) return;
+    goes_on_from_ = work_;
     for (double share = kFirstMove; share >= kLastMove && !ended(); share /= 2)
       while (move_one(share) || move_two(share)) {
       }
@@ -321,7 +326,8 @@ class MotionSearch {
   double least_beyond_ = HUGE_VAL;  // smallest sum of shares by which a motion exceeds limits
   Values start_;                    // values of this motion
   std::set<Values> looked_at_;
-  double work_ = 0;  // length of the motions that were worked on [s]
+  double work_ = 0;                     // length of the motions that were worked on [s]
+  std::optional<double> goes_on_from_;  // this length, where the search goes on from the nearest
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -103,29 +104,37 @@ Dial dial(const char* name, const char* unit, double value, double step, bool op
   return result;
 }
 
-// A dial for COG heights around the generator's own height, which is written as 0.
-Dial height_dial(const RobotModel& model, double given,
-                 const std::vector<double>& shares = {0.97, 1.02, 0.94, 0.91, 0.88}) {
-  Dial result = dial("--cog-height", "m", starting_height(model), 1e-3, given == 0, shares);
+// Shares of the generator's own COG height that are tried.
+const std::vector<double> kHeightShares = {0.97, 1.02, 0.94, 0.91, 0.88};
+
+// A dial for COG heights around `own`, the generator's own height, which is written as 0.
+Dial height_dial(double own, double given, const std::vector<double>& shares) {
+  Dial result = dial("--cog-height", "m", own, 1e-3, given == 0, shares);
   if (result.most > 0) result.least = *std::min_element(result.values.begin(), result.values.end());
-  result.stands_for = starting_height(model);
+  result.stands_for = own;
   result.values.front() = given;
   result.posture = true;
   return result;
 }
 
+Dial height_dial(const RobotModel& model, double given,
+                 const std::vector<double>& shares = kHeightShares) {
+  return height_dial(starting_height(model), given, shares);
+}
+
 // The values of the dials with which the robot can do the motion, or the defaults if there are
-// none. Prints what was changed and what limits the robot.
-std::vector<double> values_that_pass(const Context& context, const RobotModel& model,
-                                     const std::vector<Dial>& dials,
-                                     const std::function<Pattern(const std::vector<double>&)>& make,
-                                     bool simulated = false) {
+// none. Prints what was changed and what limits the robot. `used` are the values that the motion
+// really has, if it does not take all values of the dials as they are.
+std::vector<double> values_that_pass(
+    const Context& context, const RobotModel& model, const std::vector<Dial>& dials,
+    const std::function<Pattern(const std::vector<double>&)>& make, bool simulated = false,
+    const std::function<std::vector<double>(std::vector<double>)>& used = std::identity()) {
   std::vector<double> defaults;
   for (const Dial& each : dials) defaults.push_back(each.values.front());
   if (!model.has_soles()) return defaults;
   const SearchResult result = search_motion(model, dials, make, context.progress(), simulated);
   if (result.limit.empty()) return defaults;
-  const std::string changed = changed_values(dials, result.values);
+  const std::string changed = changed_values(dials, used(result.values));
   if (!result.falls.empty())
     context.print("the check accepts this motion" + (changed.empty() ? "" : " with " + changed) +
                   ", but the robot falls in a simulation: " + result.falls + "; " +
@@ -143,7 +152,7 @@ std::vector<double> values_that_pass(const Context& context, const RobotModel& m
     if (!result.refused)  // otherwise, the error says it
       context.print("First error with the default values: " + result.limit + "\n");
     if (!result.nearest.empty()) {
-      const std::string nearest = changed_values(dials, result.nearest_values);
+      const std::string nearest = changed_values(dials, used(result.nearest_values));
       context.print("The combination that comes nearest has " +
                     (nearest.empty() ? "the default values" : nearest) + ". Its limit is " +
                     result.nearest + "\n");
@@ -214,10 +223,19 @@ void fit_steps(const Context& context, const RobotModel& model, const NewOptions
     return walk;
   };
   const double lift = w.lift;
-  w = with(values_that_pass(
+  const auto lift_dial =
+      static_cast<size_t>(std::find_if(dials.begin(), dials.end(),
+                                       [](const Dial& each) { return each.name == "--lift"; }) -
+                          dials.begin());
+  const std::vector<double> values = values_that_pass(
       context, model, dials,
-      [&](const std::vector<double>& values) { return walk_pattern(model, with(values)); }, true));
-  if (w.lift != lift && lacking)
+      [&](const std::vector<double>& each) { return walk_pattern(model, with(each)); }, true,
+      [&](std::vector<double> each) {
+        if (each[lift_dial] != lift) each[lift_dial] = with(each).lift;
+        return each;
+      });
+  w = with(values);
+  if (w.lift != lift && values[lift_dial] == lift)
     context.print("  the feet rise by " + text::brief(w.lift) + " m in place of " +
                   text::brief(lift) + " m, because the steps are quick (--lift changes this)\n");
 }
@@ -460,7 +478,7 @@ void new_kick(const Context& context, NewOptions options) {
   p.height = options.height.value_or(scaled.height);
   p.period = options.period.value_or(scaled.period);
   const std::vector<Dial> dials = {
-      height_dial(model, p.cog_height),
+      height_dial(kick_cog_height(model, p.height), p.cog_height, kHeightShares),
       dial("--length", "m", p.length, 1e-3, !options.length, {0.75, 0.5, 0.25}),
       dial("--period", "s", p.period, 0.01, !options.period, {1.25, 1.6, 2.2}),
       dial("--height", "m", p.height, 1e-3, !options.height, {0.6, 0.4})};

@@ -130,7 +130,7 @@ ClipSummary write_glb(const RobotModel& model, const SimulationLog& log, const f
     motions.back().name = clip.ghost.name;
   }
   write_file(path, glb_bytes(model, motions, {.max_triangles = clip.max_triangles}));
-  return {static_cast<int>(motions.front().times.size()), 0, 0, clip.fps, {}};
+  return {.frames = static_cast<int>(motions.front().times.size()), .fps = clip.fps};
 }
 
 /// Draws one run into one file. `clip` has all settings except the number of threads.
@@ -172,7 +172,7 @@ ClipSummary draw_run(const PreviewOptions& options, const std::string& input, co
       fail(ErrorCode::usage, {path.string()},
            "--strip and --exposures need a file name that ends in .png");
     const StripOptions strip = strip_options(own, log);
-    ClipSummary summary{strip.count, 0, 0, 0, {}};
+    ClipSummary summary{.frames = strip.count};
     const Image image = draw_strip(model, log, strip, progress, &summary.notes);
     write_png(path, image);
     summary.width = image.width;
@@ -183,11 +183,13 @@ ClipSummary draw_run(const PreviewOptions& options, const std::string& input, co
 }
 
 nlohmann::ordered_json json_of(const std::string& output, const ClipSummary& summary) {
-  return {{"output", output},
-          {"frames", summary.frames},
-          {"fps", summary.fps},
-          {"size", {summary.width, summary.height}},
-          {"notes", summary.notes}};
+  nlohmann::ordered_json json = {{"output", output},
+                                 {"frames", summary.frames},
+                                 {"fps", summary.fps},
+                                 {"size", {summary.width, summary.height}},
+                                 {"notes", summary.notes}};
+  if (summary.at) json["at_s"] = *summary.at;
+  return json;
 }
 
 void preview_one(const PreviewOptions& options, Context& context) {

@@ -108,7 +108,6 @@ TEST_P(Gesture, KickBringsTheFootAhead) {
   for (const Side side : {Side::left, Side::right}) {
     KickParameters p = kick_defaults(model);
     p.side = side;
-    p.cog_height = 0.97 * starting_height(model);
     const CommandSeries series = consistent(kick_pattern(model, p));
     const auto foot = static_cast<size_t>(side);
     const Vector3d start = series.samples.front().feet[foot].translation();

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string_view>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/io/table/motion_import.hpp"
@@ -66,6 +67,18 @@ TEST(ForeignTable, IsReadWithTheMarksOfOtherPrograms) {
   expect_the_motion(read(table("\"t\",\"l_elbow\",\"r_knee\"", ',', '.', 1, 1), degrees), "quotes");
   expect_the_motion(read("# left; right\n" + table("Time,l_elbow,r_knee", ',', '.', 1, 1), degrees),
                     "a comment, another case");
+  // As pandas writes a table with its index, and with a separator at the end of each row.
+  const std::string plain = table("t,l_elbow,r_knee", ',', '.', 1, 1);
+  std::string indexed, ended;
+  int row = -1;
+  for (std::string_view rest = plain; !rest.empty(); ++row) {
+    const std::string line(rest.substr(0, rest.find('\n')));
+    rest.remove_prefix(line.size() + 1);
+    indexed += (row < 0 ? "" : std::to_string(row)) + "," + line + "\n";
+    ended += line + ",\n";
+  }
+  expect_the_motion(read(indexed, degrees), "a column without a name");
+  expect_the_motion(read(ended, degrees), "a separator at the end of each row");
 }
 
 TEST(ForeignTable, UnitsMayStandInTheHeadRow) {

@@ -87,6 +87,57 @@ INSTANTIATE_TEST_SUITE_P(
       return name;
     });
 
+// Each text of a format is changed as other programs and people write it, and reads the same.
+TEST(MotionFormats, VariantsOfOtherProgramsAreRead) {
+  const MotionFile written = moving(hoap1(), 40, 50);
+  const auto written_as = [&](const std::string& format) {
+    return find_motion_format(format)->write(hoap1(), written).front().bytes;
+  };
+  const auto replaced = [](std::string text, const std::string& what, const std::string& with) {
+    return std::regex_replace(text, std::regex(what), with);
+  };
+  const auto same = [&](const std::string& text, const std::string& format, const char* what) {
+    SCOPED_TRACE(what);
+    ImportOptions options;
+    options.by_order = !(find_motion_format(format)->holds & kJointNames);
+    if (!(find_motion_format(format)->holds & kRate)) options.rate = 50;
+    ImportedMotion read;
+    ASSERT_EQ(error_message([&] { read = read_motion_rows(text, "m.dat", hoap1(), options); }), "no error");
+    EXPECT_EQ(read.format, format);
+    ASSERT_EQ(read.motion.theta.rows(), written.rows());
+    EXPECT_EQ((read.motion.theta - written.values).cwiseAbs().maxCoeff(), 0);
+  };
+  const std::string rows = written_as("motion-csv");
+  same(replaced(rows, ",", ";"), "motion-csv", "semicolons");
+  same(replaced(replaced(rows, ",", ";"), "\\.", ","), "motion-csv", "decimal commas");
+  same(replaced(rows, ",", "\t"), "motion-csv", "tabs");
+  same(replaced(rows, ",", "  "), "motion-csv", "blanks");
+  same(replaced(rows, "\n", ",\n"), "motion-csv", "a comma at the end of each row");
+  same(replaced(rows, "([^,\n]+)", "\"$1\""), "motion-csv", "quotes");
+  same(replaced(rows, ",([0-9])", ",+$1"), "motion-csv", "signs");
+  const std::string joints = written_as("transposed-csv");
+  same(replaced(joints, "time", "Time"), "transposed-csv", "a capital letter");
+  same(replaced(joints, "time", "time [s]"), "transposed-csv", "a unit");
+  same(replaced(joints, "\n", ",\n"), "transposed-csv", "a comma at the end of each row");
+  same(replaced(joints, ",", ";"), "transposed-csv", "semicolons");
+  const std::string poses = written_as("webots");
+  std::string capitals = poses;
+  for (size_t i = 0; i < capitals.find('\n'); ++i)
+    capitals[i] = static_cast<char>(std::toupper(static_cast<unsigned char>(capitals[i])));
+  same(capitals, "webots", "capital letters");
+  same(replaced(poses, "\n", ",\n"), "webots", "a comma at the end of each row");
+  same(replaced(poses, "\n([0-9:]*),Pose7,", "\n\n# lifts the foot\n$1,Pose7,"), "webots",
+       "an empty line and a comment");
+  same("% recorded\n" + written_as("hrpsys"), "hrpsys", "a comment");
+  const std::string trajectory = written_as("ros-trajectory");
+  const size_t points = trajectory.find("points:"), names = trajectory.find("joint_names");
+  same("play_motion:\n  motions:\n    walk:\n      joints" +
+           trajectory.substr(names + 11, points - names - 11) + "      " +
+           replaced(trajectory.substr(points), "\n", "\n      ") + "\n",
+       "play-motion2", "points, as in ROS 1");
+  same("% recorded\n" + written_as("zvs"), "zvs", "a comment");
+}
+
 std::string refusal_of(const std::string& bytes, const std::string& file = "m.dat",
                        ImportOptions options = {}) {
   return error_message([&] { read_motion_rows(bytes, file, hoap1(), options); });

@@ -146,8 +146,9 @@ TEST_F(Clip, ASinglePictureShowsItsInstant) {
 }
 
 TEST_F(Clip, ASinglePictureWithoutATimeShowsWhatHappens) {
-  write_clip(model, log, folder / "a.png", options);
+  const ClipSummary summary = write_clip(model, log, folder / "a.png", options);
   const double t = telling_instant(log);
+  EXPECT_EQ(summary.at, t);
   EXPECT_NEAR(t, 0.55, 1e-12) << "after the push";
   EXPECT_EQ(read_file(folder / "a.png"), encode_png(ClipRenderer(model, log, options).frame(t)));
 }

@@ -17,6 +17,7 @@
 #include "ayumi/base/json_pointer.hpp"
 #include "ayumi/base/number_slips.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/elementary.hpp"
 #include "ayumi/math/quintic.hpp"
 #include "ayumi/math/rotation.hpp"
@@ -60,14 +61,18 @@ constexpr double kNotedLean = 0.09;
 // Number of further keys of a foot that are named with their turn. Chosen: a kick has two or three
 // keys in the air.
 constexpr size_t kTurnedKeys = 3;
+// Shares of the way of a foot in the air that are tried, for all its keys of one swing together.
+// Chosen: with less than half, much of the motion is lost, and another change is probably better;
+// below a quarter, little of the motion is left.
+constexpr std::array kMildShares = {0.85, 0.7, 0.55}, kSmallShares = {0.55, 0.4, 0.25};
 // Below this, the turn of a foot against the other one is ignored [rad]. Chosen: ten degrees.
 constexpr double kNotedTurn = 0.17;
 // A COG that is farther than this from the middle of the feet is not above them; the bound is a
 // share of the length of a leg. Chosen: more than half of a sole.
 constexpr double kNotedOffset = 0.25;
-// Largest sideways distance of a foot, as a share of the length of its leg. Definition: the sine of
-// an angle.
-constexpr double kMostLean = 0.9;
+// Largest lean of a leg with which a foot is turned [rad]. Chosen: beyond it, a foot that is pulled
+// up to its hip would be turned upside down.
+constexpr double kMostLean = 1.1;
 // A segment that lasts less than this share of its neighbour is considered too short before any
 // value is considered wrong by a power of ten. Chosen: keys of one motion are seldom so unequal.
 constexpr double kShortSegment = 0.15;
@@ -168,6 +173,15 @@ class Hypotheses::Maker {
     std::vector<Hypothesis> made;
     near_footholds(made);
     lesser_turns(made);
+    // Where a motion cannot be sampled, another change may keep more of it.
+    if (found_.errors != kUnsampled) smaller_swings(made, kMildShares);
+    return made;
+  }
+
+  std::vector<Hypothesis> small_swings() const {
+    std::vector<Hypothesis> made;
+    if (found_.errors == kUnsampled) smaller_swings(made, kMildShares);
+    smaller_swings(made, kSmallShares);
     return made;
   }
 
@@ -1036,6 +1050,92 @@ class Hypotheses::Maker {
     }
   }
 
+  // A key of a foot in the air, and where the foot would be without the keys of this swing.
+  struct AirKey {
+    size_t key = 0;
+    Eigen::Vector3d position = {}, neutral = {};
+  };
+
+  /// The keys of a foot while the robot stands on the other one in this phase.
+  std::vector<AirKey> air_keys(size_t phase) const {
+    const Side side = other(stance_of(pattern_.phases[phase].support));
+    const auto s = static_cast<size_t>(index(side));
+    const double begin = begin_of(phase), until = pattern_.phases[phase].until;
+    const Eigen::Vector3d from = feet_->pose(side, begin).translation(),
+                          to = feet_->pose(side, until).translation();
+    std::vector<AirKey> keys;
+    for (size_t i = 0; i < pattern_.keyframes.size(); ++i) {
+      const Keyframe& key = pattern_.keyframes[i];
+      if (!key.feet[s] || key.t <= begin + 1e-9 || key.t >= until - 1e-9) continue;
+      const Eigen::Vector3d neutral = from + (key.t - begin) / (until - begin) * (to - from);
+      if (is_repeated(i)) return {};
+      if ((key.feet[s]->position - neutral).norm() > kNoLength)
+        keys.push_back({i, key.feet[s]->position, neutral});
+    }
+    return keys;
+  }
+
+  // All keys of a foot in the air are nearer to its place on the ground, or lower, or both.
+  void smaller_swings(std::vector<Hypothesis>& made, const std::array<double, 3>& shares) const {
+    if (!feet_) return;
+    for (size_t phase = 0; phase < pattern_.phases.size(); ++phase) {
+      if (!is_single(pattern_.phases[phase].support) || pattern_.phases[phase].swing ||
+          !reaches(phase))
+        continue;
+      const std::vector<AirKey> keys = air_keys(phase);
+      if (keys.size() < 2) continue;  // the numbers of a single key are values of their own
+      const Side side = other(stance_of(pattern_.phases[phase].support));
+      double far = 0, high = 0;
+      for (const AirKey& key : keys) {
+        const Eigen::Vector3d way = key.position - key.neutral;
+        far = std::max(far, way.head<2>().norm());
+        high = std::max(high, std::abs(way.z()));
+      }
+      const std::string foot = std::string("the ") + name_of(side) + " foot",
+                        written = foot + " moves up to " + text::fixed(1e3 * far, 0) +
+                                  " mm away from its place on the ground and up to " +
+                                  text::fixed(1e3 * high, 0) + " mm up";
+      for (const auto& [nearer, lower] : {std::pair(true, true), {true, false}, {false, true}}) {
+        if ((nearer && far < kNoLength) || (lower && high < kNoLength)) continue;
+        for (const double share : shares)
+          made.push_back(smaller_swing(keys, side, nearer ? share : 1, lower ? share : 1, written));
+      }
+    }
+  }
+
+  Hypothesis smaller_swing(const std::vector<AirKey>& keys, Side side, double away, double up,
+                           const std::string& written) const {
+    std::vector<std::pair<size_t, Eigen::Vector3d>> places;
+    std::vector<std::string> texts;
+    double moved = 0;
+    for (const AirKey& key : keys) {
+      Eigen::Vector3d place = key.position;
+      for (int axis = 0; axis < 3; ++axis)
+        if (const double share = axis == 2 ? up : away; share != 1)
+          place[axis] =
+              std::round(1e4 * (key.neutral[axis] + share * (place[axis] - key.neutral[axis]))) /
+              1e4;
+      moved = std::max(moved, (place - key.position).norm());
+      places.emplace_back(key.key, place);
+      texts.push_back("[" + text::brief(place.x(), 9) + ", " + text::brief(place.y(), 9) + ", " +
+                      text::brief(place.z(), 9) + "] in " + key_place(key.key));
+    }
+    const double share = std::min(away, up);
+    const auto s = static_cast<size_t>(index(side));
+    return {Rank::amount,
+            {key_place(keys.front().key), written,
+             std::string("with all keys of this swing ") +
+                 (away == 1 ? "lower"
+                  : up == 1 ? "nearer"
+                            : "nearer and lower") +
+                 ", the " + name_of(side) + " foot at " + text::join(texts, ", ")},
+            [places, s](Pattern& p) {
+              for (const auto& [key, place] : places) p.keyframes[key].feet[s]->position = place;
+            },
+            1 - share,
+            moved / leg_length(model_)};
+  }
+
   // The foot with its turn as the author can write it: "left": {"position": [0, 0.039, 0.03],
   // "rpy": [0, -20, 0]}.
   std::string turned_foot(Side side, const Foothold& foot, double roll, double pitch) const {
@@ -1047,14 +1147,30 @@ class Hypotheses::Maker {
            written(foot.rpy.z() / unit) + "]}";
   }
 
+  bool has_cog_height() const {
+    return std::any_of(pattern_.keyframes.begin(), pattern_.keyframes.end(),
+                       [](const Keyframe& key) { return key.cog_height.has_value(); });
+  }
+
+  /// The hip of a leg in the frame of its sole, while the robot stands at the height of the
+  /// pattern.
+  Eigen::Vector3d standing_hip(Side side) const {
+    RobotData data(model_);
+    update_positions(model_, model_.rest_state(), data);
+    const int body = model_.dofs()[static_cast<size_t>(model_.leg(side).front())].body;
+    Eigen::Vector3d hip = sole_pose(model_, data, side).inverse() * data.pose(body).translation();
+    hip.z() += default_cog_height(model_, pattern_) - home_cog_height(model_, pattern_);
+    return hip;
+  }
+
   // If a foot stays level while its leg leans, the ankle has to compensate for the lean. Tries the
   // foot turned with its leg.
   void level_feet(std::vector<Hypothesis>& made) const {
     if (!feet_) return;
-    const double leg = leg_length(model_);
     for (const Side side : {Side::left, Side::right}) {
       const auto s = static_cast<size_t>(index(side));
       const Eigen::Isometry3d from = feet_->pose(side, 0);
+      const Eigen::Vector3d hip = standing_hip(side);
       struct Lean {
         size_t key;
         double roll, pitch;
@@ -1066,45 +1182,63 @@ class Hypotheses::Maker {
         if (support_at(pattern_.keyframes[i].t) != on(other(side)) || !reaches_key(i)) continue;
         const Eigen::Vector3d way = from.inverse() * foot->position;
         if (way.z() < kNoLength) continue;
-        const auto lean = [leg](double across) {
-          return elementary::asin(std::clamp(across / leg, -kMostLean, kMostLean));
+        // The hip moves with the COG, which is above the foot that stands.
+        const double t = pattern_.keyframes[i].t;
+        Eigen::Vector3d moved = feet_->support_center(t) - feet_->support_center(0);
+        if (!has_cog_height()) moved.z() += way.z() / 2;
+        const Eigen::Vector3d leg = way - hip - from.linear().transpose() * moved;
+        const auto lean = [&](double across) {
+          return std::clamp(elementary::atan2(across, -leg.z()), -kMostLean, kMostLean);
         };
-        leans.push_back({i, lean(way.y()), -lean(way.x())});
+        leans.push_back({i, lean(leg.y()), -lean(leg.x())});
       }
       if (leans.empty()) continue;
-      for (const bool roll : {true, false}) {
-        const auto amount = [roll](const Lean& lean) { return roll ? lean.roll : lean.pitch; };
-        const Lean most =
-            *std::max_element(leans.begin(), leans.end(), [&](const Lean& a, const Lean& b) {
-              return std::abs(amount(a)) < std::abs(amount(b));
-            });
-        if (std::abs(amount(most)) < kNotedLean) continue;
+      const auto most = [&](const auto& amount) {
+        return *std::max_element(leans.begin(), leans.end(), [&](const Lean& a, const Lean& b) {
+          return std::abs(amount(a)) < std::abs(amount(b));
+        });
+      };
+      const Lean widest = most([](const Lean&lean) { return lean.roll; }),
+                 longest = most([](const Lean&lean) { return lean.pitch; });
+      for (const auto& [roll, pitch] : {std::pair(true, false), {false, true}, {true, true}}) {
+        if ((roll && std::abs(widest.roll) < kNotedLean) ||
+            (pitch && std::abs(longest.pitch) < kNotedLean))
+          continue;
+        const size_t place = pitch ? longest.key : widest.key;
+        const auto size = [](double lean) {
+          return text::fixed(std::abs(lean) * 180 / std::numbers::pi, 0) + " deg";
+        };
+        std::vector<std::string> ways;
+        if (roll) ways.push_back(size(widest.roll) + " to the side");
+        if (pitch) ways.push_back(size(longest.pitch) + (longest.pitch < 0 ? " ahead" : " back"));
         for (const double share : {1.0, 0.6}) {
-          const auto degrees = [share](double lean) { return whole_degrees(share * lean); };
-          const auto turned = [&](const Lean& lean) {
-            return turned_foot(side, pattern_.keyframes[lean.key].feet[s].value(),
-                               roll ? degrees(lean.roll) : 0, roll ? 0 : degrees(lean.pitch));
+          const auto turn = [roll, pitch, share](const Lean& lean) {
+            return Eigen::Vector2d(roll ? whole_degrees(share * lean.roll) : 0,
+                                   pitch ? whole_degrees(share * lean.pitch) : 0);
           };
-          std::string others;
+          std::string here, others;
           size_t more = 0;
-          for (const Lean& lean : leans)
-            if (lean.key != most.key && degrees(amount(lean)) != 0 && ++more <= kTurnedKeys)
-              others += "; in " + key_place(lean.key) + ", " + turned(lean);
+          for (const Lean& lean : leans) {
+            const Eigen::Vector2d by = turn(lean);
+            const std::string turned =
+                turned_foot(side, pattern_.keyframes[lean.key].feet[s].value(), by.x(), by.y());
+            if (lean.key == place)
+              here = turned;
+            else if (!by.isZero() && ++more <= kTurnedKeys)
+              others += "; in " + key_place(lean.key) + ", " + turned;
+          }
           if (more > kTurnedKeys) others += "; in its later keys, by the lean of the leg there";
           made.push_back(
               {Rank::geometry,
-               {key_place(most.key),
+               {key_place(place),
                 std::string("the ") + name_of(side) + " foot stays level while its leg leans by " +
-                    text::fixed(std::abs(amount(most)) * 180 / std::numbers::pi, 0) + " deg " +
-                    (roll               ? "to the side"
-                     : amount(most) < 0 ? "ahead"
-                                        : "back") +
-                    ", so the ankle bends by the same angle",
-                "with the foot turned with the leg (" + turned(most) + others + "),"},
-               [leans, amount, degrees, roll, s](Pattern& p) {
+                    text::join(ways, " and ") + ", so the ankle bends by the same angle",
+                "with the foot turned with the leg (" + here + others + "),"},
+               [leans, turn, s](Pattern& p) {
                  for (const Lean& lean : leans)
-                   p.keyframes[lean.key].feet[s]->rpy[roll ? 0 : 1] = degrees(amount(lean));
-               }});
+                   p.keyframes[lean.key].feet[s]->rpy.head<2>() = turn(lean);
+               },
+               roll && pitch ? 1.0 : 0.0});
         }
       }
     }
@@ -1298,9 +1432,7 @@ class Hypotheses::Maker {
   // The COG keeps its height above the mean of both soles, and a lifted foot raises this mean by
   // half of its lift.
   void level_cog(std::vector<Hypothesis>& made) const {
-    const bool has_height = std::any_of(pattern_.keyframes.begin(), pattern_.keyframes.end(),
-                                        [](const Keyframe& key) { return key.cog_height; });
-    if (has_height) return;
+    if (has_cog_height()) return;
     size_t highest = 0;
     double lift = 0;
     Side lifted = Side::left;
@@ -1455,6 +1587,8 @@ std::vector<Hypothesis> Hypotheses::of(Kind kind) const {
       return maker_->nearer();
     case Kind::paces:
       return maker_->paces();
+    case Kind::small_swings:
+      return maker_->small_swings();
   }
   return {};
 }

@@ -38,7 +38,8 @@ class Hypotheses {
     exchanges,
     missing,
     nearer,
-    paces
+    paces,
+    small_swings
   };
 
   /// The references must outlive the object.

@@ -90,36 +90,51 @@ class Search {
         rounds_(rounds),
         hypotheses_(model, pattern, found) {}
 
-  /// The best explanations, with equal remaining errors and equal rank.
+  /// The best explanations, with equal remaining errors and equal rank. After drop(), these are the
+  /// next best ones.
   std::vector<Candidate> best() {
-    if (found_.slight) return best_of_slight();
-    const auto kinds = {Kind::units, Kind::times, Kind::exchanges, Kind::missing};
-    Rank reached = Rank::unit;
-    for (const auto kind : kinds) {
-      if (kind == *(kinds.begin() + 1)) values();
-      test(hypotheses_.of(kind));
-      if (enough(reached)) return chosen();
-      reached = kind == *kinds.begin() ? Rank::slip : Rank::sign;
+    struct Stage {
+      Rank reached;  ///< explanations of this rank make the stage needless
+      Kind kind;
+      bool values = false;  ///< whether the written values are examined first
+      bool last = false;    ///< whether the stage is needless if anything helps
+    };
+    static const std::vector<Stage> usual = {{Rank::unit, Kind::units},
+                                             {Rank::unit, Kind::times, true},
+                                             {Rank::slip, Kind::exchanges},
+                                             {Rank::sign, Kind::missing},
+                                             {Rank::amount, Kind::nearer},
+                                             {Rank::amount, Kind::paces},
+                                             {Rank::amount, Kind::small_swings, false, true}};
+    // For slight errors, a hypothesis of another sign, digit or foot is not tried unless something
+    // in the pattern speaks for it.
+    static const std::vector<Stage> slight = {{Rank::unit, Kind::units},
+                                              {Rank::unit, Kind::irregular, true},
+                                              {Rank::amount, Kind::nearer},
+                                              {Rank::amount, Kind::paces},
+                                              {Rank::amount, Kind::small_swings, false, true}};
+    const std::vector<Stage>& stages = found_.slight ? slight : usual;
+    for (; stage_ < stages.size(); ++stage_) {
+      if (enough(stages[stage_].reached) || (stages[stage_].last && !chosen().empty())) break;
+      if (stages[stage_].values) values();
+      test(hypotheses_.of(stages[stage_].kind));
     }
-    if (!enough(Rank::amount)) test(hypotheses_.of(Kind::nearer));
-    if (!enough(Rank::amount)) test(hypotheses_.of(Kind::paces));
     return chosen();
+  }
+
+  /// Leaves out explanations that turned out to be none.
+  void drop(const std::vector<Candidate>& candidates) {
+    std::erase_if(tried_, [&](const Candidate& tried) {
+      return std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& c) {
+        return c.hypothesis.says.place == tried.hypothesis.says.place &&
+               c.hypothesis.says.written == tried.hypothesis.says.written &&
+               c.hypothesis.says.instead == tried.hypothesis.says.instead;
+      });
+    });
   }
 
  private:
   using Kind = Hypotheses::Kind;
-
-  // The best explanations for slight errors. Another sign, digit or foot is tried only if something
-  // in the pattern makes this mistake likely.
-  std::vector<Candidate> best_of_slight() {
-    test(hypotheses_.of(Kind::units));
-    if (enough(Rank::unit)) return chosen();
-    values();
-    test(hypotheses_.of(Kind::irregular));
-    if (!enough(Rank::amount)) test(hypotheses_.of(Kind::nearer));
-    if (!enough(Rank::amount)) test(hypotheses_.of(Kind::paces));
-    return chosen();
-  }
 
   bool enough(Rank reached) const {
     return std::any_of(tried_.begin(), tried_.end(), [&](const Candidate& c) {
@@ -163,13 +178,16 @@ class Search {
   // neutral value to itself; at 0 it is left out.
   bool look_at_best(const std::vector<WrittenValue>& suspects, double share) {
     std::vector<Mend> mends;
-    for (const WrittenValue& value : suspects)
-      mends.push_back([&value, share](Pattern& p) {
-        if (share == 0)
+    std::vector<double> shares;  // those nearest to `share` that can be written as messages do
+    for (const WrittenValue& value : suspects) {
+      shares.push_back(share == 0 ? 0 : value.written_share(pattern_, share));
+      mends.push_back([&value, tried = shares.back()](Pattern& p) {
+        if (tried == 0)
           value.leave_out(p);
         else
-          value.pull(p, share);
+          value.pull(p, tried);
       });
+    }
     const std::vector<TrialOutcome> without = trials_.after(pattern_, mends);
     const auto fewer = [&](const TrialOutcome& o) { return is_better(o, found_, Measure::errors); };
     const bool by_errors = std::any_of(without.begin(), without.end(), fewer);
@@ -182,7 +200,7 @@ class Search {
     size_t looked_at = 0;
     for (size_t i = 0; i < suspects.size() && looked_at < kSuspects; ++i)
       if (!is_better(least, without[i], measure)) {
-        look_at(suspects[i], without[i], measure, share);
+        look_at(suspects[i], without[i], measure, shares[i]);
         ++looked_at;
       }
     return true;
@@ -389,9 +407,11 @@ class Search {
       if (c.outcome.errors != sorted.front().outcome.errors ||
           c.hypothesis.rank != sorted.front().hypothesis.rank || best.size() == kNamedTogether)
         break;
+      // One contradiction of the geometry may be corrected in several ways; the first is enough.
       const auto same = [&](const Candidate& b) {
         return b.hypothesis.says.place == c.hypothesis.says.place &&
-               b.hypothesis.says.written == c.hypothesis.says.written;
+               (b.hypothesis.says.written == c.hypothesis.says.written ||
+                c.hypothesis.rank == Rank::geometry);
       };
       if (std::none_of(best.begin(), best.end(), same)) best.push_back(c);
     }
@@ -404,6 +424,7 @@ class Search {
   const TrialOutcome& found_;
   int rounds_;
   Hypotheses hypotheses_;
+  size_t stage_ = 0;  // the first stage that was not tried yet
   std::vector<Candidate> tried_;
 };
 
@@ -459,41 +480,50 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
     const int left_rounds = kRounds - round;
     std::optional<Search> search(std::in_place, trials, model, current, found, left_rounds);
     // The changes of these candidates refer to the search.
-    std::vector<Candidate> best = search->best();
-    if (best.empty() && !trials.exact() && trials.finer_when_exact()) {
-      // Quick trials may find errors that do not exist in exact trials.
-      const TrialOutcome exact = trials.of(current, true);
-      if (exact.errors < found.errors) {
-        trials.make_exact();
-        found = exact;
-        search.emplace(trials, model, current, found, left_rounds);
-        best = search->best();
-      }
-    }
-    std::erase_if(best, [&](const Candidate& c) {
-      const auto is_here = [&](const Explanation& e) { return e.place == c.hypothesis.says.place; };
-      return is_repeated(pattern, c.hypothesis.says.place) &&
-             std::any_of(result.found.begin(), result.found.end(), is_here);
-    });
-    if (best.empty()) break;
     std::vector<Candidate> possible;
-    for (Candidate& c : best) {
-      // A quick trial does not see all that is wrong at the servo's period.
-      const bool looked_closer = c.outcome.good() && !trials.exact();
-      if (looked_closer) c.outcome = trials.exactly(current, c.hypothesis.mend);
-      if (c.outcome.errors == kUnsampled) continue;
-      c.hypothesis.says.instead =
-          before_result(c.hypothesis.says.instead) +
-          (looked_closer ? words_at_period(found, c.outcome) : result_words(found, c.outcome));
-      c.hypothesis.says.enough = c.outcome.good();
-      // The changes of the previous rounds are also needed.
-      if (round > 0) c.hypothesis.says.instead += " (together with the change named before)";
-      // A mistake that was named together with another change is enough only after that change.
-      std::erase_if(result.found, [&](const Explanation& e) {
-        return e.place == c.hypothesis.says.place && e.written == c.hypothesis.says.written;
+    while (possible.empty()) {
+      std::vector<Candidate> best = search->best();
+      if (best.empty() && !trials.exact() && trials.finer_when_exact()) {
+        // Quick trials may find errors that do not exist in exact trials.
+        const TrialOutcome exact = trials.of(current, true);
+        if (exact.errors < found.errors) {
+          trials.make_exact();
+          found = exact;
+          search.emplace(trials, model, current, found, left_rounds);
+          best = search->best();
+        }
+      }
+      std::erase_if(best, [&](const Candidate& c) {
+        const auto is_here = [&](const Explanation& e) {
+          return e.place == c.hypothesis.says.place;
+        };
+        return is_repeated(pattern, c.hypothesis.says.place) &&
+               std::any_of(result.found.begin(), result.found.end(), is_here);
       });
-      result.found.push_back(c.hypothesis.says);
-      possible.push_back(std::move(c));
+      if (best.empty()) break;
+      std::vector<Candidate> unsampled;
+      for (Candidate& c : best) {
+        // A quick trial does not see all that is wrong at the servo's period.
+        const bool looked_closer = c.outcome.good() && !trials.exact();
+        if (looked_closer) c.outcome = trials.exactly(current, c.hypothesis.mend);
+        if (c.outcome.errors == kUnsampled) {
+          unsampled.push_back(std::move(c));
+          continue;
+        }
+        c.hypothesis.says.instead =
+            before_result(c.hypothesis.says.instead) +
+            (looked_closer ? words_at_period(found, c.outcome) : result_words(found, c.outcome));
+        c.hypothesis.says.enough = c.outcome.good();
+        // The changes of the previous rounds are also needed.
+        if (round > 0) c.hypothesis.says.instead += " (together with the change named before)";
+        // A mistake that was named together with another change is enough only after that change.
+        std::erase_if(result.found, [&](const Explanation& e) {
+          return e.place == c.hypothesis.says.place && e.written == c.hypothesis.says.written;
+        });
+        result.found.push_back(c.hypothesis.says);
+        possible.push_back(std::move(c));
+      }
+      search->drop(unsampled);  // the next best ones may be possible
     }
     if (possible.empty()) break;
     Pattern mended = current;

@@ -661,8 +661,9 @@ ClipSummary write_clip(const RobotModel& model, const SimulationLog& log, const 
   const RenderOptions& picture = options.picture;
   if (path.extension() == ".png") {
     ClipRenderer renderer(model, log, options);
-    write_png(path, renderer.frame(options.at ? *options.at : telling_instant(log)));
-    return {1, picture.width, picture.height, options.fps, renderer.notes()};
+    const double at = options.at ? *options.at : telling_instant(log);
+    write_png(path, renderer.frame(at));
+    return {1, picture.width, picture.height, options.fps, at, renderer.notes()};
   }
   const double end = options.end < 0 ? duration(log) : std::min(options.end, duration(log));
   const double step = options.speed / options.fps;
@@ -726,7 +727,7 @@ ClipSummary write_clip(const RobotModel& model, const SimulationLog& log, const 
     });
   }
   report(progress, {"preview", 1.0, std::to_string(count) + " frames"});
-  return {count, picture.width, picture.height, options.fps, notes};
+  return {count, picture.width, picture.height, options.fps, {}, notes};
 }
 
 }  // namespace ayumi

@@ -50,7 +50,9 @@ struct ClipSummary {
   int frames = 0;
   int width = 0, height = 0;  ///< size [pixel]
   double fps = 0;
-  std::vector<std::string> notes;  ///< what is drawn differently from the robot's files, and why
+  std::optional<double> at = {};  ///< time of a single picture [s]
+  std::vector<std::string> notes =
+      {};  ///< what is drawn differently from the robot's files, and why
 };
 
 /// The data that all renderers of one clip share.

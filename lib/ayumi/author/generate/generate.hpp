@@ -118,9 +118,12 @@ struct KickParameters {
   double length = 0.04;   ///< distance of the kick ahead of the foot's place [m]
   double height = 0.03;   ///< height of the foot above the ground when it kicks [m]
   double period = 1.6;    ///< duration of the swing [s]
-  double cog_height = 0;  ///< height of the COG; 0 for starting_height() [m]
+  double cog_height = 0;  ///< height of the COG; 0 for kick_cog_height() [m]
 };
 KickParameters kick_defaults(const RobotModel& model);
+/// The COG height with which a kick to this height of the foot begins, if none is given [m]. It is
+/// below starting_height(), because the COG rises by half of the foot's height.
+double kick_cog_height(const RobotModel& model, double height);
 Pattern kick_pattern(const RobotModel& model, const KickParameters& parameters);
 
 /// Slow sweeps, chirps and steps of every joint within its limits, from which `identify` can

@@ -340,6 +340,13 @@ Pattern wave_pattern(const RobotModel& model, const WaveParameters& p) {
   return pattern;
 }
 
+double kick_cog_height(const RobotModel& model, double height) {
+  // Chosen: half of the way by which the COG rises, so that the leg that carries the robot is bent
+  // more than usual at the beginning by as much as it is bent less than usual in the kick.
+  constexpr double kShare = 0.25;
+  return to_millimetre(starting_height(model) - kShare * height);
+}
+
 KickParameters kick_defaults(const RobotModel& model) {
   const double size = size_beside_hoap1(model);
   KickParameters p;
@@ -354,8 +361,8 @@ Pattern kick_pattern(const RobotModel& model, const KickParameters& p) {
   require_range("kick", "length", p.length, -0.5 * leg, 0.5 * leg, " m");
   require_range("kick", "height", p.height, 0.01 * leg, 0.5 * leg, " m");
   require_range("kick", "period", p.period, 0.2, 60, " s");
-  Pattern pattern =
-      both_feet(model, std::string("kick with the ") + name_of(p.side) + " foot", p.cog_height);
+  Pattern pattern = both_feet(model, std::string("kick with the ") + name_of(p.side) + " foot",
+                              p.cog_height != 0 ? p.cog_height : kick_cog_height(model, p.height));
   const Eigen::Isometry3d place = start_feet(model, pattern)[static_cast<size_t>(p.side)];
   const Side stands = other(p.side);
   const ZmpKey::Place under = stands == Side::left ? ZmpKey::Place::left : ZmpKey::Place::right;

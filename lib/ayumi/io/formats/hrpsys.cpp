@@ -78,7 +78,7 @@ std::string recognize_hrpsys(const MotionInput& source) {
   for (int rows = 0; rows < 3;) {
     if (rest.empty()) return "";
     std::string_view line = take_line(rest);
-    if (line.empty() || line.front() == '#') continue;
+    if (line.empty() || is_comment(line)) continue;
     if (line.find_first_not_of("0123456789+-.,eE \t") != std::string_view::npos ||
         line.find_first_of(" \t") == std::string_view::npos)
       return "";

@@ -1,10 +1,12 @@
 #include "ayumi/io/formats/motion_csv.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/table/comma_cells.hpp"
+#include "ayumi/io/table/csv_dialect.hpp"
 
 namespace ayumi {
 
@@ -12,41 +14,76 @@ namespace {
 
 constexpr size_t kRootColumns = 7;
 
-std::vector<double> first_rows(std::string_view text, size_t& columns) {
-  std::vector<double> lengths;
-  for (int rows = 0; rows < 5 && !text.empty();) {
-    const std::string_view line = take_line(text);
-    if (line.empty() || line.front() == '#') continue;
-    std::vector<double> row;
-    for (const std::string_view cell : cells_of(line)) {
+bool has_blanks_only(std::string_view bytes) {
+  std::string_view first;
+  while (!bytes.empty() && (first.empty() || is_comment(first))) first = take_line(bytes);
+  return first.find_first_of(",;\t") == std::string_view::npos;
+}
+
+// The text with commas between its cells, which may be separated by blanks only.
+std::string plain_rows(const std::string& bytes, const std::string& file) {
+  if (!has_blanks_only(bytes)) return plain_table_text(bytes, file);
+  std::string text;
+  for (std::string_view rest = bytes; !rest.empty();) {
+    std::string_view line = take_line(rest);
+    while (!line.empty() && line.front() != '#') {
+      const size_t end = std::min(line.find(' '), line.size());
+      text.append(line.substr(0, end));
+      line = trimmed(line.substr(end));
+      if (!line.empty()) text += ',';
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+// The first rows of numbers; none if a row has other cells or too few.
+std::vector<std::vector<double>> first_rows(const MotionInput& source) {
+  constexpr size_t kRows = 5;
+  std::string_view rest = source.bytes;
+  std::string head;
+  for (size_t rows = 0; rows < kRows && !rest.empty();) {
+    const std::string_view line = take_line(rest);
+    if (line.empty() || is_comment(line)) continue;
+    head.append(line).push_back('\n');
+    ++rows;
+  }
+  if (head.find_first_not_of("0123456789+-.eE,; \t\"\n") != std::string::npos) return {};
+  const std::string plain = plain_rows(head, source.file);
+  std::vector<std::vector<double>> numbers;
+  for (std::string_view text = plain; !text.empty();) {
+    std::vector<double>& row = numbers.emplace_back();
+    for (std::string_view cell : cells_of(take_line(text))) {
       double value = 0;
+      if (cell.starts_with('+')) cell.remove_prefix(1);
       const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
       if (error != std::errc() || end != cell.data() + cell.size()) return {};
       row.push_back(value);
     }
     if (row.size() <= kRootColumns) return {};
-    columns = row.size();
-    lengths.push_back(
-        std::sqrt(row[3] * row[3] + row[4] * row[4] + row[5] * row[5] + row[6] * row[6]));
-    ++rows;
   }
-  return lengths;
+  return numbers;
 }
 
 }  // namespace
 
 std::string recognize_motion_csv(const MotionInput& source) {
-  size_t columns = 0;
-  const std::vector<double> lengths = first_rows(source.bytes, columns);
-  if (lengths.empty()) return "";
-  for (const double length : lengths)
-    if (!(std::abs(length - 1) < kUnitQuaternion)) return "";
-  return "the rows have " + std::to_string(columns) +
+  const std::vector<std::vector<double>> rows = first_rows(source);
+  if (rows.empty()) return "";
+  // Rows of numbers between blanks may also be a log with times.
+  if (has_blanks_only(source.bytes) &&
+      rows.front().size() != kRootColumns + static_cast<size_t>(source.model.dof_count()))
+    return "";
+  for (const std::vector<double>& row : rows)
+    if (!(std::abs(std::hypot(std::hypot(row[3], row[4]), std::hypot(row[5], row[6])) - 1) <
+          kUnitQuaternion))
+      return "";
+  return "the rows have " + std::to_string(rows.front().size()) +
          " numbers, there is no head row, and columns 4 to 7 are a unit quaternion";
 }
 
 MotionFile read_motion_csv(const MotionInput& source) {
-  const NumberRows table = number_rows(source, source.bytes, ",");
+  const NumberRows table = number_rows(source, plain_rows(source.bytes, source.file), ",");
   const size_t width = table.rows.front().size();
   if (width <= kRootColumns)
     source.refuse(table.lines.front(),

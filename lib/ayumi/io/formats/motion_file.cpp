@@ -1,6 +1,7 @@
 #include "ayumi/io/formats/motion_file.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -63,12 +64,29 @@ size_t MotionInput::chosen_motion(const std::vector<std::string>& names,
   return chosen;
 }
 
+namespace {
+
+bool has_same_letters(const std::string& a, const std::string& b) {
+  const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [&](char x, char y) { return lower(x) == lower(y); });
+}
+
+}  // namespace
+
 int find_joint(const RobotModel& model, const std::string& name) {
   const int dof = model.find_dof(name);
   if (dof >= 0) return dof;
   const auto& aliases = model.description().aliases;
   const auto found = aliases.find(name);
-  return found == aliases.end() ? -1 : model.find_dof(found->second);
+  if (found != aliases.end()) return model.find_dof(found->second);
+  int same = -1;  // the only joint with this name in other letters, such as capital ones
+  for (int i = 0; i < model.dof_count(); ++i)
+    if (has_same_letters(model.dofs()[static_cast<size_t>(i)].name, name)) {
+      if (same >= 0) return -1;
+      same = i;
+    }
+  return same;
 }
 
 NumberRows number_rows(const MotionInput& source, std::string_view text,
@@ -76,7 +94,7 @@ NumberRows number_rows(const MotionInput& source, std::string_view text,
   NumberRows result;
   for (size_t line = 1; !text.empty(); ++line) {
     std::string_view rest = take_line(text);
-    if (rest.empty() || rest.front() == '#') continue;
+    if (rest.empty() || is_comment(rest)) continue;
     std::vector<double> row;
     if (!result.rows.empty()) row.reserve(result.rows.front().size());
     while (!rest.empty()) {

@@ -68,8 +68,8 @@ struct MotionInput {
   double number(std::string_view cell, size_t line, const std::string& where = "") const;
 };
 
-/// Index of the robot's joint with this name or alias (RobotDescription::aliases); -1 if there is
-/// none.
+/// Index of the robot's joint with this name or alias (RobotDescription::aliases), or else of the
+/// only joint whose name differs in capital letters alone; -1 if there is none.
 int find_joint(const RobotModel& model, const std::string& name);
 
 /// One file that a writer makes. Formats with several files name their extensions (".zmp").
@@ -78,7 +78,12 @@ struct WrittenFile {
   std::string bytes;
 };
 
-/// Rows of numbers between blanks, without empty lines and comments (#).
+/// Whether a line is a comment (# or %).
+inline bool is_comment(std::string_view line) {
+  return line.starts_with('#') || line.starts_with('%');
+}
+
+/// Rows of numbers between blanks, without empty lines and comments.
 struct NumberRows {
   std::vector<std::vector<double>> rows;
   std::vector<size_t> lines;  ///< line of each row in the file, counted from 1

@@ -81,6 +81,29 @@ Trajectory trajectory_of(const MotionInput& source, const YamlNode& names, const
   return result;
 }
 
+// A motion of play_motion2, with lists of its positions and times.
+Trajectory trajectory_of_lists(const MotionInput& source, const YamlNode& motion) {
+  const YamlNode *names = motion.find("joints"), *positions = motion.find("positions"),
+                 *times = motion.find("times_from_start");
+  if (!names || !positions || !times)
+    source.refuse(yaml_line(motion), "a motion needs joints, positions and times_from_start");
+  Trajectory one;
+  one.joints = names_in(source, *names);
+  const size_t width = one.joints.size(), rows = times->numbers.size();
+  if (!positions->items.empty() || !times->items.empty() ||
+      positions->numbers.size() != rows * width)
+    source.refuse(yaml_line(*positions),
+                  "the motion has " + text::counted(positions->numbers.size(), "position") +
+                      ", but " + text::counted(width, "joint") + " at " +
+                      text::counted(rows, "time") + " need " + std::to_string(rows * width));
+  for (size_t k = 0; k < rows; ++k) {
+    const auto begin = positions->numbers.begin() + static_cast<long>(k * width);
+    add_key(source, yaml_line(*times), times->numbers[k],
+            std::vector<double>(begin, begin + static_cast<long>(width)), one);
+  }
+  return one;
+}
+
 void find_trajectories(const MotionInput& source, const YamlNode& node,
                        std::vector<Trajectory>& found) {
   const YamlNode *names = node.find("joint_names"), *points = node.find("points");
@@ -219,10 +242,10 @@ std::vector<WrittenFile> write_ros_trajectory(const RobotModel&, const MotionFil
 }
 
 std::string recognize_play_motion(const MotionInput& source) {
-  const bool times = source.bytes.find("times_from_start") != std::string::npos;
-  return times && source.bytes.find("motions:") != std::string::npos
-             ? "the file has motions with times_from_start"
-             : "";
+  const auto has = [&](const char* word) { return source.bytes.find(word) != std::string::npos; };
+  if (!has("motions:")) return "";
+  if (has("times_from_start")) return "the file has motions with times_from_start";
+  return has("joints:") && has("time_from_start") ? "the file has motions with points" : "";
 }
 
 MotionFile read_play_motion(const MotionInput& source) {
@@ -232,24 +255,10 @@ MotionFile read_play_motion(const MotionInput& source) {
     source.refuse(yaml_line(root), "the list of motions is empty; add a motion");
   MotionFile about;
   const YamlNode& first = motions->items[source.chosen_motion(motions->keys, {}, about)];
-  const YamlNode *names = first.find("joints"), *positions = first.find("positions"),
-                 *times = first.find("times_from_start");
-  if (!names || !positions || !times)
-    source.refuse(yaml_line(first), "a motion needs joints, positions and times_from_start");
-  Trajectory one;
-  one.joints = names_in(source, *names);
-  const size_t width = one.joints.size(), rows = times->numbers.size();
-  if (!positions->items.empty() || !times->items.empty() ||
-      positions->numbers.size() != rows * width)
-    source.refuse(yaml_line(*positions),
-                  "the motion has " + text::counted(positions->numbers.size(), "position") +
-                      ", but " + text::counted(width, "joint") + " at " +
-                      text::counted(rows, "time") + " need " + std::to_string(rows * width));
-  for (size_t k = 0; k < rows; ++k) {
-    const auto begin = positions->numbers.begin() + static_cast<long>(k * width);
-    add_key(source, yaml_line(*times), times->numbers[k],
-            std::vector<double>(begin, begin + static_cast<long>(width)), one);
-  }
+  // In ROS 1, a motion is a list of points.
+  const YamlNode *names = first.find("joints"), *points = first.find("points");
+  Trajectory one =
+      names && points ? trajectory_of(source, *names, *points) : trajectory_of_lists(source, first);
   if (one.times.empty())
     source.refuse(yaml_line(first), "the motion has no posture; write the file again");
   MotionFile motion = joined(source, {std::move(one)});

@@ -56,8 +56,8 @@ void rename_column(NumberTable& table, Eigen::Index i, const RobotModel& model,
                    const ImportOptions& options) {
   std::string& column = table.columns[static_cast<size_t>(i)];
   const ColumnName named = column_name(column);
-  if (is_time(named.name) && (named.unit.empty() || named.unit == "s" || named.unit == "ms")) {
-    if (named.unit == "ms") table.values.col(i) *= 1e-3;
+  if (const std::optional<double> seconds = seconds_of_time_column(column)) {
+    if (*seconds != 1) table.values.col(i) *= *seconds;
     column = "t[s]";
     return;
   }
@@ -177,8 +177,11 @@ std::string recognize_csv_table(const MotionInput& source) {
   while (!rest.empty()) {
     const std::string_view line = take_line(rest);
     if (line.empty() || line.front() == '#') continue;
-    const bool letter = std::isalpha(static_cast<unsigned char>(line.front())) ||
-                        line.front() == '"' || line.front() == '_';
+    // The first column, the index of a row, may have no name.
+    const bool unnamed = line.find_first_of(",;") == 0;
+    const char first = line[unnamed && line.size() > 1 ? 1 : 0];
+    const bool letter =
+        std::isalpha(static_cast<unsigned char>(first)) || first == '"' || first == '_';
     const bool cells = line.find_first_of(",;\t ") != std::string_view::npos ||
                        line.find_first_not_of(
                            "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
@@ -193,6 +196,14 @@ std::string recognize_csv_table(const MotionInput& source) {
 MotionFile read_csv_table(const MotionInput& source) {
   return read_number_motion(source,
                             number_table(plain_table_text(source.bytes, source.file), source.file));
+}
+
+std::optional<double> seconds_of_time_column(const std::string& column) {
+  const ColumnName named = column_name(column);
+  if (!is_time(named.name)) return {};
+  if (named.unit.empty() || named.unit == "s") return 1.0;
+  if (named.unit == "ms") return 1e-3;
+  return {};
 }
 
 std::string recognize_json_table(const MotionInput& source) {

@@ -6,7 +6,9 @@
 
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/io/formats/table_motion.hpp"
 #include "ayumi/io/table/comma_cells.hpp"
+#include "ayumi/io/table/csv_dialect.hpp"
 
 namespace ayumi {
 
@@ -31,17 +33,26 @@ bool has_words_only(const std::vector<std::string_view>& cells) {
   return words;
 }
 
+// The first line in plain form; "" if only blanks separate its cells.
+std::string first_line(const MotionInput& source) {
+  std::string_view rest = source.bytes;
+  const std::string line(take_line(rest));
+  return line.find_first_of(",;\t") == std::string::npos ? "" : plain_table_text(line, source.file);
+}
+
 }  // namespace
 
 std::string recognize_transposed_csv(const MotionInput& source) {
-  std::string_view rest = source.bytes;
-  const std::vector<std::string_view> head = cells_of(take_line(rest));
-  const bool times = head.size() > 1 && (head[0] == "time" || head[0] == "t") && is_number(head[1]);
+  const std::string text = first_line(source);
+  const std::vector<std::string_view> head = cells_of(text);
+  const bool times =
+      head.size() > 1 && seconds_of_time_column(std::string(head[0])) && is_number(head[1]);
   return times ? "the first row has times, so each further row is a joint" : "";
 }
 
 MotionFile read_transposed_csv(const MotionInput& source) {
-  std::string_view rest = source.bytes;
+  const std::string plain = plain_table_text(source.bytes, source.file);
+  std::string_view rest = plain;
   MotionFile motion;
   std::vector<std::vector<double>> joints;
   for (size_t line = 1; !rest.empty(); ++line) {
@@ -66,6 +77,8 @@ MotionFile read_transposed_csv(const MotionInput& source) {
                                   " s; times must increase, so correct or remove this column");
       if (row.empty())
         source.refuse(line, "the first row has no time; give the times of the columns");
+      const double seconds = seconds_of_time_column(std::string(cells[0])).value_or(1);
+      for (double& time : row) time *= seconds;
       motion.times = std::move(row);
       continue;
     }

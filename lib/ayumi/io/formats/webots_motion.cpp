@@ -73,6 +73,8 @@ MotionFile read_webots_motion(const MotionInput& source) {
     if (names.find('%') != std::string_view::npos) separator = '%';
     head = split(names, separator);
   }
+  const bool open = !head.empty() && head.back().empty();  // a separator ends every row
+  if (open) head.pop_back();
   for (const std::string_view name : head) {
     if (name.empty()) source.refuse(line, "a column has no name");
     motion.joints.emplace_back(name);
@@ -85,8 +87,9 @@ MotionFile read_webots_motion(const MotionInput& source) {
   while (!rest.empty()) {
     const std::string_view text = take_line(rest);
     ++line;
-    if (text.empty()) break;
-    const std::vector<std::string_view> row = split(text, separator);
+    if (text.empty() || is_comment(text)) continue;
+    std::vector<std::string_view> row = split(text, separator);
+    if (open && row.back().empty()) row.pop_back();
     if (row.size() != before + head.size() + after)
       source.refuse(line, "the row has " + text::counted(row.size(), "cell") +
                               ", but the head row needs " +

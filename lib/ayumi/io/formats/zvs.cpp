@@ -57,7 +57,7 @@ std::vector<std::string> joints_beside(const MotionInput& source, size_t width,
 std::string recognize_zvs(const MotionInput& source) {
   std::string_view rest = source.bytes;
   std::string_view line;
-  while (line.empty() && !rest.empty()) line = take_line(rest);
+  while ((line.empty() || is_comment(line)) && !rest.empty()) line = take_line(rest);
   const size_t open = line.find('(');
   if (open == std::string_view::npos ||
       line.find_first_not_of("0123456789.eE+-/ \t(), \r") != std::string_view::npos)
@@ -74,7 +74,7 @@ MotionFile read_zvs(const MotionInput& source) {
   double now = 0;
   for (size_t line = 1; !rest.empty(); ++line) {
     const std::string_view text = take_line(rest);
-    if (text.empty()) continue;
+    if (text.empty() || is_comment(text)) continue;
     const std::vector<std::string_view> tokens = tokens_of(text);
     if (tokens.size() < 3) source.refuse(line, "the row must have the form `dt n ( values )`");
     if (text.find('(') != std::string_view::npos && text.find(')') == std::string_view::npos)

@@ -29,6 +29,20 @@ char separator_of(std::string_view row, const std::string& file) {
   return ',';
 }
 
+// The rows without their first cell, and without an empty cell at their end.
+std::string without_outer_cells(std::string_view text, bool first, bool last) {
+  std::string kept;
+  while (!text.empty()) {
+    std::string_view line = take_line(text);
+    if (!line.empty() && line.front() != '#') {
+      if (first) line.remove_prefix(std::min(line.find(',') + 1, line.size()));
+      if (last && line.ends_with(',')) line.remove_suffix(1);
+    }
+    kept.append(line).push_back('\n');
+  }
+  return kept;
+}
+
 }  // namespace
 
 std::string plain_table_text(const std::string& bytes, const std::string& file) {
@@ -38,6 +52,7 @@ std::string plain_table_text(const std::string& bytes, const std::string& file) 
   const std::string_view head = first_row(text);
   if (head.empty() || head.front() == '{') return text;
   const char separator = separator_of(head, file);
+  const bool unnamed = head.front() == separator, open = head.back() == separator;
   const bool quoted = head.find('"') != std::string_view::npos;
   bool comment = false, begins = true;
   for (char& c : text) {
@@ -52,7 +67,7 @@ std::string plain_table_text(const std::string& bytes, const std::string& file) 
       c = ',';
     }
   }
-  return text;
+  return unnamed || open ? without_outer_cells(text, unnamed, open) : text;
 }
 
 }  // namespace ayumi
