@@ -83,7 +83,7 @@ const std::array<Job, 5> kJobs = {{
     {"jump", "a jump", jump_text,
      "418a63c346d3a1c34f23c2cfad2461c15fd69eaecf6c88a64168d34972fd7abd"},
     {"viip", "a walk by VIIP", viip_text,
-     "ee8c70c2b6d78c2811cfab7d1e3d233264e3e50c90569ecb8169da942549c63f"},
+     "c492255c974be159c378dbffdcf0bc8729e07b029930dbad87b7a5cad4e3dc02"},
     {"repair", "a repaired walk", repair_text,
      "16a496a391adf500cd5316e5b640ab9626fce3f2cea47a77d8aa2ad8a57cf4d8"},
     {"push", "limits of pushes", push_text,

@@ -191,7 +191,7 @@ TEST(Viip, TheZmpFollows) {
     double error, noisy;  // largest error without and with noise [m]
   };
   for (const Case& c : {Case{"hoap1_viip_step", 0.005, 0.010},
-                        {"hoap1_viip_walk", 0.006, 0.011},
+                        {"hoap1_viip_walk", 0.006, 0.010},
                         {"humanoid30_viip_step", 0.012, 0.025},
                         {"humanoid30_viip_walk", 0.015, 0.025}}) {
     SCOPED_TRACE(c.pattern);
