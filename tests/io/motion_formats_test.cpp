@@ -102,7 +102,8 @@ TEST(MotionFormats, VariantsOfOtherProgramsAreRead) {
     options.by_order = !(find_motion_format(format)->holds & kJointNames);
     if (!(find_motion_format(format)->holds & kRate)) options.rate = 50;
     ImportedMotion read;
-    ASSERT_EQ(error_message([&] { read = read_motion_rows(text, "m.dat", hoap1(), options); }), "no error");
+    ASSERT_EQ(error_message([&] { read = read_motion_rows(text, "m.dat", hoap1(), options); }),
+              "no error");
     EXPECT_EQ(read.format, format);
     ASSERT_EQ(read.motion.theta.rows(), written.rows());
     EXPECT_EQ((read.motion.theta - written.values).cwiseAbs().maxCoeff(), 0);
