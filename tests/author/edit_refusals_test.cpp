@@ -88,6 +88,35 @@ TEST(JoinRefuses, MotionsThatDoNotMeet) {
               "a foot is in the air here");
 }
 
+// The second motion is moved so that it goes on where the first one ends, and so is what happens in
+// the world around it.
+TEST(Join, DisturbancesMoveWithTheirMotion) {
+  const RobotModel& model = hoap1();
+  const Pattern stand = stand_pattern(model, 0.5);
+  const CommandSeries samples = sample(model, stand);
+  constexpr double yaw = 0.4;
+  const Eigen::AngleAxisd turn(yaw, Vector3d::UnitZ());
+  const Vector3d place(0.3, 0.1, 0);
+  Pattern second = stand;
+  for (const double y : {0.039, -0.039})
+    second.start_feet[y > 0 ? 0 : 1] = Foothold{turn * Vector3d(0, y, 0) + place, {0, 0, yaw}};
+  Push in_world, on_link;
+  in_world.direction = on_link.direction = turn * Vector3d::UnitX();
+  on_link.frame = PushFrame::link;
+  Bump bump;
+  bump.place = (turn * Vector3d(0.05, 0, 0) + place).head<2>();
+  second.scenario = {{0.1, 0.1, in_world}, {0.2, 0.1, on_link}, {0.3, 0.1, bump}};
+  const Pattern whole =
+      joined(model, {stand, samples}, {second, sample(model, second)}, 0.5, "t.csv");
+  ASSERT_EQ(whole.scenario.size(), 3u);
+  for (size_t i = 0; i < 3; ++i)
+    EXPECT_NEAR(whole.scenario[i].at, second.scenario[i].at + 0.5 + 0.5, 2e-3) << i;
+  const double most = 2e-6;
+  EXPECT_LE((std::get<Push>(whole.scenario[0].what).direction - Vector3d::UnitX()).norm(), most);
+  EXPECT_EQ(std::get<Push>(whole.scenario[1].what).direction, on_link.direction);
+  EXPECT_LE((std::get<Bump>(whole.scenario[2].what).place - Eigen::Vector2d(0.05, 0)).norm(), most);
+}
+
 TEST(AlternateRefuses, WhatIsNoStep) {
   const RobotModel& model = hoap1();
   const Pattern step = step_once();

@@ -163,6 +163,35 @@ TEST(GainDesign, SoftServosGetGainsThatAreStable) {
   EXPECT_GT(mended, 0);
 }
 
+// Every gain that is out of range is refused with its value.
+TEST(GainDesign, GainsOutOfRangeAreRefused) {
+  const RobotModel model = load_robot(AYUMI_SOURCE_DIR "/robots/hoap1");
+  using Gains = std::vector<std::pair<std::string, double>>;
+  const std::tuple<ControllerKind, Gains, std::string> cases[] = {
+      {ControllerKind::dtad, {{"q", -1}}, "gain q is -1; a gain must be a finite number that is"},
+      {ControllerKind::dtad, {{"q", NAN}}, "gain q is nan; a gain must be a finite number"},
+      {ControllerKind::dtad, {{"qq", 1}}, "dtad has no gain 'qq'; did you mean 'q'?"},
+      {ControllerKind::dtad, {{"q", 0}}, "q is 0; it must be above 0, because K = 1 + q"},
+      {ControllerKind::dtad, {{"k", 2}}, "k and d must be given together"},
+      {ControllerKind::dtad, {{"k", 2}, {"d", 1}, {"q", 1}}, "give either q, or k and d"},
+      {ControllerKind::dtad, {{"k", 1}, {"d", 1}}, "k = 1, d = 1 never bring the COG back"},
+      {ControllerKind::dtad, {{"tau_z", 0}}, "tau_z is 0; it must be above 0"},
+      {ControllerKind::dtad, {{"as_printed", 2}}, "as_printed is 2; it must be 0 or 1"},
+      {ControllerKind::preview, {{"effort", 2}}, "effort is 2; it must be from 1e-9 to 1"},
+      {ControllerKind::preview, {{"horizon", 51}}, "horizon is 51; it must be above 0 and at most"},
+      {ControllerKind::foot_guided, {{"soonest", 0}}, "soonest is 0; it must be positive"},
+      {ControllerKind::dcm_step, {{"place", 0}}, "place is 0; it must be positive"},
+      {ControllerKind::dcm_step, {{"slowest", 2}}, "slowest is 2; it must be from 0.1 to 1"}};
+  for (const auto& [kind, gains, part] : cases) {
+    ControllerSpec spec;
+    spec.type.kind = kind;
+    spec.gains = gains;
+    const std::string message =
+        test::error_message([&] { dtad_params(model, spec); }, ErrorCode::usage);
+    EXPECT_NE(message.find(part), std::string::npos) << message << " / " << part;
+  }
+}
+
 // If no gains fulfil what is asked for, the refusal names the value and the reason.
 TEST(GainDesign, RefusesWishesThatNoGainsFulfil) {
   const auto refused = [](const GainWishes& wishes) {
