@@ -43,14 +43,10 @@ constexpr size_t kTriangles = 60'000;
 
 AuthorAnswer refused(const std::string& message) { return {422, {{"message", message}}}; }
 
-// A message without the name of the pattern's file at its beginning, because the page only shows
-// one file.
-std::string without_file(const std::string& message, const fs::path& file) {
-  const std::string name = file.string() + ":";
-  if (!message.starts_with(name)) return message;
-  // The message is "FILE: words" or "FILE:12:2: words"; the page itself shows the line.
-  const size_t words = message.find_first_not_of("0123456789:", name.size());
-  return words == std::string::npos || message[words] != ' ' ? message : message.substr(words + 1);
+// The message of an error without the name of the pattern's file and the line, because the page
+// only shows one file and shows the line itself.
+std::string without_file(const Error& error, const fs::path& file) {
+  return error.place().file == file.string() ? error.words() : error.what();
 }
 
 // Calls `work`. If it throws, the answer contains the message.
@@ -59,7 +55,7 @@ AuthorAnswer answered(const fs::path& file, const Work& work) {
   try {
     return work();
   } catch (const Error& error) {
-    return refused(without_file(error.what(), file));
+    return refused(without_file(error, file));
   } catch (const nlohmann::json::exception&) {
     return {400, {{"message", "the request does not have the form that the page sends"}}};
   }
@@ -260,7 +256,7 @@ void AuthorSession::refresh() {
     const SourcePlace& at = error.place();
     const std::string pointer = at.inside.starts_with("/") ? at.inside : "";
     const bool here = at.file == setting_.file.string();
-    next->error = {{"message", without_file(error.what(), setting_.file)}, {"pointer", pointer}};
+    next->error = {{"message", without_file(error, setting_.file)}, {"pointer", pointer}};
     if (here && at.line > 0) (*next->error)["line"] = at.line;
     // An error of the whole file, or of a part that is missing in it, has no line. A text that is
     // not JSON has no pointer.
@@ -383,7 +379,7 @@ void refuse_unreadable(const std::string& before, const std::string& after,
       return;
     }
     fail(error.code(), "nothing was written, because the pattern could not be read then: " +
-                           without_file(error.what(), setting.file));
+                           without_file(error, setting.file));
   }
 }
 
@@ -490,12 +486,11 @@ AuthorAnswer AuthorSession::pose(const OrderedJson& request) {
         row.push_back(value);
       }
     }
-    return {200,
-            {{"row", row},
-             {"edits", edits_json(answer.edits)},
-             {"message", answer.message.empty()
-                             ? OrderedJson(nullptr)
-                             : OrderedJson(without_file(answer.message, setting_.file))}}};
+    return {
+        200,
+        {{"row", row},
+         {"edits", edits_json(answer.edits)},
+         {"message", answer.message.empty() ? OrderedJson(nullptr) : OrderedJson(answer.message)}}};
   });
 }
 
@@ -571,8 +566,10 @@ void AuthorSession::work(std::uint64_t id, std::string kind, OrderedJson options
     result = author_job(kind, options, context_, *shown->motion, shown->text, setting_, progress);
   } catch (const Interrupted&) {
     news["error"] = "cancelled";
+  } catch (const Error& error) {
+    news["error"] = without_file(error, setting_.file);
   } catch (const std::exception& error) {
-    news["error"] = without_file(error.what(), setting_.file);
+    news["error"] = error.what();
   }
   // From here on, another job may start, because a page that sees the result below may start one at
   // once. start_job() joins this thread first.

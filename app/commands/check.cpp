@@ -172,7 +172,7 @@ std::vector<std::string> plot_joints_against_limits(const Task& task,
   } catch (const Error& first) {
     if (first.place().names_value)
       std::erase_if(mistakes, [](const Mistake& mistake) { return !mistake.explains_all; });
-    throw_with_message(first, with_mistakes(first.what(), pattern, mistakes));
+    throw with_mistakes(first, pattern, mistakes);
   }
   throw error;  // an error that no sample shows
 }

@@ -210,7 +210,7 @@ Task load(const Context& context, const RepairCommand& options) {
     } catch (const Error&) {  // the file itself is at fault, as the first error says
     }
     if (values.empty()) throw;
-    throw_with_message(error, std::string(error.what()) + "\n" + in_words(values));
+    throw_with_more(error, "\n" + in_words(values));
   }
 }
 

@@ -230,6 +230,7 @@ TEST(Bake, SamplesToTheSameMotion) {
 TEST(Join, ATableOfKeysAndSwingsOfAFoot) {
   KickParameters low;
   low.height = 0.018;
+  low.cog_height = starting_height(hoap1());  // a kick of its own would begin lower than the walk
   const Pattern walk = walk_pattern(hoap1(), {.steps = 3});
   const Pattern kick = kick_pattern(hoap1(), low);
   const std::vector<std::pair<Pattern, Pattern>> orders = {{walk, kick}, {kick, walk}};

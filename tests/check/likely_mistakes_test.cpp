@@ -61,11 +61,16 @@ TEST(LikelyMistakes, ASearchWithoutACauseComesLast) {
                                       .words = "no likely cause was found",
                                       .explains_all = false,
                                       .is_cause = false}};
-  EXPECT_EQ(with_mistakes("a.json: /phases/1: out of reach", pattern, none),
-            "a.json: /phases/1: out of reach; no likely cause was found");
-  EXPECT_EQ(
-      with_mistakes("a.json: /phases/1: out of reach", pattern, {{"/units", "in degrees"}}),
+  const Error error(ErrorCode::bad_pattern, "a.json: /phases/1: out of reach",
+                    {"a.json", "/phases/1"}, "/phases/1: out of reach");
+  EXPECT_STREQ(with_mistakes(error, pattern, none).what(),
+               "a.json: /phases/1: out of reach; no likely cause was found");
+  const Error explained = with_mistakes(error, pattern, {{"/units", "in degrees"}});
+  EXPECT_STREQ(
+      explained.what(),
       "a.json: likely cause: /units: in degrees; the first error is: /phases/1: out of reach");
+  EXPECT_EQ(explained.words(),
+            "likely cause: /units: in degrees; the first error is: /phases/1: out of reach");
 }
 
 TEST(ImpossibleValues, SoundPatternsHaveNone) {

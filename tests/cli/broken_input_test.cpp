@@ -141,7 +141,8 @@ std::vector<Broken> broken_robots() {
       sidecar("unknown_joint", "\"r_hip_pitch\": -17.258", "\"r_hip_ptch\": -17.258",
               "did you mean 'r_hip_pitch'?"),
       sidecar("posture_beyond_limit", "\"r_knee\": 43.576", "\"r_knee\": 300",
-              "posture 'home': the joint 'r_knee' is at 300 deg, above its limit of 120 deg"),
+              "/postures_deg/home/r_knee: the joint 'r_knee' is at 300 deg, above its limit of 120 "
+              "deg"),
       sidecar("limits_in_degrees", "\"trunk_link\"",
               "\"position_limits_deg\": {\"r_knee\": [10, -10]}, \"trunk_link\"",
               "robot.json: /position_limits_deg/r_knee: the lower limit 10 deg exceeds the upper "

@@ -236,9 +236,9 @@ TEST(BrokenRobot, WrongSidecars) {
             "robot.json: /servos/0/joints/0: no moving joint of the robot matches '*_knee'");
   EXPECT_EQ(sidecar_error(", \"servos\": [{\"joints\": [\"*\"], \"kp\": \"stiff\"}]"),
             "robot.json: /servos/0/kp: expected a number, found a string");
-  EXPECT_EQ(
-      sidecar_error(", \"postures_deg\": {\"home\": {\"l_hip\": 90}}"),
-      "robot.json: posture 'home': the joint 'l_hip' is at 90 deg, above its limit of 57.3 deg");
+  EXPECT_EQ(sidecar_error(", \"postures_deg\": {\"home\": {\"l_hip\": 90}}"),
+            "robot.json: /postures_deg/home/l_hip: the joint 'l_hip' is at 90 deg, above its limit "
+            "of 57.3 deg");
   EXPECT_EQ(sidecar_error(", \"encoders\": {\"l_hip\": {\"device\": 1, \"counts_per_degree\": 1}, "
                           "\"r_hip\": {\"device\": 1, \"counts_per_degree\": 1}}"),
             "robot.json: /encoders/r_hip/device: the joint 'l_hip' has this device already");

@@ -1,6 +1,9 @@
 #include "ayumi/io/pattern/pattern_file.hpp"
 
+#include "ayumi/motion/pattern_context.hpp"
 #include "tests/io/pattern_texts.hpp"
+#include "tests/support/error_message.hpp"
+#include "tests/support/hoap1.hpp"
 
 namespace ayumi::test {
 namespace {
@@ -94,6 +97,17 @@ TEST_F(PatternFile, PosturesOfTheFileAndOfIncludedFiles) {
   const Pattern p = read(with("postures", own));
   EXPECT_EQ(p.postures.at("crouch").at("l_knee"), 1.5);
   EXPECT_DOUBLE_EQ(p.postures.at("stretch").at("l_knee"), 10 * kDegree);
+  EXPECT_EQ(p.posture_files.at("crouch"), (folder_ / "lib.json").string());
+  EXPECT_FALSE(p.posture_files.contains("stretch"));
+  // A joint that the robot does not have is a mistake of the included file.
+  put("lib.json", R"({"format": "ayumi.postures/1", "units": {"angle": "rad"},
+                      "postures": {"crouch": {"l_kne": 1.5}}})");
+  const Pattern misspelt = read(with("postures", own));
+  EXPECT_TRUE(error_message([&] {
+                posture_joints(hoap1(), misspelt, "crouch", {});
+              }).starts_with((folder_ / "lib.json").string() + ": /postures/crouch/l_kne: "));
+  put("lib.json", R"({"format": "ayumi.postures/1", "units": {"angle": "rad"},
+                      "postures": {"crouch": {"l_knee": 1.5}}})");
   const std::string twice = R"({"crouch": {"l_knee": 10}}, "include": ["lib.json"])";
   EXPECT_NE(message(with("postures", twice))
                 .find("/postures/crouch: another file that is included has a posture"),

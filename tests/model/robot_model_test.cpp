@@ -281,13 +281,14 @@ TEST(RobotModel, NamesWhatIsWrongInTheSidecar) {
   EXPECT_EQ(error_of([](auto& r) {
               r.postures["home"] = {{"l_kne", 0.1}};
             }),
-            "robot.json: posture 'home': 'l_kne' is not a moving joint of the robot; did you mean "
+            "robot.json: /postures/home: 'l_kne' is not a moving joint of the robot; did you mean "
             "'l_knee'?");
-  EXPECT_EQ(error_of([](auto& r) {
-              r.postures["home"] = {{"l_knee", 2.9}};
-            }),
-            "robot.json: posture 'home': the joint 'l_knee' is at 166.2 deg, above its limit of "
-            "114.6 deg");
+  EXPECT_EQ(
+      error_of([](auto& r) {
+        r.postures["home"] = {{"l_knee", 2.9}};
+      }),
+      "robot.json: /postures/home/l_knee: the joint 'l_knee' is at 166.2 deg, above its limit of "
+      "114.6 deg");
   EXPECT_EQ(error_of([](auto& r) {
               r.joint_order = {"l_hip", "l_knee", "r_hip"};
             }),

@@ -19,7 +19,11 @@ void fail(ErrorCode code, const std::string& message) { throw Error(code, messag
 
 void fail(ErrorCode code, const SourcePlace& place, const std::string& what) {
   const std::string where = text_of(place);
-  throw Error(code, where.empty() ? what : where + ": " + what, place);
+  throw Error(code, where.empty() ? what : where + ": " + what, place, words_at(place, what));
+}
+
+std::string words_at(const SourcePlace& place, const std::string& what) {
+  return place.inside.empty() ? what : place.inside + ": " + what;
 }
 
 void fail_unknown_name(SourcePlace place, const std::string& what) {

@@ -30,6 +30,9 @@ struct SourcePlace {
   /// Whether the message already names the wrong value, so that a likely cause is only shown if it
   /// explains all errors.
   bool names_value = false;
+  /// Whether the message already says what is wrong with the writing of the file, so that no
+  /// general advice about it is added.
+  bool names_remedy = false;
 
   bool empty() const { return file.empty() && inside.empty() && line == 0; }
 };
@@ -42,14 +45,22 @@ SourcePlace operator+(SourcePlace place, const std::string& inside);
 
 class Error : public std::runtime_error {
  public:
-  Error(ErrorCode code, const std::string& message, SourcePlace place = {})
-      : std::runtime_error(message), code_(code), place_(std::move(place)) {}
+  /// `words` is the message without the file and the line at its beginning; if it is empty, the
+  /// message has no such beginning.
+  Error(ErrorCode code, const std::string& message, SourcePlace place = {}, std::string words = "")
+      : std::runtime_error(message),
+        code_(code),
+        place_(std::move(place)),
+        words_(words.empty() ? message : std::move(words)) {}
   ErrorCode code() const { return code_; }
+  /// The message without the file and the line at its beginning.
+  const std::string& words() const { return words_; }
   const SourcePlace& place() const { return place_; }
 
  private:
   ErrorCode code_;
   SourcePlace place_;
+  std::string words_;
 };
 
 /// Long work was stopped by its progress callback (see progress.hpp); the application exits 130.
@@ -64,12 +75,15 @@ class Interrupted : public std::runtime_error {
 /// Throws Error(code, "place: what", place).
 [[noreturn]] void fail(ErrorCode code, const SourcePlace& place, const std::string& what);
 
+/// `what` after the part of `place` that is inside of a file: the words of an Error there.
+std::string words_at(const SourcePlace& place, const std::string& what);
+
 /// Throws Error(bad_pattern) for a pattern that names something that does not exist.
 [[noreturn]] void fail_unknown_name(SourcePlace place, const std::string& what);
 
-/// Throws `error` again with another message; its code and place stay.
-[[noreturn]] inline void throw_with_message(const Error& error, const std::string& message) {
-  throw Error(error.code(), message, error.place());
+/// Throws `error` again with `more` at the end of its message; its code and place stay.
+[[noreturn]] inline void throw_with_more(const Error& error, const std::string& more) {
+  throw Error(error.code(), error.what() + more, error.place(), error.words() + more);
 }
 
 /// Calls `work`. If it throws an Error without a place, the Error gets this place; its message
@@ -82,6 +96,7 @@ auto at_place(SourcePlace place, const Work& work) {
     if (!error.place().empty()) throw;
     place.unknown_name = error.place().unknown_name;
     place.names_value = error.place().names_value;
+    place.names_remedy = error.place().names_remedy;
     throw Error(error.code(), error.what(), place);
   }
 }

@@ -481,15 +481,18 @@ std::vector<std::string> cause_texts(const std::vector<Mistake>& mistakes) {
   return texts;
 }
 
-std::string with_mistakes(const std::string& message, const Pattern& pattern,
-                          const std::vector<Mistake>& mistakes) {
-  if (mistakes.empty()) return message;
+Error with_mistakes(const Error& error, const Pattern& pattern,
+                    const std::vector<Mistake>& mistakes) {
+  if (mistakes.empty()) return error;
   const std::vector<std::string> texts = cause_texts(mistakes);
-  if (texts.empty()) return message + "; " + mistakes.front().words;
-  const std::string file = pattern.file.empty() ? "" : pattern.file + ": ";
-  const bool in_file = !file.empty() && message.rfind(file, 0) == 0;
-  return (in_file ? file : "") + "likely cause: " + text::join(texts, "; or ") +
-         "; the first error is: " + (in_file ? message.substr(file.size()) : message);
+  if (texts.empty()) {
+    const std::string more = "; " + mistakes.front().words;
+    return {error.code(), error.what() + more, error.place(), error.words() + more};
+  }
+  const bool in_file = !pattern.file.empty() && error.place().file == pattern.file;
+  const std::string words = "likely cause: " + text::join(texts, "; or ") +
+                            "; the first error is: " + (in_file ? error.words() : error.what());
+  return {error.code(), (in_file ? pattern.file + ": " : "") + words, error.place(), words};
 }
 
 }  // namespace ayumi

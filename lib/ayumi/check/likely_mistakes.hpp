@@ -42,10 +42,10 @@ std::vector<Mistake> likely_mistakes(const RobotModel& model, const Pattern& pat
 /// The words of those mistakes that are causes.
 std::vector<std::string> cause_texts(const std::vector<Mistake>& mistakes);
 
-/// "likely cause: ...; the first thing that fails: MESSAGE", or MESSAGE alone if no mistake is
-/// likely. If a search found no cause, the changes that it tried follow MESSAGE. If MESSAGE begins
-/// with the name of the pattern's file, this name stays in front.
-std::string with_mistakes(const std::string& message, const Pattern& pattern,
-                          const std::vector<Mistake>& mistakes);
+/// The error with the message "likely cause: ...; the first error is: WORDS", or `error` itself if
+/// no mistake is likely. If a search found no cause, the changes that it tried follow its message.
+/// If the error is in the pattern's file, the name of the file stays in front.
+Error with_mistakes(const Error& error, const Pattern& pattern,
+                    const std::vector<Mistake>& mistakes);
 
 }  // namespace ayumi

@@ -31,7 +31,7 @@ Task load_task(Pattern pattern, const TaskOptions& options, const Progress& prog
       if (!options.robot.empty() || error.code() != ErrorCode::bad_file) throw;
       const SourcePlace names = in_file(pattern, "/robot");
       throw Error(error.code(), text_of(names) + ": " + error.what(),
-                  error.place().empty() ? names : error.place());
+                  error.place().empty() ? names : error.place(), words_at(names, error.what()));
     }
   }();
   return load_task(std::move(pattern), {std::move(robot), name}, options.profile, progress,

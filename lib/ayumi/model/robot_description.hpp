@@ -231,6 +231,8 @@ struct RobotDescription {
   std::map<std::string, SoleDescription> soles;  ///< soles "left" and "right"
   /// Angles [rad]; "home" is always there.
   std::map<std::string, std::map<std::string, double>> postures;
+  /// JSON pointers of the postures in the sidecar; without one, a posture is at /postures.
+  std::map<std::string, std::string> posture_pointers = {};
   std::map<std::string, ServoDescription> servos;  ///< servos by joint name
   bool servos_inferred = false;  ///< whether the servos were inferred because the files state none
   std::vector<ActuatorProfile> profiles;  ///< profiles; the first is the default

@@ -157,6 +157,12 @@ void complain_sidecar(const RobotDescription& robot, const std::string& inside,
   complain(robot, robot.sidecar_file, inside, message);
 }
 
+std::string pointer_of_posture(const RobotDescription& robot, const std::string& name) {
+  const auto found = robot.posture_pointers.find(name);
+  return found != robot.posture_pointers.end() ? found->second
+                                               : "/postures/" + json_pointer_token(name);
+}
+
 std::string too_many(const std::string& what) {
   return "the robot has more than " + std::to_string(kMostLinks) + " " + what +
          "; simplify the robot";
@@ -355,7 +361,7 @@ void validate_sidecar(const RobotDescription& robot, const std::vector<std::stri
     complain_sidecar(robot, "/soles", "only one foot is given; name 'left' and 'right'");
   validate_force_cells(robot);
   for (const auto& [posture, values] : robot.postures)
-    known_joints(robot, "posture '" + posture + "'", values, names);
+    known_joints(robot, pointer_of_posture(robot, posture), values, names);
   known_joints(robot, "/servos", robot.servos, names);
   validate_servos(robot);
   known_joints(robot, "/encoders", robot.encoders, names);

@@ -180,6 +180,7 @@ struct Pattern {
   std::vector<Keyframe> keyframes;
   /// Postures of the pattern and its includes, which take precedence over the robot's [rad].
   std::map<std::string, std::map<std::string, double>> postures;
+  std::map<std::string, std::string> posture_files = {};  ///< files of the included postures
   std::optional<DenseTable> table;
   std::optional<CorrectionTrack> correction;
   std::map<std::string, double> parameters;  ///< declared ${names} with their values

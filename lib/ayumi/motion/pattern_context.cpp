@@ -49,9 +49,11 @@ std::map<std::string, double> posture_joints(const RobotModel& model, const Patt
                                              const std::string& name, const SourcePlace& place) {
   const auto own = pattern.postures.find(name);
   if (own != pattern.postures.end()) {
+    const auto included = pattern.posture_files.find(name);
     for (const auto& [joint, angle] : own->second) {
-      const SourcePlace where = in_file(
+      SourcePlace where = in_file(
           pattern, "/postures/" + json_pointer_token(name) + "/" + json_pointer_token(joint));
+      if (included != pattern.posture_files.end()) where.file = included->second;
       find_joint(model, joint, where);
       if (!std::isfinite(angle))
         fail(ErrorCode::bad_pattern, where, "the angle is not a finite number");

@@ -110,7 +110,8 @@ bool same_place(const Isometry3d& a, const Isometry3d& b) {
       ", or move the foot in a phase in which it does not carry the robot";
   SourcePlace at = {pattern.file, pointer + "/feet"};
   at.names_value = true;
-  throw Error(ErrorCode::bad_pattern, text_of(place_of_phase(pattern, phase)) + ": " + message, at);
+  const SourcePlace here = place_of_phase(pattern, phase);
+  throw Error(ErrorCode::bad_pattern, text_of(here) + ": " + message, at, words_at(here, message));
 }
 
 }  // namespace

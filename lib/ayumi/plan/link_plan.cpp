@@ -739,7 +739,7 @@ void LinkPlan::complain(const Group& group, double t, const std::vector<Aim>& ai
   const std::string message = "t = " + text::fixed(t, 3) + " s" +
                               (under_way ? ", on the way to this key" : "") + ": " + what + limits +
                               "; " + remedy;
-  if (only_way) throw MissedOnTheWay(text_of(place) + ": " + message, place, key.t);
+  if (only_way) throw MissedOnTheWay(message, place, key.t);
   fail(ErrorCode::bad_pattern, place, message);
 }
 

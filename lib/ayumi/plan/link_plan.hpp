@@ -20,8 +20,9 @@ namespace ayumi {
 /// point it is not known whether the limb reaches the target at the time of the key.
 class MissedOnTheWay : public Error {
  public:
-  MissedOnTheWay(const std::string& message, SourcePlace place, double key_time)
-      : Error(ErrorCode::bad_pattern, message, std::move(place)), key_time_(key_time) {}
+  MissedOnTheWay(const std::string& what, const SourcePlace& place, double key_time)
+      : Error(ErrorCode::bad_pattern, text_of(place) + ": " + what, place, words_at(place, what)),
+        key_time_(key_time) {}
   double key_time() const { return key_time_; }  ///< time of the key [s]
 
  private:

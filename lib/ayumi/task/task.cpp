@@ -84,8 +84,7 @@ Task make_task(Pattern pattern, RobotModel robot, const std::string& profile,
     } catch (const Error& error) {
       const bool says_all = error.place().unknown_name || error.place().names_value;
       if (error.code() != ErrorCode::bad_pattern || says_all) throw;
-      throw_with_message(error,
-                         with_mistakes(error.what(), pattern, impossible_values(robot, pattern)));
+      throw with_mistakes(error, pattern, impossible_values(robot, pattern));
     }
   }();
   std::string robot_name = robot.name();

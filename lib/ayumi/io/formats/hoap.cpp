@@ -77,15 +77,18 @@ class Reader {
     const std::string &first = result_.first_words, &last = result_.last_words;
     if (!last.empty() && last.size() < first.size() && first.starts_with(last))
       stop("the row ends with '" + last + "', but the first row with '" + first +
-           "'; the file may be truncated");
+               "'; the file may be truncated",
+           true);
     if (bare_) set_bare_times();
     set_tick();
     return std::move(result_);
   }
 
  private:
-  [[noreturn]] void stop(const std::string& reason) const {
-    fail(ErrorCode::bad_file, {file_, "", static_cast<long>(line_)}, reason);
+  [[noreturn]] void stop(const std::string& reason, bool names_remedy = false) const {
+    SourcePlace place{file_, "", static_cast<long>(line_)};
+    place.names_remedy = names_remedy;
+    fail(ErrorCode::bad_file, place, reason);
   }
 
   void read(std::string_view line) {

@@ -114,8 +114,9 @@ MotionFile read_poppy_move(const MotionInput& source) {
           value.value().is_array() ? value.items() : std::vector<JsonNode>{value};
       if (parts.empty() || parts.size() > 2)
         value.complain("expected an angle, or [angle, speed], found " +
-                       std::to_string(parts.size()) +
-                       " numbers; write decimal points, not decimal commas");
+                           std::to_string(parts.size()) +
+                           " numbers; write decimal points, not decimal commas",
+                       true);
       rows[time][motor] = parts.front().number();
       if (!parts.back().value().is_null()) parts.back().number();  // the speed, which is not used
       if (std::find(names.begin(), names.end(), motor) == names.end()) names.push_back(motor);

@@ -75,8 +75,7 @@ std::string recognize_motion_csv(const MotionInput& source) {
       rows.front().size() != kRootColumns + static_cast<size_t>(source.model.dof_count()))
     return "";
   for (const std::vector<double>& row : rows)
-    if (!(std::abs(std::hypot(std::hypot(row[3], row[4]), std::hypot(row[5], row[6])) - 1) <
-          kUnitQuaternion))
+    if (!(std::abs(Eigen::Map<const Eigen::Vector4d>(row.data() + 3).norm() - 1) < kUnitQuaternion))
       return "";
   return "the rows have " + std::to_string(rows.front().size()) +
          " numbers, there is no head row, and columns 4 to 7 are a unit quaternion";

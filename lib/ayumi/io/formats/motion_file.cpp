@@ -23,8 +23,10 @@ std::optional<std::string> MotionInput::beside(const std::string& extension) con
   return read_file(other);
 }
 
-void MotionInput::refuse(size_t line, const std::string& reason) const {
-  fail(ErrorCode::bad_file, {file, "", static_cast<long>(line)}, reason);
+void MotionInput::refuse(size_t line, const std::string& reason, bool names_remedy) const {
+  SourcePlace place{file, "", static_cast<long>(line)};
+  place.names_remedy = names_remedy;
+  fail(ErrorCode::bad_file, place, reason);
 }
 
 double MotionInput::number(std::string_view cell, size_t line, const std::string& where) const {
@@ -35,9 +37,12 @@ double MotionInput::number(std::string_view cell, size_t line, const std::string
   double value = 0;
   const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
   const std::string place = where.empty() ? "" : where + ": ";
-  if (cell.empty() || error != std::errc() || end != cell.data() + cell.size())
-    refuse(line, place + "'" + shown + "' is not a number" +
-                     (shown.find(',') != std::string::npos ? "; write a decimal point" : ""));
+  if (cell.empty() || error != std::errc() || end != cell.data() + cell.size()) {
+    const bool comma = shown.find(',') != std::string::npos;
+    refuse(line,
+           place + "'" + shown + "' is not a number" + (comma ? "; write a decimal point" : ""),
+           comma);
+  }
   if (!std::isfinite(value)) refuse(line, place + "'" + shown + "' is not a finite number");
   return value;
 }

@@ -57,7 +57,8 @@ struct MotionInput {
   /// The file of the same name with another extension (".zmp"); nothing if there is no such file.
   std::optional<std::string> beside(const std::string& extension) const;
   /// Throws Error(bad_file) "file:line: reason"; if `line` is 0, it is left out.
-  [[noreturn]] void refuse(size_t line, const std::string& reason) const;
+  /// `names_remedy` as in SourcePlace.
+  [[noreturn]] void refuse(size_t line, const std::string& reason, bool names_remedy = false) const;
   /// Index of the motion that the options ask for among the motions of the file; the first one if
   /// they ask for none. `numbers` are the numbers of the motions; if it is empty, they are counted
   /// from 1. Says in `motion` which one was taken and which ones there are. Throws the same errors

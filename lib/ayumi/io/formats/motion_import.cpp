@@ -128,13 +128,12 @@ bool has_decimal_commas(const std::string& text) {
 }
 
 // The end of every message about a motion's content. It names the remedy that the content suggests,
-// and says how the format was recognized; `format` is null if it was not.
+// unless the message has named one, and says how the format was recognized; `format` is null if it
+// was not.
 std::string remedy(const MotionFormat* format, const ImportedMotion& motion,
-                   const std::string& bytes, const std::string& message) {
+                   const std::string& bytes, bool named) {
   std::string words;
   const bool text = !format || !format->binary;
-  const bool named = message.find("truncated") != std::string::npos ||
-                     message.find("decimal point") != std::string::npos;
   const bool open = !bytes.empty() && std::strchr("\r\n}])>", bytes.back()) == nullptr;
   const bool counts = format && format->name == "hoap";  // whole numbers between commas
   if (format && text && !named && open) words += "; the file may be truncated";
@@ -705,8 +704,8 @@ void with_remedy(const std::string& bytes, ImportedMotion& result, const Read& r
     read();
   } catch (const Error& error) {
     if (error.code() != ErrorCode::bad_file) throw;
-    throw_with_message(error, error.what() + remedy(find_motion_format(result.format), result,
-                                                    bytes, error.what()));
+    throw_with_more(error, remedy(find_motion_format(result.format), result, bytes,
+                                  error.place().names_remedy));
   }
 }
 

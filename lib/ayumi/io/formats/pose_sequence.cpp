@@ -66,8 +66,9 @@ class PoseSequenceReader {
   }
 
  private:
-  [[noreturn]] void refuse(const YamlNode& node, const std::string& reason) const {
-    source_.refuse(static_cast<size_t>(node.line), reason);
+  [[noreturn]] void refuse(const YamlNode& node, const std::string& reason,
+                           bool names_remedy = false) const {
+    source_.refuse(static_cast<size_t>(node.line), reason, names_remedy);
   }
 
   double number(const YamlNode& node, const char* key) const {
@@ -151,8 +152,10 @@ class PoseSequenceReader {
       key.transition = std::max(number(*most, "maxTransitionTime"), 0.0);
     const YamlNode *ids = pose->find("joints"), *angles = pose->find("q", "displacements");
     if ((ids != nullptr) != (angles != nullptr))
-      refuse(*pose, std::string("a pose with `") + (ids ? "joints" : "q") + "` needs `" +
-                        (ids ? "q" : "joints") + "`; the file may be truncated");
+      refuse(*pose,
+             std::string("a pose with `") + (ids ? "joints" : "q") + "` needs `" +
+                 (ids ? "q" : "joints") + "`; the file may be truncated",
+             true);
     if (ids && angles) {
       key.angles = numbers(*angles, "q", 0);
       for (const double id : numbers(*ids, "joints", key.angles.size())) {

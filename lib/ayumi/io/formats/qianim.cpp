@@ -74,7 +74,8 @@ MotionFile read_qianim(const MotionInput& source) {
   if (document.Error() || !document.RootElement())
     source.refuse(static_cast<size_t>(std::max(document.ErrorRow(), 0)),
                   std::string("this is not valid XML: ") + document.ErrorDesc() +
-                      "; the file may be truncated");
+                      "; the file may be truncated",
+                  true);
   if (const TiXmlElement* second = document.RootElement()->NextSiblingElement())
     source.refuse(static_cast<size_t>(second->Row()),
                   "a second <" + second->ValueStr() +

@@ -34,13 +34,16 @@ std::string kind_of(const Json& value) {
 
 // Throws "file:line:column: message" for a place in the text.
 [[noreturn]] void fail_in_text(ErrorCode code, const std::string& file, const std::string& bytes,
-                               size_t offset, const std::string& message) {
+                               size_t offset, const std::string& message,
+                               bool names_remedy = false) {
   int line = 1, column = 1;
   for (size_t i = 0; i < std::min(offset, bytes.size()); ++i) {
     column = bytes[i] == '\n' ? 1 : column + 1;
     line += bytes[i] == '\n';
   }
-  fail(code, {file, "", line, column}, message);
+  SourcePlace place{file, "", line, column};
+  place.names_remedy = names_remedy;
+  fail(code, place, message);
 }
 
 // The reason in a message of the library: "[json.exception...] parse error at line 1, column 2:
@@ -136,7 +139,7 @@ Json parse_json(const std::string& bytes, const std::string& file, ErrorCode cod
       fail_in_text(code, file, bytes, offset,
                    "the text is not in the encoding UTF-8 here; save the file in UTF-8");
     if (const auto slip = find_json_slip(bytes))
-      fail_in_text(code, file, bytes, slip->at, slip->words);
+      fail_in_text(code, file, bytes, slip->at, slip->words, slip->in_number);
     fail_in_text(code, file, bytes, offset, reason);
   } catch (const Json::exception& error) {
     // The text has a number that no double can hold; it stands between quotes at the end of the
@@ -168,10 +171,12 @@ JsonPlace JsonNode::place() const {
   return {found->second.file, found->second.pointer + pointer_.substr(around.size())};
 }
 
-void JsonNode::complain(const std::string& message) const {
+void JsonNode::complain(const std::string& message, bool names_remedy) const {
   const JsonPlace at = place();
-  throw Error(code_, at.file + ": " + (at.pointer.empty() ? "/" : at.pointer) + ": " + message,
-              {at.file, at.pointer});
+  const std::string words = (at.pointer.empty() ? "/" : at.pointer) + ": " + message;
+  SourcePlace here{at.file, at.pointer};
+  here.names_remedy = names_remedy;
+  throw Error(code_, at.file + ": " + words, here, words);
 }
 
 JsonNode JsonNode::child(const std::string& token, const Json& value) const {

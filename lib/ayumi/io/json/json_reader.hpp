@@ -45,7 +45,8 @@ class JsonNode {
   std::string pointer() const { return place().pointer; }
 
   /// Throws Error "file: pointer: message".
-  [[noreturn]] void complain(const std::string& message) const;
+  /// `names_remedy` as in SourcePlace.
+  [[noreturn]] void complain(const std::string& message, bool names_remedy = false) const;
 
   bool has(const std::string& key) const;
   JsonNode at(const std::string& key) const;                   ///< complains if the key is missing

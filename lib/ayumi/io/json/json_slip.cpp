@@ -106,8 +106,8 @@ class SlipFinder {
 
   // ---- tokens
 
-  void say(size_t at, std::string words) {
-    if (!slip_) slip_ = JsonSlip{at, std::move(words)};
+  void say(size_t at, std::string words, bool in_number = false) {
+    if (!slip_) slip_ = JsonSlip{at, std::move(words), in_number};
   }
 
   std::string_view from(size_t at) const { return std::string_view(text_).substr(at); }
@@ -339,7 +339,7 @@ class SlipFinder {
     if (token_ == Token::colon) return say(at_, "the name before this colon is missing");
     if (token_ == Token::number && text_[at_ - 1] == ',' && is_decimal(text_[at_]) &&
         is_decimal(text_[at_ - 2]))
-      return say(at_ - 1, "a number has a decimal point, not a comma");
+      return say(at_ - 1, "a number has a decimal point, not a comma", true);
     if (token_ == Token::number)
       return say(at_, token_words() +
                           " has no name: in { } every value has a name, as in "
@@ -399,11 +399,15 @@ class SlipFinder {
     if (number.front() == '+')
       return say(at_, "a number must not begin with +: write " + number.substr(1));
     if (number.front() == '.' || number.starts_with("-."))
-      return say(at_, "a number needs a digit before its decimal point: write " +
-                          (number.front() == '.' ? "0" + number : "-0" + number.substr(1)));
+      return say(at_,
+                 "a number needs a digit before its decimal point: write " +
+                     (number.front() == '.' ? "0" + number : "-0" + number.substr(1)),
+                 true);
     if (number.back() == '.')
-      return say(at_, "a number needs a digit after its decimal point: write " +
-                          number.substr(0, number.size() - 1) + " or " + number + "0");
+      return say(at_,
+                 "a number needs a digit after its decimal point: write " +
+                     number.substr(0, number.size() - 1) + " or " + number + "0",
+                 true);
     size_t unit = 0;
     while (unit < number.size() && !is_word_char(number[unit])) ++unit;
     if (unit > 0 && unit < number.size() && is_json_number(number.substr(0, unit)))

@@ -11,8 +11,9 @@
 namespace ayumi {
 
 struct JsonSlip {
-  size_t at = 0;      ///< place at which to correct the text; its size if the end is missing
-  std::string words;  ///< "a comma is missing after \"home\""
+  size_t at = 0;           ///< place at which to correct the text; its size if the end is missing
+  std::string words;       ///< "a comma is missing after \"home\""
+  bool in_number = false;  ///< whether the decimal point of a number is missing or wrong
 };
 
 /// The first mistake in a text that the reader of JSON refuses; nothing if none is recognized.

@@ -86,6 +86,8 @@ LibraryFile read_library(const fs::path& path, Pattern& pattern) {
   read_units(root, scope);
   root.at("postures").expect_object();
   read_postures(root, scope, pattern);
+  for (const auto& posture : root.at("postures").members())
+    pattern.posture_files[posture.first] = path.string();
   if (const auto robot = root.find("robot")) file.library.robot = robot->string();
   file.library.degrees = scope.radians_per_unit != 1.0;
   return file;
@@ -185,9 +187,8 @@ void each_item(const JsonNode& list, const std::string& name, PatternScope& scop
       try {
         each_item(block, name, scope, depth + 1, work);
       } catch (const Error& error) {
-        throw_with_message(error, std::string(error.what()) + " (round " +
-                                      std::to_string(round + 1) + " of " + text::exact(times) +
-                                      ")");
+        throw_with_more(error,
+                        " (round " + std::to_string(round + 1) + " of " + text::exact(times) + ")");
       }
     }
   }

@@ -100,6 +100,7 @@ void read_postures(const JsonNode& node, double unit, RobotDescription& robot) {
   for (const auto& [name, joints] : node.members()) {
     if (robot.postures.contains(name)) joints.complain("this posture is given twice; keep one");
     auto& posture = robot.postures[name];
+    robot.posture_pointers[name] = joints.pointer();
     for (const auto& [joint, value] : joints.members()) posture[joint] = unit * value.number();
   }
 }

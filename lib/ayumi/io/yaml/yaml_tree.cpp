@@ -210,8 +210,10 @@ const YamlNode* YamlNode::find(std::string_view key, std::string_view other) con
 }
 
 YamlNode parse_yaml(const std::string& text, const std::string& file) {
-  const auto refuse = [&](int line, const std::string& reason) {
-    fail(ErrorCode::bad_file, {file, "", line}, reason);
+  const auto refuse = [&](int line, const std::string& reason, bool names_remedy = false) {
+    SourcePlace place{file, "", line};
+    place.names_remedy = names_remedy;
+    fail(ErrorCode::bad_file, place, reason);
   };
   const auto parse = [&](const std::string& seen, std::vector<std::vector<double>> lists) {
     TextBuffer buffer(seen);
@@ -222,7 +224,7 @@ YamlNode parse_yaml(const std::string& text, const std::string& file) {
       if (!parser.HandleNextDocument(builder)) refuse(1, "there is no YAML document");
     } catch (const YAML::Exception& error) {
       refuse(error.mark.line + 1,
-             "this is not valid YAML: " + error.msg + "; the file may be truncated");
+             "this is not valid YAML: " + error.msg + "; the file may be truncated", true);
     }
     if (!builder.mark_in_text && !builder.refused.empty())
       refuse(builder.refused_line, builder.refused);
