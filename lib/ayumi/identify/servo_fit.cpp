@@ -244,6 +244,10 @@ ServoFit fit_servo(const std::vector<JointRecording>& joints,
   options.function_tolerance = 1e-9;
   options.gradient_tolerance = 1e-12;
   options.parameter_tolerance = 1e-7;
+  // After each step, Ceres looks along it for a smaller error, because the constants have bounds.
+  // With the default, a cubic interpolation, this search computes all derivatives at every point;
+  // with a quadratic one, it computes only the errors.
+  options.line_search_interpolation_type = ceres::QUADRATIC;
   options.logging_type = ceres::SILENT;
   options.num_threads = 1;
   // The place where the joint comes to rest changes suddenly when its friction changes, so the
