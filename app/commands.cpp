@@ -203,9 +203,9 @@ int failed(const Context& context, const std::string& text, int exit_code,
            const SourcePlace& place = {}) {
   // Largest length of a place [bytes]. Chosen: longer than every place of a valid file.
   constexpr size_t kMostPlace = 200;
-  const std::string message = shortened(text, kLongestMessage);
-  complain(message);
-  nlohmann::ordered_json object = {{"error", message}, {"exit_code", exit_code}};
+  complain(text);
+  nlohmann::ordered_json object = {{"error", shortened(text, kLongestMessage)},
+                                   {"exit_code", exit_code}};
   if (!place.file.empty()) object["file"] = place.file;
   if (place.line > 0) object["line"] = place.line;
   if (!place.inside.empty()) object["place"] = shortened(place.inside, kMostPlace);

@@ -49,7 +49,7 @@ inline constexpr size_t kLongestMessage = 2000;
 /// and therefore has more than `most` bytes.
 std::string shortened(const std::string& message, size_t most);
 
-/// Prints a message of one line on standard error, shortened to kLongestMessage.
+/// Prints a message on standard error, shortened to kLongestMessage.
 void complain(const std::string& message);
 
 /// Clears the screen and its history if standard output is a terminal.

@@ -701,11 +701,12 @@ void add_scaled(Command& command, const char* name, std::optional<double>& value
       ->type_name(type);
 }
 
-void add_height(Command& command, double& height) {
+void add_height(Command& command, double& height, const std::string& lower = "") {
   command
       .add_option("--cog-height", height,
                   "COG height [m]; 0 = the height in the home posture, or a lower one if the legs "
-                  "are straight in the home posture.")
+                  "are straight in the home posture" +
+                      lower + ".")
       ->capture_default_str()
       ->type_name("M");
 }
@@ -903,7 +904,7 @@ void add_kick(Command& command, NewOptions& options) {
              KickParameters().height, "M");
   add_scaled(command, "--period", options.period, "Time of the swing [s]", KickParameters().period,
              "S");
-  add_height(command, options.kick.cog_height);
+  add_height(command, options.kick.cog_height, "; for a kick, lower by a quarter of --height");
 }
 
 void add_turn(Command& command, NewOptions& options) {

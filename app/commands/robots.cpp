@@ -24,9 +24,10 @@ void list_robots(Context& context) {
                         {"profiles", model.profile_names()},
                         {"file", entry.sidecar.string()}});
     } catch (const Error& error) {
-      const std::string why = shortened(error.what(), kLongestMessage);
-      complain("robot '" + entry.name + "' is left out: " + why);
-      failures.push_back({{"robot", entry.name}, {"error", why}, {"file", entry.sidecar.string()}});
+      complain("robot '" + entry.name + "' is left out: " + error.what());
+      failures.push_back({{"robot", entry.name},
+                          {"error", shortened(error.what(), kLongestMessage)},
+                          {"file", entry.sidecar.string()}});
     }
   }
   // Names of files and folders need not be UTF-8.

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <random>
+#include <sstream>
 
 #include "ayumi/author/edit/edit.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
@@ -301,6 +302,11 @@ TEST(LinkPlan, AHandComesAsNearToAPlaceOutOfReachAsItsJointsAllow) {
     if (found == std::string::npos) continue;
     ++out_of_reach;
     const double said = 1e-3 * std::stod(message.substr(message.find("reach by ", found) + 9));
+    Vector3d there;
+    ASSERT_EQ(std::sscanf(message.c_str() + message.find("reaches only "),
+                          "reaches only [%lf, %lf, %lf] m", &there.x(), &there.y(), &there.z()),
+              3);
+    EXPECT_NEAR((there - goal).norm(), said, 2e-4) << message;
     double nearest = 1;
     for (int start = 0; start < 4; ++start) {
       RobotState best = random_arm(model, body, random, 0.5);
@@ -325,6 +331,36 @@ TEST(LinkPlan, AHandComesAsNearToAPlaceOutOfReachAsItsJointsAllow) {
     EXPECT_LT(said, nearest + 1e-3) << "a random search comes nearer: " << message;
   }
   EXPECT_GT(out_of_reach, 8);
+}
+
+// The arm is in a posture from which it does not get behind the shoulder. With keys as the message
+// says, it does.
+TEST(LinkPlan, APostureThatReachesAPlaceIsNamed) {
+  const RobotModel& model = hoap1();
+  for (const Vector3d& goal :
+       {Vector3d(-0.0616955, 0.172911, 0.0458812), Vector3d(-0.0647665, 0.153419, 0.0372672),
+        Vector3d(-0.125848, 0.190526, 0.0537284)}) {
+    Pattern pattern = standing(2);
+    at(pattern, 0).zmp = ZmpKey{ZmpKey::Place::center};
+    at(pattern, 1).hands["left"] = place(goal, LinkTarget::Frame::trunk);
+    const std::string message =
+        test::error_message([&] { sample(model, pattern, {.dt = 0.01}); }, ErrorCode::bad_pattern);
+    const std::string words =
+        "the left hand does not get to this place from the posture before it;"
+        " it is there with ";
+    const size_t found = message.find(words), time = message.find("t = ");
+    ASSERT_NE(found, std::string::npos) << message;
+    Keyframe& key = at(pattern, std::stod(message.substr(time + 4)));
+    std::istringstream angles(message.substr(found + words.size()));
+    std::string joint, unit;
+    double angle = 0;
+    do {
+      ASSERT_TRUE(angles >> joint >> angle >> unit) << message;
+      key.joints[joint] = angle * M_PI / 180;
+    } while (unit == "deg,");
+    std::swap(pattern.keyframes[1], pattern.keyframes[2]);
+    EXPECT_NO_THROW(sample(model, pattern, {.dt = 0.01})) << message;
+  }
 }
 
 // On the way to a key in the world, the trunk may be elsewhere than at the time of the key. A

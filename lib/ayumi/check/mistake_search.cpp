@@ -523,6 +523,7 @@ Explanations find_explanations(const RobotModel& model, const Pattern& pattern,
         result.found.push_back(c.hypothesis.says);
         possible.push_back(std::move(c));
       }
+      if (trials.ended()) break;
       search->drop(unsampled);  // the next best ones may be possible
     }
     if (possible.empty()) break;

@@ -74,6 +74,7 @@ Trials::Trials(const RobotModel& model, const Pattern& pattern, const CheckOptio
 }
 
 TrialOutcome Trials::exactly(Pattern pattern, const Mend& mend) const {
+  report(progress_, {"look for the cause", -1, ""});  // may stop the search
   mend(pattern);
   TrialOutcome outcome = of(pattern, true);
   outcome.table_alone = !outcome.good();

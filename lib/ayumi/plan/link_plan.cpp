@@ -516,7 +516,7 @@ double LinkPlan::minimize(const Group& group, const std::vector<Aim>& aims, cons
       });
     }
     const double longest = way.cwiseAbs().maxCoeff();
-    if (!convex && longest < kLastStep) {
+    if (!convex && !free.empty() && longest < kLastStep) {
       // The gradient is zero, but this is not a minimum of the sum: the sum decreases towards the
       // middle of the joints' ranges.
       for (const Eigen::Index i : free) {
@@ -712,7 +712,7 @@ void LinkPlan::complain(const Group& group, double t, const std::vector<Aim>& ai
     }
     what = "the " + target.name + " does not get to this place from the posture before it";
     remedy = "it is there with " + text::join(angles, ", ") +
-             ": give keys of these joints that lead to this posture";
+             "; give these joints keys with these angles at this time";
   } else if (target.gaze) {
     what = "the gaze misses its point by " + degrees(angle);
     remedy = "give a point nearer to straight ahead, or turn the torso";

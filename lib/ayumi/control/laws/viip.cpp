@@ -396,7 +396,8 @@ void Viip::follow_velocity(const Estimate& e) {
     velocity_ += dt_ * horizontal_acceleration(w2, e.cog.head<2>(), e.zmp.head<2>());
   }
   velocity_ += low_pass_share(dt_, omega_, kVelocityFilterTime) * (measured - velocity_);
-  if ((measured - velocity_).norm() > kVelocityJump * omega_ * height_) velocity_ = measured;
+  // The negation also replaces what is not a number.
+  if (!((measured - velocity_).norm() <= kVelocityJump * omega_ * height_)) velocity_ = measured;
 }
 
 // (24), (16), (17), then (14)(15) closed on the measured ZMP.

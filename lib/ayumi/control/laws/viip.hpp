@@ -163,12 +163,13 @@ class Viip {
   Footsteps footsteps_;
   // Systematic landing error of each foot, in the axes of the foot [m].
   std::array<Eigen::Vector2d, 2> landing_bias_ = {Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
-  ReactionFilter filter_;     // measured ZMP
-  Eigen::Vector2d velocity_;  // measured velocity of the COG after a low pass [m/s]
-  double sag_ = 0;            // measured COG below the reference, after a low pass of 1/omega [m]
-  double push_ = 0;           // vertical force of the load cells minus the reference's f_z [N]
-  double lift_ = 0;           // vertical acceleration of the reference in the last tick [m/s^2]
-  SwingReplan<3> swing_;      // path of the foot in the air: x, y, yaw
+  ReactionFilter filter_;  // measured ZMP
+  // Measured velocity of the COG after a low pass [m/s].
+  Eigen::Vector2d velocity_ = Eigen::Vector2d::Zero();
+  double sag_ = 0;        // measured COG below the reference, after a low pass of 1/omega [m]
+  double push_ = 0;       // vertical force of the load cells minus the reference's f_z [N]
+  double lift_ = 0;       // vertical acceleration of the reference in the last tick [m/s^2]
+  SwingReplan<3> swing_;  // path of the foot in the air: x, y, yaw
   // The ref ZMP inside the support, for the measured state and for the reference state: now, and at
   // the end of the last single support.
   std::array<Eigen::Vector2d, 2> zmp_, zmp_before_;
