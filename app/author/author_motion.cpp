@@ -396,6 +396,10 @@ std::string outermost(const std::string& pointer) {
   return pointer.substr(0, pointer.find('/', pointer.find('/', 1) + 1));
 }
 
+std::string without_file(const Error& error, const std::filesystem::path& file) {
+  return error.place().file == file.string() ? error.words() : error.what();
+}
+
 std::shared_ptr<const AuthorMotion> author_motion(const std::string& text, const NamedRobot& robot,
                                                   const AuthorSetting& setting,
                                                   const Progress& progress) {

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "ayumi/base/error.hpp"
 #include "ayumi/check/stability_series.hpp"
 #include "ayumi/io/task_file.hpp"
 #include "ayumi/sim/simulation_log.hpp"
@@ -34,6 +35,10 @@ struct AuthorSetting {
   std::map<std::string, double> set;
   std::string profile;  ///< actuator profile; "" for that of the pattern
 };
+
+/// The message of an error without the name of the pattern's file and the line, because the page
+/// only shows this file and shows the line itself.
+std::string without_file(const Error& error, const std::filesystem::path& file);
 
 /// Throws the same errors as pattern_of_text() and make_task().
 std::shared_ptr<const AuthorMotion> author_motion(const std::string& text, const NamedRobot& robot,

@@ -842,7 +842,8 @@ PoseAnswer posed(const AuthorMotion& motion, const std::string& text, const Auth
     return out;
   } catch (const Error& error) {
     if (error.code() != ErrorCode::bad_pattern) throw;
-    return {{}, {}, error.words()};  // out of reach; the message says by how much
+    // If the point is out of reach, the message says by how much.
+    return {{}, {}, without_file(error, setting.file)};
   }
 }
 

@@ -43,12 +43,6 @@ constexpr size_t kTriangles = 60'000;
 
 AuthorAnswer refused(const std::string& message) { return {422, {{"message", message}}}; }
 
-// The message of an error without the name of the pattern's file and the line, because the page
-// only shows one file and shows the line itself.
-std::string without_file(const Error& error, const fs::path& file) {
-  return error.place().file == file.string() ? error.words() : error.what();
-}
-
 // Calls `work`. If it throws, the answer contains the message.
 template <typename Work>
 AuthorAnswer answered(const fs::path& file, const Work& work) {

@@ -12,6 +12,7 @@
 #include "ayumi/author/generate/generate.hpp"
 #include "ayumi/check/consistency.hpp"
 #include "ayumi/check/likely_mistakes.hpp"
+#include "ayumi/check/mistake_hypotheses.hpp"
 #include "ayumi/check/mistake_search.hpp"
 #include "ayumi/plan/sample.hpp"
 #include "tests/support/robot_motions.hpp"
@@ -757,6 +758,31 @@ TEST(PlantedMistakes, AllKeysOfASwingAreNamedTogether) {
         std::stod((*it)[1]), std::stod((*it)[2]), std::stod((*it)[3])};
   EXPECT_EQ(places, 2) << found;
   EXPECT_TRUE(is_consistent(kick, options_of(kick))) << found;
+}
+
+// Of a swing with many keys, three are named with their places, and the others with the rule.
+TEST(PlantedMistakes, ASwingWithManyKeysIsNamedInFewWords) {
+  std::vector<std::pair<double, Foothold>> keys;
+  for (int i = 0; i < 12; ++i) keys.push_back({1.6 + 0.1 * i, Foothold{{0.02, -0.1, -0.03}}});
+  const Pattern kick = right_kick(0.235, keys);
+  const TrialOutcome unsampled;
+  const Hypotheses hypotheses(small(), kick, unsampled);
+  const std::vector<Hypothesis> found = hypotheses.of(Hypotheses::Kind::small_swings);
+  ASSERT_FALSE(found.empty());
+  for (const Hypothesis& each : found) {
+    EXPECT_EQ(each.says.written,
+              "the right foot moves up to 64 mm away from its place on the ground and up to 30 mm "
+              "down");
+    EXPECT_LT(each.says.instead.size(), 400u) << each.says.instead;
+  }
+  const std::string says = found.front().says.instead;
+  EXPECT_TRUE(
+      says.starts_with("with all keys of this swing nearer and higher, the right foot at ["))
+      << says;
+  EXPECT_TRUE(
+      says.ends_with("] in /keyframes/5, and in the later keys of this swing at 85 % of "
+                     "the distance from the line between its places on the ground"))
+      << says;
 }
 
 // Two keys have the same value, and the two values that the track would have without them differ. A

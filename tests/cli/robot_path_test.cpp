@@ -43,7 +43,9 @@ TEST(RobotPath, ABrokenRobotDoesNotHideTheOthers) {
   EXPECT_TRUE(out.err.starts_with("ayumi: robot 'half' is left out: robots/half/robot.json"))
       << out.err;
   EXPECT_EQ(line_count(out.err), 1) << out.err;
-  fs::rename(folder / "robots/half", folder / "robots/half\xff");
+  std::error_code refused;
+  fs::rename(folder / "robots/half", folder / "robots/half\xff", refused);
+  if (refused) GTEST_SKIP() << "the file system refuses names that are not UTF-8";
   const Output json = run_program({"robots", "--robot-path", "robots", "--json"}, folder.path());
   EXPECT_EQ(json.exit_code, 3) << json.err;
   EXPECT_NE(json.out.find("\"failures\": [\n    {\n      \"robot\": \"half\xEF\xBF\xBD\""),

@@ -26,7 +26,7 @@ RobotDescription load_unit(const std::filesystem::path& file) {
 
 std::string unit_error(const std::filesystem::path& file) {
   try {
-    load_unit(file);
+    const RobotModel model(load_unit(file));
   } catch (const Error& error) {
     std::string message = error.what();
     const std::string prefix = file.parent_path().string() + "/";
@@ -144,6 +144,41 @@ TEST(RobotInheritance, MessagesNameTheFileThatIsWrong) {
   folder.write("base.json", over_base("hoap1", R"(, "servo_period": "fast")"));
   EXPECT_EQ(error(over_base("base.json", R"(, "name": "unit")")),
             "base.json: /servo_period: expected a number, found a string");
+}
+
+TEST(RobotInheritance, AnErrorInAPostureNamesTheFileWithTheAngle) {
+  const TemporaryFolder folder;
+  const auto error = [&](const std::string& base, const std::string& unit) {
+    folder.write("base.json", over_base("hoap1", R"(, "postures_deg": {"bow": )" + base + "}"));
+    return unit_error(folder.write("unit.json", over_base("base.json", unit)));
+  };
+  const std::string both = R"({"l_knee": 20, "r_knee": 40})";
+  const std::string limits = R"(, "position_limits_deg": {"r_knee": [0, 30]})";
+  const std::string of_base =
+      "base.json: /postures_deg/bow/r_knee: the joint 'r_knee' is at 40 deg, above its limit of 30 "
+      "deg";
+  EXPECT_EQ(error(both, limits), of_base);
+  EXPECT_EQ(error(both, limits + R"(, "postures_deg": {"bow": {"l_knee": 10}})"), of_base);
+  // The angles of the base are converted, but its file still states degrees.
+  EXPECT_EQ(error(both, limits + R"(, "postures": {"bow": {"l_knee": 0.1}})"), of_base);
+  EXPECT_EQ(error(both, limits + R"(, "postures_deg": {"bow": {"r_knee": 35}})"),
+            "unit.json: /postures_deg/bow/r_knee: the joint 'r_knee' is at 35 deg, above its limit "
+            "of 30 deg");
+  EXPECT_EQ(error(R"({"l_kne": 20})", R"(, "postures": {"bow": {"l_knee": 0.1}})"),
+            "base.json: /postures_deg/bow/l_kne: 'l_kne' is not a moving joint of the robot; did "
+            "you mean 'l_knee'?");
+  EXPECT_EQ(error(both, R"(, "postures": {"bow": {"r_kne": 0.1}})"),
+            "unit.json: /postures/bow/r_kne: 'r_kne' is not a moving joint of the robot; did you "
+            "mean 'r_knee'?");
+  // The three files state degrees, radians and degrees.
+  folder.write("base.json", over_base("hoap1", R"(, "postures_deg": {"bow": )" + both + "}"));
+  folder.write("middle.json",
+               over_base("base.json", R"(, "postures": {"bow": {"r_knee": 0.6, "l_knee": 0.3}})"));
+  EXPECT_EQ(unit_error(folder.write(
+                "unit.json",
+                over_base("middle.json", limits + R"(, "postures_deg": {"bow": {"l_knee": 5}})"))),
+            "middle.json: /postures/bow/r_knee: the joint 'r_knee' is at 34.38 deg, above its "
+            "limit of 30 deg");
 }
 
 TEST(RobotInheritance, CirclesAndMissingBasesAreRefused) {

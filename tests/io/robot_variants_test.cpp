@@ -141,6 +141,17 @@ TEST(RobotVariants, PackagesLieElsewhere) {
   folder.write("three/copy/urdf/r.urdf", with_mesh(name));  // the package's folder was renamed
   folder.write("three/copy/meshes/a.obj", kTriangleText);
   EXPECT_EQ(meshes("three/copy/urdf/r.urdf"), 1u);
+  // A package.xml that is too large or nested too deeply names no package.
+  folder.write("four/legs_bringup/urdf/r.urdf", with_mesh(name));
+  folder.write("four/legs_description-main/meshes/a.obj", kTriangleText);
+  std::string deep;
+  for (int i = 0; i < 300'000; ++i) deep += "<a>";
+  for (const std::string& text : {package + std::string(size_t{2} << 20, ' '), deep}) {
+    folder.write("four/legs_description-main/package.xml", text);
+    EXPECT_EQ(meshes("four/legs_bringup/urdf/r.urdf"), 0u);
+  }
+  folder.write("four/legs_description-main/package.xml", package);
+  EXPECT_EQ(meshes("four/legs_bringup/urdf/r.urdf"), 1u);
 }
 
 TEST(RobotVariants, AllMissingMeshesAreListedAtOnceAndLeftOut) {

@@ -376,7 +376,9 @@ TEST(RunFolderFile, SaysWhatIsWrong) {
     const std::string changed = "(it has 3758096384 bytes, but " + std::to_string(size) +
                                 " in run.json); make the run again";
     EXPECT_NE(file_error([&] { verify_run(folder); }).find(changed), std::string::npos) << name;
+    EXPECT_FALSE(is_file_of_run(folder, folder / name)) << name;
     fs::resize_file(folder / name, size);
+    EXPECT_TRUE(is_file_of_run(folder, folder / name)) << name;
   }
   std::string log = read_file(folder / "log_open_loop.bin");
   log.back() = static_cast<char>(log.back() ^ 1);
@@ -398,6 +400,10 @@ TEST(RunFolderFile, SaysWhatIsWrong) {
   RunFolder run = example();
   run.files = {"absent.svg"};
   EXPECT_NE(file_error([&] { write_run(folder, run); }).find("absent.svg: no such file"),
+            std::string::npos);
+  run.files.clear();
+  run.written["lost"] = {};
+  EXPECT_NE(file_error([&] { write_run(folder, run); }).find("log_lost.bin: no such file"),
             std::string::npos);
   EXPECT_NE(file_error([&] {
               write_run(folder / "reference.csv", run);

@@ -278,11 +278,12 @@ TEST(RobotModel, NamesWhatIsWrongInTheSidecar) {
           .find("robot.json: /soles/left/polygon/1: at this corner, the polygon is not "
                 "convex or not counter-clockwise"),
       std::string::npos);
-  EXPECT_EQ(error_of([](auto& r) {
-              r.postures["home"] = {{"l_kne", 0.1}};
-            }),
-            "robot.json: /postures/home: 'l_kne' is not a moving joint of the robot; did you mean "
-            "'l_knee'?");
+  EXPECT_EQ(
+      error_of([](auto& r) {
+        r.postures["home"] = {{"l_kne", 0.1}};
+      }),
+      "robot.json: /postures/home/l_kne: 'l_kne' is not a moving joint of the robot; did you mean "
+      "'l_knee'?");
   EXPECT_EQ(
       error_of([](auto& r) {
         r.postures["home"] = {{"l_knee", 2.9}};

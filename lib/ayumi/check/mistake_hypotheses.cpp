@@ -58,9 +58,9 @@ constexpr double kNoAngle = 1e-6;
 // A level foot below a leg that leans by less than this is not named as a reason [rad]. Chosen:
 // five degrees, which every ankle can bend.
 constexpr double kNotedLean = 0.09;
-// Number of further keys of a foot that are named with their turn. Chosen: a kick has two or three
-// keys in the air.
-constexpr size_t kTurnedKeys = 3;
+// Number of further keys of a foot that are named with their turn, and of keys of a swing that are
+// named with their place. Chosen: a kick has two or three keys in the air.
+constexpr size_t kTurnedKeys = 3, kPlacedKeys = 3;
 // Shares of the way of a foot in the air that are tried, for all its keys of one swing together.
 // Chosen: with less than half, much of the motion is lost, and another change is probably better;
 // below a quarter, little of the motion is left.
@@ -1085,26 +1085,37 @@ class Hypotheses::Maker {
       const std::vector<AirKey> keys = air_keys(phase);
       if (keys.size() < 2) continue;  // the numbers of a single key are values of their own
       const Side side = other(stance_of(pattern_.phases[phase].support));
-      double far = 0, high = 0;
+      double far = 0, up = 0, down = 0;
       for (const AirKey& key : keys) {
         const Eigen::Vector3d way = key.position - key.neutral;
         far = std::max(far, way.head<2>().norm());
-        high = std::max(high, std::abs(way.z()));
+        up = std::max(up, way.z());
+        down = std::max(down, -way.z());
       }
-      const std::string foot = std::string("the ") + name_of(side) + " foot",
-                        written = foot + " moves up to " + text::fixed(1e3 * far, 0) +
-                                  " mm away from its place on the ground and up to " +
-                                  text::fixed(1e3 * high, 0) + " mm up";
+      const double high = std::max(up, down);
+      std::vector<std::string> ways;
+      for (const auto& [length, where] :
+           {std::pair(far, "away from its place on the ground"), {up, "up"}, {down, "down"}})
+        if (length >= kNoLength)
+          ways.push_back("up to " + text::fixed(1e3 * length, 0) + " mm " + where);
+      const SwingWords words = {
+          std::string("the ") + name_of(side) + " foot moves " + text::join(ways, " and "),
+          down < kNoLength ? "lower" : (up < kNoLength ? "higher" : "flatter")};
       for (const auto& [nearer, lower] : {std::pair(true, true), {true, false}, {false, true}}) {
         if ((nearer && far < kNoLength) || (lower && high < kNoLength)) continue;
         for (const double share : shares)
-          made.push_back(smaller_swing(keys, side, nearer ? share : 1, lower ? share : 1, written));
+          made.push_back(smaller_swing(keys, side, nearer ? share : 1, lower ? share : 1, words));
       }
     }
   }
 
+  struct SwingWords {
+    std::string written;  // how far the foot moves
+    std::string lower;    // what the keys are with smaller heights
+  };
+
   Hypothesis smaller_swing(const std::vector<AirKey>& keys, Side side, double away, double up,
-                           const std::string& written) const {
+                           const SwingWords& words) const {
     std::vector<std::pair<size_t, Eigen::Vector3d>> places;
     std::vector<std::string> texts;
     double moved = 0;
@@ -1117,17 +1128,20 @@ class Hypotheses::Maker {
               1e4;
       moved = std::max(moved, (place - key.position).norm());
       places.emplace_back(key.key, place);
-      texts.push_back("[" + text::brief(place.x(), 9) + ", " + text::brief(place.y(), 9) + ", " +
-                      text::brief(place.z(), 9) + "] in " + key_place(key.key));
+      if (texts.size() < kPlacedKeys)
+        texts.push_back("[" + text::brief(place.x(), 9) + ", " + text::brief(place.y(), 9) + ", " +
+                        text::brief(place.z(), 9) + "] in " + key_place(key.key));
     }
     const double share = std::min(away, up);
+    if (keys.size() > kPlacedKeys)
+      texts.push_back("and in the later keys of this swing at " + text::fixed(100 * share, 0) +
+                      " % of the " + (away == 1 ? "vertical " : (up == 1 ? "level " : "")) +
+                      "distance from the line between its places on the ground");
     const auto s = static_cast<size_t>(index(side));
     return {Rank::amount,
-            {key_place(keys.front().key), written,
-             std::string("with all keys of this swing ") +
-                 (away == 1 ? "lower"
-                  : up == 1 ? "nearer"
-                            : "nearer and lower") +
+            {key_place(keys.front().key), words.written,
+             "with all keys of this swing " +
+                 (away == 1 ? words.lower : (up == 1 ? "nearer" : "nearer and " + words.lower)) +
                  ", the " + name_of(side) + " foot at " + text::join(texts, ", ")},
             [places, s](Pattern& p) {
               for (const auto& [key, place] : places) p.keyframes[key].feet[s]->position = place;

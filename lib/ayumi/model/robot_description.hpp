@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "ayumi/base/error.hpp"
 #include "ayumi/geometry/shape.hpp"
 
 namespace ayumi {
@@ -231,8 +232,9 @@ struct RobotDescription {
   std::map<std::string, SoleDescription> soles;  ///< soles "left" and "right"
   /// Angles [rad]; "home" is always there.
   std::map<std::string, std::map<std::string, double>> postures;
-  /// JSON pointers of the postures in the sidecar; without one, a posture is at /postures.
-  std::map<std::string, std::string> posture_pointers = {};
+  /// Places of the angles by posture and joint, because an angle may be in the file of a base. An
+  /// angle without a place is at /postures in the sidecar.
+  std::map<std::string, std::map<std::string, SourcePlace>> angle_places = {};
   std::map<std::string, ServoDescription> servos;  ///< servos by joint name
   bool servos_inferred = false;  ///< whether the servos were inferred because the files state none
   std::vector<ActuatorProfile> profiles;  ///< profiles; the first is the default

@@ -10,7 +10,6 @@
 #include <limits>
 
 #include "ayumi/base/error.hpp"
-#include "ayumi/base/json_pointer.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/model/gravity.hpp"
 #include "ayumi/model/servo_bounds.hpp"
@@ -252,7 +251,7 @@ void validate_postures(const RobotDescription& robot, const std::vector<Dof>& do
       const bool low = value < dof.lower;
       const double unit = dof.prismatic ? 1 : EIGEN_PI / 180;
       const std::string unit_name = dof.prismatic ? " m" : " deg";
-      complain_sidecar(robot, pointer_of_posture(robot, name) + "/" + json_pointer_token(dof.name),
+      complain_posture(robot, name, dof.name,
                        "the joint '" + dof.name + "' is at " + text::brief(value / unit) +
                            unit_name + (low ? ", below its limit of " : ", above its limit of ") +
                            text::brief((low ? dof.lower : dof.upper) / unit) + unit_name);

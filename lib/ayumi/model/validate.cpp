@@ -157,10 +157,13 @@ void complain_sidecar(const RobotDescription& robot, const std::string& inside,
   complain(robot, robot.sidecar_file, inside, message);
 }
 
-std::string pointer_of_posture(const RobotDescription& robot, const std::string& name) {
-  const auto found = robot.posture_pointers.find(name);
-  return found != robot.posture_pointers.end() ? found->second
-                                               : "/postures/" + json_pointer_token(name);
+void complain_posture(const RobotDescription& robot, const std::string& posture,
+                      const std::string& joint, const std::string& message) {
+  if (const auto places = robot.angle_places.find(posture); places != robot.angle_places.end())
+    if (const auto place = places->second.find(joint); place != places->second.end())
+      fail(ErrorCode::bad_model, place->second, message);
+  complain_sidecar(
+      robot, "/postures/" + json_pointer_token(posture) + "/" + json_pointer_token(joint), message);
 }
 
 std::string too_many(const std::string& what) {
@@ -267,16 +270,17 @@ std::vector<int> ordered_dof_joints(const RobotDescription& robot) {
 
 namespace {
 
+std::string not_moving(const std::string& joint, const std::vector<std::string>& names) {
+  return "'" + joint + "' is not a moving joint of the robot" + text::suggestion(joint, names);
+}
+
 // Checks the names of a map from joints to anything.
 template <typename Value>
 void known_joints(const RobotDescription& robot, const std::string& pointer,
                   const std::map<std::string, Value>& map, const std::vector<std::string>& names,
                   const std::string& owner = "") {
   for (const auto& [name, value] : map)
-    if (!contains(names, name))
-      complain_sidecar(robot, pointer,
-                       owner + "'" + name + "' is not a moving joint of the robot" +
-                           text::suggestion(name, names));
+    if (!contains(names, name)) complain_sidecar(robot, pointer, owner + not_moving(name, names));
 }
 
 void known_link(const RobotDescription& robot, const std::string& pointer,
@@ -361,7 +365,9 @@ void validate_sidecar(const RobotDescription& robot, const std::vector<std::stri
     complain_sidecar(robot, "/soles", "only one foot is given; name 'left' and 'right'");
   validate_force_cells(robot);
   for (const auto& [posture, values] : robot.postures)
-    known_joints(robot, pointer_of_posture(robot, posture), values, names);
+    for (const auto& [joint, angle] : values)
+      if (!contains(names, joint))
+        complain_posture(robot, posture, joint, not_moving(joint, names));
   known_joints(robot, "/servos", robot.servos, names);
   validate_servos(robot);
   known_joints(robot, "/encoders", robot.encoders, names);

@@ -31,8 +31,9 @@ inline constexpr double kShortestServoPeriod = 1e-7, kLongestServoPeriod = 10;
 [[noreturn]] void complain_sidecar(const RobotDescription& robot, const std::string& inside,
                                    const std::string& message);
 
-/// JSON pointer of a posture in the sidecar.
-std::string pointer_of_posture(const RobotDescription& robot, const std::string& name);
+/// Throws Error(bad_model) "file: message" with the place of a joint's angle in a posture.
+[[noreturn]] void complain_posture(const RobotDescription& robot, const std::string& posture,
+                                   const std::string& joint, const std::string& message);
 
 /// Checks names, finite numbers, masses, inertia tensors and sizes of shapes of all links.
 void validate_links(const RobotDescription& robot);

@@ -1,11 +1,12 @@
 #include "ayumi/io/robot/mesh_place.hpp"
 
-#include <tinyxml.h>
-
 #include <algorithm>
 
 #include "ayumi/base/counted.hpp"
+#include "ayumi/base/error.hpp"
+#include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/io/robot/xml_text.hpp"
 
 namespace ayumi {
 
@@ -19,13 +20,19 @@ constexpr int kNeighbours = 4;
 // Largest number of neighbours that are searched in one folder. Chosen: a workspace has fewer
 // packages; a folder with more is not one.
 constexpr int kMostNeighbours = 500;
+// Largest size of a package.xml [bytes]. Chosen: package.xml files have a few kilobytes.
+constexpr size_t kLargestPackageFile = size_t{1} << 20;
 
 bool names_package(const fs::path& folder, const std::string& name) {
   const fs::path file = folder / "package.xml";
   std::error_code ignored;
   if (!fs::is_regular_file(file, ignored)) return false;
   TiXmlDocument document;
-  if (!document.LoadFile(file.string())) return false;
+  try {
+    parse_xml(document, read_file(file, kLargestPackageFile), file.string(), "a package.xml");
+  } catch (const Error&) {  // a file that cannot be read names no package
+    return false;
+  }
   const TiXmlElement* root = document.RootElement();
   const TiXmlElement* tag = root ? root->FirstChildElement("name") : nullptr;
   return tag && tag->GetText() && name == tag->GetText();

@@ -83,8 +83,21 @@ void scale_numbers(Json& value, double factor) {
     for (auto& [key, member] : value.items()) scale_numbers(member, factor);
 }
 
+// Notes that the value at `from` is now at `to`, with everything inside it.
+void move_places(MergedSidecar& sidecar, const JsonPlace& place, const std::string& from,
+                 const std::string& to) {
+  JsonPlaces moved = {{to, place}};
+  for (const auto& [pointer, inner] : sidecar.places)
+    if (pointer.starts_with(from + "/")) moved[to + pointer.substr(from.size())] = inner;
+  std::erase_if(sidecar.places, [&](const auto& each) {
+    return each.first == from || each.first.starts_with(from + "/");
+  });
+  sidecar.places.merge(moved);
+}
+
 // A value in radians may override a value in degrees, and a value in degrees one in radians.
-void use_units_of(const Json& over, Json& under) {
+void use_units_of(const Json& over, MergedSidecar& base) {
+  Json& under = base.document;
   const auto convert = [&](Json& from, Json& to, const std::string& key, double factor) {
     to[key] = from[key];
     scale_numbers(to[key], factor);
@@ -100,8 +113,13 @@ void use_units_of(const Json& over, Json& under) {
     if (!postures->is_object() || !hidden->is_object()) continue;
     Json from = *hidden;
     Json to = under.value("postures" + key, Json::object());
-    for (const auto& [name, joints] : postures->items())
-      if (from.contains(name)) convert(from, to, name, factor);
+    for (const auto& [name, joints] : postures->items()) {
+      if (!from.contains(name)) continue;
+      const std::string step = "/" + json_pointer_token(name);
+      const JsonPlace place = base.root().at("postures" + other).at(name).place();
+      move_places(base, place, "/postures" + other + step, "/postures" + key + step);
+      convert(from, to, name, factor);
+    }
     under["postures" + other] = from;
     under["postures" + key] = to;
   }
@@ -125,7 +143,7 @@ class BaseReader {
     if (!base) return {document, {{"", {file.string(), ""}}}, bytes};
     MergedSidecar merged = read(base_file(*base, file));
     document.erase("base");
-    use_units_of(document, merged.document);
+    use_units_of(document, merged);
     SidecarOverlay(merged, file.string()).merge(merged.document, document, "", "");
     merged.bytes += bytes;
     return merged;

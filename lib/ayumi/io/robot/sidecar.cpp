@@ -100,8 +100,11 @@ void read_postures(const JsonNode& node, double unit, RobotDescription& robot) {
   for (const auto& [name, joints] : node.members()) {
     if (robot.postures.contains(name)) joints.complain("this posture is given twice; keep one");
     auto& posture = robot.postures[name];
-    robot.posture_pointers[name] = joints.pointer();
-    for (const auto& [joint, value] : joints.members()) posture[joint] = unit * value.number();
+    for (const auto& [joint, value] : joints.members()) {
+      posture[joint] = unit * value.number();
+      const JsonPlace place = value.place();
+      robot.angle_places[name][joint] = {place.file, place.pointer};
+    }
   }
 }
 

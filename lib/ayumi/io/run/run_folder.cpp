@@ -1,6 +1,7 @@
 #include "ayumi/io/run/run_folder.hpp"
 
 #include "ayumi/base/file.hpp"
+#include "ayumi/base/regular_file.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
 #include "ayumi/io/json/json_reader.hpp"
@@ -26,6 +27,8 @@ constexpr const char* kSizesKey = "file_bytes";
 constexpr const char* kSealKey = "contents_sha256";
 // Largest size of a file of a run [bytes]. Chosen: a log of half an hour at 1 kHz is smaller.
 constexpr size_t kLargestRunFile = size_t{4} << 30;
+
+size_t size_of(const fs::path& file) { return RegularFile(file, kLargestRunFile).stated_size(); }
 
 void make_folder(const fs::path& folder) {
   std::error_code error;
@@ -75,7 +78,7 @@ OrderedJson summary_of(const RunFolder& run, const std::map<std::string, std::st
   for (const auto& [name, log] : logs) json["logs"][name] = log;
   json["files"] = hashes;
   json[kSizesKey] = OrderedJson::object();
-  for (const auto& [name, hash] : hashes) json[kSizesKey][name] = fs::file_size(folder / name);
+  for (const auto& [name, hash] : hashes) json[kSizesKey][name] = size_of(folder / name);
   return json;
 }
 
@@ -89,28 +92,34 @@ std::string sealed(const std::string& object) {
   return text + seal_before(text);
 }
 
-[[noreturn]] void complain_of_change(
-    const fs::path& file, const std::string& what = "its SHA-256 differs from the value") {
+[[noreturn]] void complain_of_change(const fs::path& file, const std::string& what) {
   fail(ErrorCode::bad_file, {file.string()},
        "the file has changed since the run was written (" + what +
            " in run.json); make the run again");
 }
 
-// Compares a file of a run with what its run.json records. The size comes first, because it takes
-// no time. Files that run.json does not list are not compared; runs of versions before 0.3.0 have
-// no sizes.
-void require_unchanged(const fs::path& folder, const JsonNode& root, const std::string& name) {
-  const fs::path file = folder / name;
+constexpr const char* kOtherHash = "its SHA-256 differs from the value";
+
+// The difference between a file of a run and what its run.json records; empty if there is none. The
+// size comes first, because it takes no time; runs of versions before 0.3.0 have no sizes.
+std::string difference(const fs::path& file, const JsonNode& root, const JsonNode& hash,
+                       const std::string& name) {
   const auto sizes = root.find(kSizesKey);
-  const auto recorded = sizes ? sizes->find(name) : std::nullopt;
-  std::error_code unknown;
-  const auto size = fs::file_size(file, unknown);
-  if (recorded && !unknown && recorded->unsigned_integer() != size)
-    complain_of_change(file, "it has " + std::to_string(size) + " bytes, but " +
-                                 std::to_string(recorded->unsigned_integer()));
-  const std::string hash = sha256_of_file(file, kLargestRunFile);
-  const auto expected = root.at("files").find(name);
-  if (expected && expected->string() != hash) complain_of_change(file);
+  if (const auto recorded = sizes ? sizes->find(name) : std::nullopt) {
+    const size_t size = size_of(file);
+    if (recorded->unsigned_integer() != size)
+      return "it has " + std::to_string(size) + " bytes, but " +
+             std::to_string(recorded->unsigned_integer());
+  }
+  return hash.string() == sha256_of_file(file, kLargestRunFile) ? "" : kOtherHash;
+}
+
+// Files that run.json does not list are not compared.
+void require_unchanged(const fs::path& folder, const JsonNode& root, const std::string& name) {
+  const auto recorded = root.at("files").find(name);
+  if (!recorded) return;
+  const std::string what = difference(folder / name, root, *recorded, name);
+  if (!what.empty()) complain_of_change(folder / name, what);
 }
 
 // The parsed run.json with its root.
@@ -126,7 +135,7 @@ struct RunFile {
       root.at("format").complain("'" + format + "' cannot be read; this version of Ayumi reads '" +
                                  kRunFormat + "'");
     // Runs of versions before 0.2.0 are not sealed.
-    if (root.has(kSealKey) && !is_sealed()) complain_of_change(path);
+    if (root.has(kSealKey) && !is_sealed()) complain_of_change(path, kOtherHash);
   }
   bool is_sealed() const {
     const size_t at = text.rfind(std::string(",\n  \"") + kSealKey + "\"");
@@ -192,8 +201,10 @@ std::vector<std::string> run_file_names(const fs::path& folder) {
 
 bool is_file_of_run(const fs::path& folder, const fs::path& file) {
   const RunFile run(folder);
-  const auto recorded = run.root().at("files").find(file.filename().string());
-  return recorded && recorded->string() == sha256_of_file(file, kLargestRunFile);
+  const JsonNode root = run.root();
+  const std::string name = file.filename().string();
+  const auto recorded = root.at("files").find(name);
+  return recorded && difference(file, root, *recorded, name).empty();
 }
 
 void verify_run(const fs::path& folder) {

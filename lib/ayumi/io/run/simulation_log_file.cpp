@@ -4,8 +4,8 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <functional>
+#include <limits>
 #include <map>
 #include <type_traits>
 #include <utility>
@@ -424,14 +424,13 @@ SimulationLog parse_log(const std::string& bytes, const std::string& file) {
 }
 
 bool is_log_file(const std::filesystem::path& path) {
-  std::error_code error;
-  // To open a pipe would block, and so would the reading of some files of /proc, which state no
-  // size.
-  if (!std::filesystem::is_regular_file(path, error)) return false;
-  if (std::filesystem::file_size(path, error) < kPrefix || error) return false;
-  std::ifstream file(path, std::ios::binary);
-  std::string begin(8, ' ');
-  return file.read(begin.data(), 8) && begin == kMagic;
+  try {
+    RegularFile file(path, std::numeric_limits<size_t>::max());
+    // To read some files of /proc, which state no size, would block.
+    return file.stated_size() >= kPrefix && file.next(std::strlen(kMagic)) == kMagic;
+  } catch (const Error&) {  // a file that cannot be read is no log
+    return false;
+  }
 }
 
 size_t most_log_rows(const std::vector<std::string>& joints) {
