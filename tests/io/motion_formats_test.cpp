@@ -129,6 +129,13 @@ TEST(MotionFormats, VariantsOfOtherProgramsAreRead) {
   same(replaced(poses, "\n", ",\n"), "webots", "a comma at the end of each row");
   same(replaced(poses, "\n([0-9:]*),Pose7,", "\n\n# lifts the foot\n$1,Pose7,"), "webots",
        "an empty line and a comment");
+  same(replaced(poses, "V1.0,(.*)", "V1.0,\n$1"), "webots", "names below an open first line");
+  // A pose may have no name, or one that begins with #; its row is no comment.
+  const std::string durations = written_as("webots-1.1");
+  same(replaced(durations, "\nplay", "\n"), "webots-1.1", "poses without names");
+  same(replaced(durations, "\nplay", "\n#play"), "webots-1.1", "poses that are called #play");
+  same(replaced(durations, "V1.1", "V1.1,"), "webots-1.1", "a comma at the end of the first line");
+  same(durations + "# the end\n", "webots-1.1", "a comment");
   same("% recorded\n" + written_as("hrpsys"), "hrpsys", "a comment");
   const std::string trajectory = written_as("ros-trajectory");
   const size_t points = trajectory.find("points:"), names = trajectory.find("joint_names");
