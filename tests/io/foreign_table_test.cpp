@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string_view>
 
@@ -70,15 +71,47 @@ TEST(ForeignTable, IsReadWithTheMarksOfOtherPrograms) {
   // As pandas writes a table with its index, and with a separator at the end of each row.
   const std::string plain = table("t,l_elbow,r_knee", ',', '.', 1, 1);
   std::string indexed, ended;
+  std::string from_one;
   int row = -1;
   for (std::string_view rest = plain; !rest.empty(); ++row) {
     const std::string line(rest.substr(0, rest.find('\n')));
     rest.remove_prefix(line.size() + 1);
     indexed += (row < 0 ? "" : std::to_string(row)) + "," + line + "\n";
+    from_one += (row < 0 ? "\"\"" : "\"" + std::to_string(row + 1) + "\"") + "," + line + "\n";
     ended += line + ",\n";
   }
-  expect_the_motion(read(indexed, degrees), "a column without a name");
+  const ImportedMotion motion = read(indexed, degrees);
+  expect_the_motion(motion, "a column without a name");
+  EXPECT_EQ(std::count(motion.filled.begin(), motion.filled.end(),
+                       "the first column has no name and counts the rows, so it is left out"),
+            1);
+  expect_the_motion(read(from_one, degrees), "a column without a name, from 1, in quotes");
   expect_the_motion(read(ended, degrees), "a separator at the end of each row");
+  const auto with_tabs = [](std::string text) {
+    std::replace(text.begin(), text.end(), ',', '\t');
+    return text;
+  };
+  expect_the_motion(read(with_tabs(indexed), degrees), "tabs, a column without a name");
+  expect_the_motion(read(with_tabs(ended), degrees), "a tab at the end of each row");
+  expect_the_motion(read(table("t,\tl_elbow,\tr_knee", ',', '.', 1, 1), degrees),
+                    "tabs behind commas");
+  expect_the_motion(read(table("t\tl_elbow\tr_knee", '\t', ',', 1, 1), degrees),
+                    "decimal commas, tabs");
+}
+
+// pandas also writes an index of times without a name.
+TEST(ForeignTable, AColumnWithoutANameThatDoesNotCountTheRowsIsRefused) {
+  const std::string lost =
+      "a.csv:2: the first cell is empty, but only a column that counts the rows (0, 1, 2, ... or "
+      "1, 2, 3, ...) needs no name; write t into this cell if the column has the times, or remove "
+      "the column";
+  const std::string times = "# of pandas\n" + table(",l_elbow,r_knee", ',', '.', 1, 1);
+  EXPECT_EQ(refusal(times), lost);
+  ImportOptions options;
+  options.rate = 50;
+  EXPECT_EQ(refusal(times, options), lost);
+  EXPECT_EQ(refusal("\n,t,l_elbow\n0,0,0\n2,0.1,0\n"), lost);
+  EXPECT_EQ(refusal("\n\tt\tl_elbow\n2\t0\t0\n3\t0,1\t0\n"), lost);
 }
 
 TEST(ForeignTable, UnitsMayStandInTheHeadRow) {

@@ -111,6 +111,10 @@ TEST(MotionFormats, VariantsOfOtherProgramsAreRead) {
   const std::string rows = written_as("motion-csv");
   same(replaced(rows, ",", ";"), "motion-csv", "semicolons");
   same(replaced(replaced(rows, ",", ";"), "\\.", ","), "motion-csv", "decimal commas");
+  same(replaced(replaced(rows, ",", "\t"), "\\.", ","), "motion-csv", "decimal commas, tabs");
+  for (const std::string separator : {",", ";", "\t", "  "})
+    same("% recorded by me today\n% x; y, z\n" + replaced(rows, ",", separator), "motion-csv",
+         ("comments above rows with '" + separator + "'").c_str());
   same(replaced(rows, ",", "\t"), "motion-csv", "tabs");
   same(replaced(rows, ",", "  "), "motion-csv", "blanks");
   same(replaced(rows, "\n", ",\n"), "motion-csv", "a comma at the end of each row");
@@ -121,6 +125,9 @@ TEST(MotionFormats, VariantsOfOtherProgramsAreRead) {
   same(replaced(joints, "time", "time [s]"), "transposed-csv", "a unit");
   same(replaced(joints, "\n", ",\n"), "transposed-csv", "a comma at the end of each row");
   same(replaced(joints, ",", ";"), "transposed-csv", "semicolons");
+  same(replaced(replaced(joints, ",", "\t"), "\\.", ","), "transposed-csv", "decimal commas, tabs");
+  same(replaced(replaced(joints, ",", "\t"), "\n", "\t\n"), "transposed-csv",
+       "a tab at the end of each row");
   const std::string poses = written_as("webots");
   std::string capitals = poses;
   for (size_t i = 0; i < capitals.find('\n'); ++i)
@@ -129,6 +136,13 @@ TEST(MotionFormats, VariantsOfOtherProgramsAreRead) {
   same(replaced(poses, "\n", ",\n"), "webots", "a comma at the end of each row");
   same(replaced(poses, "\n([0-9:]*),Pose7,", "\n\n# lifts the foot\n$1,Pose7,"), "webots",
        "an empty line and a comment");
+  same(replaced(poses, "V1.0,(.*)", "V1.0,\n$1"), "webots", "names below an open first line");
+  // A pose may have no name, or one that begins with #; its row is no comment.
+  const std::string durations = written_as("webots-1.1");
+  same(replaced(durations, "\nplay", "\n"), "webots-1.1", "poses without names");
+  same(replaced(durations, "\nplay", "\n#play"), "webots-1.1", "poses that are called #play");
+  same(replaced(durations, "V1.1", "V1.1,"), "webots-1.1", "a comma at the end of the first line");
+  same(durations + "# the end\n", "webots-1.1", "a comment");
   same("% recorded\n" + written_as("hrpsys"), "hrpsys", "a comment");
   const std::string trajectory = written_as("ros-trajectory");
   const size_t points = trajectory.find("points:"), names = trajectory.find("joint_names");
@@ -376,6 +390,11 @@ TEST(MotionFormats, KeysAreMet) {
   EXPECT_EQ(knee[0], 0);
   EXPECT_EQ(knee[50], 1);
   EXPECT_LE(knee.maxCoeff(), 1 + 1e-12);
+  const ImportedMotion scaled =
+      read_motion_rows("time [ms],0,500,1500\nl_knee,0,1,1\nr_knee,0,0.5,1\n", "k.csv", hoap1());
+  EXPECT_EQ(scaled.format, "transposed-csv");
+  EXPECT_EQ(scaled.motion.dt, read.motion.dt);
+  EXPECT_EQ(scaled.motion.theta, read.motion.theta);
 }
 
 // A row of words below the joints, as in soccerbot's files, does not name joints. A word among

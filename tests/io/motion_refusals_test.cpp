@@ -201,6 +201,10 @@ TEST(MotionRefusals, RowsOfNumbers) {
        {"0.02 2 ( 1 2 )\n0.02 1 ( 1 )\n", "m.dat:2: the row has 1 value, but the first row has 2"},
        {"0 1 ( 1 )\n", "m.dat:1: dt 0 s is not above 0"},
        {"time,0,0.2,0.1\nl_knee,0,1,2\n", "m.dat:1: time 0.1 s does not come after 0.2 s"},
+       {"time [ms],0,200,100\nl_knee,0,1,2\n", "m.dat:1: time 0.1 s does not come after 0.2 s"},
+       // The first cell of rows without names is lost, although the other rows count.
+       {"# recorded\n,0,0.3,0,0,0,1,0\n0,0,0.3,0,0,0,1,0\n1,0,0.3,0,0,0,1,0\n",
+        "m.dat:2: the first cell is empty, but only a column that counts the rows"},
        {"time,0,0.1,0.2\n", "no row of a joint below the row of times"}},
       "m.dat");
   ImportOptions options;
@@ -257,7 +261,10 @@ TEST(MotionRefusals, Trajectories) {
       {{motion(joints + "        times_from_start: [0, 1]\n"),
         "a motion needs joints, positions and times_from_start"},
        {motion(joints + "        positions: [0, 1, 2]\n        times_from_start: [0, 1]\n"),
-        "the motion has 3 positions, but 1 joint at 2 times need 2"}},
+        "the motion has 3 positions, but 1 joint at 2 times need 2"},
+       {"play_motion:\n  motions:\n    wave:\n      points:\n        - positions: [0]\n"
+        "          time_from_start: 1\n    bow:\n      joints: [l_knee]\n",
+        "a motion with points needs joints"}},
       "m.yaml");
 }
 

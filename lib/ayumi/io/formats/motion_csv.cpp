@@ -20,9 +20,21 @@ bool has_blanks_only(std::string_view bytes) {
   return first.find_first_of(",;\t") == std::string_view::npos;
 }
 
+// Comments become empty lines, so that the other lines keep their numbers.
+std::string without_comments(std::string_view bytes) {
+  std::string text;
+  while (!bytes.empty()) {
+    const size_t end = std::min(bytes.find('\n'), bytes.size() - 1) + 1;
+    const std::string_view line = bytes.substr(0, end);
+    text.append(is_comment(trimmed(line)) ? "\n" : line);
+    bytes.remove_prefix(end);
+  }
+  return text;
+}
+
 // The text with commas between its cells, which may be separated by blanks only.
 std::string plain_rows(const std::string& bytes, const std::string& file) {
-  if (!has_blanks_only(bytes)) return plain_table_text(bytes, file);
+  if (!has_blanks_only(bytes)) return plain_table_text(without_comments(bytes), file);
   std::string text;
   for (std::string_view rest = bytes; !rest.empty();) {
     std::string_view line = take_line(rest);
@@ -44,16 +56,19 @@ std::vector<std::vector<double>> first_rows(const MotionInput& source) {
   std::string head;
   for (size_t rows = 0; rows < kRows && !rest.empty();) {
     const std::string_view line = take_line(rest);
-    if (line.empty() || is_comment(line)) continue;
-    head.append(line).push_back('\n');
-    ++rows;
+    const bool row = !line.empty() && !is_comment(line);
+    if (row) head.append(line);
+    head.push_back('\n');
+    rows += row;
   }
   if (head.find_first_not_of("0123456789+-.eE,; \t\"\n") != std::string::npos) return {};
   const std::string plain = plain_rows(head, source.file);
   std::vector<std::vector<double>> numbers;
   for (std::string_view text = plain; !text.empty();) {
+    const std::string_view line = take_line(text);
+    if (line.empty()) continue;
     std::vector<double>& row = numbers.emplace_back();
-    for (std::string_view cell : cells_of(take_line(text))) {
+    for (std::string_view cell : cells_of(line)) {
       double value = 0;
       if (cell.starts_with('+')) cell.remove_prefix(1);
       const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);

@@ -257,8 +257,9 @@ MotionFile read_play_motion(const MotionInput& source) {
   const YamlNode& first = motions->items[source.chosen_motion(motions->keys, {}, about)];
   // In ROS 1, a motion is a list of points.
   const YamlNode *names = first.find("joints"), *points = first.find("points");
+  if (points && !names) source.refuse(yaml_line(first), "a motion with points needs joints");
   Trajectory one =
-      names && points ? trajectory_of(source, *names, *points) : trajectory_of_lists(source, first);
+      points ? trajectory_of(source, *names, *points) : trajectory_of_lists(source, first);
   if (one.times.empty())
     source.refuse(yaml_line(first), "the motion has no posture; write the file again");
   MotionFile motion = joined(source, {std::move(one)});

@@ -194,8 +194,11 @@ std::string recognize_csv_table(const MotionInput& source) {
 }
 
 MotionFile read_csv_table(const MotionInput& source) {
-  return read_number_motion(source,
-                            number_table(plain_table_text(source.bytes, source.file), source.file));
+  std::vector<std::string> notes;
+  const std::string plain = plain_table_text(source.bytes, source.file, &notes);
+  MotionFile motion = read_number_motion(source, number_table(plain, source.file));
+  motion.notes.insert(motion.notes.end(), notes.begin(), notes.end());
+  return motion;
 }
 
 std::optional<double> seconds_of_time_column(const std::string& column) {

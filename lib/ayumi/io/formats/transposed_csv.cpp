@@ -70,6 +70,8 @@ MotionFile read_transposed_csv(const MotionInput& source) {
     for (size_t i = 1; i < cells.size(); ++i)
       row.push_back(source.number(cells[i], line, "value " + std::to_string(i)));
     if (motion.times.empty()) {
+      const double seconds = seconds_of_time_column(std::string(cells[0])).value_or(1);
+      for (double& time : row) time *= seconds;
       for (size_t i = 1; i < row.size(); ++i)
         if (!(row[i] > row[i - 1]))
           source.refuse(line, "time " + text::brief(row[i]) + " s does not come after " +
@@ -77,8 +79,6 @@ MotionFile read_transposed_csv(const MotionInput& source) {
                                   " s; times must increase, so correct or remove this column");
       if (row.empty())
         source.refuse(line, "the first row has no time; give the times of the columns");
-      const double seconds = seconds_of_time_column(std::string(cells[0])).value_or(1);
-      for (double& time : row) time *= seconds;
       motion.times = std::move(row);
       continue;
     }

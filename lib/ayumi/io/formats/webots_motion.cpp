@@ -37,6 +37,13 @@ double time_of(const MotionInput& source, std::string_view cell, size_t line) {
   return std::round(time / kMillisecond) * kMillisecond;
 }
 
+// Removes the empty cell behind a separator at the end of a line; returns whether there was one.
+bool remove_open_end(std::vector<std::string_view>& cells) {
+  const bool open = !cells.empty() && cells.back().empty();
+  if (open) cells.pop_back();
+  return open;
+}
+
 }  // namespace
 
 std::string recognize_webots_motion(const MotionInput& source) {
@@ -47,8 +54,9 @@ std::string recognize_webots_motion(const MotionInput& source) {
 
 std::string recognize_webots_durations(const MotionInput& source) {
   std::string_view rest = source.bytes;
-  const std::vector<std::string_view> head = split(take_line(rest), ',');
-  return head[0] == kWebotsMagic && head.size() == 2 &&
+  std::vector<std::string_view> head = split(take_line(rest), ',');
+  remove_open_end(head);
+  return head.size() == 2 && head[0] == kWebotsMagic &&
                  take_line(rest).find('%') != std::string::npos
              ? "the first line is #WEBOTS_MOTION with a version, and the second line has names "
                "that contain %"
@@ -66,20 +74,24 @@ MotionFile read_webots_motion(const MotionInput& source) {
   MotionFile motion;
   motion.time_step = kMillisecond;
   head.erase(head.begin(), head.begin() + 2);
+  bool open = remove_open_end(head);  // a separator ends every row
   char separator = ',';
   if (head.empty()) {  // the names are in the second line
     const std::string_view names = take_line(rest);
     ++line;
     if (names.find('%') != std::string_view::npos) separator = '%';
     head = split(names, separator);
+    open = remove_open_end(head) || open;
   }
-  const bool open = !head.empty() && head.back().empty();  // a separator ends every row
-  if (open) head.pop_back();
   for (const std::string_view name : head) {
     if (name.empty()) source.refuse(line, "a column has no name");
     motion.joints.emplace_back(name);
   }
   const bool durations = separator == '%';
+  // With %, a row with an empty name begins with this character, and a name may begin with #.
+  const auto is_remark = [&](std::string_view text) {
+    return is_comment(text) && !(durations && text.find('%') != std::string_view::npos);
+  };
   const size_t before = durations ? 1 : 2, after = durations ? 1 : 0;
   std::vector<double> cells;
   double now = 0;
@@ -87,7 +99,7 @@ MotionFile read_webots_motion(const MotionInput& source) {
   while (!rest.empty()) {
     const std::string_view text = take_line(rest);
     ++line;
-    if (text.empty() || is_comment(text)) continue;
+    if (text.empty() || is_remark(text)) continue;
     std::vector<std::string_view> row = split(text, separator);
     if (open && row.back().empty()) row.pop_back();
     if (row.size() != before + head.size() + after)

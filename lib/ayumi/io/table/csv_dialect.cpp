@@ -1,6 +1,7 @@
 #include "ayumi/io/table/csv_dialect.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <string_view>
 
 #include "ayumi/base/error.hpp"
@@ -19,9 +20,21 @@ std::string_view first_row(std::string_view rest) {
   return {};
 }
 
-// The character between the cells of the head row, which has no decimal commas.
+// Whether every comma is between two digits.
+bool has_decimal_commas_only(std::string_view row) {
+  const auto digit = [&](size_t i) {
+    return i < row.size() && std::isdigit(static_cast<unsigned char>(row[i])) != 0;
+  };
+  for (size_t at = row.find(','); at != std::string_view::npos; at = row.find(',', at + 1))
+    if (at == 0 || !digit(at - 1) || !digit(at + 1)) return false;
+  return true;
+}
+
+// The character between the cells of the first row, which may have decimal commas. Beside other
+// commas, tabs are blanks.
 char separator_of(std::string_view row, const std::string& file) {
-  for (const char candidate : {';', ',', '\t'})
+  const bool decimal = has_decimal_commas_only(row);
+  for (const char candidate : {';', decimal ? '\t' : ',', ','})
     if (row.find(candidate) != std::string_view::npos) return candidate;
   if (std::count(row.begin(), row.end(), ' ') > 1)
     fail(ErrorCode::bad_file, {file},
@@ -29,12 +42,29 @@ char separator_of(std::string_view row, const std::string& file) {
   return ',';
 }
 
-// The rows without their first cell, and without an empty cell at their end.
-std::string without_outer_cells(std::string_view text, bool first, bool last) {
+// The rows without their first cell, which must be the number of the row, and without an empty cell
+// at their end.
+std::string without_outer_cells(std::string_view text, bool first, bool last,
+                                const std::string& file) {
   std::string kept;
-  while (!text.empty()) {
+  bool names = false;  // the first row has more than numbers
+  long head_line = 0, row = -1;
+  for (long number = 1; !text.empty(); ++number) {
     std::string_view line = take_line(text);
     if (!line.empty() && line.front() != '#') {
+      const std::string_view cell = trimmed(line.substr(0, line.find(',')));
+      if (head_line == 0) {
+        head_line = number;
+        names = line.find_first_not_of("0123456789+-.eE, \t") != std::string_view::npos;
+      } else {
+        if (row < 0) row = cell == "1" ? 1 : 0;
+        if (first && !(names && cell == std::to_string(row)))
+          fail(ErrorCode::bad_file, {file, "", head_line},
+               "the first cell is empty, but only a column that counts the rows (0, 1, 2, ... or "
+               "1, 2, 3, ...) needs no name; write t into this cell if the column has the times, "
+               "or remove the column");
+        ++row;
+      }
       if (first) line.remove_prefix(std::min(line.find(',') + 1, line.size()));
       if (last && line.ends_with(',')) line.remove_suffix(1);
     }
@@ -45,14 +75,14 @@ std::string without_outer_cells(std::string_view text, bool first, bool last) {
 
 }  // namespace
 
-std::string plain_table_text(const std::string& bytes, const std::string& file) {
+std::string plain_table_text(const std::string& bytes, const std::string& file,
+                             std::vector<std::string>* notes) {
   if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF"))
     fail(ErrorCode::bad_file, {file}, "this is UTF-16 text; save it as UTF-8");
   std::string text = bytes.starts_with("\xEF\xBB\xBF") ? bytes.substr(3) : bytes;
   const std::string_view head = first_row(text);
   if (head.empty() || head.front() == '{') return text;
   const char separator = separator_of(head, file);
-  const bool unnamed = head.front() == separator, open = head.back() == separator;
   const bool quoted = head.find('"') != std::string_view::npos;
   bool comment = false, begins = true;
   for (char& c : text) {
@@ -67,7 +97,12 @@ std::string plain_table_text(const std::string& bytes, const std::string& file) 
       c = ',';
     }
   }
-  return unnamed || open ? without_outer_cells(text, unnamed, open) : text;
+  // Tabs at the ends of the row are commas now.
+  const std::string_view plain_head = first_row(text);
+  const bool unnamed = plain_head.starts_with(','), open = plain_head.ends_with(',');
+  if (unnamed && notes)
+    notes->push_back("the first column has no name and counts the rows, so it is left out");
+  return unnamed || open ? without_outer_cells(text, unnamed, open, file) : text;
 }
 
 }  // namespace ayumi
