@@ -1109,9 +1109,15 @@ class Hypotheses::Maker {
     }
   }
 
+  // A position as a pattern has it [m].
+  static std::string written_position(const Eigen::Vector3d& p) {
+    return "[" + text::brief(p.x(), 9) + ", " + text::brief(p.y(), 9) + ", " +
+           text::brief(p.z(), 9) + "]";
+  }
+
   struct SwingWords {
     std::string written;  // how far the foot moves
-    std::string lower;    // what the keys are with smaller heights
+    std::string lower;    // word for keys that move less up or down
   };
 
   Hypothesis smaller_swing(const std::vector<AirKey>& keys, Side side, double away, double up,
@@ -1129,8 +1135,7 @@ class Hypotheses::Maker {
       moved = std::max(moved, (place - key.position).norm());
       places.emplace_back(key.key, place);
       if (texts.size() < kPlacedKeys)
-        texts.push_back("[" + text::brief(place.x(), 9) + ", " + text::brief(place.y(), 9) + ", " +
-                        text::brief(place.z(), 9) + "] in " + key_place(key.key));
+        texts.push_back(written_position(place) + " in " + key_place(key.key));
     }
     const double share = std::min(away, up);
     if (keys.size() > kPlacedKeys)
@@ -1154,11 +1159,10 @@ class Hypotheses::Maker {
   // "rpy": [0, -20, 0]}.
   std::string turned_foot(Side side, const Foothold& foot, double roll, double pitch) const {
     const double unit = pattern_.degrees ? std::numbers::pi / 180 : 1;
-    const auto written = [](double value) { return text::brief(value, 9); };
-    return "\"" + std::string(name_of(side)) + "\": {\"position\": [" + written(foot.position.x()) +
-           ", " + written(foot.position.y()) + ", " + written(foot.position.z()) + "], \"rpy\": [" +
+    return "\"" + std::string(name_of(side)) +
+           "\": {\"position\": " + written_position(foot.position) + ", \"rpy\": [" +
            text::brief(roll / unit) + ", " + text::brief(pitch / unit) + ", " +
-           written(foot.rpy.z() / unit) + "]}";
+           text::brief(foot.rpy.z() / unit, 9) + "]}";
   }
 
   bool has_cog_height() const {
