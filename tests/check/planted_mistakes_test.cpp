@@ -642,6 +642,70 @@ TEST(PlantedMistakes, AShorterFlightIsNamedForAHopThatIsTooHigh) {
   EXPECT_TRUE(is_consistent(pattern, options)) << found;
 }
 
+// The legs are too straight at both ends of the flight, and nothing else is wrong. A shorter flight
+// would help, too, but the robot would not jump as high.
+TEST(PlantedMistakes, LegsThatAreStraightAtALiftOffAreNamed) {
+  Pattern pattern = hop_with(
+      {{0.5, 0.245}, {1.32, 0.19}, {1.5, 0.235}, {1.65, 0.235}, {1.83, 0.19}, {2.7, 0.245}});
+  const CheckOptions options = strong_options(pattern);
+  const std::string found = texts_of(likely_mistakes(small(), pattern, options));
+  std::smatch heights;
+  ASSERT_TRUE(std::regex_search(
+      found, heights,
+      std::regex(
+          "/keyframes/2: the COG height is 0.235 m at the lift-off, where the knees are bent "
+          "by only about [0-9]+ deg; .*with ([0-9.]+) m at the lift-off and ([0-9.]+) m at "
+          "the landing, the pattern is consistent")))
+      << found;
+  pattern.keyframes[2].cog_height = std::stod(heights[1]);
+  pattern.keyframes[3].cog_height = std::stod(heights[2]);
+  EXPECT_TRUE(is_consistent(pattern, options)) << found;
+}
+
+// The weight is shifted to one foot until the very end, or at once at the beginning.
+TEST(PlantedMistakes, AMotionWithoutARestAtItsEndsIsNamed) {
+  for (const bool at_end : {true, false}) {
+    Pattern pattern = quarter_turn();
+    if (at_end) {
+      pattern.keyframes.back().t -= 0.3;
+      pattern.phases.back().until = pattern.keyframes.back().t;
+      pattern.keyframes.back().zmp = ZmpKey{ZmpKey::Place::right};  // from the left foot
+    } else {
+      for (Phase& phase : pattern.phases) phase.until -= 0.8;
+      for (Keyframe& key : pattern.keyframes) key.t = std::max(0.0, key.t - 0.8);
+      pattern.keyframes.front().zmp = ZmpKey{ZmpKey::Place::left};  // to the right foot
+    }
+    const CheckOptions options = options_of(pattern);
+    const std::string found = texts_of(likely_mistakes(small(), pattern, options));
+    std::smatch more;
+    ASSERT_TRUE(std::regex_search(
+        found, more,
+        std::regex(at_end
+                       ? "with a last phase that is ([0-9.]+) s longer, the pattern is consistent"
+                       : "with all times ([0-9.]+) s later, the pattern is consistent")))
+        << found;
+    const double later = std::stod(more[1]);
+    for (Phase& phase : pattern.phases)
+      if (!at_end || &phase == &pattern.phases.back()) phase.until += later;
+    for (Keyframe& key : pattern.keyframes)
+      if (!at_end) key.t += later;
+    EXPECT_TRUE(is_consistent(pattern, options)) << found;
+  }
+}
+
+// A millimetre less to the side is enough, which is less than other mistakes change. To halve the
+// turn is not what the author wants.
+TEST(PlantedMistakes, ASlightChangeThatIsEnoughComesFirst) {
+  Pattern pattern = quarter_turn();
+  for (Phase& phase : pattern.phases)
+    if (phase.swing && phase.swing->foot == Side::left)
+      phase.swing->step = RelativeStep{.side = 0.0152, .turn = 30 * kDegree};
+  const std::vector<Mistake> found = likely_mistakes(small(), pattern, options_of(pattern));
+  ASSERT_FALSE(found.empty());
+  EXPECT_NE(found.front().words.find("the left foot's step side is 0.0152 m"), std::string::npos)
+      << texts_of(found);
+}
+
 // The stoop is slow, and the legs are too straight at both ends of the flight. With exactly the
 // values that the message names, the pattern is consistent.
 TEST(PlantedMistakes, AllThatIsNamedForAHopIsEnough) {
@@ -658,7 +722,11 @@ TEST(PlantedMistakes, AllThatIsNamedForAHopIsEnough) {
       std::regex("/keyframes/2: the COG height is 0.235 m; with values from [0-9.]+ m to ([0-9.]+) "
                  "m here and in /keyframes/3, ")))
       << found;
-  pattern.keyframes[2].cog_height = pattern.keyframes[3].cog_height = std::stod(height[1]);
+  double low = std::stod(height[1]);
+  const std::regex lower("with values from [0-9.]+ m to ([0-9.]+) m here and in /keyframes/3");
+  for (std::sregex_iterator it(found.begin(), found.end(), lower), end; it != end; ++it)
+    low = std::min(low, std::stod((*it)[1]));
+  pattern.keyframes[2].cog_height = pattern.keyframes[3].cog_height = low;
   if (std::regex_search(found, flight, flight_words())) shorten_flight(pattern, flight);
   EXPECT_TRUE(is_consistent(pattern, options)) << found;
 }

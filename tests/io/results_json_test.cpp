@@ -62,6 +62,35 @@ TEST(ResultsJson, EveryFigureOfACheckIsReadBack) {
     EXPECT_EQ(results.check->summary[spec->kind], report.summary[spec->kind]) << spec->figure.key;
 }
 
+// A consequence has the number of its cause, so that a report can list it there.
+TEST(ResultsJson, CausesOfFindingsAreReadBackAndAreNoCircle) {
+  ConsistencyReport report;
+  report.profile = "hoap1";
+  for (int i = 0; i < 3; ++i)
+    report.findings.push_back(
+        {.kind = FindingKind::joint_speed, .unit = "rad/s", .where = "l_knee", .hint = ""});
+  report.findings[1].cause = 2;
+  report.findings[2].cause = 0;
+  RunFolder run;
+  run.sections = {{"check", check_json(report)}};
+  const RunResults results = read_results(run, "run.json");
+  ASSERT_TRUE(results.check);
+  for (int i = 0; i < 3; ++i)
+    EXPECT_EQ(results.check->findings[i].cause, report.findings[i].cause) << i;
+
+  for (const auto& [cause, words] :
+       {std::pair(1, "this finding is a consequence of itself"), {3, "from 0 to 2"}}) {
+    report.findings[0].cause = cause;
+    run.sections = {{"check", check_json(report)}};
+    try {
+      read_results(run, "run.json");
+      ADD_FAILURE() << cause;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+    }
+  }
+}
+
 TEST(ResultsJson, SimulationHasTheKeysOfTheCommandLine) {
   SimulationLog log;
   log.controller = ControllerKind::dtad;

@@ -77,9 +77,46 @@ TEST(Report, ShowsFindingsRepairAndThresholds) {
   const std::string html = make_report(made.model, made.input).html;
   for (const char* words :
        {"Verdict: not good", "<span class=\"bad\">inconsistent</span>", "move the ZMP inwards",
-        "0.300</a> (0.20 to 0.40)", "l_knee has no room", "step of l_knee at 0.100 s", "0.83+",
+        "0.20 to 0.40 s, worst at", "l_knee has no room", "step of l_knee at 0.100 s", "0.83+",
         "<td class=\"number\">90</td>", "<td class=\"number\">0.75</td>"})
     EXPECT_NE(html.find(words), std::string::npos) << words;
+}
+
+// One entry for each cause: neighbours, both sides and consequences are put together.
+TEST(Report, GroupsFindings) {
+  Made made;
+  ConsistencyReport check;
+  for (int i = 0; i < 12; ++i)
+    check.findings.push_back({.kind = FindingKind::joint_speed,
+                              .begin = 0.1 * i,
+                              .end = 0.1 * i + 0.05,
+                              .at = 0.1 * i + 0.02,
+                              .worst = 5.0 + i,
+                              .limit = 4.7,
+                              .unit = "rad/s",
+                              .where = made.model.dofs()[i % 2].name,
+                              .hint = "turn it more slowly"});
+  check.findings.push_back({.kind = FindingKind::table_step,
+                            .severity = Severity::warning,
+                            .begin = 0.1,
+                            .end = 0.2,
+                            .at = 0.15,
+                            .worst = 12345.6,
+                            .limit = 57,
+                            .unit = "counts",
+                            .where = made.model.dofs()[0].name,
+                            .hint = "",
+                            .cause = 0});
+  made.input.results.check = check;
+  const std::string html = make_report(made.model, made.input).html;
+  const size_t from = html.find("id=\"findings\"");
+  ASSERT_NE(from, std::string::npos);
+  const std::string found = html.substr(from, html.find("Figures of the check", from) - from);
+  size_t entries = 0;
+  for (size_t at = 0; (at = found.find("<li>", at)) != std::string::npos; ++at) ++entries;
+  EXPECT_LE(entries, 2u) << found;
+  EXPECT_NE(found.find("consequences: table_step"), std::string::npos) << found;
+  EXPECT_NE(found.find(": 12300 counts, limit 57 counts"), std::string::npos) << found;
 }
 
 // In an earlier version, "0 % of the limit" was written for robots that state no limit.
@@ -130,8 +167,8 @@ TEST(Report, HasOneUnitPerQuantity) {
   ReportOptions plain;
   plain.replay = false;
   const std::string html = make_report(made.model, made.input, plain).html;
-  for (const char* words : {">-12.3 mm<", ">2 mm<", ">70.7 deg<", ">57.3 deg<", ">1.23<", ">11.5<",
-                            "COG x [mm]", "x [mm]"})
+  for (const char* words : {": -12.3 mm, limit 2 mm<", ": 70.7 deg, limit 57.3 deg<", ">1.23<",
+                            ">11.5<", "COG x [mm]", "x [mm]"})
     EXPECT_NE(html.find(words), std::string::npos) << words;
   std::string read = html;  // the text without scripts, in which the same letters may occur
   for (size_t at = 0; (at = read.find("<script", at)) != std::string::npos;)

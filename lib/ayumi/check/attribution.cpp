@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <variant>
 
 #include "ayumi/check/counterfactuals.hpp"
 #include "ayumi/check/influence_interval.hpp"
@@ -582,6 +584,15 @@ void mark_consequences(JudgedMotion& motion, std::vector<FindingWindow>& windows
     if (w.cause >= 0) w.worst.severity = Severity::warning;
 }
 
+// The joint at which a finding occurs, if it occurs at a joint.
+static std::optional<int> joint_of(const JudgedMotion& motion, const Violation& v) {
+  const auto place = spec_of(v.kind).place;
+  if (!place) return std::nullopt;
+  const Place at = place(motion, v);
+  const auto* joint = std::get_if<JointPlace>(&at);
+  return joint ? std::optional(joint->dof) : std::nullopt;
+}
+
 void add_table_findings(JudgedMotion& motion, std::vector<FindingWindow>& windows) {
   const attribution::Scene scene = {motion, windows};
   std::vector<std::pair<int, Interval>> reached;
@@ -595,8 +606,14 @@ void add_table_findings(JudgedMotion& motion, std::vector<FindingWindow>& window
   std::vector<FindingWindow> found = motion.table.finish();
   for (FindingWindow& w : found) {
     if (w.worst.severity != Severity::error) continue;
-    const auto cause = std::find_if(reached.begin(), reached.end(),
-                                    [&](const auto& r) { return r.second.touches(w); });
+    // An error of the same joint is a better explanation than an earlier one of another joint.
+    const std::optional<int> joint = joint_of(motion, w.worst);
+    const auto touches = [&](const auto& r) { return r.second.touches(w); };
+    const auto same_joint = [&](const auto& r) {
+      return joint && touches(r) && joint_of(motion, scene.of(r.first)) == joint;
+    };
+    auto cause = std::find_if(reached.begin(), reached.end(), same_joint);
+    if (cause == reached.end()) cause = std::find_if(reached.begin(), reached.end(), touches);
     if (cause == reached.end()) continue;
     w.cause = cause->first;
     w.worst.severity = Severity::warning;

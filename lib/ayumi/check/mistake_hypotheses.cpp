@@ -83,6 +83,21 @@ constexpr double kNotedSink = 0.1;
 // Number of points of a segment at which its lowest value is searched. Chosen: between two points,
 // the value is lower by less than 1e-3 of the stoop.
 constexpr int kSinkPoints = 100;
+// A COG is only tried lower at the ends of a flight if a leg is longer there than this share of its
+// straight length. Chosen: at 0.85, the knee is bent by 64 deg and turns by 0.9 deg for each
+// millimetre of a leg of 0.25 m; at 0.95, it turns by 1.5 deg.
+constexpr double kStraightTakeOff = 0.85;
+// Shares of the length of a leg by which the COG is tried lower at the ends of a flight. Chosen:
+// 5 to 20 mm for a leg of 0.25 m.
+constexpr std::array kLowerTakeOffs = {0.02, 0.04, 0.06, 0.08};
+// A motion begins and ends at rest, with the COG above the ZMP. If the ZMP moves less than this
+// time after the beginning or before the end, the COG has too little time for it. The time
+// constant of the COG is sqrt(z/g), which is 0.16 s for HOAP-1. Derived: what is left of a movement
+// after four time constants is 2 %.
+constexpr double kShortRest = 4;
+// Times of rest that are tried, in time constants of the COG. Chosen: up to the time in which the
+// COG comes to rest, and half as much again.
+constexpr std::array kRests = {2.0, 3.0, 4.0, 6.0};
 // Number of bisection steps in the search for a time. Chosen: an interval of a second becomes a
 // microsecond, and times are written in milliseconds.
 constexpr int kHalvings = 20;
@@ -141,6 +156,7 @@ class Hypotheses::Maker {
     double_supports(made);
     leg_keys(made);
     interpolations(made);
+    rests(made);
     level_feet(made);
     stoops(made);
     return made;
@@ -166,6 +182,7 @@ class Hypotheses::Maker {
     interpolations(made);
     level_cog(made);
     held_cog(made);
+    rests(made);
     return made;
   }
 
@@ -189,6 +206,7 @@ class Hypotheses::Maker {
     std::vector<Hypothesis> made;
     cog_height(made);
     if (pattern_.table || pattern_.correction) return made;
+    lower_take_offs(made);
     shorter_flights(made);
     // For slight errors, shorter times are also tried, because the COG sways less if the steps are
     // quicker.
@@ -319,6 +337,14 @@ class Hypotheses::Maker {
                          [&](const Keyframe& other) { return other.pointer == pointer; }) > 1;
   }
 
+  // The same for a phase.
+  bool is_repeated_phase(size_t phase) const {
+    const std::string& pointer = pattern_.phases[phase].pointer;
+    return !pointer.empty() &&
+           std::count_if(pattern_.phases.begin(), pattern_.phases.end(),
+                         [&](const Phase& other) { return other.pointer == pointer; }) > 1;
+  }
+
   // Whether a time is within a flight; the ends of a flight do not belong to it.
   bool flies(double t) const {
     double from = 0;
@@ -398,32 +424,46 @@ class Hypotheses::Maker {
     return possible;
   }
 
+  // The keys that state the height of the COG.
+  std::vector<size_t> height_keys() const {
+    std::vector<size_t> keys;
+    for (size_t i = 0; i < pattern_.keyframes.size(); ++i)
+      if (pattern_.keyframes[i].cog_height) keys.push_back(i);
+    return keys;
+  }
+
+  // The number, among these keys, of the key at the beginning of a flight, if the next one of them
+  // is at its end.
+  std::optional<size_t> key_of_lift_off(const std::vector<size_t>& keys, size_t phase) const {
+    const Phase& flight = pattern_.phases[phase];
+    if (flight.support != Support::none || flight.viip) return std::nullopt;
+    const auto is_at = [&](size_t key, double t) {
+      return std::abs(pattern_.keyframes[key].t - t) < kSameTime * std::max(t, 1.0);
+    };
+    for (size_t k = 0; k + 1 < keys.size(); ++k)
+      if (is_at(keys[k], begin_of(phase)))
+        return is_at(keys[k + 1], flight.until) ? std::optional(k) : std::nullopt;
+    return std::nullopt;
+  }
+
   // If the time between the lowest key and the lift-off, or between the landing and the lowest key,
   // is too long, the COG sinks below that key, because its speed at the ground is that of the
   // flight.
   void stoops(std::vector<Hypothesis>& made) const {
-    std::vector<size_t> keys;  // the keys of the COG height
-    for (size_t i = 0; i < pattern_.keyframes.size(); ++i)
-      if (pattern_.keyframes[i].cog_height) keys.push_back(i);
-    const auto key_at = [&](double t) {
-      return std::find_if(keys.begin(), keys.end(), [&](size_t k) {
-        return std::abs(pattern_.keyframes[k].t - t) < kSameTime * std::max(t, 1.0);
-      });
-    };
+    const std::vector<size_t> keys = height_keys();
     for (size_t i = 1; i < pattern_.phases.size(); ++i) {
-      const Phase& phase = pattern_.phases[i];
-      if (phase.support != Support::none || phase.viip) continue;
-      const auto off = key_at(begin_of(i)), on = key_at(phase.until);
-      if (off == keys.end() || on == keys.end() || on != off + 1) continue;
-      const double flight = phase.until - begin_of(i);
-      const Keyframe &leaves = pattern_.keyframes[*off], &lands = pattern_.keyframes[*on];
+      const std::optional<size_t> off = key_of_lift_off(keys, i);
+      if (!off) continue;
+      const double flight = pattern_.phases[i].until - begin_of(i);
+      const Keyframe &leaves = pattern_.keyframes[keys[*off]],
+                     &lands = pattern_.keyframes[keys[*off + 1]];
       const double mean = (*lands.cog_height - *leaves.cog_height) / flight;
       // For each end of the flight: the neighbouring key outside the flight, the key at this end,
       // and the mean vertical speed of the flight, where time runs away from the first of these
       // keys.
       std::vector<std::tuple<size_t, const Keyframe*, double>> sides;
-      if (off != keys.begin()) sides.emplace_back(*(off - 1), &leaves, mean);
-      if (on + 1 != keys.end()) sides.emplace_back(*(on + 1), &lands, -mean);
+      if (*off > 0) sides.emplace_back(keys[*off - 1], &leaves, mean);
+      if (*off + 2 < keys.size()) sides.emplace_back(keys[*off + 2], &lands, -mean);
       for (const auto& [k, end, drift] : sides) {
         const Keyframe& low = pattern_.keyframes[k];
         const double rise = *end->cog_height - *low.cog_height;
@@ -456,6 +496,8 @@ class Hypotheses::Maker {
     for (size_t i = 0; i < pattern_.phases.size(); ++i)
       if (i != phase &&
           is_single(pattern_.phases[i].support) == is_single(pattern_.phases[phase].support) &&
+          (pattern_.phases[i].support == Support::none) ==
+              (pattern_.phases[phase].support == Support::none) &&
           pattern_.phases[i].swing.has_value() == pattern_.phases[phase].swing.has_value())
         like.push_back(pattern_.phases[i].until - begin_of(i));
     if (like.size() < 2) return std::nullopt;
@@ -1509,6 +1551,123 @@ class Hypotheses::Maker {
                       [key_of = key_of](Pattern& p) {
                         for (Keyframe& key : p.keyframes) (key.*key_of).reset();
                       }});
+    }
+  }
+
+  // The nearer a leg is to straight, the quicker its knee turns at the same speed of the COG. Tries
+  // a lower COG at both ends of every flight whose take-off or landing is with rather straight
+  // legs.
+  void lower_take_offs(std::vector<Hypothesis>& made) const {
+    if (!model_.has_soles()) return;
+    const std::vector<size_t> keys = height_keys();
+    std::vector<size_t> lower;  // keys at ends of flights
+    std::optional<size_t> first;
+    for (size_t i = 1; i < pattern_.phases.size(); ++i) {
+      const std::optional<size_t> off = key_of_lift_off(keys, i);
+      if (!off || !reaches(i - 1)) continue;
+      const double highest = std::max(*pattern_.keyframes[keys[*off]].cog_height,
+                                      *pattern_.keyframes[keys[*off + 1]].cog_height);
+      if (leg_reach(highest) < kStraightTakeOff) continue;
+      if (!first) first = *off;
+      lower.insert(lower.end(), {keys[*off], keys[*off + 1]});
+    }
+    if (!first) return;
+    const size_t k = keys[*first];
+    const double leaves = *pattern_.keyframes[k].cog_height,
+                 lands = *pattern_.keyframes[keys[*first + 1]].cog_height;
+    const double bend =
+        2 * elementary::acos(std::min(1.0, leg_reach(leaves))) * 180 / std::numbers::pi;
+    for (const double share : kLowerTakeOffs) {
+      const double by = std::round(1e3 * share * leg_length(model_)) / 1e3;
+      made.push_back(
+          {Rank::pace,
+           {key_place(k),
+            "the COG height is " + text::brief(leaves) +
+                " m at the lift-off, where the knees are "
+                "bent by only about " +
+                text::fixed(bend, 0) + " deg; the straighter a leg is, the quicker its knee turns",
+            "with " + text::brief(leaves - by) + " m at the lift-off and " +
+                text::brief(lands - by) + " m at the landing" +
+                (lower.size() > 2 ? ", and as much lower at the ends of the other flights," : "")},
+           [lower, by](Pattern& p) {
+             for (const size_t key : lower) *p.keyframes[key].cog_height -= by;
+           }});
+      made.back().only_if_enough = true;
+    }
+  }
+
+  // Distance between hip and sole in the home posture, with the COG at this height, as a share of
+  // the straight leg.
+  double leg_reach(double cog_height) const {
+    RobotData data(model_);
+    update_positions(model_, model_.rest_state(), data);
+    const Eigen::Vector3d hip =
+        data.pose(model_.dofs()[model_.leg(Side::left).front()].body).translation();
+    const double reach = (sole_pose(model_, data, Side::left).translation() - hip).norm();
+    return (reach + cog_height - default_cog_height(model_, {})) / leg_length(model_);
+  }
+
+  // If the ZMP still moves shortly before the end of the motion, or moves at once at its beginning,
+  // the COG cannot be at rest above it there. Tries a motion that rests longer.
+  void rests(std::vector<Hypothesis>& made) const {
+    std::vector<size_t> keys;
+    for (size_t i = 0; i < pattern_.keyframes.size(); ++i)
+      if (pattern_.keyframes[i].zmp) keys.push_back(i);
+    const auto moves = [&](size_t k) {  // the ZMP moves between key k - 1 and key k
+      const ZmpKey &from = *pattern_.keyframes[keys[k - 1]].zmp,
+                   &to = *pattern_.keyframes[keys[k]].zmp;
+      return from.place != to.place ||
+             (from.place == ZmpKey::Place::point && (from.point - to.point).norm() > kNoLength);
+    };
+    if (pattern_.phases.empty() || !model_.has_soles()) return;
+    const double constant = std::sqrt(default_cog_height(model_, pattern_) / kGravity);
+    const double end = pattern_.duration();
+    const auto rest = [&](double share) { return std::ceil(10 * share * constant) / 10; };
+    for (size_t k = keys.size(); k-- > 1;) {
+      if (!moves(k)) continue;
+      const double from = pattern_.keyframes[keys[k - 1]].t, until = pattern_.keyframes[keys[k]].t;
+      if (end - until > kShortRest * constant || !found_.touches(from - 2 * constant, end)) break;
+      const bool longer = pattern_.phases.back().support == Support::both &&
+                          !is_repeated_phase(pattern_.phases.size() - 1);
+      for (const double share : kRests)
+        made.push_back({Rank::missing,
+                        {key_place(keys[k]),
+                         "the ZMP moves to its last place until " + seconds(until) +
+                             ", and the motion ends at " + seconds(end) +
+                             ", so the COG has too little time to come to rest above the ZMP",
+                         longer ? "with a last phase that is " + seconds(rest(share)) + " longer"
+                                : "with one more phase at the end, of " + seconds(rest(share)) +
+                                      " with support \"both\""},
+                        [longer, more = rest(share)](Pattern& p) {
+                          const double until = p.duration() + more;
+                          if (longer) {
+                            p.phases.back().until = until;
+                            return;
+                          }
+                          Phase both;
+                          both.until = until;
+                          p.phases.push_back(both);
+                        },
+                        share});
+      break;
+    }
+    for (size_t k = 1; k < keys.size(); ++k) {
+      if (!moves(k)) continue;
+      const double from = pattern_.keyframes[keys[k - 1]].t, until = pattern_.keyframes[keys[k]].t;
+      if (from > kShortRest * constant || !found_.touches(0, until + 2 * constant)) break;
+      for (const double share : kRests)
+        made.push_back({Rank::missing,
+                        {key_place(keys[k]),
+                         "the ZMP leaves its first place at " + seconds(from) +
+                             ", so the COG has too little time to begin its movement from rest",
+                         "with all times " + seconds(rest(share)) + " later"},
+                        [more = rest(share)](Pattern& p) {
+                          for (Phase& phase : p.phases) phase.until += more;
+                          for (Keyframe& key : p.keyframes) key.t += more;
+                          for (Disturbance& disturbance : p.scenario) disturbance.at += more;
+                        },
+                        share});
+      break;
     }
   }
 

@@ -25,7 +25,8 @@ struct Hypothesis {
   Mend mend;
   /// Change of the value, as a share of it; the smallest of several is named first.
   double change = 0;
-  double size = 0;  ///< size of this change, as a share of the value's unit
+  double size = 0;              ///< size of this change, as a share of the value's unit
+  bool only_if_enough = false;  ///< whether it is left out if errors remain after this change
 };
 
 class Hypotheses {

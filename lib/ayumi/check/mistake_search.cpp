@@ -148,7 +148,8 @@ class Search {
     for (const Hypothesis& h : hypotheses) mends.push_back(h.mend);
     const std::vector<TrialOutcome> outcomes = trials_.after(pattern_, mends);
     for (size_t i = 0; i < hypotheses.size(); ++i)
-      tried_.push_back({std::move(hypotheses[i]), outcomes[i]});
+      if (outcomes[i].good() || !hypotheses[i].only_if_enough)
+        tried_.push_back({std::move(hypotheses[i]), outcomes[i]});
   }
 
   // Values without which the errors vanish, with the probably intended value and the range of
@@ -280,7 +281,9 @@ class Search {
     const std::string up_to =
         (number.value > number.neutral ? "up to " : "down to ") + value.text(pattern_, limit);
     const std::string written = value.words + " is " + value.text(pattern_, number.value);
-    if (std::abs(number.value - limit) < kLeastMistake * value.unit(model_)) return;
+    // A change this small is only named if it is enough: then the author need not change more.
+    if (std::abs(number.value - limit) < kLeastMistake * value.unit(model_) && !at_limit.good())
+      return;
     const double from = number.neutral + least * (number.value - number.neutral);
     const std::string range =
         (least > 0 ? "from " + value.text(pattern_, from) + " to " + value.text(pattern_, limit)

@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <variant>
 #include <vector>
 
+#include "ayumi/base/counted.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/base/version.hpp"
 #include "ayumi/check/consistency.hpp"
+#include "ayumi/check/finding_groups.hpp"
 #include "ayumi/plot/compare_plot.hpp"
 #include "ayumi/plot/push_map.hpp"
 #include "ayumi/render/log_reading.hpp"
@@ -16,9 +19,11 @@
 namespace ayumi::html {
 namespace {
 
-/// A number with three significant digits, or as a whole number if it is larger.
+/// A number with three significant digits; no exponent for large numbers.
 std::string three_digits(double value) {
-  return std::abs(value) >= 999.5 ? text::fixed(value, 0) : text::brief(value, 3);
+  if (std::abs(value) < 999.5) return text::brief(value, 3);
+  const double last = std::pow(10, std::floor(std::log10(std::abs(value))) - 2);
+  return text::fixed(std::round(value / last) * last, 0);
 }
 
 std::string degrees(double radians) { return three_digits(radians * 180 / M_PI); }
@@ -139,20 +144,49 @@ std::string figure(double value, const std::string& unit, bool in_degrees = true
   return three_digits(value) + (unit == "1" ? "" : " " + escaped(unit));
 }
 
-Table finding_table(const ConsistencyReport& check) {
-  Table table = {"Findings of the check",
-                 {"kind", "severity", "where", "when [s]", "worst", "limit", "what to do"},
-                 {}};
-  for (const Finding& f : check.findings)
-    table.rows.push_back(
-        {escaped(name_of(f.kind)),
-         f.severity == Severity::error ? marked(Tone::bad, ayumi::name_of(f.severity))
-                                       : ayumi::name_of(f.severity),
-         escaped(place_words(f.where)),
-         time_link(f.at) + " (" + text::fixed(f.begin, 2) + " to " + text::fixed(f.end, 2) + ")",
-         figure(f.worst, f.unit, f.in_degrees), figure(f.limit, f.unit, f.in_degrees),
-         escaped(f.hint)});
-  return table;
+std::string amount_of(const Finding& f) {
+  return figure(f.worst, f.unit, f.in_degrees) + ", limit " + figure(f.limit, f.unit, f.in_degrees);
+}
+
+std::string consequences_of(const ConsistencyReport& check, const FindingGroup& group) {
+  std::vector<std::string> parts;
+  for (const GroupConsequence& c : group.consequences) {
+    const Finding& f = check.findings[c.worst];
+    parts.push_back(escaped(name_of(f.kind)) + " (" +
+                    (c.count > 1 ? text::counted(c.count, "time") + ", worst " : "") +
+                    escaped(place_words(f.where)) + " at " + time_link(f.at) +
+                    " s: " + amount_of(f) + ")");
+  }
+  return parts.empty() ? "" : "<br>consequences: " + text::join(parts, ", ");
+}
+
+// The findings as a list with one entry for each cause.
+std::string finding_list(const RobotModel& model, ConsistencyReport check) {
+  // Findings that were read from a file have only the names of their joints.
+  for (Finding& f : check.findings)
+    if (const int dof = model.find_dof(f.where);
+        dof >= 0 && std::holds_alternative<std::monostate>(f.place))
+      f.place = JointPlace{dof};
+  std::string out = "<ul>\n";
+  for (const FindingGroup& group : finding_groups(check, model)) {
+    const Finding& worst = check.findings[group.worst];
+    double begin = worst.begin, end = worst.end;
+    for (const int i : group.members) {
+      begin = std::min(begin, check.findings[i].begin);
+      end = std::max(end, check.findings[i].end);
+    }
+    const std::string severity = ayumi::name_of(worst.severity);
+    const size_t times = group.members.size();
+    out += "<li>" + (worst.severity == Severity::error ? marked(Tone::bad, severity) : severity) +
+           " <strong>" + escaped(name_of(worst.kind)) +
+           "</strong>: " + escaped(text::join(group.places, ", ")) +
+           (times > 1 ? ", " + text::counted(times, "time") + " within " : ", ") +
+           text::fixed(begin, 2) + " to " + text::fixed(end, 2) + " s, worst " +
+           (group.places.size() > 1 ? escaped(place_words(worst.where)) + " " : "") + "at " +
+           time_link(worst.at) + " s: " + amount_of(worst) + "<br>" + escaped(worst.hint) +
+           consequences_of(check, group) + "</li>\n";
+  }
+  return out + "</ul>\n";
 }
 
 Table summary_table(const RobotModel& model, const CheckSummary& summary) {
@@ -254,7 +288,7 @@ std::string findings_section(const RobotModel& model, const ReportInput& input) 
   const ConsistencyReport& check = *input.results.check;
   std::string out = "<p>Judged against the actuators " + escaped(check.profile) + ".</p>\n";
   out +=
-      check.findings.empty() ? "<p>The check has no findings.</p>\n" : table(finding_table(check));
+      check.findings.empty() ? "<p>The check has no findings.</p>\n" : finding_list(model, check);
   return section("findings", "Findings", out + table(summary_table(model, check.summary)));
 }
 

@@ -21,18 +21,19 @@ OrderedJson figure(double value, bool exists = true) {
 }
 
 OrderedJson json_of(const Finding& f) {
-  return {{"kind", name_of(f.kind)},
-          {"severity", name_of(f.severity)},
-          {"begin_s", f.begin},
-          {"end_s", f.end},
-          {"at_s", f.at},
-          {"worst", figure(f.worst)},
-          {"limit", figure(f.limit)},
-          {"unit", f.unit},
-          {"where", f.where},
-          {"hint", f.hint},
-          {"follows_from",
-           f.follows_from.empty() ? OrderedJson(nullptr) : OrderedJson(f.follows_from)}};
+  return {
+      {"kind", name_of(f.kind)},
+      {"severity", name_of(f.severity)},
+      {"begin_s", f.begin},
+      {"end_s", f.end},
+      {"at_s", f.at},
+      {"worst", figure(f.worst)},
+      {"limit", figure(f.limit)},
+      {"unit", f.unit},
+      {"where", f.where},
+      {"hint", f.hint},
+      {"follows_from", f.follows_from.empty() ? OrderedJson(nullptr) : OrderedJson(f.follows_from)},
+      {"cause", f.cause < 0 ? OrderedJson(nullptr) : OrderedJson(f.cause)}};
 }
 
 OrderedJson json_of(const CheckSummary& summary) {

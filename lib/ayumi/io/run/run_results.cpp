@@ -37,6 +37,24 @@ Finding finding_of(const JsonNode& node) {
   return f;
 }
 
+// A run of an older version does not number the causes. A finding cannot be its own consequence,
+// not even through others.
+void read_causes(const std::vector<JsonNode>& nodes, std::vector<Finding>& findings) {
+  const int count = static_cast<int>(findings.size());
+  for (int i = 0; i < count; ++i)
+    if (const auto node = nodes[i].find("cause"); node && !node->value().is_null()) {
+      findings[i].cause = node->integer();
+      if (findings[i].cause < 0 || findings[i].cause >= count)
+        node->complain("a cause is the number of a finding, from 0 to " +
+                       std::to_string(count - 1));
+    }
+  for (int i = 0; i < count; ++i) {
+    int root = i;
+    for (int steps = 0; steps < count && root >= 0; ++steps) root = findings[root].cause;
+    if (root >= 0) nodes[i].complain("this finding is a consequence of itself");
+  }
+}
+
 // A run of an older version may lack figures that later versions have added.
 CheckSummary summary_of(const JsonNode& node) {
   CheckSummary summary;
@@ -63,8 +81,9 @@ ConsistencyReport check_of(const JsonNode& node) {
   report.consistent =
       node.at("verdict").one_of({verdict_of(false), verdict_of(true)}) == verdict_of(true);
   report.profile = node.at("profile").string();
-  for (const JsonNode& finding : node.at("findings").items())
-    report.findings.push_back(finding_of(finding));
+  const std::vector<JsonNode> findings = node.at("findings").items();
+  for (const JsonNode& finding : findings) report.findings.push_back(finding_of(finding));
+  read_causes(findings, report.findings);
   report.summary = summary_of(node.at("summary"));
   report.summary_at = places_of(node);
   return report;
