@@ -68,11 +68,12 @@ inline std::string room_of(const std::string& path) {
   return rooms().contains(two) ? two : path.substr(0, first);
 }
 
-/// Headers with results and options, in the rooms that compute.
+/// Headers with results and options, in the rooms that compute. finding_groups.hpp puts findings
+/// together for people, in the answer of check, on the live page and in a report.
 inline const std::set<std::string>& data_headers() {
-  static const std::set<std::string> headers = {"check/consistency.hpp", "limits/table_safety.hpp",
-                                                "repair/repair.hpp", "sim/simulate.hpp",
-                                                "sim/simulation_log.hpp"};
+  static const std::set<std::string> headers = {
+      "check/consistency.hpp", "check/finding_groups.hpp", "limits/table_safety.hpp",
+      "repair/repair.hpp",     "sim/simulate.hpp",         "sim/simulation_log.hpp"};
   return headers;
 }
 
