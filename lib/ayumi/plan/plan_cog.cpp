@@ -79,7 +79,7 @@ constexpr double kLook = 5e-4;
 Eigen::Vector2d lean_height(const SampleJob& job, const CogPlan& plan) {
   Eigen::Vector2d height = Eigen::Vector2d::Zero();
   if (!job.ik.lacks_joints()) return height;
-  RobotData data(job.model);
+  RobotData data = job.data;
   const auto posture_at = [&](const Vector3d& cog) {
     CommandSample sample;
     sample.state = job.model.rest_state();
@@ -190,7 +190,7 @@ void CogSolver::turn_trunk() {
 void CogSolver::solve_first() {
   samples.resize(grid.n + 1);
   trunk.resize(grid.n + 1);
-  RobotData data(job.model);
+  RobotData data = job.data;
   Extrapolation postures;
   for (int k = 0; k <= grid.n; ++k) {
     const double t = grid.t(k);
@@ -211,7 +211,7 @@ void CogSolver::solve_first() {
 // The postures of the samples first, ..., end - 1 in a later pass. They are computed from the
 // postures of the last pass and from the changes of the previous samples.
 void CogSolver::solve_again(int first, int end) {
-  RobotData data(job.model);
+  RobotData data = job.data;
   Extrapolation changes;
   VectorXd guess;
   for (int k = first; k < end; ++k) {
@@ -234,7 +234,7 @@ void CogSolver::solve_again(int first, int end) {
 double CogSolver::measure(int first, int end) {
   fill_rates(samples, first, end, grid.h, true);
   for (int k = first; k < end; ++k) samples[k].zmp = plan.zmp_at(grid.t(k));
-  TreeDynamics dynamics(job.model);
+  TreeDynamics dynamics = job.dynamics;
   std::vector<GroundReaction> reactions;
   full_model_reactions(job.model, std::span(samples).subspan(first, end - first), dynamics,
                        reactions);
