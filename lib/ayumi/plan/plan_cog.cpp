@@ -142,6 +142,7 @@ struct CogSolver {
   CogPlan& plan;
   Grid grid;
   std::array<VectorXd, 2> w2;  // omega^2 by axis; 0 in flight
+  std::array<RestToRestSolver, 2> pendulum;
   std::array<VectorXd, 3> cog;
   std::vector<CommandSample> samples = {};  // values of the last pass
   std::vector<Eigen::Matrix3d> trunk = {};  // attitude of the trunk as the pattern states it
@@ -167,7 +168,7 @@ void CogSolver::read_tracks() {
 }
 
 void CogSolver::add_solution(int axis, const VectorXd& z) {
-  const RestToRest motion = rest_to_rest_cog(z, w2[axis], grid.h);
+  const RestToRest motion = pendulum[axis].solve(z);
   cog[axis] += motion.x;
   plan.bump[0][axis] += motion.begin;
   plan.bump[1][axis] += motion.end;
@@ -307,9 +308,13 @@ Vector3d CogPlan::cog_at(double t) const {
 
 Vector3d CogPlan::zmp_at(double t) const {
   Vector3d z(zmp[0].at(t).value, zmp[1].at(t).value, zmp[2].at(t).value);
-  for (int axis = 0; axis < 2; ++axis)
-    z[axis] += rest_bump(omega[0][axis], t, duration) * bump[0][axis] +
-               rest_bump(omega[1][axis], duration - t, duration) * bump[1][axis];
+  double begin = 0, end = 0;
+  for (int axis = 0; axis < 2; ++axis) {
+    if (axis == 0 || omega[0][axis] != omega[0][0]) begin = rest_bump(omega[0][axis], t, duration);
+    if (axis == 0 || omega[1][axis] != omega[1][0])
+      end = rest_bump(omega[1][axis], duration - t, duration);
+    z[axis] += begin * bump[0][axis] + end * bump[1][axis];
+  }
   return z;
 }
 
@@ -339,7 +344,12 @@ CogPlan plan_cog(const SampleJob& job) {
       job.pattern.full_model ? lean_height(job, plan) : Eigen::Vector2d::Zero();
   const VectorXd first = omega_squared_of(job, plan, grid, more[0]);
   const VectorXd second = more[1] == more[0] ? first : omega_squared_of(job, plan, grid, more[1]);
-  CogSolver solver{job, plan, grid, {first, second}, {}};
+  CogSolver solver{job,
+                   plan,
+                   grid,
+                   {first, second},
+                   {RestToRestSolver(first, grid.h), RestToRestSolver(second, grid.h)},
+                   {}};
   for (int axis = 0; axis < 2; ++axis) {
     plan.omega[0][axis] = std::sqrt(solver.w2[axis][0]);
     plan.omega[1][axis] = std::sqrt(solver.w2[axis][grid.n]);
