@@ -23,10 +23,10 @@ namespace {
 
 // Number of samples that one thread evaluates in a row. Chosen: they take a fraction of a
 // millisecond, and a walk of some seconds occupies all cores.
-constexpr int kBlock = 256;
-// Number of blocks that are evaluated before their samples are judged. Chosen: 16 s at 1 kHz, whose
-// demands take about 8 MB.
-constexpr int kBlocksAtOnce = 64;
+constexpr int kBlockSamples = 256;
+// Number of blocks that are evaluated before their samples are judged. Chosen: 4 s at 1 kHz, whose
+// demands take about 2 MB. The next blocks use the same memory.
+constexpr int kBlocksAtOnce = 16;
 
 // The demands of a block of samples.
 struct EvaluatedBlock {
@@ -43,38 +43,42 @@ JudgedSample judged_sample(const JudgedMotion& motion, const EvaluatedBlock& blo
 }
 
 // Inverse dynamics of a block. Other blocks may be evaluated at the same time.
-EvaluatedBlock evaluated(JudgedMotion& motion, int first, const SampleObserver& observe) {
-  EvaluatedBlock block;
+void evaluate(JudgedMotion& motion, int first, const SampleObserver& observe,
+              EvaluatedBlock& block) {
+  const int end = std::min(first + kBlockSamples, motion.count());
   block.first = first;
-  const int end = std::min(first + kBlock, motion.count());
-  block.demands.reserve(static_cast<size_t>(end - first));
-  block.plane_of.reserve(static_cast<size_t>(end - first));
+  block.demands.resize(static_cast<size_t>(end - first));
+  block.plane_of.clear();
+  block.known.clear();
+  block.planes.clear();
   MotionDynamics dynamics = motion.dynamics;
   const auto contacts = [&](int k) {
     return std::pair(motion.plan.index[0][k], motion.plan.index[1][k]);
   };
   for (int k = first; k < end; ++k) {
-    block.demands.push_back(dynamics.at(k));
+    const auto i = static_cast<size_t>(k - first);
+    block.demands[i] = dynamics.at(k);
     motion.cog[k] = dynamics.data().cog;
     if (k == first || contacts(k) != contacts(k - 1)) block.planes.push_back(dynamics.plane());
     block.plane_of.push_back(&block.planes.back());
     block.known.push_back(!motion.at_flight_edge(k));
-    const JudgedSample sample = judged_sample(motion, block, block.demands.size() - 1);
+    const JudgedSample sample = judged_sample(motion, block, i);
     for (const Limit* limit : limits())
       if (limit->note_sample) limit->note_sample(motion, sample, dynamics.data());
     if (observe) observe(sample, dynamics.data());
   }
-  return block;
 }
 
 // Samples are evaluated on all threads, and then judged in order of time.
 void judge_samples(JudgedMotion& motion, int threads, const SampleObserver& observe) {
-  for (int begin = 0; begin < motion.count(); begin += kBlocksAtOnce * kBlock) {
-    const int count = std::min(kBlocksAtOnce, (motion.count() - begin + kBlock - 1) / kBlock);
-    std::vector<EvaluatedBlock> blocks(static_cast<size_t>(count));
+  std::vector<EvaluatedBlock> blocks;
+  for (int begin = 0; begin < motion.count(); begin += kBlocksAtOnce * kBlockSamples) {
+    const int count =
+        std::min(kBlocksAtOnce, (motion.count() - begin + kBlockSamples - 1) / kBlockSamples);
+    blocks.resize(static_cast<size_t>(count));
     std::atomic<bool> stop = false;
     in_parallel(blocks.size(), threads, stop, [&](size_t i) {
-      blocks[i] = evaluated(motion, begin + static_cast<int>(i) * kBlock, observe);
+      evaluate(motion, begin + static_cast<int>(i) * kBlockSamples, observe, blocks[i]);
     });
     for (const EvaluatedBlock& block : blocks)
       for (size_t i = 0; i < block.demands.size(); ++i) {
