@@ -345,37 +345,43 @@ std::vector<std::string> postures_of(const AuthorMotion& motion) {
   return names;
 }
 
-void describe(AuthorMotion& motion, const StabilitySeries& stability) {
+// What the page shows of the motion, except for its verdict.
+OrderedJson parts_without_verdict(const AuthorMotion& motion, const ShownRobot& robot) {
   const Task& task = motion.task;
-  OrderedJson findings = OrderedJson::array();
-  for (const Finding& f : motion.judgement.report.findings)
-    findings.push_back(finding_json(task.robot, f));
   OrderedJson profiles = OrderedJson::array();
   for (const ActuatorProfile& profile : task.robot.description().profiles)
     profiles.push_back(profile.name);
   OrderedJson own = OrderedJson::array();
   if (motion.document.contains("postures"))
     for (const auto& [name, joints] : motion.document["postures"].items()) own.push_back(name);
-  motion.parts = author_structure(task.pattern, motion.document);
-  motion.parts.update(OrderedJson{
-      {"robot", task.robot.name()},
-      {"profile", task.profile},
-      {"profiles", profiles},
-      {"duration", task.series.duration()},
-      {"dt", task.series.dt},
-      {"angle_unit", task.pattern.degrees ? "deg" : "rad"},
-      {"consistent", motion.judgement.good()},
-      {"reason", motion.judgement.reason()},
-      {"findings", findings},
-      {"groups", groups_json(task.robot, motion.judgement.report)},
-      {"joints", joints_json(task.robot)},
-      {"links", links_of(task.robot)},
-      {"handles", handles_json(task.robot)},
-      {"targets", targets_json(motion)},
-      {"postures", postures_of(motion)},
-      {"own_postures", own},
-      {"strips", {{"plan", {{"lanes", strip_json(task, stability)}, {"dt", stability.dt}}}}},
-      {"replay", OrderedJson::parse(live_config(task.robot, motion.plan, kPageRate))}});
+  OrderedJson parts = author_structure(task.pattern, motion.document);
+  parts.update(OrderedJson{{"robot", task.robot.name()},
+                           {"profile", task.profile},
+                           {"profiles", profiles},
+                           {"duration", task.series.duration()},
+                           {"dt", task.series.dt},
+                           {"angle_unit", task.pattern.degrees ? "deg" : "rad"},
+                           {"joints", joints_json(task.robot)},
+                           {"links", links_of(task.robot)},
+                           {"handles", handles_json(task.robot)},
+                           {"targets", targets_json(motion)},
+                           {"postures", postures_of(motion)},
+                           {"own_postures", own},
+                           {"replay", OrderedJson::parse(live_config(task.robot, robot.surface,
+                                                                     motion.plan, kPageRate))}});
+  return parts;
+}
+
+void add_verdict(AuthorMotion& motion, const StabilitySeries& stability) {
+  const RobotModel& robot = motion.task.robot;
+  OrderedJson findings = OrderedJson::array();
+  for (const Finding& f : motion.judgement.report.findings)
+    findings.push_back(finding_json(robot, f));
+  motion.parts.update(OrderedJson{{"consistent", motion.judgement.good()},
+                                  {"reason", motion.judgement.reason()},
+                                  {"findings", findings},
+                                  {"groups", groups_json(robot, motion.judgement.report)},
+                                  {"strips", {{"plan", author_strip(motion.task, stability)}}}});
 }
 
 }  // namespace
@@ -400,28 +406,34 @@ std::string without_file(const Error& error, const std::filesystem::path& file) 
   return error.place().file == file.string() ? error.words() : error.what();
 }
 
-std::shared_ptr<const AuthorMotion> author_motion(const std::string& text, const NamedRobot& robot,
+std::shared_ptr<const AuthorMotion> author_motion(const std::string& text, const ShownRobot& robot,
                                                   const AuthorSetting& setting,
                                                   const Progress& progress) {
-  auto motion = std::make_shared<AuthorMotion>(AuthorMotion{
-      load_task(pattern_of_text(text, setting.file, setting.set), robot, setting.profile, progress),
-      {},
-      {},
-      {},
-      {},
-      {}});
+  auto motion = std::make_shared<AuthorMotion>(
+      AuthorMotion{load_task(pattern_of_text(text, setting.file, setting.set), robot.named,
+                             setting.profile, progress),
+                   {},
+                   {},
+                   {},
+                   {},
+                   {}});
   const Task& task = motion->task;
+  StabilityNotes stability(task.robot, task.series, check_options(task));
+  // Meanwhile, this thread prepares what the page shows.
+  auto judged = std::async(std::launch::async, [&] {
+    return judge(task, check_options(task), [&](const JudgedSample& sample, const RobotData& data) {
+      stability.note(sample, data);
+    });
+  });
   motion->document = OrderedJson::parse(text, nullptr, true, true);
-  // One core judges the motion, while the other prepares what the page shows.
-  auto judged = std::async(std::launch::async, [&] { return judge(task); });
-  const StabilitySeries stability = stability_series(task.robot, task.series, check_options(task));
   const int stride = std::max(1, static_cast<int>(std::lround(1 / kPageRate / task.series.dt)));
   motion->plan =
       plan_log(task.robot, task.robot.limits(task.profile), task.series, task.series, stride);
   motion->plan.world = task.pattern.world;
   motion->series = live_series(motion->plan, kPageRate);
+  motion->parts = parts_without_verdict(*motion, robot);
   motion->judgement = judged.get();
-  describe(*motion, stability);
+  add_verdict(*motion, stability.series());
   return motion;
 }
 

@@ -7,10 +7,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/check/stability_series.hpp"
 #include "ayumi/io/task_file.hpp"
+#include "ayumi/render/robot_surface.hpp"
 #include "ayumi/sim/simulation_log.hpp"
 
 namespace ayumi::app {
@@ -29,6 +31,12 @@ struct AuthorMotion {
   OrderedJson parts;     ///< members of the page's state that follow from the motion
 };
 
+/// The robot of the pattern, and the triangles that are drawn of it.
+struct ShownRobot {
+  NamedRobot named;
+  std::vector<BodySurface> surface;
+};
+
 /// Inputs besides the text of the pattern.
 struct AuthorSetting {
   std::filesystem::path file;  ///< file of the pattern
@@ -41,7 +49,7 @@ struct AuthorSetting {
 std::string without_file(const Error& error, const std::filesystem::path& file);
 
 /// Throws the same errors as pattern_of_text() and make_task().
-std::shared_ptr<const AuthorMotion> author_motion(const std::string& text, const NamedRobot& robot,
+std::shared_ptr<const AuthorMotion> author_motion(const std::string& text, const ShownRobot& robot,
                                                   const AuthorSetting& setting,
                                                   const Progress& progress = {});
 

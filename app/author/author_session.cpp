@@ -25,9 +25,9 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
-// Time between two checks of the files. Chosen: less than a person notices, with a load of a
-// thousandth of a core.
-constexpr auto kLook = 20ms;
+// Time between two checks of the files. Chosen: a small part of the time that an answer takes, with
+// a load of a few thousandths of a core.
+constexpr auto kLook = 5ms;
 // Clocks of file systems advance in steps of up to 10 ms (jiffies of 100 Hz).
 constexpr auto kClockStep = 30ms;
 // A file that is missing for longer counts as removed. Chosen: editors that replace a file do so
@@ -198,9 +198,10 @@ bool AuthorSession::is_gone() {
 void AuthorSession::load_robot_of(const std::string& text, bool anew) {
   const Pattern pattern = pattern_of_text(text, setting_.file, setting_.set);
   const std::string name = robot_of(pattern);
-  if (robot_ && name == robot_->name && !anew) return;
+  if (robot_ && name == robot_->named.name && !anew) return;
   RobotModel model = load_robot(name, robot_search(context_), {.meshes = true});
-  robot_ = NamedRobot{std::move(model), name};
+  std::vector<BodySurface> surface = robot_surface(model);
+  robot_ = ShownRobot{{std::move(model), name}, std::move(surface)};
   for (const fs::path& file : robot_files()) seen_[file] = stamp_of(file);
   const std::lock_guard lock(state_);
   model_.clear();
@@ -209,8 +210,8 @@ void AuthorSession::load_robot_of(const std::string& text, bool anew) {
 std::vector<fs::path> AuthorSession::robot_files() const {
   std::vector<fs::path> files;
   if (robot_)
-    for (const std::string& file :
-         {robot_->model.description().urdf_file, robot_->model.description().sidecar_file})
+    for (const std::string& file : {robot_->named.model.description().urdf_file,
+                                    robot_->named.model.description().sidecar_file})
       if (!file.empty()) files.emplace_back(file);
   return files;
 }

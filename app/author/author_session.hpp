@@ -97,7 +97,7 @@ class AuthorSession {
   AuthorSetting setting_;
 
   std::mutex reading_;  ///< locked while the file is read or written
-  std::optional<NamedRobot> robot_;
+  std::optional<ShownRobot> robot_;
   Stamps seen_;
   /// Time of the last reading; empty after the file was checked a second time.
   std::optional<std::chrono::steady_clock::time_point> read_at_;

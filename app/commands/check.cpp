@@ -315,14 +315,21 @@ void check_once(Context& context, const CheckCommand& options, const std::string
   std::fflush(stdout);
 }
 
+// Time between two checks of the files. Chosen: a small part of the time that a check takes, with a
+// load of a few thousandths of a core.
+constexpr auto kWatchLook = std::chrono::milliseconds(5);
+// A file that is missing for longer counts as removed, as on the live page.
+constexpr auto kWatchGone = std::chrono::milliseconds(500);
+
 void wait_or_stop() {
   if (stop_requested()) throw Interrupted();
-  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  std::this_thread::sleep_for(kWatchLook);
 }
 
 // An editor that replaces a file removes it for a moment.
 void await_return(const std::string& file) {
-  for (int i = 0; i < 5 && !fs::exists(file); ++i) wait_or_stop();
+  for (auto waited = kWatchLook; waited <= kWatchGone && !fs::exists(file); waited += kWatchLook)
+    wait_or_stop();
 }
 
 // Checks again at every change, until Ctrl-C.
@@ -337,9 +344,14 @@ void watch(Context& context, const CheckCommand& options) {
   Stamps seen;
   std::optional<int> errors;
   while (true) {
-    seen = stamps_of(watched_files(file, seen));
+    // The files are named by a pattern that may change while they are read: the stamp of the
+    // pattern is the one from before.
+    const Stamps before = stamps_of({file});
+    const std::vector<fs::path> files = watched_files(file, seen);
+    seen = stamps_of(files);
+    seen[file] = before.at(file);
     check_once(context, options, file, errors);
-    while (stamps_of(watched_files(file, seen)) == seen) wait_or_stop();
+    while (stamps_of(files) == seen) wait_or_stop();
     await_return(file);
     if (!shows_colours()) context.print("\n");
   }

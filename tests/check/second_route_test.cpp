@@ -6,12 +6,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstring>
+#include <string>
 
 #include "ayumi/check/consistency.hpp"
 #include "ayumi/check/stability_series.hpp"
 #include "ayumi/demand/contact_plan.hpp"
 #include "ayumi/demand/ground_demand.hpp"
 #include "ayumi/demand/motion_demand.hpp"
+#include "ayumi/io/run/results_json.hpp"
 #include "ayumi/math/polygon.hpp"
 #include "ayumi/math/rotation.hpp"
 #include "ayumi/motion/differentiate.hpp"
@@ -327,6 +330,35 @@ TEST_P(SecondRoute, TorqueFiguresByLoops) {
   }
   EXPECT_NEAR(report.summary[FindingKind::joint_torque], peak, 1e-9);
   EXPECT_NEAR(report.summary[FindingKind::continuous_torque], lasting, 1e-9);
+}
+
+// The strip that is noted while the motion is judged, on any number of threads, is that of a pass
+// of its own, and the report does not depend on the threads.
+TEST_P(SecondRoute, SeriesNotedByTheJudge) {
+  CheckOptions options{"", kFriction, {}};
+  const StabilitySeries alone = stability_series(model, series, options);
+  std::string first;
+  for (const int threads : {1, 2, 5}) {
+    options.threads = threads;
+    StabilityNotes notes(model, series, options);
+    const ConsistencyReport report = check_consistency(
+        model, series, options,
+        [&](const JudgedSample& s, const RobotData& data) { notes.note(s, data); });
+    const std::string text = check_json(report);
+    if (first.empty()) first = text;
+    EXPECT_EQ(text, first) << threads;
+    EXPECT_EQ(text, check_json(check_consistency(model, series, options))) << threads;
+    const StabilitySeries noted = notes.series();
+    EXPECT_EQ(noted.speed_dof, alone.speed_dof) << threads;
+    EXPECT_EQ(noted.torque_dof, alone.torque_dof) << threads;
+    for (const auto member : {&StabilitySeries::zmp_margin, &StabilitySeries::dcm_margin,
+                              &StabilitySeries::normal_force, &StabilitySeries::friction,
+                              &StabilitySeries::speed, &StabilitySeries::torque}) {
+      const std::vector<double>&a = noted.*member, &b = alone.*member;
+      ASSERT_EQ(a.size(), b.size());
+      EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(double)), 0) << threads;
+    }
+  }
 }
 
 // Each stretch of the series holds the worst of its samples.

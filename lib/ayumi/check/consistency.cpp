@@ -1,10 +1,13 @@
 #include "ayumi/check/consistency.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/in_parallel.hpp"
@@ -18,28 +21,84 @@ namespace ayumi {
 
 namespace {
 
-// Inverse dynamics of every sample in order of time.
-void judge_samples(JudgedMotion& motion) {
-  for (int k = 0; k < motion.count(); ++k) {
-    const SampleDynamics& demand = motion.dynamics.at(k);
-    motion.cog[k] = motion.dynamics.data().cog;
-    const JudgedSample sample = {k, motion.series.samples[k], demand, !motion.at_flight_edge(k),
-                                 motion.dynamics.plane().empty()};
+// Number of samples that one thread evaluates in a row. Chosen: they take a fraction of a
+// millisecond, and a walk of some seconds occupies all cores.
+constexpr int kBlockSamples = 256;
+// Number of blocks that are evaluated before their samples are judged. Chosen: 4 s at 1 kHz, whose
+// demands take about 2 MB. The next blocks use the same memory.
+constexpr int kBlocksAtOnce = 16;
+
+// The demands of a block of samples.
+struct EvaluatedBlock {
+  int first = 0;
+  std::vector<SampleDynamics> demands;
+  std::vector<const SupportPlane*> plane_of;  // by sample
+  std::vector<char> known;                    // whether accelerations have a meaning, by sample
+  std::deque<SupportPlane> planes;
+};
+
+JudgedSample judged_sample(const JudgedMotion& motion, const EvaluatedBlock& block, size_t i) {
+  const int k = block.first + static_cast<int>(i);
+  return {k, motion.series.samples[k], block.demands[i], *block.plane_of[i], block.known[i] != 0};
+}
+
+// Inverse dynamics of a block. Other blocks may be evaluated at the same time.
+void evaluate(JudgedMotion& motion, int first, const SampleObserver& observe,
+              EvaluatedBlock& block) {
+  const int end = std::min(first + kBlockSamples, motion.count());
+  block.first = first;
+  block.demands.resize(static_cast<size_t>(end - first));
+  block.plane_of.clear();
+  block.known.clear();
+  block.planes.clear();
+  MotionDynamics dynamics = motion.dynamics;
+  const auto contacts = [&](int k) {
+    return std::pair(motion.plan.index[0][k], motion.plan.index[1][k]);
+  };
+  for (int k = first; k < end; ++k) {
+    const auto i = static_cast<size_t>(k - first);
+    block.demands[i] = dynamics.at(k);
+    motion.cog[k] = dynamics.data().cog;
+    if (k == first || contacts(k) != contacts(k - 1)) block.planes.push_back(dynamics.plane());
+    block.plane_of.push_back(&block.planes.back());
+    block.known.push_back(!motion.at_flight_edge(k));
+    const JudgedSample sample = judged_sample(motion, block, i);
     for (const Limit* limit : limits())
-      if (limit->judge_sample) limit->judge_sample(motion, sample);
+      if (limit->note_sample) limit->note_sample(motion, sample, dynamics.data());
+    if (observe) observe(sample, dynamics.data());
+  }
+}
+
+// Samples are evaluated on all threads, and then judged in order of time.
+void judge_samples(JudgedMotion& motion, int threads, const SampleObserver& observe) {
+  std::vector<EvaluatedBlock> blocks;
+  for (int begin = 0; begin < motion.count(); begin += kBlocksAtOnce * kBlockSamples) {
+    const int count =
+        std::min(kBlocksAtOnce, (motion.count() - begin + kBlockSamples - 1) / kBlockSamples);
+    blocks.resize(static_cast<size_t>(count));
+    std::atomic<bool> stop = false;
+    in_parallel(blocks.size(), threads, stop, [&](size_t i) {
+      evaluate(motion, begin + static_cast<int>(i) * kBlockSamples, observe, blocks[i]);
+    });
+    for (const EvaluatedBlock& block : blocks)
+      for (size_t i = 0; i < block.demands.size(); ++i) {
+        const JudgedSample sample = judged_sample(motion, block, i);
+        for (const Limit* limit : limits())
+          if (limit->judge_sample) limit->judge_sample(motion, sample);
+      }
   }
 }
 
 // Judges the samples. At the same time, the limits that depend on the commands alone are computed;
 // the limits that need the whole motion are computed afterwards.
-void judge(JudgedMotion& motion, int threads) {
+void judge(JudgedMotion& motion, int threads, const SampleObserver& observe) {
   std::vector<const Limit*> ahead;
   for (const Limit* limit : limits())
     if (limit->look_ahead) ahead.push_back(limit);
   std::atomic<bool> stop = false;
   in_parallel(1 + ahead.size(), threads, stop, [&](size_t i) {
     if (i == 0)
-      judge_samples(motion);
+      judge_samples(motion, threads, observe);
     else
       ahead[i - 1]->look_ahead(motion);
   });
@@ -151,7 +210,7 @@ ConsistencyReport report_of(JudgedMotion& motion) {
 const char* verdict_of(bool consistent) { return consistent ? "consistent" : "inconsistent"; }
 
 ConsistencyReport check_consistency(const RobotModel& model, const CommandSeries& series,
-                                    const CheckOptions& options) {
+                                    const CheckOptions& options, const SampleObserver& observe) {
   if (!model.has_soles())
     fail(ErrorCode::bad_model, model.name() +
                                    ": the robot has no soles, so its "
@@ -161,7 +220,7 @@ ConsistencyReport check_consistency(const RobotModel& model, const CommandSeries
          "the motion has no samples, so there is nothing to check; sample a pattern first");
   if (!(series.dt > 0)) fail(ErrorCode::usage, "the time step of the motion must be above 0 s");
   JudgedMotion motion(model, series, options);
-  judge(motion, options.threads);
+  judge(motion, options.threads, observe);
   return report_of(motion);
 }
 

@@ -3,6 +3,7 @@
 // other and against every limit of the robot (limits/). Findings say what is wrong, where, when and
 // by how much, and what to do about it.
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -26,9 +27,14 @@ inline const char* verdict_of(const ConsistencyReport& report) {
   return verdict_of(report.consistent);
 }
 
+/// Sees each sample that is judged, with the positions and rates of the bodies. Several threads may
+/// call it at the same time, for different samples and in any order.
+using SampleObserver = std::function<void(const JudgedSample&, const RobotData&)>;
+
 /// Throws Error(usage) for an unknown tolerance name.
 ConsistencyReport check_consistency(const RobotModel& model, const CommandSeries& series,
-                                    const CheckOptions& options = {});
+                                    const CheckOptions& options = {},
+                                    const SampleObserver& observe = {});
 
 /// False if the robot's profile states no limit of this kind for any motor; otherwise true.
 bool has_limit(const RobotModel& model, FindingKind kind);

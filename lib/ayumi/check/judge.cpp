@@ -22,9 +22,10 @@ std::string Judgement::reason() const {
 }
 
 Judgement judge(const RobotModel& model, const CommandSeries& series,
-                const std::vector<KeyedGoal>& goals, const CheckOptions& options) {
+                const std::vector<KeyedGoal>& goals, const CheckOptions& options,
+                const SampleObserver& observe) {
   Judgement judgement;
-  judgement.report = check_consistency(model, series, options);
+  judgement.report = check_consistency(model, series, options, observe);
   judgement.motion_consistent = judgement.report.consistent;
   judgement.motion_need = actuator_need(model, series, options, judgement.report);
   judgement.goal_need = actuator_need(model, goals, options);

@@ -25,8 +25,9 @@ struct Judgement {
 };
 
 /// `goals` are the goals of the series in their keyed forms. Throws the same errors as
-/// check_consistency().
+/// check_consistency(). `observe` sees the samples of the series.
 Judgement judge(const RobotModel& model, const CommandSeries& series,
-                const std::vector<KeyedGoal>& goals, const CheckOptions& options);
+                const std::vector<KeyedGoal>& goals, const CheckOptions& options,
+                const SampleObserver& observe = {});
 
 }  // namespace ayumi

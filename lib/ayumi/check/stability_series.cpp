@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/demand/motion_demand.hpp"
@@ -65,6 +66,7 @@ std::vector<int> next_contacts(const CommandSeries& series) {
 double dcm_margin(const RobotModel& model, const CommandSample& now, const CommandSample* next,
                   const SupportPlane& plane, const Vector3d& cog, const Vector3d& dcog) {
   std::vector<Eigen::Vector2d> corners;
+  corners.reserve(model.sole(Side::left).polygon.size() + model.sole(Side::right).polygon.size());
   for (const Side side : {Side::left, Side::right}) {
     const auto s = static_cast<size_t>(side);
     const bool stands = supports(now.support, side);
@@ -77,45 +79,78 @@ double dcm_margin(const RobotModel& model, const CommandSample& now, const Comma
   if (place.z() <= 0) return kNone;
   const double omega = std::sqrt(kGravity / place.z());
   const Vector3d rate = plane.frame.linear().transpose() * dcog;
-  const ConvexPolygon support(corners);
+  const ConvexPolygon support(std::move(corners));
   return support.margin((place + rate / omega).head<2>());
 }
 
 }  // namespace
 
-StabilitySeries stability_series(const RobotModel& model, const CommandSeries& series,
-                                 const CheckOptions& options, double dt) {
+StabilityNotes::StabilityNotes(const RobotModel& model, const CommandSeries& series,
+                               const CheckOptions& options, double dt)
+    : model_(model),
+      series_(series),
+      limits_(model.limits(options.profile)),
+      friction_(options.friction),
+      stretch_(std::max(1, static_cast<int>(std::lround(dt / series.dt)))) {
   if (series.samples.empty())
     fail(ErrorCode::bad_pattern,
          "the motion has no samples, so there is nothing to show; sample a pattern first");
-  const ActuatorLimits& limits = model.limits(options.profile);
-  const ContactPlan plan = contact_plan(series);
-  MotionDynamics dynamics(model, limits, series, plan);
-  const std::vector<int> next = next_contacts(series);
-  const int count = static_cast<int>(series.samples.size());
-  const int stretch = std::max(1, static_cast<int>(std::lround(dt / series.dt)));
-  const auto size = static_cast<size_t>((count + stretch - 1) / stretch);
-  StabilitySeries out = empty_stability(size, stretch * series.dt);
-  for (int k = 0; k < count; ++k) {
-    const auto i = static_cast<size_t>(k / stretch);
-    const CommandSample& sample = series.samples[static_cast<size_t>(k)];
-    keep_worst(out.speed[i], out.speed_dof[i], sample.state.dtheta, limits.speed);
-    if (at_flight_edge(series, k)) continue;
-    const SampleDynamics& now = dynamics.at(k);
-    keep_worst(out.torque[i], out.torque_dof[i], now.torque, limits.peak_torque);
-    const SupportPlane& plane = dynamics.plane();
-    if (plane.empty()) continue;
-    keep_least(out.normal_force[i], now.use.normal_force);
-    if (!now.use.has_zmp) continue;
-    keep_least(out.zmp_margin[i], now.use.margin);
-    keep_largest(out.friction[i], friction_ratio(now.use, options.friction));
-    const int after = next[static_cast<size_t>(k)];
-    const double dcm =
-        dcm_margin(model, sample, after < 0 ? nullptr : &series.samples[static_cast<size_t>(after)],
-                   plane, dynamics.data().cog, dynamics.data().dcog);
-    if (!std::isnan(dcm)) keep_least(out.dcm_margin[i], dcm);
+  next_contacts_ = next_contacts(series);
+  notes_.assign(series.samples.size(), {kNone, kNone, kNone, kNone, kNone, kNone});
+}
+
+void StabilityNotes::note(const JudgedSample& sample, const RobotData& data) {
+  const auto k = static_cast<size_t>(sample.k);
+  Note& note = notes_[k];
+  keep_worst(note.speed, note.speed_dof, sample.command.state.dtheta, limits_.speed);
+  if (!sample.known) return;
+  keep_worst(note.torque, note.torque_dof, sample.demand.torque, limits_.peak_torque);
+  if (sample.flies()) return;
+  const GroundDemand& use = sample.demand.use;
+  note.normal_force = use.normal_force;
+  if (!use.has_zmp) return;
+  note.zmp_margin = use.margin;
+  note.friction = friction_ratio(use, friction_);
+  const int next = next_contacts_[k];
+  note.dcm_margin = dcm_margin(model_, sample.command,
+                               next < 0 ? nullptr : &series_.samples[static_cast<size_t>(next)],
+                               sample.plane, data.cog, data.dcog);
+}
+
+StabilitySeries StabilityNotes::series() const {
+  const auto stretch = static_cast<size_t>(stretch_);
+  StabilitySeries out =
+      empty_stability((notes_.size() + stretch - 1) / stretch, stretch_ * series_.dt);
+  const auto keep_joint = [](double& kept, int& dof, double share, int of) {
+    if (std::isnan(share) || share <= kept) return;
+    kept = share;
+    dof = of;
+  };
+  for (size_t k = 0; k < notes_.size(); ++k) {
+    const Note& note = notes_[k];
+    const size_t i = k / stretch;
+    keep_joint(out.speed[i], out.speed_dof[i], note.speed, note.speed_dof);
+    keep_joint(out.torque[i], out.torque_dof[i], note.torque, note.torque_dof);
+    if (!std::isnan(note.normal_force)) keep_least(out.normal_force[i], note.normal_force);
+    if (!std::isnan(note.zmp_margin)) keep_least(out.zmp_margin[i], note.zmp_margin);
+    if (!std::isnan(note.friction)) keep_largest(out.friction[i], note.friction);
+    if (!std::isnan(note.dcm_margin)) keep_least(out.dcm_margin[i], note.dcm_margin);
   }
   return out;
+}
+
+StabilitySeries stability_series(const RobotModel& model, const CommandSeries& series,
+                                 const CheckOptions& options, double dt) {
+  StabilityNotes notes(model, series, options, dt);
+  const ContactPlan plan = contact_plan(series);
+  MotionDynamics dynamics(model, model.limits(options.profile), series, plan);
+  for (int k = 0; k < static_cast<int>(series.samples.size()); ++k) {
+    const SampleDynamics& demand = dynamics.at(k);
+    notes.note({k, series.samples[static_cast<size_t>(k)], demand, dynamics.plane(),
+                !at_flight_edge(series, k)},
+               dynamics.data());
+  }
+  return notes.series();
 }
 
 }  // namespace ayumi

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "ayumi/limits/limit.hpp"
+#include "ayumi/limits/judged_motion.hpp"
 #include "ayumi/motion/command_series.hpp"
 
 namespace ayumi {
@@ -34,6 +34,33 @@ void keep_least(double& kept, double value);
 void keep_largest(double& kept, double value);
 /// Keeps the joint with the largest share of its limit; joints without a limit do not count.
 void keep_worst(double& kept, int& dof, const Eigen::VectorXd& value, const Eigen::VectorXd& limit);
+
+/// Gathers the series while the motion is judged, so that its dynamics are evaluated only once.
+class StabilityNotes {
+ public:
+  /// The arguments must outlive this object. Throws the same errors as check_consistency().
+  StabilityNotes(const RobotModel& model, const CommandSeries& series, const CheckOptions& options,
+                 double dt = 0.01);
+
+  /// Notes one sample. Several threads may note different samples at the same time.
+  void note(const JudgedSample& sample, const RobotData& data);
+
+  StabilitySeries series() const;  ///< the series, after all samples were noted
+
+ private:
+  struct Note {
+    double zmp_margin, dcm_margin, normal_force, friction, speed, torque;
+    int speed_dof = -1, torque_dof = -1;
+  };
+
+  const RobotModel& model_;
+  const CommandSeries& series_;
+  const ActuatorLimits& limits_;
+  double friction_;
+  int stretch_;                     // samples of a stretch
+  std::vector<int> next_contacts_;  // by sample
+  std::vector<Note> notes_;         // by sample
+};
 
 /// Throws the same errors as check_consistency().
 StabilitySeries stability_series(const RobotModel& model, const CommandSeries& series,

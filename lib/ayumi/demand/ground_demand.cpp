@@ -282,12 +282,17 @@ SoleError sole_error(const Sole& sole, const Isometry3d& actual, const Isometry3
   SoleError error;
   error.lowest = 1e300;
   error.gap = -1e300;
+  // The corners have no third coordinate.
+  const Vector3d x = relative.linear().col(0), y = relative.linear().col(1);
+  const Vector3d origin = relative.translation();
+  double farthest = 0;  // square of the slip
   for (const Vector2d& v : sole.polygon) {
-    const Vector3d p = relative * Vector3d(v.x(), v.y(), 0);
-    error.slip = std::max(error.slip, (p.head<2>() - v).norm());
+    const Vector3d p = origin + (x * v.x() + y * v.y());
+    farthest = std::max(farthest, (p.head<2>() - v).squaredNorm());
     error.gap = std::max(error.gap, p.z());
     error.lowest = std::min(error.lowest, p.z());
   }
+  error.slip = std::sqrt(farthest);
   error.penetration = std::max(0.0, -error.lowest);
   error.gap = std::max(0.0, error.gap);
   return error;

@@ -51,8 +51,8 @@ double least_moment_tolerance(const RobotModel& model, const CommandSeries& seri
   return kMomentShare * model.mass() * kGravity * series.samples.front().cog.z();
 }
 
-void note_moment(JudgedMotion& motion, const JudgedSample& s) {
-  if (s.known && s.flight) motion.flight_moment[s.k] = s.demand.moment;
+void note_moment(JudgedMotion& motion, const JudgedSample& s, const RobotData&) {
+  if (s.known && s.flies()) motion.flight_moment[s.k] = s.demand.moment;
 }
 
 void judge_angular_momentum(JudgedMotion& motion) {
@@ -101,7 +101,7 @@ const Limit& angular_momentum_limit() {
                     .advice = angular_momentum_advice,
                     .infeasibility = angular_momentum_infeasibility,
                     .holds_at = angular_momentum_holds}},
-      .judge_sample = note_moment,
+      .note_sample = note_moment,
       .judge_motion = judge_angular_momentum};
   return limit;
 }

@@ -46,7 +46,7 @@ constexpr double kLeastForceShare = 1e-3;  // share of the weight that prevents 
 // whole windows.
 
 void judge_vertical_force(JudgedMotion& motion, const JudgedSample& s) {
-  const double residual = (s.flight ? 0 : s.demand.wrench[2]) - s.command.fz;
+  const double residual = (s.flies() ? 0 : s.demand.wrench[2]) - s.command.fz;
   motion.raise(FindingKind::fz_residual, std::abs(residual), s.k);
   const double limit = motion.tolerance(FindingKind::fz_residual) * motion.weight;
   if (std::abs(residual) > limit)
@@ -59,8 +59,7 @@ void judge_zmp(JudgedMotion& motion, const JudgedSample& s) {
       kLightShare * motion.weight / std::max(command.fz, kLeastForceShare * motion.weight);
   judge_difference(motion, FindingKind::zmp_residual, s.k, s.demand.use.zmp_world - command.zmp,
                    Severity::error, 0, std::max(1.0, light));
-  const Vector3d point_mass =
-      pendulum_zmp(motion.dynamics.data().cog, s.demand.ddcog, command.zmp.z());
+  const Vector3d point_mass = pendulum_zmp(motion.cog[s.k], s.demand.ddcog, command.zmp.z());
   judge_difference(motion, FindingKind::point_mass_gap, s.k, point_mass - command.zmp,
                    Severity::info);
 }

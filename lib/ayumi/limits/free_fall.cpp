@@ -32,7 +32,7 @@ Vector3d commanded_acceleration(const CommandSeries& series, int k) {
 }
 
 void judge_free_fall(JudgedMotion& motion, const JudgedSample& s) {
-  if (!s.known || !s.flight) return;
+  if (!s.known || !s.flies()) return;
   const Vector3d gravity(0, 0, -kGravity);
   judge_difference(motion, FindingKind::ballistic, s.k, s.demand.ddcog - gravity);
   if (s.k >= 2 && s.k + 2 < motion.count())

@@ -115,12 +115,13 @@ struct JudgedSample {
   int k = 0;
   const CommandSample& command;
   const SampleDynamics& demand;
+  const SupportPlane& plane;  ///< empty in flight
   /// False next to the beginning or end of a flight, where accelerations mix support and flight, so
   /// that forces have no meaning.
   bool known = true;
-  bool flight = false;  ///< whether no foot supports
 
-  bool stands() const { return known && !flight; }
+  bool flies() const { return plane.empty(); }  ///< whether no foot supports
+  bool stands() const { return known && !flies(); }
   bool has_zmp() const { return stands() && demand.use.has_zmp; }
 };
 

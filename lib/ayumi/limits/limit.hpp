@@ -23,6 +23,7 @@ namespace ayumi {
 
 struct JudgedMotion;
 struct JudgedSample;
+struct RobotData;
 struct RowSite;
 struct FindingWindow;
 struct Violation;
@@ -116,6 +117,9 @@ struct FindingSpec {
 
 struct Limit {
   std::vector<FindingSpec> findings;
+  /// Stores values of one sample in members of JudgedMotion that have a place for each sample.
+  /// Called before judge_sample of that sample, for several samples at the same time.
+  void (*note_sample)(JudgedMotion&, const JudgedSample&, const RobotData&) = nullptr;
   /// Records the violations of one sample. Called for all samples in order of time.
   void (*judge_sample)(JudgedMotion&, const JudgedSample&) = nullptr;
   /// Computes values that only depend on the commands and need a long computation, and stores them

@@ -37,8 +37,8 @@ void judge_servo_steps(JudgedMotion& motion) {
       if (!std::isfinite(allowed)) continue;
       const double step = to.theta[i] - from.theta[i], ratio = std::abs(step) / allowed;
       motion.raise(FindingKind::servo_step, ratio, k, i);
-      const double planned = std::max(std::abs(from.dtheta[i]), std::abs(to.dtheta[i]));
-      if (ratio > kMeanSpeedSpare * most && planned <= limit)
+      if (ratio > kMeanSpeedSpare * most && std::abs(from.dtheta[i]) <= limit &&
+          std::abs(to.dtheta[i]) <= limit)
         motion.add(FindingKind::servo_step, i, k, step, most * allowed, ratio);
     }
   }

@@ -47,10 +47,10 @@ double swing_depth(const JudgedMotion& motion, Side side, int k, const Eigen::Is
   return std::isfinite(depth) ? depth : 0;
 }
 
-void note_soles(JudgedMotion& motion, const JudgedSample& s) {
+void note_soles(JudgedMotion& motion, const JudgedSample& s, const RobotData& data) {
   for (Side side : {Side::left, Side::right}) {
     const ContactInterval& interval = motion.plan.at(side, s.k);
-    const Eigen::Isometry3d sole = sole_pose(motion.model, motion.dynamics.data(), side);
+    const Eigen::Isometry3d sole = sole_pose(motion.model, data, side);
     SoleError& error = motion.soles[static_cast<int>(side)][s.k];
     if (interval.contact)
       error = sole_error(motion.model.sole(side), sole, interval.sole);
@@ -281,7 +281,7 @@ const Limit& stance_limit() {
                     .place = foot_place,
                     .advice = float_advice,
                     .infeasibility = float_infeasibility}},
-      .judge_sample = note_soles,
+      .note_sample = note_soles,
       .judge_motion = judge_stance,
       .place_rows = place_stance_rows};
   return limit;

@@ -31,12 +31,11 @@ void judge_margin(JudgedMotion& motion, const JudgedSample& s, ZmpOf whose, doub
 void judge_support(JudgedMotion& motion, const JudgedSample& s) {
   if (!s.has_zmp()) return;
   const GroundDemand& use = s.demand.use;
-  const SupportPlane& plane = motion.dynamics.plane();
   motion.lower(FindingKind::support_margin, use.margin, s.k, kMotionZmp,
                static_cast<int>(s.command.support));
   judge_margin(motion, s, kMotionZmp, use.margin);
-  const Eigen::Vector3d command = plane.frame.inverse() * s.command.zmp;
-  const double command_margin = plane.polygon.margin(command.head<2>());
+  const Eigen::Vector3d command = s.plane.frame.inverse() * s.command.zmp;
+  const double command_margin = s.plane.polygon.margin(command.head<2>());
   // The commanded ZMP is only judged if it differs from the ZMP of the motion.
   if ((use.zmp_world - s.command.zmp).norm() > motion.tolerance(FindingKind::zmp_residual) &&
       command_margin < -kRounding)

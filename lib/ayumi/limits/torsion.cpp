@@ -42,8 +42,8 @@ void judge_torsion(JudgedMotion& motion, const JudgedSample& s) {
   if (use.margin > 0 && torsion_ratio(use, motion.friction, least_arm(use)) <
                             std::min(most, motion.summary[FindingKind::yaw_moment]))
     return;
-  const double yaw = torsion_ratio(
-      use, motion.friction, torsional_friction_arm(motion.dynamics.plane().polygon, use.zmp));
+  const double yaw =
+      torsion_ratio(use, motion.friction, torsional_friction_arm(s.plane.polygon, use.zmp));
   motion.raise(FindingKind::yaw_moment, yaw, s.k, 0, static_cast<int>(s.command.support));
   if (yaw > most)
     motion.add(FindingKind::yaw_moment, 0, s.k, yaw, most, yaw,

@@ -7,6 +7,7 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <utility>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/math/elementary.hpp"
@@ -39,32 +40,40 @@ double rest_bump(double omega, double t, double duration) {
   return u * u * elementary::exp(-u) * fade * fade;
 }
 
-RestToRest rest_to_rest_cog(const VectorXd& z, const VectorXd& w2, double h) {
-  const Eigen::Index n = z.size() - 1;
+RestToRestSolver::RestToRestSolver(VectorXd w2, double h) : w2_(std::move(w2)), h_(h) {
+  const Eigen::Index n = w2_.size() - 1;
   const double duration = h * static_cast<double>(n);
-  VectorXd bump[2] = {VectorXd(n + 1), VectorXd(n + 1)};
+  std::array<VectorXd, 2> bump = {VectorXd(n + 1), VectorXd(n + 1)};
   for (Eigen::Index k = 0; k <= n; ++k) {
     const double t = h * static_cast<double>(k);
-    bump[0][k] = rest_bump(std::sqrt(w2[0]), t, duration);
-    bump[1][k] = rest_bump(std::sqrt(w2[n]), duration - t, duration);
+    bump[0][k] = rest_bump(std::sqrt(w2_[0]), t, duration);
+    bump[1][k] = rest_bump(std::sqrt(w2_[n]), duration - t, duration);
   }
-  // The deviation of x from rest at both ends, for a ZMP `zmp`.
-  const auto unrest = [&](const VectorXd& x, const VectorXd& zmp) {
-    const auto at = [&](Eigen::Index end, Eigen::Index inner) {
-      return x[inner] - x[end] - h * h / 12.0 * w2[inner] * (x[inner] - zmp[inner]);
-    };
-    return Eigen::Vector2d(at(0, 1), at(n, n - 1));
+  for (size_t i = 0; i < 2; ++i) response_[i] = bounded_cog(bump[i], w2_, h);
+  unrest_ << unrest(response_[0], bump[0]), unrest(response_[1], bump[1]);
+}
+
+// The deviation of x from rest at both ends, for a ZMP z.
+Eigen::Vector2d RestToRestSolver::unrest(const VectorXd& x, const VectorXd& z) const {
+  const auto at = [&](Eigen::Index end, Eigen::Index inner) {
+    return x[inner] - x[end] - h_ * h_ / 12.0 * w2_[inner] * (x[inner] - z[inner]);
   };
+  const Eigen::Index n = w2_.size() - 1;
+  return {at(0, 1), at(n, n - 1)};
+}
+
+RestToRest RestToRestSolver::solve(const VectorXd& z) const {
   RestToRest result;
-  result.x = bounded_cog(z, w2, h);
-  const VectorXd response[2] = {bounded_cog(bump[0], w2, h), bounded_cog(bump[1], w2, h)};
-  Eigen::Matrix2d A;
-  A << unrest(response[0], bump[0]), unrest(response[1], bump[1]);
-  const Eigen::Vector2d factor = -A.partialPivLu().solve(unrest(result.x, z));
+  result.x = bounded_cog(z, w2_, h_);
+  const Eigen::Vector2d factor = -unrest_.partialPivLu().solve(unrest(result.x, z));
   result.begin = factor[0];
   result.end = factor[1];
-  result.x += factor[0] * response[0] + factor[1] * response[1];
+  result.x += factor[0] * response_[0] + factor[1] * response_[1];
   return result;
+}
+
+RestToRest rest_to_rest_cog(const VectorXd& z, const VectorXd& w2, double h) {
+  return RestToRestSolver(w2, h).solve(z);
 }
 
 }  // namespace ayumi

@@ -3,6 +3,7 @@
 // not diverge, computed as a boundary value problem on a uniform grid.
 
 #include <Eigen/Core>
+#include <array>
 
 namespace ayumi {
 
@@ -23,6 +24,22 @@ struct RestToRest {
 ///   begin * bump(t) + end * bump(T - t),
 /// which is close to the smallest possible change, and zero where the ZMP rests long enough at both
 /// ends.
+class RestToRestSolver {
+ public:
+  /// For the arguments of bounded_cog(). What does not depend on z is computed once.
+  RestToRestSolver(Eigen::VectorXd w2, double h);
+  RestToRest solve(const Eigen::VectorXd& z) const;
+
+ private:
+  Eigen::Vector2d unrest(const Eigen::VectorXd& x, const Eigen::VectorXd& z) const;
+
+  Eigen::VectorXd w2_;
+  double h_;
+  std::array<Eigen::VectorXd, 2> response_;  // to the bumps at both ends
+  Eigen::Matrix2d unrest_;                   // of these responses
+};
+
+/// The same for one ZMP.
 RestToRest rest_to_rest_cog(const Eigen::VectorXd& z, const Eigen::VectorXd& w2, double h);
 
 }  // namespace ayumi

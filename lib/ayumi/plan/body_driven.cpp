@@ -236,7 +236,7 @@ RobotState start_of_block(const SampleJob& job, const CogPlan& plan, int first) 
 // Solves the postures of the samples first, first + 1, ..., end - 1.
 Worst solve_block(const SampleJob& job, const CogPlan& plan, int first, int end,
                   CommandSeries& series) {
-  RobotData data(job.model);
+  RobotData data = job.data;
   Extrapolation postures;
   Worst worst;
   for (int k = first; k < end; ++k) {
@@ -263,7 +263,7 @@ Worst fill_block(const SampleJob& job, const CogPlan& plan, int first, int end,
                  CommandSeries& series) {
   fill_rates(series.samples, first, end, job.dt, job.tracks.rest_ends);
   for (int k = first; k < end; ++k) put_ground_commands(job, plan, k * job.dt, series.samples[k]);
-  TreeDynamics dynamics(job.model);
+  TreeDynamics dynamics = job.dynamics;
   std::vector<GroundReaction> reactions;
   full_model_reactions(job.model, std::span(series.samples).subspan(first, end - first), dynamics,
                        reactions);

@@ -43,7 +43,7 @@ void refuse_flight(const SampleJob& job) {
 
 void anchor_samples(const SampleJob& job, CommandSeries& series) {
   refuse_flight(job);
-  RobotData data(job.model);
+  RobotData data = job.data;
   Side anchor = first_anchor(job.feet);
   Isometry3d held = job.feet.pose(anchor, 0);
   for (int k = 0; k < job.count; ++k) {
@@ -68,7 +68,7 @@ void anchor_samples(const SampleJob& job, CommandSeries& series) {
 }
 
 void table_base(const SampleJob& job, CommandSeries& series) {
-  RobotData data(job.model);
+  RobotData data = job.data;
   const auto& p = *job.tracks.base;
   const auto& q = *job.tracks.attitude;
   for (int k = 0; k < job.count; ++k) {
@@ -160,7 +160,7 @@ void fill_feet(const SampleJob& job, CommandSeries& series) {
 }
 
 void fill_commands(const SampleJob& job, CommandSeries& series) {
-  RobotData data(job.model);
+  RobotData data = job.data;
   const PatternTracks& tracks = job.tracks;
   for (int k = 0; k < job.count; ++k) {
     const double t = k * job.dt;
@@ -190,7 +190,7 @@ void fill_commands(const SampleJob& job, CommandSeries& series) {
 
 // The base does not depend on arms and head, but the COG does.
 void follow_targets(const SampleJob& job, CommandSeries& series) {
-  RobotData data(job.model);
+  RobotData data = job.data;
   for (int k = 0; k < job.count; ++k) {
     const double t = k * job.dt;
     if (!job.links.leads(t)) continue;

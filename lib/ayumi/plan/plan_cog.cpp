@@ -79,7 +79,7 @@ constexpr double kLook = 5e-4;
 Eigen::Vector2d lean_height(const SampleJob& job, const CogPlan& plan) {
   Eigen::Vector2d height = Eigen::Vector2d::Zero();
   if (!job.ik.lacks_joints()) return height;
-  RobotData data(job.model);
+  RobotData data = job.data;
   const auto posture_at = [&](const Vector3d& cog) {
     CommandSample sample;
     sample.state = job.model.rest_state();
@@ -142,6 +142,7 @@ struct CogSolver {
   CogPlan& plan;
   Grid grid;
   std::array<VectorXd, 2> w2;  // omega^2 by axis; 0 in flight
+  std::array<RestToRestSolver, 2> pendulum;
   std::array<VectorXd, 3> cog;
   std::vector<CommandSample> samples = {};  // values of the last pass
   std::vector<Eigen::Matrix3d> trunk = {};  // attitude of the trunk as the pattern states it
@@ -167,7 +168,7 @@ void CogSolver::read_tracks() {
 }
 
 void CogSolver::add_solution(int axis, const VectorXd& z) {
-  const RestToRest motion = rest_to_rest_cog(z, w2[axis], grid.h);
+  const RestToRest motion = pendulum[axis].solve(z);
   cog[axis] += motion.x;
   plan.bump[0][axis] += motion.begin;
   plan.bump[1][axis] += motion.end;
@@ -190,7 +191,7 @@ void CogSolver::turn_trunk() {
 void CogSolver::solve_first() {
   samples.resize(grid.n + 1);
   trunk.resize(grid.n + 1);
-  RobotData data(job.model);
+  RobotData data = job.data;
   Extrapolation postures;
   for (int k = 0; k <= grid.n; ++k) {
     const double t = grid.t(k);
@@ -211,7 +212,7 @@ void CogSolver::solve_first() {
 // The postures of the samples first, ..., end - 1 in a later pass. They are computed from the
 // postures of the last pass and from the changes of the previous samples.
 void CogSolver::solve_again(int first, int end) {
-  RobotData data(job.model);
+  RobotData data = job.data;
   Extrapolation changes;
   VectorXd guess;
   for (int k = first; k < end; ++k) {
@@ -234,7 +235,7 @@ void CogSolver::solve_again(int first, int end) {
 double CogSolver::measure(int first, int end) {
   fill_rates(samples, first, end, grid.h, true);
   for (int k = first; k < end; ++k) samples[k].zmp = plan.zmp_at(grid.t(k));
-  TreeDynamics dynamics(job.model);
+  TreeDynamics dynamics = job.dynamics;
   std::vector<GroundReaction> reactions;
   full_model_reactions(job.model, std::span(samples).subspan(first, end - first), dynamics,
                        reactions);
@@ -307,9 +308,13 @@ Vector3d CogPlan::cog_at(double t) const {
 
 Vector3d CogPlan::zmp_at(double t) const {
   Vector3d z(zmp[0].at(t).value, zmp[1].at(t).value, zmp[2].at(t).value);
-  for (int axis = 0; axis < 2; ++axis)
-    z[axis] += rest_bump(omega[0][axis], t, duration) * bump[0][axis] +
-               rest_bump(omega[1][axis], duration - t, duration) * bump[1][axis];
+  double begin = 0, end = 0;
+  for (int axis = 0; axis < 2; ++axis) {
+    if (axis == 0 || omega[0][axis] != omega[0][0]) begin = rest_bump(omega[0][axis], t, duration);
+    if (axis == 0 || omega[1][axis] != omega[1][0])
+      end = rest_bump(omega[1][axis], duration - t, duration);
+    z[axis] += begin * bump[0][axis] + end * bump[1][axis];
+  }
   return z;
 }
 
@@ -339,7 +344,12 @@ CogPlan plan_cog(const SampleJob& job) {
       job.pattern.full_model ? lean_height(job, plan) : Eigen::Vector2d::Zero();
   const VectorXd first = omega_squared_of(job, plan, grid, more[0]);
   const VectorXd second = more[1] == more[0] ? first : omega_squared_of(job, plan, grid, more[1]);
-  CogSolver solver{job, plan, grid, {first, second}, {}};
+  CogSolver solver{job,
+                   plan,
+                   grid,
+                   {first, second},
+                   {RestToRestSolver(first, grid.h), RestToRestSolver(second, grid.h)},
+                   {}};
   for (int axis = 0; axis < 2; ++axis) {
     plan.omega[0][axis] = std::sqrt(solver.w2[axis][0]);
     plan.omega[1][axis] = std::sqrt(solver.w2[axis][grid.n]);

@@ -40,7 +40,7 @@ CommandSeries sample_carried(const SampleJob& job) {
   series.origin = job.tracks.origin;
   const CogPlan plan = plan_cog(job);
   const Eigen::VectorXd posture = default_posture(job.model, job.pattern);
-  RobotData data(job.model);
+  RobotData data = job.data;
   for (int k = 0; k < job.count; ++k) {
     const double t = k * job.dt;
     CommandSample& sample = series.samples[static_cast<size_t>(k)];

@@ -8,6 +8,7 @@
 #include "ayumi/base/in_parallel.hpp"
 #include "ayumi/base/progress.hpp"
 #include "ayumi/dynamics/inverse_kinematics.hpp"
+#include "ayumi/dynamics/tree_dynamics.hpp"
 #include "ayumi/motion/command_series.hpp"
 #include "ayumi/plan/link_plan.hpp"
 #include "ayumi/plan/tracks.hpp"
@@ -25,6 +26,9 @@ struct SampleJob {
   int count = 0;      ///< number of samples
   int threads = 0;    ///< number of threads; 0 for all cores
   const Progress& progress;
+  /// Copied for each block of samples, because a copy is cheaper than a new one.
+  const RobotData data = RobotData(model);
+  const TreeDynamics dynamics = TreeDynamics(model);
 };
 
 /// Number of samples that one thread solves in a row, each from the previous ones. Chosen: much

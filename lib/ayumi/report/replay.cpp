@@ -232,15 +232,16 @@ std::string live_model(const RobotModel& model, const SimulationLog& log, size_t
   return glb_bytes(model, {pose}, {.max_triangles = triangles});
 }
 
-std::string live_config(const RobotModel& model, const SimulationLog& log, double rate) {
+std::string live_config(const RobotModel& model, const std::vector<BodySurface>& surface,
+                        const SimulationLog& log, double rate) {
   std::vector<std::string> columns = kColumns;
   for (const char* const name : {"x", "y", "z", "qx", "qy", "qz", "qw"})
     columns.push_back(std::string("base.") + name);
   for (const char* const quantity : {"q.", "dq.", "tau."})
     for (const std::string& joint : model.dof_names()) columns.push_back(quantity + joint);
   return "{\"columns\":" + quoted_list(columns) + "," +
-         common_words(model, robot_extent(robot_surface(model), model, log.samples.front().state),
-                      log, rate, 0, "The robot in 3-D") +
+         common_words(model, robot_extent(surface, model, log.samples.front().state), log, rate, 0,
+                      "The robot in 3-D") +
          ",\"joints\":" + quoted_list(model.dof_names()) + ",\"bodies\":" + bodies_words(model) +
          "}";
 }

@@ -3,7 +3,9 @@
 // quantities of a motion as a table, and the data about both that the script needs.
 
 #include <string>
+#include <vector>
 
+#include "ayumi/render/robot_surface.hpp"
 #include "ayumi/report/report.hpp"
 
 namespace ayumi {
@@ -30,9 +32,11 @@ ReplayData make_replay(const RobotModel& model, const RobotLook& look, const Rep
 std::string live_model(const RobotModel& model, const SimulationLog& log, size_t triangles);
 
 /// JSON with the names of the table's columns, the tree of the bodies, and the soles, pushes and
-/// world of the log. The columns are those of the report's replay, then the pose of the base
+/// world of the log. `surface` is the robot's. The columns are those of the report's replay, then
+/// the pose of the base
 /// ("base."), and the angle ("q."), rate ("dq.") and torque ("tau.") of every joint.
-std::string live_config(const RobotModel& model, const SimulationLog& log, double rate);
+std::string live_config(const RobotModel& model, const std::vector<BodySurface>& surface,
+                        const SimulationLog& log, double rate);
 
 /// The table: one row of 32-bit floats, little-endian, every 1/rate seconds, and one row at the
 /// end.

@@ -148,9 +148,12 @@ class LocalSearch {
   }
 
   void take_path(double least_margin) {
-    path_pattern_ = at_scale(result_.path_scale);
-    path_ = sample(model_, path_pattern_, {.dt = options_.dt}, progress_);
-    find_pauses();
+    if (path_.samples.empty() || path_scale_ != result_.path_scale) {
+      path_scale_ = result_.path_scale;
+      path_pattern_ = at_scale(path_scale_);
+      path_ = sample(model_, path_pattern_, {.dt = options_.dt}, progress_);
+      find_pauses();
+    }
     PathLimitOptions path = options_.path;
     path.least_margin = least_margin;
     for (const Pause& pause : kept_) path.pauses.push_back(pause.still);
@@ -363,6 +366,7 @@ class LocalSearch {
   LocalPace result_;
   std::vector<TimeSpan> pauses_;  // pauses of the given pattern, if they are kept
   std::vector<Pause> kept_;
+  double path_scale_ = 0;  // the scale of the path that was sampled last
   Pattern path_pattern_;
   CommandSeries path_;
   std::optional<PathLimits> limits_;

@@ -133,18 +133,27 @@ Provenance provenance(const Task& task, const std::string& controller,
           .command_line = command_line};
 }
 
-Judgement judge(const Task& task, const CheckOptions& options, std::vector<Mistake>* payloads) {
+namespace {
+
+Judgement judge(const Task& task, const CheckOptions& options, std::vector<Mistake>* payloads,
+                const SampleObserver& observe) {
   Judgement judgement =
       judge(task.robot, task.series, keyed_goals(task.robot, task.series, task.pattern.controller),
-            options);
+            options, observe);
   std::vector<Mistake> heavy = judge_payloads(task, options, judgement.report);
   if (!heavy.empty()) judgement.motion_consistent = false;
   if (payloads) *payloads = std::move(heavy);
   return judgement;
 }
 
-Judgement judge(const Task& task, const CheckOptions& options) {
-  return judge(task, options, nullptr);
+}  // namespace
+
+Judgement judge(const Task& task, const CheckOptions& options, std::vector<Mistake>* payloads) {
+  return judge(task, options, payloads, {});
+}
+
+Judgement judge(const Task& task, const CheckOptions& options, const SampleObserver& observe) {
+  return judge(task, options, nullptr, observe);
 }
 
 Judgement judge(const Task& task) { return judge(task, check_options(task)); }

@@ -57,8 +57,8 @@ Provenance provenance(const Task& task, const std::string& controller,
                       const std::string& command_line = "");
 
 /// The verdict on the pattern: that of check_consistency(), and whether the actuators suffice for
-/// the goals of VIIP as well.
-Judgement judge(const Task& task, const CheckOptions& options);
+/// the goals of VIIP as well. `observe` sees the samples of the task.
+Judgement judge(const Task& task, const CheckOptions& options, const SampleObserver& observe = {});
 Judgement judge(const Task& task);
 
 /// Runs the task. The log names robot, pattern and controller. Throws the same errors as the other

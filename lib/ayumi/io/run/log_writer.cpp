@@ -32,11 +32,15 @@ LogWriter::LogWriter(const std::filesystem::path& folder, const std::vector<std:
 
 WrittenLog LogWriter::finish(SimulationLog about, const std::filesystem::path& path,
                              const Progress& progress) {
-  blocks_.finish();
   WrittenLog log;
   log.rows = blocks_.rows();
   Sha256Stream file_hash, hash;
   hash.add(hashed_log_head(about, log.rows));
+  // The rows are hashed after the head, which needs their number. Rows of the first block are still
+  // there; later blocks are read back.
+  const bool one_block = written_.empty();
+  if (one_block) hash.add(blocks_.waiting());
+  blocks_.finish();
   write_file_with(path, [&](const std::filesystem::path& temporary) {
     errno = 0;
     std::ofstream stream(temporary, std::ios::binary);
@@ -57,7 +61,7 @@ WrittenLog LogWriter::finish(SimulationLog about, const std::filesystem::path& p
       const auto& [begin, size, rows] = written_[i];
       const std::string block = scratch_.read(begin, size);
       write(block);
-      hash.add(decompress_samples(block, columns_, rows, path.string()));
+      if (!one_block) hash.add(decompress_samples(block, columns_, rows, path.string()));
     }
     stream.close();
     require_written();

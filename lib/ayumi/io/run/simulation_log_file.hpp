@@ -39,6 +39,8 @@ class LogBlocks {
   /// empty block.
   void finish();
   size_t rows() const { return rows_; }
+  /// The rows that are not written yet, as plain_log_bytes() has them.
+  const std::string& waiting() const { return block_; }
 
  private:
   void write_block();
