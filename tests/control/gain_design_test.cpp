@@ -19,8 +19,23 @@ using Complex = std::complex<double>;
 struct Ankle {
   double mass = 6.5, height = 0.22, stiffness = 150, damping = 3, tick = 1e-3, delay = 0.003;
 };
+
+/// The loop of a point mass on an ankle: x'' = w^2 (x + s (target - x - T x')). Rates are taken at
+/// the end of a tick.
 LoopModel loop_of(const Ankle& a) {
-  return pendulum_on_ankle(a.mass, a.height, a.stiffness, a.damping, a.tick, a.delay);
+  LoopModel loop{.name = "one ankle", .height = a.height, .tick = a.tick, .delay = a.delay};
+  const double w2 = kGravity / a.height, s = a.stiffness / (a.mass * kGravity * a.height);
+  const double T = a.damping / a.stiffness;
+  Eigen::Matrix2d motion, input;
+  motion << 0, 1, w2 * (1 - s), -w2 * s * T;
+  input << 0, 0, w2 * s, w2 * s * T;
+  loop.body = (Eigen::Matrix2d::Identity() - a.tick * motion).inverse();
+  loop.reference = loop.body * (a.tick * input);
+  loop.cog = Eigen::RowVector2d(1, 0);
+  loop.dcog = Eigen::RowVector2d(0, 1);
+  loop.zmp = Eigen::RowVector2d(s, s * T);
+  loop.zmp_reference << -s, -s * T;
+  return loop;
 }
 
 void expect_pole(const LoopAnalysis& analysis, Complex pole, double tolerance) {
