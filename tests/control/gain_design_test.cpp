@@ -186,6 +186,8 @@ TEST(GainDesign, GainsOutOfRangeAreRefused) {
       {ControllerKind::dtad, {{"q", -1}}, "gain q is -1; a gain must be a finite number that is"},
       {ControllerKind::dtad, {{"q", NAN}}, "gain q is nan; a gain must be a finite number"},
       {ControllerKind::dtad, {{"qq", 1}}, "dtad has no gain 'qq'; did you mean 'q'?"},
+      {ControllerKind::dtad, {{"sag", 1}}, " (known: k, d, "},
+      {ControllerKind::preview, {{"k", 1}}, "preview has no gain 'k'"},
       {ControllerKind::dtad, {{"q", 0}}, "q is 0; it must be above 0, because K = 1 + q"},
       {ControllerKind::dtad, {{"k", 2}}, "k and d must be given together"},
       {ControllerKind::dtad, {{"k", 2}, {"d", 1}, {"q", 1}}, "give either q, or k and d"},
