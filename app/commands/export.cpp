@@ -250,9 +250,8 @@ std::string log_of_table(const ExportOptions& options, const RunFolder& run) {
 
 // Every file of the folder is first compared with its hash in run.json.
 Source source_of_run(const ExportOptions& options, const Context& context) {
-  verify_run(options.input);
-  const RunFolder run = read_run(options.input);
-  const SimulationLog log = read_run_log(options.input, log_of_table(options, run));
+  const RunFolder run = read_run(options.input, ComparedFiles::all);
+  const SimulationLog& log = log_of_run(run, options.input, log_of_table(options, run));
   const RobotModel model = robot_of_log(context, options.robot, log, options.input);
   const CautiousTable table = table_of_run(options, run, log, model);
   Source source = source_of_table(options, context, table.reference, table.caution);
@@ -271,26 +270,29 @@ bool is_reference_table(const std::string& path) {
                                                        "\"ayumi.reference/") != std::string::npos);
 }
 
-// A table in a run folder belongs to this run, so the cautions of the run apply to the table.
-void verify_run_of(const fs::path& table) {
+// The text of a table. If it belongs to a run, the whole run must be as it was written.
+std::string text_of_table(const fs::path& table) {
   const fs::path folder = table.has_parent_path() ? table.parent_path() : fs::path(".");
-  if (!is_run_folder(folder)) return;
-  const std::vector<std::string> names = run_file_names(folder);
-  if (std::find(names.begin(), names.end(), table.filename().string()) != names.end())
-    verify_run(folder);
+  const std::string name = table.filename().string();
+  if (is_run_folder(folder)) {
+    const std::vector<std::string> names = run_file_names(folder);
+    if (std::find(names.begin(), names.end(), name) != names.end())
+      if (auto text = verify_run(folder, name)) return *std::move(text);
+  }
+  return read_file(table);
 }
 
 Source source_of(const ExportOptions& options, const Context& context) {
   if (fs::is_directory(options.input)) return source_of_run(options, context);
   refuse_log_file(options.input);
   if (!is_reference_table(options.input)) return source_of_pattern(options, context);
-  verify_run_of(options.input);
+  const std::string table = text_of_table(options.input);
   if (!options.servo.empty())
     fail(ErrorCode::usage, {options.input},
          "--servo cannot change the content of a table that exists; to "
          "choose the content, export the pattern or the run");
-  return source_of_table(options, context, read_reference(options.input),
-                         read_table_caution(options.input));
+  return source_of_table(options, context, parse_reference(table, options.input),
+                         parse_table_caution(table, options.input));
 }
 
 constexpr double kGltfRate = 60;  // rate of an animation's keys [Hz]; viewers interpolate linearly

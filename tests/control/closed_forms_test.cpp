@@ -48,9 +48,7 @@ Leap leap(double mass, double apex_height, double stoop_depth, bool until_no_for
   auto fz = [&](double z) { return -kp * z + mass * kGravity; };
   Motion s = {-stoop_depth, 0};
   while (until_no_force ? fz(s.x) > 0 : s.x < 0)
-    s = test::step(s, 1e-6, [&](const Motion& m) {
-      return pendulum_acceleration({0, 0, 0.2}, {0, 0, 0}, fz(m.x), mass).z();
-    });
+    s = test::step(s, 1e-6, [&](const Motion& m) { return vertical_acceleration(fz(m.x), mass); });
   return {s.x, s.x + s.v * s.v / (2 * kGravity)};
 }
 
@@ -71,7 +69,7 @@ TEST(ClosedForms, TouchdownOfEquation27StoopsByThePlannedDepth) {
   while (s.v < 0)
     s = test::step(s, 1e-6, [&](const Motion& m) {
       const double fz = -kp * m.x + mass * kGravity;
-      return pendulum_acceleration({0, 0, 0.2}, {0, 0, 0}, fz, mass).z();
+      return vertical_acceleration(fz, mass);
     });
   EXPECT_NEAR(s.x, -depth, 1e-6);
 }

@@ -171,7 +171,7 @@ double overshoot(double mass, double kp, double kd) {
   for (int k = 0; k < 40000; ++k) {
     s = test::step(s, 1e-4, [&](const Motion& m) {
       const double fz = -kp * m.x - kd * m.v + mass * kGravity;
-      return pendulum_acceleration({0, 0, 0.2}, {0, 0, 0}, fz, mass).z();
+      return vertical_acceleration(fz, mass);
     });
     lowest = std::min(lowest, s.x);
   }

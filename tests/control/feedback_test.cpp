@@ -83,6 +83,30 @@ TEST(Feedback, ShortTermTendsToEquation14) {
   EXPECT_EQ(short_term_acceleration(0, omega2, cog - ref), Vector2d(0, 0));
 }
 
+// The damping of rocking is proportional to the error up to a limit, which grows with the height
+// and with omega^2; beyond it, only the direction of the error counts.
+TEST(Feedback, RockingIsDampedUpToALimit) {
+  const double gain = 0.4, omega = 6.5, z = 0.22;
+  const Eigen::Vector3d reference(0.02, -0.01, 0.3);
+  const auto asked = [&](const Vector2d& error, double height, double rate) {
+    Estimate estimate;
+    estimate.dcog = reference;
+    estimate.dcog.head<2>() += error;
+    estimate.dcog.z() = -1;
+    return rocking_acceleration(gain, rate, height, reference, estimate);
+  };
+  const Vector2d error(3e-4, -4e-4);
+  EXPECT_LT((asked(error, z, omega) - gain * omega * error).norm(), 1e-12);
+  const Vector2d most = asked(1e5 * error, z, omega);
+  EXPECT_LT((asked(2e5 * error, z, omega) - most).norm(), 1e-12);
+  EXPECT_LT((most.normalized() - error.normalized()).norm(), 1e-12);
+  EXPECT_NEAR(asked(1e5 * error, 2 * z, omega).norm(), 2 * most.norm(), 1e-12);
+  EXPECT_NEAR(asked(1e5 * error, z, 2 * omega).norm(), 4 * most.norm(), 1e-12);
+  // Just below the limit it is still proportional.
+  const Vector2d below = 0.999 * most / (gain * omega);
+  EXPECT_LT((asked(below, z, omega) - 0.999 * most).norm(), 1e-12);
+}
+
 // (20) with critical damping does not overshoot.
 TEST(Feedback, LongTermForceBringsTheHeightBack) {
   const double mass = 6.5, omega = 6.6;

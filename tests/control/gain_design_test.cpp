@@ -19,8 +19,23 @@ using Complex = std::complex<double>;
 struct Ankle {
   double mass = 6.5, height = 0.22, stiffness = 150, damping = 3, tick = 1e-3, delay = 0.003;
 };
+
+/// The loop of a point mass on an ankle: x'' = w^2 (x + s (target - x - T x')). Rates are taken at
+/// the end of a tick.
 LoopModel loop_of(const Ankle& a) {
-  return pendulum_on_ankle(a.mass, a.height, a.stiffness, a.damping, a.tick, a.delay);
+  LoopModel loop{.name = "one ankle", .height = a.height, .tick = a.tick, .delay = a.delay};
+  const double w2 = kGravity / a.height, s = a.stiffness / (a.mass * kGravity * a.height);
+  const double T = a.damping / a.stiffness;
+  Eigen::Matrix2d motion, input;
+  motion << 0, 1, w2 * (1 - s), -w2 * s * T;
+  input << 0, 0, w2 * s, w2 * s * T;
+  loop.body = (Eigen::Matrix2d::Identity() - a.tick * motion).inverse();
+  loop.reference = loop.body * (a.tick * input);
+  loop.cog = Eigen::RowVector2d(1, 0);
+  loop.dcog = Eigen::RowVector2d(0, 1);
+  loop.zmp = Eigen::RowVector2d(s, s * T);
+  loop.zmp_reference << -s, -s * T;
+  return loop;
 }
 
 void expect_pole(const LoopAnalysis& analysis, Complex pole, double tolerance) {
@@ -171,6 +186,8 @@ TEST(GainDesign, GainsOutOfRangeAreRefused) {
       {ControllerKind::dtad, {{"q", -1}}, "gain q is -1; a gain must be a finite number that is"},
       {ControllerKind::dtad, {{"q", NAN}}, "gain q is nan; a gain must be a finite number"},
       {ControllerKind::dtad, {{"qq", 1}}, "dtad has no gain 'qq'; did you mean 'q'?"},
+      {ControllerKind::dtad, {{"sag", 1}}, " (known: k, d, "},
+      {ControllerKind::preview, {{"k", 1}}, "preview has no gain 'k'"},
       {ControllerKind::dtad, {{"q", 0}}, "q is 0; it must be above 0, because K = 1 + q"},
       {ControllerKind::dtad, {{"k", 2}}, "k and d must be given together"},
       {ControllerKind::dtad, {{"k", 2}, {"d", 1}, {"q", 1}}, "give either q, or k and d"},

@@ -118,52 +118,6 @@ TEST_P(Anchored, CogJacobianByASecondRoute) {
   EXPECT_LT((J - floating.rightCols(model.dof_count())).norm(), 1e-13 * J.norm());
 }
 
-// If the rates keep both feet at rest, the result for both supports is that for either one.
-TEST_P(Anchored, BothFeetAgreeWithEither) {
-  const Side side = GetParam();
-  const MatrixXd map = anchored_velocity_map(model, data, side);
-  const Isometry3d free = sole_pose(model, data, other(side));
-  const MatrixXd foot =
-      body_jacobian(model, data, model.sole(other(side)).body, free.translation()) * map;
-  const MatrixXd still = foot.fullPivLu().kernel();
-  ASSERT_GE(still.cols(), model.dof_count() - 6);
-  const MatrixXd both = both_feet_cog_jacobian(model, data) * still;
-  EXPECT_LT((both - cog_jacobian(model, data, side) * still).norm(), 1e-12 * still.norm());
-  // Rates that do move them are shared between the two.
-  const VectorXd velocity = both_feet_velocity_map(model, data) * dtheta;
-  auto slip = [&](const VectorXd& v) {
-    double sum = 0;
-    for (Side each : {Side::left, Side::right}) {
-      const Vector3d p = sole_pose(model, data, each).translation();
-      const VectorXd twist = body_jacobian(model, data, model.sole(each).body, p) * v;
-      sum += twist.head<3>().squaredNorm() + 0.04 * twist.tail<3>().squaredNorm();
-    }
-    return sum;
-  };
-  test::Random random(13);
-  for (int i = 0; i < 20; ++i) {
-    VectorXd nearby = velocity;
-    nearby.head<6>() += random.vector(6, 1e-3);
-    EXPECT_GT(slip(nearby), slip(velocity));
-  }
-}
-
-// In flight, the limbs move the base and do not change momentum and COG.
-TEST_P(Anchored, FlightKeepsMomentumAndCog) {
-  const VectorXd velocity = flight_velocity_map(model, data) * dtheta;
-  RobotState s = state;
-  s.base_velocity = velocity.head<3>();
-  s.base_angular_velocity = velocity.segment<3>(3);
-  s.dtheta = dtheta;
-  update_velocities(model, s, data);
-  const Momentum momentum = centroidal_momentum(model, data);
-  EXPECT_LT(momentum.linear.norm(), 1e-13 * model.mass());
-  EXPECT_LT(momentum.angular.norm(), 1e-13);
-  EXPECT_GT(s.base_angular_velocity.norm(), 0.01);
-  const MatrixXd floating = cog_jacobian_floating(model, data);
-  EXPECT_LT((floating * flight_velocity_map(model, data)).norm(), 1e-14);
-}
-
 INSTANTIATE_TEST_SUITE_P(Feet, Anchored, testing::Values(Side::left, Side::right),
                          [](const auto& side) { return name_of(side.param); });
 

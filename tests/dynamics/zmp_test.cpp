@@ -18,7 +18,9 @@ TEST(Pendulum, ForceThroughTheCogLeavesNoMoment) {
   for (int i = 0; i < 50; ++i) {
     const double mass = random.uniform(1, 50), fz = mass * random.uniform(2, 20);
     const Vector3d zmp = random.vector(0.1), cog = zmp + Vector3d(0.05, -0.1, 0.3);
-    const Vector3d a = pendulum_acceleration(cog, zmp, fz, mass);
+    const double omega2 = omega_squared(fz, mass, cog.z() - zmp.z());
+    Vector3d a(0, 0, vertical_acceleration(fz, mass));
+    a.head<2>() = horizontal_acceleration(omega2, cog.head<2>(), zmp.head<2>());
     const Vector3d force = mass * (a + Vector3d(0, 0, kGravity));
     EXPECT_LT((zmp - cog).cross(force).norm(), 1e-12 * force.norm());
     EXPECT_NEAR(force.z(), fz, 1e-12 * fz);

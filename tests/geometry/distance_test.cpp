@@ -11,6 +11,23 @@ using namespace ayumi::test;
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
+/// The distance between the segments a0-a1 and b0-b1, by capsules about them.
+double segment_distance(const Vector3d& a0, const Vector3d& a1, const Vector3d& b0,
+                        const Vector3d& b1) {
+  const auto about = [](const Vector3d& from, const Vector3d& to) {
+    Isometry3d pose = Isometry3d::Identity();
+    pose.translation() = 0.5 * (from + to);
+    if (to != from)
+      pose.linear() =
+          Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), to - from).toRotationMatrix();
+    return pose;
+  };
+  constexpr double kRadius = 0.25;
+  return clearance(Collider(Capsule{kRadius, (a1 - a0).norm()}), about(a0, a1),
+                   Collider(Capsule{kRadius, (b1 - b0).norm()}), about(b0, b1)) +
+         2 * kRadius;
+}
+
 TEST(Distance, SegmentsAgainstSampling) {
   Random random(1);
   for (int i = 0; i < 50; ++i) {

@@ -3,12 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstring>
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
@@ -358,6 +360,65 @@ TEST(RunFolderFile, SameRunSameBytesWhereverItIsWritten) {
        {"run.json", "log_open_loop.bin", "log_closed_loop.bin", "reference.csv"})
     EXPECT_EQ(read_file(folder / "one" / name), read_file(folder / "two" / name)) << name;
   EXPECT_EQ(read_file(folder / "one" / "run.json").find(folder.string()), std::string::npos);
+}
+
+/// Exchanges a file again and again for another one and back while it exists.
+class Exchange {
+ public:
+  Exchange(fs::path file, const fs::path& other) : file_(std::move(file)) {
+    fs::copy_file(file_, own());
+    thread_ = std::thread([this, other] {
+      const fs::path next = file_.string() + ".next";
+      for (bool back = false; !stop_; back = !back) {
+        fs::create_hard_link(back ? own() : other, next);
+        fs::rename(next, file_);
+      }
+    });
+  }
+  ~Exchange() {
+    stop_ = true;
+    thread_.join();
+    fs::rename(own(), file_);
+  }
+  Exchange(const Exchange&) = delete;
+  Exchange& operator=(const Exchange&) = delete;
+
+ private:
+  fs::path own() const { return file_.string() + ".own"; }
+  fs::path file_;
+  std::atomic<bool> stop_ = false;
+  std::thread thread_;
+};
+
+// What is taken has the recorded hash, even if the file is exchanged while it is read.
+TEST(RunFolderFile, WhatIsReadIsWhatWasCompared) {
+  const fs::path folder = fresh_folder(), other = folder / "other", run = folder / "run";
+  write_run(run, example());
+  RunFolder changed = example();
+  changed.logs["closed_loop"] = random_log(9);
+  for (ReferenceRow& row : changed.reference->rows) row.theta[0] = 0.3;
+  write_run(other, changed);
+  int refused = 0;
+  const auto repeat = [&](const char* name, const auto& use) {
+    const Exchange exchange(run / name, other / name);
+    int taken = 0;
+    for (int trial = 0; trial < 2000 && taken < 50; ++trial) {
+      try {
+        use();
+        ++taken;
+      } catch (const Error& error) {
+        ++refused;
+        EXPECT_NE(std::string(error.what()).find("has changed since the run was written"),
+                  std::string::npos)
+            << error.what();
+      }
+    }
+    EXPECT_GT(taken, 0) << name;
+  };
+  const std::string hash = log_hash(random_log(7));
+  repeat("log_closed_loop.bin", [&] { EXPECT_EQ(log_hash(read_run_log(run)), hash); });
+  repeat("reference.csv", [&] { EXPECT_EQ(read_run(run).reference->rows[0].theta[0], 0.1); });
+  EXPECT_GT(refused, 0);
 }
 
 TEST(RunFolderFile, SaysWhatIsWrong) {

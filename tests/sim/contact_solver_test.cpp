@@ -12,6 +12,26 @@ using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Eigen::VectorXd;
 
+/// The data of ContactSolver for as many contacts as there are friction coefficients.
+struct ContactProblem {
+  MatrixXd A;
+  VectorXd b;
+  std::vector<double> friction;
+};
+
+/// `impulse` is the initial guess and receives the solution.
+ContactSolution solve_contacts(const ContactProblem& problem, VectorXd& impulse) {
+  ContactSolver solver;
+  solver.resize(static_cast<int>(problem.friction.size()));
+  solver.A() = problem.A;
+  solver.b() = problem.b;
+  solver.impulse() = impulse;
+  solver.friction() = problem.friction;
+  const ContactSolution result = solver.solve();
+  impulse = solver.impulse();
+  return result;
+}
+
 /// A rigid body touches level ground in n points: A has rank 6, and the rest of A is only the
 /// compliance, as on a real sole.
 ContactProblem random_problem(test::Random& random, int n, double compliance) {

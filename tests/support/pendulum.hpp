@@ -35,7 +35,7 @@ struct LevelPendulum {
   double fz() const { return mass * kGravity; }
   double omega() const { return std::sqrt(omega_squared(fz(), mass, height)); }
   double acceleration(double x, double zmp) const {
-    return pendulum_acceleration({x, 0, height}, {zmp, 0, 0}, fz(), mass).x();
+    return horizontal_acceleration(omega_squared(fz(), mass, height), {x, 0}, {zmp, 0}).x();
   }
 };
 

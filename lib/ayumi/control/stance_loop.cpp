@@ -221,22 +221,6 @@ LoopModel stance_loop(Stance& stance, int axis, const LoopModel& like) {
 
 }  // namespace
 
-LoopModel pendulum_on_ankle(double mass, double height, double stiffness, double damping,
-                            double tick, double delay) {
-  LoopModel loop{.name = "one ankle", .height = height, .tick = tick, .delay = delay};
-  const double w2 = kGravity / height, s = stiffness / (mass * kGravity * height);
-  const double T = damping / stiffness;
-  Eigen::Matrix2d motion, input;
-  motion << 0, 1, w2 * (1 - s), -w2 * s * T;
-  input << 0, 0, w2 * s, w2 * s * T;
-  discretize(motion, input, loop);
-  loop.cog = RowVectorXd::Unit(2, 0);
-  loop.dcog = RowVectorXd::Unit(2, 1);
-  loop.zmp = Eigen::RowVector2d(s, s * T);
-  loop.zmp_reference << -s, -s * T;
-  return loop;
-}
-
 std::vector<LoopModel> stance_loops(const RobotModel& model, const ActuatorLimits& actuators,
                                     double height, double tick) {
   LoopModel like{.height = height, .tick = tick};

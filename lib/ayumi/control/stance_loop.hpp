@@ -29,11 +29,6 @@ struct LoopModel {
   Eigen::RowVector2d zmp_reference{0, 0};
 };
 
-/// The closed form for a point mass on an ankle of finite stiffness [N m/rad] and damping [N m
-/// s/rad].
-LoopModel pendulum_on_ankle(double mass, double height, double stiffness, double damping,
-                            double tick, double delay);
-
 /// The whole robot on both feet and on the left foot, forward and sideways; masses, rotors, servos
 /// and soles are those of the plant. `height` is that of the COG [m]. The delay is that of the
 /// sidecar's sensors plus the longest delay of the legs' servos. Throws Error(bad_model) for a leg

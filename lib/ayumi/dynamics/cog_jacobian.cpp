@@ -10,21 +10,15 @@
 // that product for comparison.
 #include "ayumi/dynamics/cog_jacobian.hpp"
 
-#include "ayumi/dynamics/inverse_dynamics.hpp"
 #include "ayumi/dynamics/kinematics.hpp"
 #include "ayumi/math/rotation.hpp"
 
 namespace ayumi {
 
-using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 
 namespace {
-
-// Length by which the turns of a sole are multiplied, to compare them with its shifts [m]. Chosen:
-// about the length of a foot; for joint rates that keep both soles at rest it has no influence.
-constexpr double kSoleTurnLength = 0.2;
 
 /// The velocity, per unit rate of joint i, of the point p (from the base origin) fixed to what the
 /// joint moves, and the turn of that part.
@@ -105,42 +99,6 @@ MatrixXd anchored_velocity_map(const RobotModel& model, const RobotData& data, S
   base.bottomRows<3>() = -J.bottomRightCorner(3, n);
   base.topRows<3>() = -J.topRightCorner(3, n) + skew(p) * base.bottomRows<3>();
   return with_joints(base);
-}
-
-// The normal equations of the minimum of the sum over the feet of
-//   |v + w x p + linear|^2 + L^2 |w + angular|^2.
-MatrixXd both_feet_velocity_map(const RobotModel& model, const RobotData& data) {
-  constexpr double kSquare = kSoleTurnLength * kSoleTurnLength;
-  Eigen::Matrix<double, 6, 6> A = Eigen::Matrix<double, 6, 6>::Zero();
-  MatrixXd b = MatrixXd::Zero(6, model.dof_count());
-  for (Side side : {Side::left, Side::right}) {
-    const Sole& sole = model.sole(side);
-    const auto foot = static_cast<size_t>(sole.body);
-    const Vector3d p = data.position[foot] + data.rotation[foot] * sole.frame.translation();
-    const Matrix3d cross = skew(p);
-    A.topLeftCorner<3, 3>() += Matrix3d::Identity();
-    A.topRightCorner<3, 3>() -= cross;
-    A.bottomLeftCorner<3, 3>() += cross;
-    A.bottomRightCorner<3, 3>() += kSquare * Matrix3d::Identity() - cross * cross;
-    for (int i = sole.body; i > 0; i = model.bodies()[static_cast<size_t>(i)].parent) {
-      const Body& body = model.bodies()[static_cast<size_t>(i)];
-      const PointRate rate = point_rate(body, data, static_cast<size_t>(i), p);
-      b.col(body.dof).head<3>() -= rate.linear;
-      b.col(body.dof).tail<3>() -= p.cross(rate.linear) + kSquare * rate.angular;
-    }
-  }
-  return with_joints(A.llt().solve(b));
-}
-
-MatrixXd both_feet_cog_jacobian(const RobotModel& model, RobotData& data) {
-  return cog_jacobian_floating(model, data) * both_feet_velocity_map(model, data);
-}
-
-MatrixXd flight_velocity_map(const RobotModel& model, RobotData& data) {
-  MatrixXd M;
-  mass_matrix(model, data, M);
-  const Eigen::Matrix<double, 6, 6> base = M.topLeftCorner<6, 6>();
-  return with_joints(-base.llt().solve(M.topRightCorner(6, model.dof_count())));
 }
 
 }  // namespace ayumi

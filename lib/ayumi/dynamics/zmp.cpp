@@ -29,12 +29,6 @@ double omega_squared(double fz, double mass, double height_above_zmp) {
 
 double vertical_acceleration(double fz, double mass) { return fz / mass - kGravity; }
 
-Vector3d pendulum_acceleration(const Vector3d& cog, const Vector3d& zmp, double fz, double mass) {
-  const double w2 = omega_squared(fz, mass, cog.z() - zmp.z());
-  const Eigen::Vector2d level = horizontal_acceleration(w2, cog.head<2>(), zmp.head<2>());
-  return {level.x(), level.y(), vertical_acceleration(fz, mass)};
-}
-
 Vector3d pendulum_zmp(const Vector3d& cog, const Vector3d& ddcog, double ground) {
   const double inverse = (cog.z() - ground) / (ddcog.z() + kGravity);
   return {cog.x() - inverse * ddcog.x(), cog.y() - inverse * ddcog.y(), ground};

@@ -31,10 +31,6 @@ inline Eigen::Vector2d horizontal_acceleration(double omega2, const Eigen::Vecto
 /// (16): vertical COG acceleration [m/s^2].
 double vertical_acceleration(double fz, double mass);
 
-/// The COG acceleration of (14)-(16) with (17).
-Eigen::Vector3d pendulum_acceleration(const Eigen::Vector3d& cog, const Eigen::Vector3d& zmp,
-                                      double fz, double mass);
-
 /// DCM, the divergent component of motion x + dx / omega, which obeys dcm' = omega (dcm - zmp).
 inline Eigen::Vector3d divergent_component(const Eigen::Vector3d& cog, const Eigen::Vector3d& dcog,
                                            double omega) {

@@ -135,10 +135,4 @@ double clearance_along(const Vector3d& direction, const Collider& a, const Isome
          a.rounding() - b.rounding();
 }
 
-double segment_distance(const Vector3d& a0, const Vector3d& a1, const Vector3d& b0,
-                        const Vector3d& b1) {
-  const SegmentPoints p = nearest_on_segments(a0, a1, b0, b1);
-  return (p.on_b - p.on_a).norm();
-}
-
 }  // namespace ayumi

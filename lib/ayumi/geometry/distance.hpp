@@ -71,8 +71,4 @@ double clearance_along(const Eigen::Vector3d& direction, const Collider& a,
                        const Eigen::Isometry3d& pose_a, const Collider& b,
                        const Eigen::Isometry3d& pose_b);
 
-/// The distance between the segments a0-a1 and b0-b1 [m].
-double segment_distance(const Eigen::Vector3d& a0, const Eigen::Vector3d& a1,
-                        const Eigen::Vector3d& b0, const Eigen::Vector3d& b1);
-
 }  // namespace ayumi

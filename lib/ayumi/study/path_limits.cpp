@@ -291,11 +291,10 @@ PathLimits::UniformPace PathLimits::uniform_pace() {
   double most = options_.most_pace * options_.most_pace;
   for (size_t i = 0; i < timing_.size(); ++i) {
     most = std::min(most, timing_[i].most);
-    for (size_t r = 0; r < timing_[i].rows.size(); ++r) {
-      const TimingRow& row = timing_[i].rows[r];
-      result.keeps = result.keeps && row.x <= row.most + 1e-9;
-      if (origins_[i][r]->kind->name != kSupportRows && row.x > 0)
-        most = std::min(most, row.most / row.x);
+    for (const PathRow& at : rows_at(static_cast<int>(i))) {
+      result.keeps = result.keeps && at.row.x <= at.row.most + 1e-9;
+      if (at.kind->name != kSupportRows && at.row.x > 0)
+        most = std::min(most, at.row.most / at.row.x);
     }
   }
   result.pace = std::sqrt(std::max(0.0, most));
@@ -313,13 +312,12 @@ std::vector<BindingLimit> PathLimits::binding(const std::vector<double>& u,
     std::string limit;
     double least = kBinds;
     for (size_t end : {i, i + 1}) {  // the rows of both ends also hold for u
-      for (size_t r = 0; r < timing_[end].rows.size(); ++r) {
-        const TimingRow& row = timing_[end].rows[r];
+      for (const auto& [kind, item, row] : rows_at(static_cast<int>(end))) {
         const double room = row.most - row.u * u[i] - row.x * x[end];
         const double size = std::abs(row.u * u[i]) + std::abs(row.x * x[end]) + std::abs(row.most);
         if (room >= least * size) continue;
         least = room / size;
-        limit = origins_[end][r]->kind->name;
+        limit = kind->name;
       }
     }
     if (x[i] >= point.most * (1 - kBinds)) limit = cap_[i] ? cap_[i]->name : "pace";
@@ -336,14 +334,13 @@ std::vector<BindingLimit> PathLimits::binding(const std::vector<double>& u,
 }
 
 std::string PathLimits::broken_at(int point) const {
-  const auto i = static_cast<size_t>(point);
   std::string names;
   const auto add = [&](const char* name) {
     if (names.find(name) == std::string::npos)
       names += (names.empty() ? "" : ", ") + std::string(name);
   };
-  for (size_t r = 0; r < timing_[i].rows.size(); ++r)
-    if (timing_[i].rows[r].most < 0) add(origins_[i][r]->kind->name);
+  for (const PathRow& at : rows_at(point))
+    if (at.row.most < 0) add(at.kind->name);
   return names;
 }
 

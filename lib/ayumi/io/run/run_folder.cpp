@@ -1,5 +1,10 @@
 #include "ayumi/io/run/run_folder.hpp"
 
+#include <algorithm>
+#include <exception>
+#include <set>
+
+#include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/regular_file.hpp"
 #include "ayumi/base/text.hpp"
@@ -27,6 +32,8 @@ constexpr const char* kSizesKey = "file_bytes";
 constexpr const char* kSealKey = "contents_sha256";
 // Largest size of a file of a run [bytes]. Chosen: a log of half an hour at 1 kHz is smaller.
 constexpr size_t kLargestRunFile = size_t{4} << 30;
+// Largest size of a table of a run [bytes]: that of read_file().
+constexpr size_t kLargestText = size_t{1} << 30;
 
 size_t size_of(const fs::path& file) { return RegularFile(file, kLargestRunFile).stated_size(); }
 
@@ -100,26 +107,70 @@ std::string sealed(const std::string& object) {
 
 constexpr const char* kOtherHash = "its SHA-256 differs from the value";
 
-// The difference between a file of a run and what its run.json records; empty if there is none. The
-// size comes first, because it takes no time; runs of versions before 0.3.0 have no sizes.
-std::string difference(const fs::path& file, const JsonNode& root, const JsonNode& hash,
-                       const std::string& name) {
-  const auto sizes = root.find(kSizesKey);
-  if (const auto recorded = sizes ? sizes->find(name) : std::nullopt) {
-    const size_t size = size_of(file);
-    if (recorded->unsigned_integer() != size)
-      return "it has " + std::to_string(size) + " bytes, but " +
-             std::to_string(recorded->unsigned_integer());
+// A file of a run. The bytes that are hashed are those that are read.
+class HashedFile {
+ public:
+  explicit HashedFile(const fs::path& path, size_t max_bytes = kLargestRunFile)
+      : file_(path, max_bytes) {}
+  size_t size() const { return file_.stated_size(); }
+  std::string next(size_t count) {
+    std::string bytes = file_.next(count);
+    hash_.add(bytes);
+    return bytes;
   }
-  return hash.string() == sha256_of_file(file, kLargestRunFile) ? "" : kOtherHash;
+  // The hash of the whole file. Nothing may be read afterwards.
+  std::string digits() {
+    constexpr size_t kPiece = size_t{1} << 20;  // chosen: calls of the system then cost nothing
+    while (!next(kPiece).empty()) continue;
+    return hash_.digits();
+  }
+
+ private:
+  RegularFile file_;
+  Sha256Stream hash_;
+};
+
+// The difference between the size of a file of a run and the one that its run.json records; empty
+// if there is none. The size comes first, because it takes no time; runs of versions before 0.3.0
+// have no sizes.
+std::string other_size(const HashedFile& file, const JsonNode& root, const std::string& name) {
+  const auto sizes = root.find(kSizesKey);
+  const auto recorded = sizes ? sizes->find(name) : std::nullopt;
+  if (!recorded || recorded->unsigned_integer() == file.size()) return "";
+  return "it has " + std::to_string(file.size()) + " bytes, but " +
+         std::to_string(recorded->unsigned_integer());
 }
 
+// What `use` makes of a file of the run, after its bytes were compared with what run.json records.
 // Files that run.json does not list are not compared.
-void require_unchanged(const fs::path& folder, const JsonNode& root, const std::string& name) {
+template <typename Use>
+auto use_unchanged(const fs::path& folder, const JsonNode& root, const std::string& name,
+                   size_t max_bytes, const Use& use) {
+  const fs::path path = folder / name;
+  HashedFile file(path, max_bytes);
   const auto recorded = root.at("files").find(name);
-  if (!recorded) return;
-  const std::string what = difference(folder / name, root, *recorded, name);
-  if (!what.empty()) complain_of_change(folder / name, what);
+  if (!recorded) return use(file);
+  if (const std::string what = other_size(file, root, name); !what.empty())
+    complain_of_change(path, what);
+  std::optional<decltype(use(file))> used;
+  std::exception_ptr error;
+  try {
+    used = use(file);
+  } catch (const Error&) {  // that the file has changed is the better message
+    error = std::current_exception();
+  }
+  if (recorded->string() != file.digits()) complain_of_change(path, kOtherHash);
+  if (error) std::rethrow_exception(error);
+  return *std::move(used);
+}
+
+std::string unchanged_text(const fs::path& folder, const JsonNode& root, const std::string& name) {
+  return use_unchanged(folder, root, name, kLargestText,
+                       [](HashedFile& file) { return file.next(file.size()); });
+}
+
+void require_unchanged(const fs::path& folder, const JsonNode& root, const std::string& name) {
+  use_unchanged(folder, root, name, kLargestRunFile, [](HashedFile&) { return true; });
 }
 
 // The parsed run.json with its root.
@@ -136,6 +187,12 @@ struct RunFile {
                                  kRunFormat + "'");
     // Runs of versions before 0.2.0 are not sealed.
     if (root.has(kSealKey) && !is_sealed()) complain_of_change(path, kOtherHash);
+  }
+  void require_seal() const {
+    if (!is_sealed())
+      root().complain(std::string("the member '") + kSealKey +
+                      "' is missing: the file has changed, or an older version wrote it; make the "
+                      "run again");
   }
   bool is_sealed() const {
     const size_t at = text.rfind(std::string(",\n  \"") + kSealKey + "\"");
@@ -160,9 +217,27 @@ struct RunFile {
 };
 
 SimulationLog log_of(const fs::path& folder, const JsonNode& root, const std::string& name) {
-  const std::string file = root.at("logs").at(name).at("file").string();
-  require_unchanged(folder, root, file);
-  return read_log(folder / file);
+  const std::string log = root.at("logs").at(name).at("file").string();
+  return use_unchanged(folder, root, log, kLargestRunFile, [&](HashedFile& file) {
+    return read_log([&](size_t count) { return file.next(count); }, file.size(),
+                    (folder / log).string());
+  });
+}
+
+// The name of the log that is meant by `name`, which may be empty.
+std::string chosen_log(const fs::path& folder, const std::vector<std::string>& names,
+                       const std::string& name) {
+  const SourcePlace place{(folder / kRunFile).string(), "/logs"};
+  if (names.empty()) fail(ErrorCode::bad_file, place, "the run holds no simulation log");
+  const auto has = [&](const std::string& log) {
+    return std::find(names.begin(), names.end(), log) != names.end();
+  };
+  if (name.empty()) return has("closed_loop") ? "closed_loop" : names.front();
+  if (!has(name))
+    fail(ErrorCode::bad_file, place,
+         "the run has no log '" + name + "'" + text::suggestion(name, names) + " (" +
+             text::join(names, ", ") + ")");
+  return name;
 }
 
 }  // namespace
@@ -204,22 +279,29 @@ bool is_file_of_run(const fs::path& folder, const fs::path& file) {
   const JsonNode root = run.root();
   const std::string name = file.filename().string();
   const auto recorded = root.at("files").find(name);
-  return recorded && difference(file, root, *recorded, name).empty();
+  if (!recorded) return false;
+  HashedFile bytes(file);
+  return other_size(bytes, root, name).empty() && recorded->string() == bytes.digits();
 }
 
-void verify_run(const fs::path& folder) {
+std::optional<std::string> verify_run(const fs::path& folder, const std::string& keep) {
   const RunFile file(folder);
   const JsonNode root = file.root();
-  if (!file.is_sealed())
-    root.complain(std::string("the member '") + kSealKey +
-                  "' is missing: the file has changed, or an older version wrote it; make the run "
-                  "again");
-  for (const auto& [name, hash] : root.at("files").members()) require_unchanged(folder, root, name);
+  file.require_seal();
+  std::optional<std::string> kept;
+  for (const auto& [name, hash] : root.at("files").members()) {
+    if (name == keep)
+      kept = unchanged_text(folder, root, name);
+    else
+      require_unchanged(folder, root, name);
+  }
+  return kept;
 }
 
-RunFolder read_run(const fs::path& folder) {
+RunFolder read_run(const fs::path& folder, ComparedFiles compared) {
   const RunFile file(folder);
   const JsonNode root = file.root();
+  if (compared == ComparedFiles::all) file.require_seal();
   RunFolder run;
   const JsonNode provenance = root.at("provenance");
   for_each_provenance(run.provenance, [&](const char* key, std::string& value) {
@@ -231,17 +313,22 @@ RunFolder read_run(const fs::path& folder) {
     run.reference_caution = caution_of(light->at("reference"));
     run.pushed_caution = caution_of(light->at("reference_pushed"));
   }
-  for (const auto& [name, node] : root.at("logs").members())
+  std::set<std::string> read;
+  for (const auto& [name, node] : root.at("logs").members()) {
     run.logs.emplace(name, log_of(folder, root, name));
+    read.insert(node.at("file").string());
+  }
   for (const auto& [name, hash] : root.at("files").members()) {
     if (name == kReferenceFile || name == kPushedFile) {
-      require_unchanged(folder, root, name);
+      const std::string text = unchanged_text(folder, root, name), path = (folder / name).string();
       const bool pushed = name == kPushedFile;
-      (pushed ? run.pushed : run.reference) = read_reference(folder / name);
-      (pushed ? run.pushed_caution : run.reference_caution) = read_table_caution(folder / name);
-    } else if (!name.starts_with("log_")) {
-      run.files.push_back(name);
+      (pushed ? run.pushed : run.reference) = parse_reference(text, path);
+      (pushed ? run.pushed_caution : run.reference_caution) = parse_table_caution(text, path);
+      continue;
     }
+    if (compared == ComparedFiles::all && !read.contains(name))
+      require_unchanged(folder, root, name);
+    if (!name.starts_with("log_")) run.files.push_back(name);
   }
   for (const auto& [key, node] : root.members())
     if (key != "format" && key != "tool" && key != "provenance" && key != "logs" &&
@@ -263,14 +350,14 @@ SimulationLog read_run_log(const fs::path& path, const std::string& name) {
   const JsonNode root = file.root();
   std::vector<std::string> names;
   for (const auto& entry : root.at("logs").members()) names.push_back(entry.first);
-  if (names.empty()) root.at("logs").complain("the run holds no simulation log");
-  std::string chosen = name;
-  if (chosen.empty()) chosen = root.at("logs").has("closed_loop") ? "closed_loop" : names.front();
-  if (!root.at("logs").has(chosen))
-    root.at("logs").complain("the run has no log '" + chosen + "'" +
-                             text::suggestion(chosen, names) + " (" + text::join(names, ", ") +
-                             ")");
-  return log_of(path, root, chosen);
+  return log_of(path, root, chosen_log(path, names, name));
+}
+
+const SimulationLog& log_of_run(const RunFolder& run, const fs::path& folder,
+                                const std::string& name) {
+  std::vector<std::string> names;
+  for (const auto& entry : run.logs) names.push_back(entry.first);
+  return run.logs.at(chosen_log(folder, names, name));
 }
 
 }  // namespace ayumi

@@ -52,20 +52,31 @@ std::vector<std::string> run_file_names(const std::filesystem::path& folder);
 bool is_file_of_run(const std::filesystem::path& folder, const std::filesystem::path& file);
 
 /// Throws Error(bad_file) that names the file if the run is not as it was written. run.json is
-/// compared with the SHA-256 of its own text, and every listed file with its own SHA-256.
-void verify_run(const std::filesystem::path& folder);
+/// compared with the SHA-256 of its own text, and every listed file with its own SHA-256. Returns
+/// the bytes of the listed file `keep` that were compared; nothing if there is no such file.
+std::optional<std::string> verify_run(const std::filesystem::path& folder,
+                                      const std::string& keep = "");
+
+/// The files of a run that are compared with run.json: those that are read, or all as by
+/// verify_run().
+enum class ComparedFiles { read, all };
 
 /// Reads the run. Throws Error(bad_file) that names the file if it is not a run, has another
-/// format, or if a log is missing, truncated or changed (by its fingerprint).
-RunFolder read_run(const std::filesystem::path& folder);
+/// format, or if a file is missing, truncated or changed (by its fingerprint). What is read is what
+/// was compared, even if another process changes the files at the same time.
+RunFolder read_run(const std::filesystem::path& folder,
+                   ComparedFiles compared = ComparedFiles::read);
 
 /// The JSON text of one member of run.json ("check"); empty if there is none, and for a log file.
 /// Throws the same errors as read_run().
 std::string read_run_section(const std::filesystem::path& path, const std::string& key);
 
-/// One log of a run: the one with this name, or else closed_loop, or else the only one. `path` may
+/// One log of a run: the one with this name, or else closed_loop, or else the first one. `path` may
 /// also be a log file itself.
 SimulationLog read_run_log(const std::filesystem::path& path, const std::string& name = "");
+/// The same log of a run that was read from `folder`.
+const SimulationLog& log_of_run(const RunFolder& run, const std::filesystem::path& folder,
+                                const std::string& name = "");
 
 /// Whether `path` is a folder with a run.json.
 bool is_run_folder(const std::filesystem::path& path);

@@ -287,10 +287,8 @@ struct LogHead {
   }
 };
 
-// Reads the part before the samples of a file of `size` bytes. next(n) returns the next n bytes of
-// the file, or fewer at its end.
-template <typename Next>
-LogHead read_head(const Next& next, size_t size, const std::string& file) {
+// Reads the part before the samples of a file of `size` bytes.
+LogHead read_head(const NextBytes& next, size_t size, const std::string& file) {
   const auto stop = [&](const std::string& reason) { fail(ErrorCode::bad_file, {file}, reason); };
   const std::string prefix = next(kPrefix);
   if (prefix.empty()) stop("the file is empty, but a simulation log is needed");
@@ -437,18 +435,22 @@ size_t most_log_rows(const std::vector<std::string>& joints) {
   return kMostBytes / (log_columns(joints) * sizeof(double));
 }
 
-SimulationLog read_log(const std::filesystem::path& path) {
-  RegularFile file(path, kMostBytes);
-  LogHead head =
-      read_head([&](size_t count) { return file.next(count); }, file.stated_size(), path.string());
+SimulationLog read_log(const NextBytes& next, size_t size, const std::string& file) {
+  LogHead head = read_head(next, size, file);
   // What the header does not announce is not read into memory.
-  const size_t rest = file.stated_size() - head.begin;
+  const size_t rest = size - head.begin;
   if (rest > head.most_bytes())
-    fail(ErrorCode::bad_file, {path.string()},
+    fail(ErrorCode::bad_file, {file},
          "the file is damaged: it has " + std::to_string(rest) + " bytes of samples, but " +
              std::to_string(head.rows) + " rows have at most " + std::to_string(head.most_bytes()));
-  const std::string values = file.next(rest);
-  return read_samples(std::move(head), values, path.string());
+  const std::string values = next(rest);
+  return read_samples(std::move(head), values, file);
+}
+
+SimulationLog read_log(const std::filesystem::path& path) {
+  RegularFile file(path, kMostBytes);
+  return read_log([&](size_t count) { return file.next(count); }, file.stated_size(),
+                  path.string());
 }
 
 void write_log(const std::filesystem::path& path, const SimulationLog& log) {

@@ -69,6 +69,10 @@ SimulationLog parse_log(const std::string& bytes, const std::string& file);
 /// Whether the file exists and begins as a log does.
 bool is_log_file(const std::filesystem::path& path);
 SimulationLog read_log(const std::filesystem::path& path);
+/// Gives the next bytes of a file: `count`, or fewer at its end.
+using NextBytes = std::function<std::string(size_t count)>;
+/// Reads the log of which `next` gives the `size` bytes; `file` is its name in messages.
+SimulationLog read_log(const NextBytes& next, size_t size, const std::string& file);
 void write_log(const std::filesystem::path& path, const SimulationLog& log);
 
 /// SHA-256 of plain_log_bytes without the command line. It is the same for the same motion of the

@@ -226,8 +226,11 @@ std::string reference_json(const ReferenceTrajectory& reference, const TableCaut
 }
 
 ReferenceTrajectory read_reference(const std::filesystem::path& path) {
-  const std::string file = path.string();
-  const NumberTable table = read_number_table(path);
+  return parse_reference(read_file(path), path.string());
+}
+
+ReferenceTrajectory parse_reference(const std::string& bytes, const std::string& file) {
+  const NumberTable table = number_table(bytes, file);
   require_format(table, kReferenceFormat, file);
   const TableLayout layout = layout_of(table, file);
   if (layout.joints.empty() || layout.cog.empty() || layout.zmp.empty() || layout.fz < 0 ||
@@ -261,15 +264,18 @@ ReferenceTrajectory read_reference(const std::filesystem::path& path) {
 }
 
 TableCaution read_table_caution(const std::filesystem::path& path) {
-  const std::string bytes = read_file(path);
-  if (!bytes.starts_with('#')) return caution_of(number_table(bytes, path.string()));
+  return parse_table_caution(read_file(path), path.string());
+}
+
+TableCaution parse_table_caution(const std::string& bytes, const std::string& file) {
+  if (!bytes.starts_with('#')) return caution_of(number_table(bytes, file));
   std::string head;
   for (size_t at = 0; at < bytes.size() && bytes[at] == '#';) {
     const size_t end = std::min(bytes.find('\n', at), bytes.size() - 1) + 1;
     head += bytes.substr(at, end - at);
     at = end;
   }
-  return caution_of(parse_csv(head + "\nt[s]\n0\n", path.string()));
+  return caution_of(parse_csv(head + "\nt[s]\n0\n", file));
 }
 
 void require_joints(const ReferenceTrajectory& reference, const std::vector<std::string>& joints,

@@ -24,12 +24,14 @@ std::string reference_json(const ReferenceTrajectory& reference, const TableCaut
 /// The part of the head of a table that describes its run. Throws Error(bad_file) if the file is
 /// not a table.
 TableCaution read_table_caution(const std::filesystem::path& path);
+TableCaution parse_table_caution(const std::string& bytes, const std::string& file);
 
 /// Reads the text of reference_csv or reference_json; the first character shows which one it is.
 /// Throws Error(bad_file) that names file and line or pointer for another format, missing or
 /// unknown columns, rows of unequal length, times that are not k dt, quaternions that are not unit
 /// (1e-6), and a table without rows.
 ReferenceTrajectory read_reference(const std::filesystem::path& path);
+ReferenceTrajectory parse_reference(const std::string& bytes, const std::string& file);
 
 /// Throws Error(bad_file) unless the table's joints are exactly `joints`, in this order.
 void require_joints(const ReferenceTrajectory& reference, const std::vector<std::string>& joints,

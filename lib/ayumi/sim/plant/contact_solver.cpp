@@ -329,17 +329,4 @@ ContactSolution ContactSolver::solve(double tolerance, int max_iterations) {
   return result;
 }
 
-ContactSolution solve_contacts(const ContactProblem& problem, Eigen::VectorXd& impulse,
-                               double tolerance, int max_iterations) {
-  ContactSolver solver;
-  solver.resize(static_cast<int>(problem.friction.size()));
-  solver.A() = problem.A;
-  solver.b() = problem.b;
-  solver.impulse() = impulse;
-  solver.friction() = problem.friction;
-  const ContactSolution result = solver.solve(tolerance, max_iterations);
-  impulse = solver.impulse();
-  return result;
-}
-
 }  // namespace ayumi

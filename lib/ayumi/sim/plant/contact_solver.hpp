@@ -10,18 +10,6 @@
 
 namespace ayumi {
 
-/// For each contact i (rows 3i..3i+2: normal, tangent 1, tangent 2) the impulse l [N s] and the
-/// shifted velocity u = A l + b [m/s] obey
-///   0 <= u_n  perpendicular to  l_n >= 0,
-///   |l_t| <= mu l_n;  u_t = 0 where the inequality is strict, else l_t = -s u_t with s >= 0.
-/// A is the Delassus matrix with the compliance of each contact added on its diagonal (symmetric
-/// positive definite), so the solution does not depend on how many points share a load.
-struct ContactProblem {
-  Eigen::MatrixXd A;             ///< matrix of 3n x 3n [1/kg]
-  Eigen::VectorXd b;             ///< vector of 3n entries [m/s]
-  std::vector<double> friction;  ///< friction coefficient of each contact
-};
-
 struct ContactSolution {
   int iterations = 0;   ///< number of sweeps and Newton steps
   double residual = 0;  ///< largest change of a shifted velocity in the last sweep or test [m/s]
@@ -47,6 +35,13 @@ inline bool inside_cone(const Eigen::Vector3d& l, double mu) {
   return l.tail<2>().squaredNorm() < most * most;
 }
 
+/// For each contact i (rows 3i..3i+2: normal, tangent 1, tangent 2) the impulse l [N s] and the
+/// shifted velocity u = A l + b [m/s] obey
+///   0 <= u_n  perpendicular to  l_n >= 0,
+///   |l_t| <= mu l_n;  u_t = 0 where the inequality is strict, else l_t = -s u_t with s >= 0.
+/// A is the Delassus matrix with the compliance of each contact added on its diagonal (symmetric
+/// positive definite), so the solution does not depend on how many points share a load.
+///
 /// Block Gauss-Seidel sweeps with the exact solution of each 3x3 contact, accelerated by Newton
 /// steps on all closed contacts. It keeps its workspace and allocates nothing after its largest
 /// problem.
@@ -59,12 +54,14 @@ class ContactSolver {
   using Matrix = Eigen::Map<Eigen::MatrixXd>;
   using Vector = Eigen::Map<Eigen::VectorXd>;
   int size() const { return n_; }
+  /// Matrix of 3n x 3n [1/kg].
   Matrix A() { return Matrix(store_[0].data(), 3 * n_, 3 * n_); }
+  /// Vector of 3n entries [m/s].
   Vector b() { return Vector(store_[1].data(), 3 * n_); }
   /// Initial guess, and then the solution [N s].
   Vector impulse() { return Vector(store_[2].data(), 3 * n_); }
   Eigen::Map<const Eigen::VectorXd> impulse() const { return {store_[2].data(), 3 * n_}; }
-  std::vector<double>& friction() { return friction_; }  ///< one for each contact
+  std::vector<double>& friction() { return friction_; }  ///< coefficient of each contact
   const std::vector<double>& friction() const { return friction_; }
 
   ContactSolution solve(double tolerance = kContactTolerance,
@@ -87,10 +84,5 @@ class ContactSolver {
   std::vector<double> friction_;
   std::vector<int> closed_;
 };
-
-/// Solves one problem; `impulse` (3n) is the initial guess and receives the solution.
-ContactSolution solve_contacts(const ContactProblem& problem, Eigen::VectorXd& impulse,
-                               double tolerance = kContactTolerance,
-                               int max_iterations = kMaxContactSweeps);
 
 }  // namespace ayumi
