@@ -64,8 +64,8 @@ struct Facet {
   std::array<std::uint32_t, 3> place, look;
   /// Bound below which none of its edges can be removed; 0 if it is not known.
   float least = 0;
-  /// Number of moves after which a triangle beside it was in the way, so that the bound is not valid
-  /// any more when something beside it changes.
+  /// Number of moves after which a triangle beside it was in the way, so that the bound is not
+  /// valid any more when something beside it changes.
   std::uint32_t blocked = kNever;
   bool gone = false;
 };
@@ -140,8 +140,8 @@ class Thinning {
       const Vector3d normal = doubled_area(facet);
       const double size = normal.norm();
       for (size_t k = 0; k < 3 && size > 0; ++k)
-        quadrics_[facet.place[k]].add_plane(
-            normal / size, -normal.dot(places_[facet.place[0]]) / size, size / 6);
+        quadrics_[facet.place[k]].add_plane(normal / size,
+                                            -normal.dot(places_[facet.place[0]]) / size, size / 6);
     }
     const auto color = [&](std::uint32_t facet) {
       return surface_.vertices[facets_[facet].look[0]].color;
@@ -233,8 +233,8 @@ class Thinning {
         if (place == from) place = to;
       const Vector3d before = doubled_area(facet), after = doubled_area(moved);
       const double cosine = before.dot(after);  // times the two lengths
-      if (cosine <= 0 || cosine * cosine <=
-                             kLeastTurn * kLeastTurn * before.squaredNorm() * after.squaredNorm())
+      if (cosine <= 0 ||
+          cosine * cosine <= kLeastTurn * kLeastTurn * before.squaredNorm() * after.squaredNorm())
         return false;
     }
     return true;
