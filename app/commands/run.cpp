@@ -118,6 +118,7 @@ class MainJob {
   StreamedRun closed_loop_;
   // The run without disturbances, if the pattern has disturbances.
   std::optional<StreamedRun> undisturbed_;
+  PngPicture snapshots_ = {};
   Json summary_ = Json::object();
 };
 
@@ -330,17 +331,13 @@ void MainJob::draw(const RobotModel& model, const std::shared_ptr<const RobotLoo
     write_drawing(output_->file(name), drawing, loci.png_scale);
     note_file(name);
   }
-  StripOptions strip;
-  strip.clip.title = title;
-  strip.clip.look = look;
-  strip.clip.picture.width = 400;
-  strip.clip.picture.height = 600;
-  write_strip(model, closed, output_->file("snapshots.png"), strip);
-  note_file("snapshots.png");
-  say("plot", "loci.svg, loci.png, snapshots.png");
   ClipOptions clip;
   clip.title = title;
   clip.look = look;
+  snapshots_ = snapshots_of_run(model, closed, clip);
+  write_file(output_->file("snapshots.png"), snapshots_.bytes);
+  note_file("snapshots.png");
+  say("plot", "loci.svg, loci.png, snapshots.png");
   clip.threads = context_.threads > 0
                      ? context_.threads
                      : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
@@ -356,7 +353,8 @@ void MainJob::write_report(const RobotModel& model, const std::shared_ptr<const 
                            const std::string& title) {
   ReportInput input = report_input(folder_, target_.string());
   if (!title.empty()) input.title = title;
-  const Report made = make_report(model, input, {.look = look}, context_.progress());
+  const Report made =
+      make_report(model, input, {.look = look, .snapshots = &snapshots_}, context_.progress());
   write_file(output_->file("report.html"), made.html);
   note_file("report.html");
   say("report",

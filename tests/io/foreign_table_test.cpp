@@ -142,6 +142,47 @@ TEST(ForeignTable, RoughAnglesAreSaid) {
   EXPECT_EQ(rough(1e3, smooth), "");
 }
 
+// Six columns of place and quaternion w x y z with these names, then a joint. The root turns by 90
+// degrees about z and moves along x.
+std::string rooted(const std::string& names) {
+  std::string text = "t," + names + ",l_elbow\n";
+  for (int k = 0; k < 9; ++k) {
+    const double turn = 10 * kDegree * k;
+    text += std::to_string(0.01 * k) + "," + std::to_string(0.1 * k) + ",0.5,0.25," +
+            std::to_string(std::cos(turn / 2)) + ",0,0," + std::to_string(std::sin(turn / 2)) +
+            "," + std::to_string(-0.01 * k) + "\n";
+  }
+  return text;
+}
+
+TEST(ForeignTable, ColumnsOfTheRootAreReadByTheirNames) {
+  for (const char* names :
+       {"root_x,root_y,root_z,root_qw,root_qx,root_qy,root_qz",
+        "base_pos_x,base_pos_y,base_pos_z,base_quat_w,base_quat_x,base_quat_y,base_quat_z",
+        "root_pos.x,root_pos.y,root_pos.z,root_rot.w,root_rot.x,root_rot.y,root_rot.z",
+        "Pelvis_X[m],Pelvis_Y[m],Pelvis_Z[m],qw,qx,qy,qz",
+        "/pose/position/x,/pose/position/y,/pose/position/z,/pose/orientation/w,"
+        "/pose/orientation/x,/pose/orientation/y,/pose/orientation/z",
+        "x,y,z,qw,qx,qy,qz"}) {
+    const ImportedMotion read_motion = read(rooted(names));
+    const std::vector<BasePose>& base = read_motion.motion.base;
+    ASSERT_EQ(base.size(), 9u) << names;
+    EXPECT_NEAR(base[8].position.x(), 0.8, 1e-6) << names;
+    EXPECT_NEAR(base[8].position.y(), 0.5, 1e-6) << names;
+    EXPECT_NEAR(base[8].position.z(), 0.25, 1e-6) << names;
+    EXPECT_NEAR(Eigen::AngleAxisd(base[8].attitude).angle(), 80 * kDegree, 1e-5) << names;
+  }
+  // Places of other links, and places without a quaternion, are not the root.
+  for (const char* names : {"left_foot_x,left_foot_y,left_foot_z,left_foot_qw,left_foot_qx,"
+                            "left_foot_qy,left_foot_qz",
+                            "root_x,root_y,root_z,a,b,c,d"})
+    EXPECT_NE(refusal(rooted(names)).find("of its 8 joints only l_elbow"), std::string::npos);
+  EXPECT_EQ(refusal("t,root_x,root_y,root_z,pelvis_x,pelvis_y,pelvis_z,qw,qx,qy,qz\n"
+                    "0,0,0,0,0,0,0,1,0,0,0\n0.1,0,0,0,0,0,0,1,0,0,0\n"),
+            "a.csv: the motion of the root may be in the columns of 'pelvis_x' and 'root_x'; keep "
+            "one of these groups");
+}
+
 TEST(ForeignTable, MistakesAreOneLine) {
   const std::string good = table("t,l_elbow,r_knee", ',', '.', 1, 1);
   EXPECT_EQ(refusal(good),

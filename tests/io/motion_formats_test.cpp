@@ -151,6 +151,8 @@ TEST(MotionFormats, VariantsOfOtherProgramsAreRead) {
            replaced(trajectory.substr(points), "\n", "\n      ") + "\n",
        "play-motion2", "points, as in ROS 1");
   same("% recorded\n" + written_as("zvs"), "zvs", "a comment");
+  same(replaced(written_as("zvs"), "(\\( .*[0-9]) ([-0-9.]+ \\))", "$1\n$2"), "zvs",
+       "rows over several lines");
 }
 
 std::string refusal_of(const std::string& bytes, const std::string& file = "m.dat",
@@ -245,6 +247,8 @@ TEST(MotionFormats, MistakesNameFileLineAndFormat) {
   EXPECT_EQ(told(refusal_of("0.02 2 ( 1 2 )\n0.02 2 ( 1 2\n")),
             "m.dat:2: the bracket ( is not closed, so the row was cut; copy the file again (read "
             "as mi-lib .zvs, because the rows have the form `dt n ( values )`");
+  EXPECT_TRUE(refusal_of("0.02 2 ( 1\n2 )\n0.02 2 ( 1\n0.02 2 ( 1 2 )\n")
+                  .starts_with("m.dat:3: the bracket ( is not closed"));
   EXPECT_NE(refusal_of(R"({"framerate": 50, "positions": {"0.0": {"l_knee": [1,5, 0]}}})")
                 .find("expected an angle, or [angle, speed], found 3 numbers"),
             std::string::npos);

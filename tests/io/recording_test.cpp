@@ -48,6 +48,24 @@ TEST(Recording, ReadsCountsSequencesAndNamedColumns) {
   EXPECT_FALSE(named.has[static_cast<size_t>(hoap1().find_dof("l_elbow"))]);
 }
 
+// The same recording as pandas, spreadsheets and other programs write it.
+TEST(Recording, NamesAndUnitsMayBeWrittenInOtherWays) {
+  const int knee = hoap1().find_dof("r_knee");
+  for (const char* text :
+       {"t,r_knee\n0,0.1\n0.005,0.2\n", ",t,r_knee\n0,0,0.1\n1,0.005,0.2\n",
+        "Time (ms);R_KNEE (rad)\n0;0,1\n5;0,2\n", "time [ms],r_knee_rad\n0,0.1\n5,0.2\n",
+        "timestamp,r_knee_deg\n1000,5.729577951308232\n"
+        "1000.005,11.459155902616465\n",
+        "TIME\tr_knee [deg]\n0\t5.729577951308232\n"
+        "0.005\t11.459155902616465\n"}) {
+    const AngleTable read = read_angles(text, "m.csv", hoap1());
+    EXPECT_NEAR(read.dt, 0.005, 1e-9) << text;
+    EXPECT_NEAR(read.theta(0, knee), 0.1, 1e-12) << text;
+    EXPECT_NEAR(read.theta(1, knee), 0.2, 1e-12) << text;
+    EXPECT_TRUE(read.timed) << text;
+  }
+}
+
 TEST(Recording, WhatIsNoRecordingGetsOneLine) {
   const std::string a = counts_row(2090), b = counts_row(2091);
   EXPECT_EQ(recording_error(""), "m.csv: the file is empty");
@@ -69,6 +87,10 @@ TEST(Recording, WhatIsNoRecordingGetsOneLine) {
   EXPECT_EQ(recording_error(a + ",7\n" + b + ",7\n"),
             "m.csv:1: column 23 is 7, but the robot 'hoap1' has 20 devices; is this a recording of "
             "another robot?");
+  EXPECT_EQ(recording_error("0.5" + a.substr(1) + "\n" + b + "\n"),
+            "m.csv:1: rows without names are counts, but 0.5 is not a whole number; if these are "
+            "angles, add a first row with the names of the columns, such as t[s] and "
+            "r_hip_yaw[rad]");
   std::string zeros;
   for (int c = 0; c < 23; ++c) zeros += c ? ",0" : "0";
   EXPECT_EQ(recording_error(zeros + "\n" + zeros + "\n"),
@@ -91,6 +113,9 @@ TEST(Recording, ATableWithGapsOrOtherUnitsGetsOneLine) {
             "degrees, give --unit deg");
   EXPECT_EQ(recording_error("t,r_knee[mm]\n0,45\n0.001,45\n"),
             "m.csv: column 'r_knee[mm]': the unit 'mm' is not rad, deg or counts");
+  EXPECT_EQ(recording_error("t,r_knee\n0,0.1\n5,0.1\n10,0.1\n"),
+            "m.csv: the times of 't' have no unit, and they increase by 5 per row; name the column "
+            "t[ms] or t[s]");
   EXPECT_TRUE(recording_error("t,knee\n0,0.1\n0.001,0.1\n")
                   .starts_with("m.csv: no column is a joint of 'hoap1'; its joints are r_hip_yaw"));
 }

@@ -35,13 +35,20 @@ class KeyNumbers {
         slots_[at] = static_cast<std::uint32_t>(keys_.size());
         return slots_[at] - 1;
       }
-      if (keys_[slots_[at] - 1] == key) return slots_[at] - 1;
+      if (is_same(keys_[slots_[at] - 1], key)) return slots_[at] - 1;
     }
   }
 
   size_t size() const { return keys_.size(); }
 
  private:
+  /// The operator == of arrays calls memcmp(), which takes longer for a few words.
+  static bool is_same(const Key& a, const Key& b) {
+    std::uint32_t differing = 0;
+    for (size_t i = 0; i < Words; ++i) differing |= a[i] ^ b[i];
+    return differing == 0;
+  }
+
   int shift_;
   std::vector<std::uint32_t> slots_;  // number of the key + 1; 0 for a free slot
   std::vector<Key> keys_;

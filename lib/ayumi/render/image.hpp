@@ -21,6 +21,12 @@ struct Image {
 /// The bytes of a PNG file.
 std::string encode_png(const Image& image);
 
+/// A picture as the content of a PNG file.
+struct PngPicture {
+  int width, height;  ///< size [pixel]
+  std::string bytes;
+};
+
 /// Writes the file whole or not at all. Throws Error(bad_file) with the path and the reason.
 void write_png(const std::filesystem::path& path, const Image& image);
 

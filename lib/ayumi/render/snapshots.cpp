@@ -82,6 +82,15 @@ Image draw_strip(const RobotModel& model, const SimulationLog& log, const StripO
   return clip.overlay.caption ? with_lines(tiled, tiles.front().height, renderer, last) : tiled;
 }
 
+PngPicture snapshots_of_run(const RobotModel& model, const SimulationLog& log, ClipOptions clip) {
+  StripOptions options;
+  options.clip = std::move(clip);
+  options.clip.picture.width = 400;
+  options.clip.picture.height = 600;
+  const Image strip = draw_strip(model, log, options);
+  return {strip.width, strip.height, encode_png(strip)};
+}
+
 void write_strip(const RobotModel& model, const SimulationLog& log,
                  const std::filesystem::path& path, const StripOptions& options) {
   write_png(path, draw_strip(model, log, options));

@@ -29,6 +29,10 @@ Image draw_sheet(const std::vector<Image>& tiles, int columns);
 Image draw_strip(const RobotModel& model, const SimulationLog& log, const StripOptions& options,
                  const Progress& progress = {}, std::vector<std::string>* notes = nullptr);
 
+/// The eight snapshots that go with a run, for its folder and its report. Throws the same errors as
+/// draw_strip() and encode_png().
+PngPicture snapshots_of_run(const RobotModel& model, const SimulationLog& log, ClipOptions clip);
+
 /// Writes the same as a PNG file, whole or not at all. Throws the same errors as draw_strip() and
 /// write_png().
 void write_strip(const RobotModel& model, const SimulationLog& log,

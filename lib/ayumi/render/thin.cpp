@@ -5,6 +5,8 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
+#include <utility>
 
 #include "ayumi/base/key_numbers.hpp"
 
@@ -27,6 +29,9 @@ constexpr float kSmooth = 0.985f;
 // Weight of the planes that keep outlines, as a multiple of the area of a square on the edge.
 // Chosen: an outline may move by a third of what a surface may.
 constexpr double kOutline = 10;
+// Factor that makes a bound in single precision smaller than the same bound in double precision.
+// Chosen: its distance from 1 is larger than the rounding (6e-8), and too small to cost a trial.
+constexpr double kBelow = 1 - 1e-6;
 
 /// A sum of weighted squared distances from planes, as a function of a point, and the sum of the
 /// weights.
@@ -43,17 +48,25 @@ struct Quadric {
     xx += o.xx, xy += o.xy, xz += o.xz, xd += o.xd, yy += o.yy, yz += o.yz, yd += o.yd;
     zz += o.zz, zd += o.zd, dd += o.dd, weight += o.weight;
   }
-  double at(const Vector3d& p) const {
+  double mean_at(const Vector3d& p) const {
     const double x = p.x(), y = p.y(), z = p.z();
-    return x * (xx * x + 2 * (xy * y + xz * z + xd)) + y * (yy * y + 2 * (yz * z + yd)) +
-           z * (zz * z + 2 * zd) + dd;
+    const double sum = x * (xx * x + 2 * (xy * y + xz * z + xd)) +
+                       y * (yy * y + 2 * (yz * z + yd)) + z * (zz * z + 2 * zd) + dd;
+    return weight > 0 ? sum / weight : 0;
   }
 };
+
+constexpr std::uint32_t kNever = 0xffffffff;
 
 /// A triangle by the places of its corners, and by their looks: the vertices whose normals and
 /// colours the corners have.
 struct Facet {
   std::array<std::uint32_t, 3> place, look;
+  /// Bound below which none of its edges can be removed; 0 if it is not known.
+  float least = 0;
+  /// Number of moves after which a triangle beside it was in the way, so that the bound is not
+  /// valid any more when something beside it changes.
+  std::uint32_t blocked = kNever;
   bool gone = false;
 };
 
@@ -121,41 +134,38 @@ class Thinning {
   }
 
   void measure() {
-    struct Side {
-      std::uint64_t edge;
-      std::uint32_t facet;
-    };
-    std::vector<Side> sides;
-    sides.reserve(3 * facets_.size());
     quadrics_.assign(places_.size(), {});
-    for (size_t i = 0; i < facets_.size(); ++i) {
-      const Facet& facet = facets_[i];
+    changed_.assign(places_.size(), 0);
+    for (const Facet& facet : facets_) {
       const Vector3d normal = doubled_area(facet);
       const double size = normal.norm();
-      for (size_t k = 0; k < 3; ++k) {
-        const std::uint64_t a = facet.place[k], b = facet.place[(k + 1) % 3];
-        sides.push_back({std::min(a, b) << 32 | std::max(a, b), static_cast<std::uint32_t>(i)});
-        if (size > 0)
-          quadrics_[facet.place[k]].add_plane(
-              normal / size, -normal.dot(places_[facet.place[0]]) / size, size / 6);
-      }
+      for (size_t k = 0; k < 3 && size > 0; ++k)
+        quadrics_[facet.place[k]].add_plane(normal / size,
+                                            -normal.dot(places_[facet.place[0]]) / size, size / 6);
     }
-    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-      return a.edge != b.edge ? a.edge < b.edge : a.facet < b.facet;
-    });
-    const auto color = [&](const Side& side) {
-      return surface_.vertices[facets_[side.facet].look[0]].color;
+    const auto color = [&](std::uint32_t facet) {
+      return surface_.vertices[facets_[facet].look[0]].color;
     };
-    for (size_t i = 0, end = 0; i < sides.size(); i = end) {
-      for (end = i; end < sides.size() && sides[end].edge == sides[i].edge;) ++end;
-      if (end - i == 2 && color(sides[i]) == color(sides[i + 1])) continue;
-      for (size_t k = i; k < end; ++k) keep_outline(sides[k].edge, facets_[sides[k].facet]);
+    list_neighbours();
+    // The edges from a place to places with a higher number, with a triangle of each.
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
+    for (std::uint32_t place = 0; place < places_.size(); ++place) {
+      edges.clear();
+      for (std::uint32_t n = first_[place]; n < first_[place + 1]; ++n)
+        for (const std::uint32_t other : facets_[around_[n]].place)
+          if (other > place) edges.emplace_back(other, around_[n]);
+      std::sort(edges.begin(), edges.end());
+      for (size_t i = 0, end = 0; i < edges.size(); i = end) {
+        for (end = i; end < edges.size() && edges[end].first == edges[i].first;) ++end;
+        if (end - i == 2 && color(edges[i].second) == color(edges[i + 1].second)) continue;
+        for (size_t k = i; k < end; ++k)
+          keep_outline(place, edges[k].first, facets_[edges[k].second]);
+      }
     }
   }
 
   /// Adds a plane through the edge that is perpendicular to the triangle.
-  void keep_outline(std::uint64_t edge, const Facet& facet) {
-    const auto a = static_cast<std::uint32_t>(edge >> 32), b = static_cast<std::uint32_t>(edge);
+  void keep_outline(std::uint32_t a, std::uint32_t b, const Facet& facet) {
     const Vector3d along = places_[b] - places_[a];
     const Vector3d normal = along.cross(doubled_area(facet));
     const double size = normal.norm();
@@ -181,17 +191,37 @@ class Thinning {
   void go_through(double most) {
     list_neighbours();
     settled_.assign(places_.size(), false);
-    for (size_t i = 0; i < facets_.size(); ++i)
-      for (size_t k = 0; k < 6 && !facets_[i].gone; ++k) {
-        const std::uint32_t from = facets_[i].place[k % 3];
-        const std::uint32_t to = facets_[i].place[(k % 3 + 1 + k / 3) % 3];
-        if (settled_[from] || settled_[to]) continue;
-        const Quadric &a = quadrics_[from], &b = quadrics_[to];
-        // The two sums are tested separately, because the mean over a large plane nearby would hide
-        // a step.
-        if (a.at(places_[to]) > most * a.weight || b.at(places_[to]) > most * b.weight) continue;
-        if (can_move(from, to)) move(from, to);
+    for (Facet& facet : facets_) {
+      if (facet.gone || (double(facet.least) > most && is_valid(facet))) continue;
+      double least = std::numeric_limits<double>::infinity();
+      facet.blocked = kNever;
+      for (size_t k = 0; k < 6 && !facet.gone; ++k) {
+        const std::uint32_t from = facet.place[k % 3];
+        const std::uint32_t to = facet.place[(k % 3 + 1 + k / 3) % 3];
+        if (settled_[from] || settled_[to]) {
+          least = 0;  // it can move in the next round
+          continue;
+        }
+        // The two means are tested separately, because the mean of both over a large plane nearby
+        // would hide a step.
+        double mean = quadrics_[from].mean_at(places_[to]);
+        if (mean <= most) mean = std::max(mean, quadrics_[to].mean_at(places_[to]));
+        if (mean > most)
+          least = std::min(least, mean);
+        else if (can_move(from, to))
+          move(from, to);
+        else
+          facet.blocked = moves_;
       }
+      facet.least = static_cast<float>(kBelow * least);
+    }
+  }
+
+  /// Whether what blocked the edges of the facet is still there.
+  bool is_valid(const Facet& facet) const {
+    return facet.blocked == kNever ||
+           std::all_of(facet.place.begin(), facet.place.end(),
+                       [&](std::uint32_t place) { return changed_[place] <= facet.blocked; });
   }
 
   bool can_move(std::uint32_t from, std::uint32_t to) const {
@@ -202,7 +232,9 @@ class Thinning {
       for (std::uint32_t& place : moved.place)
         if (place == from) place = to;
       const Vector3d before = doubled_area(facet), after = doubled_area(moved);
-      if (before.dot(after) <= kLeastTurn * std::sqrt(before.squaredNorm() * after.squaredNorm()))
+      const double cosine = before.dot(after);  // times the two lengths
+      if (cosine <= 0 ||
+          cosine * cosine <= kLeastTurn * kLeastTurn * before.squaredNorm() * after.squaredNorm())
         return false;
     }
     return true;
@@ -223,15 +255,19 @@ class Thinning {
     for (std::uint32_t n = first_[to]; n < first_[to + 1]; ++n) {
       Facet& facet = facets_[around_[n]];
       if (facet.gone) continue;
+      facet.least = 0;
       const std::uint32_t look = facet.look[corner_at(facet, to)];
       looks_.push_back(look);
       if (!has(facet, from)) continue;
       joined_.emplace_back(facet.look[corner_at(facet, from)], look);
       facet.gone = true;
     }
+    ++moves_;
     for (std::uint32_t n = first_[from]; n < first_[from + 1]; ++n) {
       Facet& facet = facets_[around_[n]];
+      for (const std::uint32_t place : facet.place) changed_[place] = moves_;
       if (facet.gone) continue;
+      facet.least = 0;
       const size_t corner = corner_at(facet, from);
       facet.place[corner] = to;
       facet.look[corner] = look_at_end(facet.look[corner]);
@@ -271,6 +307,8 @@ class Thinning {
   std::vector<Quadric> quadrics_;              // quadric by place
   std::vector<std::uint32_t> first_, around_;  // facets around each place
   std::vector<bool> settled_;                  // places that are settled in this round
+  std::uint32_t moves_ = 0;                    // number of moves up to now
+  std::vector<std::uint32_t> changed_;         // number of the last move beside each place
   std::vector<std::pair<std::uint32_t, std::uint32_t>> joined_;
   std::vector<std::uint32_t> looks_;
 };

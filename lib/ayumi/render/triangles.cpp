@@ -182,6 +182,10 @@ double agreement(const Triangles& surface) {
 
 void append(Triangles& target, const Triangles& part, const Eigen::Isometry3d& pose) {
   const auto offset = static_cast<std::uint32_t>(target.vertices.size());
+  if (offset == 0) {  // most bodies have one large part
+    target.vertices.reserve(part.vertices.size());
+    target.indices.reserve(part.indices.size());
+  }
   for (RenderVertex vertex : part.vertices) {
     vertex.position = (pose * vertex.position.cast<double>()).cast<float>();
     vertex.normal = (pose.linear() * vertex.normal.cast<double>()).cast<float>();

@@ -81,10 +81,10 @@ std::string loci_section(const RobotModel& model, const ReportInput& input) {
                            curves(model, input, kNarrowCurves, "narrow-curves"));
 }
 
-std::string picture(const Image& image, const std::string& words) {
-  return "<img width=\"" + std::to_string(image.width) + "\" height=\"" +
-         std::to_string(image.height) + "\" alt=\"" + escaped(words) +
-         "\" src=\"data:image/png;base64," + html::base64(encode_png(image)) + "\">";
+std::string picture(const PngPicture& picture, const std::string& words) {
+  return "<img width=\"" + std::to_string(picture.width) + "\" height=\"" +
+         std::to_string(picture.height) + "\" alt=\"" + escaped(words) +
+         "\" src=\"data:image/png;base64," + html::base64(picture.bytes) + "\">";
 }
 
 std::string poster(const RobotModel& model, std::shared_ptr<const RobotLook> look,
@@ -96,19 +96,13 @@ std::string poster(const RobotModel& model, std::shared_ptr<const RobotLook> loo
   options.picture.height = 576;
   options.title = input.title;
   const double t = telling_instant(log);
-  return picture(ClipRenderer(model, log, options).frame(t), "The robot " + model.name() + " at " +
-                                                                 text::fixed(t, 2) + " s of the " +
-                                                                 html::name_of(input.runs.back()));
+  const Image frame = ClipRenderer(model, log, options).frame(t);
+  return picture({frame.width, frame.height, encode_png(frame)},
+                 "The robot " + model.name() + " at " + text::fixed(t, 2) + " s of the " +
+                     html::name_of(input.runs.back()));
 }
 
-std::string snapshots_section(const RobotModel& model, std::shared_ptr<const RobotLook> look,
-                              const ReportInput& input) {
-  StripOptions options;
-  options.clip.look = std::move(look);
-  options.clip.title = input.title;
-  options.clip.picture.width = 320;
-  options.clip.picture.height = 480;
-  const Image strip = draw_strip(model, *input.runs.back().log, options);
+std::string snapshots_section(const PngPicture& strip, const ReportInput& input) {
   return html::section(
       "snapshots", "Snapshots",
       "<figure>" +
@@ -280,7 +274,13 @@ Report make_report(const RobotModel& model, const ReportInput& as_logged,
   report(progress, {"report", 0.2, "pictures"});
   const std::shared_ptr<const RobotLook> look = options.look ? options.look : robot_look(model);
   pieces.poster = poster(model, look, input);
-  pieces.snapshots = snapshots_section(model, look, input);
+  ClipOptions clip;
+  clip.look = look;
+  clip.title = input.title;
+  pieces.snapshots = snapshots_section(
+      options.snapshots ? *options.snapshots
+                        : snapshots_of_run(model, *input.runs.back().log, std::move(clip)),
+      input);
   report(progress, {"report", 0.7, "page"});
   size_t allowed = std::min(options.max_triangles, triangle_count(look->surface));
   for (;;) {

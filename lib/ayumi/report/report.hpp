@@ -12,6 +12,7 @@
 #include "ayumi/io/run/run_results.hpp"
 #include "ayumi/model/robot_model.hpp"
 #include "ayumi/render/frames.hpp"
+#include "ayumi/render/image.hpp"
 #include "ayumi/render/robot_look.hpp"
 #include "ayumi/sim/simulation_log.hpp"
 
@@ -36,6 +37,8 @@ struct ReportInput {
 
 struct ReportOptions {
   std::shared_ptr<const RobotLook> look = {};  ///< look of the robot; null for robot_look() of it
+  /// snapshots_of_run() of the last run; if null, they are drawn.
+  const PngPicture* snapshots = nullptr;
   size_t max_bytes = 8'000'000;   ///< size of the page; replay and pictures are reduced to keep it
   double rate = 50;               ///< rate of the replay [Hz]
   size_t max_triangles = 60'000;  ///< triangles of the robot in the replay

@@ -510,7 +510,10 @@ Rows even_rows(const MotionFile& motion, const Rows& rows, const ImportOptions& 
   if (last > static_cast<double>(kMostRows))
     fail(ErrorCode::bad_file, {file},
          "the motion lasts " + text::brief(times.back()) + " s, which is more than " +
-             std::to_string(kMostRows) + " rows at this rate; cut the file");
+             std::to_string(kMostRows) + " rows at this rate; cut the file" +
+             (motion.unit == MotionFile::Unit::of_columns
+                  ? ", or name the column of its times t[ms] if they are in milliseconds"
+                  : ""));
   const Eigen::Index count =
       spacing.even && !keys ? rows.rows() : static_cast<Eigen::Index>(std::floor(last + 1e-3)) + 1;
   if (keys)

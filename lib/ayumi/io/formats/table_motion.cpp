@@ -1,7 +1,6 @@
 #include "ayumi/io/formats/table_motion.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 
@@ -10,6 +9,7 @@
 #include "ayumi/io/degrees.hpp"
 #include "ayumi/io/table/comma_cells.hpp"
 #include "ayumi/io/table/csv_dialect.hpp"
+#include "ayumi/io/table/root_columns.hpp"
 #include "ayumi/io/table/table_columns.hpp"
 
 namespace ayumi {
@@ -18,30 +18,6 @@ namespace {
 
 [[noreturn]] void refuse_table(const std::string& file, const std::string& reason) {
   fail(ErrorCode::bad_file, {file}, reason);
-}
-
-// A name and its unit, such as "r_knee[deg]", "r_knee (deg)", "time_s" and "time_ms".
-struct ColumnName {
-  std::string name, unit;
-};
-
-ColumnName column_name(const std::string& column) {
-  for (const auto& [open, close] : {std::pair{'[', ']'}, std::pair{'(', ')'}}) {
-    const size_t at = column.find(open);
-    if (at == std::string::npos || column.back() != close) continue;
-    return {std::string(trimmed(std::string_view(column).substr(0, at))),
-            std::string(trimmed(std::string_view(column).substr(at + 1, column.size() - at - 2)))};
-  }
-  for (const std::string unit : {"s", "ms"})
-    if (column.ends_with("_" + unit))
-      return {column.substr(0, column.size() - unit.size() - 1), unit};
-  return {column, ""};
-}
-
-bool is_time(std::string name) {
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return name == "t" || name == "time";
 }
 
 bool is_group_column(const std::string& column) {
@@ -140,6 +116,9 @@ MotionFile read_number_motion(const MotionInput& source, NumberTable table) {
   MotionFile motion;
   motion.commands = holds_commands(table);
   motion.caution = caution_of(table);
+  name_root_columns(
+      table, file, [&](const std::string& column) { return find_joint(source.model, column) >= 0; },
+      motion.notes);
   rename_columns(table, source.model, source.options, file);
   const bool timed = table.find("t[s]") >= 0;
   if (!timed && !(source.options.rate > 0))
@@ -199,14 +178,6 @@ MotionFile read_csv_table(const MotionInput& source) {
   MotionFile motion = read_number_motion(source, number_table(plain, source.file));
   motion.notes.insert(motion.notes.end(), notes.begin(), notes.end());
   return motion;
-}
-
-std::optional<double> seconds_of_time_column(const std::string& column) {
-  const ColumnName named = column_name(column);
-  if (!is_time(named.name)) return {};
-  if (named.unit.empty() || named.unit == "s") return 1.0;
-  if (named.unit == "ms") return 1e-3;
-  return {};
 }
 
 std::string recognize_json_table(const MotionInput& source) {

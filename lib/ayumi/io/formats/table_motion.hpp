@@ -14,9 +14,6 @@ MotionFile read_csv_table(const MotionInput& source);
 std::string recognize_json_table(const MotionInput& source);
 MotionFile read_json_table(const MotionInput& source);
 
-/// The seconds of one unit of a column of times ("t[s]", "Time (ms)"); nothing for other columns.
-std::optional<double> seconds_of_time_column(const std::string& column);
-
 /// The rows of a joint table, with the times that they have there.
 MotionFile motion_of_table(const ReferenceTrajectory& table);
 

@@ -72,13 +72,24 @@ MotionFile read_zvs(const MotionInput& source) {
   MotionFile motion;
   size_t width = 0;
   double now = 0;
-  for (size_t line = 1; !rest.empty(); ++line) {
-    const std::string_view text = take_line(rest);
+  for (size_t next = 1; !rest.empty();) {
+    const size_t line = next++;
+    std::string_view text = take_line(rest);
     if (text.empty() || is_comment(text)) continue;
-    const std::vector<std::string_view> tokens = tokens_of(text);
+    std::vector<std::string_view> tokens = tokens_of(text);
+    // The values may go over several lines, up to the closing bracket.
+    for (bool open = text.find('(') != std::string_view::npos;
+         open && text.find(')') == std::string_view::npos;) {
+      const bool end = rest.empty();
+      ++next;
+      text = take_line(rest);
+      if (end || text.find('(') != std::string_view::npos)
+        source.refuse(line, "the bracket ( is not closed, so the row was cut; copy the file again");
+      if (is_comment(text)) continue;
+      const std::vector<std::string_view> more = tokens_of(text);
+      tokens.insert(tokens.end(), more.begin(), more.end());
+    }
     if (tokens.size() < 3) source.refuse(line, "the row must have the form `dt n ( values )`");
-    if (text.find('(') != std::string_view::npos && text.find(')') == std::string_view::npos)
-      source.refuse(line, "the bracket ( is not closed, so the row was cut; copy the file again");
     const double dt = source.number(tokens[0], line, "dt");
     const double count =
         source.number(tokens[1].substr(0, tokens[1].find('/')), line, "number of values");

@@ -10,6 +10,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/degrees.hpp"
+#include "ayumi/io/formats/motion_file.hpp"
 #include "ayumi/io/table/comma_cells.hpp"
 #include "ayumi/io/table/csv_dialect.hpp"
 #include "ayumi/io/table/table_columns.hpp"
@@ -38,6 +39,11 @@ constexpr double kJumpCounts = 4;
 // If a time step differs from the usual one by more than this share of it, there is a gap. Chosen:
 // half a sample.
 constexpr double kGap = 0.5;
+
+// If the rows of a table are at least this far apart and the times have no unit, they may be in
+// milliseconds [s]. Chosen: recorders take at least two rows per second and at most two per
+// millisecond.
+constexpr double kSlowestStep = 0.5;
 
 // A device without a joint counts as still if it moves by less than this [counts]. Chosen: 0.05
 // degrees.
@@ -272,16 +278,12 @@ std::string lower(std::string text) {
 struct TimeColumn {
   int column = -1;
   double unit = 1;
+  bool has_unit = false;
 };
 TimeColumn time_of(const NumberTable& table) {
-  for (size_t c = 0; c < table.columns.size(); ++c) {
-    const std::string name = lower(table.columns[c]);
-    const int at = static_cast<int>(c);
-    if (name == "t" || name == "time" || name == "t[s]" || name == "time[s]" || name == "time_s")
-      return {at, 1};
-    if (name == "t[ms]" || name == "time[ms]" || name == "time_ms" || name == "t_ms")
-      return {at, 0.001};
-  }
+  for (size_t c = 0; c < table.columns.size(); ++c)
+    if (const std::optional<double> seconds = seconds_of_time_column(table.columns[c]))
+      return {static_cast<int>(c), *seconds, !column_name(table.columns[c]).unit.empty()};
   return {};
 }
 
@@ -301,6 +303,10 @@ double interval_of(const NumberTable& table, const RecordingOptions& options,
                    sorted.end());
   const double usual = sorted[sorted.size() / 2];
   if (!(usual > 0)) complain(file, "the times do not increase; correct the time column");
+  if (!time.has_unit && usual >= kSlowestStep)
+    complain(file, "the times of '" + table.columns[size_t(time.column)] +
+                       "' have no unit, and they increase by " + text::brief(usual) +
+                       " per row; name the column t[ms] or t[s]");
   for (size_t k = 0; k < steps.size(); ++k) {
     const std::string at = "after t = " + text::exact(t[static_cast<Index>(k)]) + " s (data row " +
                            std::to_string(k + 1) + ") ";
@@ -322,14 +328,12 @@ struct JointColumn {
 };
 JointColumn joint_column(const std::string& column, const RobotModel& model, bool degrees,
                          const std::string& file) {
-  std::string name = column, unit;
+  const ColumnName named = column_name(column);
+  const bool whole = find_joint(model, column) >= 0;  // the name itself may end like a unit
+  std::string name = whole ? column : named.name, unit = whole ? "" : lower(named.unit);
   if (name.starts_with("theta.")) name = name.substr(6);
-  if (const size_t open = name.find('['); open != std::string::npos && name.back() == ']') {
-    unit = lower(name.substr(open + 1, name.size() - open - 2));
-    name = std::string(trimmed(name.substr(0, open)));
-  }
   JointColumn result;
-  result.dof = model.find_dof(name);
+  result.dof = find_joint(model, name);
   if (result.dof < 0) return result;
   const Dof& dof = model.dofs()[static_cast<size_t>(result.dof)];
   if (unit.empty()) unit = dof.prismatic ? "m" : degrees ? "deg" : "rad";
@@ -466,9 +470,10 @@ SensorTable named_sensors(const std::string& bytes, const std::string& file,
   result.gyro = named_axes(table, "gyro", "rad/s");
   if (result.foot_load.size() == 0 && result.acceleration.size() == 0 && result.gyro.size() == 0)
     complain(file,
-             "no column has the name of a sensor; the names are fz.left[N] and fz.right[N], "
-             "acc.x[m/s^2], acc.y[m/s^2] and acc.z[m/s^2], and gyro.x[rad/s], gyro.y[rad/s] and "
-             "gyro.z[rad/s]");
+             "no column has the name of a joint or a sensor; columns of joints have the names of "
+             "the robot's joints, as in r_knee or r_knee[deg], and those of sensors are "
+             "fz.left[N] and fz.right[N], acc.x[m/s^2], acc.y[m/s^2] and acc.z[m/s^2], and "
+             "gyro.x[rad/s], gyro.y[rad/s] and gyro.z[rad/s]");
   return result;
 }
 
@@ -498,6 +503,13 @@ AngleTable read_angles(const std::string& bytes, const std::string& file, const 
     return table;
   }
   const BareRows rows = bare_rows(bytes, file, devices, "the robot '" + model.name() + "'");
+  for (const double value : rows.rows.front())
+    if (value != std::round(value))
+      complain(file, rows.lines.front(),
+               "rows without names are counts, but " + text::brief(value) +
+                   " is not a whole number; if these are angles, add a first row with the names "
+                   "of the columns, such as t[s] and " +
+                   model.dof_names().front() + "[rad]");
   for (size_t r = 0; r < rows.rows.size(); ++r)
     for (size_t c = devices; c < rows.rows[r].size(); ++c)
       if (rows.rows[r][c] != 0)

@@ -1,6 +1,7 @@
 #include "ayumi/io/table/table_columns.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 
@@ -8,10 +9,17 @@
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/json/json_reader.hpp"
+#include "ayumi/io/table/comma_cells.hpp"
 
 namespace ayumi {
 
 namespace {
+
+bool is_time(std::string name) {
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return name == "t" || name == "time" || name == "timestamp" || name == "stamp";
+}
 
 [[noreturn]] void stop(const std::string& file, const std::string& reason) {
   fail(ErrorCode::bad_file, {file}, reason);
@@ -99,6 +107,29 @@ std::string theta_column(const std::string& joint) { return "theta." + joint + "
 std::string joint_of_column(const std::string& column) {
   if (column.size() < 12 || !column.starts_with("theta.") || !column.ends_with("[rad]")) return "";
   return column.substr(6, column.size() - 11);
+}
+
+ColumnName column_name(const std::string& column) {
+  for (const auto& [open, close] : {std::pair{'[', ']'}, std::pair{'(', ')'}}) {
+    const size_t at = column.find(open);
+    if (at == std::string::npos || column.back() != close) continue;
+    return {std::string(trimmed(std::string_view(column).substr(0, at))),
+            std::string(trimmed(std::string_view(column).substr(at + 1, column.size() - at - 2)))};
+  }
+  for (const std::string unit : {"s", "ms", "deg", "rad"})
+    if (column.ends_with("_" + unit))
+      return {column.substr(0, column.size() - unit.size() - 1), unit};
+  return {column, ""};
+}
+
+std::optional<double> seconds_of_time_column(const std::string& column) {
+  const ColumnName named = column_name(column);
+  if (!is_time(named.name)) return {};
+  if (named.unit.empty() || named.unit == "s") return 1.0;
+  if (named.unit == "ms") return 1e-3;
+  if (named.unit == "us") return 1e-6;
+  if (named.unit == "ns") return 1e-9;
+  return {};
 }
 
 TableLayout layout_of(const NumberTable& table, const std::string& file) {
