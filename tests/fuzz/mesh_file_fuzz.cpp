@@ -14,6 +14,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
       !name.starts_with("mesh."))
     return 0;
   const fuzz::InputFolder folder({{"", std::string(all.substr(line + 1))}}, name);
-  fuzz::accepts([&] { load_mesh(folder.path(name)); });
+  MeshReading reading;
+  reading.cache.reset();
+  fuzz::accepts([&] { load_mesh(folder.path(name), Eigen::Vector3d::Ones(), reading); });
   return 0;
 }

@@ -12,8 +12,10 @@
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/in_parallel.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/io/robot/mesh_cache.hpp"
 #include "ayumi/io/robot/mesh_message.hpp"
 #include "ayumi/io/robot/mesh_reader_place.hpp"
+#include "ayumi/io/run/sha256.hpp"
 
 namespace ayumi {
 
@@ -26,7 +28,7 @@ using Exchange = ChildProcess::Exchange;
 // about 20 small meshes.
 constexpr size_t kMeshReaders = 4;
 // Largest number of companion files of one mesh. Chosen: an OBJ has one, a glTF a handful.
-constexpr int kMostCompanions = 64;
+constexpr size_t kMostCompanions = 64;
 constexpr size_t kMostCompanionBytes = size_t{1} << 30;
 constexpr size_t kLongestCompanionName = 4096;
 // Longest wait of the caller before it asks whether the work should continue. Chosen: Ctrl-C is
@@ -80,21 +82,26 @@ class MeshReader {
   MeshReader(const MeshReading& reading, const std::atomic<bool>& stop)
       : reading_(reading),
         stop_(stop),
-        program_(reading.program.empty() ? find_mesh_reader() : reading.program) {}
+        program_(reading.program.empty() ? find_mesh_reader() : reading.program),
+        cache_(reading.cache) {}
 
   TriangleMesh read(const MeshRequest& request) {
     path_ = request.path;
     if (!request.scale.allFinite()) complain("the scale is not finite");
     const std::string bytes = read_file(path_);
     if (bytes.empty()) complain("the mesh file is empty");
+    const std::string key =
+        MeshCache::key_of(head_of(request), path_.filename().string(), bytes, program_);
+    if (std::optional<TriangleMesh> known = kept(key)) return with_textures(std::move(*known));
     while (true) {
       const bool fresh = !child_;
       try {
         if (fresh) child_.emplace(program_, kReaderEnvironment, kReaderErrors);
         child_->set_stop(stop_);
-        TriangleMesh mesh = ask_reader(request, bytes, fresh);
-        for (MeshPart& part : mesh.parts) part.texture_file = texture_of(part.texture_file);
-        return mesh;
+        const std::string answer = ask_reader(request, bytes, fresh);
+        TriangleMesh mesh = decode(answer);
+        cache_.keep(key, asked_, answer);
+        return with_textures(std::move(mesh));
       } catch (const ReaderLost& lost) {
         child_.reset();
         if (fresh || !lost.try_again) complain(lost.message);
@@ -110,9 +117,26 @@ class MeshReader {
     fail(ErrorCode::bad_file, {path_.string()}, message);
   }
 
-  // Sends the request, and receives everything until the answer to it.
-  TriangleMesh ask_reader(const MeshRequest& request, const std::string& bytes, bool fresh) {
-    companions_ = 0;
+  // The answer in the cache. It is trusted as little as one of the reader.
+  std::optional<TriangleMesh> kept(const std::string& key) {
+    companion_bytes_ = 0;
+    try {
+      const auto answer =
+          cache_.find(key, [this](const std::string& name) { return companion(name); });
+      if (answer && answer->size() <= reading_.answer_size) return decode_mesh(*answer);
+    } catch (const Error&) {  // the reader finds the error again, and says what is wrong
+    }
+    return std::nullopt;
+  }
+
+  TriangleMesh with_textures(TriangleMesh mesh) const {
+    for (MeshPart& part : mesh.parts) part.texture_file = texture_of(part.texture_file);
+    return mesh;
+  }
+
+  // Sends the request, and receives everything until the answer to it: an encoded mesh.
+  std::string ask_reader(const MeshRequest& request, const std::string& bytes, bool fresh) {
+    asked_.clear();
     companion_bytes_ = 0;
     child_->set_time(reading_.time);
     // The first message is the greeting. So a program that ends or says something else can be
@@ -126,7 +150,7 @@ class MeshReader {
           answer(receive_bytes(head.size, kLongestCompanionName));
           break;
         case MeshMessage::mesh:
-          return decode(receive_bytes(head.size, reading_.answer_size));
+          return receive_bytes(head.size, reading_.answer_size);
         case MeshMessage::refusal:
           complain(harmless(receive_bytes(head.size, reading_.answer_size)));
         case MeshMessage::memory:
@@ -143,14 +167,19 @@ class MeshReader {
     }
   }
 
-  void send_request(const MeshRequest& request, const std::string& bytes) {
-    const std::string name = path_.filename().string();
+  MeshRequestHead head_of(const MeshRequest& request) const {
     MeshRequestHead about;
     for (int i = 0; i < 3; ++i) about.scale[i] = request.scale[i];
     about.base_memory = reading_.base_memory;
     about.memory_per_byte = reading_.memory_per_byte;
     about.cpu_time = reading_.cpu_time;
-    about.name_size = name.size();
+    about.name_size = path_.filename().string().size();
+    return about;
+  }
+
+  void send_request(const MeshRequest& request, const std::string& bytes) {
+    const std::string name = path_.filename().string();
+    const MeshRequestHead about = head_of(request);
     send_head(MeshMessage::request, sizeof about + name.size() + bytes.size());
     need(child_->send(&about, sizeof about));
     need(child_->send(name.data(), name.size()));
@@ -224,10 +253,11 @@ class MeshReader {
 
   // Sends the companion file of this name, or the message that there is none.
   void answer(const std::string& name) {
-    if (++companions_ > kMostCompanions)
+    if (asked_.size() == kMostCompanions)
       throw ReaderLost{"the mesh file names more than " + std::to_string(kMostCompanions) +
                        " other files; merge these files"};
     const std::optional<std::string> bytes = companion(name);
+    asked_.push_back({name, bytes ? sha256(*bytes) : ""});
     const char there = 1;
     send_head(MeshMessage::file, bytes ? 1 + bytes->size() : 0);
     if (!bytes) return;
@@ -269,7 +299,8 @@ class MeshReader {
   const std::atomic<bool>& stop_;
   fs::path program_, path_;
   std::optional<ChildProcess> child_;
-  int companions_ = 0;
+  MeshCache cache_;
+  std::vector<AskedCompanion> asked_;  // for the present mesh
   size_t companion_bytes_ = 0;
 };
 

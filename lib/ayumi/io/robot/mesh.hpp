@@ -7,10 +7,12 @@
 #include <cstdint>
 #include <exception>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "ayumi/base/progress.hpp"
 #include "ayumi/geometry/shape.hpp"
+#include "ayumi/io/robot/mesh_cache.hpp"
 
 namespace ayumi {
 
@@ -30,6 +32,8 @@ struct MeshReading {
   /// Largest number of bytes of an answer. Chosen: 5 million triangles with three vertices of their
   /// own each take 0.54 GB; the rest is for textures.
   std::uint64_t answer_size = std::uint64_t{1} << 30;
+  /// Folder in which answers of the reader are kept (mesh_cache.hpp); no value for none.
+  std::optional<std::filesystem::path> cache = MeshCache::usual_folder();
 };
 
 /// The mesh at `path`. Node transforms are applied, COLLADA's unit is converted to metres, every
