@@ -270,6 +270,49 @@ TEST(FirstSidecar, SolesOfCylindersStayConvex) {
   }
 }
 
+bool has_item(const FirstSidecar& sidecar, const std::string& begin) {
+  return std::any_of(sidecar.to_do.begin(), sidecar.to_do.end(),
+                     [&](const std::string& item) { return item.starts_with(begin); });
+}
+
+// A foot with a narrow underside and a wider part 3 mm above it has a rounded sole; the list of a
+// robot with flat feet says nothing.
+TEST(FirstSidecar, RoundedSolesAreOnTheList) {
+  const TemporaryFolder folder;
+  std::string text = UrdfBiped{}.text();
+  const std::string item = "The undersides of the feet are rounded: the sole of the left foot ";
+  EXPECT_FALSE(
+      has_item(first_sidecar(folder.write("flat.urdf", text).string(), folder.path()), item));
+  const std::string flat = "<box size=\"0.13 0.07 0.025\"/></geometry></collision>";
+  ASSERT_NE(text.find(flat), std::string::npos) << text;
+  for (size_t at; (at = text.find(flat)) != std::string::npos;)
+    text.replace(at, flat.size(),
+                 "<box size=\"0.13 0.02 0.025\"/></geometry></collision><collision><origin "
+                 "xyz=\"0.015 0 -0.0245\"/><geometry><box size=\"0.130 0.07 0.025\"/></geometry>"
+                 "</collision>");
+  EXPECT_TRUE(
+      has_item(first_sidecar(folder.write("round.urdf", text).string(), folder.path()), item));
+}
+
+// Masses in grams and limits in degrees are named as such.
+TEST(FirstSidecar, OtherUnitsAreNamed) {
+  const TemporaryFolder folder;
+  const std::string text = UrdfBiped{}.text();
+  const std::string grams =
+      std::regex_replace(text, std::regex("mass value=\"([0-9.]+)\""), "mass value=\"$01e4\"");
+  try {
+    first_sidecar(folder.write("grams.urdf", grams).string(), folder.path());
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("heavier than a cube of lead"), std::string::npos)
+        << error.what();
+  }
+  const std::string degrees =
+      std::regex_replace(text, std::regex("upper=\"[0-9.]+\""), "upper=\"60\"");
+  EXPECT_TRUE(has_item(first_sidecar(folder.write("degrees.urdf", degrees).string(), folder.path()),
+                       "Check the position limits of "));
+}
+
 // Whether the remarks contain these words, wherever their lines end.
 bool says(std::string text, const std::string& words) {
   const std::string line_end = "\n  // ";

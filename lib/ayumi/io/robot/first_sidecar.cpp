@@ -167,9 +167,15 @@ std::string sole_in_words(const RobotModel& model, Side side) {
     high = high.cwiseMax(corner);
   }
   const auto millimetres = [](double length) { return text::fixed(1e3 * length, 0) + " mm"; };
+  const std::string reach =
+      low.x() > 0
+          ? "from " + millimetres(low.x()) + " to " + millimetres(high.x()) + " ahead of the ankle"
+      : high.x() < 0
+          ? "from " + millimetres(-high.x()) + " to " + millimetres(-low.x()) + " behind the ankle"
+          : millimetres(high.x()) + " ahead of the ankle and " + millimetres(-low.x()) +
+                " behind it";
   return std::string(name_of(side)) + " " + sole.link + ", " + millimetres(high.x() - low.x()) +
-         " long and " + millimetres(high.y() - low.y()) + " wide, reaching " +
-         millimetres(high.x()) + " ahead of the ankle and " + millimetres(-low.x()) + " behind it";
+         " long and " + millimetres(high.y() - low.y()) + " wide, reaching " + reach;
 }
 
 std::string soles_text(const RobotModel& model, const RobotGuess& guess) {
@@ -478,6 +484,25 @@ std::string inertias_text(const RobotDescription& robot, const std::vector<std::
   return text + "  },\n";
 }
 
+// Throws if the robot is heavier than lead, because nothing that is guessed from such masses is of
+// use.
+void require_weight(const RobotModel& model, const std::string& file) {
+  constexpr double kLead = 11340;  // density [kg/m^3]
+  RobotState state = model.rest_state();
+  state.theta.setZero();
+  RobotData data(model);
+  update_positions(model, state, data);
+  Eigen::AlignedBox3d box;
+  for (const auto& position : data.position) box.extend(Vector3d(position));
+  const double size = box.diagonal().norm();
+  if (size > 0 && model.mass() > kLead * size * size * size)
+    fail(ErrorCode::bad_file, {file},
+         "the robot weighs " + text::brief(model.mass()) + " kg and its joints are at most " +
+             text::brief(size) +
+             " m apart, so it is heavier than a cube of lead of this size; masses must be in kg "
+             "and lengths in m: divide the masses by 1000 if they are in grams");
+}
+
 std::vector<std::string> to_do_list(const RobotModel& model, const RobotGuess& guess) {
   std::vector<std::string> items;
   items.push_back(
@@ -485,11 +510,16 @@ std::vector<std::string> to_do_list(const RobotModel& model, const RobotGuess& g
       "left leg on its left side (facing: " +
       guess.facing + " of the URDF).");
   if (!model.has_soles()) {
-    items.push_back("State the soles of both feet; without them no motion can be made.");
+    items.push_back(guess.robot.missing_meshes.empty()
+                        ? "State the soles of both feet; without them no motion can be made."
+                        : "Find the missing meshes (see below) and run `ayumi init` again, because "
+                          "without them no soles were recognised; or state the soles of both feet. "
+                          "Without soles no motion can be made.");
   } else {
     items.push_back(
         "Compare the outline of the soles with the real feet: " + sole_in_words(model, Side::left) +
         ", " + sole_in_words(model, Side::right) + ".");
+    if (!guess.rounded_soles.empty()) items.push_back(guess.rounded_soles);
     const InverseKinematics ik(model, model.posture());
     items.push_back(
         "Compare this order of the leg joints, from the trunk down, with the real robot. Left: " +
@@ -507,6 +537,15 @@ std::vector<std::string> to_do_list(const RobotModel& model, const RobotGuess& g
   for (const PlaceholderLimits& each : guess.placeholders)
     items.push_back("Replace the placeholders: " + each.what + " of " + each.value + " on " +
                     text::counted(each.joints.size(), "joint") + ".");
+  std::vector<std::string> wide;
+  for (const Dof& dof : model.dofs())
+    if (!dof.prismatic && dof.limited && dof.upper - dof.lower > 4 * std::numbers::pi)
+      wide.push_back(dof.name);
+  constexpr size_t kMostWide = 3;  // number of joints that are named
+  if (!wide.empty())
+    items.push_back("Check the position limits of " + text::counted(wide.size(), "joint") + " (" +
+                    text::join_first(wide, kMostWide) +
+                    "): the range is more than two turns. Limits of a URDF are in radians.");
   const ActuatorLimits& limits = model.limits();
   const std::vector<std::string> passive = passive_joints(guess.robot);
   const auto unlimited = [&](const Eigen::VectorXd& values) {
@@ -560,6 +599,7 @@ FirstSidecar first_sidecar(const std::string& robot, const std::filesystem::path
   RobotGuess guess = guess_robot(std::move(stated));
   const std::vector<std::string> boxes = take_inertias_of_shapes(guess.robot);
   const RobotModel model(guess.robot);
+  require_weight(model, robot);
   FirstSidecar result;
   result.to_do = to_do_list(model, guess);
   for (const std::string& note : read)

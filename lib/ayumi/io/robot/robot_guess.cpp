@@ -38,6 +38,12 @@ constexpr double kOneDegree = std::numbers::pi / 180;
 // above the rounding of meshes, below the rounded edges of feet. With half or twice this height,
 // the sole of a foot with edges of 5 mm radius changes by 1 mm.
 constexpr double kTouching = 0.001;
+// Height above the lowest point of a foot up to which a soft sole can give way [m], and the factor
+// by which a rounded foot is longer or wider at this height than at kTouching. Chosen: soles of
+// rubber yield by a few millimetres, and the edges of flat feet have smaller radii. With twice the
+// height, shafts of ankles count as soles.
+constexpr double kYielding = 0.005;
+constexpr double kRounded = 1.4;
 // Cosine of the largest angle by which an underside is turned to be level. Chosen: 45 deg, so that
 // the back of a heel is no sole.
 constexpr double kMostTilt = 0.7071;
@@ -391,8 +397,9 @@ std::vector<Vector2d> thinned(std::vector<Vector2d> corners) {
   return corners;
 }
 
+// `higher` becomes the size of the foot at the height kYielding.
 SoleDescription sole_of(const RobotModel& model, const std::vector<Isometry3d>& poses,
-                        const Foot& foot) {
+                        const Foot& foot, Vector2d& higher) {
   const auto link = std::find_if(model.links().begin(), model.links().end(),
                                  [&](const Link& each) { return each.body == foot.body; });
   const Points& points = foot.points;
@@ -421,8 +428,12 @@ SoleDescription sole_of(const RobotModel& model, const std::vector<Isometry3d>& 
   }
   const double lowest = lowest_of(turned);
   std::vector<Vector2d> touching;
-  for (const Vector3d& point : turned)
+  Eigen::AlignedBox2d yielding;
+  for (const Vector3d& point : turned) {
     if (point.z() <= lowest + kTouching) touching.push_back(point.head<2>());
+    if (point.z() <= lowest + kYielding) yielding.extend(point.head<2>().eval());
+  }
+  higher = yielding.sizes();
   SoleDescription sole;
   sole.link = link->name;
   Isometry3d frame = Isometry3d::Identity();  // frame of the sole in the root frame
@@ -458,9 +469,13 @@ void find_soles(RobotGuess& guess) {
   if (poses[feet[0].body].translation().y() < poses[feet[1].body].translation().y())
     std::swap(feet[0], feet[1]);
   std::map<std::string, SoleDescription> soles;
+  const auto size_text = [](const Vector2d& size) {
+    return text::fixed(1000 * size.x(), 0) + " x " + text::fixed(1000 * size.y(), 0) + " mm";
+  };
   for (const int side : {0, 1}) {
     const std::string name = side == 0 ? "left" : "right";
-    const SoleDescription sole = sole_of(model, poses, feet[side]);
+    Vector2d higher;
+    const SoleDescription sole = sole_of(model, poses, feet[side], higher);
     if (sole.polygon.size() < 3 || extent(sole).prod() < kSmallestSole ||
         extent(sole).maxCoeff() > kLargestSole) {
       robot.assumptions.push_back(
@@ -469,13 +484,19 @@ void find_soles(RobotGuess& guess) {
       return;
     }
     soles[name] = sole;
+    if (guess.rounded_soles.empty() && (higher.array() > kRounded * extent(sole).array()).any())
+      guess.rounded_soles =
+          "The undersides of the feet are rounded: the sole of the " + name + " foot measures " +
+          size_text(extent(sole)) + ", but " + text::fixed(1000 * kYielding, 0) +
+          " mm above the ground the foot measures " + size_text(higher) +
+          ". If the soles are soft, find out how much of them carries the robot, and state its "
+          "outline: a narrow sole can make walks impossible.";
   }
   for (const auto& [side, sole] : soles)
     robot.assumptions.push_back(
         side + " sole: link " + sole.link + ", hull of " + std::to_string(sole.polygon.size()) +
-        " corners, " + text::fixed(1000 * extent(sole).x(), 0) + " x " +
-        text::fixed(1000 * extent(sole).y(), 0) +
-        " mm, around the points of the foot that are at most 1 mm above the ground");
+        " corners, " + size_text(extent(sole)) +
+        ", around the points of the foot that are at most 1 mm above the ground");
   robot.soles = soles;
   const bool collisions = std::any_of(
       model.links().begin(), model.links().end(),

@@ -28,6 +28,7 @@ struct RobotGuess {
   RobotDescription robot;
   std::string facing = "x";  ///< direction in the URDF's root link; `robot` itself faces x
   GuessReason facing_reason, sole_reason, home_reason, servo_reason;
+  std::string rounded_soles;  ///< what to do about rounded soles; empty if the soles are flat
   std::vector<PlaceholderLimits> placeholders;
 };
 
