@@ -377,5 +377,30 @@ TEST(Sample, EightSecondsInAboutOneSecond) {
   EXPECT_LT(spent.count(), 10.0) << series.duration() << " s of motion";
 }
 
+// Legs without the ankle's roll: the trunk leans to move the COG aside. The plan says so, and its
+// ZMP is where the keys put it, as with legs of six joints.
+TEST(Sample, LegsOfFiveJointsKeepTheZmp) {
+  RobotDescription robot = test::biped_description();
+  for (JointDescription& joint : robot.joints)
+    if (joint.name.ends_with("ankle_roll")) joint.type = JointType::fixed;
+  const RobotModel model(robot);
+  Pattern pattern = stand_pattern(model, 2);
+  RobotData data(model);
+  update_positions(model, model.rest_state(), data);
+  pattern.keyframes.clear();
+  for (const auto& [t, aside] : {std::pair{0.4, 0.0}, {1.0, 0.004}, {1.6, 0.0}}) {
+    Keyframe key;
+    key.t = t;
+    key.zmp = ZmpKey{.point = data.cog.head<2>() + Eigen::Vector2d(0, aside)};
+    pattern.keyframes.push_back(key);
+  }
+  const CommandSeries series = sample(model, pattern, {.dt = 0.01});
+  const std::string& legs = series.origin.at("legs");
+  EXPECT_TRUE(legs.starts_with("a leg has 5 joints, not six, so there are places at which"))
+      << legs;
+  EXPECT_LT(worst_zmp_error(model, series), 0.0005);
+  EXPECT_NEAR(series.samples[100].zmp.y() - data.cog.y(), 0.004, 0.0005);
+}
+
 }  // namespace
 }  // namespace ayumi
