@@ -48,7 +48,9 @@ bool write_new_pattern(const Context& context, const RobotModel& model, Pattern 
       return make_task(std::move(pattern), model, "", context.progress());
     } catch (const Error& error) {
       fail(error.code(),
-           std::string("nothing is written, because the robot cannot do this: ") + error.what());
+           std::string("nothing is written, because the robot cannot do this; other values of "
+                       "options, such as --cog-height, may help: ") +
+               error.what());
     }
   }();
   const CommandSeries& series = task.series;

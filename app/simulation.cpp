@@ -178,10 +178,37 @@ std::string shares_text(const SimulationLog& log) {
   return "joint speed and torque without limits";
 }
 
+// Smallest differences that are reported. Chosen: nobody sees a tilt of less than a degree in a
+// clip; a tenth of the torque limit is more than rounding and less than a motor notices.
+constexpr double kMoreTilt = std::numbers::pi / 180;  // difference of the tilt [rad]
+constexpr double kMoreTorque = 0.1;                   // share of the limit
+
 }  // namespace
 
 std::string share_text(const SimulationLog& log, const JointShare& share) {
   return text::fixed(100 * share.ratio, 0) + " %" + place_in_brackets(log, share);
+}
+
+std::vector<std::string> worse_than_open_loop(const SimulationLog& open_run,
+                                              const SimulationLog& closed_run) {
+  const SimulationResult &open = open_run.result, &closed = closed_run.result;
+  std::vector<std::string> worse;
+  if (closed.outcome != Outcome::stands && open.outcome == Outcome::stands)
+    worse.push_back(std::string("the robot ") +
+                    (closed.outcome == Outcome::fell ? "falls" : "does not come to rest") +
+                    ", while it stands in open loop");
+  if (open.outcome == Outcome::fell) return worse;
+  const auto degrees = [](double angle) {
+    return text::fixed(angle * 180 / std::numbers::pi, 1) + " deg";
+  };
+  if (closed.max_tilt > open.max_tilt + kMoreTilt)
+    worse.push_back("the largest trunk tilt is " + degrees(closed.max_tilt) + " with control and " +
+                    degrees(open.max_tilt) + " in open loop");
+  if (closed.torque.ratio > open.torque.ratio + kMoreTorque)
+    worse.push_back("the largest torque is " + share_text(closed_run, closed.torque) +
+                    " of the limit with control and " + share_text(open_run, open.torque) +
+                    " in open loop");
+  return worse;
 }
 
 std::string outcome_text(const SimulationLog& log) { return outcome_text(log, log.samples.size()); }

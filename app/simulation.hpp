@@ -56,6 +56,14 @@ Eigen::MatrixXd torques_of(const SimulationLog& log);
 /// A share in words, such as "72 % (l_knee at 2.90 s)"; without the place if it is unknown.
 std::string share_text(const SimulationLog& log, const JointShare& share);
 
+/// The figures that are worse with control than without, under the same disturbances, such as "the
+/// largest trunk tilt is 8.3 deg with control and 5.3 deg in open loop".
+std::vector<std::string> worse_than_open_loop(const SimulationLog& open_run,
+                                              const SimulationLog& closed_run);
+/// What comes before these figures in a message.
+inline constexpr const char* kWorseWithControl =
+    "some figures are worse with control than in open loop";
+
 /// The outcome in words, such as "with dtad, the robot stands, final COG error 0.20 mm, largest
 /// trunk tilt 1.3 deg, ...".
 std::string outcome_text(const SimulationLog& log);

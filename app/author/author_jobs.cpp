@@ -8,6 +8,8 @@
 #include <cerrno>
 #include <csignal>
 #include <map>
+#include <optional>
+#include <utility>
 
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
@@ -135,16 +137,20 @@ AuthorResult simulate_job(const OrderedJson& asked, const Context& context,
   AuthorResult out;
   std::string verdict;
   bool good = false;
+  std::optional<SimulationLog> open_run;
   for (const Run& run : runs) {
     SimulateOptions options = simulate_options(task);
     options.controller = run.spec;
     options.seed = context.seed;
     if (run.spec.type != ControllerKind::none) refuse_unstable_gains(task, run.spec, false);
-    const SimulationLog log = simulate(task, options, progress);
+    SimulationLog log = simulate(task, options, progress);
     const std::string who = run.spec.type == ControllerKind::none
                                 ? "in open loop"
                                 : std::string("with ") + name_of(run.spec.type);
     lines.push_back(outcome_text(log));
+    if (open_run)
+      if (const auto worse = worse_than_open_loop(*open_run, log); !worse.empty())
+        lines.push_back(std::string(kWorseWithControl) + ": " + text::join(worse, "; "));
     good = log.result.outcome == Outcome::stands;
     verdict = log.result.outcome == Outcome::stands ? "The robot stands " + who + "."
               : log.result.outcome == Outcome::fell
@@ -159,6 +165,7 @@ AuthorResult simulate_job(const OrderedJson& asked, const Context& context,
     out.series[run.name] = live_series(log, kPageRate);
     out.strips[run.name] =
         author_strip(task, run_stability(task.robot, task.robot.limits(task.profile), log));
+    if (run.spec.type == ControllerKind::none) open_run = std::move(log);
   }
   out.shown = result_json("simulate", verdict, good, lines);
   out.shown["marks"] = marks;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -139,34 +138,6 @@ AnswerPart check_part(const ConsistencyReport& report, const RobotModel& model) 
           kStageHang};
 }
 
-// Smallest differences that are reported. Chosen: nobody sees a tilt of less than a degree in a
-// clip; a tenth of the torque limit is more than rounding and less than a motor notices.
-constexpr double kMoreTilt = std::numbers::pi / 180;  // difference of the tilt [rad]
-constexpr double kMoreTorque = 0.1;                   // share of the limit
-
-// The figures that are worse with control than without, under the same disturbances.
-std::vector<std::string> worse_than_open_loop(const SimulationLog& open_run,
-                                              const SimulationLog& closed_run) {
-  const SimulationResult &open = open_run.result, &closed = closed_run.result;
-  std::vector<std::string> worse;
-  if (closed.outcome != Outcome::stands && open.outcome == Outcome::stands)
-    worse.push_back(std::string("the robot ") +
-                    (closed.outcome == Outcome::fell ? "falls" : "does not come to rest") +
-                    ", while it stands in open loop");
-  if (open.outcome == Outcome::fell) return worse;
-  const auto degrees = [](double angle) {
-    return text::fixed(angle * 180 / std::numbers::pi, 1) + " deg";
-  };
-  if (closed.max_tilt > open.max_tilt + kMoreTilt)
-    worse.push_back("the largest trunk tilt is " + degrees(closed.max_tilt) + " with control and " +
-                    degrees(open.max_tilt) + " in open loop");
-  if (closed.torque.ratio > open.torque.ratio + kMoreTorque)
-    worse.push_back("the largest torque is " + share_text(closed_run, closed.torque) +
-                    " of the limit with control and " + share_text(open_run, open.torque) +
-                    " in open loop");
-  return worse;
-}
-
 void MainJob::check(Task& input) {
   const Judgement judged = judge(input, check_options(input));
   const std::string& need = judged.need().text;
@@ -229,8 +200,7 @@ void MainJob::simulate(const Task& input) {
   say("", outcome_text(closed));
   const std::vector<std::string> worse = worse_than_open_loop(open_log.about, closed.about);
   if (!worse.empty())
-    say("", painted(Paint::caution, "some figures are worse with control than in open loop") +
-                ": " + text::join(worse, "; "));
+    say("", painted(Paint::caution, kWorseWithControl) + ": " + text::join(worse, "; "));
   summary_["worse_than_open_loop"] = worse;
   folder_.provenance = closed.about.provenance;
   Json both;

@@ -71,6 +71,7 @@ TEST(LikelyMistakes, ASearchWithoutACauseComesLast) {
       "a.json: likely cause: /units: in degrees; the first error is: /phases/1: out of reach");
   EXPECT_EQ(explained.words(),
             "likely cause: /units: in degrees; the first error is: /phases/1: out of reach");
+  EXPECT_EQ(explained.place().inside, "/units") << "the place to change";
 }
 
 TEST(ImpossibleValues, SoundPatternsHaveNone) {
@@ -172,6 +173,17 @@ TEST(ImpossibleValues, AFootKeyThatLiftsTheCog) {
   }
   const auto mistakes = impossible(pattern);
   expect_called(mistakes, "/keyframes/1: the right foot is 30 mm up", "the COG rises by half");
+  // Several keys of one kick have one reason, which is named at the highest one.
+  Pattern kick = pattern;
+  Keyframe lower = kick.keyframes[1];
+  lower.t = 1.2;
+  lower.feet[1]->position.z() = 0.02;
+  kick.keyframes.insert(kick.keyframes.begin() + 1, lower);
+  const auto once = impossible(kick);
+  ASSERT_EQ(once.size(), 1u);
+  EXPECT_TRUE(once[0].starts_with(
+      "/keyframes/2: the right foot is 30 mm up (and less in /keyframes/1), and the COG rises"))
+      << once[0];
   // If the author has written a key of the height, the height is not doubted.
   pattern.keyframes[0].cog_height = 0.23;
   EXPECT_TRUE(impossible(pattern).empty());

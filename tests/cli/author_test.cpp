@@ -281,6 +281,37 @@ TEST_F(AuthorServer, FollowsTheFileAndNamesTheLineOfAnError) {
   EXPECT_TRUE(state["consistent"].get<bool>());
 }
 
+// The message begins with the likely cause, so the line is that of the cause, and not that of the
+// phase in which the legs fail.
+TEST_F(AuthorServer, AnErrorWithALikelyCauseIsAtTheLineOfTheCause) {
+  const Server server(file);
+  const std::string kick = R"({
+  "format": "ayumi.pattern/1", "robot": "hoap1", "units": { "angle": "deg" },
+  "phases": [
+    { "until": 1.2, "support": "both" },
+    { "until": 2.8, "support": "right" },
+    { "until": 4, "support": "both" }
+  ],
+  "keyframes": [
+    { "t": 0.6, "zmp": "center" },
+    { "t": 1.1, "zmp": "right" },
+    { "t": 1.2, "feet": { "left": [0, 0.039, 0] } },
+    { "t": 2.1, "feet": { "left": [0, 0.039, 0.05] } },
+    { "t": 2.8, "feet": { "left": [0, 0.039, 0] } },
+    { "t": 2.9, "zmp": "right" },
+    { "t": 3.5, "zmp": "center" }
+  ]
+}
+)";
+  save(kick);
+  const OrderedJson error =
+      server.state_when([&](const OrderedJson& now) { return now["text"] == kick; })["error"];
+  ASSERT_FALSE(error.is_null());
+  EXPECT_TRUE(error["message"].get<std::string>().starts_with("likely cause: /keyframes/3: "))
+      << error;
+  EXPECT_EQ(error.value("line", 0), 12) << error;
+}
+
 TEST_F(AuthorServer, AnErrorOfTheWholeFileHasNoLine) {
   const Server server(file);
   const std::string without = R"({ "format": "ayumi.pattern/1", "robot": "hoap1" })";
@@ -782,6 +813,35 @@ OrderedJson result_of(const Server& server, const std::string& kind,
   return server.state_when([&](const OrderedJson& now) {
     return now["result"].is_object() && now["result"]["kind"] == kind;
   });
+}
+
+// With control, the knees of this hop need more torque at the landing than in open loop.
+TEST_F(AuthorServer, ASimulationSaysWhatIsWorseWithControl) {
+  save(R"({
+  "format": "ayumi.pattern/1", "robot": "hoap1", "profile": "hoap1-strong",
+  "units": { "angle": "deg" },
+  "phases": [
+    { "until": 1.5, "support": "both" },
+    { "until": 1.65, "support": "none" },
+    { "until": 3.2, "support": "both" }
+  ],
+  "keyframes": [
+    { "t": 0.5, "cog": { "height": 0.245 } },
+    { "t": 1.32, "cog": { "height": 0.19 } },
+    { "t": 1.5, "cog": { "height": 0.225 } },
+    { "t": 1.65, "cog": { "height": 0.225 } },
+    { "t": 1.83, "cog": { "height": 0.19 } },
+    { "t": 2.7, "cog": { "height": 0.245 } }
+  ],
+  "controller": { "type": "dtad" }
+}
+)");
+  const Server server(file);
+  const OrderedJson lines = result_of(server, "simulate", {{"law", "both"}})["result"]["lines"];
+  ASSERT_EQ(lines.size(), 3u) << lines;
+  EXPECT_TRUE(lines[2].get<std::string>().starts_with(
+      "some figures are worse with control than in open loop: the largest torque is "))
+      << lines;
 }
 
 TEST_F(AuthorServer, JobsAnswerOnTheSameTimeline) {

@@ -436,6 +436,16 @@ async function showsFindings(tab) {
   expect(/phases/.test(told.shown), "the line is shown: " + told.shown);
   expect(told.stale && told.grey && told.lanes === "grayscale(1)", "the old motion is grey, and so is its strip: " + told.lanes);
   await tab.shoot("error.png");
+  // If the robot cannot do what is written, the page says so, and a place that the message names can be clicked.
+  const far = JSON.parse(good);
+  far.phases.find((one) => one.swing).swing.to[0] += 0.4;
+  await tab.after(() => save(JSON.stringify(far, null, 1)));
+  const verdict = await tab.run("return document.getElementById('verdict').textContent");
+  expect(verdict === "gives no motion", "a motion that is impossible: " + verdict);
+  const led = await tab.run(`const place = document.querySelector("#error button.place"), words = place?.textContent;
+    place?.click();
+    return words + ": " + document.querySelector("#selected h3")?.textContent;`);
+  expect(/^phase (\d+): Phase \1,/.test(led), "a place in the message leads there: " + led);
   await tab.after(() => save(good));
   expect(await tab.run("return document.getElementById('error').hidden"), "the error is gone");
 }

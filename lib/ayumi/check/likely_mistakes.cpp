@@ -39,6 +39,9 @@ constexpr double kCrossing = 0.02;
 // A foot key this far above the other sole lifts the COG noticeably [m]. Chosen: a sole that clears
 // the ground.
 constexpr double kLiftedKey = 0.005;
+// Number of other keys with a lifted foot that are named. Chosen: a kick has two or three keys in
+// the air.
+constexpr size_t kNamedLifts = 3;
 // A foot lower than this over the ground counts as standing on it [m].
 constexpr double kOnGround = 1e-3;
 // Angles below this count as zero, and angles this near to a whole number count as whole [deg].
@@ -387,28 +390,44 @@ class Suspicions {
   }
 
   // Without keys, the COG keeps its height above the mean height of both soles, so a lifted foot
-  // raises it by half of the lift. This rule names the keys that lift a foot.
+  // raises it by half of the lift. This rule names the keys that lift a foot, the highest one
+  // first.
   void lifted_keys() {
     const bool has_height = std::any_of(pattern_.keyframes.begin(), pattern_.keyframes.end(),
                                         [](const Keyframe& key) { return key.cog_height; });
     if (has_height) return;
-    std::vector<Mistake> found;
+    struct Lifted {
+      std::string place;
+      Side side = Side::left;
+      double lift = 0;
+    };
+    std::vector<Lifted> lifted;
     for (size_t i = 0; i < pattern_.keyframes.size(); ++i) {
       const Keyframe& key = pattern_.keyframes[i];
       for (const Side side : {Side::left, Side::right}) {
         const auto& foot = key.feet[static_cast<size_t>(index(side))];
         if (!foot || supports(feet_->support(key.t), side)) continue;
         const double lift = foot->position.z() - feet_->pose(other(side), key.t).translation().z();
-        if (lift > kLiftedKey)
-          found.push_back(
-              {key_place(i),
-               std::string("the ") + name_of(side) + " foot is " + text::fixed(1000 * lift, 0) +
-                   " mm up, and the COG rises by half of this height, because the COG height "
-                   "without keys is measured from the mean height of both soles; keep the COG down "
-                   "with keys of \"cog\": {\"height\": ...}, or lower /defaults/cog_height"});
+        if (lift > kLiftedKey) lifted.push_back({key_place(i), side, lift});
       }
     }
-    say(found, Finds::several_in_a_place);
+    if (lifted.empty()) return;
+    const auto highest =
+        std::max_element(lifted.begin(), lifted.end(),
+                         [](const Lifted& a, const Lifted& b) { return a.lift < b.lift; });
+    std::vector<std::string> others;
+    for (const Lifted& one : lifted)
+      if (one.place != highest->place &&
+          std::find(others.begin(), others.end(), one.place) == others.end())
+        others.push_back(one.place);
+    if (others.size() > kNamedLifts) others = {text::counted(others.size(), "other keyframe")};
+    say({{highest->place,
+          std::string("the ") + name_of(highest->side) + " foot is " +
+              text::fixed(1000 * highest->lift, 0) + " mm up" +
+              (others.empty() ? "" : " (and less in " + text::join(others, " and ") + ")") +
+              ", and the COG rises by half of this height, because the COG height without keys is "
+              "measured from the mean height of both soles; keep the COG down with keys of "
+              "\"cog\": {\"height\": ...}, or lower /defaults/cog_height"}});
   }
 
   void leg_keys() {
@@ -492,7 +511,14 @@ Error with_mistakes(const Error& error, const Pattern& pattern,
   const bool in_file = !pattern.file.empty() && error.place().file == pattern.file;
   const std::string words = "likely cause: " + text::join(texts, "; or ") +
                             "; the first error is: " + (in_file ? error.words() : error.what());
-  return {error.code(), (in_file ? pattern.file + ": " : "") + words, error.place(), words};
+  SourcePlace place = error.place();
+  // What should be changed is where the first cause is.
+  if (in_file) {
+    const auto cause = std::find_if(mistakes.begin(), mistakes.end(),
+                                    [](const Mistake& mistake) { return mistake.is_cause; });
+    if (cause->place.starts_with("/")) place.inside = cause->place;
+  }
+  return {error.code(), (in_file ? pattern.file + ": " : "") + words, place, words};
 }
 
 }  // namespace ayumi

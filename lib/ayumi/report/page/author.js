@@ -11,6 +11,7 @@ import { parsePattern } from "./fields.js";
 import { Handles } from "./handles.js";
 import { Inspector } from "./inspector.js";
 import { Jobs } from "./jobs.js";
+import { linked } from "./places.js";
 import { withUnits } from "./parts.js";
 import { Pose } from "./pose.js";
 import { Postures } from "./postures.js";
@@ -393,7 +394,7 @@ class Page {
     const errors = findings.filter((one) => one.severity === "error").length;
     const verdict = byId("verdict");
     verdict.className = state.error ? "bad" : state.consistent ? "good" : "bad";
-    verdict.textContent = state.error ? "cannot be read" : state.consistent ? "consistent"
+    verdict.textContent = state.error ? this.noMotion() : state.consistent ? "consistent"
       : state.consistent === undefined ? "" : errors === 1 ? "1 error" : `${errors} errors`;
     for (const [id, count] of [["undo", state.undo], ["redo", state.redo]]) {
       byId(id).parentElement.hidden = !this.can("undo");
@@ -428,9 +429,9 @@ class Page {
     const { findings, error } = this.state;
     byId("to-answers").textContent = findings.length ? `Answers (${this.groups().length})` : "Answers";
     const old = error && findings.length ? [element("p", { class: "soft" },
-      "These findings are about the old motion, because the changed file cannot be read.")] : [];
+      `These findings are about the old motion, because the changed pattern ${this.noMotion()}.`)] : [];
     refill(byId("findings"), findings.length ? [...old, ...this.groups().map((group) => this.answer(group))]
-      : [element("p", { class: error ? "soft" : "good" }, error ? "The file cannot be read, so there are no findings."
+      : [element("p", { class: error ? "soft" : "good" }, error ? `The pattern ${this.noMotion()}, so there are no findings.`
         : this.state.consistent ? "Nothing is wrong: the motion is consistent." : "")]);
   }
 
@@ -463,11 +464,16 @@ class Page {
   showError({ error, stale, replay, features }) {
     byId("error").hidden = !error;
     byId("error-place").textContent = error ? error.line ? `Line ${error.line}:` : "Error:" : "";
-    byId("error-words").textContent = error ? error.message + (stale && replay
+    byId("error-words").replaceChildren(...error ? linked(this, error.message + (stale && replay
       ? (/[.!?]$/.test(error.message) ? "" : ".") + " The picture shows the old motion in grey." +
-        (features.includes("edit") ? "" : " The pattern can be changed here again when the file can be read; Undo takes changes back.") : "") : "";
+        (features.includes("edit") ? "" : " The pattern can be changed here again when the file can be read; Undo takes changes back.") : "")) : []);
     byId("error-go").hidden = !error?.line;
-    if (error && !replay) byId("verdict").textContent = "cannot be read";
+    if (error && !replay) byId("verdict").textContent = this.noMotion();
+  }
+
+  /// Why the text has no motion: it is not a pattern, or the robot cannot do what it says.
+  noMotion() {
+    return this.can("edit") ? "gives no motion" : "cannot be read";
   }
 
   openTab(name) {

@@ -139,10 +139,13 @@ export class Curves {
       const room = 0.06 * (most - low);
       [low, most] = [low - room, most + room];
       const y = (value) => top + (high - top - bottom) * (most - value) / (most - low);
+      const labelled = [];
       for (const value of levels(low, most)) {
         inner.append(shape("line", { class: "level", x1: 0, x2: wide, y1: y(value), y2: y(value) }));
-        // The label is above its line, or below it at the top of the picture.
+        // The label is above its line, or below it at the top of the picture, unless another label is there.
         const place = y(value) < letters + 2 ? y(value) + letters : y(value) - 2;
+        if (labelled.some((other) => Math.abs(other - place) < letters)) continue;
+        labelled.push(place);
         inner.append(shape("text", { class: "scale", x: 3, y: place }, `${value} ${list[0].unit}`));
       }
       const joint = list[0].joint && state.joints.find((one) => one.name === list[0].joint);

@@ -2,6 +2,7 @@
 // results.
 
 import { byId, element, seconds } from "./dom.js";
+import { linked } from "./places.js";
 
 const kinds = ["check", "repair", "simulate", "push", "export"];
 
@@ -68,7 +69,7 @@ export class Jobs {
       export: "Export" }[result.kind] || result.kind;
     byId("result-lines").replaceChildren(
       element("p", { class: result.good ? "good" : "bad" }, result.verdict || ""),
-      ...(result.lines || []).map((line) => element("p", {}, line)),
+      ...(result.lines || []).map((line) => element("p", {}, ...linked(this.page, line))),
       ...(result.files || []).map((file) => element("p", {}, element("code", {}, file))),
       ...(result.marks || []).map((mark) => element("p", {}, element("button", { type: "button", class: "line",
         onclick: () => this.page.show(mark.time) }, `${seconds(mark.time)}: ${mark.text}`))),
