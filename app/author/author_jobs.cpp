@@ -190,6 +190,7 @@ AuthorResult push_job(const Context& context, const AuthorMotion& motion,
   OrderedJson lines = OrderedJson::array(), marks = OrderedJson::array();
   for (const std::string& line : push_summary_lines(cases, options, task.series))
     lines.push_back(line);
+  lines.push_back(kPushBoundLegend);
   double least = 0;
   const PushCase* weakest = nullptr;
   for (size_t i = 0; i < cases.size(); ++i) {

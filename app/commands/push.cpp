@@ -151,9 +151,8 @@ std::string table(const std::vector<PushCase>& cases, const PushOptions& push,
            [k](const PushCase& c) { return text::fixed(push_froude(c, c.limits[k].impulse), 3); });
   }
   for (const std::string& line : push_summary_lines(cases, push, series)) out += line + "\n";
-  return out +
-         "B = largest push that a point mass could absorb; + = the robot survived even the largest "
-         "push that was tried\n"
+  return out + kPushBoundLegend +
+         "; + = the robot survived even the largest push that was tried\n"
          "J/m = speed that the push gives to the COG, in m/s; J/mv = this speed divided by v = "
          "sqrt(g z), where z is the height of the COG above the ZMP\n";
 }

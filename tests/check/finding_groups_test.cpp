@@ -66,6 +66,19 @@ TEST(FindingGroups, LeftAndRightOfOneJointAreOneCauseAndOtherJointsAreNot) {
   EXPECT_EQ(groups[1].members, std::vector<int>{2});
 }
 
+// A finding of a file has no place, only the name of it.
+TEST(FindingGroups, FindingsOfAFileAreGroupedAsTheyWere) {
+  ConsistencyReport report;
+  report.findings = {
+      too_fast("l_knee", 1.0, 4.5), too_fast("r_knee", 1.5, -5.5),
+      finding(FindingKind::foot_slip, FootPlace{Side::left}, "left", 3.0, 0.02, 0.001),
+      finding(FindingKind::foot_slip, FootPlace{Side::right}, "right", 3.5, 0.02, 0.001)};
+  const size_t before = finding_groups(report, limited_biped()).size();
+  for (Finding& f : report.findings) f.place = {};
+  EXPECT_EQ(before, 2u);
+  EXPECT_EQ(finding_groups(report, limited_biped()).size(), before);
+}
+
 TEST(FindingGroups, WhatFollowsFromAFindingIsCountedWithItThroughAllSteps) {
   ConsistencyReport report;
   report.findings = {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <ctime>
 
+#include "ayumi/io/json/document_format.hpp"
 #include "ayumi/io/json/json_depth.hpp"
 #include "ayumi/io/json/json_slip.hpp"
 #include "tests/support/error_message.hpp"
@@ -200,6 +201,26 @@ TEST(JsonReader, NamesThePointerOfAWrongValue) {
             "f.json: /keys/0/time: unknown key; did you mean 'tine'?");
   EXPECT_EQ(reader_error([&] { key.at("n").number_within(0, 1); }),
             "f.json: /keys/0/n: 1.5 is too large; the largest allowed value is 1");
+}
+
+// A file of Ayumi that was given to the wrong command is named, with the command that reads it.
+TEST(DocumentFormat, SaysWhatTheFileIs) {
+  const auto message = [](const std::string& format, const std::string& wanted) {
+    const Json document = {{"format", format}};
+    return test::error_message(
+        [&] { require_format(root_of(document, "mine.json", ErrorCode::bad_file), wanted); },
+        ErrorCode::bad_file);
+  };
+  EXPECT_EQ(
+      message("ayumi.postures/1", "ayumi.robot/1"),
+      "mine.json: /format: this is a library of postures, and not a robot; `ayumi posture list "
+      "FILE` reads it");
+  EXPECT_EQ(
+      message("ayumi.robot/1", "ayumi.pattern/1"),
+      "mine.json: /format: this is a robot, and not a pattern; `ayumi inspect FILE` reads it");
+  EXPECT_EQ(message("ayumi.pattern/2", "ayumi.pattern/1"),
+            "mine.json: /format: 'ayumi.pattern/2' cannot be read; this version of Ayumi reads "
+            "'ayumi.pattern/1'");
 }
 
 }  // namespace

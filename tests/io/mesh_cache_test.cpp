@@ -27,7 +27,9 @@ class CachedMeshes : public testing::Test {
     folder_.write("t.mtl", "newmtl red\nKd " + color + "\n");
   }
   TriangleMesh read(const fs::path& path, double scale = 1) const {
-    return load_mesh(path, Eigen::Vector3d::Constant(scale), {.cache = cache()});
+    MeshReading reading;
+    reading.cache = cache();
+    return load_mesh(path, Eigen::Vector3d::Constant(scale), reading);
   }
   static double corner(const TriangleMesh& mesh) { return mesh.parts.at(0).vertices.at(0).x(); }
   static float red(const TriangleMesh& mesh) { return mesh.parts.at(0).color[0]; }
@@ -90,9 +92,13 @@ TEST_F(CachedMeshes, ThatAreBrokenAreReadAgain) {
     std::string bad = good;
     bad[at] = static_cast<char>(bad[at] ^ 0x10);
     std::ofstream(entry, std::ios::binary) << bad;
-    if (at % 5 == 0) EXPECT_EQ(corner(read(path)), 0.5) << at;
+    if (at % 5 == 0) {
+      EXPECT_EQ(corner(read(path)), 0.5) << at;
+    }
     std::ofstream(entry, std::ios::binary) << good.substr(0, at);
-    if (at % 5 == 1) EXPECT_EQ(corner(read(path)), 0.5) << at;
+    if (at % 5 == 1) {
+      EXPECT_EQ(corner(read(path)), 0.5) << at;
+    }
   }
   std::ofstream(entry, std::ios::binary) << good + "more";
   EXPECT_EQ(corner(read(path)), 0.5);
@@ -109,12 +115,14 @@ TEST_F(CachedMeshes, MayHaveNoPlace) {
   fs::create_directory(cache());
   fs::permissions(cache(), fs::perms::owner_read | fs::perms::owner_exec);
   EXPECT_EQ(corner(read(path)), 0.5);
-  EXPECT_EQ(corner(load_mesh(path, Eigen::Vector3d::Ones(), {.cache = std::nullopt})), 0.5);
+  MeshReading without;
+  without.cache.reset();
+  EXPECT_EQ(corner(load_mesh(path, Eigen::Vector3d::Ones(), without)), 0.5);
 }
 
 TEST_F(CachedMeshes, TakeABoundedSpace) {
-  material("1 0 0");
-  fs::create_directory(cache());
+  fs::create_directories(cache() / "a folder");
+  fs::create_symlink("nowhere", cache() / "a link");
   // Files without bytes on the disk: the oldest are deleted until the rest has room.
   for (int i = 0; i < 5; ++i) {
     const fs::path old = cache() / ("old" + std::to_string(i));
@@ -122,12 +130,19 @@ TEST_F(CachedMeshes, TakeABoundedSpace) {
     fs::resize_file(old, MeshCache::kMostBytes / 3);
     fs::last_write_time(old, fs::file_time_type::clock::now() - std::chrono::hours(10 - i));
   }
-  read(triangle(0.5));
+  // The space is counted again after each 16 MiB.
+  const MeshCache meshes(cache());
+  meshes.keep("new", {}, std::string(size_t{17} << 20, 'x'));
   std::uintmax_t all = 0;
-  for (const fs::path& entry : entries()) all += fs::file_size(entry);
+  for (const fs::path& entry : entries())
+    if (fs::is_regular_file(entry)) all += fs::file_size(entry);
   EXPECT_LE(all, MeshCache::kMostBytes);
-  EXPECT_EQ(entries().size(), 3u);
+  EXPECT_FALSE(fs::exists(cache() / "old2"));
   EXPECT_TRUE(fs::exists(cache() / "old4"));
+  const auto none = [](const std::string&) { return std::optional<std::string>(); };
+  EXPECT_TRUE(meshes.find("new", none));
+  meshes.keep("large", {}, std::string(MeshCache::kLargestAnswer + 1, 'x'));
+  EXPECT_FALSE(meshes.find("large", none));
 }
 
 }  // namespace

@@ -26,10 +26,10 @@ class PlaceKeys {
   }
 
   PlaceKey of(const Finding& finding) const {
-    // A finding that was read from a file has only words.
-    if (std::holds_alternative<std::monostate>(finding.place)) return {0, 0, 0, finding.where};
-    const auto [first, second] = std::visit(*this, finding.place);
-    return {finding.place.index(), first, second, ""};
+    const Place place = place_of(finding);
+    if (std::holds_alternative<std::monostate>(place)) return {0, 0, 0, finding.where};
+    const auto [first, second] = std::visit(*this, place);
+    return {place.index(), first, second, ""};
   }
 
   std::pair<int, int> operator()(std::monostate) const { return {0, 0}; }
@@ -51,6 +51,15 @@ class PlaceKeys {
   }
 
  private:
+  // A finding that was read from a file has only the name of its joint, foot or support.
+  Place place_of(const Finding& finding) const {
+    if (!std::holds_alternative<std::monostate>(finding.place)) return finding.place;
+    if (const int dof = model_.find_dof(finding.where); dof >= 0) return JointPlace{dof};
+    for (const Side side : {Side::left, Side::right})
+      if (finding.where == name_of(side)) return FootPlace{side};
+    return {};
+  }
+
   int image(int body) const {
     const int dof = body > 0 ? model_.bodies()[body].dof : -1;
     if (dof < 0 || model_.dofs()[dof].body != body) return body;

@@ -37,6 +37,9 @@ struct PushMap {
 /// The name of the baseline of a push study: "open loop", or "no feedback" for VIIP's pendulum.
 std::string push_baseline(const CommandSeries& series);
 
+/// What B means in these texts.
+inline constexpr const char* kPushBoundLegend = "B = largest push that a point mass could absorb";
+
 /// One line for each law while walking, and one for each law while standing, with its worst and
 /// mean limit in capture bounds and those of the baseline.
 std::vector<std::string> push_summary_lines(const std::vector<PushCase>& cases,

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "ayumi/base/counted.hpp"
@@ -161,12 +160,7 @@ std::string consequences_of(const ConsistencyReport& check, const FindingGroup& 
 }
 
 // The findings as a list with one entry for each cause.
-std::string finding_list(const RobotModel& model, ConsistencyReport check) {
-  // Findings that were read from a file have only the names of their joints.
-  for (Finding& f : check.findings)
-    if (const int dof = model.find_dof(f.where);
-        dof >= 0 && std::holds_alternative<std::monostate>(f.place))
-      f.place = JointPlace{dof};
+std::string finding_list(const RobotModel& model, const ConsistencyReport& check) {
   std::string out = "<ul>\n";
   for (const FindingGroup& group : finding_groups(check, model)) {
     const Finding& worst = check.findings[group.worst];

@@ -4,6 +4,7 @@
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/number_slips.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/io/json/document_format.hpp"
 #include "ayumi/io/pattern/pattern_scope.hpp"
 #include "ayumi/io/robot/robot_source.hpp"
 #include "ayumi/io/run/sha256.hpp"
@@ -22,13 +23,6 @@ constexpr size_t kMostItems = 100000;
 // than anybody writes.
 constexpr double kMostRounds = 10000;
 constexpr int kMostBlocks = 8;
-
-void require_format(const JsonNode& root, const std::string& format) {
-  const std::string found = root.at("format").string();
-  if (found != format)
-    root.at("format").complain("'" + found + "' cannot be read; this version of Ayumi reads '" +
-                               format + "'");
-}
 
 void require_parameter_name(const std::string& name, const JsonNode& place) {
   if (name.empty() || name.find_first_of("${}") != std::string::npos)

@@ -27,8 +27,6 @@ using Exchange = ChildProcess::Exchange;
 // Largest number of readers at the same time. Chosen: each takes 3 ms to start, and a robot has
 // about 20 small meshes.
 constexpr size_t kMeshReaders = 4;
-// Largest number of companion files of one mesh. Chosen: an OBJ has one, a glTF a handful.
-constexpr size_t kMostCompanions = 64;
 constexpr size_t kMostCompanionBytes = size_t{1} << 30;
 constexpr size_t kLongestCompanionName = 4096;
 // Longest wait of the caller before it asks whether the work should continue. Chosen: Ctrl-C is
@@ -253,8 +251,8 @@ class MeshReader {
 
   // Sends the companion file of this name, or the message that there is none.
   void answer(const std::string& name) {
-    if (asked_.size() == kMostCompanions)
-      throw ReaderLost{"the mesh file names more than " + std::to_string(kMostCompanions) +
+    if (asked_.size() == kMostMeshCompanions)
+      throw ReaderLost{"the mesh file names more than " + std::to_string(kMostMeshCompanions) +
                        " other files; merge these files"};
     const std::optional<std::string> bytes = companion(name);
     asked_.push_back({name, bytes ? sha256(*bytes) : ""});

@@ -12,6 +12,7 @@
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/version.hpp"
+#include "ayumi/io/robot/mesh_reader_place.hpp"
 #include "ayumi/io/run/sha256.hpp"
 #include "ayumi/io/run/sha256_stream.hpp"
 
@@ -24,10 +25,11 @@ namespace fs = std::filesystem;
 // First bytes of an entry. The number counts the versions of the layout: the hash of the rest, and
 // then the rest: the number of companions, for each its name and hash, and the answer. A text is
 // its size (8 bytes) and its bytes.
-constexpr std::string_view kMark = "ayumi mesh answer 1\n";
-constexpr size_t kHashSize = 64;
-// Largest number of companions of an entry. Chosen: as many as one mesh may have.
-constexpr std::uint64_t kMostCompanions = 64;
+constexpr std::string_view kEntryMark = "ayumi mesh answer 1\n";
+constexpr size_t kHashDigits = 64;
+// Number of bytes that are kept before the space of all entries is counted again. Chosen: the
+// folder may exceed its bound by this.
+constexpr std::uintmax_t kLookAfter = std::uintmax_t{16} << 20;
 
 void append(std::string& bytes, std::uint64_t number) {
   bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
@@ -75,14 +77,16 @@ std::optional<fs::path> MeshCache::usual_folder() {
 
 std::string MeshCache::key_of(const MeshRequestHead& request, const std::string& file_name,
                               std::string_view bytes, const fs::path& reader) {
-  // Another reader, or one that was installed again, may give another answer.
-  std::error_code ignored;
+  // Another reader or library, or one that was installed again, may give another answer.
   std::string about;
   append(about, std::string_view(version()));
-  append(about, std::string_view(reader.string()));
-  append(about, fs::file_size(reader, ignored));
-  append(about, static_cast<std::uint64_t>(
-                    fs::last_write_time(reader, ignored).time_since_epoch().count()));
+  for (const fs::path& program : {reader, assimp_library()}) {
+    std::error_code missing;
+    append(about, std::string_view(program.string()));
+    append(about, fs::file_size(program, missing));
+    append(about, static_cast<std::uint64_t>(
+                      fs::last_write_time(program, missing).time_since_epoch().count()));
+  }
   append(about, std::string_view(file_name));
   about.append(reinterpret_cast<const char*>(&request), sizeof request);
   Sha256Stream hash;
@@ -101,11 +105,11 @@ std::optional<std::string> MeshCache::find(const std::string& key,
     return std::nullopt;
   }
   EntryReader reader{entry};
-  if (reader.bytes(kMark.size()) != kMark) return std::nullopt;
-  const std::string_view hash = reader.bytes(kHashSize);
+  if (reader.bytes(kEntryMark.size()) != kEntryMark) return std::nullopt;
+  const std::string_view hash = reader.bytes(kHashDigits);
   if (!reader.good || hash != sha256(reader.left)) return std::nullopt;
   const std::uint64_t companions = reader.number();
-  if (companions > kMostCompanions) return std::nullopt;
+  if (companions > kMostMeshCompanions) return std::nullopt;
   for (std::uint64_t i = 0; i < companions; ++i) {
     const std::string name(reader.text());
     const std::string_view then = reader.text();
@@ -129,7 +133,8 @@ void MeshCache::keep(const std::string& key, const std::vector<AskedCompanion>& 
   }
   append(rest, std::string_view(answer));
   std::error_code failed;
-  fs::create_directories(*folder_, failed);
+  if (fs::create_directories(*folder_, failed))
+    fs::permissions(*folder_, fs::perms::owner_all, failed);
   if (failed) return;
   // The entry gets its name when it is complete. Its hash shows whether it is.
   static std::atomic<unsigned> count = 0;
@@ -137,7 +142,7 @@ void MeshCache::keep(const std::string& key, const std::vector<AskedCompanion>& 
       *folder_ / (key + "." + std::to_string(getpid()) + "." + std::to_string(count++));
   {
     std::ofstream file(written, std::ios::binary);
-    file << kMark << sha256(rest) << rest;
+    file << kEntryMark << sha256(rest) << rest;
     file.close();
     if (!file) failed = std::make_error_code(std::errc::io_error);
   }
@@ -146,7 +151,10 @@ void MeshCache::keep(const std::string& key, const std::vector<AskedCompanion>& 
     fs::remove(written, failed);
     return;
   }
-  remove_oldest();
+  // Looks at the folder at first and after each kLookAfter bytes, because it may have many entries.
+  static std::atomic<std::uintmax_t> added = 0;
+  const std::uintmax_t before = added.fetch_add(rest.size());
+  if (before == 0 || before / kLookAfter != (before + rest.size()) / kLookAfter) remove_oldest();
 }
 
 void MeshCache::remove_oldest() const {
@@ -157,20 +165,22 @@ void MeshCache::remove_oldest() const {
   };
   std::vector<Entry> entries;
   std::uintmax_t all = 0;
-  std::error_code failed;
-  for (fs::directory_iterator it(*folder_, failed), end; !failed && it != end;
-       it.increment(failed)) {
-    Entry entry{it->last_write_time(failed), it->path(), it->file_size(failed)};
-    if (failed) return;  // another process may have deleted the file
+  std::error_code ended;
+  for (fs::directory_iterator it(*folder_, ended), end; !ended && it != end; it.increment(ended)) {
+    std::error_code gone;  // another process may have deleted the file
+    if (!fs::is_regular_file(it->symlink_status(gone))) continue;
+    const Entry entry{it->last_write_time(gone), it->path(), it->file_size(gone)};
+    if (gone) continue;
     all += entry.size;
-    entries.push_back(std::move(entry));
+    entries.push_back(entry);
   }
-  if (failed || all <= kMostBytes) return;
+  if (all <= kMostBytes) return;
   std::sort(entries.begin(), entries.end(),
             [](const Entry& a, const Entry& b) { return a.time < b.time; });
   for (const Entry& entry : entries) {
     if (all <= kMostBytes) return;
-    fs::remove(entry.path, failed);
+    std::error_code gone;
+    fs::remove(entry.path, gone);
     all -= entry.size;
   }
 }

@@ -17,6 +17,9 @@
 
 namespace ayumi {
 
+/// Largest number of companion files of one mesh. Chosen: an OBJ has one, a glTF a handful.
+inline constexpr size_t kMostMeshCompanions = 64;
+
 /// The bytes of a companion file of a mesh, by the name that the mesh states; no value if there is
 /// no such file.
 using CompanionBytes = std::function<std::optional<std::string>(const std::string& name)>;

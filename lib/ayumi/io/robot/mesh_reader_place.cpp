@@ -68,6 +68,8 @@ std::vector<fs::path> mesh_reader_places() {
   return places;
 }
 
+fs::path assimp_library() { return AYUMI_ASSIMP; }
+
 fs::path find_mesh_reader() {
   std::vector<std::string> searched;
   for (const fs::path& place : mesh_reader_places()) {

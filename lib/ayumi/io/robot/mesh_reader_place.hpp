@@ -17,4 +17,8 @@ std::vector<std::filesystem::path> mesh_reader_places();
 /// them and what to do.
 std::filesystem::path find_mesh_reader();
 
+/// The library assimp with which ayumi-mesh-reader was built. It need not be there now: an archive
+/// has a copy of its own beside the program.
+std::filesystem::path assimp_library();
+
 }  // namespace ayumi

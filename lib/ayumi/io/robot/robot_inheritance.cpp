@@ -7,6 +7,7 @@
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/json_pointer.hpp"
 #include "ayumi/base/text.hpp"
+#include "ayumi/io/json/document_format.hpp"
 #include "ayumi/io/robot/robot_source.hpp"
 
 namespace ayumi {
@@ -138,7 +139,7 @@ class BaseReader {
     const std::string bytes = read_file(file);
     Json document = parse_json(bytes, file.string(), ErrorCode::bad_file);
     const JsonNode root = root_of(document, file.string(), ErrorCode::bad_file);
-    root.at("format").one_of({"ayumi.robot/1"});
+    require_format(root, "ayumi.robot/1");
     const auto base = root.find("base");
     if (!base) return {document, {{"", {file.string(), ""}}}, bytes};
     MergedSidecar merged = read(base_file(*base, file));

@@ -9,6 +9,7 @@
 #include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/io/degrees.hpp"
+#include "ayumi/io/json/document_format.hpp"
 #include "ayumi/io/json/json_reader.hpp"
 #include "ayumi/io/robot/facing.hpp"
 #include "ayumi/io/robot/robot_source.hpp"
@@ -512,7 +513,7 @@ RobotDescription read_sidecar(const std::filesystem::path& file,
   const MergedSidecar sidecar = read_merged_sidecar(file, find);
   const JsonNode root = sidecar.root();
   root.only_keys(kKeys);
-  root.at("format").one_of({"ayumi.robot/1"});
+  require_format(root, "ayumi.robot/1");
   const std::filesystem::path urdf = find_urdf(root.at("urdf"), folders);
   const std::string urdf_bytes = read_file(urdf);
   std::vector<std::filesystem::path> places = packages;
