@@ -1,7 +1,5 @@
 #include "author/author_session.hpp"
 
-#include <sys/stat.h>
-
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -25,14 +23,6 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
-// Time between two checks of the files. Chosen: a small part of the time that an answer takes, with
-// a load of a few thousandths of a core.
-constexpr auto kLook = 5ms;
-// Clocks of file systems advance in steps of up to 10 ms (jiffies of 100 Hz).
-constexpr auto kClockStep = 30ms;
-// A file that is missing for longer counts as removed. Chosen: editors that replace a file do so
-// within 0.1 s.
-constexpr auto kGone = 500ms;
 // Time between two messages about the progress of a job. Chosen: a bar that moves ten times a
 // second looks smooth.
 constexpr auto kNews = 100ms;
@@ -53,13 +43,6 @@ AuthorAnswer answered(const fs::path& file, const Work& work) {
   } catch (const nlohmann::json::exception&) {
     return {400, {{"message", "the request does not have the form that the page sends"}}};
   }
-}
-
-FileStamp stamp_of(const fs::path& file) {
-  struct stat about {};
-  if (::stat(file.c_str(), &about) != 0) return {};
-  return {about.st_mtim.tv_sec, about.st_mtim.tv_nsec, static_cast<long>(about.st_size),
-          static_cast<unsigned long>(about.st_ino)};
 }
 
 }  // namespace
@@ -155,7 +138,7 @@ void AuthorSession::follow() {
   while (true) {
     {
       std::unique_lock lock(state_);
-      if (changed_.wait_for(lock, kLook, [&] { return stopping_.load(); })) return;
+      if (changed_.wait_for(lock, kFileLook, [&] { return stopping_.load(); })) return;
     }
     const std::lock_guard lock(reading_);
     if (is_gone()) continue;
@@ -163,9 +146,8 @@ void AuthorSession::follow() {
       return stamp_of(seen.first) == seen.second;
     });
     try {
-      // Two saves with the same size within one step of the file system's clock have the same
-      // stamp.
-      const bool look_again = read_at_ && std::chrono::steady_clock::now() - *read_at_ > kClockStep;
+      const bool look_again =
+          read_at_ && std::chrono::steady_clock::now() - *read_at_ > kFileClockStep;
       if (look_again) read_at_.reset();
       if (!same || (look_again && read_file(setting_.file) != view()->text)) refresh();
     } catch (const Error&) {  // the file is missing for a moment; the next check finds it
@@ -186,7 +168,7 @@ bool AuthorSession::is_gone() {
   const Shown before = view();
   const std::string words =
       "the file no longer exists. The page continues as soon as the file exists again";
-  if (now - *gone_since_ < kGone || (before->error && (*before->error)["message"] == words))
+  if (now - *gone_since_ < kFileGone || (before->error && (*before->error)["message"] == words))
     return true;
   auto next = std::make_shared<View>(*before);
   next->error = OrderedJson::object({{"message", words}});

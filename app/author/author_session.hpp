@@ -19,6 +19,7 @@
 #include "author/author_file.hpp"
 #include "author/author_jobs.hpp"
 #include "author/author_motion.hpp"
+#include "file_stamp.hpp"
 
 namespace ayumi::app {
 
@@ -30,13 +31,6 @@ struct AuthorAnswer {
 struct AuthorEvent {
   std::string name;  ///< name, such as "state" or "job"
   std::string data;  ///< data as JSON
-};
-
-/// Properties of a file that change when it is written: times [s, ns], size and number of the file.
-struct FileStamp {
-  long seconds = 0, nanoseconds = 0, size = -1;
-  unsigned long number = 0;
-  bool operator==(const FileStamp&) const = default;
 };
 
 class AuthorSession {

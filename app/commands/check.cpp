@@ -12,6 +12,7 @@
 
 #include "ayumi/base/counted.hpp"
 #include "ayumi/base/error.hpp"
+#include "ayumi/base/file.hpp"
 #include "ayumi/base/text.hpp"
 #include "ayumi/check/likely_mistakes.hpp"
 #include "ayumi/io/pattern/pattern_file.hpp"
@@ -23,6 +24,7 @@
 #include "ayumi/task/plan_log.hpp"
 #include "ayumi/task/scenario_findings.hpp"
 #include "check_table.hpp"
+#include "file_stamp.hpp"
 #include "motion_words.hpp"
 #include "pattern_input.hpp"
 #include "signals.hpp"
@@ -271,16 +273,23 @@ std::string change_words(std::optional<int> before, int now) {
   return "  " + text::counted(*before, "error") + ", now " + std::to_string(now);
 }
 
-// The time at which each of the files of a pattern was last written; a missing file also counts.
-using Stamps = std::map<fs::path, fs::file_time_type>;
+using Stamps = std::map<fs::path, FileStamp>;
 
 Stamps stamps_of(const std::vector<fs::path>& files) {
   Stamps stamps;
-  for (const fs::path& file : files) {
-    std::error_code missing;
-    stamps[file] = fs::last_write_time(file, missing);
-  }
+  for (const fs::path& file : files) stamps[file] = stamp_of(file);
   return stamps;
+}
+
+// The bytes of the files; a file that cannot be read is empty.
+std::vector<std::string> contents_of(const std::vector<fs::path>& files) {
+  std::vector<std::string> contents;
+  for (const fs::path& file : files) try {
+      contents.push_back(read_file(file));
+    } catch (const Error&) {
+      contents.emplace_back();
+    }
+  return contents;
 }
 
 // The files that the pattern names now, and the files that it named before it became unreadable.
@@ -315,21 +324,29 @@ void check_once(Context& context, const CheckCommand& options, const std::string
   std::fflush(stdout);
 }
 
-// Time between two checks of the files. Chosen: a small part of the time that a check takes, with a
-// load of a few thousandths of a core.
-constexpr auto kWatchLook = std::chrono::milliseconds(5);
-// A file that is missing for longer counts as removed, as on the live page.
-constexpr auto kWatchGone = std::chrono::milliseconds(500);
-
 void wait_or_stop() {
   if (stop_requested()) throw Interrupted();
-  std::this_thread::sleep_for(kWatchLook);
+  std::this_thread::sleep_for(kFileLook);
 }
 
 // An editor that replaces a file removes it for a moment.
 void await_return(const std::string& file) {
-  for (auto waited = kWatchLook; waited <= kWatchGone && !fs::exists(file); waited += kWatchLook)
+  for (auto waited = kFileLook; waited <= kFileGone && !fs::exists(file); waited += kFileLook)
     wait_or_stop();
+}
+
+// Returns when one of the files differs from what was read at `read_at`.
+void await_change(const std::vector<fs::path>& files, const Stamps& stamps,
+                  const std::vector<std::string>& contents,
+                  std::chrono::steady_clock::time_point read_at) {
+  bool compared = false;
+  while (stamps_of(files) == stamps) {
+    if (!compared && std::chrono::steady_clock::now() - read_at > kFileClockStep) {
+      compared = true;
+      if (contents_of(files) != contents) return;
+    }
+    wait_or_stop();
+  }
 }
 
 // Checks again at every change, until Ctrl-C.
@@ -344,14 +361,18 @@ void watch(Context& context, const CheckCommand& options) {
   Stamps seen;
   std::optional<int> errors;
   while (true) {
-    // The files are named by a pattern that may change while they are read: the stamp of the
-    // pattern is the one from before.
-    const Stamps before = stamps_of({file});
+    // The files are named by files that may change while they are read: a stamp from before counts.
+    std::vector<fs::path> known = {file};
+    for (const auto& entry : seen) known.push_back(entry.first);
+    const Stamps before = stamps_of(known);
     const std::vector<fs::path> files = watched_files(file, seen);
     seen = stamps_of(files);
-    seen[file] = before.at(file);
+    for (auto& [path, stamp] : seen)
+      if (const auto earlier = before.find(path); earlier != before.end()) stamp = earlier->second;
+    const std::vector<std::string> contents = contents_of(files);
+    const auto read_at = std::chrono::steady_clock::now();
     check_once(context, options, file, errors);
-    while (stamps_of(files) == seen) wait_or_stop();
+    await_change(files, seen, contents, read_at);
     await_return(file);
     if (!shows_colours()) context.print("\n");
   }

@@ -73,9 +73,17 @@ TEST(FindingGroups, FindingsOfAFileAreGroupedAsTheyWere) {
       too_fast("l_knee", 1.0, 4.5), too_fast("r_knee", 1.5, -5.5),
       finding(FindingKind::foot_slip, FootPlace{Side::left}, "left", 3.0, 0.02, 0.001),
       finding(FindingKind::foot_slip, FootPlace{Side::right}, "right", 3.5, 0.02, 0.001)};
+  // Both pairs of thigh and trunk.
+  for (const char* name : {"l_knee", "r_knee"}) {
+    const int body = limited_biped().dofs()[limited_biped().find_dof(name)].body;
+    report.findings.push_back(
+        finding(FindingKind::self_collision, BodyPairPlace{0, body},
+                limited_biped().bodies()[0].name + " - " + limited_biped().bodies()[body].name, 4,
+                -0.01, 0.002));
+  }
   const size_t before = finding_groups(report, limited_biped()).size();
   for (Finding& f : report.findings) f.place = {};
-  EXPECT_EQ(before, 2u);
+  EXPECT_EQ(before, 3u);
   EXPECT_EQ(finding_groups(report, limited_biped()).size(), before);
 }
 

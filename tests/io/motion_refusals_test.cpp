@@ -155,7 +155,7 @@ TEST(MotionRefusals, Tables) {
       {{"t,l_knee,theta.l_knee[rad]\n0,1,2\n0.1,1,2\n",
         "the column 'theta.l_knee[rad]' is given twice"},
        {head + "\n0,0,0,0,0.3,1,0,0,0\n0.01,0,0,0,0.3,2,0,0,0\n",
-        "data row 2: base.qw...qz has length 2, but a unit quaternion"},
+        "data row 2: the quaternion of the root has length 2, but a unit quaternion"},
        {"# format: ayumi.motion/9\nt[s],theta.l_knee[rad]\n0,0\n0.01,0\n",
         "format 'ayumi.motion/9' cannot be read; this version of Ayumi reads"},
        {"t[s],theta.l_knee[rad]\n0,0\n", "the table has only one row; a motion needs more"},

@@ -56,6 +56,8 @@ TEST(Recording, NamesAndUnitsMayBeWrittenInOtherWays) {
         "Time (ms);R_KNEE (rad)\n0;0,1\n5;0,2\n", "time [ms],r_knee_rad\n0,0.1\n5,0.2\n",
         "timestamp,r_knee_deg\n1000,5.729577951308232\n"
         "1000.005,11.459155902616465\n",
+        "TIME_MS,R_KNEE[RAD]\n0,0.1\n5,0.2\n", "Time[MS],r_knee_RAD\n0,0.1\n5,0.2\n",
+        "timestamp_us,r_knee\n0,0.1\n5000,0.2\n", "time_ns,r_knee\n0,0.1\n5000000,0.2\n",
         "TIME\tr_knee [deg]\n0\t5.729577951308232\n"
         "0.005\t11.459155902616465\n"}) {
     const AngleTable read = read_angles(text, "m.csv", hoap1());
@@ -91,6 +93,13 @@ TEST(Recording, WhatIsNoRecordingGetsOneLine) {
             "m.csv:1: rows without names are counts, but 0.5 is not a whole number; if these are "
             "angles, add a first row with the names of the columns, such as t[s] and "
             "r_hip_yaw[rad]");
+  EXPECT_NE(
+      recording_error(a + "\n" + "0.5" + b.substr(1) + "\n").find("m.csv:2: rows without names"),
+      std::string::npos);
+  EXPECT_EQ(
+      recording_error("time[min],r_knee\n0,0.1\n1,0.2\n"),
+      "m.csv: the unit of the times in the column 'time[min]' is not known; units are s, ms, us "
+      "and ns");
   std::string zeros;
   for (int c = 0; c < 23; ++c) zeros += c ? ",0" : "0";
   EXPECT_EQ(recording_error(zeros + "\n" + zeros + "\n"),

@@ -60,7 +60,7 @@ TEST(RestToRest, StartsAndEndsAtRestWithASmallBump) {
   VectorXd z(n + 1);
   for (int k = 0; k <= n; ++k) z[k] = 0.04 * (k < 100 ? 0 : std::sin(3 * h * (k - 100)));
   const VectorXd w2 = VectorXd::Constant(n + 1, w * w);
-  const RestToRest motion = rest_to_rest_cog(z, w2, h);
+  const RestToRest motion = RestToRestSolver(w2, h).solve(z);
   EXPECT_NEAR(motion.x[1] - motion.x[0], 0, 1e-8);
   EXPECT_NEAR(motion.x[n] - motion.x[n - 1], 0, 1e-6);
   // Without the bump the motion would start at about w * (anticipation) m/s.
@@ -76,7 +76,7 @@ TEST(RestToRest, StartsAndEndsAtRestWithASmallBump) {
 
 TEST(RestToRest, LeavesAConstantAlone) {
   const RestToRest motion =
-      rest_to_rest_cog(VectorXd::Constant(50, 0.3), VectorXd::Constant(50, 40.0), 0.005);
+      RestToRestSolver(VectorXd::Constant(50, 40.0), 0.005).solve(VectorXd::Constant(50, 0.3));
   EXPECT_LT((motion.x.array() - 0.3).abs().maxCoeff(), 1e-14);
   EXPECT_NEAR(motion.begin, 0, 1e-10);
   EXPECT_NEAR(motion.end, 0, 1e-10);

@@ -24,8 +24,9 @@ namespace {
 // Number of samples that one thread evaluates in a row. Chosen: they take a fraction of a
 // millisecond, and a walk of some seconds occupies all cores.
 constexpr int kBlockSamples = 256;
-// Number of blocks that are evaluated before their samples are judged. Chosen: 4 s at 1 kHz, whose
-// demands take about 2 MB. The next blocks use the same memory.
+// Number of blocks that are evaluated before their samples are judged, and largest number of
+// threads that evaluate them. Chosen: 4 s at 1 kHz, whose demands take about 2 MB. The next blocks
+// use the same memory.
 constexpr int kBlocksAtOnce = 16;
 
 // The demands of a block of samples.
@@ -69,7 +70,7 @@ void evaluate(JudgedMotion& motion, int first, const SampleObserver& observe,
   }
 }
 
-// Samples are evaluated on all threads, and then judged in order of time.
+// Samples are evaluated on several threads, and then judged in order of time.
 void judge_samples(JudgedMotion& motion, int threads, const SampleObserver& observe) {
   std::vector<EvaluatedBlock> blocks;
   for (int begin = 0; begin < motion.count(); begin += kBlocksAtOnce * kBlockSamples) {

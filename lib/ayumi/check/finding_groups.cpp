@@ -51,12 +51,20 @@ class PlaceKeys {
   }
 
  private:
-  // A finding that was read from a file has only the name of its joint, foot or support.
+  // A finding that was read from a file has only the name of its place, as where_text() gives it.
   Place place_of(const Finding& finding) const {
     if (!std::holds_alternative<std::monostate>(finding.place)) return finding.place;
     if (const int dof = model_.find_dof(finding.where); dof >= 0) return JointPlace{dof};
     for (const Side side : {Side::left, Side::right})
       if (finding.where == name_of(side)) return FootPlace{side};
+    const size_t count = model_.bodies().size();
+    for (size_t a = 0; a < count; ++a) {
+      const std::string first = model_.bodies()[a].name + " - ";
+      if (!finding.where.starts_with(first)) continue;
+      for (size_t b = 0; b < count; ++b)
+        if (finding.where.substr(first.size()) == model_.bodies()[b].name)
+          return BodyPairPlace{static_cast<int>(a), static_cast<int>(b)};
+    }
     return {};
   }
 

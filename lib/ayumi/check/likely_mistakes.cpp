@@ -424,7 +424,7 @@ class Suspicions {
     say({{highest->place,
           std::string("the ") + name_of(highest->side) + " foot is " +
               text::fixed(1000 * highest->lift, 0) + " mm up" +
-              (others.empty() ? "" : " (and less in " + text::join(others, " and ") + ")") +
+              (others.empty() ? "" : " (and up in " + text::join(others, " and ") + ")") +
               ", and the COG rises by half of this height, because the COG height without keys is "
               "measured from the mean height of both soles; keep the COG down with keys of "
               "\"cog\": {\"height\": ...}, or lower /defaults/cog_height"}});

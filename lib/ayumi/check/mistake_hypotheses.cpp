@@ -98,6 +98,11 @@ constexpr double kShortRest = 4;
 // Times of rest that are tried, in time constants of the COG. Chosen: up to the time in which the
 // COG comes to rest, and half as much again.
 constexpr std::array kRests = {2.0, 3.0, 4.0, 6.0};
+// The planner moves ZMP keys near an end that has no rest. The motion also changes this long before
+// or after the movement of the ZMP, in time constants of the COG. Derived: e^-2 is 14 %.
+constexpr double kRestReach = 2;
+// Rests are named in these steps [s]. Chosen: an author writes tenths of a second.
+constexpr double kRestStep = 0.1;
 // Number of bisection steps in the search for a time. Chosen: an interval of a second becomes a
 // microsecond, and times are written in milliseconds.
 constexpr int kHalvings = 20;
@@ -1575,20 +1580,22 @@ class Hypotheses::Maker {
     const size_t k = keys[*first];
     const double leaves = *pattern_.keyframes[k].cog_height,
                  lands = *pattern_.keyframes[keys[*first + 1]].cog_height;
-    const double bend =
-        2 * elementary::acos(std::min(1.0, leg_reach(leaves))) * 180 / std::numbers::pi;
+    const bool off = leaves >= lands;  // the end at which the legs are straighter
+    const double bend = 2 * elementary::acos(std::min(1.0, leg_reach(std::max(leaves, lands)))) *
+                        180 / std::numbers::pi;
     for (const double share : kLowerTakeOffs) {
       const double by = std::round(1e3 * share * leg_length(model_)) / 1e3;
       made.push_back(
           {Rank::pace,
            {key_place(k),
-            "the COG height is " + text::brief(leaves) +
-                " m at the lift-off, where the knees are "
-                "bent by only about " +
+            "the COG height is " + text::brief(std::max(leaves, lands)) + " m at the " +
+                (off ? "lift-off" : "landing") + ", where the knees are bent by only about " +
                 text::fixed(bend, 0) + " deg; the straighter a leg is, the quicker its knee turns",
             "with " + text::brief(leaves - by) + " m at the lift-off and " +
                 text::brief(lands - by) + " m at the landing" +
-                (lower.size() > 2 ? ", and as much lower at the ends of the other flights," : "")},
+                (lower.size() > 2
+                     ? ", and as much lower at the ends of the other flights with straight legs,"
+                     : "")},
            [lower, by](Pattern& p) {
              for (const size_t key : lower) *p.keyframes[key].cog_height -= by;
            }});
@@ -1622,11 +1629,14 @@ class Hypotheses::Maker {
     if (pattern_.phases.empty() || !model_.has_soles()) return;
     const double constant = std::sqrt(default_cog_height(model_, pattern_) / kGravity);
     const double end = pattern_.duration();
-    const auto rest = [&](double share) { return std::ceil(10 * share * constant) / 10; };
+    const auto rest = [&](double share) {
+      return std::round(std::ceil(share * constant / kRestStep)) * kRestStep;
+    };
     for (size_t k = keys.size(); k-- > 1;) {
       if (!moves(k)) continue;
       const double from = pattern_.keyframes[keys[k - 1]].t, until = pattern_.keyframes[keys[k]].t;
-      if (end - until > kShortRest * constant || !found_.touches(from - 2 * constant, end)) break;
+      if (end - until > kShortRest * constant || !found_.touches(from - kRestReach * constant, end))
+        break;
       const bool longer = pattern_.phases.back().support == Support::both &&
                           !is_repeated_phase(pattern_.phases.size() - 1);
       for (const double share : kRests)
@@ -1654,7 +1664,7 @@ class Hypotheses::Maker {
     for (size_t k = 1; k < keys.size(); ++k) {
       if (!moves(k)) continue;
       const double from = pattern_.keyframes[keys[k - 1]].t, until = pattern_.keyframes[keys[k]].t;
-      if (from > kShortRest * constant || !found_.touches(0, until + 2 * constant)) break;
+      if (from > kShortRest * constant || !found_.touches(0, until + kRestReach * constant)) break;
       for (const double share : kRests)
         made.push_back({Rank::missing,
                         {key_place(keys[k]),

@@ -282,8 +282,8 @@ class Search {
         (number.value > number.neutral ? "up to " : "down to ") + value.text(pattern_, limit);
     const std::string written = value.words + " is " + value.text(pattern_, number.value);
     // A change this small is only named if it is enough: then the author need not change more.
-    if (std::abs(number.value - limit) < kLeastMistake * value.unit(model_) && !at_limit.good())
-      return;
+    const bool tiny = std::abs(number.value - limit) < kLeastMistake * value.unit(model_);
+    if (tiny && !at_limit.good()) return;
     const double from = number.neutral + least * (number.value - number.neutral);
     const std::string range =
         (least > 0 ? "from " + value.text(pattern_, from) + " to " + value.text(pattern_, limit)
@@ -297,7 +297,7 @@ class Search {
                        number.value == 0 ? 1 : std::abs(1 - limit / number.value),
                        std::abs(number.value - limit) / value.unit(model_)},
                       at_limit});
-    if (found_.slight || least > 0) return;
+    if (found_.slight || least > 0 || tiny) return;
     std::vector<Hypothesis> slips;
     // The sign is probably wrong: almost no value of this sign is possible, and the size of the
     // value is usual.

@@ -72,8 +72,4 @@ RestToRest RestToRestSolver::solve(const VectorXd& z) const {
   return result;
 }
 
-RestToRest rest_to_rest_cog(const VectorXd& z, const VectorXd& w2, double h) {
-  return RestToRestSolver(w2, h).solve(z);
-}
-
 }  // namespace ayumi

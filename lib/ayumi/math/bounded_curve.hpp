@@ -14,12 +14,13 @@ Eigen::VectorXd bounded_cog(const Eigen::VectorXd& z, const Eigen::VectorXd& w2,
 /// Bump of the ZMP near t = 0 that allows a start from rest: (w t)^2 exp(-w t) (1 - t/T)^2.
 double rest_bump(double omega, double t, double duration);
 
+/// A bounded solution that also has x' = 0 at both ends.
 struct RestToRest {
   Eigen::VectorXd x;
   double begin = 0, end = 0;  ///< factors of the bumps that are added to z at the two ends
 };
 
-/// The bounded solution that also has x' = 0 at both ends. A bounded motion anticipates: it moves
+/// Finds such solutions for several ZMPs. A bounded motion anticipates: it moves
 /// at t = 0 when the ZMP moves soon afterwards. The ZMP is therefore changed by
 ///   begin * bump(t) + end * bump(T - t),
 /// which is close to the smallest possible change, and zero where the ZMP rests long enough at both
@@ -38,8 +39,5 @@ class RestToRestSolver {
   std::array<Eigen::VectorXd, 2> response_;  // to the bumps at both ends
   Eigen::Matrix2d unrest_;                   // of these responses
 };
-
-/// The same for one ZMP.
-RestToRest rest_to_rest_cog(const Eigen::VectorXd& z, const Eigen::VectorXd& w2, double h);
 
 }  // namespace ayumi

@@ -91,9 +91,4 @@ PngPicture snapshots_of_run(const RobotModel& model, const SimulationLog& log, C
   return {strip.width, strip.height, encode_png(strip)};
 }
 
-void write_strip(const RobotModel& model, const SimulationLog& log,
-                 const std::filesystem::path& path, const StripOptions& options) {
-  write_png(path, draw_strip(model, log, options));
-}
-
 }  // namespace ayumi

@@ -33,9 +33,4 @@ Image draw_strip(const RobotModel& model, const SimulationLog& log, const StripO
 /// draw_strip() and encode_png().
 PngPicture snapshots_of_run(const RobotModel& model, const SimulationLog& log, ClipOptions clip);
 
-/// Writes the same as a PNG file, whole or not at all. Throws the same errors as draw_strip() and
-/// write_png().
-void write_strip(const RobotModel& model, const SimulationLog& log,
-                 const std::filesystem::path& path, const StripOptions& options);
-
 }  // namespace ayumi

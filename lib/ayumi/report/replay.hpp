@@ -33,8 +33,8 @@ std::string live_model(const RobotModel& model, const SimulationLog& log, size_t
 
 /// JSON with the names of the table's columns, the tree of the bodies, and the soles, pushes and
 /// world of the log. `surface` is the robot's. The columns are those of the report's replay, then
-/// the pose of the base
-/// ("base."), and the angle ("q."), rate ("dq.") and torque ("tau.") of every joint.
+/// the pose of the base ("base."), and the angle ("q."), rate ("dq.") and torque ("tau.") of every
+/// joint.
 std::string live_config(const RobotModel& model, const std::vector<BodySurface>& surface,
                         const SimulationLog& log, double rate);
 

@@ -18,13 +18,15 @@
 namespace ayumi::html {
 namespace {
 
-/// A number with three significant digits; no exponent for large numbers.
-std::string three_digits(double value) {
-  if (std::abs(value) < 999.5) return text::brief(value, 3);
-  const double last = std::pow(10, std::floor(std::log10(std::abs(value))) - 2);
+/// A number with this many significant digits; no exponent for large numbers.
+std::string significant(double value, int digits) {
+  const double whole = std::pow(10, digits);
+  if (std::abs(value) < whole - 0.5) return text::brief(value, digits);
+  const double last = std::pow(10, std::floor(std::log10(std::abs(value))) - (digits - 1));
   return text::fixed(std::round(value / last) * last, 0);
 }
 
+std::string three_digits(double value) { return significant(value, 3); }
 std::string degrees(double radians) { return three_digits(radians * 180 / M_PI); }
 std::string millimetres(double metres) {
   // A value below a hundredth of a millimetre counts as zero.
@@ -133,18 +135,25 @@ std::string repair_words(const RepairNote& note) {
   return words + "</ul>\n";
 }
 
-std::string figure(double value, const std::string& unit, bool in_degrees = true) {
+std::string figure(double value, const std::string& unit, bool in_degrees = true, int digits = 3) {
   if (!std::isfinite(value)) return "not known";
   // One unit for each quantity: lengths in mm, angles in deg, as in curves and tables. A finding
   // has the unit of its hint, which is that of the pattern.
-  if (unit == "m") return millimetres(value) + " mm";
+  if (unit == "m")
+    return (digits == 3 ? millimetres(value) : significant(1e3 * value, digits)) + " mm";
   if (unit.starts_with("rad") && in_degrees)
-    return degrees(value) + " deg" + escaped(unit.substr(3));
-  return three_digits(value) + (unit == "1" ? "" : " " + escaped(unit));
+    return significant(value * 180 / M_PI, digits) + " deg" + escaped(unit.substr(3));
+  return significant(value, digits) + (unit == "1" ? "" : " " + escaped(unit));
 }
 
+// The value and its limit. If three digits are the same for both, both have more.
 std::string amount_of(const Finding& f) {
-  return figure(f.worst, f.unit, f.in_degrees) + ", limit " + figure(f.limit, f.unit, f.in_degrees);
+  const std::string worst = figure(f.worst, f.unit, f.in_degrees);
+  const std::string limit = figure(f.limit, f.unit, f.in_degrees);
+  if (worst != limit) return worst + ", limit " + limit;
+  constexpr int kMore = 6;
+  return figure(f.worst, f.unit, f.in_degrees, kMore) + ", limit " +
+         figure(f.limit, f.unit, f.in_degrees, kMore);
 }
 
 std::string consequences_of(const ConsistencyReport& check, const FindingGroup& group) {

@@ -33,6 +33,7 @@ void rename_column(NumberTable& table, Eigen::Index i, const RobotModel& model,
   std::string& column = table.columns[static_cast<size_t>(i)];
   const ColumnName named = column_name(column);
   if (const std::optional<double> seconds = seconds_of_time_column(column)) {
+    if (table.find("t[s]") >= 0) return;  // the first column of times counts
     if (*seconds != 1) table.values.col(i) *= *seconds;
     column = "t[s]";
     return;
@@ -75,8 +76,8 @@ std::vector<BasePose> bases_of(const NumberTable& table, const TableLayout& layo
     Eigen::Vector4d q;
     for (int i = 0; i < 4; ++i) q[i] = table.values(k, layout.base[3 + i]);
     if (std::abs(q.norm() - 1) > 0.01)
-      refuse_table(file, "data row " + std::to_string(k + 1) + ": base.qw...qz has length " +
-                             text::brief(q.norm()) +
+      refuse_table(file, "data row " + std::to_string(k + 1) +
+                             ": the quaternion of the root has length " + text::brief(q.norm()) +
                              ", but a unit quaternion (w, x, y, z) is needed");
     BasePose base;
     base.position = {table.values(k, layout.base[0]), table.values(k, layout.base[1]),

@@ -1,16 +1,14 @@
 #include "ayumi/io/robot/mesh_cache.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
 
 #include "ayumi/base/error.hpp"
 #include "ayumi/base/file.hpp"
+#include "ayumi/base/private_file.hpp"
 #include "ayumi/base/version.hpp"
 #include "ayumi/io/robot/mesh_reader_place.hpp"
 #include "ayumi/io/run/sha256.hpp"
@@ -133,24 +131,12 @@ void MeshCache::keep(const std::string& key, const std::vector<AskedCompanion>& 
   }
   append(rest, std::string_view(answer));
   std::error_code failed;
-  if (fs::create_directories(*folder_, failed))
-    fs::permissions(*folder_, fs::perms::owner_all, failed);
+  for (const fs::path& folder : {folder_->parent_path(), *folder_})
+    if (fs::create_directories(folder, failed))
+      fs::permissions(folder, fs::perms::owner_all, failed);
   if (failed) return;
-  // The entry gets its name when it is complete. Its hash shows whether it is.
-  static std::atomic<unsigned> count = 0;
-  const fs::path written =
-      *folder_ / (key + "." + std::to_string(getpid()) + "." + std::to_string(count++));
-  {
-    std::ofstream file(written, std::ios::binary);
-    file << kEntryMark << sha256(rest) << rest;
-    file.close();
-    if (!file) failed = std::make_error_code(std::errc::io_error);
-  }
-  if (!failed) fs::rename(written, *folder_ / key, failed);
-  if (failed) {
-    fs::remove(written, failed);
-    return;
-  }
+  const std::string entry = std::string(kEntryMark) + sha256(rest) + rest;
+  if (!write_private_file(*folder_ / key, entry)) return;
   // Looks at the folder at first and after each kLookAfter bytes, because it may have many entries.
   static std::atomic<std::uintmax_t> added = 0;
   const std::uintmax_t before = added.fetch_add(rest.size());

@@ -156,7 +156,7 @@ auto use_unchanged(const fs::path& folder, const JsonNode& root, const std::stri
   std::exception_ptr error;
   try {
     used = use(file);
-  } catch (const Error&) {  // that the file has changed is the better message
+  } catch (...) {  // that the file has changed is the better message
     error = std::current_exception();
   }
   if (recorded->string() != file.digits()) complain_of_change(path, kOtherHash);

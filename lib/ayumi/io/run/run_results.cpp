@@ -48,11 +48,14 @@ void read_causes(const std::vector<JsonNode>& nodes, std::vector<Finding>& findi
         node->complain("a cause is the number of a finding, from 0 to " +
                        std::to_string(count - 1));
     }
-  for (int i = 0; i < count; ++i) {
-    int root = i;
-    for (int steps = 0; steps < count && root >= 0; ++steps) root = findings[root].cause;
-    if (root >= 0) nodes[i].complain("this finding is a consequence of itself");
-  }
+  // The walk in which a finding was met; each finding is passed only once.
+  std::vector<int> met(findings.size(), -1);
+  for (int i = 0; i < count; ++i)
+    for (int at = i; at >= 0; at = findings[at].cause) {
+      if (met[at] == i) nodes[at].complain("this finding is a consequence of itself");
+      if (met[at] >= 0) break;
+      met[at] = i;
+    }
 }
 
 // A run of an older version may lack figures that later versions have added.

@@ -269,21 +269,22 @@ size_t device_count(const RobotModel& model, const std::string& file) {
   return static_cast<size_t>(devices);
 }
 
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
 // The times of a table with names, from their column and its unit in seconds.
 struct TimeColumn {
   int column = -1;
   double unit = 1;
   bool has_unit = false;
 };
-TimeColumn time_of(const NumberTable& table) {
-  for (size_t c = 0; c < table.columns.size(); ++c)
-    if (const std::optional<double> seconds = seconds_of_time_column(table.columns[c]))
-      return {static_cast<int>(c), *seconds, !column_name(table.columns[c]).unit.empty()};
+TimeColumn time_of(const NumberTable& table, const std::string& file) {
+  for (size_t c = 0; c < table.columns.size(); ++c) {
+    const std::string& column = table.columns[c];
+    if (!is_time_column(column)) continue;
+    const std::optional<double> seconds = seconds_of_time_column(column);
+    if (!seconds)
+      complain(file, "the unit of the times in the column '" + column +
+                         "' is not known; units are s, ms, us and ns");
+    return {static_cast<int>(c), *seconds, !column_name(column).unit.empty()};
+  }
   return {};
 }
 
@@ -293,7 +294,7 @@ double interval_of(const NumberTable& table, const RecordingOptions& options,
                    const std::string& file) {
   const Index rows = table.values.rows();
   if (rows < 2) complain(file, "the recording has fewer than two rows; record a motion");
-  const TimeColumn time = time_of(table);
+  const TimeColumn time = time_of(table, file);
   if (time.column < 0) return options.rate > 0 ? 1 / options.rate : 0.001;
   const VectorXd t = time.unit * table.values.col(time.column);
   std::vector<double> steps;
@@ -330,7 +331,7 @@ JointColumn joint_column(const std::string& column, const RobotModel& model, boo
                          const std::string& file) {
   const ColumnName named = column_name(column);
   const bool whole = find_joint(model, column) >= 0;  // the name itself may end like a unit
-  std::string name = whole ? column : named.name, unit = whole ? "" : lower(named.unit);
+  std::string name = whole ? column : named.name, unit = whole ? "" : named.unit;
   if (name.starts_with("theta.")) name = name.substr(6);
   JointColumn result;
   result.dof = find_joint(model, name);
@@ -355,7 +356,7 @@ AngleTable named_angles(const std::string& bytes, const std::string& file, const
   const NumberTable table = number_table(plain_table_text(bytes, file), file);
   const double dt = interval_of(table, options, file);
   AngleTable result = empty_table(model, table.values.rows(), dt);
-  result.timed = time_of(table).column >= 0;
+  result.timed = time_of(table, file).column >= 0;
   bool any = false;
   for (size_t c = 0; c < table.columns.size(); ++c) {
     const JointColumn column = joint_column(table.columns[c], model, options.degrees, file);
@@ -452,7 +453,7 @@ SensorTable named_sensors(const std::string& bytes, const std::string& file,
   const NumberTable table = number_table(plain_table_text(bytes, file), file);
   SensorTable result;
   result.dt = interval_of(table, options, file);
-  result.timed = time_of(table).column >= 0;
+  result.timed = time_of(table, file).column >= 0;
   std::array<int, 2> foot = {-1, -1};
   for (const int side : {0, 1}) {
     const std::string name = side == 0 ? "left" : "right";
@@ -503,13 +504,14 @@ AngleTable read_angles(const std::string& bytes, const std::string& file, const 
     return table;
   }
   const BareRows rows = bare_rows(bytes, file, devices, "the robot '" + model.name() + "'");
-  for (const double value : rows.rows.front())
-    if (value != std::round(value))
-      complain(file, rows.lines.front(),
-               "rows without names are counts, but " + text::brief(value) +
-                   " is not a whole number; if these are angles, add a first row with the names "
-                   "of the columns, such as t[s] and " +
-                   model.dof_names().front() + "[rad]");
+  for (size_t r = 0; r < rows.rows.size(); ++r)
+    for (const double value : rows.rows[r])
+      if (value != std::round(value))
+        complain(file, rows.lines[r],
+                 "rows without names are counts, but " + text::brief(value) +
+                     " is not a whole number; if these are angles, add a first row with the names "
+                     "of the columns, such as t[s] and " +
+                     model.dof_names().front() + "[rad]");
   for (size_t r = 0; r < rows.rows.size(); ++r)
     for (size_t c = devices; c < rows.rows[r].size(); ++c)
       if (rows.rows[r][c] != 0)

@@ -15,9 +15,8 @@ namespace ayumi {
 
 namespace {
 
-const std::set<std::string> kRoots = {"root",  "base",     "pelvis", "trunk", "torso",
-                                      "body",  "waist",    "pose",   "world", "free",
-                                      "float", "floating", "link",   "frame"};
+const std::set<std::string> kRoots = {"root",  "base", "pelvis", "trunk", "torso",   "body",
+                                      "waist", "pose", "free",   "float", "floating"};
 const std::set<std::string> kPlaces = {"p", "t", "pos", "position", "trans", "translation", "xyz"};
 const std::set<std::string> kTurns = {"q",        "quat", "quaternion",  "rot",
                                       "rotation", "ori",  "orientation", "orn"};
@@ -64,13 +63,11 @@ std::optional<RootColumn> root_column(const std::string& column) {
   }
   RootColumn result;
   for (const std::string& word : words) {
-    const bool number =
-        std::all_of(word.begin(), word.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
     if (kTurns.contains(word))
       turn = true;
     else if (kPlaces.contains(word))
       place = true;
-    else if (kRoots.contains(word) || number)
+    else if (kRoots.contains(word))
       result.root += (result.root.empty() ? "" : "_") + word;
     else
       return {};
@@ -120,6 +117,9 @@ void name_root_columns(NumberTable& table, const std::string& file,
     if (std::count(found.at.begin() + 3, found.at.end(), -1) == 0) turns.push_back(name);
   }
   if (places.empty() || turns.empty()) return;
+  const bool of_one_body = places.size() > 1 || turns.size() > 1 || places[0] == turns[0] ||
+                           places[0].empty() || turns[0].empty();
+  if (!of_one_body) return;
   const auto columns_of = [&](const std::vector<std::string>& names, size_t member) {
     std::vector<std::string> columns;
     for (const std::string& name : names)

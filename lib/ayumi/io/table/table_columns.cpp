@@ -15,9 +15,15 @@ namespace ayumi {
 
 namespace {
 
-bool is_time(std::string name) {
-  std::transform(name.begin(), name.end(), name.begin(),
+std::string lower(std::string_view text) {
+  std::string lowered(text);
+  std::transform(lowered.begin(), lowered.end(), lowered.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return lowered;
+}
+
+bool is_time(std::string_view column) {
+  const std::string name = lower(column);
   return name == "t" || name == "time" || name == "timestamp" || name == "stamp";
 }
 
@@ -114,13 +120,15 @@ ColumnName column_name(const std::string& column) {
     const size_t at = column.find(open);
     if (at == std::string::npos || column.back() != close) continue;
     return {std::string(trimmed(std::string_view(column).substr(0, at))),
-            std::string(trimmed(std::string_view(column).substr(at + 1, column.size() - at - 2)))};
+            lower(trimmed(std::string_view(column).substr(at + 1, column.size() - at - 2)))};
   }
-  for (const std::string unit : {"s", "ms", "deg", "rad"})
-    if (column.ends_with("_" + unit))
+  for (const std::string unit : {"s", "ms", "us", "ns", "deg", "rad"})
+    if (lower(column).ends_with("_" + unit))
       return {column.substr(0, column.size() - unit.size() - 1), unit};
   return {column, ""};
 }
+
+bool is_time_column(const std::string& column) { return is_time(column_name(column).name); }
 
 std::optional<double> seconds_of_time_column(const std::string& column) {
   const ColumnName named = column_name(column);

@@ -25,15 +25,18 @@ inline const std::vector<std::string> kContactColumns = {"contact.left", "contac
 std::string theta_column(const std::string& joint);
 std::string joint_of_column(const std::string& column);
 
-/// A column's name and its unit, as in "r_knee[deg]", "r_knee (deg)", "r_knee_deg" and "time_ms";
-/// the unit is empty if the column has none.
+/// A column's name, and its unit in small letters, as in "r_knee[deg]", "r_knee (deg)",
+/// "r_knee_DEG" and "time_ms"; the unit is empty if the column has none.
 struct ColumnName {
   std::string name, unit;
 };
 ColumnName column_name(const std::string& column);
 
-/// The seconds of one unit of a column of times ("t[s]", "Time (ms)"); nothing for other columns.
+/// The seconds of one unit of a column of times ("t[s]", "Time (ms)"); nothing for other columns,
+/// and for times in an unknown unit.
 std::optional<double> seconds_of_time_column(const std::string& column);
+/// Whether it is a column of times, in whatever unit.
+bool is_time_column(const std::string& column);
 
 /// The place of each group of columns in a table: its first index, or -1 if it is absent. Throws
 /// Error(bad_file) for an unknown column, for a group without all of its members, and without t[s].
