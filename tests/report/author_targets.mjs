@@ -155,8 +155,7 @@ try {
   const tab = await openPage(driving, 1280, 800);
   await runTrials(tab, [showsTargets]);
   await tab.drawNoMore();
-  await runTrials(tab, [dragsTargets]);
-  await onAShortMotion(tab, [dragsWhatFollows, typesTargets]);
+  await onAShortMotion(tab, [dragsTargets, dragsWhatFollows, typesTargets]);
   await runTrials(tab, [worksNarrow]);
   await twoPages(driving, tab);
   await quiet(tab);
