@@ -182,7 +182,7 @@ TEST(ImpossibleValues, AFootKeyThatLiftsTheCog) {
   const auto once = impossible(kick);
   ASSERT_EQ(once.size(), 1u);
   EXPECT_TRUE(once[0].starts_with(
-      "/keyframes/2: the right foot is 30 mm up (and less in /keyframes/1), and the COG rises"))
+      "/keyframes/2: the right foot is 30 mm up (and up in /keyframes/1), and the COG rises"))
       << once[0];
   // If the author has written a key of the height, the height is not doubted.
   pattern.keyframes[0].cog_height = 0.23;

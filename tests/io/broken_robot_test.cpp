@@ -256,8 +256,7 @@ TEST(BrokenRobot, WrongSidecars) {
   EXPECT_EQ(message_of(folder, "robot.json"), "robot.json: the file is empty; it must hold JSON");
   folder.write("robot.json", "{ \"format\": \"ayumi.pattern/1\" }");
   EXPECT_EQ(message_of(folder, "robot.json"),
-            "robot.json: /format: 'ayumi.pattern/1' is not allowed; the only allowed value is "
-            "'ayumi.robot/1'");
+            "robot.json: /format: this is a pattern, and not a robot; `ayumi check FILE` reads it");
 }
 
 }  // namespace

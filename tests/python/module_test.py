@@ -279,13 +279,13 @@ class Errors(unittest.TestCase):
             with self.assertRaises(ayumi.Error) as caught:
                 ayumi.read_pattern(path)
             self.assertEqual(caught.exception.place, str(path) + ": /format")
-            # The phase is one that the legs cannot do.
+            # The legs cannot do the first phase, because the COG is too high.
             text = json.loads(ayumi.read_pattern(WALK).text())
             text["defaults"]["cog_height"] = 0.4
             path.write_text(json.dumps(text))
             with self.assertRaises(ayumi.Error) as caught:
                 ayumi.load_task(path)
-            self.assertEqual(caught.exception.place, str(path) + ": /phases/0")
+            self.assertEqual(caught.exception.place, str(path) + ": /defaults/cog_height")
             # The error is in a line of a table.
             table = pathlib.Path(folder) / "motion"
             table.write_text("t,r_knee\n0,0\n0.1,nan\n0.2,0\n")
