@@ -163,6 +163,7 @@ TEST(ForeignTable, ColumnsOfTheRootAreReadByTheirNames) {
         "Pelvis_X[m],Pelvis_Y[m],Pelvis_Z[m],qw,qx,qy,qz",
         "/pose/position/x,/pose/position/y,/pose/position/z,/pose/orientation/w,"
         "/pose/orientation/x,/pose/orientation/y,/pose/orientation/z",
+        "base_link_x,base_link_y,base_link_z,base_link_qw,base_link_qx,base_link_qy,base_link_qz",
         "x,y,z,qw,qx,qy,qz"}) {
     const ImportedMotion read_motion = read(rooted(names));
     const std::vector<BasePose>& base = read_motion.motion.base;
@@ -175,12 +176,31 @@ TEST(ForeignTable, ColumnsOfTheRootAreReadByTheirNames) {
   // Places of other links, and places without a quaternion, are not the root.
   for (const char* names : {"left_foot_x,left_foot_y,left_foot_z,left_foot_qw,left_foot_qx,"
                             "left_foot_qy,left_foot_qz",
+                            "link_1_x,link_1_y,link_1_z,link_1_qw,link_1_qx,link_1_qy,link_1_qz",
+                            "pelvis_x,pelvis_y,pelvis_z,torso_qw,torso_qx,torso_qy,torso_qz",
                             "root_x,root_y,root_z,a,b,c,d"})
     EXPECT_NE(refusal(rooted(names)).find("of its 8 joints only l_elbow"), std::string::npos);
   EXPECT_EQ(refusal("t,root_x,root_y,root_z,pelvis_x,pelvis_y,pelvis_z,qw,qx,qy,qz\n"
                     "0,0,0,0,0,0,0,1,0,0,0\n0.1,0,0,0,0,0,0,1,0,0,0\n"),
             "a.csv: the motion of the root may be in the columns of 'pelvis_x' and 'root_x'; keep "
             "one of these groups");
+}
+
+// Only one column of times counts; the others are left out.
+TEST(ForeignTable, TheFirstColumnOfTimesCounts) {
+  for (const char* names : {"t,timestamp", "time_ms,time_ns", "time_ms,t[s]"}) {
+    std::string text = std::string(names) + ",l_elbow\n";
+    const bool seconds = std::string(names).starts_with("t,");
+    for (int k = 0; k < 9; ++k) {
+      const std::string first = std::to_string(seconds ? 0.01 * k : 10.0 * k);
+      const std::string second =
+          std::string(names).ends_with("t[s]") ? std::to_string(0.01 * k) : std::to_string(1e9 + k);
+      text += first + "," + second + "," + std::to_string(-0.01 * k) + "\n";
+    }
+    const ImportedMotion motion = read(text);
+    EXPECT_NEAR(motion.motion.dt, 0.01, 1e-9) << names;
+    EXPECT_EQ(motion.motion.base.size(), 0u) << names;
+  }
 }
 
 TEST(ForeignTable, MistakesAreOneLine) {

@@ -101,8 +101,9 @@ constexpr std::array kRests = {2.0, 3.0, 4.0, 6.0};
 // The planner moves ZMP keys near an end that has no rest. The motion also changes this long before
 // or after the movement of the ZMP, in time constants of the COG. Derived: e^-2 is 14 %.
 constexpr double kRestReach = 2;
-// Rests are named in these steps [s]. Chosen: an author writes tenths of a second.
-constexpr double kRestStep = 0.1;
+// Number of steps of a second in which rests are named. Chosen: an author writes tenths of a
+// second.
+constexpr double kRestsPerSecond = 10;
 // Number of bisection steps in the search for a time. Chosen: an interval of a second becomes a
 // microsecond, and times are written in milliseconds.
 constexpr int kHalvings = 20;
@@ -1587,7 +1588,7 @@ class Hypotheses::Maker {
       const double by = std::round(1e3 * share * leg_length(model_)) / 1e3;
       made.push_back(
           {Rank::pace,
-           {key_place(k),
+           {key_place(off ? k : keys[*first + 1]),
             "the COG height is " + text::brief(std::max(leaves, lands)) + " m at the " +
                 (off ? "lift-off" : "landing") + ", where the knees are bent by only about " +
                 text::fixed(bend, 0) + " deg; the straighter a leg is, the quicker its knee turns",
@@ -1630,7 +1631,7 @@ class Hypotheses::Maker {
     const double constant = std::sqrt(default_cog_height(model_, pattern_) / kGravity);
     const double end = pattern_.duration();
     const auto rest = [&](double share) {
-      return std::round(std::ceil(share * constant / kRestStep)) * kRestStep;
+      return std::ceil(share * constant * kRestsPerSecond) / kRestsPerSecond;
     };
     for (size_t k = keys.size(); k-- > 1;) {
       if (!moves(k)) continue;

@@ -33,7 +33,11 @@ void rename_column(NumberTable& table, Eigen::Index i, const RobotModel& model,
   std::string& column = table.columns[static_cast<size_t>(i)];
   const ColumnName named = column_name(column);
   if (const std::optional<double> seconds = seconds_of_time_column(column)) {
-    if (table.find("t[s]") >= 0) return;  // the first column of times counts
+    if (column == "t[s]") return;
+    if (table.find("t[s]") >= 0) {    // t[s] counts, otherwise the first column of times
+      column = theta_column(column);  // it is left out like an unknown joint
+      return;
+    }
     if (*seconds != 1) table.values.col(i) *= *seconds;
     column = "t[s]";
     return;

@@ -9,6 +9,7 @@
 #include "ayumi/io/formats/table_motion.hpp"
 #include "ayumi/io/table/comma_cells.hpp"
 #include "ayumi/io/table/csv_dialect.hpp"
+#include "ayumi/io/table/table_columns.hpp"
 
 namespace ayumi {
 

@@ -67,6 +67,8 @@ std::optional<RootColumn> root_column(const std::string& column) {
       turn = true;
     else if (kPlaces.contains(word))
       place = true;
+    else if (word == "link" && !result.root.empty())
+      continue;  // base_link_x
     else if (kRoots.contains(word))
       result.root += (result.root.empty() ? "" : "_") + word;
     else
