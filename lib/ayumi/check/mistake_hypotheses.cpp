@@ -116,6 +116,14 @@ Side stance_of(Support support) { return support == Support::left ? Side::left :
 
 }  // namespace
 
+bool is_repeated(const Pattern& pattern, const std::string& place) {
+  const auto rounds = [&](const auto& items) {
+    return std::count_if(items.begin(), items.end(),
+                         [&](const auto& item) { return item.pointer == place; });
+  };
+  return !place.empty() && (rounds(pattern.phases) > 1 || rounds(pattern.keyframes) > 1);
+}
+
 class Hypotheses::Maker {
  public:
   Maker(const RobotModel& model, const Pattern& pattern, const TrialOutcome& found)
@@ -336,19 +344,8 @@ class Hypotheses::Maker {
   // ---- times
 
   // A key of a block that repeats has no time of its own in the file.
-  bool is_repeated(size_t key) const {
-    const std::string& pointer = pattern_.keyframes[key].pointer;
-    return !pointer.empty() &&
-           std::count_if(pattern_.keyframes.begin(), pattern_.keyframes.end(),
-                         [&](const Keyframe& other) { return other.pointer == pointer; }) > 1;
-  }
-
-  // The same for a phase.
-  bool is_repeated_phase(size_t phase) const {
-    const std::string& pointer = pattern_.phases[phase].pointer;
-    return !pointer.empty() &&
-           std::count_if(pattern_.phases.begin(), pattern_.phases.end(),
-                         [&](const Phase& other) { return other.pointer == pointer; }) > 1;
+  bool is_repeated_key(size_t key) const {
+    return is_repeated(pattern_, pattern_.keyframes[key].pointer);
   }
 
   // Whether a time is within a flight; the ends of a flight do not belong to it.
@@ -372,7 +369,7 @@ class Hypotheses::Maker {
   void key_times(std::vector<Hypothesis>& made) const {
     const auto& keys = pattern_.keyframes;
     for (size_t i = 0; i < keys.size(); ++i) {
-      if (!reaches_key(i) || is_repeated(i)) continue;
+      if (!reaches_key(i) || is_repeated_key(i)) continue;
       const double before = i > 0 ? keys[i - 1].t : 0;
       const double after = i + 1 < keys.size() ? keys[i + 1].t : pattern_.duration();
       const auto add = [&](Rank rank, double t, const std::string& why, double change = 0) {
@@ -474,7 +471,7 @@ class Hypotheses::Maker {
         const Keyframe& low = pattern_.keyframes[k];
         const double rise = *end->cog_height - *low.cog_height;
         const double speed = drift + kGravity * flight / 2, lasts = std::abs(end->t - low.t);
-        if (is_repeated(k) || rise <= kNoLength || speed * lasts <= rise) continue;
+        if (is_repeated_key(k) || rise <= kNoLength || speed * lasts <= rise) continue;
         const double sink = -lowest(rise, speed, lasts);
         if (sink < kNotedSink * rise) continue;
         const bool before = low.t < end->t;
@@ -1116,7 +1113,7 @@ class Hypotheses::Maker {
       const Keyframe& key = pattern_.keyframes[i];
       if (!key.feet[s] || key.t <= begin + 1e-9 || key.t >= until - 1e-9) continue;
       const Eigen::Vector3d neutral = from + (key.t - begin) / (until - begin) * (to - from);
-      if (is_repeated(i)) return {};
+      if (is_repeated_key(i)) return {};
       if ((key.feet[s]->position - neutral).norm() > kNoLength)
         keys.push_back({i, key.feet[s]->position, neutral});
     }
@@ -1633,51 +1630,55 @@ class Hypotheses::Maker {
     const auto rest = [&](double share) {
       return std::ceil(share * constant * kRestsPerSecond) / kRestsPerSecond;
     };
+    const auto add = [&](size_t k, const std::string& written, const auto& instead,
+                         const std::function<void(Pattern&, double)>& mend) {
+      for (const double share : kRests) {
+        const double more = rest(share);
+        made.push_back({Rank::missing,
+                        {key_place(keys[k]), written, instead(seconds(more))},
+                        [mend, more](Pattern& p) { mend(p, more); },
+                        share});
+      }
+    };
     for (size_t k = keys.size(); k-- > 1;) {
       if (!moves(k)) continue;
       const double from = pattern_.keyframes[keys[k - 1]].t, until = pattern_.keyframes[keys[k]].t;
       if (end - until > kShortRest * constant || !found_.touches(from - kRestReach * constant, end))
         break;
       const bool longer = pattern_.phases.back().support == Support::both &&
-                          !is_repeated_phase(pattern_.phases.size() - 1);
-      for (const double share : kRests)
-        made.push_back({Rank::missing,
-                        {key_place(keys[k]),
-                         "the ZMP moves to its last place until " + seconds(until) +
-                             ", and the motion ends at " + seconds(end) +
-                             ", so the COG has too little time to come to rest above the ZMP",
-                         longer ? "with a last phase that is " + seconds(rest(share)) + " longer"
-                                : "with one more phase at the end, of " + seconds(rest(share)) +
-                                      " with support \"both\""},
-                        [longer, more = rest(share)](Pattern& p) {
-                          const double until = p.duration() + more;
-                          if (longer) {
-                            p.phases.back().until = until;
-                            return;
-                          }
-                          Phase both;
-                          both.until = until;
-                          p.phases.push_back(both);
-                        },
-                        share});
+                          !is_repeated(pattern_, pattern_.phases.back().pointer);
+      add(
+          k,
+          "the ZMP moves to its last place until " + seconds(until) + ", and the motion ends at " +
+              seconds(end) + ", so the COG has too little time to come to rest above the ZMP",
+          [longer](const std::string& more) {
+            return longer ? "with a last phase that is " + more + " longer"
+                          : "with one more phase at the end, of " + more + " with support \"both\"";
+          },
+          [longer](Pattern& p, double more) {
+            Phase both;
+            both.until = p.duration() + more;
+            if (longer)
+              p.phases.back().until = both.until;
+            else
+              p.phases.push_back(both);
+          });
       break;
     }
     for (size_t k = 1; k < keys.size(); ++k) {
       if (!moves(k)) continue;
       const double from = pattern_.keyframes[keys[k - 1]].t, until = pattern_.keyframes[keys[k]].t;
       if (from > kShortRest * constant || !found_.touches(0, until + kRestReach * constant)) break;
-      for (const double share : kRests)
-        made.push_back({Rank::missing,
-                        {key_place(keys[k]),
-                         "the ZMP leaves its first place at " + seconds(from) +
-                             ", so the COG has too little time to begin its movement from rest",
-                         "with all times " + seconds(rest(share)) + " later"},
-                        [more = rest(share)](Pattern& p) {
-                          for (Phase& phase : p.phases) phase.until += more;
-                          for (Keyframe& key : p.keyframes) key.t += more;
-                          for (Disturbance& disturbance : p.scenario) disturbance.at += more;
-                        },
-                        share});
+      add(
+          k,
+          "the ZMP leaves its first place at " + seconds(from) +
+              ", so the COG has too little time to begin its movement from rest",
+          [](const std::string& more) { return "with all times " + more + " later"; },
+          [](Pattern& p, double more) {
+            for (Phase& phase : p.phases) phase.until += more;
+            for (Keyframe& key : p.keyframes) key.t += more;
+            for (Disturbance& disturbance : p.scenario) disturbance.at += more;
+          });
       break;
     }
   }

@@ -3,6 +3,7 @@
 // been meant, and the change of the pattern that tries this value.
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "ayumi/check/mistake_search.hpp"
@@ -15,6 +16,10 @@ namespace ayumi {
 // mistake. The bound is a share of the value's unit (the length of a leg, a radian, the weight, 1).
 // Chosen: 1 mm for a leg of 0.2 m, 0.3 deg.
 inline constexpr double kLeastMistake = 0.005;
+
+/// Whether the phase or keyframe at this JSON pointer is one of several rounds of a block, which
+/// have one text in the file: a change of another round would name the same line again.
+bool is_repeated(const Pattern& pattern, const std::string& place);
 
 /// Specificity of an explanation; the most specific one comes first.
 enum class Rank { unit, geometry, slip, exchange, sign, missing, amount, pace };

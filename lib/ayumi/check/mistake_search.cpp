@@ -450,16 +450,6 @@ std::string words_at_period(const TrialOutcome& before, const TrialOutcome& afte
          (after.errors == 1 ? "remains" : "remain");
 }
 
-// Whether a phase or a keyframe is one of several rounds of a block, which have one text in the
-// file: a change of another round would name the same line again.
-bool is_repeated(const Pattern& pattern, const std::string& place) {
-  const auto rounds = [&](const auto& items) {
-    return std::count_if(items.begin(), items.end(),
-                         [&](const auto& item) { return item.pointer == place; });
-  };
-  return rounds(pattern.phases) > 1 || rounds(pattern.keyframes) > 1;
-}
-
 // "with t = 1 s, ": the beginning of a sentence.
 std::string before_result(const std::string& instead) {
   return instead + (instead.ends_with(',') ? " " : ", ");
